@@ -1,0 +1,3 @@
+//! The `libration` command.
+
+fn main() {}

@@ -1,0 +1,1 @@
+//! Studies that set what theory predicts beside what a simulation measures.

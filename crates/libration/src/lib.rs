@@ -1,0 +1,16 @@
+//! Libration: integrators, systems and number types for the stability of simulations.
+//!
+//! The one idea: *an integrator is a pure function of a number type*. The step `(q, v) ↦ (q', v')`
+//! is written once; on floats it simulates, on dual numbers it differentiates itself, on
+//! polynomials it yields its own update matrix.
+//!
+//! This crate does no input or output, reads no clock and prints nothing.
+
+pub mod number;
+mod scalar;
+mod state;
+pub mod system;
+
+pub use scalar::{Elementary, Float, Scalar};
+pub use state::State;
+pub use system::{Hamiltonian, Model, System};

@@ -1,0 +1,3 @@
+//! Number types: swap the number, and a step becomes another instrument.
+
+mod float;

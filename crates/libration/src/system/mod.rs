@@ -1,0 +1,48 @@
+//! Physical systems `q̈ = a(q, v)`, each written once for every number type.
+
+mod oscillator;
+
+use crate::{Elementary, Scalar, State};
+
+pub use oscillator::Oscillator;
+
+/// A mechanical system with `D` degrees of freedom and equation of motion `q̈ = a(q, v)`.
+///
+/// Time, where a system needs it, is a coordinate with velocity 1 and acceleration 0.
+pub trait System<S: Scalar, const D: usize> {
+    /// The acceleration `a(q, v)`.
+    fn acceleration(&self, state: &State<S, D>) -> [S; D];
+
+    /// The rate of change of the state, `(q̇, v̇) = (v, a(q, v))`.
+    #[inline(always)]
+    fn rate(&self, state: State<S, D>) -> State<S, D> {
+        State { q: state.v, v: self.acceleration(&state) }
+    }
+}
+
+/// A system with an energy, conserved or not.
+pub trait Hamiltonian<S: Scalar, const D: usize>: System<S, D> {
+    /// Kinetic plus potential energy per unit mass.
+    fn energy(&self, state: &State<S, D>) -> S;
+}
+
+/// A system given by `f64` parameters that can be put on any number type.
+///
+/// It is what a laboratory holds: one description, from which it makes the system of floats that
+/// it simulates, the system of dual numbers that it differentiates, and so on.
+pub trait Model<const D: usize>: Copy + Send + Sync {
+    /// The system on numbers of type `S`.
+    type On<S: Elementary>: Hamiltonian<S, D> + Copy;
+
+    /// Whether the acceleration is linear in `(q, v)`, so that one step is a constant matrix.
+    const LINEAR: bool;
+
+    /// The system on numbers of type `S`, its parameters rounded to `S`.
+    fn on<S: Elementary>(&self) -> Self::On<S>;
+}
+
+/// `½ |v|²`, the kinetic energy per unit mass.
+#[inline(always)]
+pub(crate) fn kinetic<S: Scalar>(v: &[S]) -> S {
+    v.iter().fold(S::zero(), |sum, &v| sum + v * v).ratio(1, 2)
+}
