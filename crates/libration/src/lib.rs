@@ -6,11 +6,15 @@
 //!
 //! This crate does no input or output, reads no clock and prints nothing.
 
+pub mod integrator;
+mod method;
 pub mod number;
 mod scalar;
 mod state;
 pub mod system;
 
+pub use integrator::Integrator;
+pub use method::Method;
 pub use scalar::{Elementary, Float, Scalar};
 pub use state::State;
 pub use system::{Hamiltonian, Model, System};

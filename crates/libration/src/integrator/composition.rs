@@ -1,0 +1,41 @@
+//! Methods composed of a simpler method with itself.
+
+use super::{Integrator, VelocityVerlet};
+use crate::{Scalar, State, System};
+
+/// A method repeated within one step, with substeps that are fractions of `dt`.
+///
+/// With a symmetric base and palindromic weights the order rises: Hairer, Lubich, Wanner:
+/// Geometric Numerical Integration, 2nd ed., §II.4 and §V.3.
+#[derive(Clone, Copy, Debug)]
+pub struct Composition<I, const N: usize> {
+    /// The method that is composed.
+    pub base: I,
+    /// The fraction of `dt` that each substep takes; they sum to one.
+    pub weights: [f64; N],
+}
+
+/// The type of [`YOSHIDA4`].
+pub type Yoshida4 = Composition<VelocityVerlet, 3>;
+
+/// Yoshida's composition of velocity Verlet: order 4, symplectic and time-reversible.
+///
+/// The weights are `w₁ = 1/(2 − ∛2)` and `w₀ = 1 − 2w₁`: Yoshida, Phys. Lett. A 150, 262 (1990).
+pub const YOSHIDA4: Yoshida4 = Composition {
+    base: VelocityVerlet,
+    weights: [1.351_207_191_959_657_8, -1.702_414_383_919_315_3, 1.351_207_191_959_657_8],
+};
+
+impl<I: Integrator, const N: usize> Integrator for Composition<I, N> {
+    #[inline(always)]
+    fn step<S: Scalar, const D: usize>(
+        self,
+        system: &impl System<S, D>,
+        state: State<S, D>,
+        dt: S,
+    ) -> State<S, D> {
+        self.weights
+            .iter()
+            .fold(state, |state, &weight| self.base.step(system, state, dt * S::from_f64(weight)))
+    }
+}

@@ -1,0 +1,34 @@
+//! Fixed-step integrators, each defined exactly once.
+//!
+//! A splitting method is a word in two letters, *kick* (`v += h·a`) and *drift* (`q += h·v`); a
+//! Runge–Kutta method is a sum of rates. Nothing here knows whether a number is one particle, a
+//! derivative or a polynomial.
+
+mod composition;
+mod euler;
+mod leapfrog;
+mod runge_kutta;
+mod textbook_verlet;
+mod velocity_verlet;
+
+use crate::{Scalar, State, System};
+
+pub use composition::{Composition, YOSHIDA4, Yoshida4};
+pub use euler::{ExplicitEuler, SymplecticEuler, SymplecticEulerDriftFirst};
+pub use leapfrog::Leapfrog;
+pub use runge_kutta::Rk4;
+pub use textbook_verlet::TextbookVerlet;
+pub use velocity_verlet::VelocityVerlet;
+
+/// A one-step method `(q, v) ↦ (q', v')`.
+///
+/// A step never fails, allocates, branches on data or reads a clock.
+pub trait Integrator: Copy + Send + Sync {
+    /// Advances `state` by one step of length `dt`.
+    fn step<S: Scalar, const D: usize>(
+        self,
+        system: &impl System<S, D>,
+        state: State<S, D>,
+        dt: S,
+    ) -> State<S, D>;
+}

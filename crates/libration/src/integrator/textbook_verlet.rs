@@ -1,0 +1,30 @@
+//! Velocity Verlet as textbooks print it.
+
+use core::array::from_fn;
+
+use super::Integrator;
+use crate::{Scalar, State, System};
+
+/// Velocity Verlet as `q' = q + Δt·v + ½Δt²·a`, `v' = v + ½Δt·(a + a')`.
+///
+/// In exact arithmetic it is [`VelocityVerlet`](super::VelocityVerlet) wherever the acceleration
+/// does not depend on the velocity. In floats it rounds differently, with a bias that makes the
+/// energy drift linearly.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TextbookVerlet;
+
+impl Integrator for TextbookVerlet {
+    #[inline(always)]
+    fn step<S: Scalar, const D: usize>(
+        self,
+        system: &impl System<S, D>,
+        State { q, v }: State<S, D>,
+        dt: S,
+    ) -> State<S, D> {
+        let half = dt.ratio(1, 2);
+        let a = system.acceleration(&State { q, v });
+        let q = from_fn(|i| q[i] + dt * v[i] + half * dt * a[i]);
+        let next = system.acceleration(&State { q, v });
+        State { q, v: from_fn(|i| v[i] + half * (a[i] + next[i])) }
+    }
+}

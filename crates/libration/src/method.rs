@@ -1,0 +1,138 @@
+//! The integrators as a value, for callers that choose one at run time.
+
+/// Every built-in integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Method {
+    /// [`ExplicitEuler`](crate::integrator::ExplicitEuler).
+    ExplicitEuler,
+    /// [`SymplecticEuler`](crate::integrator::SymplecticEuler).
+    SymplecticEuler,
+    /// [`SymplecticEulerDriftFirst`](crate::integrator::SymplecticEulerDriftFirst).
+    SymplecticEulerDriftFirst,
+    /// [`VelocityVerlet`](crate::integrator::VelocityVerlet).
+    VelocityVerlet,
+    /// [`TextbookVerlet`](crate::integrator::TextbookVerlet).
+    TextbookVerlet,
+    /// [`Leapfrog`](crate::integrator::Leapfrog).
+    Leapfrog,
+    /// [`Rk4`](crate::integrator::Rk4).
+    Rk4,
+    /// [`YOSHIDA4`](crate::integrator::YOSHIDA4).
+    Yoshida4,
+}
+
+/// Names `$m` the integrator behind a [`Method`] and evaluates `$body` once for its type.
+///
+/// The choice happens here, outside every loop; inside `$body` the integrator is static.
+#[macro_export]
+macro_rules! with_method {
+    ($method:expr, |$m:ident| $body:expr) => {{
+        use $crate::{Method, integrator};
+        match $method {
+            Method::ExplicitEuler => {
+                let $m = integrator::ExplicitEuler;
+                $body
+            }
+            Method::SymplecticEuler => {
+                let $m = integrator::SymplecticEuler;
+                $body
+            }
+            Method::SymplecticEulerDriftFirst => {
+                let $m = integrator::SymplecticEulerDriftFirst;
+                $body
+            }
+            Method::VelocityVerlet => {
+                let $m = integrator::VelocityVerlet;
+                $body
+            }
+            Method::TextbookVerlet => {
+                let $m = integrator::TextbookVerlet;
+                $body
+            }
+            Method::Leapfrog => {
+                let $m = integrator::Leapfrog;
+                $body
+            }
+            Method::Rk4 => {
+                let $m = integrator::Rk4;
+                $body
+            }
+            Method::Yoshida4 => {
+                let $m = integrator::YOSHIDA4;
+                $body
+            }
+        }
+    }};
+}
+
+impl Method {
+    /// All of them, by rising order.
+    pub const ALL: [Method; 8] = [
+        Method::ExplicitEuler,
+        Method::SymplecticEuler,
+        Method::SymplecticEulerDriftFirst,
+        Method::VelocityVerlet,
+        Method::TextbookVerlet,
+        Method::Leapfrog,
+        Method::Rk4,
+        Method::Yoshida4,
+    ];
+
+    /// Name on the command line and in configurations.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Method::ExplicitEuler => "explicit-euler",
+            Method::SymplecticEuler => "symplectic-euler",
+            Method::SymplecticEulerDriftFirst => "symplectic-euler-drift-first",
+            Method::VelocityVerlet => "velocity-verlet",
+            Method::TextbookVerlet => "textbook-verlet",
+            Method::Leapfrog => "leapfrog",
+            Method::Rk4 => "rk4",
+            Method::Yoshida4 => "yoshida4",
+        }
+    }
+
+    /// Name in running text.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Method::ExplicitEuler => "explicit Euler",
+            Method::SymplecticEuler => "symplectic Euler",
+            Method::SymplecticEulerDriftFirst => "symplectic Euler, drift first",
+            Method::VelocityVerlet => "velocity Verlet",
+            Method::TextbookVerlet => "textbook Verlet",
+            Method::Leapfrog => "leapfrog",
+            Method::Rk4 => "RK4",
+            Method::Yoshida4 => "Yoshida 4",
+        }
+    }
+
+    /// What it is, in one line.
+    pub const fn summary(self) -> &'static str {
+        match self {
+            Method::ExplicitEuler => "order 1; unstable for every undamped oscillator",
+            Method::SymplecticEuler => "order 1; symplectic; kick then drift",
+            Method::SymplecticEulerDriftFirst => "order 1; symplectic; drift then kick",
+            Method::VelocityVerlet => "order 2; symplectic, time-reversible; kick, drift, kick",
+            Method::TextbookVerlet => "velocity Verlet as textbooks print it; rounds with a bias",
+            Method::Leapfrog => "order 2; symplectic, time-reversible; drift, kick, drift",
+            Method::Rk4 => "order 4; classical Runge-Kutta; not symplectic",
+            Method::Yoshida4 => "order 4; symplectic, time-reversible; three Verlet substeps",
+        }
+    }
+
+    /// Classical order of consistency.
+    pub const fn order(self) -> u32 {
+        match self {
+            Method::ExplicitEuler | Method::SymplecticEuler | Method::SymplecticEulerDriftFirst => {
+                1
+            }
+            Method::VelocityVerlet | Method::TextbookVerlet | Method::Leapfrog => 2,
+            Method::Rk4 | Method::Yoshida4 => 4,
+        }
+    }
+
+    /// The method of that name, if there is one.
+    pub fn from_name(name: &str) -> Option<Method> {
+        Method::ALL.into_iter().find(|m| m.name() == name)
+    }
+}
