@@ -10,6 +10,7 @@ pub mod integrator;
 mod method;
 pub mod number;
 mod scalar;
+pub mod simulation;
 mod state;
 pub mod system;
 
