@@ -6,6 +6,7 @@
 //!
 //! This crate does no input or output, reads no clock and prints nothing.
 
+pub mod catalog;
 pub mod integrator;
 mod method;
 pub mod number;
@@ -13,6 +14,7 @@ mod scalar;
 mod state;
 pub mod system;
 
+pub use catalog::{AnySystem, CatalogError};
 pub use integrator::Integrator;
 pub use method::Method;
 pub use scalar::{Elementary, Float, Scalar};

@@ -27,18 +27,16 @@ impl Kepler<f64> {
     }
 }
 
-impl<S: Elementary> Kepler<S> {
-    /// `1/|q|`.
-    #[inline(always)]
-    fn inverse_distance(&self, [x, y]: [S; 2]) -> S {
-        (x * x + y * y).sqrt().recip()
-    }
+/// `1/|q|`.
+#[inline(always)]
+fn inverse_distance<S: Elementary>([x, y]: [S; 2]) -> S {
+    (x * x + y * y).sqrt().recip()
 }
 
 impl<S: Elementary> System<S, 2> for Kepler<S> {
     #[inline(always)]
     fn acceleration(&self, &State { q, .. }: &State<S, 2>) -> [S; 2] {
-        let inverse = self.inverse_distance(q);
+        let inverse = inverse_distance(q);
         let pull = -self.mu * (inverse * inverse * inverse);
         q.map(|q| pull * q)
     }
@@ -47,7 +45,7 @@ impl<S: Elementary> System<S, 2> for Kepler<S> {
 impl<S: Elementary> Hamiltonian<S, 2> for Kepler<S> {
     #[inline(always)]
     fn energy(&self, &State { q, v }: &State<S, 2>) -> S {
-        kinetic(&v) - self.mu * self.inverse_distance(q)
+        kinetic(&v) - self.mu * inverse_distance(q)
     }
 }
 
