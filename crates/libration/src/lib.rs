@@ -6,6 +6,7 @@
 //!
 //! This crate does no input or output, reads no clock and prints nothing.
 
+pub mod elementary;
 pub mod number;
 mod scalar;
 mod state;
