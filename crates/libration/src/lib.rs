@@ -7,6 +7,7 @@
 //! This crate does no input or output, reads no clock and prints nothing.
 
 pub mod catalog;
+pub mod elementary;
 pub mod integrator;
 mod method;
 pub mod number;
