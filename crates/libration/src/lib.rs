@@ -6,6 +6,8 @@
 //!
 //! This crate does no input or output, reads no clock and prints nothing.
 
+pub mod catalog;
+pub mod elementary;
 pub mod integrator;
 mod method;
 pub mod number;
@@ -14,6 +16,7 @@ pub mod simulation;
 mod state;
 pub mod system;
 
+pub use catalog::{AnySystem, CatalogError};
 pub use integrator::Integrator;
 pub use method::Method;
 pub use scalar::{Elementary, Float, Scalar};

@@ -1,9 +1,10 @@
 //! The machine's own floats.
 
-use crate::Scalar;
+use crate::elementary::{sine32, sine64};
+use crate::{Elementary, Float, Scalar};
 
 macro_rules! machine_float {
-    ($float:ident) => {
+    ($float:ident, $name:literal, $sine:ident) => {
         impl Scalar for $float {
             #[inline(always)]
             fn from_f64(c: f64) -> Self {
@@ -14,8 +15,41 @@ macro_rules! machine_float {
                 self * num as $float / den as $float
             }
         }
+
+        impl Elementary for $float {
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                self.sqrt()
+            }
+            #[inline(always)]
+            fn recip(self) -> Self {
+                1.0 / self
+            }
+            #[inline(always)]
+            fn sin(self) -> Self {
+                $sine::sin(self)
+            }
+            #[inline(always)]
+            fn cos(self) -> Self {
+                $sine::cos(self)
+            }
+        }
+
+        impl Float for $float {
+            const NAME: &'static str = $name;
+            const UNIT_ROUNDOFF: f64 = $float::EPSILON as f64 / 2.0;
+
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                self.into()
+            }
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                self.is_finite()
+            }
+        }
     };
 }
 
-machine_float!(f32);
-machine_float!(f64);
+machine_float!(f32, "f32", sine32);
+machine_float!(f64, "f64", sine64);

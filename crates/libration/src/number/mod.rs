@@ -1,3 +1,4 @@
 //! Number types: swap the number, and a step becomes another instrument.
 
 mod float;
+mod half;

@@ -1,10 +1,22 @@
 //! Physical systems `q̈ = a(q, v)`, each written once for every number type.
 
+mod damped;
+mod driven;
+mod duffing;
+mod henon_heiles;
+mod kepler;
 mod oscillator;
+mod pendulum;
 
 use crate::{Elementary, Scalar, State};
 
+pub use damped::DampedOscillator;
+pub use driven::DrivenOscillator;
+pub use duffing::Duffing;
+pub use henon_heiles::HenonHeiles;
+pub use kepler::Kepler;
 pub use oscillator::Oscillator;
+pub use pendulum::Pendulum;
 
 /// A mechanical system with `D` degrees of freedom and equation of motion `q̈ = a(q, v)`.
 ///
