@@ -3,6 +3,8 @@
 //! `reference/oracle.json` was computed with mpmath from textbook matrices; its time steps are the
 //! decimals written, ours the nearest doubles, which differ by at most a part in 10¹⁶.
 
+#![allow(clippy::unwrap_used)]
+
 use libration::analysis::{Linearisation, Spectrum, SymbolicStep, forecast_drift};
 use libration::number::Wide;
 use libration::system::Oscillator;
