@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn a_word_is_no_part_of_another() {
-        assert!(has_word("a unsafe {", "unsafe"));
+        assert!(has_word("an unsafe block", "unsafe"));
         assert!(!has_word("unsafe_code", "unsafe"));
         assert!(!has_word("not_unsafe", "unsafe"));
         assert_eq!(prefixes("dist_mm + _mm_add", "_mm").collect::<Vec<_>>(), [10]);
