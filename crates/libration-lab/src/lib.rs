@@ -9,6 +9,7 @@ mod effort;
 pub mod figure;
 mod lab;
 mod machine;
+mod notation;
 pub mod output;
 pub mod page;
 pub mod record;

@@ -1,5 +1,6 @@
 //! A chapter of the report, as a description that holds no layout.
 
+use crate::figure::Figure;
 use crate::record::{Record, Table};
 
 /// What a study shows of its record, from top to bottom.
@@ -33,6 +34,8 @@ pub enum Block {
     Paragraph(String),
     /// A remark at the margin of the argument.
     Note(String),
+    /// A figure.
+    Figure(Box<Figure>),
     /// A table, with as many significant digits as mean something.
     Table {
         /// The numbers.
@@ -56,6 +59,11 @@ impl Page {
     /// Adds a remark.
     pub fn note(&mut self, text: impl Into<String>) {
         self.blocks.push(Block::Note(text.into()));
+    }
+
+    /// Adds a figure.
+    pub fn figure(&mut self, figure: Figure) {
+        self.blocks.push(Block::Figure(Box::new(figure)));
     }
 
     /// Adds a table of the record, shown with `digits` significant digits.
