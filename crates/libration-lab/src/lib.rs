@@ -1,1 +1,23 @@
-//! Studies that set what theory predicts beside what a simulation measures.
+//! The laboratory: studies → records → report.
+//!
+//! A [`Study`] asks a question; its run leaves a [`Record`] of numbers, each a prediction beside
+//! a measurement; the page is rendered from the record and from nothing else.
+
+pub mod analyze;
+pub mod config;
+mod effort;
+mod lab;
+mod machine;
+pub mod output;
+pub mod page;
+pub mod record;
+pub mod session;
+pub mod studies;
+pub mod study;
+
+pub use config::Config;
+pub use effort::Effort;
+pub use lab::{Lab, Progress, Silent};
+pub use machine::Machine;
+pub use record::Record;
+pub use study::Study;

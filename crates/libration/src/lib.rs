@@ -6,12 +6,14 @@
 //!
 //! This crate does no input or output, reads no clock and prints nothing.
 
+pub mod analysis;
 pub mod catalog;
 pub mod elementary;
 pub mod integrator;
 mod method;
 pub mod number;
 mod scalar;
+pub mod simulation;
 mod state;
 pub mod system;
 

@@ -1,0 +1,96 @@
+//! What is studied: every number that a study takes from outside.
+
+use libration::Method;
+use libration::system::Oscillator;
+use serde::{Serialize, Serializer};
+
+use crate::Effort;
+
+/// A checked configuration. The default is the setting of the source report (§4.3, §9.1).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Config {
+    /// The studies to run, by name; all of them if empty.
+    pub studies: Vec<String>,
+    /// How much work a run may take.
+    pub effort: Effort,
+    /// The integrators under study, each once.
+    #[serde(serialize_with = "names")]
+    pub integrators: Vec<Method>,
+    /// The oscillator that is simulated.
+    pub oscillator: Spring,
+    /// Where trajectories start.
+    pub start: Start,
+    /// Settings of the study `spectrum`.
+    pub spectrum: Spectrum,
+    /// Settings of the study `drift`.
+    pub drift: Drift,
+}
+
+/// A mass on a spring.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spring {
+    /// Mass in kg, positive.
+    pub m: f64,
+    /// Stiffness in N/m, positive.
+    pub k: f64,
+}
+
+impl Spring {
+    /// The system that moves as this spring does.
+    pub fn system(self) -> Oscillator<f64> {
+        Oscillator::from_mass_and_stiffness(self.m, self.k)
+    }
+
+    /// The natural angular frequency `ω = √(k/m)`, in rad/s.
+    pub fn omega(self) -> f64 {
+        self.system().omega2.sqrt()
+    }
+}
+
+/// The state at time zero; not the origin.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Start {
+    /// Position in m.
+    pub q: f64,
+    /// Velocity in m/s.
+    pub v: f64,
+}
+
+/// Settings of the study `spectrum`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spectrum {
+    /// The time step at which numbers are shown, in s.
+    pub dt: f64,
+}
+
+/// Settings of the study `drift`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Drift {
+    /// The time steps under study, in s, rising.
+    pub dt: Vec<f64>,
+    /// Number of steps.
+    pub steps: u64,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Config {
+            studies: Vec::new(),
+            effort: Effort::Standard,
+            integrators: vec![
+                Method::ExplicitEuler,
+                Method::SymplecticEuler,
+                Method::VelocityVerlet,
+                Method::Rk4,
+            ],
+            oscillator: Spring { m: 1.0, k: 10.0 },
+            start: Start { q: 1.0, v: 0.0 },
+            spectrum: Spectrum { dt: 0.01 },
+            drift: Drift { dt: vec![1e-3, 1e-2, 1e-1], steps: 1_000_000 },
+        }
+    }
+}
+
+fn names<S: Serializer>(methods: &[Method], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(methods.iter().map(|m| m.name()))
+}

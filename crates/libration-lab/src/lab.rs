@@ -1,0 +1,83 @@
+//! What a study may use: the configuration, the cores, and a way to say how far it is.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+
+use crate::study::StudyError;
+use crate::{Config, Effort};
+
+/// Told how far the work is. The laboratory itself knows no terminal.
+pub trait Progress: Sync {
+    /// `what` begins; it has `total` parts of about equal size.
+    fn begin(&self, what: &str, total: usize);
+    /// One part is done.
+    fn advance(&self);
+    /// All that began is done.
+    fn end(&self);
+}
+
+/// Tells nobody.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn begin(&self, _: &str, _: usize) {}
+    fn advance(&self) {}
+    fn end(&self) {}
+}
+
+/// The laboratory in which a study runs.
+#[derive(Clone, Copy)]
+pub struct Lab<'a> {
+    /// What is studied.
+    pub config: &'a Config,
+    /// How much work the study may take.
+    pub effort: Effort,
+    progress: &'a dyn Progress,
+    stop: &'a AtomicBool,
+}
+
+impl<'a> Lab<'a> {
+    /// A laboratory that tells `progress` how far it is and stops soon after `stop` is set.
+    pub fn new(
+        config: &'a Config,
+        effort: Effort,
+        progress: &'a dyn Progress,
+        stop: &'a AtomicBool,
+    ) -> Self {
+        Lab { config, effort, progress, stop }
+    }
+
+    /// Runs `job` on every item, in parallel, and gives the results in the order of the items.
+    ///
+    /// # Errors
+    /// The first error of a job, or [`StudyError::Interrupted`].
+    pub fn sweep<T: Sync, R: Send>(
+        &self,
+        what: &str,
+        items: &[T],
+        job: impl Fn(&T) -> Result<R, StudyError> + Sync,
+    ) -> Result<Vec<R>, StudyError> {
+        self.progress.begin(what, items.len());
+        let results = items
+            .par_iter()
+            .map(|item| {
+                self.check()?;
+                let result = job(item);
+                self.progress.advance();
+                result
+            })
+            .collect();
+        self.progress.end();
+        results
+    }
+
+    /// Fails if the run is to stop.
+    ///
+    /// # Errors
+    /// [`StudyError::Interrupted`].
+    pub fn check(&self) -> Result<(), StudyError> {
+        if self.stop.load(Ordering::Relaxed) { Err(StudyError::Interrupted) } else { Ok(()) }
+    }
+}

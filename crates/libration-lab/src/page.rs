@@ -1,0 +1,74 @@
+//! A chapter of the report, as a description that holds no layout.
+
+use crate::record::{Record, Table};
+
+/// What a study shows of its record, from top to bottom.
+#[derive(Clone, Debug, Default)]
+pub struct Page {
+    /// The chapter's heading.
+    pub title: String,
+    /// The answer in one or two sentences; it stands first.
+    pub answer: String,
+    /// The figures and numbers at the head of the report, most telling first.
+    pub highlights: Vec<Highlight>,
+    /// The evidence.
+    pub blocks: Vec<Block>,
+}
+
+/// One number that a reader should take away.
+#[derive(Clone, Debug)]
+pub struct Highlight {
+    /// The number with its unit.
+    pub value: String,
+    /// What it is.
+    pub text: String,
+}
+
+/// One piece of a chapter.
+#[derive(Clone, Debug)]
+pub enum Block {
+    /// A smaller heading.
+    Heading(String),
+    /// A paragraph. `code` stands between backticks.
+    Paragraph(String),
+    /// A remark at the margin of the argument.
+    Note(String),
+    /// A table, with as many significant digits as mean something.
+    Table {
+        /// The numbers.
+        table: Table,
+        /// Significant digits to show.
+        digits: usize,
+    },
+}
+
+impl Page {
+    /// Adds a heading.
+    pub fn heading(&mut self, text: impl Into<String>) {
+        self.blocks.push(Block::Heading(text.into()));
+    }
+
+    /// Adds a paragraph.
+    pub fn paragraph(&mut self, text: impl Into<String>) {
+        self.blocks.push(Block::Paragraph(text.into()));
+    }
+
+    /// Adds a remark.
+    pub fn note(&mut self, text: impl Into<String>) {
+        self.blocks.push(Block::Note(text.into()));
+    }
+
+    /// Adds a table of the record, shown with `digits` significant digits.
+    pub fn table(&mut self, table: &Table, digits: usize) {
+        self.blocks.push(Block::Table { table: table.clone(), digits });
+    }
+}
+
+/// A finished chapter: what was found, and how it is shown.
+#[derive(Clone, Debug)]
+pub struct Chapter {
+    /// The numbers.
+    pub record: Record,
+    /// How they are shown.
+    pub page: Page,
+}

@@ -1,0 +1,140 @@
+//! A sentence of the source report, judged by what was found.
+
+use serde::Serialize;
+
+use super::{Finding, Verdict};
+
+/// What has become of a claim.
+#[derive(Clone, Copy, Debug, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum ClaimVerdict {
+    /// It holds as it stands.
+    Confirmed,
+    /// It holds under a condition that the source does not state.
+    Conditional,
+    /// It does not hold.
+    Refuted,
+    /// The source does not say enough to try it.
+    NotReproducible,
+    /// A finding that it rests on disagrees with theory, so nothing can be said.
+    Undecided,
+}
+
+/// A verdict with its reason.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judgement {
+    verdict: ClaimVerdict,
+    because: String,
+}
+
+impl Judgement {
+    /// The claim holds as it stands.
+    pub fn confirmed(because: impl Into<String>) -> Self {
+        Judgement { verdict: ClaimVerdict::Confirmed, because: because.into() }
+    }
+
+    /// The claim holds under a condition; the reason names it, and the side on which the
+    /// source's own setting lies.
+    pub fn conditional(because: impl Into<String>) -> Self {
+        Judgement { verdict: ClaimVerdict::Conditional, because: because.into() }
+    }
+
+    /// The claim does not hold.
+    pub fn refuted(because: impl Into<String>) -> Self {
+        Judgement { verdict: ClaimVerdict::Refuted, because: because.into() }
+    }
+
+    /// The source does not say enough to try the claim.
+    pub fn not_reproducible(because: impl Into<String>) -> Self {
+        Judgement { verdict: ClaimVerdict::NotReproducible, because: because.into() }
+    }
+
+    /// Confirmed if `holds`, refuted otherwise.
+    pub fn holds_if(holds: bool, because: impl Into<String>) -> Self {
+        if holds { Judgement::confirmed(because) } else { Judgement::refuted(because) }
+    }
+}
+
+/// The claim that is to be judged, and the findings that judge it.
+#[derive(Clone, Copy, Debug)]
+pub struct Ruling<'a> {
+    /// Number in the ledger, as in `C16`.
+    pub id: &'a str,
+    /// Section of the source report.
+    pub source: &'a str,
+    /// What the source says, in our words.
+    pub text: &'a str,
+    /// Identifiers of the findings that decide.
+    pub findings: &'a [&'a str],
+}
+
+/// A judged claim.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct Claim {
+    /// Number in the ledger.
+    pub id: String,
+    /// Section of the source report.
+    pub source: String,
+    /// What the source says, in our words.
+    pub text: String,
+    /// The verdict.
+    pub verdict: ClaimVerdict,
+    /// Why.
+    pub because: String,
+    /// Identifiers of the findings that decided.
+    pub findings: Vec<String>,
+}
+
+impl Claim {
+    pub(super) fn new(ruling: &Ruling<'_>, evidence: &[&Finding], judgement: Judgement) -> Self {
+        let broken: Vec<&str> = evidence
+            .iter()
+            .filter(|f| f.verdict == Verdict::Disagrees)
+            .map(|f| f.id.as_str())
+            .collect();
+        let Judgement { verdict, because } = if broken.is_empty() {
+            judgement
+        } else {
+            Judgement {
+                verdict: ClaimVerdict::Undecided,
+                because: format!("measurement and theory disagree in {}", broken.join(", ")),
+            }
+        };
+        Claim {
+            id: ruling.id.into(),
+            source: ruling.source.into(),
+            text: ruling.text.into(),
+            verdict,
+            because,
+            findings: ruling.findings.iter().map(|&id| id.into()).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Record, Tolerance};
+    use super::*;
+
+    fn judged(measured: f64) -> Claim {
+        let mut record = Record::new("study", "?");
+        let exact = Tolerance::exact("");
+        record.find(Finding::predicted("study.x", "", "1", 1.0, measured, exact));
+        let ruling = Ruling { id: "C1", source: "2", text: "", findings: &["study.x"] };
+        record.judge(ruling, |_| Judgement::confirmed("it is so")).unwrap();
+        record.claims.remove(0)
+    }
+
+    #[test]
+    fn no_claim_is_decided_by_a_finding_that_disagrees_with_theory() {
+        assert_eq!(judged(1.0).verdict, ClaimVerdict::Confirmed);
+        assert_eq!(judged(2.0).verdict, ClaimVerdict::Undecided);
+    }
+
+    #[test]
+    fn a_claim_cannot_rest_on_a_finding_that_does_not_exist() {
+        let ruling = Ruling { id: "C1", source: "2", text: "", findings: &["study.x"] };
+        let outcome = Record::new("study", "?").judge(ruling, |_| Judgement::confirmed(""));
+        assert!(outcome.is_err());
+    }
+}

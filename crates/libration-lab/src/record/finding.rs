@@ -1,0 +1,184 @@
+//! A prediction beside a measurement.
+
+use serde::Serialize;
+
+/// One number that was measured, beside what theory says it must be.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct Finding {
+    /// Identifier, unique in the report: `study.subject.quantity`.
+    pub id: String,
+    /// What was measured, in words.
+    pub text: String,
+    /// Unit of both numbers; `1` if there is none.
+    pub unit: String,
+    /// What theory predicts, if it predicts anything.
+    pub predicted: Option<f64>,
+    /// What came out.
+    pub measured: f64,
+    /// How the measurement should stand to the prediction.
+    pub relation: Relation,
+    /// How far the two may lie apart, and why.
+    #[serde(flatten)]
+    pub tolerance: Tolerance,
+    /// Whether they agree.
+    pub verdict: Verdict,
+}
+
+/// How a measurement should stand to its prediction.
+#[derive(Clone, Copy, Debug, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Relation {
+    /// Equal, within the tolerance.
+    Equal,
+    /// Not above the prediction by more than the tolerance.
+    AtMost,
+    /// Not below the prediction by more than the tolerance.
+    AtLeast,
+}
+
+/// The verdict on a finding.
+#[derive(Clone, Copy, Debug, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The measurement is what theory says.
+    Agrees,
+    /// It is not.
+    Disagrees,
+    /// There is no prediction.
+    Measured,
+}
+
+/// The largest difference that still counts as agreement.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct Tolerance {
+    /// The largest allowed absolute difference, in the finding's unit.
+    pub tolerance: Option<f64>,
+    /// Where it comes from.
+    pub tolerance_reason: String,
+    #[serde(skip)]
+    relative: bool,
+}
+
+impl Tolerance {
+    /// At most `size`, in the unit of the finding.
+    pub fn absolute(size: f64, reason: impl Into<String>) -> Self {
+        Tolerance { tolerance: Some(size), tolerance_reason: reason.into(), relative: false }
+    }
+
+    /// At most `size` times the prediction.
+    pub fn relative(size: f64, reason: impl Into<String>) -> Self {
+        Tolerance { tolerance: Some(size), tolerance_reason: reason.into(), relative: true }
+    }
+
+    /// No difference at all.
+    pub fn exact(reason: impl Into<String>) -> Self {
+        Tolerance::absolute(0.0, reason)
+    }
+}
+
+impl Finding {
+    /// A measurement that should equal a prediction.
+    pub fn predicted(
+        id: impl Into<String>,
+        text: impl Into<String>,
+        unit: &str,
+        predicted: f64,
+        measured: f64,
+        tolerance: Tolerance,
+    ) -> Self {
+        Finding::related(id, text, unit, Relation::Equal, predicted, measured, tolerance)
+    }
+
+    /// A measurement that should stay within a predicted bound.
+    pub fn related(
+        id: impl Into<String>,
+        text: impl Into<String>,
+        unit: &str,
+        relation: Relation,
+        predicted: f64,
+        measured: f64,
+        mut tolerance: Tolerance,
+    ) -> Self {
+        if tolerance.relative {
+            tolerance.tolerance = tolerance.tolerance.map(|size| size * predicted.abs());
+        }
+        let difference = measured - predicted;
+        let excess = match relation {
+            Relation::Equal => difference.abs(),
+            Relation::AtMost => difference,
+            Relation::AtLeast => -difference,
+        };
+        // A comparison with NaN is false: what is not a number never agrees.
+        let agrees = tolerance.tolerance.is_some_and(|allowed| excess <= allowed);
+        Finding {
+            id: id.into(),
+            text: text.into(),
+            unit: unit.into(),
+            predicted: Some(predicted),
+            measured,
+            relation,
+            tolerance,
+            verdict: if agrees { Verdict::Agrees } else { Verdict::Disagrees },
+        }
+    }
+
+    /// A measurement about which theory says nothing.
+    pub fn measured(
+        id: impl Into<String>,
+        text: impl Into<String>,
+        unit: &str,
+        measured: f64,
+    ) -> Self {
+        Finding {
+            id: id.into(),
+            text: text.into(),
+            unit: unit.into(),
+            predicted: None,
+            measured,
+            relation: Relation::Equal,
+            tolerance: Tolerance {
+                tolerance: None,
+                tolerance_reason: "no prediction exists".into(),
+                relative: false,
+            },
+            verdict: Verdict::Measured,
+        }
+    }
+
+    /// Whether the measurement is what theory says.
+    pub fn agrees(&self) -> bool {
+        self.verdict == Verdict::Agrees
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn equal(predicted: f64, measured: f64, tolerance: Tolerance) -> Verdict {
+        Finding::predicted("a.b", "", "1", predicted, measured, tolerance).verdict
+    }
+
+    #[test]
+    fn a_relative_tolerance_scales_with_the_prediction() {
+        assert_eq!(equal(200.0, 201.0, Tolerance::relative(0.01, "")), Verdict::Agrees);
+        assert_eq!(equal(2.0, 3.0, Tolerance::relative(0.01, "")), Verdict::Disagrees);
+    }
+
+    #[test]
+    fn what_is_not_a_number_never_agrees() {
+        for (p, m) in [(f64::NAN, 1.0), (1.0, f64::NAN), (f64::INFINITY, f64::INFINITY)] {
+            assert_eq!(equal(p, m, Tolerance::relative(1.0, "")), Verdict::Disagrees);
+        }
+    }
+
+    #[test]
+    fn a_bound_is_one_sided() {
+        let at_most = |m| {
+            let none = Tolerance::exact("");
+            Finding::related("a.b", "", "1", Relation::AtMost, 1.0, m, none).verdict
+        };
+        assert_eq!(at_most(-5.0), Verdict::Agrees);
+        assert_eq!(at_most(1.1), Verdict::Disagrees);
+    }
+}

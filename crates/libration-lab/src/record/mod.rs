@@ -1,0 +1,158 @@
+//! What a study leaves behind: numbers, and nothing that is alive.
+
+mod claim;
+mod finding;
+mod series;
+mod table;
+
+use serde::Serialize;
+use thiserror::Error;
+
+pub use claim::{Claim, ClaimVerdict, Judgement, Ruling};
+pub use finding::{Finding, Relation, Tolerance, Verdict};
+pub use series::{Column, Series};
+pub use table::{Cell, Table};
+
+/// The outcome of one study; the report is rendered from it and from nothing else.
+#[derive(Clone, Debug, Serialize)]
+pub struct Record {
+    /// The study's name, as on the command line.
+    pub name: String,
+    /// The question that the study asks.
+    pub question: String,
+    /// Wall-clock time that the study took, in seconds.
+    pub seconds: f64,
+    /// Predictions beside measurements.
+    pub findings: Vec<Finding>,
+    /// Sentences of the source report, judged by the findings.
+    pub claims: Vec<Claim>,
+    /// Tables, with all digits.
+    pub tables: Vec<Table>,
+    /// The figures that were drawn from this record.
+    pub figures: Vec<FigureFile>,
+    /// The series behind the figures; they are written to `data/`, not to `results.json`.
+    #[serde(skip)]
+    pub series: Vec<Series>,
+}
+
+/// Where a figure of a record was written.
+#[derive(Clone, Debug, Serialize, PartialEq, Eq)]
+pub struct FigureFile {
+    /// Identifier, unique in the report.
+    pub id: String,
+    /// Path relative to the output folder.
+    pub file: String,
+}
+
+/// A study asked its own record for something that is not there.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum RecordError {
+    /// No finding has this identifier.
+    #[error("the study `{study}` has no finding `{id}`")]
+    NoFinding {
+        /// The study.
+        study: String,
+        /// What was asked for.
+        id: String,
+    },
+    /// No series has this name.
+    #[error("the study `{study}` has no series `{name}`")]
+    NoSeries {
+        /// The study.
+        study: String,
+        /// What was asked for.
+        name: String,
+    },
+    /// No table has this name.
+    #[error("the study `{study}` has no table `{name}`")]
+    NoTable {
+        /// The study.
+        study: String,
+        /// What was asked for.
+        name: String,
+    },
+    /// A series has no column of this name.
+    #[error("the series `{series}` has no column `{column}`")]
+    NoColumn {
+        /// The series.
+        series: String,
+        /// What was asked for.
+        column: String,
+    },
+}
+
+impl Record {
+    /// An empty record of the study `name`, which asks `question`.
+    pub fn new(name: &str, question: &str) -> Self {
+        Record {
+            name: name.into(),
+            question: question.into(),
+            seconds: 0.0,
+            findings: Vec::new(),
+            claims: Vec::new(),
+            tables: Vec::new(),
+            figures: Vec::new(),
+            series: Vec::new(),
+        }
+    }
+
+    /// Adds a finding.
+    pub fn find(&mut self, finding: Finding) {
+        debug_assert!(self.finding(&finding.id).is_err(), "two findings named {}", finding.id);
+        self.findings.push(finding);
+    }
+
+    /// Judges a claim of the source report by findings that are already here.
+    ///
+    /// # Errors
+    /// If one of the findings that the claim rests on is missing.
+    pub fn judge(
+        &mut self,
+        ruling: Ruling<'_>,
+        judge: impl FnOnce(&[&Finding]) -> Judgement,
+    ) -> Result<(), RecordError> {
+        let evidence: Vec<&Finding> =
+            ruling.findings.iter().map(|id| self.finding(id)).collect::<Result<_, _>>()?;
+        let claim = Claim::new(&ruling, &evidence, judge(&evidence));
+        self.claims.push(claim);
+        Ok(())
+    }
+
+    /// The finding `id`.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn finding(&self, id: &str) -> Result<&Finding, RecordError> {
+        self.findings
+            .iter()
+            .find(|f| f.id == id)
+            .ok_or_else(|| RecordError::NoFinding { study: self.name.clone(), id: id.into() })
+    }
+
+    /// The series `name`.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn series(&self, name: &str) -> Result<&Series, RecordError> {
+        self.series
+            .iter()
+            .find(|s| s.name == name)
+            .ok_or_else(|| RecordError::NoSeries { study: self.name.clone(), name: name.into() })
+    }
+
+    /// The table `name`.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn table(&self, name: &str) -> Result<&Table, RecordError> {
+        self.tables
+            .iter()
+            .find(|t| t.name == name)
+            .ok_or_else(|| RecordError::NoTable { study: self.name.clone(), name: name.into() })
+    }
+
+    /// The findings whose measurement contradicts the prediction.
+    pub fn disagreements(&self) -> impl Iterator<Item = &Finding> {
+        self.findings.iter().filter(|f| f.verdict == Verdict::Disagrees)
+    }
+}

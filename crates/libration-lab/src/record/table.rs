@@ -1,0 +1,57 @@
+//! A table of the report.
+
+use serde::Serialize;
+
+/// Rows under named columns.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct Table {
+    /// Name, unique in the study.
+    pub name: String,
+    /// Heads of the columns, each with its unit where it has one.
+    pub columns: Vec<String>,
+    /// The rows, each as long as `columns`.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+/// One entry of a table.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+#[serde(untagged)]
+pub enum Cell {
+    /// A number, with all its digits.
+    Number(f64),
+    /// Words, or a formula.
+    Text(String),
+}
+
+impl From<f64> for Cell {
+    fn from(x: f64) -> Self {
+        Cell::Number(x)
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Cell::Text(text.into())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Cell::Text(text)
+    }
+}
+
+impl Table {
+    /// An empty table.
+    pub fn new(name: &str, columns: &[&str]) -> Self {
+        let columns = columns.iter().map(|&c| c.into()).collect();
+        Table { name: name.into(), columns, rows: Vec::new() }
+    }
+
+    /// Adds a row.
+    pub fn push(&mut self, row: impl IntoIterator<Item = Cell>) {
+        let row: Vec<Cell> = row.into_iter().collect();
+        debug_assert_eq!(row.len(), self.columns.len());
+        self.rows.push(row);
+    }
+}

@@ -1,0 +1,46 @@
+//! A study is a question.
+
+use libration::simulation::SimulationError;
+use thiserror::Error;
+
+use crate::page::Page;
+use crate::record::RecordError;
+use crate::{Lab, Record};
+
+/// A question, the way to its answer, and the chapter that gives it.
+pub trait Study: Sync {
+    /// Name on the command line, as in `drift`.
+    fn name(&self) -> &'static str;
+
+    /// The question that the study answers.
+    fn question(&self) -> &'static str;
+
+    /// Does the work; leaves numbers only.
+    ///
+    /// # Errors
+    /// If the work is interrupted, or cannot be done under this configuration.
+    fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError>;
+
+    /// Writes the chapter that the record supports.
+    ///
+    /// # Errors
+    /// If the record lacks something that the chapter shows.
+    fn render(&self, record: &Record, page: &mut Page) -> Result<(), RecordError>;
+}
+
+/// Why a study gave no record.
+#[derive(Debug, Error)]
+pub enum StudyError {
+    /// The user asked for the run to stop.
+    #[error("interrupted")]
+    Interrupted,
+    /// A simulation could not be run.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// The study misused its own record.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// Exact arithmetic ran out of digits.
+    #[error("exact arithmetic overflowed while {0}")]
+    Exact(String),
+}
