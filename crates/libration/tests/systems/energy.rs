@@ -3,6 +3,7 @@
 use std::iter::zip;
 
 use libration::number::Dual;
+use libration::system::Kepler;
 use libration::{AnySystem, Float, Hamiltonian, Model, State, System, with_system};
 
 use crate::case::{Case, Point};
@@ -97,6 +98,26 @@ fn the_force_is_the_gradient_of_the_potential() {
                 |model, D| at::<D>(case.system, model, &point),
                 panic!("{} does not exist in that dimension", case.name)
             );
+        }
+    }
+}
+
+/// Semi-major axis 1 means the energy `−μ/2`, eccentricity `e` the squared angular momentum
+/// `μ(1 − e²)`: Goldstein, Poole, Safko, Classical Mechanics, 3rd ed., §3.7. The terms grow like
+/// `μ/(1 − e)` and lose some ten roundings.
+#[test]
+fn kepler_starts_at_perihelion_of_the_orbit_with_semi_major_axis_1() {
+    for mu in [0.5, 1.0, 3.0] {
+        for e in [0.0, 0.1, 0.6, 0.99] {
+            let kepler = Kepler { mu };
+            let start = kepler.perihelion(e);
+            let tolerance = 16.0 * f64::UNIT_ROUNDOFF * mu / (1.0 - e);
+            let energy = Hamiltonian::<f64, 2>::energy(&kepler, &start);
+            assert!((energy + 0.5 * mu).abs() <= tolerance, "mu = {mu}, e = {e}: {energy}");
+            let momentum = start.q[0] * start.v[1] - start.q[1] * start.v[0];
+            let square = momentum * momentum;
+            let expected = mu * (1.0 - e * e);
+            assert!((square - expected).abs() <= tolerance, "mu = {mu}, e = {e}: {square}");
         }
     }
 }
