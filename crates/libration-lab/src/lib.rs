@@ -6,6 +6,7 @@
 pub mod analyze;
 pub mod config;
 mod effort;
+pub mod figure;
 mod lab;
 mod machine;
 pub mod output;

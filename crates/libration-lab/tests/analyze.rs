@@ -85,13 +85,8 @@ fn small_swings_of_the_pendulum_turn_as_the_oscillator_does() {
 fn coupled_modes_are_compared_frequency_by_frequency() {
     // About the origin Hénon–Heiles is two oscillators with ω = 1: the error of velocity Verlet is
     // 2 asin(z/2) − z.
-    let answer = analyze(&request(
-        "henon-heiles",
-        Method::VelocityVerlet,
-        0.1,
-        &[1e-9, 1e-9],
-        &[0.0, 0.0],
-    ));
+    let answer =
+        analyze(&request("henon-heiles", Method::VelocityVerlet, 0.1, &[1e-9, 1e-9], &[0.0, 0.0]));
     let expected = 2.0 * (0.05_f64).asin() - 0.1;
     let got = answer.unwrap().phase_error_per_step.unwrap();
     // The coupling shifts the frequencies by about q = 10⁻⁹, which turns 10⁻¹⁰ rad in a step.

@@ -1,0 +1,146 @@
+//! A mark as places on the page: the one geometry that is drawn and that labels keep clear of.
+
+use super::geometry::{Place, Rect};
+use super::grid::Grid;
+use super::layout::Frame;
+use super::mark::{Across, Shape};
+
+/// What of a mark lies inside its frame.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Drawn {
+    /// Lines, in parts between gaps.
+    Lines(Vec<Vec<Place>>),
+    /// Points inside the frame.
+    Points(Vec<Place>),
+    /// A filled polygon with its outline.
+    Areas(Vec<Vec<Place>>),
+    /// Contour lines with the level each belongs to.
+    Levels(Vec<(f64, Vec<Vec<Place>>)>),
+    /// A picture that fills a rectangle.
+    Picture(Rect),
+    /// Nothing but a label.
+    Words(Place),
+}
+
+impl Drawn {
+    /// Lays a shape into a frame.
+    pub(super) fn of(shape: &Shape, frame: &Frame) -> Self {
+        let at = |(&x, &y): (&f64, &f64)| [frame.x.at(x), frame.y.at(y)];
+        // Strokes may be as wide as the slack without an end showing at the frame.
+        let clip = frame.rect.grown(6.0);
+        let places = |x: &[f64], y: &[f64]| x.iter().zip(y).map(at).collect::<Vec<Place>>();
+        match shape {
+            Shape::Line { x, y } => Self::Lines(clip.cut_line(&places(x, y))),
+            Shape::Points { x, y } => {
+                let inside = |place: &Place| frame.rect.grown(0.5).contains(*place);
+                Self::Points(places(x, y).into_iter().filter(inside).collect())
+            }
+            Shape::Envelope(e) => {
+                let bands = bands(&places(&e.x, &e.low), &places(&e.x, &e.high));
+                Self::Areas(bands.iter().map(|band| clip.cut_polygon(band)).collect())
+            }
+            Shape::Region { x, y } => Self::Areas(vec![clip.cut_polygon(&places(x, y))]),
+            Shape::Raster { grid, .. } => Self::Picture(picture(grid, frame)),
+            Shape::Contour { grid, levels } => {
+                let lines = |&level: &f64| (level, lines(grid, level, frame, &clip));
+                Self::Levels(levels.iter().map(lines).collect())
+            }
+            Shape::Rule { across, at } => {
+                let rect = frame.rect;
+                let line = match across {
+                    Across::Horizontal => {
+                        [[rect.x, frame.y.at(*at)], [rect.right(), frame.y.at(*at)]]
+                    }
+                    Across::Vertical => {
+                        [[frame.x.at(*at), rect.bottom()], [frame.x.at(*at), rect.y]]
+                    }
+                };
+                Self::Lines(rect.cut_line(&line))
+            }
+            Shape::Note { x, y } => Self::Words(at((x, y))),
+        }
+    }
+
+    /// All lines that a label should not cover.
+    pub(super) fn strokes(&self) -> Vec<&[Place]> {
+        match self {
+            Self::Lines(parts) => parts.iter().map(Vec::as_slice).collect(),
+            Self::Levels(levels) => {
+                levels.iter().flat_map(|(_, parts)| parts).map(Vec::as_slice).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// Contour lines in the frame. They are found on the scale of the axes, so that a logarithmic axis
+/// has the crossing at the same share of the way on paper as the level has between two samples.
+fn lines(grid: &Grid, level: f64, frame: &Frame, clip: &Rect) -> Vec<Vec<Place>> {
+    contour(grid, level, frame)
+        .iter()
+        .flat_map(|line| {
+            let places: Vec<Place> =
+                line.iter().map(|&[x, y]| [frame.x.at(x), frame.y.at(y)]).collect();
+            clip.cut_line(&places)
+        })
+        .collect()
+}
+
+/// Contour lines in data coordinates, interpolated on the scale of the axes.
+pub(super) fn contour(grid: &Grid, level: f64, frame: &Frame) -> Vec<Vec<[f64; 2]>> {
+    let (x, y) = (frame.x.span.scale, frame.y.span.scale);
+    let on_scale = Grid {
+        x: grid.x.iter().map(|&v| x.of(v)).collect(),
+        y: grid.y.iter().map(|&v| y.of(v)).collect(),
+        z: grid.z.clone(),
+    };
+    let back =
+        |line: Vec<[f64; 2]>| line.into_iter().map(|[a, b]| [x.value(a), y.value(b)]).collect();
+    on_scale.contour(level).into_iter().map(back).collect()
+}
+
+/// The closed bands between two lines, one for each stretch without a gap.
+fn bands(low: &[Place], high: &[Place]) -> Vec<Vec<Place>> {
+    runs(low.len().min(high.len()), |i| {
+        super::geometry::finite(low[i]) && super::geometry::finite(high[i])
+    })
+    .into_iter()
+    .map(|run| {
+        let back = low[run.clone()].iter().rev();
+        high[run.clone()].iter().chain(back).copied().collect()
+    })
+    .collect()
+}
+
+/// The stretches of indices for which `present` holds.
+pub(super) fn runs(count: usize, present: impl Fn(usize) -> bool) -> Vec<std::ops::Range<usize>> {
+    let mut runs: Vec<std::ops::Range<usize>> = Vec::new();
+    for index in (0..count).filter(|&i| present(i)) {
+        match runs.last_mut() {
+            Some(run) if run.end == index => run.end += 1,
+            _ => runs.push(index..index + 1),
+        }
+    }
+    runs
+}
+
+/// The rectangle that a grid covers: half a cell beyond its outer samples.
+fn picture(grid: &Grid, frame: &Frame) -> Rect {
+    let outer = |samples: &[f64], ruler: &super::axis::Ruler| {
+        let places: Vec<f64> =
+            edges(samples, ruler.span.scale).iter().map(|&v| ruler.at(v)).collect();
+        let (first, last) = (places.first().copied(), places.last().copied());
+        (first.unwrap_or(0.0), last.unwrap_or(0.0))
+    };
+    let ((left, right), (bottom, top)) = (outer(&grid.x, &frame.x), outer(&grid.y, &frame.y));
+    Rect { x: left, y: top, width: right - left, height: bottom - top }
+}
+
+/// The edges of the cells around samples that are evenly spaced on a scale: one more than samples.
+pub(super) fn edges(samples: &[f64], scale: super::axis::Scale) -> Vec<f64> {
+    let (Some(&first), Some(&last)) = (samples.first(), samples.last()) else { return Vec::new() };
+    let (first, last) = (scale.of(first), scale.of(last));
+    let gaps = (samples.len() - 1) as f64;
+    let step = if gaps > 0.0 { (last - first) / gaps } else { 1.0 };
+    (0..=samples.len()).map(|i| scale.value(first + step * (i as f64 - 0.5))).collect()
+}
