@@ -5,6 +5,7 @@
 
 pub mod config;
 mod effort;
+pub mod export;
 mod lab;
 mod machine;
 pub mod output;
