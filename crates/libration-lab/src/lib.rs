@@ -14,6 +14,7 @@ pub mod record;
 pub mod session;
 pub mod studies;
 pub mod study;
+pub mod trajectory;
 
 pub use config::Config;
 pub use effort::Effort;
