@@ -2,8 +2,8 @@
 
 use std::fmt;
 
+use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
 use libration::catalog::{Allowed, ENTRIES, Entry};
 use libration::{AnySystem, Method, State, with_system};
 use libration_lab::config::limits;
@@ -36,19 +36,6 @@ pub(crate) struct StepArgs {
     /// Time step in s
     #[arg(long, value_name = "SECONDS", value_parser = time_step, allow_hyphen_values = true)]
     pub(crate) dt: f64,
-}
-
-/// A number type, by its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FloatName {
-    /// IEEE 754 binary32.
-    F32,
-    /// IEEE 754 binary64.
-    F64,
-    /// IEEE 754 binary16, rounded after every operation.
-    F16,
-    /// bfloat16, rounded after every operation.
-    Bf16,
 }
 
 /// The coordinates of one flag.
@@ -173,16 +160,20 @@ fn time_step(text: &str) -> Result<f64, String> {
 
 /// Reads a number of steps; also as `1e6`.
 pub(crate) fn steps(text: &str) -> Result<u64, String> {
-    let whole = |text: &str| {
-        let x: f64 = text.parse().ok()?;
-        (x.fract() == 0.0).then_some(x as i128)
-    };
-    let text = text.trim();
-    let steps = text.parse().ok().or_else(|| whole(text));
-    let steps = steps.ok_or_else(|| {
+    let steps = whole_number(text).ok_or_else(|| {
         format!("it is not a whole number; steps must be {}", limits::steps_allowed())
     })?;
     limits::steps(steps)
+}
+
+/// The whole number that `text` stands for, written as `1000` or `1e3`.
+pub(crate) fn whole_number(text: &str) -> Option<i128> {
+    let text = text.trim();
+    let with_exponent = || {
+        let x: f64 = text.parse().ok()?;
+        (x.fract() == 0.0).then_some(x as i128)
+    };
+    text.parse().ok().or_else(with_exponent)
 }
 
 fn system_names() -> PossibleValuesParser {

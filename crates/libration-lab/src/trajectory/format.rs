@@ -30,6 +30,16 @@ impl Format {
         }
     }
 
+    /// What it is, in one line.
+    pub const fn summary(self) -> &'static str {
+        match self {
+            Format::Csv => "text; floats in the shortest form that reads back as the same bits",
+            Format::Json => "an object with the request, the rows and why they end early if so",
+            Format::Npy => "a NumPy structured array with a field for each column",
+            Format::Parquet => "Apache Parquet, compressed, with units in its metadata",
+        }
+    }
+
     /// The format of that name, if there is one.
     pub fn from_name(name: &str) -> Option<Format> {
         Format::ALL.into_iter().find(|f| f.name() == name)
