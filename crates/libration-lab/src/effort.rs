@@ -30,6 +30,11 @@ impl Effort {
         }
     }
 
+    /// The effort of that name, if there is one.
+    pub fn from_name(name: &str) -> Option<Effort> {
+        Effort::ALL.into_iter().find(|effort| effort.name() == name)
+    }
+
     /// The one of three values that belongs to this effort.
     pub fn choose<T>(self, quick: T, standard: T, thorough: T) -> T {
         match self {

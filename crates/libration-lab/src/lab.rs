@@ -9,6 +9,10 @@ use crate::{Config, Effort};
 
 /// Told how far the work is. The laboratory itself knows no terminal.
 pub trait Progress: Sync {
+    /// The study `name` begins, the `number`-th of `of`.
+    fn study(&self, name: &str, number: usize, of: usize) {
+        let _ = (name, number, of);
+    }
     /// `what` begins; it has `total` parts of about equal size.
     fn begin(&self, what: &str, total: usize);
     /// One part is done.
@@ -47,6 +51,11 @@ impl<'a> Lab<'a> {
         stop: &'a AtomicBool,
     ) -> Self {
         Lab { config, effort, progress, stop }
+    }
+
+    /// Tells that the study `name` begins, the `number`-th of `of`.
+    pub(crate) fn announce(&self, name: &str, number: usize, of: usize) {
+        self.progress.study(name, number, of);
     }
 
     /// Runs `job` on every item, in parallel, and gives the results in the order of the items.

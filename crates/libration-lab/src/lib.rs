@@ -6,6 +6,7 @@
 pub mod analyze;
 pub mod config;
 mod effort;
+pub mod export;
 pub mod figure;
 mod lab;
 mod machine;
@@ -16,6 +17,7 @@ pub mod record;
 pub mod session;
 pub mod studies;
 pub mod study;
+pub mod trajectory;
 
 pub use config::Config;
 pub use effort::Effort;

@@ -1,7 +1,7 @@
 //! Numbers as a reader wants them: `1.39·10⁻¹¹`, `0.0158`, `707 107`.
 
 /// `x` with `digits` significant digits; very large and very small numbers as powers of ten.
-pub fn number(x: f64, digits: usize) -> String {
+pub(crate) fn number(x: f64, digits: usize) -> String {
     if !x.is_finite() {
         return match x {
             f64::INFINITY => "∞".into(),
@@ -28,19 +28,19 @@ pub fn number(x: f64, digits: usize) -> String {
 }
 
 /// A count, with thin spaces between groups of three digits.
-pub fn count(n: u64) -> String {
+pub(crate) fn count(n: u64) -> String {
     group(&n.to_string())
 }
 
 /// A power of ten given by its logarithm: `4.84·10⁴¹³⁹²`.
-pub fn power_of_ten(logarithm: f64, digits: usize) -> String {
+pub(crate) fn power_of_ten(logarithm: f64, digits: usize) -> String {
     let exponent = logarithm.floor();
     let mantissa = trimmed(&format!("{:.*}", digits.max(1) - 1, 10_f64.powf(logarithm - exponent)));
     format!("{mantissa}·10{}", superscript(exponent as i32))
 }
 
 /// A time in the unit that suits it.
-pub fn seconds(t: f64, digits: usize) -> String {
+pub(crate) fn seconds(t: f64, digits: usize) -> String {
     match t.abs() {
         t_abs if t_abs < 1e-6 && t_abs > 0.0 => format!("{} ns", number(t * 1e9, digits)),
         t_abs if t_abs < 1e-3 && t_abs > 0.0 => format!("{} µs", number(t * 1e6, digits)),
@@ -50,7 +50,7 @@ pub fn seconds(t: f64, digits: usize) -> String {
 }
 
 /// `n` in raised digits.
-pub fn superscript(n: i32) -> String {
+pub(crate) fn superscript(n: i32) -> String {
     let raised = |c| match c {
         '-' => '⁻',
         '1' => '¹',

@@ -80,6 +80,7 @@ pub fn run(
     write_results(&results, output)?;
     for &study in studies {
         let begun = Instant::now();
+        lab.announce(study.name(), results.studies.len() + 1, studies.len());
         let mut record = match study.run(lab) {
             Ok(record) => record,
             Err(StudyError::Interrupted) => return Err(SessionError::Interrupted),

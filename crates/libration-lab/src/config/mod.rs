@@ -1,10 +1,24 @@
 //! What is studied: every number that a study takes from outside.
 
+mod check;
+mod error;
+mod file;
+pub mod limits;
+mod locate;
+pub mod names;
+mod schema;
+mod value;
+
 use libration::Method;
 use libration::system::Oscillator;
 use serde::{Serialize, Serializer};
 
 use crate::Effort;
+
+pub use check::Fault;
+pub use error::ConfigError;
+pub use file::{DEFAULT, parse, parse_bytes};
+pub use schema::schema;
 
 /// A checked configuration. The default is the setting of the source report (§4.3, §9.1).
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -14,7 +28,7 @@ pub struct Config {
     /// How much work a run may take.
     pub effort: Effort,
     /// The integrators under study, each once.
-    #[serde(serialize_with = "names")]
+    #[serde(serialize_with = "method_names")]
     pub integrators: Vec<Method>,
     /// The oscillator that is simulated.
     pub oscillator: Spring,
@@ -91,6 +105,14 @@ impl Default for Config {
     }
 }
 
-fn names<S: Serializer>(methods: &[Method], serializer: S) -> Result<S::Ok, S::Error> {
+impl Config {
+    /// The same configuration with its time steps rising.
+    fn sorted(mut self) -> Self {
+        self.drift.dt.sort_by(f64::total_cmp);
+        self
+    }
+}
+
+fn method_names<S: Serializer>(methods: &[Method], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(methods.iter().map(|m| m.name()))
 }

@@ -127,7 +127,7 @@ fn grows(method: Method, z: f64) -> bool {
 /// yet `x` after `n` steps from `(1, 0)` is `±(2n + 1)`.
 pub(super) fn defective_growth() -> Result<Finding, StudyError> {
     const N: u64 = 1_000_000;
-    let start = State { q: [1.0], v: [0.0] };
+    let start = State { q: [1.0_f64], v: [0.0] };
     let method = libration::integrator::SymplecticEuler;
     let mut simulator = Simulator::new(Oscillator { omega2: 1.0 }, method, start, 2.0)?;
     simulator.run(N, &mut ())?;

@@ -108,7 +108,7 @@ fn regions(record: &Record, shown: &[(Method, f64)]) -> Result<Figure, RecordErr
         .title(method.title())
         .mark(Mark::raster(
             grid.clone(),
-            Colors::new(ColorMap::Diverging).range(-1.0, 1.0).label("log₁₀ ρ"),
+            Colors::new("log₁₀ ρ").map(ColorMap::Diverging).range(-1.0, 1.0),
         ))
         .mark(Mark::contour(grid, [0.0]).ink(Ink::Theory))
         .mark(Mark::vertical(0.0).ink(Ink::Neutral).width(0.8));

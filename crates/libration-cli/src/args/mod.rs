@@ -1,0 +1,134 @@
+//! The command line as types: what can be asked, and in which words.
+
+mod simulate;
+mod system;
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{ArgMatches, Args, ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
+use libration_lab::{Effort, studies};
+
+use crate::error::Failure;
+
+pub(crate) use simulate::SimulateArgs;
+pub(crate) use system::{Setting, StepArgs, SystemArgs, steps, whole_number};
+
+/// A laboratory for the stability of simulations: what theory predicts beside what was measured.
+#[derive(Debug, Parser)]
+#[command(name = "libration", version, propagate_version = true, max_term_width = 100)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// Say nothing unless something fails
+    #[arg(long, short, global = true)]
+    pub(crate) quiet: bool,
+    /// When to use colour; `auto` looks at the terminal and at NO_COLOR
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
+    pub(crate) color: ColorChoice,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  libration lab                              every study, at the setting of the report
+  libration lab drift --effort quick --open  one study, in seconds, shown in the browser
+  libration lab --print-config > mine.toml   the setting, ready to edit
+  libration lab --config mine.toml           the studies at your own setting
+  libration simulate --system oscillator --integrator rk4 --dt 0.01 --steps 1000
+                                             a trajectory as CSV
+  libration list                             what there is
+
+Exit codes: 0 success, 1 a failed run or a finding that disagrees, 2 wrong input, 130 interrupted";
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Run studies and write a report
+    Lab(LabArgs),
+    /// Simulate one trajectory and write its rows
+    Simulate(SimulateArgs),
+    /// List studies, systems and integrators
+    List(ListArgs),
+    /// Print a completion script for a shell
+    Completions(CompletionsArgs),
+}
+
+/// What `lab` takes.
+#[derive(Args, Debug)]
+#[command(after_help = LAB_EXAMPLES)]
+pub(crate) struct LabArgs {
+    /// Studies to run [default: those of the configuration, or all]
+    #[arg(value_name = "STUDY", value_parser = study_names())]
+    pub(crate) studies: Vec<String>,
+    /// Configuration file [default: the setting of the report]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) config: Option<PathBuf>,
+    /// Folder for the report
+    #[arg(long, value_name = "DIR", default_value = "libration-report")]
+    pub(crate) out: PathBuf,
+    /// How much work the run may take [default: that of the configuration, or standard]
+    #[arg(long, value_parser = efforts())]
+    pub(crate) effort: Option<Effort>,
+    /// Show the report in the browser when it is ready
+    #[arg(long)]
+    pub(crate) open: bool,
+    /// Print the default configuration, with comments, and stop
+    #[arg(long, conflicts_with_all = ["schema", "config", "studies", "effort", "open"])]
+    pub(crate) print_config: bool,
+    /// Print a JSON schema of the configuration, for editors, and stop
+    #[arg(long, conflicts_with_all = ["config", "studies", "effort", "open"])]
+    pub(crate) schema: bool,
+}
+
+const LAB_EXAMPLES: &str = "\
+Examples:
+  libration lab
+  libration lab spectrum drift --out my-report
+  libration lab --config mine.toml --effort thorough
+
+The folder gets report.html, results.json, figures/*.svg and data/*.parquet.";
+
+/// What `list` takes.
+#[derive(Args, Debug)]
+pub(crate) struct ListArgs {
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What `completions` takes.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Example:\n  libration completions bash > ~/.local/share/bash-completion/completions/libration"
+)]
+pub(crate) struct CompletionsArgs {
+    /// The shell
+    pub(crate) shell: clap_complete::Shell,
+}
+
+/// The arguments of this process. Help and version end up here as failures with exit code 0.
+pub(crate) fn parse() -> Result<Arguments, Failure> {
+    let words: Vec<OsString> = std::env::args_os().collect();
+    let command = Arguments::command().color(asked_color(&words));
+    let matches = command.try_get_matches_from(words)?;
+    Ok(Arguments::from_arg_matches(&matches)?)
+}
+
+/// The colour that is asked for, even if the rest of the command line is wrong.
+fn asked_color(words: &[OsString]) -> ColorChoice {
+    let lenient = Arguments::command().ignore_errors(true).disable_help_flag(true);
+    let color = |matches: &ArgMatches| matches.get_one::<ColorChoice>("color").copied();
+    lenient.try_get_matches_from(words).ok().as_ref().and_then(color).unwrap_or_default()
+}
+
+fn study_names() -> PossibleValuesParser {
+    let value =
+        |study: &&dyn libration_lab::Study| PossibleValue::new(study.name()).help(study.question());
+    PossibleValuesParser::new(studies::ALL.iter().map(value).collect::<Vec<_>>())
+}
+
+fn efforts() -> impl TypedValueParser<Value = Effort> {
+    PossibleValuesParser::new(Effort::ALL.map(Effort::name))
+        .try_map(|name| Effort::from_name(&name).ok_or("unknown effort"))
+}

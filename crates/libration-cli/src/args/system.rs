@@ -1,0 +1,188 @@
+//! The flags that choose a system, a start and a step; shared by the commands that simulate.
+
+use std::fmt;
+
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use libration::catalog::{Allowed, ENTRIES, Entry};
+use libration::{AnySystem, Method, State, with_system};
+use libration_lab::config::limits;
+
+use crate::error::Failure;
+
+/// Which system, with which parameters, from where.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct SystemArgs {
+    /// The system
+    #[arg(long, value_name = "NAME", value_parser = system_names(), hide_possible_values = true)]
+    pub(crate) system: String,
+    /// A parameter of the system, as in `omega2=10`; may be repeated
+    #[arg(long, value_name = "KEY=VALUE", value_parser = assignment, allow_hyphen_values = true)]
+    pub(crate) set: Vec<(String, f64)>,
+    /// Positions at the start, separated by commas [default: the system's own]
+    #[arg(long, value_name = "Q,…", value_parser = coordinates, allow_hyphen_values = true)]
+    pub(crate) q: Option<Coordinates>,
+    /// Velocities at the start, separated by commas [default: the system's own]
+    #[arg(long, value_name = "V,…", value_parser = coordinates, allow_hyphen_values = true)]
+    pub(crate) v: Option<Coordinates>,
+}
+
+/// Which integrator, with which time step.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct StepArgs {
+    /// The integrator
+    #[arg(long, value_name = "NAME", value_parser = integrators(), hide_possible_values = true)]
+    pub(crate) integrator: Method,
+    /// Time step in s
+    #[arg(long, value_name = "SECONDS", value_parser = time_step, allow_hyphen_values = true)]
+    pub(crate) dt: f64,
+}
+
+/// The coordinates of one flag.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Coordinates(Vec<f64>);
+
+/// A system that can be simulated: `q` and `v` are as long as one of its dimensions.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Setting {
+    /// The system with its parameters.
+    pub(crate) system: AnySystem,
+    /// Positions at the start.
+    pub(crate) q: Vec<f64>,
+    /// Velocities at the start.
+    pub(crate) v: Vec<f64>,
+}
+
+impl SystemArgs {
+    /// The system and its start; what is not given comes from the catalogue.
+    ///
+    /// # Errors
+    /// Wrong input: a parameter that is unknown or not allowed, or a wrong number of coordinates.
+    pub(crate) fn resolve(&self) -> Result<Setting, Failure> {
+        let system = AnySystem::build(&self.system, &self.set).map_err(Failure::usage)?;
+        let entry = system.entry();
+        for (flag, given) in [("--q", &self.q), ("--v", &self.v)] {
+            match given {
+                Some(given) if !entry.dimensions.contains(&given.0.len()) => {
+                    return Err(wrong_count(entry, flag, given));
+                }
+                _ => {}
+            }
+        }
+        let dimension = match (&self.q, &self.v) {
+            (Some(q), Some(v)) if q.0.len() != v.0.len() => return Err(unequal_counts(q, v)),
+            (Some(given), _) | (None, Some(given)) => given.0.len(),
+            (None, None) => *entry.dimensions.start(),
+        };
+        let (q, v) = with_system!(
+            system,
+            dimension,
+            |_model, D| default_start::<D>(entry),
+            return Err(Failure::usage(entry.wrong_dimension(dimension)))
+        );
+        let or_default = |given: &Option<Coordinates>, default| match given {
+            Some(given) => given.0.clone(),
+            None => default,
+        };
+        Ok(Setting { system, q: or_default(&self.q, q), v: or_default(&self.v, v) })
+    }
+}
+
+fn default_start<const D: usize>(entry: &Entry) -> (Vec<f64>, Vec<f64>) {
+    let start: Option<State<f64, D>> = entry.start();
+    start.map(|State { q, v }| (q.to_vec(), v.to_vec())).unwrap_or_default()
+}
+
+fn wrong_count(entry: &Entry, flag: &str, given: &Coordinates) -> Failure {
+    let (low, high) = (entry.dimensions.start(), entry.dimensions.end());
+    let needed = match (low, high) {
+        (1, 1) => "1 number".to_owned(),
+        (low, high) if low == high => format!("{low} numbers, separated by commas"),
+        (low, high) => format!("{low} to {high} numbers, separated by commas"),
+    };
+    let (name, count) = (entry.name, given.0.len());
+    Failure::usage(format!(
+        "{flag} has {count} coordinates in `{given}`, but {name} takes {needed}"
+    ))
+}
+
+fn unequal_counts(q: &Coordinates, v: &Coordinates) -> Failure {
+    let (of_q, of_v) = (q.0.len(), v.0.len());
+    Failure::usage(format!(
+        "--q `{q}` and --v `{v}` have {of_q} and {of_v} coordinates, but they must have equally many"
+    ))
+}
+
+impl fmt::Display for Coordinates {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words: Vec<String> = self.0.iter().map(f64::to_string).collect();
+        f.write_str(&words.join(","))
+    }
+}
+
+/// Reads coordinates: finite numbers, separated by commas.
+fn coordinates(text: &str) -> Result<Coordinates, String> {
+    text.split(',').map(coordinate).collect::<Result<_, _>>().map(Coordinates)
+}
+
+fn coordinate(word: &str) -> Result<f64, String> {
+    let word = word.trim();
+    let rule = "coordinates are finite numbers, separated by commas, as in 1,-0.5";
+    match word.parse::<f64>() {
+        _ if word.is_empty() => Err(format!("a coordinate is missing; {rule}")),
+        Ok(x) if Allowed::Finite.admits(x) => Ok(x),
+        Ok(_) => Err(format!("`{word}` is not finite; {rule}")),
+        Err(_) => Err(format!("`{word}` is not a number; {rule}")),
+    }
+}
+
+/// Reads `KEY=VALUE`; which keys and values there are depends on the system.
+fn assignment(text: &str) -> Result<(String, f64), String> {
+    let (key, value) =
+        text.split_once('=').ok_or("it must be KEY=VALUE, as in omega2=10".to_owned())?;
+    let (key, value) = (key.trim(), value.trim());
+    if key.is_empty() {
+        return Err("the key is missing; it must be KEY=VALUE, as in omega2=10".into());
+    }
+    let value = value.parse().map_err(|_| format!("the value `{value}` is not a number"))?;
+    Ok((key.to_owned(), value))
+}
+
+/// Reads a time step.
+fn time_step(text: &str) -> Result<f64, String> {
+    let dt = text
+        .trim()
+        .parse()
+        .map_err(|_| format!("it is not a number; a time step must be {}", limits::TIME_STEP))?;
+    limits::within(limits::TIME_STEP, "--dt", dt)?;
+    Ok(dt)
+}
+
+/// Reads a number of steps; also as `1e6`.
+pub(crate) fn steps(text: &str) -> Result<u64, String> {
+    let steps = whole_number(text).ok_or_else(|| {
+        format!("it is not a whole number; steps must be {}", limits::steps_allowed())
+    })?;
+    limits::steps(steps)
+}
+
+/// The whole number that `text` stands for, written as `1000` or `1e3`.
+pub(crate) fn whole_number(text: &str) -> Option<i128> {
+    let text = text.trim();
+    let with_exponent = || {
+        let x: f64 = text.parse().ok()?;
+        (x.fract() == 0.0).then_some(x as i128)
+    };
+    text.parse().ok().or_else(with_exponent)
+}
+
+fn system_names() -> PossibleValuesParser {
+    let value = |entry: &Entry| PossibleValue::new(entry.name).help(entry.summary);
+    PossibleValuesParser::new(ENTRIES.map(value))
+}
+
+fn integrators() -> impl TypedValueParser<Value = Method> {
+    let value = |method: Method| PossibleValue::new(method.name()).help(method.summary());
+    PossibleValuesParser::new(Method::ALL.map(value))
+        .try_map(|name| Method::from_name(&name).ok_or("unknown integrator"))
+}

@@ -1,0 +1,137 @@
+//! `libration lab`.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use libration_lab::output::{Output, OutputError};
+use libration_lab::record::{Finding, Record, Verdict};
+use libration_lab::session::{self, Results, SessionError};
+use libration_lab::{Config, Lab, Study, config, studies};
+
+use crate::args::LabArgs;
+use crate::error::Failure;
+use crate::progress::Reporter;
+use crate::{interrupt, terminal};
+
+/// Runs studies and writes a report, or prints what describes a configuration.
+pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
+    if args.print_config {
+        return Ok(terminal::print(config::DEFAULT)?);
+    }
+    if args.schema {
+        return Ok(terminal::print(&format!("{:#}\n", config::schema()))?);
+    }
+    let config = configure(args)?;
+    let output = Output::open(&args.out).map_err(|error| unwritable(&args.out, &error))?;
+    let results = investigate(&config, &output, &Reporter::new(quiet))?;
+    let report = output.path("report.html");
+    if !quiet {
+        terminal::print(&summary(&results, &report))?;
+    }
+    if args.open {
+        open::that_detached(&report).map_err(|error| {
+            Failure::run(format!("cannot show `{}`: {error}", report.display()))
+        })?;
+    }
+    judge(&results)
+}
+
+/// The configuration that the file and the flags make together; flags win.
+fn configure(args: &LabArgs) -> Result<Config, Failure> {
+    let mut config = match &args.config {
+        Some(path) => read(path)?,
+        None => Config::default(),
+    };
+    if !args.studies.is_empty() {
+        config.studies.clone_from(&args.studies);
+    }
+    config.effort = args.effort.unwrap_or(config.effort);
+    config.check().map_err(Failure::usage)?;
+    Ok(config)
+}
+
+fn read(path: &Path) -> Result<Config, Failure> {
+    let bytes = std::fs::read(path).map_err(|error| {
+        Failure::usage(format!("cannot read `{}` (--config): {error}", path.display()))
+    })?;
+    config::parse_bytes(&bytes, &path.to_string_lossy())
+        .map_err(|error| Failure::Shown(error.render_styled()))
+}
+
+fn unwritable(folder: &Path, error: &OutputError) -> Failure {
+    let reason = if folder.is_file() {
+        "it is a file, but it must be a folder".to_owned()
+    } else {
+        error.source.to_string()
+    };
+    Failure::usage(format!("cannot write into the folder `{}` (--out): {reason}", folder.display()))
+}
+
+/// The studies that the configuration names, in its order.
+fn chosen(config: &Config) -> Vec<&'static dyn Study> {
+    if config.studies.is_empty() {
+        return studies::ALL.to_vec();
+    }
+    config.studies.iter().filter_map(|name| studies::by_name(name)).collect()
+}
+
+fn investigate(config: &Config, output: &Output, reporter: &Reporter) -> Result<Results, Failure> {
+    let stop = interrupt::listen()?;
+    let lab = Lab::new(config, config.effort, reporter, stop);
+    let results = session::run(&lab, &chosen(config), output);
+    reporter.clear();
+    results.map_err(|error| match error {
+        SessionError::Interrupted => {
+            let kept = output.path("results.json");
+            Failure::Interrupted(format!(
+                "interrupted; `{}` holds what is finished",
+                kept.display()
+            ))
+        }
+        error => Failure::run(error),
+    })
+}
+
+/// A line for each study, and the path of the report.
+fn summary(results: &Results, report: &Path) -> String {
+    let width = results.studies.iter().map(|r| r.name.len()).chain(["study".len()]).max();
+    let width = width.unwrap_or_default();
+    let mut text = format!(
+        "{:width$}  {:>14}  {:>6}  {:>7}\n",
+        "study", "findings agree", "claims", "seconds"
+    );
+    for record in &results.studies {
+        let (name, claims, seconds) = (&record.name, record.claims.len(), record.seconds);
+        let agree = agreement(record);
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{name:width$}  {agree:>14}  {claims:>6}  {seconds:>7.1}");
+    }
+    let _ = writeln!(text, "\nreport: {}", report.display());
+    text
+}
+
+/// How many findings agree, of those that have a prediction.
+fn agreement(record: &Record) -> String {
+    let predicted = record.findings.iter().filter(|f| f.verdict != Verdict::Measured);
+    let agree = record.findings.iter().filter(|f| f.agrees()).count();
+    format!("{agree} of {}", predicted.count())
+}
+
+/// Fails if a finding disagrees, after naming each one that does.
+fn judge(results: &Results) -> Result<(), Failure> {
+    let disagree: Vec<&Finding> = results.studies.iter().flat_map(Record::disagreements).collect();
+    for finding in &disagree {
+        terminal::error(&disagreement(finding));
+    }
+    if disagree.is_empty() { Ok(()) } else { Err(Failure::Disagreement) }
+}
+
+fn disagreement(finding: &Finding) -> String {
+    let Finding { id, text, unit, predicted, measured, tolerance, .. } = finding;
+    let number = |x: &Option<f64>| x.map_or_else(|| "none".to_owned(), |x| format!("{x:?}"));
+    let (predicted, tolerance) = (number(predicted), number(&tolerance.tolerance));
+    format!(
+        "the finding `{id}` disagrees: predicted {predicted}, measured {measured:?}, \
+         tolerance {tolerance}, in units of {unit}\n  {text}"
+    )
+}

@@ -1,0 +1,21 @@
+//! One module for each subcommand.
+
+mod completions;
+mod lab;
+mod list;
+mod simulate;
+
+use crate::args::{Arguments, Command};
+use crate::error::Failure;
+use crate::terminal;
+
+/// Does what was asked.
+pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
+    terminal::set_color(arguments.color);
+    match arguments.command {
+        Command::Lab(args) => lab::run(&args, arguments.quiet),
+        Command::Simulate(args) => simulate::run(&args, arguments.quiet),
+        Command::List(args) => list::run(&args),
+        Command::Completions(args) => completions::run(&args),
+    }
+}

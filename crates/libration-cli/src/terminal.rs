@@ -1,0 +1,39 @@
+//! Words to the two streams: results on stdout, everything else on stderr.
+
+use std::io::{self, ErrorKind, Write};
+
+use anstream::ColorChoice;
+use anstyle::{AnsiColor, Style};
+
+/// The heading of an error.
+const ERROR: Style = AnsiColor::Red.on_default().bold();
+
+/// Settles the colour of both streams. `Auto` looks at the stream and at `NO_COLOR`.
+pub(crate) fn set_color(choice: clap::ColorChoice) {
+    match choice {
+        clap::ColorChoice::Auto => ColorChoice::Auto,
+        clap::ColorChoice::Always => ColorChoice::Always,
+        clap::ColorChoice::Never => ColorChoice::Never,
+    }
+    .write_global();
+}
+
+/// Writes results. A reader that has seen enough is not an error.
+pub(crate) fn print(text: &str) -> io::Result<()> {
+    let mut stdout = anstream::stdout().lock();
+    let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
+    match written {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        written => written,
+    }
+}
+
+/// Writes a line for people to stderr; if that fails, nobody is left to tell.
+pub(crate) fn say(text: &str) {
+    let _ = writeln!(anstream::stderr().lock(), "{}", text.trim_end());
+}
+
+/// Writes an error to stderr.
+pub(crate) fn error(message: &str) {
+    say(&format!("{ERROR}error{ERROR:#}: {message}"));
+}

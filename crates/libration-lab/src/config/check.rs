@@ -1,0 +1,147 @@
+//! What makes a configuration a sound one.
+
+use std::fmt;
+
+use libration::catalog::Allowed;
+use libration::{Hamiltonian, State};
+
+use super::limits::{self, within};
+use super::{Config, Spring, Start, names};
+use crate::studies;
+
+/// A value of a configuration that is not allowed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// Where it stands, as in `drift.dt`.
+    pub key: &'static str,
+    /// Which element of the array, counted from zero.
+    pub index: Option<usize>,
+    /// What is wrong, and what is allowed.
+    pub message: String,
+    /// What could be done about it.
+    pub help: Option<String>,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)?;
+        self.help.iter().try_for_each(|help| write!(f, "; {help}"))
+    }
+}
+
+impl std::error::Error for Fault {}
+
+impl Fault {
+    pub(super) fn new(key: &'static str, message: impl Into<String>) -> Self {
+        Fault { key, index: None, message: message.into(), help: None }
+    }
+
+    pub(super) fn at(key: &'static str, index: usize, message: impl Into<String>) -> Self {
+        Fault { key, index: Some(index), message: message.into(), help: None }
+    }
+
+    pub(super) fn help(mut self, help: String) -> Self {
+        self.help = Some(help);
+        self
+    }
+}
+
+impl Config {
+    /// Checks every value; the order of time steps is free.
+    ///
+    /// # Errors
+    /// The first value that is not allowed.
+    pub fn check(&self) -> Result<(), Fault> {
+        self.check_names()?;
+        self.oscillator.check()?;
+        self.start.check(self.oscillator)?;
+        number("spectrum.dt", limits::TIME_STEP, self.spectrum.dt)?;
+        self.check_drift()
+    }
+
+    fn check_names(&self) -> Result<(), Fault> {
+        let known = || studies::ALL.iter().map(|study| study.name());
+        for (i, name) in self.studies.iter().enumerate() {
+            if !known().any(|study| study == name) {
+                let fault = Fault::at("studies", i, format!("unknown study `{name}`"));
+                let known: Vec<_> = known().collect();
+                return Err(fault.help(names::suggest("studies", name, known)));
+            }
+            if self.studies[..i].contains(name) {
+                return Err(Fault::at("studies", i, format!("the study `{name}` is named twice")));
+            }
+        }
+        if self.integrators.is_empty() {
+            return Err(Fault::new("integrators", "`integrators` must name at least one"));
+        }
+        for (i, method) in self.integrators.iter().enumerate() {
+            if self.integrators[..i].contains(method) {
+                let message = format!("the integrator `{}` is named twice", method.name());
+                return Err(Fault::at("integrators", i, message));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_drift(&self) -> Result<(), Fault> {
+        const DT: &str = "drift.dt";
+        let dt = &self.drift.dt;
+        if dt.is_empty() {
+            return Err(Fault::new(DT, "`drift.dt` must hold at least one time step"));
+        }
+        for (i, &step) in dt.iter().enumerate() {
+            let fault = |message| Fault::at(DT, i, message);
+            within(limits::TIME_STEP, DT, step).map_err(fault)?;
+            if dt[..i].contains(&step) {
+                return Err(fault(format!("the time step {step:?} stands in `drift.dt` twice")));
+            }
+        }
+        let steps = i128::from(self.drift.steps);
+        limits::steps(steps).map_err(|e| Fault::new("drift.steps", e))?;
+        Ok(())
+    }
+}
+
+impl Spring {
+    fn check(self) -> Result<(), Fault> {
+        number("oscillator.m", limits::SPRING, self.m)?;
+        number("oscillator.k", limits::SPRING, self.k)?;
+        let omega2 = self.system().omega2;
+        if Allowed::Positive.admits(omega2) {
+            return Ok(());
+        }
+        let (m, k) = (self.m, self.k);
+        Err(Fault::new(
+            "oscillator.k",
+            format!(
+                "omega2 = k/m = {k:?}/{m:?} is {omega2:?}, but it must be {}",
+                Allowed::Positive
+            ),
+        ))
+    }
+}
+
+impl Start {
+    fn check(self, spring: Spring) -> Result<(), Fault> {
+        number("start.q", limits::COORDINATE, self.q)?;
+        number("start.v", limits::COORDINATE, self.v)?;
+        if self.q == 0.0 && self.v == 0.0 {
+            let rest = "q = 0 and v = 0 is rest, where nothing moves; one of them must not be 0";
+            return Err(Fault::new("start.q", rest));
+        }
+        let energy = spring.system().energy(&State { q: [self.q], v: [self.v] });
+        if energy.is_normal() {
+            return Ok(());
+        }
+        let (q, v) = (self.q, self.v);
+        let message = format!(
+            "the energy at q = {q:?}, v = {v:?} is {energy:?} J/kg, but it must be finite and \
+             greater than 0"
+        );
+        Err(Fault::new("start.q", message))
+    }
+}
+
+fn number(key: &'static str, allowed: Allowed, value: f64) -> Result<(), Fault> {
+    within(allowed, key, value).map(drop).map_err(|message| Fault::new(key, message))
+}

@@ -1,0 +1,183 @@
+//! The configuration as a TOML file.
+
+use libration::Method;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::locate::Document;
+use super::value::{Count, Number};
+use super::{Config, ConfigError, Drift, Fault, Spectrum, Spring, Start, names, schema};
+use crate::Effort;
+
+/// The default configuration with comments, ready to edit.
+pub const DEFAULT: &str = include_str!("default.toml");
+
+/// Configuration of `libration lab`. Units are SI.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+#[schemars(title = "Libration configuration")]
+pub(super) struct File {
+    /// The studies to run, in this order; all of them if empty.
+    #[schemars(schema_with = "schema::studies")]
+    studies: Vec<String>,
+    /// How much work a run may take.
+    #[schemars(schema_with = "schema::effort")]
+    effort: String,
+    /// The integrators under study, each once.
+    #[schemars(schema_with = "schema::integrators")]
+    integrators: Vec<String>,
+    /// The harmonic oscillator that is simulated.
+    oscillator: SpringTable,
+    /// The state at time zero; `q` and `v` must not both be 0.
+    start: StartTable,
+    /// The study of update matrices, eigenvalues and stability regions.
+    spectrum: SpectrumTable,
+    /// The study of energy drift.
+    drift: DriftTable,
+}
+
+/// A mass on a spring, m q'' = -k q.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+struct SpringTable {
+    /// Mass in kg.
+    #[schemars(schema_with = "schema::spring")]
+    m: Number,
+    /// Stiffness in N/m.
+    #[schemars(schema_with = "schema::spring")]
+    k: Number,
+}
+
+/// A state.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+struct StartTable {
+    /// Position in m.
+    #[schemars(schema_with = "schema::coordinate")]
+    q: Number,
+    /// Velocity in m/s.
+    #[schemars(schema_with = "schema::coordinate")]
+    v: Number,
+}
+
+/// Settings of the study `spectrum`.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+struct SpectrumTable {
+    /// Time step in s at which numbers are shown.
+    #[schemars(schema_with = "schema::time_step")]
+    dt: Number,
+}
+
+/// Settings of the study `drift`.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+struct DriftTable {
+    /// Time steps in s, each once.
+    #[schemars(schema_with = "schema::time_steps")]
+    dt: Vec<Number>,
+    /// Number of steps at each of them.
+    #[schemars(schema_with = "schema::steps")]
+    steps: Count,
+}
+
+/// Reads a configuration; keys that are not given take their defaults.
+///
+/// # Errors
+/// What is wrong with `text`, and where; `file_name` is only shown.
+pub fn parse(text: &str, file_name: &str) -> Result<Config, ConfigError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let document = Document::parse(text, file_name)?;
+    let file: File = toml::from_str(text).map_err(|error| document.explain(&error))?;
+    let config = Config::try_from(file).map_err(|fault| document.locate(fault))?;
+    config.check().map_err(|fault| document.locate(fault))?;
+    Ok(config.sorted())
+}
+
+/// Reads a configuration from the bytes of a file.
+///
+/// # Errors
+/// As [`parse`], and if the bytes are not UTF-8.
+pub fn parse_bytes(bytes: &[u8], file_name: &str) -> Result<Config, ConfigError> {
+    let error = match std::str::from_utf8(bytes) {
+        Ok(text) => return parse(text, file_name),
+        Err(error) => error,
+    };
+    // Up to the bad byte, the shown text and the file are the same.
+    let text = String::from_utf8_lossy(bytes);
+    let start = error.valid_up_to();
+    let skipped = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
+    let span = start - skipped..start - skipped + char::REPLACEMENT_CHARACTER.len_utf8();
+    let byte = bytes.get(start).copied().unwrap_or_default();
+    let message = format!("the file is not UTF-8: byte 0x{byte:02X} cannot stand here");
+    let help = match bytes {
+        [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] => "this looks like UTF-16; save the file as UTF-8",
+        _ => "save the file as UTF-8",
+    };
+    Err(ConfigError::new(file_name, &text[skipped..], span, message, Some(help.into())))
+}
+
+impl Default for File {
+    fn default() -> Self {
+        let Config { studies, effort, integrators, oscillator, start, spectrum, drift } =
+            Config::default();
+        File {
+            studies,
+            effort: effort.name().into(),
+            integrators: integrators.into_iter().map(|m| m.name().into()).collect(),
+            oscillator: SpringTable { m: Number(oscillator.m), k: Number(oscillator.k) },
+            start: StartTable { q: Number(start.q), v: Number(start.v) },
+            spectrum: SpectrumTable { dt: Number(spectrum.dt) },
+            drift: DriftTable {
+                dt: drift.dt.into_iter().map(Number).collect(),
+                steps: Count(drift.steps.into()),
+            },
+        }
+    }
+}
+
+macro_rules! default_of_table {
+    ($($table:ident = $key:ident),*) => {
+        $(impl Default for $table {
+            fn default() -> Self {
+                File::default().$key
+            }
+        })*
+    };
+}
+
+default_of_table!(
+    SpringTable = oscillator,
+    StartTable = start,
+    SpectrumTable = spectrum,
+    DriftTable = drift
+);
+
+impl TryFrom<File> for Config {
+    type Error = Fault;
+
+    fn try_from(file: File) -> Result<Self, Fault> {
+        let File { studies, effort, integrators, oscillator, start, spectrum, drift } = file;
+        let effort = Effort::from_name(&effort).ok_or_else(|| {
+            let fault = Fault::new("effort", format!("unknown effort `{effort}`"));
+            fault.help(names::suggest("efforts", &effort, Effort::ALL.map(Effort::name)))
+        })?;
+        let method = |(i, name): (usize, &String)| {
+            Method::from_name(name).ok_or_else(|| {
+                let fault = Fault::at("integrators", i, format!("unknown integrator `{name}`"));
+                fault.help(names::suggest("integrators", name, Method::ALL.map(Method::name)))
+            })
+        };
+        let steps = super::limits::steps(drift.steps.0)
+            .map_err(|message| Fault::new("drift.steps", message))?;
+        Ok(Config {
+            studies,
+            effort,
+            integrators: integrators.iter().enumerate().map(method).collect::<Result<_, _>>()?,
+            oscillator: Spring { m: oscillator.m.0, k: oscillator.k.0 },
+            start: Start { q: start.q.0, v: start.v.0 },
+            spectrum: Spectrum { dt: spectrum.dt.0 },
+            drift: Drift { dt: drift.dt.into_iter().map(|Number(dt)| dt).collect(), steps },
+        })
+    }
+}

@@ -1,0 +1,42 @@
+//! What the numbers of a configuration may be; the command line's flags obey the same limits.
+
+use std::ops::RangeInclusive;
+
+use libration::catalog::Allowed;
+
+/// Time steps, in s.
+pub const TIME_STEP: Allowed = Allowed::Positive;
+/// Masses in kg and stiffnesses in N/m.
+pub const SPRING: Allowed = Allowed::Positive;
+/// Coordinates of a start.
+pub const COORDINATE: Allowed = Allowed::Finite;
+/// Numbers of steps.
+pub const STEPS: RangeInclusive<u64> = 1..=1_000_000_000;
+
+/// `value`, if `allowed` admits it as `what`.
+///
+/// # Errors
+/// A sentence that names the value and what is allowed.
+pub fn within(allowed: Allowed, what: &str, value: f64) -> Result<f64, String> {
+    if allowed.admits(value) {
+        Ok(value)
+    } else {
+        Err(format!("`{what}` is {value:?}, but it must be {allowed}"))
+    }
+}
+
+/// `steps`, if it is an allowed number of steps.
+///
+/// # Errors
+/// A sentence that names the value and what is allowed.
+pub fn steps(steps: i128) -> Result<u64, String> {
+    match u64::try_from(steps) {
+        Ok(allowed) if STEPS.contains(&allowed) => Ok(allowed),
+        _ => Err(format!("the number of steps is {steps}, but it must be {}", steps_allowed())),
+    }
+}
+
+/// The allowed numbers of steps, in words.
+pub fn steps_allowed() -> String {
+    format!("{} to {}, which takes minutes already", STEPS.start(), STEPS.end())
+}

@@ -1,0 +1,99 @@
+//! From what is wrong to the characters that say it.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue, Error};
+
+use super::{ConfigError, Fault, names};
+
+/// A TOML file whose syntax is right, and which knows where everything stands.
+pub(super) struct Document<'a> {
+    file: &'a str,
+    text: &'a str,
+    table: Spanned<DeTable<'a>>,
+}
+
+impl<'a> Document<'a> {
+    /// Reads `text`.
+    pub(super) fn parse(text: &'a str, file: &'a str) -> Result<Self, ConfigError> {
+        match DeTable::parse(text) {
+            Ok(table) => Ok(Document { file, text, table }),
+            Err(error) => {
+                let span = error.span().unwrap_or_default();
+                Err(ConfigError::new(file, text, span, error.message(), None))
+            }
+        }
+    }
+
+    /// The error of a value that is not allowed.
+    pub(super) fn locate(&self, fault: Fault) -> ConfigError {
+        let span = self.find(fault.key, fault.index);
+        ConfigError::new(self.file, self.text, span, fault.message, fault.help)
+    }
+
+    /// The error of a key that does not exist or a value of the wrong type.
+    pub(super) fn explain(&self, error: &Error) -> ConfigError {
+        let span = error.span().unwrap_or_default();
+        let message = error.message();
+        let (message, help) = match unknown_key(message) {
+            Some((key, known)) => {
+                let known = known.iter().copied();
+                (format!("unknown key `{key}`"), Some(names::suggest("keys", key, known)))
+            }
+            None => match key_around(self.table.get_ref(), &span) {
+                Some(key) => (format!("`{key}`: {message}"), None),
+                None => (message.to_owned(), None),
+            },
+        };
+        ConfigError::new(self.file, self.text, span, message, help)
+    }
+
+    /// Where the value of `key` stands, or else the table that it belongs to.
+    fn find(&self, key: &str, index: Option<usize>) -> Range<usize> {
+        let mut table = self.table.get_ref();
+        let mut span = 0..0;
+        for part in key.split('.') {
+            let Some((name, value)) = table.iter().find(|(name, _)| name.get_ref() == part) else {
+                return span;
+            };
+            match value.get_ref() {
+                DeValue::Table(inner) => {
+                    span = name.span();
+                    table = inner;
+                }
+                DeValue::Array(items) => {
+                    let item = index.and_then(|i| items.get(i));
+                    return item.map_or(value.span(), Spanned::span);
+                }
+                _ => return value.span(),
+            }
+        }
+        span
+    }
+}
+
+/// The unknown key, and those that there are, in the words of serde.
+fn unknown_key(message: &str) -> Option<(&str, Vec<&str>)> {
+    let words = message.strip_prefix("unknown field `")?;
+    let (key, rest) = words.split_once("`, expected ")?;
+    // Every second piece stands between backquotes.
+    Some((key, rest.split('`').skip(1).step_by(2).collect()))
+}
+
+/// The dotted key of the innermost value that `span` lies in.
+fn key_around(table: &DeTable<'_>, span: &Range<usize>) -> Option<String> {
+    let around = |value: &Spanned<DeValue<'_>>| {
+        value.span().start <= span.start && span.end <= value.span().end
+    };
+    table.iter().find_map(|(key, value)| {
+        let inner = match value.get_ref() {
+            DeValue::Table(inner) => key_around(inner, span),
+            _ => None,
+        };
+        match inner {
+            Some(inner) => Some(format!("{}.{inner}", key.get_ref())),
+            None => around(value).then(|| key.get_ref().to_string()),
+        }
+    })
+}
