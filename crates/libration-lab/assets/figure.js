@@ -26,7 +26,7 @@
     return match[2] ? rgb.replace(/^rgba?\(([^,]+,[^,]+,[^,)]+).*$/, `rgba($1, ${match[2]})`) : rgb;
   };
 
-  const LENGTHS = new Set(["size", "width", "height", "xshift", "yshift", "thickness", "len", "ticklen", "ticklabelstandoff"]);
+  const LENGTHS = new Set(["size", "width", "height", "xshift", "yshift", "thickness", "len", "ticklen", "ticklabelstandoff", "ax", "ay"]);
 
   // The description for the colours and the width of now.
   const resolved = (value, scale, key) => {

@@ -1,6 +1,7 @@
 //! A mark as places on the page: the one geometry that is drawn and that labels keep clear of.
 
-use super::geometry::{Place, Rect};
+use super::axis::{Ruler, Scale};
+use super::geometry::{Place, Rect, finite};
 use super::grid::Grid;
 use super::layout::Frame;
 use super::mark::{Across, Shape};
@@ -61,6 +62,14 @@ impl Drawn {
         }
     }
 
+    /// Opens contour lines where a label stands on them.
+    pub(super) fn make_room(&mut self, label: &Rect) {
+        let Self::Levels(levels) = self else { return };
+        for (_, parts) in levels {
+            *parts = parts.iter().flat_map(|part| label.spare(part)).collect();
+        }
+    }
+
     /// All lines that a label should not cover.
     pub(super) fn strokes(&self) -> Vec<&[Place]> {
         match self {
@@ -101,15 +110,13 @@ pub(super) fn contour(grid: &Grid, level: f64, frame: &Frame) -> Vec<Vec<[f64; 2
 
 /// The closed bands between two lines, one for each stretch without a gap.
 fn bands(low: &[Place], high: &[Place]) -> Vec<Vec<Place>> {
-    runs(low.len().min(high.len()), |i| {
-        super::geometry::finite(low[i]) && super::geometry::finite(high[i])
-    })
-    .into_iter()
-    .map(|run| {
-        let back = low[run.clone()].iter().rev();
-        high[run.clone()].iter().chain(back).copied().collect()
-    })
-    .collect()
+    runs(low.len().min(high.len()), |i| finite(low[i]) && finite(high[i]))
+        .into_iter()
+        .map(|run| {
+            let back = low[run.clone()].iter().rev();
+            high[run.clone()].iter().chain(back).copied().collect()
+        })
+        .collect()
 }
 
 /// The stretches of indices for which `present` holds.
@@ -126,7 +133,7 @@ pub(super) fn runs(count: usize, present: impl Fn(usize) -> bool) -> Vec<std::op
 
 /// The rectangle that a grid covers: half a cell beyond its outer samples.
 fn picture(grid: &Grid, frame: &Frame) -> Rect {
-    let outer = |samples: &[f64], ruler: &super::axis::Ruler| {
+    let outer = |samples: &[f64], ruler: &Ruler| {
         let places: Vec<f64> =
             edges(samples, ruler.span.scale).iter().map(|&v| ruler.at(v)).collect();
         let (first, last) = (places.first().copied(), places.last().copied());
@@ -137,7 +144,7 @@ fn picture(grid: &Grid, frame: &Frame) -> Rect {
 }
 
 /// The edges of the cells around samples that are evenly spaced on a scale: one more than samples.
-pub(super) fn edges(samples: &[f64], scale: super::axis::Scale) -> Vec<f64> {
+pub(super) fn edges(samples: &[f64], scale: Scale) -> Vec<f64> {
     let (Some(&first), Some(&last)) = (samples.first(), samples.last()) else { return Vec::new() };
     let (first, last) = (scale.of(first), scale.of(last));
     let gaps = (samples.len() - 1) as f64;

@@ -22,7 +22,7 @@ fn linear(low: f64, high: f64, most: f64) -> Vec<Tick> {
     let step = step((high - low) / most.max(2.0));
     let slack = 1e-9 * (high - low) / step;
     let (first, last) = ((low / step - slack).ceil(), (high / step + slack).floor());
-    let count = (last - first).max(0.0).min(1000.0) as usize + 1;
+    let count = (last - first).clamp(0.0, 1000.0) as usize + 1;
     let values: Vec<f64> = (0..count).map(|i| tidy((first + i as f64) * step, step)).collect();
     let power = shared_power(&values, step);
     values.iter().map(|&value| Tick { value, label: number(value, step, power) }).collect()
@@ -73,8 +73,12 @@ fn number(value: f64, step: f64, power: i32) -> String {
 
 /// A level of a contour, with as many digits as tell it from the next.
 pub(super) fn level(value: f64, step: f64) -> String {
-    let step = if step.is_finite() && step > 0.0 { step } else { value.abs().max(1e-300) / 10.0 };
-    number(value, step, shared_power(&[value], step)).trim_end_matches('.').to_owned()
+    let plain = value.to_string();
+    if plain.len() < 7 {
+        return plain.replace('-', "−");
+    }
+    let step = if step.is_finite() && step > 0.0 { step } else { value.abs() / 100.0 };
+    number(value, step, shared_power(&[value], step))
 }
 
 fn minus(number: i32) -> String {
@@ -103,6 +107,10 @@ fn log(low: f64, high: f64, most: f64) -> Vec<Tick> {
         0..=2 if 0.3 * most > 0.8 * decades => &[2, 5],
         _ => &[],
     };
+    if !named.is_empty() {
+        let plain = |tick: &Tick| between(1, tick.value.log10().round() as i32);
+        ticks.iter_mut().for_each(|tick| tick.label = plain(tick));
+    }
     for decade in first - 1..=last {
         for digit in 2..=9 {
             let value = f64::from(digit) * power_of_ten(decade);
@@ -126,6 +134,7 @@ fn between(digit: u32, decade: i32) -> String {
     match decade {
         0..=3 => format!("{digit}{}", "0".repeat(decade as usize)),
         -3..=-1 => format!("0.{}{digit}", "0".repeat((-decade - 1) as usize)),
+        _ if digit == 1 => format!("10^{{{}}}", minus(decade)),
         _ => format!("{digit}·10^{{{}}}", minus(decade)),
     }
 }
@@ -163,6 +172,6 @@ mod tests {
     #[test]
     fn a_part_of_a_decade_is_still_marked() {
         assert!(labels(Scale::Log, 0.1, 0.6).len() >= 2);
-        assert_eq!(labels(Scale::Log, -1.2, 0.2), ["10^{−1}", "0.2", "0.5", "10^{0}"]);
+        assert_eq!(labels(Scale::Log, -1.2, 0.2), ["0.1", "0.2", "0.5", "1"]);
     }
 }
