@@ -19,6 +19,8 @@ pub(super) const SMALL: f64 = 12.0;
 pub(super) const NORMAL: f64 = 13.0;
 /// The size of labels.
 pub(super) const LABEL: f64 = 13.5;
+/// How much wider than a line over a picture its pale edge is.
+pub(super) const EDGE: f64 = 2.4;
 const GUTTER: f64 = 26.0;
 const LEGEND_LINE: f64 = 22.0;
 const SWATCH: f64 = 34.0;
@@ -165,11 +167,16 @@ impl<'a> Placed<'a> {
             panel.marks.iter().map(|m| Drawn::of(&m.shape, &frame)).collect();
         let labels = label::place(panel, &drawn, &frame, columns, bar.is_some());
         for label in labels.iter().filter(|label| !label.outside) {
-            drawn[label.mark].make_room(&label.rect().grown(2.0));
+            drawn.iter_mut().for_each(|d| d.make_room(&label.rect().grown(2.0)));
         }
         let widest = y_ticks.iter().map(|tick| text::width(&tick.label, SMALL)).fold(0.0, f64::max);
         let numbers = rect.x - 8.0 - widest;
         Self { panel, frame, x_ticks, y_ticks, drawn, labels, bar, numbers }
+    }
+
+    /// A picture keeps its colours in the dark, so what lies on it keeps those of the light.
+    pub(super) fn on_picture(&self) -> bool {
+        self.drawn.iter().any(|drawn| matches!(drawn, Drawn::Picture(_)))
     }
 
     /// The space that this panel needs on both sides of its frame.

@@ -14,8 +14,11 @@ use super::style::Style;
 use super::text;
 use super::ticks::Tick;
 
+const FONT: &str = "system-ui, -apple-system, 'Segoe UI', sans-serif";
+
 /// Data and layout for Plotly.js, for a drawing as wide as `width`. Colours are `var(--name)`, or
-/// `var(--name)/opacity`: the script of the page puts in those of the reader's preference.
+/// `var(--name)/opacity`: the script of the page puts in those of the reader's preference, and for
+/// `light(--name)` always those of the light.
 pub fn plotly(figure: &Figure) -> Value {
     let layout = Layout::of(figure);
     let height = layout.height;
@@ -26,8 +29,8 @@ pub fn plotly(figure: &Figure) -> Value {
         "width": WIDTH, "height": height,
         "margin": {"l": 0, "r": 0, "t": 0, "b": 0, "pad": 0},
         "paper_bgcolor": "rgba(0,0,0,0)", "plot_bgcolor": "rgba(0,0,0,0)",
-        "font": {"family": "system-ui, -apple-system, 'Segoe UI', sans-serif", "size": SMALL, "color": "var(--soft)"},
-        "hoverlabel": {"bgcolor": "var(--page)", "bordercolor": "var(--soft)", "font": {"size": NORMAL, "color": "var(--ink)"}},
+        "font": {"family": FONT, "size": SMALL, "color": "var(--soft)"},
+        "hoverlabel": {"bgcolor": "var(--page)", "bordercolor": "var(--soft)", "font": {"family": FONT, "size": NORMAL, "color": "var(--ink)"}},
         "showlegend": false, "hovermode": "closest", "dragmode": "zoom",
     });
     for (index, placed) in layout.panels.iter().enumerate() {
@@ -36,14 +39,25 @@ pub fn plotly(figure: &Figure) -> Value {
             axis(&placed.panel.x, &placed.frame.x, &placed.x_ticks, WIDTH, &n.key("y"));
         out[n.key("yaxis")] =
             axis(&placed.panel.y, &placed.frame.y, &placed.y_ticks, height, &n.key("x"));
+        let (mut traces, mut rules) = (Vec::new(), Vec::new());
         for mark in &placed.panel.marks {
-            trace::traces(mark, placed, n, height, &mut data);
-            if let Shape::Rule { across, at } = mark.shape {
-                shapes.push(shape::rule(mark, across, at, n));
+            trace::traces(mark, placed, n, height, &mut traces);
+            match &mark.shape {
+                Shape::Rule { across, at } => rules.push(shape::rule(mark, *across, *at, n)),
+                Shape::Raster { grid, .. } => rules.extend(shape::blank(grid, placed, n)),
+                _ => {}
             }
         }
+        let mut labels: Vec<Value> =
+            placed.labels.iter().map(|label| words::label(label, placed, n)).collect();
+        if placed.on_picture() {
+            traces = trace::edged(traces);
+            traces.iter_mut().chain(&mut rules).chain(&mut labels).for_each(always_light);
+        }
+        data.extend(traces);
+        shapes.extend(rules);
         annotations.extend(words::titles(placed, height));
-        annotations.extend(placed.labels.iter().map(|label| words::label(label, placed, n)));
+        annotations.extend(labels);
     }
     for entry in &layout.legend {
         let at = [entry.text_x, entry.y];
@@ -53,6 +67,20 @@ pub fn plotly(figure: &Figure) -> Value {
     out["annotations"] = annotations.into();
     out["shapes"] = shapes.into();
     json!({ "data": data, "layout": out })
+}
+
+/// Asks for the colours of the light in what lies on a picture, whatever the reader prefers.
+fn always_light(value: &mut Value) {
+    match value {
+        Value::String(text) if text.starts_with("var(--") => {
+            *text = text.replacen("var(", "light(", 1);
+        }
+        Value::Object(fields) => {
+            let own = |key: &str| !matches!(key, "hoverlabel" | "colorbar");
+            fields.iter_mut().filter(|(key, _)| own(key)).for_each(|(_, v)| always_light(v));
+        }
+        _ => {}
+    }
 }
 
 /// The number of a panel in the names of its axes.

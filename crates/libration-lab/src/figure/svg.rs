@@ -20,11 +20,8 @@ pub fn inline(figure: &Figure) -> String {
 
 /// The figure as a file of its own, light or dark by the reader's preference.
 pub fn standalone(figure: &Figure) -> String {
-    let style = format!(
-        "<style>{}@media (prefers-color-scheme:dark){{{}}}</style>",
-        concrete(Tone::Light),
-        concrete(Tone::Dark)
-    );
+    let (light, dark) = (concrete(Tone::Light), concrete(Tone::Dark));
+    let style = format!("<style>{light}@media (prefers-color-scheme:dark){{{dark}}}</style>");
     document(figure, &style)
 }
 
@@ -177,7 +174,8 @@ fn labels(placed: &Placed<'_>, out: &mut String) {
         let halo = if label.outside { "" } else { " halo" };
         let (x, y) = (px(label.at[0]), px(label.at[1] + 0.35 * label.size));
         let words = text::svg(&label.text, label.size);
-        let _ = write!(out, "<g class=\"ink-{}\">", label.ink.name());
+        let on = if placed.on_picture() && !label.outside { " on-picture" } else { "" };
+        let _ = write!(out, "<g class=\"ink-{}{on}\">", label.ink.name());
         if let Some([from, to]) = label.leader() {
             let d = path::line(&[from, to]);
             let _ = write!(out, "<path class=\"leader\" d=\"{d}\"/>");

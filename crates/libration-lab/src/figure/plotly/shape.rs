@@ -3,7 +3,9 @@
 use serde_json::{Value, json};
 
 use super::{Number, color, dash};
-use crate::figure::layout::{Entry, WIDTH};
+use crate::figure::drawn::edges;
+use crate::figure::grid::Grid;
+use crate::figure::layout::{Entry, Placed, WIDTH};
 use crate::figure::mark::{Across, Mark, Shape};
 use crate::figure::style::Marker;
 
@@ -21,6 +23,14 @@ pub(super) fn rule(mark: &Mark, across: Across, at: f64, n: Number) -> Value {
             "x0": at, "x1": at, "y0": 0, "y1": 1, "line": line})
         }
     }
+}
+
+/// What is seen through a picture where it has no value.
+pub(super) fn blank(grid: &Grid, placed: &Placed<'_>, n: Number) -> Option<Value> {
+    let (x, y) = (edges(&grid.x, placed.panel.x.scale), edges(&grid.y, placed.panel.y.scale));
+    Some(json!({"type": "rect", "layer": "below", "xref": n.key("x"), "yref": n.key("y"),
+        "x0": x.first()?, "x1": x.last()?, "y0": y.first()?, "y1": y.last()?,
+        "fillcolor": "var(--page)", "line": {"width": 0}}))
 }
 
 /// The sample of a mark in the legend.

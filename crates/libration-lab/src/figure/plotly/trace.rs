@@ -6,7 +6,7 @@ use super::{Number, color, dash};
 use crate::figure::axis::Scale;
 use crate::figure::color::ColorMap;
 use crate::figure::drawn::{contour, edges, runs};
-use crate::figure::layout::{Bar, Placed, SMALL, WIDTH};
+use crate::figure::layout::{Bar, EDGE, Placed, SMALL, WIDTH};
 use crate::figure::mark::{Mark, Shape};
 use crate::figure::style::{Marker, Style};
 use crate::figure::text;
@@ -107,6 +107,23 @@ pub(super) fn traces(
         }
         Shape::Rule { .. } | Shape::Note { .. } => {}
     }
+}
+
+/// Puts a pale edge below each line, as over pictures in SVG.
+pub(super) fn edged(traces: Vec<Value>) -> Vec<Value> {
+    let mut out = Vec::with_capacity(traces.len());
+    for trace in traces {
+        if trace["mode"] == "lines" && trace["fill"].is_null() {
+            let mut edge = trace.clone();
+            let width = trace["line"]["width"].as_f64().unwrap_or(0.0) + EDGE;
+            edge["line"] = json!({"color": "var(--page)/0.75", "width": width, "simplify": false});
+            edge["hoverinfo"] = "skip".into();
+            edge["hovertemplate"] = Value::Null;
+            out.push(edge);
+        }
+        out.push(trace);
+    }
+    out
 }
 
 /// What is read where the reader points: enough digits to compare, and the unit.
