@@ -144,6 +144,9 @@
         ticks[`${axis}.tickmode`] = decades > 1.5 ? "linear" : "auto";
         if (decades > 1.5) Object.assign(ticks, { [`${axis}.tick0`]: 0, [`${axis}.dtick`]: Math.ceil(decades / 9) });
         else ticks[`${axis}.dtick`] = null;
+        // Plotly writes powers larger than the numbers beside them.
+        const { size } = this.start.layout[axis].tickfont;
+        ticks[`${axis}.tickfont.size`] = decades > 1.5 ? size / 1.25 : size;
       }
       if (Object.keys(ticks).length === 0) return;
       this.reset.hidden = false;
@@ -155,6 +158,7 @@
       for (const axis of this.axes()) {
         home[`${axis}.tickmode`] = "array";
         home[`${axis}.dtick`] = null;
+        home[`${axis}.tickfont.size`] = this.start.layout[axis].tickfont.size;
         home[`${axis}.range[0]`] = this.start.layout[axis].range[0];
         home[`${axis}.range[1]`] = this.start.layout[axis].range[1];
       }
@@ -210,12 +214,16 @@
     redraw() {
       if (!this.live) return;
       const view = this.axes().map((axis) => {
-        const { range, tickmode, tick0, dtick } = this.live.layout[axis];
-        return [axis, { range: [...range], tickmode, tick0, dtick }];
+        const { range, tickmode, tick0, dtick, tickfont } = this.live.layout[axis];
+        const shrunk = tickfont.size / this.start.layout[axis].tickfont.size;
+        return [axis, { range: [...range], tickmode, tick0, dtick }, shrunk];
       });
       this.start = this.drawing();
       const layout = structuredClone(this.start.layout);
-      for (const [axis, kept] of view) Object.assign(layout[axis], kept);
+      for (const [axis, kept, shrunk] of view) {
+        Object.assign(layout[axis], kept);
+        layout[axis].tickfont.size *= shrunk;
+      }
       globalThis.Plotly.react(this.live, this.start.data, layout);
     }
   }

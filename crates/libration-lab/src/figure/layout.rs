@@ -25,6 +25,12 @@ const GUTTER: f64 = 26.0;
 const LEGEND_LINE: f64 = 22.0;
 const SWATCH: f64 = 34.0;
 
+/// The size at which a title of an axis fits beside a frame that is `length` long.
+pub(super) fn title_size(title: &str, length: f64) -> f64 {
+    let needed = text::width(title, NORMAL);
+    (NORMAL * ((length + 36.0) / needed).min(1.0)).max(9.0)
+}
+
 /// A figure laid out.
 #[derive(Debug, Clone)]
 pub(super) struct Layout<'a> {

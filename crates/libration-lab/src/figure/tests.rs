@@ -248,3 +248,23 @@ fn an_empty_figure_and_empty_marks_are_drawn() {
         plotly(&figure);
     }
 }
+
+#[test]
+fn a_long_title_fits_beside_its_axis() {
+    let long = "the largest relative deviation of the energy from its value at the start, so far";
+    let y = Axis::linear(long).unit("1");
+    let drawn = figure(Panel::new(Axis::linear("t"), y).mark(Mark::line([0.0, 1.0], [0.0, 1.0])));
+    let height = Layout::of(&drawn.clone().aspect(2.0)).panels[0].frame.rect.height;
+    let size = layout::title_size(&drawn.panels[0].y.title(), height);
+    assert!(text::width(long, size) < height + 40.0 && size >= 9.0, "{size}");
+}
+
+#[test]
+fn marks_on_a_picture_have_the_colours_of_the_light() {
+    let svg = svg::inline(&busy());
+    assert!(svg.contains("class=\"ink-theory on-picture\""));
+    assert!(svg.contains("class=\"ink-rk4\""), "and those beside it do not");
+    let data = plotly(&busy())["data"].to_string();
+    assert!(data.contains("light(--theory)") && data.contains("var(--rk4)"));
+    assert!(svg::standalone(&busy()).contains(".plot .on-picture.ink-theory{color:#1b1f24}"));
+}

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::Number;
 use crate::figure::axis::Ruler;
 use crate::figure::label::Label;
-use crate::figure::layout::{LABEL, NORMAL, Placed, WIDTH};
+use crate::figure::layout::{LABEL, NORMAL, Placed, WIDTH, title_size};
 use crate::figure::text;
 
 /// Text at a place on the page.
@@ -27,36 +27,23 @@ pub(super) fn words(
 pub(super) fn titles(placed: &Placed<'_>, height: f64) -> Vec<Value> {
     let rect = placed.frame.rect;
     let (x, y) = (rect.x + rect.width / 2.0, rect.y + rect.height / 2.0);
+    // Texts stand on a line in SVG and about their middle here.
     let base = 0.35 * NORMAL;
+    let title = |text: &str, length: f64, at: [f64; 2], angle: i32| {
+        words(text, at, height, title_size(text, length), "soft", "center", angle)
+    };
+    let foot = [x, rect.bottom() + 39.0 - base];
     let mut out = vec![
-        words(
-            &placed.panel.x.title(),
-            [x, rect.bottom() + 39.0 - base],
-            height,
-            NORMAL,
-            "soft",
-            "center",
-            0,
-        ),
-        words(
-            &placed.panel.y.title(),
-            [placed.numbers - 9.0 - base, y],
-            height,
-            NORMAL,
-            "soft",
-            "center",
-            -90,
-        ),
+        title(&placed.panel.x.title(), rect.width, foot, 0),
+        title(&placed.panel.y.title(), rect.height, [placed.numbers - 9.0 - base, y], -90),
     ];
-    if let Some(title) = &placed.panel.title {
-        let mut head =
-            words(title, [rect.x, rect.y - 10.0 - base], height, LABEL, "ink", "left", 0);
+    if let Some(text) = &placed.panel.title {
+        let mut head = words(text, [rect.x, rect.y - 10.0 - base], height, LABEL, "ink", "left", 0);
         head["font"]["weight"] = 600.into();
         out.push(head);
     }
     if let Some(bar) = &placed.bar {
-        let at = [bar.title() - base, y];
-        out.push(words(&bar.colors.title(), at, height, NORMAL, "soft", "center", -90));
+        out.push(title(&bar.colors.title(), rect.height, [bar.title() - base, y], -90));
     }
     out
 }
