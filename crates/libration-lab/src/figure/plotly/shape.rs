@@ -53,7 +53,7 @@ pub(super) fn sample(entry: &Entry<'_>, height: f64) -> Value {
     let mut out = json!({"type": kind, "xref": "paper", "yref": "paper",
         "x0": left / WIDTH, "x1": right / WIDTH,
         "y0": 1.0 - (entry.y - half) / height, "y1": 1.0 - (entry.y + half) / height, "fillcolor": fill,
-        "line": {"color": color, "width": if half > 0.0 { 1.1 } else { style.width }, "dash": dash(style)}});
+        "line": {"color": color, "width": if half > 0.0 { 1.1 } else { style.width }, "dash": if half > 0.0 { "solid".into() } else { dash(style) }}});
     if let (Shape::Points { .. }, Some(path)) = (&entry.mark.shape, outline(style.marker, reach)) {
         out["type"] = "path".into();
         out["path"] = path.into();
@@ -61,7 +61,6 @@ pub(super) fn sample(entry: &Entry<'_>, height: f64) -> Value {
         out["ysizemode"] = "pixel".into();
         out["xanchor"] = (middle / WIDTH).into();
         out["yanchor"] = (1.0 - entry.y / height).into();
-        out["line"]["dash"] = "solid".into();
     }
     out
 }

@@ -145,9 +145,9 @@ fn marker(style: &Style, color: &str) -> Value {
         Marker::OpenCircle | Marker::Circle => ("circle", 2.0),
         Marker::Square => ("square", 1.8),
         Marker::Diamond => ("diamond", 1.9),
-        Marker::Triangle => ("triangle-up", 2.0),
+        Marker::Triangle => ("triangle-up", 2.3),
         Marker::Cross => ("x-thin-open", 2.0),
-        Marker::Plus => ("cross-thin-open", 2.4),
+        Marker::Plus => ("cross-thin-open", 1.7),
     };
     let open = style.marker == Marker::OpenCircle;
     let width = match style.marker {
