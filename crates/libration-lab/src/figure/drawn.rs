@@ -2,7 +2,7 @@
 
 use super::axis::{Ruler, Scale};
 use super::geometry::{Place, Rect, finite};
-use super::grid::Grid;
+use super::grid::{Grid, Polyline};
 use super::layout::Frame;
 use super::mark::{Across, Shape};
 
@@ -95,17 +95,17 @@ fn lines(grid: &Grid, level: f64, frame: &Frame, clip: &Rect) -> Vec<Vec<Place>>
         .collect()
 }
 
-/// Contour lines in data coordinates, interpolated on the scale of the axes.
-pub(super) fn contour(grid: &Grid, level: f64, frame: &Frame) -> Vec<Vec<[f64; 2]>> {
+/// Contour lines in data coordinates, interpolated on the scale of the axes. Values above zero that
+/// span more than two decades are interpolated in their logarithm.
+pub(super) fn contour(grid: &Grid, level: f64, frame: &Frame) -> Vec<Polyline> {
     let (x, y) = (frame.x.span.scale, frame.y.span.scale);
-    let on_scale = Grid {
-        x: grid.x.iter().map(|&v| x.of(v)).collect(),
-        y: grid.y.iter().map(|&v| y.of(v)).collect(),
-        z: grid.z.clone(),
-    };
-    let back =
-        |line: Vec<[f64; 2]>| line.into_iter().map(|[a, b]| [x.value(a), y.value(b)]).collect();
-    on_scale.contour(level).into_iter().map(back).collect()
+    let finite = || grid.z.iter().copied().filter(|z| z.is_finite());
+    let (low, high) = (finite().fold(f64::MAX, f64::min), finite().fold(0.0, f64::max));
+    let z = if low > 0.0 && high > 100.0 * low { Scale::Log } else { Scale::Linear };
+    let on = |scale: Scale, values: &[f64]| values.iter().map(|&v| scale.of(v)).collect();
+    let on_scale = Grid { x: on(x, &grid.x), y: on(y, &grid.y), z: on(z, &grid.z) };
+    let back = |line: Polyline| line.into_iter().map(|[a, b]| [x.value(a), y.value(b)]).collect();
+    on_scale.contour(z.of(level)).into_iter().map(back).collect()
 }
 
 /// The closed bands between two lines, one for each stretch without a gap.

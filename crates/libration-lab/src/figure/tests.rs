@@ -195,6 +195,19 @@ fn a_contour_is_found_on_the_scale_of_the_axes() {
 }
 
 #[test]
+fn a_contour_of_values_over_decades_is_found_in_their_logarithm() {
+    let decades: Vec<f64> = (-4..=4).map(|e| 10_f64.powi(e)).collect();
+    let grid = Grid::sample(decades.clone(), decades, |x, y| x * y);
+    let panel = Panel::new(Axis::log("x"), Axis::log("y")).mark(Mark::contour(grid, [3.0]));
+    let data = plotly(&figure(panel));
+    let list = |key: &str| data["data"][0][key].as_array().unwrap().clone();
+    for (x, y) in list("x").iter().zip(list("y")) {
+        let product = x.as_f64().unwrap() * y.as_f64().unwrap();
+        assert!((product / 3.0 - 1.0).abs() < 1e-9, "{x} · {y}");
+    }
+}
+
+#[test]
 fn one_unit_is_as_long_on_both_axes() {
     let portrait = Panel::new(Axis::linear("x"), Axis::linear("v")).equal();
     let drawn = figure(portrait.mark(Mark::line([-1.0, 3.0], [-1.0, 1.0])));

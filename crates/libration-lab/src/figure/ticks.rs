@@ -62,7 +62,12 @@ fn number(value: f64, step: f64, power: i32) -> String {
     }
     let unit = 10_f64.powi(power);
     let decimals = (-(step / unit * 1.001).log10().floor()).clamp(0.0, 12.0) as usize;
-    let mantissa = format!("{:.decimals$}", value / unit).replace('-', "−");
+    written(&format!("{:.decimals$}", value / unit), power)
+}
+
+/// A number from its mantissa and its power of ten.
+fn written(mantissa: &str, power: i32) -> String {
+    let mantissa = mantissa.replace('-', "−");
     match (power, mantissa.as_str()) {
         (0, _) => mantissa,
         (_, "1") => format!("10^{{{}}}", minus(power)),
@@ -71,14 +76,23 @@ fn number(value: f64, step: f64, power: i32) -> String {
     }
 }
 
-/// A level of a contour, with as many digits as tell it from the next.
+/// A level of a contour, as short as it goes; long numbers have as many digits as tell it from the
+/// next level.
 pub(super) fn level(value: f64, step: f64) -> String {
     let plain = value.to_string();
-    if plain.len() < 7 {
-        return plain.replace('-', "−");
+    let scientific = format!("{value:e}");
+    let short = if plain.len() < 7 {
+        Some((plain.as_str(), 0))
+    } else {
+        scientific.split_once('e').and_then(|(m, e)| Some((m, e.parse().ok()?)))
+    };
+    match short {
+        Some((mantissa, power)) if mantissa.len() < 7 => written(mantissa, power),
+        _ => {
+            let step = if step.is_finite() && step > 0.0 { step } else { value.abs() / 100.0 };
+            number(value, step, shared_power(&[value], step))
+        }
     }
-    let step = if step.is_finite() && step > 0.0 { step } else { value.abs() / 100.0 };
-    number(value, step, shared_power(&[value], step))
 }
 
 fn minus(number: i32) -> String {
@@ -158,6 +172,12 @@ mod tests {
         let millions = labels(Scale::Linear, 0.0, 4e6);
         assert_eq!(millions, ["0", "10^{6}", "2·10^{6}", "3·10^{6}", "4·10^{6}"]);
         assert_eq!(labels(Scale::Linear, 0.0, 4e-9)[2], "2·10^{−9}");
+    }
+
+    #[test]
+    fn levels_are_short() {
+        let named = [1e-12, -2.5e-7, 0.25, 0.0, 1e9, 1.0 / 3.0].map(|value| level(value, 0.1));
+        assert_eq!(named, ["10^{−12}", "−2.5·10^{−7}", "0.25", "0", "10^{9}", "0.3"]);
     }
 
     #[test]
