@@ -17,16 +17,19 @@
   const probe = document.createElement("span");
   probe.hidden = true;
 
-  // "var(--rk4)" and "var(--rk4)/0.16" become the colour that the stylesheet now gives.
+  // "var(--rk4)" and "var(--rk4)/0.16" become the colour that the stylesheet now gives,
+  // "light(--rk4)" the one it gives in the light.
   const color = (text) => {
-    const match = /^var\((--[\w-]+)\)(?:\/([\d.]+))?$/.exec(text);
+    const match = /^(var|light)\((--[\w-]+)\)(?:\/([\d.]+))?$/.exec(text);
     if (!match) return text;
-    probe.style.color = `var(${match[1]})`;
+    const [, kind, name, opacity] = match;
+    probe.style.colorScheme = kind === "light" ? "light" : "";
+    probe.style.color = `var(${name})`;
     const rgb = getComputedStyle(probe).color;
-    return match[2] ? rgb.replace(/^rgba?\(([^,]+,[^,]+,[^,)]+).*$/, `rgba($1, ${match[2]})`) : rgb;
+    return opacity ? rgb.replace(/^rgba?\(([^,]+,[^,]+,[^,)]+).*$/, `rgba($1, ${opacity})`) : rgb;
   };
 
-  const LENGTHS = new Set(["size", "width", "height", "xshift", "yshift", "thickness", "len", "ticklen", "ticklabelstandoff"]);
+  const LENGTHS = new Set(["size", "width", "height", "xshift", "yshift", "thickness", "len", "ticklen", "ticklabelstandoff", "ax", "ay"]);
 
   // The description for the colours and the width of now.
   const resolved = (value, scale, key) => {
@@ -135,7 +138,15 @@
       const ticks = {};
       for (const key of Object.keys(change)) {
         const axis = /^([xy]axis\d*)\.range/.exec(key)?.[1];
-        if (axis && this.live.layout[axis].tickmode !== "auto") ticks[`${axis}.tickmode`] = "auto";
+        if (!axis) continue;
+        const { type, range: [low, high] } = this.live.layout[axis];
+        const decades = type === "log" ? Math.abs(high - low) : 0;
+        ticks[`${axis}.tickmode`] = decades > 1.5 ? "linear" : "auto";
+        if (decades > 1.5) Object.assign(ticks, { [`${axis}.tick0`]: 0, [`${axis}.dtick`]: Math.ceil(decades / 9) });
+        else ticks[`${axis}.dtick`] = null;
+        // Plotly writes powers larger than the numbers beside them.
+        const { size } = this.start.layout[axis].tickfont;
+        ticks[`${axis}.tickfont.size`] = decades > 1.5 ? size / 1.25 : size;
       }
       if (Object.keys(ticks).length === 0) return;
       this.reset.hidden = false;
@@ -146,6 +157,8 @@
       const home = {};
       for (const axis of this.axes()) {
         home[`${axis}.tickmode`] = "array";
+        home[`${axis}.dtick`] = null;
+        home[`${axis}.tickfont.size`] = this.start.layout[axis].tickfont.size;
         home[`${axis}.range[0]`] = this.start.layout[axis].range[0];
         home[`${axis}.range[1]`] = this.start.layout[axis].range[1];
       }
@@ -180,7 +193,7 @@
     // Reads the next point of the line, or the next line.
     step(lines, points) {
       const data = this.start.data;
-      const usable = data.map((_, i) => i).filter((i) => data[i].type === "scatter" && data[i].x.length);
+      const usable = data.map((_, i) => i).filter((i) => data[i].type === "scatter" && data[i].hoverinfo !== "skip" && data[i].x.length);
       if (!usable.length) return;
       this.point ??= { line: 0, share: 0 };
       const at = this.point;
@@ -193,19 +206,24 @@
       const subplot = data[curve].xaxis + data[curve].yaxis;
       globalThis.Plotly.Fx.hover(this.live, [{ curveNumber: curve, pointNumber: index }], [subplot]);
       const digits = (value) => (value === null ? "none" : Number(value.toPrecision(8)).toString());
-      this.say(`${data[curve].name.replace(/<[^>]*>/g, "")} x ${digits(x[index])}, y ${digits(y[index])}`);
+      const name = new DOMParser().parseFromString(data[curve].name, "text/html").body.textContent;
+      this.say(`${name}${name ? ": " : ""}x = ${digits(x[index])}, y = ${digits(y[index])}`);
     }
 
     // Other colours or another width: the same view, drawn again.
     redraw() {
       if (!this.live) return;
       const view = this.axes().map((axis) => {
-        const { range, tickmode } = this.live.layout[axis];
-        return [axis, { range: [...range], tickmode }];
+        const { range, tickmode, tick0, dtick, tickfont } = this.live.layout[axis];
+        const shrunk = tickfont.size / this.start.layout[axis].tickfont.size;
+        return [axis, { range: [...range], tickmode, tick0, dtick }, shrunk];
       });
       this.start = this.drawing();
       const layout = structuredClone(this.start.layout);
-      for (const [axis, kept] of view) Object.assign(layout[axis], kept);
+      for (const [axis, kept, shrunk] of view) {
+        Object.assign(layout[axis], kept);
+        layout[axis].tickfont.size *= shrunk;
+      }
       globalThis.Plotly.react(this.live, this.start.data, layout);
     }
   }

@@ -164,7 +164,7 @@ fn stability() -> Figure {
                 .label("forbidden"),
         )
         .mark(Mark::contour(saddle, [-2.0, -1.0, -0.5, 0.0, 0.3]).ink(Ink::Accent(0)))
-        .mark(Mark::note(0.55, 1.3, "x³ − x − y²"));
+        .mark(Mark::note(-0.9, 1.42, "x³ − x − y²"));
     Figure::new("stability", "Damping moves the limit of RK4 beyond 2√2 only a little.")
         .caption("White and the line: neither growth nor decay. Blank: not computed.")
         .description("A map of growth over step and damping, and contour lines of a saddle.")

@@ -1,7 +1,8 @@
 //! A mark as places on the page: the one geometry that is drawn and that labels keep clear of.
 
-use super::geometry::{Place, Rect};
-use super::grid::Grid;
+use super::axis::{Ruler, Scale};
+use super::geometry::{Place, Rect, finite};
+use super::grid::{Grid, Polyline};
 use super::layout::Frame;
 use super::mark::{Across, Shape};
 
@@ -61,6 +62,14 @@ impl Drawn {
         }
     }
 
+    /// Opens contour lines where a label stands on them.
+    pub(super) fn make_room(&mut self, label: &Rect) {
+        let Self::Levels(levels) = self else { return };
+        for (_, parts) in levels {
+            *parts = parts.iter().flat_map(|part| label.spare(part)).collect();
+        }
+    }
+
     /// All lines that a label should not cover.
     pub(super) fn strokes(&self) -> Vec<&[Place]> {
         match self {
@@ -86,30 +95,28 @@ fn lines(grid: &Grid, level: f64, frame: &Frame, clip: &Rect) -> Vec<Vec<Place>>
         .collect()
 }
 
-/// Contour lines in data coordinates, interpolated on the scale of the axes.
-pub(super) fn contour(grid: &Grid, level: f64, frame: &Frame) -> Vec<Vec<[f64; 2]>> {
+/// Contour lines in data coordinates, interpolated on the scale of the axes. Values above zero that
+/// span more than two decades are interpolated in their logarithm.
+pub(super) fn contour(grid: &Grid, level: f64, frame: &Frame) -> Vec<Polyline> {
     let (x, y) = (frame.x.span.scale, frame.y.span.scale);
-    let on_scale = Grid {
-        x: grid.x.iter().map(|&v| x.of(v)).collect(),
-        y: grid.y.iter().map(|&v| y.of(v)).collect(),
-        z: grid.z.clone(),
-    };
-    let back =
-        |line: Vec<[f64; 2]>| line.into_iter().map(|[a, b]| [x.value(a), y.value(b)]).collect();
-    on_scale.contour(level).into_iter().map(back).collect()
+    let finite = || grid.z.iter().copied().filter(|z| z.is_finite());
+    let (low, high) = (finite().fold(f64::MAX, f64::min), finite().fold(0.0, f64::max));
+    let z = if low > 0.0 && high > 100.0 * low { Scale::Log } else { Scale::Linear };
+    let on = |scale: Scale, values: &[f64]| values.iter().map(|&v| scale.of(v)).collect();
+    let on_scale = Grid { x: on(x, &grid.x), y: on(y, &grid.y), z: on(z, &grid.z) };
+    let back = |line: Polyline| line.into_iter().map(|[a, b]| [x.value(a), y.value(b)]).collect();
+    on_scale.contour(z.of(level)).into_iter().map(back).collect()
 }
 
 /// The closed bands between two lines, one for each stretch without a gap.
 fn bands(low: &[Place], high: &[Place]) -> Vec<Vec<Place>> {
-    runs(low.len().min(high.len()), |i| {
-        super::geometry::finite(low[i]) && super::geometry::finite(high[i])
-    })
-    .into_iter()
-    .map(|run| {
-        let back = low[run.clone()].iter().rev();
-        high[run.clone()].iter().chain(back).copied().collect()
-    })
-    .collect()
+    runs(low.len().min(high.len()), |i| finite(low[i]) && finite(high[i]))
+        .into_iter()
+        .map(|run| {
+            let back = low[run.clone()].iter().rev();
+            high[run.clone()].iter().chain(back).copied().collect()
+        })
+        .collect()
 }
 
 /// The stretches of indices for which `present` holds.
@@ -126,7 +133,7 @@ pub(super) fn runs(count: usize, present: impl Fn(usize) -> bool) -> Vec<std::op
 
 /// The rectangle that a grid covers: half a cell beyond its outer samples.
 fn picture(grid: &Grid, frame: &Frame) -> Rect {
-    let outer = |samples: &[f64], ruler: &super::axis::Ruler| {
+    let outer = |samples: &[f64], ruler: &Ruler| {
         let places: Vec<f64> =
             edges(samples, ruler.span.scale).iter().map(|&v| ruler.at(v)).collect();
         let (first, last) = (places.first().copied(), places.last().copied());
@@ -137,7 +144,7 @@ fn picture(grid: &Grid, frame: &Frame) -> Rect {
 }
 
 /// The edges of the cells around samples that are evenly spaced on a scale: one more than samples.
-pub(super) fn edges(samples: &[f64], scale: super::axis::Scale) -> Vec<f64> {
+pub(super) fn edges(samples: &[f64], scale: Scale) -> Vec<f64> {
     let (Some(&first), Some(&last)) = (samples.first(), samples.last()) else { return Vec::new() };
     let (first, last) = (scale.of(first), scale.of(last));
     let gaps = (samples.len() - 1) as f64;

@@ -87,6 +87,26 @@ impl Rect {
         parts
     }
 
+    /// The parts of a polyline outside.
+    pub(super) fn spare(&self, line: &[Place]) -> Vec<Vec<Place>> {
+        let mut parts: Vec<Vec<Place>> = Vec::new();
+        let mut add = |from: Place, to: Place| match parts.last_mut() {
+            _ if from == to => {}
+            Some(part) if part.last() == Some(&from) => part.push(to),
+            _ => parts.push(vec![from, to]),
+        };
+        for pair in line.windows(2) {
+            match self.cut(pair[0], pair[1]) {
+                Some([enter, leave]) => {
+                    add(pair[0], enter);
+                    add(leave, pair[1]);
+                }
+                None => add(pair[0], pair[1]),
+            }
+        }
+        parts
+    }
+
     /// The part of a polygon inside (Sutherland and Hodgman).
     pub(super) fn cut_polygon(&self, polygon: &[Place]) -> Vec<Place> {
         let mut corners: Vec<Place> = polygon.iter().copied().filter(|&p| finite(p)).collect();
@@ -141,6 +161,15 @@ mod tests {
         let parts =
             BOX.cut_line(&[[1.0, 1.0], [2.0, 2.0], [f64::NAN, 3.0], [4.0, 4.0], [5.0, 5.0]]);
         assert_eq!(parts.len(), 2);
+    }
+
+    #[test]
+    fn a_line_makes_room_for_a_label() {
+        let parts = BOX.spare(&[[-5.0, 5.0], [5.0, 5.0], [15.0, 5.0], [20.0, 5.0]]);
+        assert_eq!(
+            parts,
+            [vec![[-5.0, 5.0], [0.0, 5.0]], vec![[10.0, 5.0], [15.0, 5.0], [20.0, 5.0]]]
+        );
     }
 
     #[test]

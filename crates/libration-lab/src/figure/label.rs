@@ -29,7 +29,7 @@ pub(super) struct Label {
 impl Label {
     /// The space that the text takes.
     pub(super) fn rect(&self) -> Rect {
-        let width = text::width(&self.text, self.size);
+        let width = if self.bold { text::bold_width } else { text::width }(&self.text, self.size);
         let height = self.size * 1.2;
         Rect { x: self.at[0], y: self.at[1] - height / 2.0, width, height }
     }

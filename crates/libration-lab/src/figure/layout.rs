@@ -1,6 +1,6 @@
 //! Where everything stands on the page. Both back ends draw from this.
 
-use super::axis::Ruler;
+use super::axis::{Ruler, Span};
 use super::color::Colors;
 use super::drawn::Drawn;
 use super::extent::spans;
@@ -19,9 +19,17 @@ pub(super) const SMALL: f64 = 12.0;
 pub(super) const NORMAL: f64 = 13.0;
 /// The size of labels.
 pub(super) const LABEL: f64 = 13.5;
+/// How much wider than a line over a picture its pale edge is.
+pub(super) const EDGE: f64 = 2.4;
 const GUTTER: f64 = 26.0;
 const LEGEND_LINE: f64 = 22.0;
 const SWATCH: f64 = 34.0;
+
+/// The size at which a title of an axis fits beside a frame that is `length` long.
+pub(super) fn title_size(title: &str, length: f64) -> f64 {
+    let needed = text::width(title, NORMAL);
+    (NORMAL * ((length + 36.0) / needed).min(1.0)).max(9.0)
+}
 
 /// A figure laid out.
 #[derive(Debug, Clone)]
@@ -95,7 +103,7 @@ impl<'a> Layout<'a> {
             margin.right = margin.right.max(needed.right);
         }
         let second = Self::arrange(figure, &margins, 0.0);
-        let lines = second.legend.last().map_or(0.0, |entry| entry.y + LEGEND_LINE - 6.0);
+        let lines = second.legend.last().map_or(0.0, |entry| entry.y + 10.0);
         if lines > 0.0 { Self::arrange(figure, &margins, lines) } else { second }
     }
 
@@ -161,11 +169,20 @@ impl<'a> Placed<'a> {
         });
         let x_ticks = ticks(&x.span, rect.width, 62.0);
         let y_ticks = ticks(&y.span, rect.height, 34.0);
-        let drawn: Vec<Drawn> = panel.marks.iter().map(|m| Drawn::of(&m.shape, &frame)).collect();
+        let mut drawn: Vec<Drawn> =
+            panel.marks.iter().map(|m| Drawn::of(&m.shape, &frame)).collect();
         let labels = label::place(panel, &drawn, &frame, columns, bar.is_some());
+        for label in labels.iter().filter(|label| !label.outside) {
+            drawn.iter_mut().for_each(|d| d.make_room(&label.rect().grown(2.0)));
+        }
         let widest = y_ticks.iter().map(|tick| text::width(&tick.label, SMALL)).fold(0.0, f64::max);
         let numbers = rect.x - 8.0 - widest;
         Self { panel, frame, x_ticks, y_ticks, drawn, labels, bar, numbers }
+    }
+
+    /// A picture keeps its colours in the dark, so what lies on it keeps those of the light.
+    pub(super) fn on_picture(&self) -> bool {
+        self.drawn.iter().any(|drawn| matches!(drawn, Drawn::Picture(_)))
     }
 
     /// The space that this panel needs on both sides of its frame.
@@ -184,7 +201,7 @@ impl<'a> Bar<'a> {
     fn of(colors: &'a Colors, values: &[f64], frame: &Rect) -> Self {
         let [low, high] = colors.ends(values);
         let (low, high) = (colors.scale.of(low), colors.scale.of(high));
-        let span = super::axis::Span { scale: colors.scale, low, high };
+        let span = Span { scale: colors.scale, low, high };
         let rect = Rect { x: frame.right() + 14.0, width: 13.0, ..*frame };
         let ruler = Ruler { span, from: frame.bottom(), to: frame.y };
         Self { rect, colors, ruler, ticks: ticks(&span, frame.height, 34.0) }

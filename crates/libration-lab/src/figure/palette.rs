@@ -25,10 +25,28 @@ pub(super) fn color(name: &str, tone: Tone) -> Option<&'static str> {
     Some(if tone == Tone::Light { light } else { dark })
 }
 
-/// The rules of a figure with colours in place of custom properties.
+/// The rules of a figure with colours in place of custom properties. What lies on a picture is
+/// light in both tones, as `color-scheme` has it in a page.
 pub(super) fn concrete(tone: Tone) -> String {
     let mut out = String::new();
-    let mut rest = plot();
+    for rule in plot().lines() {
+        out.push_str(&resolve(rule, tone));
+        let colored = rule.contains("var(--") && rule.starts_with(".plot .");
+        if tone == Tone::Dark && colored {
+            let rule = resolve(rule, Tone::Light);
+            // The class may stand on the element itself or around it.
+            let own = rule.replacen(".plot ", ".plot .on-picture", 1);
+            let inner = rule.replacen(".plot ", ".plot .on-picture ", 1);
+            out.push_str(&own);
+            out.push_str(&inner);
+        }
+    }
+    out
+}
+
+fn resolve(rule: &str, tone: Tone) -> String {
+    let mut out = String::new();
+    let mut rest = rule;
     while let Some((before, after)) = rest.split_once("var(--") {
         out.push_str(before);
         let (name, after) = after.split_once(')').unwrap_or((after, ""));

@@ -5,7 +5,7 @@ mod path;
 
 use std::fmt::Write;
 
-use super::layout::{LABEL, Layout, NORMAL, Placed, SMALL, WIDTH};
+use super::layout::{LABEL, Layout, NORMAL, Placed, SMALL, WIDTH, title_size};
 use super::palette::{Tone, concrete};
 use super::panel::Figure;
 use super::picture;
@@ -20,11 +20,8 @@ pub fn inline(figure: &Figure) -> String {
 
 /// The figure as a file of its own, light or dark by the reader's preference.
 pub fn standalone(figure: &Figure) -> String {
-    let style = format!(
-        "<style>{}@media (prefers-color-scheme:dark){{{}}}</style>",
-        concrete(Tone::Light),
-        concrete(Tone::Dark)
-    );
+    let (light, dark) = (concrete(Tone::Light), concrete(Tone::Dark));
+    let style = format!("<style>{light}@media (prefers-color-scheme:dark){{{dark}}}</style>");
     document(figure, &style)
 }
 
@@ -120,26 +117,27 @@ fn panel(placed: &Placed<'_>, clip: &str, out: &mut String) {
 fn titles(placed: &Placed<'_>, out: &mut String) {
     let rect = placed.frame.rect;
     let (middle_x, middle_y) = (rect.x + rect.width / 2.0, rect.y + rect.height / 2.0);
-    if let Some(title) = &placed.panel.title {
+    if let Some(head) = &placed.panel.title {
         let (x, y) = (px(rect.x), px(rect.y - 10.0));
-        let words = text::svg(title, LABEL);
+        let words = text::svg(head, LABEL);
         let _ = write!(out, "<text class=\"head\" x=\"{x}\" y=\"{y}\">{words}</text>");
     }
-    let words = text::svg(&placed.panel.x.title(), NORMAL);
-    let (x, y) = (px(middle_x), px(rect.bottom() + 39.0));
-    let _ = write!(
-        out,
-        "<text class=\"title\" x=\"{x}\" y=\"{y}\" text-anchor=\"middle\">{words}</text>"
-    );
-    upright(&placed.panel.y.title(), placed.numbers - 9.0, middle_y, out);
+    let (x, y) = (&placed.panel.x.title(), &placed.panel.y.title());
+    let foot = format!("translate({} {})", px(middle_x), px(rect.bottom() + 39.0));
+    title(x, rect.width, &foot, out);
+    let side = format!("translate({} {}) rotate(-90)", px(placed.numbers - 9.0), px(middle_y));
+    title(y, rect.height, &side, out);
 }
 
-fn upright(title: &str, x: f64, y: f64, out: &mut String) {
-    let words = text::svg(title, NORMAL);
-    let (x, y) = (px(x), px(y));
+/// The title of an axis that is `length` long.
+fn title(words: &str, length: f64, transform: &str, out: &mut String) {
+    let size = title_size(words, length);
+    let words = text::svg(words, size);
+    let size =
+        if size < NORMAL { format!(" style=\"font-size:{}px\"", px(size)) } else { String::new() };
     let _ = write!(
         out,
-        "<text class=\"title\" transform=\"translate({x} {y}) rotate(-90)\" text-anchor=\"middle\">{words}</text>"
+        "<text class=\"title\" transform=\"{transform}\" text-anchor=\"middle\"{size}>{words}</text>"
     );
 }
 
@@ -164,7 +162,9 @@ fn bar(placed: &Placed<'_>, out: &mut String) {
             "<path class=\"minor\" d=\"M{edge} {at}h3\"/><text x=\"{x}\" y=\"{y}\">{words}</text>"
         );
     }
-    upright(&bar.colors.title(), bar.title(), rect.y + rect.height / 2.0, out);
+    let middle = px(rect.y + rect.height / 2.0);
+    let side = format!("translate({} {middle}) rotate(-90)", px(bar.title()));
+    title(&bar.colors.title(), rect.height, &side, out);
 }
 
 fn labels(placed: &Placed<'_>, out: &mut String) {
@@ -177,7 +177,8 @@ fn labels(placed: &Placed<'_>, out: &mut String) {
         let halo = if label.outside { "" } else { " halo" };
         let (x, y) = (px(label.at[0]), px(label.at[1] + 0.35 * label.size));
         let words = text::svg(&label.text, label.size);
-        let _ = write!(out, "<g class=\"ink-{}\">", label.ink.name());
+        let on = if placed.on_picture() && !label.outside { " on-picture" } else { "" };
+        let _ = write!(out, "<g class=\"ink-{}{on}\">", label.ink.name());
         if let Some([from, to]) = label.leader() {
             let d = path::line(&[from, to]);
             let _ = write!(out, "<path class=\"leader\" d=\"{d}\"/>");

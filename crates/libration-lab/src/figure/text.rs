@@ -51,10 +51,10 @@ pub(super) fn runs(text: &str) -> Vec<(Lift, String)> {
 
 /// The script after `^` or `_`, and where the text goes on.
 fn script(chars: &[char], at: usize) -> (&[char], usize) {
-    if chars.get(at) == Some(&'{') {
-        if let Some(length) = chars[at..].iter().position(|&c| c == '}') {
-            return (&chars[at + 1..at + length], at + length + 1);
-        }
+    if chars.get(at) == Some(&'{')
+        && let Some(length) = chars[at..].iter().position(|&c| c == '}')
+    {
+        return (&chars[at + 1..at + length], at + length + 1);
     }
     let signed = matches!(chars.get(at), Some('-' | '−' | '+')) as usize;
     let digits = chars[at..].iter().skip(signed).take_while(|c| c.is_ascii_digit()).count();
@@ -116,6 +116,11 @@ pub(super) fn html(text: &str) -> String {
         }
     };
     runs(text).into_iter().map(wrap).collect()
+}
+
+/// A width that bold text does not exceed in the usual sans-serif fonts.
+pub(super) fn bold_width(text: &str, size: f64) -> f64 {
+    1.12 * width(text, size)
 }
 
 /// A width that the text does not exceed in the usual sans-serif fonts.

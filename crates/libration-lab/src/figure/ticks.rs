@@ -22,7 +22,7 @@ fn linear(low: f64, high: f64, most: f64) -> Vec<Tick> {
     let step = step((high - low) / most.max(2.0));
     let slack = 1e-9 * (high - low) / step;
     let (first, last) = ((low / step - slack).ceil(), (high / step + slack).floor());
-    let count = (last - first).max(0.0).min(1000.0) as usize + 1;
+    let count = (last - first).clamp(0.0, 1000.0) as usize + 1;
     let values: Vec<f64> = (0..count).map(|i| tidy((first + i as f64) * step, step)).collect();
     let power = shared_power(&values, step);
     values.iter().map(|&value| Tick { value, label: number(value, step, power) }).collect()
@@ -62,7 +62,12 @@ fn number(value: f64, step: f64, power: i32) -> String {
     }
     let unit = 10_f64.powi(power);
     let decimals = (-(step / unit * 1.001).log10().floor()).clamp(0.0, 12.0) as usize;
-    let mantissa = format!("{:.decimals$}", value / unit).replace('-', "−");
+    written(&format!("{:.decimals$}", value / unit), power)
+}
+
+/// A number from its mantissa and its power of ten.
+fn written(mantissa: &str, power: i32) -> String {
+    let mantissa = mantissa.replace('-', "−");
     match (power, mantissa.as_str()) {
         (0, _) => mantissa,
         (_, "1") => format!("10^{{{}}}", minus(power)),
@@ -71,10 +76,23 @@ fn number(value: f64, step: f64, power: i32) -> String {
     }
 }
 
-/// A level of a contour, with as many digits as tell it from the next.
+/// A level of a contour, as short as it goes; long numbers have as many digits as tell it from the
+/// next level.
 pub(super) fn level(value: f64, step: f64) -> String {
-    let step = if step.is_finite() && step > 0.0 { step } else { value.abs().max(1e-300) / 10.0 };
-    number(value, step, shared_power(&[value], step)).trim_end_matches('.').to_owned()
+    let plain = value.to_string();
+    let scientific = format!("{value:e}");
+    let short = if plain.len() < 7 {
+        Some((plain.as_str(), 0))
+    } else {
+        scientific.split_once('e').and_then(|(m, e)| Some((m, e.parse().ok()?)))
+    };
+    match short {
+        Some((mantissa, power)) if mantissa.len() < 7 => written(mantissa, power),
+        _ => {
+            let step = if step.is_finite() && step > 0.0 { step } else { value.abs() / 100.0 };
+            number(value, step, shared_power(&[value], step))
+        }
+    }
 }
 
 fn minus(number: i32) -> String {
@@ -103,6 +121,10 @@ fn log(low: f64, high: f64, most: f64) -> Vec<Tick> {
         0..=2 if 0.3 * most > 0.8 * decades => &[2, 5],
         _ => &[],
     };
+    if !named.is_empty() {
+        let plain = |tick: &Tick| between(1, tick.value.log10().round() as i32);
+        ticks.iter_mut().for_each(|tick| tick.label = plain(tick));
+    }
     for decade in first - 1..=last {
         for digit in 2..=9 {
             let value = f64::from(digit) * power_of_ten(decade);
@@ -126,6 +148,7 @@ fn between(digit: u32, decade: i32) -> String {
     match decade {
         0..=3 => format!("{digit}{}", "0".repeat(decade as usize)),
         -3..=-1 => format!("0.{}{digit}", "0".repeat((-decade - 1) as usize)),
+        _ if digit == 1 => format!("10^{{{}}}", minus(decade)),
         _ => format!("{digit}·10^{{{}}}", minus(decade)),
     }
 }
@@ -152,6 +175,12 @@ mod tests {
     }
 
     #[test]
+    fn levels_are_short() {
+        let named = [1e-12, -2.5e-7, 0.25, 0.0, 1e9, 1.0 / 3.0].map(|value| level(value, 0.1));
+        assert_eq!(named, ["10^{−12}", "−2.5·10^{−7}", "0.25", "0", "10^{9}", "0.3"]);
+    }
+
+    #[test]
     fn decades_are_thinned_evenly_down_to_the_smallest_numbers() {
         assert_eq!(labels(Scale::Log, -2.0, 1.0), ["10^{−2}", "10^{−1}", "10^{0}", "10^{1}"]);
         assert_eq!(
@@ -163,6 +192,6 @@ mod tests {
     #[test]
     fn a_part_of_a_decade_is_still_marked() {
         assert!(labels(Scale::Log, 0.1, 0.6).len() >= 2);
-        assert_eq!(labels(Scale::Log, -1.2, 0.2), ["10^{−1}", "0.2", "0.5", "10^{0}"]);
+        assert_eq!(labels(Scale::Log, -1.2, 0.2), ["0.1", "0.2", "0.5", "1"]);
     }
 }

@@ -5,29 +5,38 @@ use std::fmt::Write;
 use super::path::{line, px};
 use crate::figure::drawn::Drawn;
 use crate::figure::geometry::Place;
-use crate::figure::layout::{Entry, Placed};
+use crate::figure::layout::{EDGE, Entry, Placed};
 use crate::figure::mark::Shape;
 use crate::figure::picture;
 use crate::figure::style::{Marker, Style};
 
 /// All marks of a panel. Points stand whole at the frame, everything else is clipped to it.
 pub(super) fn marks(placed: &Placed<'_>, clip: &str, out: &mut String) {
+    let on = if placed.on_picture() { " on-picture" } else { "" };
     for (mark, drawn) in placed.panel.marks.iter().zip(&placed.drawn) {
         let (style, ink) = (&mark.style, mark.style.ink.name());
         let _ = match drawn {
             Drawn::Words(_) => continue,
-            Drawn::Points(_) => write!(out, "<g class=\"ink-{ink}\">"),
-            _ => write!(out, "<g class=\"ink-{ink}\" clip-path=\"url(#{clip})\">"),
+            Drawn::Points(_) => write!(out, "<g class=\"ink-{ink}{on}\">"),
+            _ => write!(out, "<g class=\"ink-{ink}{on}\" clip-path=\"url(#{clip})\">"),
         };
         match drawn {
-            Drawn::Lines(parts) => stroke(&joined(parts), style, out),
+            Drawn::Lines(parts) => stroke(&joined(parts), style, !on.is_empty(), out),
             Drawn::Levels(levels) => {
-                levels.iter().for_each(|(_, parts)| stroke(&joined(parts), style, out));
+                let all = levels.iter().map(|(_, parts)| joined(parts));
+                all.for_each(|d| stroke(&d, style, !on.is_empty(), out));
             }
             Drawn::Points(points) => dots(points, style, out),
             Drawn::Areas(areas) => areas.iter().for_each(|area| fill(area, style, out)),
             Drawn::Picture(rect) => {
                 if let (Shape::Raster { grid, colors }, Some(bar)) = (&mark.shape, &placed.bar) {
+                    let blank = line(&[
+                        [rect.x, rect.y],
+                        [rect.right(), rect.y],
+                        [rect.right(), rect.bottom()],
+                        [rect.x, rect.bottom()],
+                    ]);
+                    let _ = write!(out, "<path class=\"blank\" d=\"{blank}Z\"/>");
                     let frame = [&placed.frame.x, &placed.frame.y];
                     let data = picture::of_grid(grid, colors, &bar.ruler.span, frame);
                     let _ = write!(
@@ -56,7 +65,7 @@ pub(super) fn sample(entry: &Entry<'_>, out: &mut String) {
         Shape::Envelope(_) | Shape::Region { .. } => {
             fill(&[[x, y - 5.0], [end, y - 5.0], [end, y + 5.0], [x, y + 5.0]], style, out);
         }
-        _ => stroke(&line(&[[x, y], [end, y]]), style, out),
+        _ => stroke(&line(&[[x, y], [end, y]]), style, false, out),
     }
 }
 
@@ -64,9 +73,14 @@ fn joined(parts: &[Vec<Place>]) -> String {
     parts.iter().map(|part| line(part)).collect()
 }
 
-fn stroke(d: &str, style: &Style, out: &mut String) {
+/// A line; over a picture with a pale edge, so that it is seen on dark values too.
+fn stroke(d: &str, style: &Style, edged: bool, out: &mut String) {
     if d.is_empty() {
         return;
+    }
+    if edged {
+        let width = px(style.width + EDGE);
+        let _ = write!(out, "<path class=\"edge\" stroke-width=\"{width}\" d=\"{d}\"/>");
     }
     let dashes: Vec<String> = style.dashes().iter().map(|&length| px(length)).collect();
     let _ = write!(out, "<path class=\"line\" stroke-width=\"{}\"", px(style.width));
