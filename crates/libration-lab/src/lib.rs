@@ -14,6 +14,7 @@ mod notation;
 pub mod output;
 pub mod page;
 pub mod record;
+pub mod report;
 pub mod session;
 pub mod studies;
 pub mod study;

@@ -8,6 +8,8 @@ use crate::record::{Record, Table};
 pub struct Page {
     /// The chapter's heading.
     pub title: String,
+    /// One sentence for the head of the report; empty if the chapter has none.
+    pub headline: String,
     /// The answer in one or two sentences; it stands first.
     pub answer: String,
     /// The figures and numbers at the head of the report, most telling first.
@@ -64,6 +66,14 @@ impl Page {
     /// Adds a figure.
     pub fn figure(&mut self, figure: Figure) {
         self.blocks.push(Block::Figure(Box::new(figure)));
+    }
+
+    /// The figures, from top to bottom.
+    pub fn figures(&self) -> impl Iterator<Item = &Figure> {
+        self.blocks.iter().filter_map(|block| match block {
+            Block::Figure(figure) => Some(figure.as_ref()),
+            _ => None,
+        })
     }
 
     /// Adds a table of the record, shown with `digits` significant digits.
