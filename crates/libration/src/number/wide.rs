@@ -8,7 +8,7 @@ use bnum::Uint;
 use bnum::cast::As;
 use bnum::types::{U1024, U2048};
 
-use super::Ratio;
+use super::{Ratio, TwoFloat};
 use crate::{Elementary, Scalar};
 
 /// Bits of the significand.
@@ -463,6 +463,13 @@ impl From<Ratio> for Wide {
         let Some((negative, num, den, exponent)) = ratio.parts() else { return Wide::NAN };
         let den = Wide::rounded(false, den, 0);
         Wide::rounded(negative, num, 0).scaled(exponent.into()) / den
+    }
+}
+
+impl From<TwoFloat> for Wide {
+    /// Exact.
+    fn from(x: TwoFloat) -> Self {
+        Wide::from_f64(x.hi()) + Wide::from_f64(x.lo())
     }
 }
 
