@@ -9,7 +9,7 @@ use bnum::cast::As;
 use bnum::types::{U1024, U2048};
 
 use super::Wide;
-use super::wide::{decode, nearest_f64};
+use super::bits::{decode, nearest_f64};
 use crate::Scalar;
 
 /// Room for the products that a comparison or a quotient needs.

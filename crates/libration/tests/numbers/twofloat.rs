@@ -10,7 +10,7 @@ const U2: f64 = f64::EPSILON * f64::EPSILON / 4.0;
 /// Numbers of both signs and many sizes, whose low part is anything from zero to half an ulp.
 fn twofloat() -> impl Strategy<Value = TwoFloat> {
     let low = prop_oneof![Just(0.0), -1.0..1.0_f64, (-1.0..1.0_f64).prop_map(|x| x * exp2(-30))];
-    (1.0..2.0_f64, -60..60_i32, low, any::<bool>()).prop_map(|(hi, e, lo, negative)| {
+    (1.0..2.0_f64, -200..200_i32, low, any::<bool>()).prop_map(|(hi, e, lo, negative)| {
         let x = TwoFloat::from_sum(hi * exp2(e), lo * exp2(e - 53));
         if negative { -x } else { x }
     })
