@@ -28,9 +28,10 @@ const LIMIT: i64 = 1 << 61;
 /// It is for what vanishes in `f64`: a determinant that misses 1 by 10⁻¹⁷, a phase error of
 /// 10⁻⁶⁰, or the millionth power of an update matrix, 10⁶⁹⁸⁹⁷⁰.
 ///
-/// `+`, `-` and `*` round to nearest and have a relative error of at most 2⁻¹⁰²³, also when terms
-/// nearly cancel; `/`, `sqrt` and the conversion from [`Ratio`] at most 2⁻¹⁰²²; the functions
-/// state their own. There is no infinity: what has no value (`1/0`, `√−1`, an exponent beyond
+/// `+`, `-` and `*` round to nearest: their relative error is at most 2⁻¹⁰²⁴(1 + 2⁻¹²⁵), also when
+/// terms nearly cancel; the last factor is for sums of terms more than 127 bits apart. `/`, `sqrt`
+/// and the conversion from [`Ratio`] err by at most 2⁻¹⁰²²; the functions state their own bounds.
+/// There is no infinity: what has no value (`1/0`, `√−1`, an exponent beyond
 /// ±2⁶¹) is NaN, which propagates and compares with nothing.
 #[derive(Clone, Copy)]
 pub struct Wide {
@@ -140,6 +141,13 @@ impl Wide {
             _ if self.exponent < 0 => Some(U1024::MIN),
             _ => None,
         }
+    }
+}
+
+/// In scientific notation, with 16 decimals or as many as the precision says.
+impl core::fmt::Display for Wide {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(&self.to_decimal(f.precision().map_or(17, |p| p.saturating_add(1))))
     }
 }
 

@@ -127,6 +127,9 @@ fn overflow_is_detected_and_contagious() {
     assert_eq!(big, Ratio::UNDEFINED);
     let deep = (0..10).fold(Ratio::new(1, 3), |x, _| x * x);
     assert!(!deep.is_valid(), "3^-1024 has a denominator of 1624 bits");
+    let long = (0..10).fold(Ratio::from(3), |x, _| x * x);
+    assert!(long.is_valid() && !long.recip().is_valid(), "3^1024 has 1624 bits");
+    assert_eq!(Ratio::ONE.checked_div(long), None);
     let far = Ratio::from_f64(f64::MAX);
     let far = far * far;
     assert!(far.is_valid(), "a power of two costs nothing");

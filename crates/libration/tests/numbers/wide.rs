@@ -24,14 +24,15 @@ fn oracle(w: Wide) -> BigFloat {
     sum
 }
 
-/// Whether `|computed − exact| ≤ 2^−bits · |reference|`.
+/// Whether `|computed − exact| ≤ 2^−bits · (1 + 2⁻⁵⁰) · |reference|`.
 fn close(computed: Wide, exact: &BigFloat, bits: i32, reference: &BigFloat) -> bool {
     let mut difference = oracle(computed).sub(exact, P, ToEven);
     match difference.exponent() {
         Some(exponent) if !difference.is_zero() => difference.set_exponent(exponent + bits),
         _ => {}
     }
-    difference.abs().cmp(&reference.abs()).is_some_and(|order| order <= 0)
+    let slack = BigFloat::from_f64(1.0 + exp2(-50), P);
+    difference.abs().cmp(&reference.abs().mul(&slack, P, ToEven)).is_some_and(|order| order <= 0)
 }
 
 /// Whether the relative error is at most `2^−bits`.
@@ -56,9 +57,9 @@ proptest! {
     #[test]
     fn arithmetic_agrees_with_the_oracle(a in wide(-300..300), b in wide(-300..300)) {
         let (x, y) = (oracle(a), oracle(b));
-        prop_assert!(agrees(a + b, &x.add(&y, 2200, ToEven), 1023));
-        prop_assert!(agrees(a - b, &x.sub(&y, 2200, ToEven), 1023));
-        prop_assert!(agrees(a * b, &x.mul(&y, 2200, ToEven), 1023));
+        prop_assert!(agrees(a + b, &x.add(&y, 2200, ToEven), 1024));
+        prop_assert!(agrees(a - b, &x.sub(&y, 2200, ToEven), 1024));
+        prop_assert!(agrees(a * b, &x.mul(&y, 2200, ToEven), 1024));
         prop_assert!(agrees(a / b, &x.div(&y, P, ToEven), 1022));
         prop_assert!(agrees(b.recip(), &y.reciprocal(P, ToEven), 1022));
         prop_assert!(agrees(a.abs().sqrt(), &x.abs().sqrt(P, ToEven), 1022));
@@ -68,7 +69,7 @@ proptest! {
     #[test]
     fn sums_that_cancel_stay_accurate(a in wide(-3..3), c in wide(-3..3), k in 0..1200_i64) {
         let b = -(a + c.scaled(-k));
-        prop_assert!(agrees(a + b, &oracle(a).add(&oracle(b), 2600, ToEven), 1023));
+        prop_assert!(agrees(a + b, &oracle(a).add(&oracle(b), 2600, ToEven), 1024));
     }
 }
 
@@ -185,6 +186,7 @@ fn decimals() {
     assert_eq!(show(f(10.0).powi(698_970), 12), "1.00000000000e698970");
     assert_eq!(show(f(10.0).powi(698_970).recip(), 12), "1.00000000000e-698970");
     assert_eq!(show(f(2.0).powi(1443), 17), "2.4337935909969659e434");
+    assert_eq!(format!("{:.2} {}", Wide::pi(), f(-0.5)), "3.14e0 -5.0000000000000000e-1");
     assert_eq!(show(Wide::pi(), 30), "3.14159265358979323846264338328e0");
     assert!(!show(f(3.0).scaled(1 << 60), 12).contains("NaN"));
     assert_eq!(f(10.0).powi(698_970).log10().to_f64(), 698_970.0);
