@@ -136,6 +136,9 @@ fn overflow_is_detected_and_contagious() {
     assert!(!(far + far.recip().ratio(1, 2)).is_valid(), "these two are 4095 bits apart");
     let doubled = (0..40).fold(Ratio::from(2), |x, _| x * x);
     assert!(!doubled.is_valid(), "the exponent is bounded, too");
+    let large = (0..30).fold(Ratio::from(2), |x, _| x * x);
+    assert!(large.is_valid() && large.recip().is_valid(), "2^(2^30) is the largest power of two");
+    assert!(!(large * Ratio::from(2)).is_valid() && !(large.recip().ratio(1, 2)).is_valid());
     for x in
         [Ratio::new(1, 0), Ratio::ZERO.recip(), Ratio::from_f64(f64::NAN), Ratio::ONE.ratio(1, 0)]
     {
@@ -147,6 +150,18 @@ fn overflow_is_detected_and_contagious() {
         assert!(x < Ratio::from(i64::MIN) && x.cmp(&x).is_eq() && x.sign() == 0);
     }
     assert_eq!(Ratio::ONE.checked_div(Ratio::ZERO), None);
+}
+
+#[test]
+fn sums_that_do_not_fit_are_detected() {
+    let power = (0..10).fold(Ratio::from(2), |x, _| x * x);
+    let ones = (power - Ratio::ONE) * (power + Ratio::ONE);
+    assert!(ones.is_valid(), "2^2048 − 1 has 2048 bits");
+    assert!(!(ones + Ratio::from(2)).is_valid(), "2^2048 + 1 has one more");
+    let inverse_power = |base, n| (0..n).fold(Ratio::ONE, |x, _| x * Ratio::new(1, base));
+    let (third, fifth) = (inverse_power(3, 600), inverse_power(5, 400));
+    assert!(third.is_valid() && fifth.is_valid());
+    assert!(!(third + fifth).is_valid(), "3^600·5^400 has 1880 bits");
 }
 
 #[test]

@@ -152,6 +152,15 @@ fn pi_agrees_with_the_oracle() {
 }
 
 #[test]
+fn a_carry_out_of_the_significand_moves_the_exponent() {
+    let two = Wide::from_f64(2.0);
+    let below = two - Wide::one().scaled(-1023);
+    assert!(below < two);
+    assert_eq!(below + Wide::one().scaled(-1024), two);
+    assert_eq!(below + Wide::one().scaled(-1025), below);
+}
+
+#[test]
 fn rounding_to_f64_at_ties_and_ends() {
     let one = Wide::one();
     let f = |m: f64, e: i64| Wide::from_f64(m).scaled(e);
