@@ -1,5 +1,6 @@
 //! Number types: swap the number, and a step becomes another instrument.
 
+mod bits;
 mod dual;
 mod float;
 mod half;

@@ -20,10 +20,15 @@ pub struct Poly<const N: usize> {
 
 impl<const N: usize> Poly<N> {
     /// Zero.
-    pub const ZERO: Self = Poly { coefficients: [Ratio::ZERO; N] };
+    pub const ZERO: Self = Poly::filled(Ratio::ZERO);
 
     /// The result of an overflow.
-    pub const UNDEFINED: Self = Poly { coefficients: [Ratio::UNDEFINED; N] };
+    pub const UNDEFINED: Self = Poly::filled(Ratio::UNDEFINED);
+
+    const fn filled(c: Ratio) -> Self {
+        const { assert!(N > 0, "a polynomial needs room for a constant") };
+        Poly { coefficients: [c; N] }
+    }
 
     /// The polynomial with the given coefficients, that of `z⁰` first.
     pub fn new(coefficients: [Ratio; N]) -> Self {
@@ -71,7 +76,7 @@ impl<const N: usize> Poly<N> {
         }
     }
 
-    /// The highest power with a coefficient other than zero; none for zero.
+    /// The highest power with a coefficient other than zero; none for zero, `N − 1` if undefined.
     pub fn degree(&self) -> Option<usize> {
         self.coefficients.iter().rposition(|c| !c.is_zero())
     }
@@ -175,7 +180,8 @@ impl<const N: usize> Scalar for Poly<N> {
     }
 }
 
-/// `1 − z²/2 + z⁴/24`. A coefficient with over 64 bits is shown with 12 digits, as `≈1.35e0·z`.
+/// `1 − z²/2 + z⁴/24`. A coefficient with over 64 bits is shown with 12 digits, as
+/// `≈1.35120719196·z`.
 impl<const N: usize> fmt::Display for Poly<N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.is_valid() {
@@ -205,13 +211,31 @@ fn write_term(f: &mut fmt::Formatter<'_>, c: Ratio, k: usize) -> fmt::Result {
     };
     let Some((num, den)) = c.integers(64) else {
         let dot = if k == 0 { "" } else { "·" };
-        return write!(f, "≈{}{dot}{power}", Wide::from(c).to_decimal(12));
+        return write!(f, "≈{}{dot}{power}", plain(&Wide::from(c).to_decimal(12)));
     };
     if k == 0 || !num.is_one() {
         write!(f, "{num}")?;
     }
     f.write_str(&power)?;
     if den.is_one() { Ok(()) } else { write!(f, "/{den}") }
+}
+
+/// `d.dddekk` without its exponent, where that reads better.
+fn plain(scientific: &str) -> String {
+    let power = scientific.split_once('e').and_then(|(m, e)| Some((m, e.parse::<i32>().ok()?)));
+    match power {
+        Some((mantissa, 0)) => mantissa.into(),
+        Some((mantissa, power @ -4..0)) => {
+            let zeros = "0".repeat(power.unsigned_abs() as usize - 1);
+            format!("0.{zeros}{}", mantissa.replace('.', ""))
+        }
+        Some((mantissa, power @ 1..6)) => {
+            let mut digits = mantissa.replace('.', "");
+            digits.insert(power as usize + 1, '.');
+            digits
+        }
+        _ => scientific.into(),
+    }
 }
 
 fn superscript(k: usize) -> String {

@@ -2,14 +2,16 @@
 
 use core::cmp::Ordering;
 use core::ops::{Add, Div, Mul, Neg, Sub};
-use std::sync::OnceLock;
 
 use bnum::Uint;
 use bnum::cast::As;
 use bnum::types::{U1024, U2048};
 
-use super::Ratio;
-use crate::{Elementary, Scalar};
+use super::bits::{decode, nearest_f64};
+use super::{Ratio, TwoFloat};
+use crate::Scalar;
+
+mod functions;
 
 /// Bits of the significand.
 const BITS: u32 = U1024::BITS;
@@ -21,17 +23,15 @@ const GUARD: u32 = Guarded::BITS - BITS - 1;
 /// Exponents stay within `±LIMIT`, so that the sum of two of them fits its type.
 const LIMIT: i64 = 1 << 61;
 
-/// The largest angle, as a power of two, that `sin` and `cos` reduce.
-const LARGEST_ANGLE: i64 = 512;
-
 /// A floating-point number with a 1024-bit significand and an `i64` exponent.
 ///
 /// It is for what vanishes in `f64`: a determinant that misses 1 by 10⁻¹⁷, a phase error of
 /// 10⁻⁶⁰, or the millionth power of an update matrix, 10⁶⁹⁸⁹⁷⁰.
 ///
-/// `+`, `-` and `*` round to nearest and have a relative error of at most 2⁻¹⁰²³, also when terms
-/// nearly cancel; `/`, `sqrt` and the conversion from [`Ratio`] at most 2⁻¹⁰²¹; the functions
-/// state their own. There is no infinity: what has no value (`1/0`, `√−1`, an exponent beyond
+/// `+`, `-` and `*` round to nearest: their relative error is at most 2⁻¹⁰²⁴(1 + 2⁻¹²⁵), also when
+/// terms nearly cancel; the last factor is for sums of terms more than 127 bits apart. `/`, `sqrt`
+/// and the conversion from [`Ratio`] err by at most 2⁻¹⁰²²; the functions state their own bounds.
+/// There is no infinity: what has no value (`1/0`, `√−1`, an exponent beyond
 /// ±2⁶¹) is NaN, which propagates and compares with nothing.
 #[derive(Clone, Copy)]
 pub struct Wide {
@@ -40,50 +40,6 @@ pub struct Wide {
     /// zero (exponent 0) and in NaN (exponent 1), where the significand is 0.
     exponent: i64,
     significand: U1024,
-}
-
-/// `±top · 2^exponent` rounded to nearest, ties to even, where `top` has its highest bit set, and
-/// `sticky` tells that the value lies a little further from zero.
-pub(super) fn nearest_f64(negative: bool, top: u64, sticky: bool, exponent: i64) -> f64 {
-    let leading = exponent.saturating_add(63);
-    // Bits that an f64 of this size has: 53, fewer among the subnormals.
-    let keep = (leading + 1075).clamp(-1, 53);
-    let magnitude = if leading > 1023 {
-        f64::INFINITY
-    } else if keep < 0 {
-        0.0
-    } else {
-        let drop = 64 - keep as u32;
-        let kept = top.unbounded_shr(drop);
-        let (half, rest) = (1 << (drop - 1), top & (u64::MAX >> (64 - drop)));
-        let up = rest > half || rest == half && (sticky || kept & 1 == 1);
-        // A carry out of the significand runs into the exponent field, where it belongs.
-        let field = ((leading + 1022).max(0) as u64) << 52;
-        f64::from_bits(field + kept + u64::from(up))
-    };
-    if negative { -magnitude } else { magnitude }
-}
-
-/// `Σ (±1)ᵏ / ((2k+1) n^(2k+1))`, which is `atan(1/n)` or `atanh(1/n)`, in units of 2⁻¹¹⁴⁴.
-fn inverse_series(n: u64, alternate: bool) -> Guarded {
-    let square: Guarded = (n * n).as_();
-    let mut power = Guarded::power_of_two(1144) / n.as_::<Guarded>();
-    let mut sum = power;
-    for k in 1_u64.. {
-        power /= square;
-        let term = power / (2 * k + 1).as_::<Guarded>();
-        if term.is_zero() {
-            break;
-        }
-        sum = if alternate && k % 2 == 1 { sum - term } else { sum + term };
-    }
-    sum
-}
-
-/// `ln 2`, with an error below 2⁻¹⁰²⁴.
-fn ln_2() -> Wide {
-    static LN_2: OnceLock<Wide> = OnceLock::new();
-    *LN_2.get_or_init(|| Wide::rounded(false, inverse_series(3, false), -1143))
 }
 
 impl Wide {
@@ -123,15 +79,6 @@ impl Wide {
             return Wide::NAN;
         }
         Wide { negative, exponent, significand }
-    }
-
-    /// π, rounded to nearest: `16 atan(1/5) − 4 atan(1/239)` (Machin).
-    pub fn pi() -> Self {
-        static PI: OnceLock<Wide> = OnceLock::new();
-        *PI.get_or_init(|| {
-            let quarter = (inverse_series(5, true) << 2) - inverse_series(239, true);
-            Wide::rounded(false, quarter, 2 - 1144)
-        })
     }
 
     /// Whether this is zero.
@@ -195,159 +142,12 @@ impl Wide {
             _ => None,
         }
     }
+}
 
-    fn over_integer(self, divisor: u64) -> Self {
-        if self.significand.is_zero() {
-            return self;
-        }
-        let quotient = (self.significand.as_::<Guarded>() << GUARD) / divisor.as_::<Guarded>();
-        Wide::rounded(self.negative, quotient, self.exponent - i64::from(GUARD))
-    }
-
-    /// `first + Σ tₖ` with `tₖ₊₁ = next(tₖ, k)`, until the terms no longer count.
-    fn series(first: Self, mut next: impl FnMut(u64) -> Self) -> Self {
-        let mut sum = first;
-        for k in 1_u64.. {
-            let term = next(k);
-            if term.significand.is_zero() || term.leading() < sum.leading() - i64::from(BITS) - 8 {
-                break;
-            }
-            sum = sum + term;
-        }
-        sum
-    }
-
-    /// `(sin, cos)`, with an absolute error of at most `2⁻¹⁰¹⁵·max(1, |self|)`.
-    ///
-    /// NaN beyond `|self| = 2⁵¹²`, where half of the digits would be lost.
-    pub fn sin_cos(self) -> (Self, Self) {
-        let quarters = (self.exponent().is_none_or(|e| e < LARGEST_ANGLE))
-            .then(|| (self * Wide::pi().recip()).scaled(1))
-            .and_then(Self::nearest_integer);
-        let Some(quarters) = quarters else { return (Wide::NAN, Wide::NAN) };
-        let r = self - Wide::rounded(self.negative, quarters, 0) * Wide::pi().scaled(-1);
-        let square = -(r * r);
-        let taylor = |first: Wide, n: u64| {
-            let mut term = first;
-            Wide::series(first, |k| {
-                term = (term * square).over_integer((2 * k - 1 + n) * (2 * k + n));
-                term
-            })
-        };
-        let (sin, cos) = (taylor(r, 1), taylor(Wide::one(), 0));
-        let turn = quarters.as_::<u64>() % 4;
-        match if self.negative { (4 - turn) % 4 } else { turn } {
-            0 => (sin, cos),
-            1 => (cos, -sin),
-            2 => (-sin, -cos),
-            _ => (-cos, sin),
-        }
-    }
-
-    /// `atan` of a number of magnitude at most 1.
-    fn atan(self) -> Self {
-        // atan t = 2 atan(t / (1 + √(1 + t²))): three times leaves |t| < 0.1.
-        let mut t = self;
-        for _ in 0..3 {
-            t = t / (Wide::one() + (Wide::one() + t * t).sqrt());
-        }
-        let square = -(t * t);
-        t.odd_series(square).scaled(3)
-    }
-
-    /// `Σ self·squareᵏ/(2k+1)`.
-    fn odd_series(self, square: Self) -> Self {
-        let mut power = self;
-        Wide::series(self, |k| {
-            power = power * square;
-            power.over_integer(2 * k + 1)
-        })
-    }
-
-    /// The angle of the vector `(x, self)` in `(−π, π]`, with a relative error of at most 2⁻¹⁰¹⁵.
-    ///
-    /// The angle of the zero vector is 0.
-    pub fn atan2(self, x: Self) -> Self {
-        let y = self;
-        if y.is_zero() && !x.is_negative() {
-            return if x.is_nan() { x } else { y };
-        }
-        let half_turn = if y.negative { -Wide::pi() } else { Wide::pi() };
-        if y.abs() > x.abs() {
-            half_turn.scaled(-1) - (x / y).atan()
-        } else if x.negative {
-            half_turn + (y / x).atan()
-        } else {
-            (y / x).atan()
-        }
-    }
-
-    /// The natural logarithm, with a relative error of at most 2⁻¹⁰¹⁵; NaN unless positive.
-    pub fn ln(self) -> Self {
-        if self.negative || self.significand.is_zero() {
-            return Wide::NAN;
-        }
-        // A mantissa between about √½ and √2, so that a number close to 1 has exponent 0.
-        let leading = self.leading();
-        let mantissa = self.scaled(-leading);
-        let halve = i64::from(mantissa.to_f64() > core::f64::consts::SQRT_2);
-        let m = mantissa.scaled(-halve);
-        let t = (m - Wide::one()) / (m + Wide::one());
-        let doublings = leading + halve;
-        let count: U1024 = doublings.unsigned_abs().as_();
-        Wide::rounded(doublings < 0, count, 0) * ln_2() + t.odd_series(t * t).scaled(1)
-    }
-
-    /// The decimal logarithm, with a relative error of at most 2⁻¹⁰¹⁴; NaN unless positive.
-    pub fn log10(self) -> Self {
-        self.ln() / Wide::from_f64(10.0).ln()
-    }
-
-    /// `self^n` by repeated squaring, with a relative error of at most `2n·2⁻¹⁰²³`.
-    pub fn powi(self, mut n: u64) -> Self {
-        let (mut power, mut square) = (Wide::one(), self);
-        while n > 0 {
-            if n & 1 == 1 {
-                power = power * square;
-            }
-            n >>= 1;
-            if n > 0 {
-                square = square * square;
-            }
-        }
-        power
-    }
-
-    /// The value in decimal scientific notation with 1 to 300 digits, as `1.25e434`.
-    ///
-    /// The digits are those of the nearest decimal, up to the error of [`powi`](Self::powi) for the
-    /// power of ten.
-    pub fn to_decimal(self, digits: usize) -> String {
-        let digits = digits.clamp(1, 300);
-        if self.significand.is_zero() {
-            return if self.is_nan() { "NaN".into() } else { "0".into() };
-        }
-        let ten = Wide::from_f64(10.0);
-        let mut power = (self.leading() as f64 * core::f64::consts::LOG10_2).floor() as i64;
-        let scale = ten.powi(power.unsigned_abs());
-        let mut m = if power < 0 { self.abs() * scale } else { self.abs() / scale };
-        while m >= ten {
-            (m, power) = (m / ten, power + 1);
-        }
-        while m < Wide::one() {
-            (m, power) = (m * ten, power - 1);
-        }
-        let integer = m * ten.powi(digits as u64 - 1);
-        let Some(integer) = integer.nearest_integer() else { return "NaN".into() };
-        let mut text = integer.to_string();
-        if text.len() > digits {
-            power += 1;
-        }
-        text.truncate(digits);
-        if digits > 1 {
-            text.insert(1, '.');
-        }
-        format!("{}{text}e{power}", if self.negative { "-" } else { "" })
+/// In scientific notation, with 16 decimals or as many as the precision says.
+impl core::fmt::Display for Wide {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(&self.to_decimal(f.precision().map_or(17, |p| p.saturating_add(1))))
     }
 }
 
@@ -466,6 +266,13 @@ impl From<Ratio> for Wide {
     }
 }
 
+impl From<TwoFloat> for Wide {
+    /// Exact.
+    fn from(x: TwoFloat) -> Self {
+        Wide::from_f64(x.hi()) + Wide::from_f64(x.lo())
+    }
+}
+
 impl Scalar for Wide {
     /// Exact; NaN if `c` is not finite.
     fn from_f64(c: f64) -> Self {
@@ -479,37 +286,5 @@ impl Scalar for Wide {
 
     fn ratio(self, num: i32, den: i32) -> Self {
         self * Wide::from_f64(num.into()) / Wide::from_f64(den.into())
-    }
-}
-
-/// `|c| = magnitude · 2^exponent` of a finite `c`.
-pub(super) fn decode(c: f64) -> (u64, i32) {
-    let field = (c.to_bits() >> 52 & 0x7ff) as i32;
-    let fraction = c.to_bits() & ((1 << 52) - 1);
-    if field == 0 { (fraction, -1074) } else { (fraction | 1 << 52, field - 1075) }
-}
-
-impl Elementary for Wide {
-    /// Newton's iteration from the `f64` root; five steps reach 1600 bits.
-    fn sqrt(self) -> Self {
-        if self.negative || self.significand.is_zero() {
-            return if self.is_zero() { self } else { Wide::NAN };
-        }
-        let even = self.leading() & !1;
-        let x = self.scaled(-even);
-        let seed = Wide::from_f64(x.to_f64().sqrt());
-        (0..5).fold(seed, |y, _| (y + x / y).scaled(-1)).scaled(even / 2)
-    }
-
-    fn recip(self) -> Self {
-        Wide::one() / self
-    }
-
-    fn sin(self) -> Self {
-        self.sin_cos().0
-    }
-
-    fn cos(self) -> Self {
-        self.sin_cos().1
     }
 }
