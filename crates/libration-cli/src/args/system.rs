@@ -182,7 +182,7 @@ pub(crate) fn steps(text: &str) -> Result<u64, String> {
     let steps = steps.ok_or_else(|| {
         format!("it is not a whole number; steps must be {}", limits::steps_allowed())
     })?;
-    limits::steps(steps)
+    limits::steps("--steps", steps)
 }
 
 fn system_names() -> PossibleValuesParser {
