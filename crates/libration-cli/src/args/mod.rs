@@ -1,6 +1,8 @@
 //! The command line as types: what can be asked, and in which words.
 
 #[allow(dead_code)]
+mod number;
+#[allow(dead_code)]
 mod system;
 
 use std::ffi::OsString;
@@ -13,7 +15,9 @@ use libration_lab::{Effort, studies};
 use crate::error::Failure;
 
 #[allow(unused_imports)]
-pub(crate) use system::{FloatName, Setting, StepArgs, SystemArgs, steps};
+pub(crate) use number::steps;
+#[allow(unused_imports)]
+pub(crate) use system::{FloatName, Setting, StepArgs, SystemArgs};
 
 /// A laboratory for the stability of simulations: what theory predicts beside what was measured.
 #[derive(Debug, Parser)]

@@ -29,11 +29,18 @@ pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
         terminal::print(&summary(&results, &report))?;
     }
     if args.open {
-        open::that_detached(&report).map_err(|error| {
-            Failure::run(format!("cannot show `{}`: {error}", report.display()))
-        })?;
+        show(&report)?;
     }
     judge(&results)
+}
+
+/// Opens the report in the program that shows HTML.
+fn show(report: &Path) -> Result<(), Failure> {
+    // Some of these programs start in another folder.
+    report
+        .canonicalize()
+        .and_then(open::that_detached)
+        .map_err(|error| Failure::run(format!("cannot show `{}`: {error}", report.display())))
 }
 
 /// The configuration that the file and the flags make together; flags win.
