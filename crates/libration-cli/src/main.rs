@@ -4,6 +4,7 @@ mod args;
 mod commands;
 mod error;
 mod interrupt;
+mod output_file;
 mod progress;
 mod terminal;
 

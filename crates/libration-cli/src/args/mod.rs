@@ -1,8 +1,7 @@
 //! The command line as types: what can be asked, and in which words.
 
-#[allow(dead_code)]
 mod number;
-#[allow(dead_code)]
+mod simulate;
 mod system;
 
 use std::ffi::OsString;
@@ -14,10 +13,8 @@ use libration_lab::{Effort, studies};
 
 use crate::error::Failure;
 
-#[allow(unused_imports)]
-pub(crate) use number::steps;
-#[allow(unused_imports)]
-pub(crate) use system::{FloatName, Setting, StepArgs, SystemArgs};
+pub(crate) use simulate::SimulateArgs;
+pub(crate) use system::{Setting, StepArgs, SystemArgs};
 
 /// A laboratory for the stability of simulations: what theory predicts beside what was measured.
 #[derive(Debug, Parser)]
@@ -40,6 +37,8 @@ Examples:
   libration lab drift --effort quick --open  one study, in seconds, shown in the browser
   libration lab --print-config > mine.toml   the setting, ready to edit
   libration lab --config mine.toml           the studies at your own setting
+  libration simulate --system oscillator --integrator rk4 --dt 0.01 --steps 1000
+                                             a trajectory as CSV
   libration list                             what there is
 
 Exit codes: 0 success, 1 a failed run or a finding that disagrees, 2 wrong input, 130 interrupted";
@@ -48,6 +47,8 @@ Exit codes: 0 success, 1 a failed run or a finding that disagrees, 2 wrong input
 pub(crate) enum Command {
     /// Run studies and write a report
     Lab(LabArgs),
+    /// Simulate one trajectory and write its rows
+    Simulate(SimulateArgs),
     /// List studies, systems and integrators
     List(ListArgs),
     /// Print a completion script for a shell

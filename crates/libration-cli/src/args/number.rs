@@ -54,15 +54,19 @@ pub(super) fn time_step(text: &str) -> Result<f64, String> {
 }
 
 /// Reads a number of steps; also as `1e6`.
-pub(crate) fn steps(text: &str) -> Result<u64, String> {
-    let whole = |text: &str| {
-        let x: f64 = text.parse().ok()?;
-        (x.fract() == 0.0).then_some(x as i128)
-    };
-    let text = text.trim();
-    let steps = text.parse().ok().or_else(|| whole(text));
-    let steps = steps.ok_or_else(|| {
+pub(super) fn steps(text: &str) -> Result<u64, String> {
+    let steps = whole_number(text).ok_or_else(|| {
         format!("it is not a whole number; steps must be {}", limits::steps_allowed())
     })?;
     limits::steps("--steps", steps)
+}
+
+/// The whole number that `text` stands for, written as `1000` or `1e3`.
+pub(super) fn whole_number(text: &str) -> Option<i128> {
+    let text = text.trim();
+    let with_exponent = || {
+        let x: f64 = text.parse().ok()?;
+        (x.fract() == 0.0).then_some(x as i128)
+    };
+    text.parse().ok().or_else(with_exponent)
 }

@@ -1,7 +1,7 @@
 //! The flags that choose a system, a start and a step; shared by the commands that simulate.
 
+use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
 use libration::catalog::{ENTRIES, Entry};
 use libration::{AnySystem, CatalogError, Method, State, with_system};
 use libration_lab::config::names;
@@ -35,19 +35,6 @@ pub(crate) struct StepArgs {
     /// Time step in s
     #[arg(long, value_name = "SECONDS", value_parser = time_step, allow_hyphen_values = true)]
     pub(crate) dt: f64,
-}
-
-/// A number type, by its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FloatName {
-    /// IEEE 754 binary32.
-    F32,
-    /// IEEE 754 binary64.
-    F64,
-    /// IEEE 754 binary16, rounded after every operation.
-    F16,
-    /// bfloat16, rounded after every operation.
-    Bf16,
 }
 
 /// A system that can be simulated: `q` and `v` are as long as one of its dimensions.

@@ -3,6 +3,7 @@
 mod completions;
 mod lab;
 mod list;
+mod simulate;
 
 use crate::args::{Arguments, Command};
 use crate::error::Failure;
@@ -13,6 +14,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
     terminal::set_color(arguments.color);
     match arguments.command {
         Command::Lab(args) => lab::run(&args, arguments.quiet),
+        Command::Simulate(args) => simulate::run(&args, arguments.quiet),
         Command::List(args) => list::run(&args),
         Command::Completions(args) => completions::run(&args),
     }

@@ -1,0 +1,66 @@
+//! What `simulate` takes.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use libration_lab::trajectory::{FloatType, Format};
+
+use super::number::{steps, whole_number};
+use super::{StepArgs, SystemArgs};
+
+/// What `simulate` takes.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct SimulateArgs {
+    #[command(flatten)]
+    pub(crate) system: SystemArgs,
+    #[command(flatten)]
+    pub(crate) step: StepArgs,
+    /// Number of steps
+    #[arg(long, value_name = "N", value_parser = steps, allow_hyphen_values = true)]
+    pub(crate) steps: u64,
+    /// Float type of the state, the parameters and every operation
+    #[arg(long, value_name = "TYPE", value_parser = float_types(), default_value = "f64")]
+    pub(crate) float: FloatType,
+    /// Write each N-th step, besides the start and the last step
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = every,
+        allow_hyphen_values = true,
+        default_value = "1"
+    )]
+    pub(crate) every: u64,
+    /// Format of the rows [default: that of the extension of --output, or csv]
+    #[arg(long, value_parser = formats())]
+    pub(crate) format: Option<Format>,
+    /// File to write, whole or not at all [default: standard output]
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  libration simulate --system oscillator --set omega2=10 --integrator rk4 --dt 0.01 --steps 1000
+  libration simulate --system kepler --q 0.4,0 --v 0,2 --integrator leapfrog --dt 0.01 \\
+      --steps 1e6 --every 1e3 --output orbit.parquet
+
+The columns are step, t, q0, …, v0, …, energy. A state that overflows ends the rows with a note.";
+
+/// Reads a stride; also as `1e3`.
+fn every(text: &str) -> Result<u64, String> {
+    let stride = whole_number(text).and_then(|n| u64::try_from(n).ok()).filter(|&n| n >= 1);
+    stride.ok_or_else(|| "it must be a whole number of at least 1".to_owned())
+}
+
+fn float_types() -> impl TypedValueParser<Value = FloatType> {
+    PossibleValuesParser::new(FloatType::ALL.map(FloatType::name))
+        .try_map(|name| FloatType::from_name(&name).ok_or("unknown float type"))
+}
+
+fn formats() -> impl TypedValueParser<Value = Format> {
+    let value = |format: Format| PossibleValue::new(format.name()).help(format.summary());
+    PossibleValuesParser::new(Format::ALL.map(value))
+        .try_map(|name| Format::from_name(&name).ok_or("unknown format"))
+}

@@ -1,0 +1,119 @@
+//! `libration simulate`.
+
+use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use libration_lab::export::ExportError;
+use libration_lab::trajectory::{self, Format, Request, Stopped, TrajectoryError};
+
+use crate::args::{Setting, SimulateArgs};
+use crate::error::Failure;
+use crate::output_file::OutputFile;
+use crate::{interrupt, terminal};
+
+/// Bytes that are gathered before they are written.
+const BUFFER: usize = 1 << 18;
+
+/// Simulates a trajectory and writes its rows.
+pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
+    let request = request(args)?;
+    let from_path = || args.output.as_deref().and_then(Format::of_path);
+    let format = args.format.or_else(from_path).unwrap_or_default();
+    let stop = interrupt::listen()?;
+    let stopped = match &args.output {
+        Some(path) => into_file(path, &request, format, stop)?,
+        None => into_stdout(&request, format, stop)?,
+    };
+    if let Some(Stopped { step, t, reason }) = stopped.filter(|_| !quiet) {
+        let last = step - 1;
+        terminal::say(&format!(
+            "note: {reason} at step {step} (t = {t} s); the last row is step {last}"
+        ));
+    }
+    Ok(())
+}
+
+fn request(args: &SimulateArgs) -> Result<Request, Failure> {
+    let Setting { system, q, v } = args.system.resolve()?;
+    Ok(Request {
+        system,
+        method: args.step.integrator,
+        float: args.float,
+        dt: args.step.dt,
+        steps: args.steps,
+        q,
+        v,
+        every: args.every,
+    })
+}
+
+fn into_file(
+    path: &Path,
+    request: &Request,
+    format: Format,
+    stop: &AtomicBool,
+) -> Result<Option<Stopped>, Failure> {
+    let unwritable =
+        |error: io::Error| format!("cannot write `{}` (--output): {error}", path.display());
+    let file = OutputFile::create(path).map_err(|error| Failure::usage(unwritable(error)))?;
+    let mut out = BufWriter::with_capacity(BUFFER, file);
+    let stopped =
+        trajectory::write(request, format, &mut out, stop).map_err(|error| match error {
+            TrajectoryError::Export(ExportError::Io(error)) => Failure::run(unwritable(error)),
+            TrajectoryError::Interrupted => {
+                Failure::Interrupted(format!("interrupted; `{}` is as it was", path.display()))
+            }
+            error => failure(error),
+        })?;
+    let written = out.into_inner().map_err(|error| error.into_error());
+    written.and_then(OutputFile::keep).map_err(|error| Failure::run(unwritable(error)))?;
+    Ok(stopped)
+}
+
+fn into_stdout(
+    request: &Request,
+    format: Format,
+    stop: &AtomicBool,
+) -> Result<Option<Stopped>, Failure> {
+    if format.is_binary() && io::stdout().is_terminal() {
+        let name = format.name();
+        return Err(Failure::usage(format!(
+            "--format {name} is binary, and standard output is a terminal; \
+             it must be a file (--output FILE.{name}) or a pipe"
+        )));
+    }
+    let mut out = BufWriter::with_capacity(BUFFER, io::stdout());
+    let outcome = trajectory::write(request, format, &mut out, stop);
+    match outcome {
+        // A reader that has seen enough is not an error.
+        Err(TrajectoryError::Export(ExportError::Io(error)))
+            if error.kind() == ErrorKind::BrokenPipe =>
+        {
+            drop(out.into_parts());
+            Ok(None)
+        }
+        Err(TrajectoryError::Export(ExportError::Io(error))) => {
+            drop(out.into_parts());
+            Err(error.into())
+        }
+        Err(TrajectoryError::Interrupted) => {
+            // The rows so far are whole; if they cannot be written, nobody reads them.
+            let _ = out.flush();
+            Err(Failure::Interrupted("interrupted".to_owned()))
+        }
+        outcome => outcome.map_err(failure),
+    }
+}
+
+/// The failure that an error in a request, or in the work, amounts to.
+fn failure(error: TrajectoryError) -> Failure {
+    match error {
+        TrajectoryError::Value { name, value, allowed } => {
+            Failure::usage(format!("--{name} is {value}, but it must be {allowed}"))
+        }
+        TrajectoryError::Parameter { .. } => Failure::usage(format!("{error} (--float)")),
+        TrajectoryError::Catalog(_) | TrajectoryError::Simulation(_) => Failure::usage(error),
+        TrajectoryError::Export(_) | TrajectoryError::Interrupted => Failure::run(error),
+    }
+}

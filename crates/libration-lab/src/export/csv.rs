@@ -1,0 +1,43 @@
+//! Comma-separated values.
+
+use std::fmt::Write as _;
+use std::io::Write;
+
+use super::{ExportError, Number, Rows};
+
+/// Writes rows as text: a line of names, then a line for each row.
+///
+/// Floats stand in the shortest form that reads back as the same bits in their own type.
+#[derive(Debug)]
+pub struct Csv<W> {
+    out: W,
+    line: String,
+}
+
+impl<W: Write> Csv<W> {
+    /// A file into `out` that begins with the line of `names`.
+    ///
+    /// # Errors
+    /// If `out` refuses.
+    pub fn new<'n>(
+        mut out: W,
+        names: impl IntoIterator<Item = &'n str>,
+    ) -> Result<Self, ExportError> {
+        let names: Vec<_> = names.into_iter().collect();
+        writeln!(out, "{}", names.join(","))?;
+        Ok(Csv { out, line: String::new() })
+    }
+}
+
+impl<W: Write, S: Number> Rows<S> for Csv<W> {
+    fn row(&mut self, step: u64, t: f64, values: &[S]) -> Result<(), ExportError> {
+        self.line.clear();
+        let _infallible = write!(self.line, "{step},{t:?}");
+        for value in values {
+            self.line.push(',');
+            value.append_text(&mut self.line);
+        }
+        self.line.push('\n');
+        Ok(self.out.write_all(self.line.as_bytes())?)
+    }
+}

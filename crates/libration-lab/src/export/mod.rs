@@ -1,0 +1,29 @@
+//! Tables of numbers as files: Parquet, NumPy, CSV and JSON.
+//!
+//! Parquet and NumPy files are written from a whole [`Table`]; CSV and JSON take a trajectory
+//! row by row as it comes, through [`Rows`].
+
+mod csv;
+mod error;
+mod json;
+mod npy;
+mod number;
+mod parquet;
+mod table;
+
+pub use self::parquet::{series_to_parquet, write_parquet};
+pub use csv::Csv;
+pub use error::ExportError;
+pub use json::Json;
+pub use npy::write_npy;
+pub use number::Number;
+pub use table::{Column, Table, Values};
+
+/// Takes the rows of a trajectory in turn.
+pub trait Rows<S> {
+    /// Takes the row of step `step` at time `t` seconds; `values` are the other columns.
+    ///
+    /// # Errors
+    /// If the row cannot be written or kept.
+    fn row(&mut self, step: u64, t: f64, values: &[S]) -> Result<(), ExportError>;
+}

@@ -1,0 +1,103 @@
+//! A table: named columns with units, each of its own number type.
+
+use std::borrow::Cow;
+
+use half::{bf16, f16};
+
+use super::ExportError;
+use crate::record::Series;
+
+/// Columns of equal length, owned or borrowed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table<'a> {
+    columns: Vec<Column<'a>>,
+}
+
+/// One column of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column<'a> {
+    /// Name, unique in the table.
+    pub name: Cow<'a, str>,
+    /// Unit of the values; `1` if there is none.
+    pub unit: Cow<'a, str>,
+    /// The values.
+    pub values: Values<'a>,
+}
+
+/// The values of a column.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values<'a> {
+    /// Counts, as of steps.
+    U64(Cow<'a, [u64]>),
+    /// Double precision.
+    F64(Cow<'a, [f64]>),
+    /// Single precision.
+    F32(Cow<'a, [f32]>),
+    /// IEEE half precision.
+    F16(Cow<'a, [f16]>),
+    /// The upper half of an `f32`. Files hold it as `f32`, which is exact.
+    Bf16(Cow<'a, [bf16]>),
+}
+
+impl Values<'_> {
+    /// Number of values.
+    pub fn len(&self) -> usize {
+        match self {
+            Values::U64(x) => x.len(),
+            Values::F64(x) => x.len(),
+            Values::F32(x) => x.len(),
+            Values::F16(x) => x.len(),
+            Values::Bf16(x) => x.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+impl<'a> Table<'a> {
+    /// The table of these columns.
+    ///
+    /// # Errors
+    /// [`ExportError::Ragged`] if they differ in length.
+    pub fn new(columns: Vec<Column<'a>>) -> Result<Self, ExportError> {
+        let expected = columns.first().map_or(0, |c| c.values.len());
+        match columns.iter().find(|c| c.values.len() != expected) {
+            Some(c) => {
+                let (column, found) = (c.name.to_string(), c.values.len());
+                Err(ExportError::Ragged { column, expected, found })
+            }
+            None => Ok(Table { columns }),
+        }
+    }
+
+    /// The columns from left to right.
+    pub fn columns(&self) -> &[Column<'a>] {
+        &self.columns
+    }
+
+    /// The values of the column `name`, if there is one.
+    pub fn column(&self, name: &str) -> Option<&Values<'a>> {
+        self.columns.iter().find(|c| c.name == name).map(|c| &c.values)
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, |c| c.values.len())
+    }
+}
+
+impl<'a> TryFrom<&'a Series> for Table<'a> {
+    type Error = ExportError;
+
+    fn try_from(series: &'a Series) -> Result<Self, ExportError> {
+        let column = |c: &'a crate::record::Column| Column {
+            name: Cow::Borrowed(&c.name),
+            unit: Cow::Borrowed(&c.unit),
+            values: Values::F64(Cow::Borrowed(&c.values)),
+        };
+        Table::new(series.columns.iter().map(column).collect())
+    }
+}

@@ -1,0 +1,58 @@
+//! A trajectory's rows, kept as columns.
+
+use std::borrow::Cow;
+
+use super::Request;
+use crate::export::{Column, ExportError, Number, Rows, Table, Values};
+
+/// Columns that grow by a row at a time.
+#[derive(Debug)]
+pub(super) struct Columns<S> {
+    step: Vec<u64>,
+    t: Vec<f64>,
+    values: Vec<Vec<S>>,
+}
+
+impl<S: Number> Columns<S> {
+    /// Empty columns with room for what is asked.
+    pub(super) fn new(request: &Request) -> Result<Self, ExportError> {
+        let rows = request.rows();
+        Ok(Columns {
+            step: room(rows)?,
+            t: room(rows)?,
+            values: (0..=2 * request.q.len()).map(|_| room(rows)).collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// The columns under their names and units.
+    pub(super) fn into_table(self, request: &Request) -> Result<Table<'static>, ExportError> {
+        let first = [Values::U64(Cow::Owned(self.step)), Values::F64(Cow::Owned(self.t))];
+        let values = first.into_iter().chain(self.values.into_iter().map(S::values));
+        let heads = request.column_names().into_iter().zip(request.column_units());
+        let column = |((name, unit), values): ((String, &'static str), _)| Column {
+            name: Cow::Owned(name),
+            unit: Cow::Borrowed(unit),
+            values,
+        };
+        Table::new(heads.zip(values).map(column).collect())
+    }
+}
+
+fn room<T>(rows: u64) -> Result<Vec<T>, ExportError> {
+    let memory = || ExportError::Memory { rows };
+    let mut column = Vec::new();
+    let length = usize::try_from(rows).map_err(|_| memory())?;
+    column.try_reserve_exact(length).map_err(|_| memory())?;
+    Ok(column)
+}
+
+impl<S: Number> Rows<S> for Columns<S> {
+    fn row(&mut self, step: u64, t: f64, values: &[S]) -> Result<(), ExportError> {
+        self.step.push(step);
+        self.t.push(t);
+        for (column, &value) in self.values.iter_mut().zip(values) {
+            column.push(value);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,44 @@
+//! The float types as a value, for callers that choose one at run time.
+
+use std::fmt;
+
+/// A float type in which a trajectory can be computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum FloatType {
+    /// Double precision, 53 bits.
+    #[default]
+    F64,
+    /// Single precision, 24 bits.
+    F32,
+    /// IEEE half precision, 11 bits, rounded after every operation.
+    F16,
+    /// The upper half of an `f32`, 8 bits, rounded after every operation.
+    Bf16,
+}
+
+impl FloatType {
+    /// All of them, by falling precision.
+    pub const ALL: [FloatType; 4] =
+        [FloatType::F64, FloatType::F32, FloatType::F16, FloatType::Bf16];
+
+    /// Name on the command line and in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            FloatType::F64 => "f64",
+            FloatType::F32 => "f32",
+            FloatType::F16 => "f16",
+            FloatType::Bf16 => "bf16",
+        }
+    }
+
+    /// The float type of that name, if there is one.
+    pub fn from_name(name: &str) -> Option<FloatType> {
+        FloatType::ALL.into_iter().find(|f| f.name() == name)
+    }
+}
+
+impl fmt::Display for FloatType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

@@ -1,0 +1,134 @@
+//! What trajectory is asked for.
+
+use libration::catalog::Allowed;
+use libration::{AnySystem, Float, Method};
+
+use super::{FloatType, TrajectoryError, units};
+
+/// Largest number of values in a table: 8 GB of them, 2·10⁸ rows in one dimension.
+const MOST_VALUES: u64 = 1_000_000_000;
+
+/// A system, how to step it, from where, and which steps to keep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// The system.
+    pub system: AnySystem,
+    /// The integrator.
+    pub method: Method,
+    /// The float type in which everything but the time is computed.
+    pub float: FloatType,
+    /// The time step in seconds.
+    pub dt: f64,
+    /// Number of steps.
+    pub steps: u64,
+    /// Initial positions.
+    pub q: Vec<f64>,
+    /// Initial velocities.
+    pub v: Vec<f64>,
+    /// Keep the start, each step that is a multiple of this, and the last step.
+    pub every: u64,
+}
+
+impl Request {
+    /// Names of the columns, from left to right.
+    pub fn column_names(&self) -> Vec<String> {
+        let coordinates = |x, d| (0..d).map(move |i| format!("{x}{i}"));
+        let mut names = vec!["step".to_owned(), "t".to_owned()];
+        names.extend(coordinates('q', self.q.len()));
+        names.extend(coordinates('v', self.v.len()));
+        names.push("energy".to_owned());
+        names
+    }
+
+    /// Units of the columns, from left to right.
+    pub fn column_units(&self) -> Vec<&'static str> {
+        units::of_columns(self.system, self.q.len())
+    }
+
+    /// Number of rows if the state stays finite.
+    pub fn rows(&self) -> u64 {
+        let every = self.every.max(1);
+        (self.steps / every).saturating_add(1 + u64::from(!self.steps.is_multiple_of(every)))
+    }
+
+    /// Checks every value, and that the float type `S` can hold it.
+    pub(super) fn check<S: Float>(&self) -> Result<(), TrajectoryError> {
+        self.check_start::<S>()?;
+        self.check_time_step::<S>()?;
+        self.check_parameters::<S>()?;
+        for (name, count) in [("steps", self.steps), ("every", self.every)] {
+            if count == 0 {
+                return Err(wrong(name, count, "at least 1"));
+            }
+        }
+        self.check_rows()
+    }
+
+    fn check_start<S: Float>(&self) -> Result<(), TrajectoryError> {
+        let dimension = self.q.len();
+        let entry = self.system.entry();
+        if !entry.dimensions.contains(&dimension) {
+            return Err(entry.wrong_dimension(dimension).into());
+        }
+        if self.v.len() != dimension {
+            let allowed = format!("as many numbers as `q` has, {dimension}");
+            return Err(wrong("v", list(&self.v), allowed));
+        }
+        for (name, values) in [("q", &self.q), ("v", &self.v)] {
+            if !values.iter().all(|&x| S::from_f64(x).is_finite()) {
+                let allowed = format!("finite in {}", S::NAME);
+                return Err(wrong(name, list(values), allowed));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_time_step<S: Float>(&self) -> Result<(), TrajectoryError> {
+        let dt = format!("{:?}", self.dt);
+        if !Allowed::Positive.admits(self.dt) {
+            return Err(wrong("dt", dt, Allowed::Positive));
+        }
+        let rounded = S::from_f64(self.dt).to_f64();
+        if !Allowed::Positive.admits(rounded) {
+            let allowed = format!("{} in {}, where it is {rounded}", Allowed::Positive, S::NAME);
+            return Err(wrong("dt", dt, allowed));
+        }
+        Ok(())
+    }
+
+    fn check_parameters<S: Float>(&self) -> Result<(), TrajectoryError> {
+        for (name, value) in self.system.parameters() {
+            let rounded = S::from_f64(value).to_f64();
+            if !rounded.is_finite() || (rounded == 0.0) != (value == 0.0) {
+                let system = self.system.name();
+                let float = S::NAME;
+                return Err(TrajectoryError::Parameter { system, name, value, rounded, float });
+            }
+        }
+        Ok(())
+    }
+
+    fn check_rows(&self) -> Result<(), TrajectoryError> {
+        let columns = self.column_names().len() as u64;
+        let most = MOST_VALUES / columns;
+        let rows = self.rows();
+        if rows <= most {
+            return Ok(());
+        }
+        // Besides each `every`-th step there are the start and perhaps the last step.
+        let least = self.steps.div_ceil(most - 2);
+        let allowed = format!(
+            "at least {least}: {} steps make {rows} rows, and a table holds at most {most}",
+            self.steps
+        );
+        Err(wrong("every", self.every, allowed))
+    }
+}
+
+fn wrong(name: &'static str, value: impl ToString, allowed: impl ToString) -> TrajectoryError {
+    TrajectoryError::Value { name, value: value.to_string(), allowed: allowed.to_string() }
+}
+
+fn list(values: &[f64]) -> String {
+    values.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+}
