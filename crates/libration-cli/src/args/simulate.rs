@@ -6,7 +6,8 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use libration_lab::trajectory::{FloatType, Format};
 
-use super::{StepArgs, SystemArgs, steps, whole_number};
+use super::number::{steps, whole_number};
+use super::{StepArgs, SystemArgs};
 
 /// What `simulate` takes.
 #[derive(Args, Debug)]

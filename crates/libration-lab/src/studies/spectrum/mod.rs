@@ -91,7 +91,7 @@ fn steps(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
             "1",
             theory.radius_minus_one,
             run.radius_minus_one,
-            "20 roundings a step that add up like √n, over n steps",
+            "20 roundings a step that add up like √n, over n steps, and 4 of the coefficients",
         ));
         if let (Some((_, predicted)), Some(measured)) = (theory.angle, run.phase_error) {
             record.find(find(
@@ -100,7 +100,7 @@ fn steps(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
                 "rad",
                 predicted,
                 measured,
-                "20 roundings a step that add up like √n, over n steps, and those of nθ",
+                "20 roundings a step that add up like √n, over n steps, 4 of the coefficients and of nθ",
             ));
         }
         let rounding = "40 roundings of the largest product of entries";
@@ -212,7 +212,7 @@ fn limits(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
 
 /// Maps of the spectral radius over the complex plane.
 fn regions(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let side = lab.effort.choose(81, 161, 321);
+    let side = lab.effort.choose(61, 121, 241);
     let maps = lab.sweep("stability regions", &lab.config.integrators, |&method| {
         Ok(Region::new(method, side).into_series(method))
     })?;

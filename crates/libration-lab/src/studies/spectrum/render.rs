@@ -99,15 +99,18 @@ fn regions(record: &Record, shown: &[(Method, f64)]) -> Result<Figure, RecordErr
         let side = (radius.len() as f64).sqrt() as usize;
         let x: Vec<f64> = series.column("re")?[..side].to_vec();
         let y: Vec<f64> = series.column("im")?.iter().step_by(side).copied().collect();
-        let z: Vec<f64> = radius.iter().map(|r| r.log10().clamp(-1.0, 1.0)).collect();
-        let grid = Grid { x, y, z };
+        let exact: Vec<f64> = radius.iter().map(|r| r.log10().clamp(-1.0, 1.0)).collect();
+        // The contour needs all digits, the colours no more than can be seen.
+        let seen = exact.iter().map(|r| (r * 100.0).round() / 100.0).collect();
+        let raster = Grid { x: x.clone(), y: y.clone(), z: seen };
+        let grid = Grid { x, y, z: exact };
         let mut panel = Panel::new(
             Axis::linear("Re λΔt").range(REAL[0], REAL[1]),
             Axis::linear("Im λΔt").range(IMAGINARY[0], IMAGINARY[1]),
         )
         .title(method.title())
         .mark(Mark::raster(
-            grid.clone(),
+            raster,
             Colors::new("log₁₀ ρ").map(ColorMap::Diverging).range(-1.0, 1.0),
         ))
         .mark(Mark::contour(grid, [0.0]).ink(Ink::Theory))

@@ -93,8 +93,10 @@ impl Run {
         let (n, determinant) = (steps as f64, after.determinant());
         let radius_minus_one = (determinant.abs().ln() / (2.0 * n)).exp_m1();
         // Roundings of a step are independent; n of them add up like √n, and 20 covers the number
-        // of operations of a step and their coefficients.
+        // of operations of a step. Rounded coefficients such as Δt/6 are the same at every step.
+        let exact = oscillator.omega2.sqrt() * dt;
         let rounding = 20.0 * U * n.sqrt();
+        let coefficients = 4.0 * U * exact;
         let phase_error = theory.angle.map(|(angle, _)| {
             let half = after.trace() / 2.0;
             let folded = (determinant - half * half).max(0.0).sqrt().atan2(half);
@@ -105,17 +107,16 @@ impl Run {
             } else {
                 (turns + 1.0) * std::f64::consts::TAU - folded
             };
-            let exact = oscillator.omega2.sqrt() * dt;
             Measured {
                 value: total / n - exact,
-                rounding: (rounding + 4.0 * U * total) / n + 4.0 * U * exact,
+                rounding: (rounding + 4.0 * U * total) / n + coefficients,
             }
         });
         Ok(Run {
             steps,
             radius_minus_one: Measured {
                 value: radius_minus_one,
-                rounding: rounding / n + 4.0 * U * radius_minus_one.abs(),
+                rounding: rounding / n + coefficients,
             },
             phase_error,
         })
