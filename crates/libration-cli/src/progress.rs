@@ -1,10 +1,11 @@
 //! How far the work is, told on stderr.
 
+use std::fmt::Write;
 use std::io::{IsTerminal, stderr};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use libration_lab::Progress;
 
 use crate::terminal;
@@ -54,7 +55,7 @@ impl Reporter {
 impl Progress for Reporter {
     fn study(&self, name: &str, number: usize, of: usize) {
         match self {
-            Reporter::Bars(bars) => bars.lock().study = format!("{name} ({number} of {of})"),
+            Reporter::Bars(bars) => bars.lock().study = format!("{name} {number}/{of}"),
             Reporter::Lines => terminal::say(&format!("study {number} of {of}: {name}")),
             Reporter::Quiet => {}
         }
@@ -63,9 +64,10 @@ impl Progress for Reporter {
     fn begin(&self, what: &str, total: usize) {
         if let Reporter::Bars(bars) = self {
             let mut state = bars.lock();
-            let bar = ProgressBar::new(total as u64).with_style(style());
-            bar.set_prefix(state.study.clone());
-            bar.set_message(what.to_owned());
+            let bar = ProgressBar::new(total as u64)
+                .with_prefix(state.study.clone())
+                .with_message(what.to_owned())
+                .with_style(style());
             bar.enable_steady_tick(Duration::from_millis(200));
             state.bars.push(bar);
         }
@@ -95,9 +97,21 @@ impl Bars {
     }
 }
 
-/// Name of the study, what it does, a bar, time left. Bars have no colour.
+/// The study, a bar, the time left, and what is being done, cut where the terminal ends.
 fn style() -> ProgressStyle {
-    let template = "{prefix}  {msg}  {wide_bar} {pos}/{len}  {eta} left";
+    let template = "{prefix}  {bar:20} {pos}/{len}  {left}  {wide_msg}";
     let style = ProgressStyle::with_template(template);
-    style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("━╸─")
+    style
+        .unwrap_or_else(|_| ProgressStyle::default_bar())
+        .with_key("left", time_left)
+        .progress_chars("━╸─")
+}
+
+/// An estimate, once there is something to estimate from.
+fn time_left(state: &ProgressState, out: &mut dyn Write) {
+    // An error here would only leave the estimate out.
+    let _ = match state.pos() {
+        0 => write!(out, "estimating"),
+        _ => write!(out, "{:#} left", HumanDuration(state.eta())),
+    };
 }

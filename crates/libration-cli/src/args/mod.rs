@@ -1,5 +1,6 @@
 //! The command line as types: what can be asked, and in which words.
 
+mod number;
 mod simulate;
 mod system;
 
@@ -7,13 +8,13 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{ArgMatches, Args, ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Args, ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
 use libration_lab::{Effort, studies};
 
 use crate::error::Failure;
 
 pub(crate) use simulate::SimulateArgs;
-pub(crate) use system::{Setting, StepArgs, SystemArgs, steps, whole_number};
+pub(crate) use system::{Setting, StepArgs, SystemArgs};
 
 /// A laboratory for the stability of simulations: what theory predicts beside what was measured.
 #[derive(Debug, Parser)]
@@ -117,9 +118,15 @@ pub(crate) fn parse() -> Result<Arguments, Failure> {
 
 /// The colour that is asked for, even if the rest of the command line is wrong.
 fn asked_color(words: &[OsString]) -> ColorChoice {
-    let lenient = Arguments::command().ignore_errors(true).disable_help_flag(true);
-    let color = |matches: &ArgMatches| matches.get_one::<ColorChoice>("color").copied();
-    lenient.try_get_matches_from(words).ok().as_ref().and_then(color).unwrap_or_default()
+    let words: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
+    let next = words.iter().skip(1).map(AsRef::as_ref).chain([""]);
+    let choices =
+        words.iter().zip(next).filter_map(|(word, next)| match word.strip_prefix("--color") {
+            Some("") => next.parse().ok(),
+            Some(value) => value.strip_prefix('=')?.parse().ok(),
+            None => None,
+        });
+    choices.last().unwrap_or_default()
 }
 
 fn study_names() -> PossibleValuesParser {

@@ -1,19 +1,18 @@
 //! The flags that choose a system, a start and a step; shared by the commands that simulate.
 
-use std::fmt;
-
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use libration::catalog::{Allowed, ENTRIES, Entry};
-use libration::{AnySystem, Method, State, with_system};
-use libration_lab::config::limits;
+use libration::catalog::{ENTRIES, Entry};
+use libration::{AnySystem, CatalogError, Method, State, with_system};
+use libration_lab::config::names;
 
+use super::number::{Coordinates, assignment, coordinates, time_step};
 use crate::error::Failure;
 
 /// Which system, with which parameters, from where.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SystemArgs {
-    /// The system
+    /// The system; `libration list` shows them with their parameters
     #[arg(long, value_name = "NAME", value_parser = system_names(), hide_possible_values = true)]
     pub(crate) system: String,
     /// A parameter of the system, as in `omega2=10`; may be repeated
@@ -30,17 +29,13 @@ pub(crate) struct SystemArgs {
 /// Which integrator, with which time step.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct StepArgs {
-    /// The integrator
+    /// The integrator; `libration list` shows them
     #[arg(long, value_name = "NAME", value_parser = integrators(), hide_possible_values = true)]
     pub(crate) integrator: Method,
     /// Time step in s
     #[arg(long, value_name = "SECONDS", value_parser = time_step, allow_hyphen_values = true)]
     pub(crate) dt: f64,
 }
-
-/// The coordinates of one flag.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Coordinates(Vec<f64>);
 
 /// A system that can be simulated: `q` and `v` are as long as one of its dimensions.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,7 +54,7 @@ impl SystemArgs {
     /// # Errors
     /// Wrong input: a parameter that is unknown or not allowed, or a wrong number of coordinates.
     pub(crate) fn resolve(&self) -> Result<Setting, Failure> {
-        let system = AnySystem::build(&self.system, &self.set).map_err(Failure::usage)?;
+        let system = AnySystem::build(&self.system, &self.set).map_err(wrong_parameter)?;
         let entry = system.entry();
         for (flag, given) in [("--q", &self.q), ("--v", &self.v)] {
             match given {
@@ -93,17 +88,26 @@ fn default_start<const D: usize>(entry: &Entry) -> (Vec<f64>, Vec<f64>) {
     start.map(|State { q, v }| (q.to_vec(), v.to_vec())).unwrap_or_default()
 }
 
+fn wrong_parameter(error: CatalogError) -> Failure {
+    let near = match &error {
+        CatalogError::UnknownParameter { name, known, .. } => {
+            names::nearest(name, known.iter().map(|p| p.name))
+        }
+        _ => None,
+    };
+    let hint = near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
+    Failure::usage(format!("{error}{hint} (--set)"))
+}
+
 fn wrong_count(entry: &Entry, flag: &str, given: &Coordinates) -> Failure {
-    let (low, high) = (entry.dimensions.start(), entry.dimensions.end());
-    let needed = match (low, high) {
+    let needed = match (entry.dimensions.start(), entry.dimensions.end()) {
         (1, 1) => "1 number".to_owned(),
         (low, high) if low == high => format!("{low} numbers, separated by commas"),
         (low, high) => format!("{low} to {high} numbers, separated by commas"),
     };
     let (name, count) = (entry.name, given.0.len());
-    Failure::usage(format!(
-        "{flag} has {count} coordinates in `{given}`, but {name} takes {needed}"
-    ))
+    let noun = if count == 1 { "coordinate" } else { "coordinates" };
+    Failure::usage(format!("{flag} `{given}` has {count} {noun}, but {name} takes {needed}"))
 }
 
 fn unequal_counts(q: &Coordinates, v: &Coordinates) -> Failure {
@@ -111,69 +115,6 @@ fn unequal_counts(q: &Coordinates, v: &Coordinates) -> Failure {
     Failure::usage(format!(
         "--q `{q}` and --v `{v}` have {of_q} and {of_v} coordinates, but they must have equally many"
     ))
-}
-
-impl fmt::Display for Coordinates {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let words: Vec<String> = self.0.iter().map(f64::to_string).collect();
-        f.write_str(&words.join(","))
-    }
-}
-
-/// Reads coordinates: finite numbers, separated by commas.
-fn coordinates(text: &str) -> Result<Coordinates, String> {
-    text.split(',').map(coordinate).collect::<Result<_, _>>().map(Coordinates)
-}
-
-fn coordinate(word: &str) -> Result<f64, String> {
-    let word = word.trim();
-    let rule = "coordinates are finite numbers, separated by commas, as in 1,-0.5";
-    match word.parse::<f64>() {
-        _ if word.is_empty() => Err(format!("a coordinate is missing; {rule}")),
-        Ok(x) if Allowed::Finite.admits(x) => Ok(x),
-        Ok(_) => Err(format!("`{word}` is not finite; {rule}")),
-        Err(_) => Err(format!("`{word}` is not a number; {rule}")),
-    }
-}
-
-/// Reads `KEY=VALUE`; which keys and values there are depends on the system.
-fn assignment(text: &str) -> Result<(String, f64), String> {
-    let (key, value) =
-        text.split_once('=').ok_or("it must be KEY=VALUE, as in omega2=10".to_owned())?;
-    let (key, value) = (key.trim(), value.trim());
-    if key.is_empty() {
-        return Err("the key is missing; it must be KEY=VALUE, as in omega2=10".into());
-    }
-    let value = value.parse().map_err(|_| format!("the value `{value}` is not a number"))?;
-    Ok((key.to_owned(), value))
-}
-
-/// Reads a time step.
-fn time_step(text: &str) -> Result<f64, String> {
-    let dt = text
-        .trim()
-        .parse()
-        .map_err(|_| format!("it is not a number; a time step must be {}", limits::TIME_STEP))?;
-    limits::within(limits::TIME_STEP, "--dt", dt)?;
-    Ok(dt)
-}
-
-/// Reads a number of steps; also as `1e6`.
-pub(crate) fn steps(text: &str) -> Result<u64, String> {
-    let steps = whole_number(text).ok_or_else(|| {
-        format!("it is not a whole number; steps must be {}", limits::steps_allowed())
-    })?;
-    limits::steps(steps)
-}
-
-/// The whole number that `text` stands for, written as `1000` or `1e3`.
-pub(crate) fn whole_number(text: &str) -> Option<i128> {
-    let text = text.trim();
-    let with_exponent = || {
-        let x: f64 = text.parse().ok()?;
-        (x.fract() == 0.0).then_some(x as i128)
-    };
-    text.parse().ok().or_else(with_exponent)
 }
 
 fn system_names() -> PossibleValuesParser {
@@ -186,3 +127,6 @@ fn integrators() -> impl TypedValueParser<Value = Method> {
     PossibleValuesParser::new(Method::ALL.map(value))
         .try_map(|name| Method::from_name(&name).ok_or("unknown integrator"))
 }
+
+#[cfg(test)]
+mod tests;

@@ -29,11 +29,18 @@ pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
         terminal::print(&summary(&results, &report))?;
     }
     if args.open {
-        open::that_detached(&report).map_err(|error| {
-            Failure::run(format!("cannot show `{}`: {error}", report.display()))
-        })?;
+        show(&report)?;
     }
     judge(&results)
+}
+
+/// Opens the report in the program that shows HTML.
+fn show(report: &Path) -> Result<(), Failure> {
+    // Some of these programs start in another folder.
+    report
+        .canonicalize()
+        .and_then(open::that_detached)
+        .map_err(|error| Failure::run(format!("cannot show `{}`: {error}", report.display())))
 }
 
 /// The configuration that the file and the flags make together; flags win.
@@ -134,4 +141,55 @@ fn disagreement(finding: &Finding) -> String {
         "the finding `{id}` disagrees: predicted {predicted}, measured {measured:?}, \
          tolerance {tolerance}, in units of {unit}\n  {text}"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use libration_lab::Machine;
+    use libration_lab::record::Tolerance;
+
+    use super::*;
+
+    /// Two studies; a finding of the second is `measured` where theory says 1.
+    fn results(measured: f64) -> Results {
+        let mut first = Record::new("spectrum", "?");
+        first.find(Finding::measured("spectrum.x", "", "s", 3.0));
+        let mut second = Record::new("drift", "?");
+        let tolerance = Tolerance::absolute(1e-6, "rounding");
+        let finding =
+            Finding::predicted("drift.rk4", "drift of RK4", "J", 1.0, measured, tolerance);
+        second.find(finding);
+        second.seconds = 12.345;
+        Results {
+            schema: session::SCHEMA,
+            machine: Machine::detect(),
+            config: Config::default(),
+            seconds: 13.0,
+            complete: true,
+            studies: vec![first, second],
+        }
+    }
+
+    #[test]
+    fn the_summary_has_a_line_for_each_study_and_names_the_report() {
+        let expected = "\
+study     findings agree  claims  seconds
+spectrum          0 of 0       0      0.0
+drift             1 of 1       0     12.3
+
+report: out/report.html
+";
+        assert_eq!(summary(&results(1.0), Path::new("out/report.html")), expected);
+    }
+
+    #[test]
+    fn a_finding_that_disagrees_fails_the_run_and_is_named() {
+        assert!(judge(&results(1.0)).is_ok());
+        let wrong = results(2.0);
+        assert!(matches!(judge(&wrong), Err(Failure::Disagreement)));
+        let named = wrong.studies[1].disagreements().map(disagreement).collect::<Vec<_>>();
+        let expected = "the finding `drift.rk4` disagrees: predicted 1.0, measured 2.0, \
+                        tolerance 1e-6, in units of J\n  drift of RK4";
+        assert_eq!(named, [expected]);
+    }
 }

@@ -49,44 +49,36 @@ fn system_json(entry: &Entry) -> Value {
 fn as_text() -> String {
     let studies: Vec<_> = studies::ALL.iter().map(|s| (s.name(), s.question())).collect();
     let integrators = Method::ALL.map(|m| (m.name(), m.summary()));
-    let mut text = section("Studies", &studies);
-    text.push_str(&section("Integrators", &integrators));
-    text.push_str("Systems\n");
-    ENTRIES.iter().for_each(|entry| text.push_str(&system_text(entry)));
-    text
+    let systems: String = ENTRIES.iter().map(|entry| system_text(entry)).collect();
+    let (studies, integrators) = (lines(&studies), lines(&integrators));
+    format!("Studies\n{studies}\nSystems\n{systems}\nIntegrators\n{integrators}")
 }
 
-/// A heading, and a line for each name.
-fn section(heading: &str, lines: &[(&str, &str)]) -> String {
-    let width = lines.iter().map(|(name, _)| name.len()).max().unwrap_or_default();
-    let mut text = format!("{heading}\n");
-    for (name, about) in lines {
-        text.push_str(&entry(&format!("  {name:width$}  "), about));
-    }
-    text + "\n"
+/// A line for each name.
+fn lines(names: &[(&str, &str)]) -> String {
+    let width = names.iter().map(|(name, _)| name.len()).max().unwrap_or_default();
+    names.iter().map(|(name, about)| line(&format!("  {name:width$}  "), about)).collect()
 }
 
+/// A line for the system, and one for each parameter.
 fn system_text(system: &Entry) -> String {
     let dimensions = match (system.dimensions.start(), system.dimensions.end()) {
         (1, 1) => "1 dimension".to_owned(),
         (low, high) if low == high => format!("{low} dimensions"),
         (low, high) => format!("{low} to {high} dimensions"),
     };
-    let mut text =
-        entry(&format!("  {}  ", system.name), &format!("{dimensions}; {}", system.summary));
-    for p in system.parameters {
-        let line = format!("{}; {}", p.summary, p.allowed);
-        text.push_str(&entry(
-            &format!("    {:<9}  {:>4?} {:<8}  ", p.name, p.default, p.unit),
-            &line,
-        ));
-    }
-    text + "\n"
+    let about = format!("{} ({dimensions})", system.summary);
+    let parameters = system.parameters.iter().map(|p| {
+        let label = format!("    {:<9}  {:>4} {:<9}  ", p.name, p.default, p.unit);
+        line(&label, &format!("{}; {}", p.summary, p.allowed))
+    });
+    line(&format!("  {}  ", system.name), &about) + &parameters.collect::<String>()
 }
 
 /// `text` after `label`, wrapped so that no line is wider than the page.
-fn entry(label: &str, text: &str) -> String {
+fn line(label: &str, text: &str) -> String {
     const PAGE: usize = 100;
+    // Columns are counted in characters.
     let indent = label.chars().count();
     let (mut lines, mut column) = (label.to_owned(), indent);
     for word in text.split_whitespace() {

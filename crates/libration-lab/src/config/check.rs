@@ -96,9 +96,7 @@ impl Config {
                 return Err(fault(format!("the time step {step:?} stands in `drift.dt` twice")));
             }
         }
-        let steps = i128::from(self.drift.steps);
-        limits::steps(steps).map_err(|e| Fault::new("drift.steps", e))?;
-        Ok(())
+        steps("drift.steps", self.drift.steps.into()).map(drop)
     }
 }
 
@@ -126,7 +124,7 @@ impl Start {
         number("start.q", limits::COORDINATE, self.q)?;
         number("start.v", limits::COORDINATE, self.v)?;
         if self.q == 0.0 && self.v == 0.0 {
-            let rest = "q = 0 and v = 0 is rest, where nothing moves; one of them must not be 0";
+            let rest = "`start.q` and `start.v` are both 0, where nothing moves; one must not be 0";
             return Err(Fault::new("start.q", rest));
         }
         let energy = spring.system().energy(&State { q: [self.q], v: [self.v] });
@@ -135,8 +133,8 @@ impl Start {
         }
         let (q, v) = (self.q, self.v);
         let message = format!(
-            "the energy at q = {q:?}, v = {v:?} is {energy:?} J/kg, but it must be finite and \
-             greater than 0"
+            "the energy at `start.q` = {q:?}, `start.v` = {v:?} is {energy:?} J/kg, but it must be \
+             finite and large enough for all digits of an f64"
         );
         Err(Fault::new("start.q", message))
     }
@@ -144,4 +142,8 @@ impl Start {
 
 fn number(key: &'static str, allowed: Allowed, value: f64) -> Result<(), Fault> {
     within(allowed, key, value).map(drop).map_err(|message| Fault::new(key, message))
+}
+
+pub(super) fn steps(key: &'static str, value: i128) -> Result<u64, Fault> {
+    limits::steps(key, value).map_err(|message| Fault::new(key, message))
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::locate::Document;
 use super::value::{Count, Number};
-use super::{Config, ConfigError, Drift, Fault, Spectrum, Spring, Start, names, schema};
+use super::{Config, ConfigError, Drift, Fault, Spectrum, Spring, Start, check, names, schema};
 use crate::Effort;
 
 /// The default configuration with comments, ready to edit.
@@ -168,8 +168,7 @@ impl TryFrom<File> for Config {
                 fault.help(names::suggest("integrators", name, Method::ALL.map(Method::name)))
             })
         };
-        let steps = super::limits::steps(drift.steps.0)
-            .map_err(|message| Fault::new("drift.steps", message))?;
+        let steps = check::steps("drift.steps", drift.steps.0)?;
         Ok(Config {
             studies,
             effort,

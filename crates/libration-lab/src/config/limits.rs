@@ -25,14 +25,14 @@ pub fn within(allowed: Allowed, what: &str, value: f64) -> Result<f64, String> {
     }
 }
 
-/// `steps`, if it is an allowed number of steps.
+/// `steps`, if it is an allowed number of steps for `what`.
 ///
 /// # Errors
 /// A sentence that names the value and what is allowed.
-pub fn steps(steps: i128) -> Result<u64, String> {
+pub fn steps(what: &str, steps: i128) -> Result<u64, String> {
     match u64::try_from(steps) {
         Ok(allowed) if STEPS.contains(&allowed) => Ok(allowed),
-        _ => Err(format!("the number of steps is {steps}, but it must be {}", steps_allowed())),
+        _ => Err(format!("`{what}` is {steps}, but it must be {}", steps_allowed())),
     }
 }
 

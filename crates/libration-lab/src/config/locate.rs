@@ -49,13 +49,14 @@ impl<'a> Document<'a> {
         ConfigError::new(self.file, self.text, span, message, help)
     }
 
-    /// Where the value of `key` stands, or else the table that it belongs to.
+    /// Where the value of `key` stands; if it is a default, then the first value that stands in
+    /// its table, or else the table.
     fn find(&self, key: &str, index: Option<usize>) -> Range<usize> {
         let mut table = self.table.get_ref();
         let mut span = 0..0;
         for part in key.split('.') {
             let Some((name, value)) = table.iter().find(|(name, _)| name.get_ref() == part) else {
-                return span;
+                return table.values().next().map_or(span, Spanned::span);
             };
             match value.get_ref() {
                 DeValue::Table(inner) => {

@@ -1,0 +1,77 @@
+//! Numbers as flags take them.
+
+use std::fmt;
+
+use libration_lab::config::limits;
+
+/// The coordinates of one flag.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Coordinates(pub(super) Vec<f64>);
+
+impl fmt::Display for Coordinates {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words: Vec<String> = self.0.iter().map(f64::to_string).collect();
+        f.write_str(&words.join(","))
+    }
+}
+
+/// Reads coordinates: finite numbers, separated by commas.
+pub(super) fn coordinates(text: &str) -> Result<Coordinates, String> {
+    text.split(',').map(coordinate).collect::<Result<_, _>>().map(Coordinates)
+}
+
+fn coordinate(word: &str) -> Result<f64, String> {
+    let word = word.trim();
+    let rule = "coordinates are finite numbers, separated by commas, as in 1,-0.5";
+    match word.parse::<f64>() {
+        _ if word.is_empty() => Err(format!("a coordinate is missing; {rule}")),
+        Ok(x) if limits::COORDINATE.admits(x) => Ok(x),
+        Ok(_) => Err(format!("`{word}` is not finite; {rule}")),
+        Err(_) => Err(format!("`{word}` is not a number; {rule}")),
+    }
+}
+
+/// Reads `KEY=VALUE`; which keys and values there are depends on the system.
+pub(super) fn assignment(text: &str) -> Result<(String, f64), String> {
+    let (key, value) =
+        text.split_once('=').ok_or("it must be KEY=VALUE, as in omega2=10".to_owned())?;
+    let (key, value) = (key.trim(), value.trim());
+    if key.is_empty() {
+        return Err("the key is missing; it must be KEY=VALUE, as in omega2=10".into());
+    }
+    let value = value.parse().map_err(|_| format!("the value `{value}` is not a number"))?;
+    Ok((key.to_owned(), value))
+}
+
+/// Reads a time step.
+pub(super) fn time_step(text: &str) -> Result<f64, String> {
+    let dt = text
+        .trim()
+        .parse()
+        .map_err(|_| format!("it is not a number; a time step must be {}", limits::TIME_STEP))?;
+    limits::within(limits::TIME_STEP, "--dt", dt)?;
+    Ok(dt)
+}
+
+/// Reads a number of steps; also as `1e6`.
+pub(super) fn steps(text: &str) -> Result<u64, String> {
+    let steps = whole(text).ok_or_else(|| {
+        format!("it is not a whole number; steps must be {}", limits::steps_allowed())
+    })?;
+    limits::steps("--steps", steps)
+}
+
+/// Reads a stride; also as `1e3`.
+pub(super) fn stride(text: &str) -> Result<u64, String> {
+    let stride = whole(text).and_then(|n| u64::try_from(n).ok()).filter(|&n| n >= 1);
+    stride.ok_or_else(|| "it must be a whole number of at least 1".to_owned())
+}
+
+fn whole(text: &str) -> Option<i128> {
+    let text = text.trim();
+    let with_exponent = || {
+        let x: f64 = text.parse().ok()?;
+        (x.fract() == 0.0).then_some(x as i128)
+    };
+    text.parse().ok().or_else(with_exponent)
+}

@@ -1,0 +1,108 @@
+//! What the shared flags take, and what they say about what they do not take.
+
+use clap::Parser;
+
+use super::super::number::steps;
+use super::*;
+
+/// A command that simulates.
+#[derive(Debug, Parser)]
+struct Probe {
+    #[command(flatten)]
+    system: SystemArgs,
+    #[command(flatten)]
+    step: StepArgs,
+    #[arg(long, value_parser = steps, allow_hyphen_values = true, default_value = "10")]
+    steps: u64,
+}
+
+/// The outcome of a command line that starts with a system, an integrator and a time step.
+fn probe(system: &str, flags: &str) -> Result<(Probe, Setting), String> {
+    let start = format!("probe --system {system} --integrator rk4 --dt 0.01 {flags}");
+    parse(&start)
+}
+
+fn parse(line: &str) -> Result<(Probe, Setting), String> {
+    let probe = Probe::try_parse_from(line.split(' ').filter(|word| !word.is_empty()))
+        .map_err(|error| error.to_string())?;
+    match probe.system.resolve() {
+        Ok(setting) => Ok((probe, setting)),
+        Err(Failure::Usage(message)) => Err(message),
+        Err(other) => panic!("not a usage error: {other:?}"),
+    }
+}
+
+fn start(system: &str, flags: &str) -> (Vec<f64>, Vec<f64>) {
+    let (_, setting) = probe(system, flags).unwrap();
+    (setting.q, setting.v)
+}
+
+#[test]
+fn a_start_is_read_or_comes_from_the_catalogue() {
+    assert_eq!(start("oscillator", ""), (vec![1.0], vec![0.0]));
+    assert_eq!(start("oscillator", "--q 2"), (vec![2.0], vec![0.0]));
+    assert_eq!(start("oscillator", "--v -0.3"), (vec![1.0], vec![-0.3]));
+    assert_eq!(start("oscillator", "--q=-1,2 --v=-.5,1e-3"), (vec![-1.0, 2.0], vec![-0.5, 1e-3]));
+    assert_eq!(start("oscillator", "--q -1,2,3"), (vec![-1.0, 2.0, 3.0], vec![0.0; 3]));
+    assert_eq!(start("kepler", ""), (vec![0.4, 0.0], vec![0.0, 2.0]));
+    assert_eq!(start("kepler", "--v 0,1"), (vec![0.4, 0.0], vec![0.0, 1.0]));
+}
+
+#[test]
+fn the_other_flags_are_read() {
+    let (probe, setting) = probe("oscillator", "--set k=4 --set m=2 --steps 1e6").unwrap();
+    assert_eq!(setting.system.parameters(), [("omega2", 2.0)]);
+    assert_eq!((probe.step.integrator, probe.step.dt), (Method::Rk4, 0.01));
+    assert_eq!(probe.steps, 1_000_000);
+}
+
+#[test]
+fn wrong_input_is_named_with_what_is_allowed() {
+    let cases: &[(&str, &str, &[&str])] = &[
+        ("oscilator", "", &["'oscilator'", "--system", "'oscillator'", "kepler"]),
+        ("kepler", "--q 1", &["--q `1` has 1 coordinate,", "kepler takes 2 numbers"]),
+        ("kepler", "--v 1,2,3", &["--v `1,2,3` has 3 coordinates", "kepler takes 2 numbers"]),
+        ("oscillator", "--q 1,2,3,4,5,6,7,8,9", &["has 9 coordinates", "1 to 8 numbers"]),
+        ("pendulum", "--q 1,2", &["--q `1,2` has 2 coordinates", "pendulum takes 1 number"]),
+        ("oscillator", "--q 1,2 --v 1", &["--q `1,2` and --v `1`", "2 and 1", "equally many"]),
+        ("oscillator", "--q 1,x", &["--q", "`x` is not a number", "separated by commas"]),
+        ("oscillator", "--q 1,", &["--q", "a coordinate is missing"]),
+        ("oscillator", "--v nan", &["--v", "`nan` is not finite"]),
+        ("oscillator", "--v -inf", &["--v", "`-inf` is not finite"]),
+        ("oscillator", "--v 1;2", &["--v", "`1;2` is not a number", "as in 1,-0.5"]),
+        ("oscillator", "--set k", &["--set", "'k'", "KEY=VALUE"]),
+        ("oscillator", "--set =1", &["--set", "the key is missing"]),
+        ("oscillator", "--set k=soft", &["--set", "`soft` is not a number"]),
+        ("oscillator", "--set k=-3", &["`k` is -3.0", "greater than 0", "--set"]),
+        ("oscillator", "--set m=0", &["`m` is 0.0", "greater than 0", "--set"]),
+        ("oscillator", "--set omga2=3", &["`omga2`", "`k`", "did you mean `omega2`?"]),
+        ("oscillator", "--set k=1 --set k=2", &["`k` is given twice"]),
+        ("oscillator", "--set k=1 --set omega2=2", &["`k`", "together with `omega2`"]),
+        ("oscillator", "--steps 0", &["'0'", "--steps", "`--steps` is 0", "must be 1 to"]),
+        ("oscillator", "--steps -5", &["--steps", "`--steps` is -5", "must be 1 to"]),
+        ("oscillator", "--steps 1.5", &["'1.5'", "--steps", "not a whole number"]),
+        ("oscillator", "--steps 1e300", &["--steps", "must be 1 to 1000000000"]),
+    ];
+    for (system, flags, parts) in cases {
+        let message = probe(system, flags).map(|_| ()).unwrap_err();
+        for part in *parts {
+            assert!(message.contains(part), "`{part}` is not in:\n{message}");
+        }
+    }
+}
+
+#[test]
+fn time_steps_and_integrators_are_checked() {
+    for (dt, value) in
+        [("0", "0.0"), ("-1", "-1.0"), ("nan", "NaN"), ("inf", "inf"), ("-inf", "-inf")]
+    {
+        let line = format!("probe --system kepler --integrator rk4 --dt {dt}");
+        let message = parse(&line).map(|_| ()).unwrap_err();
+        let expected = format!("`--dt` is {value}, but it must be finite and greater than 0");
+        assert!(message.contains(&expected), "{message}");
+    }
+    let message = parse("probe --system kepler --integrator rk5 --dt x").map(|_| ()).unwrap_err();
+    for part in ["'rk5'", "--integrator", "'rk4'", "velocity-verlet"] {
+        assert!(message.contains(part), "{message}");
+    }
+}

@@ -1,0 +1,53 @@
+//! Ctrl-C: the run ends soon, and what it finished is kept.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+/// Waits until `done` holds; panics after half a minute.
+fn wait_until(what: &str, mut done: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !done() {
+        assert!(start.elapsed() < Duration::from_secs(30), "{what}: waited in vain");
+        sleep(Duration::from_millis(10));
+    }
+}
+
+fn interrupt(child: &Child) {
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(kill.unwrap().success());
+}
+
+#[test]
+fn an_interrupted_run_leaves_valid_results() {
+    let Some(study) = libration_lab::studies::by_name("drift") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    // Hours of work, in parts of a fraction of a second.
+    let dt: Vec<String> = (1..=2000).map(|i| format!("{:?}", 1e-5 * f64::from(i))).collect();
+    let config = format!("[drift]\nsteps = 10_000_000\ndt = [{}]\n", dt.join(", "));
+    fs::write(folder.path().join("long.toml"), config).unwrap();
+    let mut child = Command::new(assert_cmd::cargo::cargo_bin("libration"))
+        .args(["lab", study.name(), "--config", "long.toml", "--out", "out"])
+        .current_dir(&folder)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let results = folder.path().join("out/results.json");
+    wait_until("the first results", || results.is_file());
+    interrupt(&child);
+    wait_until("the end", || child.try_wait().unwrap().is_some());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{output:?}");
+    assert!(output.stdout.is_empty(), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("interrupted"), "{output:?}");
+    let results: Value = serde_json::from_slice(&fs::read(results).unwrap()).unwrap();
+    assert_eq!(results["complete"], false);
+    assert_eq!(results["studies"], Value::Array(Vec::new()));
+}

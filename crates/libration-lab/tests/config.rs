@@ -1,0 +1,228 @@
+//! Configuration files: what is read, and what is said about what cannot be read.
+
+#![allow(clippy::unwrap_used)]
+
+use libration::Method;
+use libration_lab::config::{ConfigError, DEFAULT, parse, parse_bytes, schema};
+use libration_lab::{Config, Effort};
+use serde_json::{Value, json};
+
+fn error(text: &str) -> ConfigError {
+    parse(text, "mine.toml").unwrap_err()
+}
+
+/// The characters that the error points at.
+fn marked(error: &ConfigError) -> &str {
+    &error.source_text()[error.span()]
+}
+
+#[test]
+fn the_printed_default_is_the_default() {
+    assert_eq!(parse(DEFAULT, "default.toml").unwrap(), Config::default());
+}
+
+#[test]
+fn every_key_has_a_default() {
+    for text in ["", "# nothing\n", "\u{feff}", "[oscillator]\n[start]\n[drift]\n[spectrum]\n"] {
+        assert_eq!(parse(text, "").unwrap(), Config::default(), "{text:?}");
+    }
+}
+
+#[test]
+fn values_are_read() {
+    let text = "\u{feff}effort = 'quick'\r\nintegrators = ['leapfrog']\r\noscillator.k = 4\r\n\
+                start = { q = 0, v = -1 }\r\n[drift]\r\n\tdt = [1, 0.5]\r\n\tsteps = 1e3\r\n";
+    let config = parse(text, "").unwrap();
+    assert_eq!(config.effort, Effort::Quick);
+    assert_eq!(config.integrators, [Method::Leapfrog]);
+    assert_eq!((config.oscillator.m, config.oscillator.k), (1.0, 4.0));
+    assert_eq!((config.start.q, config.start.v), (0.0, -1.0));
+    assert_eq!((config.drift.dt, config.drift.steps), (vec![0.5, 1.0], 1000));
+    assert_eq!(config.spectrum, Config::default().spectrum);
+}
+
+/// Each case: a file, the characters that it is wrong about, a part of the message.
+fn assert_errors(cases: &[(&str, &str, &str)]) {
+    for (text, place, message) in cases {
+        let error = error(text);
+        assert_eq!(marked(&error), *place, "{error}");
+        assert!(error.message().contains(message), "{error}");
+    }
+}
+
+#[test]
+fn bad_values_are_named_with_what_is_allowed() {
+    assert_errors(&[
+        ("[oscillator]\nm = 0.0", "0.0", "`oscillator.m` is 0.0, but it must be finite and great"),
+        ("[oscillator]\nk = -10", "-10", "`oscillator.k` is -10.0, but it must be finite"),
+        ("[oscillator]\nk = nan", "nan", "`oscillator.k` is NaN"),
+        ("[oscillator]\nm = 1e-320", "1e-320", "omega2 = k/m = 10.0/1e-320 is inf"),
+        ("oscillator = { m = 1e200, k = 1e-200 }", "1e-200", "is 0.0, but it must be finite"),
+        ("[spectrum]\ndt = 0", "0", "`spectrum.dt` is 0.0, but it must be finite and greater"),
+        ("[spectrum]\ndt = -inf", "-inf", "`spectrum.dt` is -inf"),
+        ("[drift]\ndt = [0.1, -0.2]", "-0.2", "`drift.dt` is -0.2, but it must be finite"),
+        ("[drift]\ndt = []", "[]", "`drift.dt` must hold at least one time step"),
+        ("[drift]\ndt = [0.1, 1e-1]", "1e-1", "time step 0.1 stands in `drift.dt` twice"),
+        ("[drift]\nsteps = 0", "0", "`drift.steps` is 0, but it must be 1 to 1000000000"),
+        ("[drift]\nsteps = -5", "-5", "`drift.steps` is -5, but it must be 1 to"),
+        ("[drift]\nsteps = 2e9", "2e9", "`drift.steps` is 2000000000"),
+        ("[start]\nq = 0", "0", "`start.q` and `start.v` are both 0"),
+        ("[start]\nv = inf", "inf", "`start.v` is inf, but it must be finite"),
+        ("[start]\nq = 1e200", "1e200", "the energy at `start.q` = 1e200"),
+        ("[start]\nq = 1e-200", "1e-200", "the energy at `start.q` = 1e-200"),
+        ("integrators = []", "[]", "`integrators` must name at least one"),
+        ("integrators = ['rk4', \"rk4\"]", "\"rk4\"", "the integrator `rk4` is named twice"),
+        ("integrators = ['rk5']", "'rk5'", "unknown integrator `rk5`"),
+        ("effort = 'quik'", "'quik'", "unknown effort `quik`"),
+        ("studies = ['drft']", "'drft'", "unknown study `drft`"),
+    ]);
+}
+
+#[test]
+fn wrong_types_name_the_key_and_the_type_that_is_needed() {
+    assert_errors(&[
+        ("oscillator = 3", "3", "`oscillator`: invalid type: integer `3`, expected"),
+        (
+            "[oscillator]\nk = '10'",
+            "'10'",
+            "`oscillator.k`: invalid type: string \"10\", expected a",
+        ),
+        ("[drift]\ndt = 0.1", "0.1", "`drift.dt`: invalid type: floating point `0.1`, expected a"),
+        (
+            "[drift]\ndt = [1, true]",
+            "true",
+            "`drift.dt`: invalid type: boolean `true`, expected a n",
+        ),
+        (
+            "[drift]\nsteps = 1.5",
+            "1.5",
+            "`drift.steps`: invalid type: floating point `1.5`, expect",
+        ),
+        ("effort = 1", "1", "`effort`: invalid type: integer `1`, expected a string"),
+        ("studies = 'drift'", "'drift'", "`studies`: invalid type: string \"drift\", expected a"),
+    ]);
+}
+
+#[test]
+fn unknown_keys_are_named_with_the_nearest() {
+    let cases = [
+        ("[ocillator]\nm = 1", "ocillator", "did you mean `oscillator`?"),
+        ("[drift]\nstep = 1", "step", "did you mean `steps`? the keys are `dt`, `steps`"),
+        ("drift.DT = [1]", "DT", "did you mean `dt`?"),
+        ("zzz = 1", "zzz", "the keys are `studies`, `effort`, `integrators`, `oscillator`"),
+    ];
+    for (text, place, help) in cases {
+        let error = error(text);
+        assert_eq!(marked(&error), place, "{error}");
+        assert_eq!(error.message(), format!("unknown key `{place}`"));
+        assert!(error.help().unwrap().starts_with(help), "{error}");
+    }
+}
+
+#[test]
+fn names_are_suggested() {
+    let help = |text: &str| error(text).help().unwrap().to_owned();
+    assert!(help("integrators = ['verlet']").starts_with("did you mean `velocity-verlet`?"));
+    assert!(help("integrators = ['RK-4']").starts_with("did you mean `rk4`?"));
+    assert_eq!(help("effort = ''"), "the efforts are `quick`, `standard`, `thorough`");
+    for study in libration_lab::studies::ALL {
+        let text = format!("studies = ['{}x']", study.name());
+        assert!(help(&text).starts_with(&format!("did you mean `{}`?", study.name())), "{text}");
+    }
+}
+
+#[test]
+fn an_error_shows_the_line_with_a_caret_under_it() {
+    let shown = error("# spring\n[oscillator]\nm = 2.0\nk = -10.0  # N/m\n").to_string();
+    let expected = "\
+error: `oscillator.k` is -10.0, but it must be finite and greater than 0
+ --> mine.toml:4:5
+  |
+4 | k = -10.0  # N/m
+  |     ^^^^^";
+    assert_eq!(shown, expected);
+}
+
+#[test]
+fn tabs_line_ends_and_wide_characters_do_not_shift_the_caret() {
+    // Columns count characters; a tab is one of them, and is shown as four spaces.
+    let shown = error("\u{feff}# ∂t\r\n[start]\r\n\tq = \"∂∂\"\t# é\r\n").to_string();
+    let expected = "\
+error: `start.q`: invalid type: string \"∂∂\", expected a number
+ --> mine.toml:3:6
+  |
+3 |     q = \"∂∂\"    # é
+  |         ^^^^";
+    assert_eq!(shown, expected);
+}
+
+#[test]
+fn broken_syntax_is_shown_where_it_breaks() {
+    let shown = error("effort = \"quick\n").to_string();
+    let expected = "\
+error: invalid basic string, expected `\"`
+ --> mine.toml:1:16
+  |
+1 | effort = \"quick
+  |                ^";
+    assert_eq!(shown, expected);
+    assert!(error("effort = 1\neffort = 2").message().contains("duplicate key"));
+}
+
+#[test]
+fn bytes_that_are_not_text_are_shown() {
+    for start in [&b""[..], b"\xEF\xBB\xBF"] {
+        let bytes = [start, b"# \xC3\xA9t\xE9\n[drift]\n"].concat();
+        let error = parse_bytes(&bytes, "latin1.toml").unwrap_err();
+        assert_eq!(marked(&error), "\u{fffd}");
+        assert!(error.to_string().contains("latin1.toml:1:5"), "{error}");
+        assert!(error.message().contains("byte 0xE9"), "{error}");
+    }
+    let utf16 = parse_bytes(b"\xFF\xFE[\0d\0", "wide.toml").unwrap_err();
+    assert!(utf16.help().unwrap().contains("UTF-16"), "{utf16}");
+    assert_eq!(parse_bytes(b"", "").unwrap(), Config::default());
+}
+
+#[test]
+fn only_the_styled_error_has_colours() {
+    let error = error("zzz = 1");
+    assert!(!error.to_string().contains('\x1b'));
+    assert!(error.render_styled().contains('\x1b'));
+}
+
+#[test]
+fn the_schema_admits_the_default_and_refuses_what_the_parser_refuses() {
+    let validator = jsonschema::validator_for(&schema()).unwrap();
+    let mut config = serde_json::to_value(Config::default()).unwrap();
+    // Fails here if the schema and `Config` have different keys.
+    validator.validate(&config).unwrap();
+    for (pointer, bad) in [
+        ("/oscillator/k", json!(0)),
+        ("/oscillator/m", json!("1")),
+        ("/drift/dt", json!([])),
+        ("/drift/dt", json!([0.1, 0.1])),
+        ("/drift/steps", json!(0)),
+        ("/drift/steps", json!(1_000_000_001)),
+        ("/integrators", json!(["rk5"])),
+        ("/effort", json!("quik")),
+        ("/start", json!({ "x": 1 })),
+    ] {
+        let good = std::mem::replace(config.pointer_mut(pointer).unwrap(), bad);
+        assert!(!validator.is_valid(&config), "{pointer}: {config}");
+        *config.pointer_mut(pointer).unwrap() = good;
+    }
+}
+
+#[test]
+fn the_schema_describes_every_key() {
+    fn assert_described(value: &Value) {
+        for (key, property) in value["properties"].as_object().into_iter().flatten() {
+            assert!(property["description"].is_string(), "{key}: {property}");
+            assert!(!property["default"].is_null(), "{key}: {property}");
+            assert_described(property);
+        }
+    }
+    let schema = schema();
+    assert_eq!(schema["properties"].as_object().unwrap().len(), 7);
+    assert_described(&schema);
+}

@@ -1,0 +1,79 @@
+//! No text, however strange, makes the parser of configurations panic or point outside the text.
+
+use libration_lab::Config;
+use libration_lab::config::{ConfigError, DEFAULT, parse, parse_bytes};
+use proptest::prelude::*;
+
+/// What holds of every outcome.
+fn check(outcome: Result<Config, ConfigError>) -> Result<(), TestCaseError> {
+    match outcome {
+        Ok(config) => prop_assert_eq!(config.check(), Ok(())),
+        Err(error) => {
+            // Fails if the span is outside the text or splits a character.
+            prop_assert!(error.source_text().get(error.span()).is_some());
+            prop_assert!(!error.message().is_empty());
+            prop_assert!(error.to_string().contains("name.toml:"), "{}", error);
+            prop_assert!(!error.render_styled().is_empty());
+        }
+    }
+    Ok(())
+}
+
+/// A piece of a configuration file, or of nonsense.
+fn piece() -> impl Strategy<Value = String> {
+    let known = "studies|effort|integrators|oscillator|start|spectrum|drift|dt|steps|m|k|q|v|rk4";
+    prop_oneof![
+        known,
+        "[\\[\\]{}=.,\"'#\t \r\n\u{feff}]{1,3}",
+        any::<f64>().prop_map(|x| x.to_string()),
+        any::<i64>().prop_map(|x| x.to_string()),
+        Just("nan".to_owned()),
+        Just("'''".to_owned()),
+        Just("1979-05-27".to_owned()),
+        "\\PC{0,4}",
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn arbitrary_text(text in any::<String>()) {
+        check(parse(&text, "name.toml"))?;
+    }
+
+    #[test]
+    fn arbitrary_bytes(bytes in any::<Vec<u8>>()) {
+        check(parse_bytes(&bytes, "name.toml"))?;
+    }
+
+    #[test]
+    fn arbitrary_pieces(pieces in prop::collection::vec(piece(), 0..12)) {
+        check(parse(&pieces.concat(), "name.toml"))?;
+    }
+
+    #[test]
+    fn the_default_with_a_part_replaced(
+        at in any::<prop::sample::Index>(),
+        length in 0_usize..20,
+        piece in piece(),
+    ) {
+        let start = at.index(DEFAULT.len() + 1);
+        let end = (start + length).min(DEFAULT.len());
+        let text = format!("{}{piece}{}", &DEFAULT[..start], &DEFAULT[end..]);
+        check(parse(&text, "name.toml"))?;
+        check(parse(&text.replace('\n', "\r\n"), "name.toml"))?;
+    }
+
+    #[test]
+    fn every_configuration_that_is_allowed_is_read(
+        m in 1e-6..1e6, k in 1e-6..1e6, dt in 1e-9..1e3, steps in 1_u64..=1_000_000_000,
+    ) {
+        let text = format!(
+            "oscillator = {{ m = {m:?}, k = {k:?} }}\ndrift = {{ dt = [{dt:?}], steps = {steps} }}"
+        );
+        let config = parse(&text, "").map_err(|e| TestCaseError::fail(e.to_string()))?;
+        prop_assert_eq!((config.oscillator.m, config.oscillator.k), (m, k));
+        prop_assert_eq!((config.drift.dt, config.drift.steps), (vec![dt], steps));
+    }
+}
