@@ -69,15 +69,15 @@ fn formats_agree() {
     let folder = folder();
     let words = format!("{REPORT} --every 100");
     let csv = stdout(&folder, &words);
-    let json: Value =
-        serde_json::from_str(&stdout(&folder, &format!("{words} --format json"))).unwrap();
+    let text = stdout(&folder, &format!("{words} --format json"));
+    let json: Value = serde_json::from_str(&text).unwrap();
     assert_eq!(json["columns"], serde_json::json!(["step", "t", "q0", "v0", "energy"]));
     assert_eq!(json["units"], serde_json::json!(["1", "s", "m", "m/s", "J/kg"]));
     assert_eq!((&json["parameters"]["omega2"], &json["stopped"]), (&10.0.into(), &Value::Null));
-    for (line, row) in csv.lines().skip(1).zip(json["rows"].as_array().unwrap()) {
-        let of_json = row.as_array().unwrap().iter().map(Value::to_string);
-        assert_eq!(line, of_json.collect::<Vec<_>>().join(","));
-    }
+    // Digit by digit: not every JSON reader rounds to the nearest float.
+    let rows = text.lines().filter_map(|line| line.strip_prefix("    ["));
+    let rows = rows.map(|line| line.trim_end_matches([']', ',']).replace(", ", ","));
+    assert!(csv.lines().skip(1).eq(rows));
     let npy = libration(&folder, &format!("{words} --format npy")).assert().success();
     let npy = &npy.get_output().stdout;
     let records = &npy[npy.len() - 11 * 40..];
