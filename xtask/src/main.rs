@@ -1,3 +1,98 @@
-//! Everything that continuous integration does.
+//! Everything that continuous integration does, as tasks: `cargo xtask` lists them.
 
-fn main() {}
+mod ci;
+mod command;
+mod dependencies;
+mod examples;
+mod python;
+mod report;
+mod scratch;
+mod test;
+mod tidy;
+mod workspace;
+
+use std::process::ExitCode;
+
+/// What a task returns: nothing, or the sentence that says why it failed.
+type Outcome = Result<(), String>;
+
+struct Task {
+    name: &'static str,
+    summary: &'static str,
+    action: Action,
+}
+
+/// How a task is called.
+enum Action {
+    /// Without arguments.
+    Plain(fn() -> Outcome),
+    /// With the arguments behind its name.
+    With(fn(&[String]) -> Outcome),
+}
+
+const TASKS: [Task; 6] = [
+    Task {
+        name: "ci",
+        summary: "all of the below in order, with format, lints and documentation",
+        action: Action::Plain(ci::run),
+    },
+    Task {
+        name: "tidy",
+        summary: "source rules that no compiler checks",
+        action: Action::Plain(tidy::run),
+    },
+    Task {
+        name: "dependencies",
+        summary: "the engine depends on neither serde nor the laboratory",
+        action: Action::Plain(dependencies::run),
+    },
+    Task {
+        name: "test",
+        summary: "all tests, with a Python environment; arguments go to `cargo test`",
+        action: Action::With(test::run),
+    },
+    Task {
+        name: "examples",
+        summary: "build every example and run it",
+        action: Action::Plain(examples::run),
+    },
+    Task {
+        name: "report",
+        summary: "a quick `libration lab` of the release binary, and its files checked",
+        action: Action::Plain(report::run),
+    },
+];
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (name, rest) = match arguments.split_first() {
+        Some((name, rest)) if !["help", "-h", "--help"].contains(&name.as_str()) => (name, rest),
+        _ => {
+            print!("{}", usage());
+            return ExitCode::SUCCESS;
+        }
+    };
+    let outcome = match TASKS.iter().find(|task| task.name == name).map(|task| &task.action) {
+        Some(Action::With(run)) => run(rest),
+        Some(Action::Plain(run)) if rest.is_empty() => run(),
+        Some(Action::Plain(_)) => return misuse(&format!("`{name}` takes no arguments")),
+        None => return misuse(&format!("there is no task `{name}`")),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(reason) => {
+            eprintln!("xtask {name}: {reason}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn usage() -> String {
+    let tasks = TASKS.map(|task| format!("  {:<14}{}\n", task.name, task.summary));
+    format!("Usage: cargo xtask <task>\n\n{}", tasks.concat())
+}
+
+fn misuse(complaint: &str) -> ExitCode {
+    eprint!("xtask: {complaint}\n\n{}", usage());
+    ExitCode::from(2)
+}

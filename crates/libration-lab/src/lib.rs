@@ -3,14 +3,18 @@
 //! A [`Study`] asks a question; its run leaves a [`Record`] of numbers, each a prediction beside
 //! a measurement; the page is rendered from the record and from nothing else.
 
+pub mod analyze;
 pub mod config;
 mod effort;
 pub mod export;
+pub mod figure;
 mod lab;
 mod machine;
+mod notation;
 pub mod output;
 pub mod page;
 pub mod record;
+pub mod report;
 pub mod session;
 pub mod studies;
 pub mod study;

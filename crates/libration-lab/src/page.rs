@@ -1,5 +1,6 @@
 //! A chapter of the report, as a description that holds no layout.
 
+use crate::figure::Figure;
 use crate::record::{Record, Table};
 
 /// What a study shows of its record, from top to bottom.
@@ -7,6 +8,8 @@ use crate::record::{Record, Table};
 pub struct Page {
     /// The chapter's heading.
     pub title: String,
+    /// One sentence for the head of the report; empty if the chapter has none.
+    pub headline: String,
     /// The answer in one or two sentences; it stands first.
     pub answer: String,
     /// The figures and numbers at the head of the report, most telling first.
@@ -33,6 +36,8 @@ pub enum Block {
     Paragraph(String),
     /// A remark at the margin of the argument.
     Note(String),
+    /// A figure.
+    Figure(Box<Figure>),
     /// A table, with as many significant digits as mean something.
     Table {
         /// The numbers.
@@ -56,6 +61,19 @@ impl Page {
     /// Adds a remark.
     pub fn note(&mut self, text: impl Into<String>) {
         self.blocks.push(Block::Note(text.into()));
+    }
+
+    /// Adds a figure.
+    pub fn figure(&mut self, figure: Figure) {
+        self.blocks.push(Block::Figure(Box::new(figure)));
+    }
+
+    /// The figures, from top to bottom.
+    pub fn figures(&self) -> impl Iterator<Item = &Figure> {
+        self.blocks.iter().filter_map(|block| match block {
+            Block::Figure(figure) => Some(figure.as_ref()),
+            _ => None,
+        })
     }
 
     /// Adds a table of the record, shown with `digits` significant digits.

@@ -5,11 +5,12 @@ use std::time::Instant;
 use serde::Serialize;
 use thiserror::Error;
 
+use crate::export::{ExportError, series_to_parquet};
 use crate::output::{Output, OutputError};
 use crate::page::{Chapter, Page};
-use crate::record::RecordError;
+use crate::record::{FigureFile, RecordError};
 use crate::study::StudyError;
-use crate::{Config, Lab, Machine, Record, Study};
+use crate::{Config, Lab, Machine, Record, Study, figure, report};
 
 /// Version of the contract that `results.json` keeps.
 pub const SCHEMA: &str = "libration.results/1";
@@ -53,6 +54,9 @@ pub enum SessionError {
         /// Why.
         source: RecordError,
     },
+    /// A series could not be put into a file.
+    #[error(transparent)]
+    Export(#[from] ExportError),
     /// A file could not be written.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -91,13 +95,34 @@ pub fn run(
         study
             .render(&record, &mut page)
             .map_err(|source| SessionError::Render { study: study.name(), source })?;
-        chapters.push(Chapter { record: record.clone(), page });
-        results.studies.push(record);
+        record.figures = write_figures(&page, output)?;
+        write_series(&record, output)?;
+        results.studies.push(record.clone());
+        chapters.push(Chapter { record, page });
         results.seconds = started.elapsed().as_secs_f64();
         results.complete = results.studies.len() == studies.len();
         write_results(&results, output)?;
+        output.write("report.html", report::render(&results, &chapters).as_bytes())?;
     }
     Ok(results)
+}
+
+fn write_figures(page: &Page, output: &Output) -> Result<Vec<FigureFile>, OutputError> {
+    page.figures()
+        .map(|figure| {
+            let file = format!("figures/{}.svg", figure.id);
+            output.write(&file, figure::svg::standalone(figure).as_bytes())?;
+            Ok(FigureFile { id: figure.id.clone(), file })
+        })
+        .collect()
+}
+
+fn write_series(record: &Record, output: &Output) -> Result<(), SessionError> {
+    for series in &record.series {
+        let file = format!("data/{}-{}.parquet", record.name, series.name);
+        output.write(&file, &series_to_parquet(series)?)?;
+    }
+    Ok(())
 }
 
 fn write_results(results: &Results, output: &Output) -> Result<(), OutputError> {

@@ -6,6 +6,7 @@
 //!
 //! This crate does no input or output, reads no clock and prints nothing.
 
+pub mod analysis;
 pub mod catalog;
 pub mod elementary;
 pub mod integrator;

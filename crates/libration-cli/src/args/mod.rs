@@ -21,7 +21,7 @@ pub(crate) use system::{Setting, StepArgs, SystemArgs};
 #[command(name = "libration", version, propagate_version = true, max_term_width = 100)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// Say nothing unless something fails
+    /// No progress and no summary; only what fails is told
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,
     /// When to use colour; `auto` looks at the terminal and at NO_COLOR

@@ -55,19 +55,14 @@ pub(super) fn time_step(text: &str) -> Result<f64, String> {
 
 /// Reads a number of steps; also as `1e6`.
 pub(super) fn steps(text: &str) -> Result<u64, String> {
-    let steps = whole(text).ok_or_else(|| {
+    let steps = whole_number(text).ok_or_else(|| {
         format!("it is not a whole number; steps must be {}", limits::steps_allowed())
     })?;
     limits::steps("--steps", steps)
 }
 
-/// Reads a stride; also as `1e3`.
-pub(super) fn stride(text: &str) -> Result<u64, String> {
-    let stride = whole(text).and_then(|n| u64::try_from(n).ok()).filter(|&n| n >= 1);
-    stride.ok_or_else(|| "it must be a whole number of at least 1".to_owned())
-}
-
-fn whole(text: &str) -> Option<i128> {
+/// The whole number that `text` stands for, written as `1000` or `1e3`.
+pub(super) fn whole_number(text: &str) -> Option<i128> {
     let text = text.trim();
     let with_exponent = || {
         let x: f64 = text.parse().ok()?;

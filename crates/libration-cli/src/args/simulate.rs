@@ -6,7 +6,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use libration_lab::trajectory::{FloatType, Format};
 
-use super::number::{steps, stride};
+use super::number::{steps, whole_number};
 use super::{StepArgs, SystemArgs};
 
 /// What `simulate` takes.
@@ -27,7 +27,7 @@ pub(crate) struct SimulateArgs {
     #[arg(
         long,
         value_name = "N",
-        value_parser = stride,
+        value_parser = every,
         allow_hyphen_values = true,
         default_value = "1"
     )]
@@ -47,6 +47,12 @@ Examples:
       --steps 1e6 --every 1e3 --output orbit.parquet
 
 The columns are step, t, q0, …, v0, …, energy. A state that overflows ends the rows with a note.";
+
+/// Reads a stride; also as `1e3`.
+fn every(text: &str) -> Result<u64, String> {
+    let stride = whole_number(text).and_then(|n| u64::try_from(n).ok()).filter(|&n| n >= 1);
+    stride.ok_or_else(|| "it must be a whole number of at least 1".to_owned())
+}
 
 fn float_types() -> impl TypedValueParser<Value = FloatType> {
     PossibleValuesParser::new(FloatType::ALL.map(FloatType::name))

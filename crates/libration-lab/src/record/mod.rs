@@ -102,20 +102,15 @@ impl Record {
         self.findings.push(finding);
     }
 
-    /// Judges a claim of the source report by findings that are already here.
-    ///
-    /// # Errors
-    /// If one of the findings that the claim rests on is missing.
-    pub fn judge(
-        &mut self,
-        ruling: Ruling<'_>,
-        judge: impl FnOnce(&[&Finding]) -> Judgement,
-    ) -> Result<(), RecordError> {
-        let evidence: Vec<&Finding> =
-            ruling.findings.iter().map(|id| self.finding(id)).collect::<Result<_, _>>()?;
-        let claim = Claim::new(&ruling, &evidence, judge(&evidence));
-        self.claims.push(claim);
-        Ok(())
+    /// Judges a claim of the source report by findings that are already here. A claim about an
+    /// integrator that was not studied stays unjudged.
+    pub fn judge(&mut self, ruling: Ruling<'_>, judge: impl FnOnce(&[&Finding]) -> Judgement) {
+        let evidence: Option<Vec<&Finding>> =
+            ruling.findings.iter().map(|id| self.finding(id).ok()).collect();
+        if let Some(evidence) = evidence {
+            let claim = Claim::new(&ruling, &evidence, judge(&evidence));
+            self.claims.push(claim);
+        }
     }
 
     /// The finding `id`.

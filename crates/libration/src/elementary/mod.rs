@@ -5,12 +5,16 @@
 //! conversion between floats and integers and no fused multiply-add, so a lane loop around them
 //! vectorises on any instruction set, and each rounding is IEEE 754's own.
 //!
-//! | function | range | largest error found | points tried |
+//! | function | range | largest error found | arguments tried |
 //! | --- | --- | --- | --- |
-//! | [`sine64::sin`] | abs(x) ≤ 2²⁰·π/2 ≈ 1.6·10⁶ | TODO ulp | TODO |
-//! | [`sine64::cos`] | the same | TODO ulp | TODO |
-//! | [`sine32::sin`] | abs(x) ≤ 2¹⁶·π/2 ≈ 1.0·10⁵ | TODO ulp | every value |
-//! | [`sine32::cos`] | the same | TODO ulp | every value |
+//! | [`sine64::sin`] | abs(x) ≤ 2²⁰·π/2 ≈ 1.65·10⁶ | 0.787 ulp | 1.6·10⁸ |
+//! | [`sine64::cos`] | the same | 0.780 ulp | 1.6·10⁸ |
+//! | [`sine32::sin`] | abs(x) ≤ 2¹⁶·π/2 ≈ 1.03·10⁵ | 0.807 ulp | every value |
+//! | [`sine32::cos`] | the same | 0.810 ulp | every value |
+//!
+//! The `f64` errors were measured against binary128 arithmetic, on arguments around the multiples of
+//! π/2 and in the octant where the error is largest among others. The tests hold every function to
+//! 1 ulp against a correctly rounded oracle.
 //!
 //! Beyond its range a function returns NaN rather than a wrong number; so it does for infinities
 //! and NaN. The NaN is always the same one, bit for bit. Within the range `sin` is odd and `cos`

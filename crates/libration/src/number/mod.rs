@@ -1,4 +1,16 @@
 //! Number types: swap the number, and a step becomes another instrument.
 
+mod bits;
+mod dual;
 mod float;
 mod half;
+mod poly;
+mod ratio;
+mod twofloat;
+mod wide;
+
+pub use dual::Dual;
+pub use poly::Poly;
+pub use ratio::Ratio;
+pub use twofloat::TwoFloat;
+pub use wide::Wide;

@@ -1,31 +1,28 @@
 //! What the shared flags take, and what they say about what they do not take.
 
 use clap::Parser;
+use libration_lab::trajectory::FloatType;
 
-use super::super::number::steps;
 use super::*;
+use crate::args::SimulateArgs;
 
 /// A command that simulates.
 #[derive(Debug, Parser)]
 struct Probe {
     #[command(flatten)]
-    system: SystemArgs,
-    #[command(flatten)]
-    step: StepArgs,
-    #[arg(long, value_parser = steps, allow_hyphen_values = true, default_value = "10")]
-    steps: u64,
+    args: SimulateArgs,
 }
 
 /// The outcome of a command line that starts with a system, an integrator and a time step.
 fn probe(system: &str, flags: &str) -> Result<(Probe, Setting), String> {
-    let start = format!("probe --system {system} --integrator rk4 --dt 0.01 {flags}");
-    parse(&start)
+    let steps = if flags.contains("--steps") { "" } else { "--steps 10" };
+    parse(&format!("probe --system {system} --integrator rk4 --dt 0.01 {steps} {flags}"))
 }
 
 fn parse(line: &str) -> Result<(Probe, Setting), String> {
     let probe = Probe::try_parse_from(line.split(' ').filter(|word| !word.is_empty()))
         .map_err(|error| error.to_string())?;
-    match probe.system.resolve() {
+    match probe.args.system.resolve() {
         Ok(setting) => Ok((probe, setting)),
         Err(Failure::Usage(message)) => Err(message),
         Err(other) => panic!("not a usage error: {other:?}"),
@@ -50,10 +47,11 @@ fn a_start_is_read_or_comes_from_the_catalogue() {
 
 #[test]
 fn the_other_flags_are_read() {
-    let (probe, setting) = probe("oscillator", "--set k=4 --set m=2 --steps 1e6").unwrap();
+    let (probe, setting) =
+        probe("oscillator", "--set k=4 --set m=2 --steps 1e6 --float bf16").unwrap();
     assert_eq!(setting.system.parameters(), [("omega2", 2.0)]);
-    assert_eq!((probe.step.integrator, probe.step.dt), (Method::Rk4, 0.01));
-    assert_eq!(probe.steps, 1_000_000);
+    assert_eq!((probe.args.step.integrator, probe.args.step.dt), (Method::Rk4, 0.01));
+    assert_eq!((probe.args.steps, probe.args.float), (1_000_000, FloatType::Bf16));
 }
 
 #[test]
@@ -82,6 +80,7 @@ fn wrong_input_is_named_with_what_is_allowed() {
         ("oscillator", "--steps -5", &["--steps", "`--steps` is -5", "must be 1 to"]),
         ("oscillator", "--steps 1.5", &["'1.5'", "--steps", "not a whole number"]),
         ("oscillator", "--steps 1e300", &["--steps", "must be 1 to 1000000000"]),
+        ("oscillator", "--float f31", &["'f31'", "--float", "f32", "bf16"]),
     ];
     for (system, flags, parts) in cases {
         let message = probe(system, flags).map(|_| ()).unwrap_err();
@@ -96,12 +95,13 @@ fn time_steps_and_integrators_are_checked() {
     for (dt, value) in
         [("0", "0.0"), ("-1", "-1.0"), ("nan", "NaN"), ("inf", "inf"), ("-inf", "-inf")]
     {
-        let line = format!("probe --system kepler --integrator rk4 --dt {dt}");
+        let line = format!("probe --system kepler --integrator rk4 --steps 1 --dt {dt}");
         let message = parse(&line).map(|_| ()).unwrap_err();
         let expected = format!("`--dt` is {value}, but it must be finite and greater than 0");
         assert!(message.contains(&expected), "{message}");
     }
-    let message = parse("probe --system kepler --integrator rk5 --dt x").map(|_| ()).unwrap_err();
+    let message =
+        parse("probe --system kepler --integrator rk5 --steps 1 --dt x").map(|_| ()).unwrap_err();
     for part in ["'rk5'", "--integrator", "'rk4'", "velocity-verlet"] {
         assert!(message.contains(part), "{message}");
     }

@@ -1,0 +1,150 @@
+//! The answer of an analysis, as it is printed.
+
+use std::collections::BTreeMap;
+
+use libration::analysis::DriftForecast;
+use libration::simulation::{EnergyDrift, SimulationError};
+use serde::Serialize;
+use serde_json::value::RawValue;
+
+use super::Request;
+
+/// What theory says of one step; the fields are the keys of `analyze --json`.
+#[derive(Debug, Serialize)]
+pub struct Analysis {
+    /// What was asked.
+    #[serde(flatten)]
+    pub about: About,
+    /// The update matrix, row by row; rows and columns in the order `q₀ … v₀ …`.
+    pub update_matrix: Vec<Vec<f64>>,
+    /// For the oscillator with ω = 1: the same as exact polynomials in `z = ωΔt`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub update_matrix_in_z: Option<Vec<Vec<String>>>,
+    /// The determinant: the factor by which volumes of phase space grow.
+    pub determinant: f64,
+    /// The determinant minus one, without cancellation.
+    pub determinant_minus_one: f64,
+    /// The trace.
+    pub trace: f64,
+    /// The eigenvalues as pairs `[re, im]`.
+    pub eigenvalues: Vec<[f64; 2]>,
+    /// The largest absolute value of an eigenvalue.
+    pub spectral_radius: f64,
+    /// The spectral radius minus one, without cancellation.
+    pub spectral_radius_minus_one: f64,
+    /// Whether every orbit of the matrix stays bounded; unknown where coupled modes are marginal.
+    pub bounded: Option<bool>,
+    /// The Frobenius norm of `MᵀJM − J`.
+    pub symplecticity_defect: f64,
+    /// The Frobenius norm of `M(−Δt)·M(Δt) − 1`.
+    pub reversibility_defect: f64,
+    /// Angle of the step minus that of the exact solution, in rad; of several modes the largest.
+    pub phase_error_per_step: Option<f64>,
+    /// Force evaluations that one step takes, counted.
+    pub force_evaluations_per_step: u64,
+    /// The energy drift; none where the initial energy is zero.
+    #[serde(flatten)]
+    pub drift: Option<Drift>,
+}
+
+/// What was asked.
+#[derive(Debug, Serialize)]
+pub struct About {
+    /// The system.
+    pub system: &'static str,
+    /// Its parameters.
+    pub parameters: BTreeMap<&'static str, f64>,
+    /// The integrator.
+    pub integrator: &'static str,
+    /// The time step, in s.
+    pub dt: f64,
+    /// Positions at the start.
+    pub q: Vec<f64>,
+    /// Velocities at the start.
+    pub v: Vec<f64>,
+    /// Steps over which the drift is taken.
+    pub steps: u64,
+    /// Whether the system is linear; if not, the matrix is that of the linearisation at `q`, `v`.
+    pub linear: bool,
+    /// What the reader must know about the numbers, if anything.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+}
+
+impl About {
+    pub(super) fn new(request: &Request) -> Self {
+        let linear = request.system.is_linear();
+        About {
+            system: request.system.name(),
+            parameters: request.system.parameters().into_iter().collect(),
+            integrator: request.method.name(),
+            dt: request.dt,
+            q: request.q.clone(),
+            v: request.v.clone(),
+            steps: request.steps,
+            linear,
+            note: (!linear).then(|| {
+                "the system is not linear: matrix, eigenvalues and defects are those of the \
+                 linearisation of one step at the given state; the energy drift is simulated in f64"
+                    .into()
+            }),
+        }
+    }
+}
+
+/// The largest relative energy drift over a number of steps.
+#[derive(Debug, Serialize)]
+pub struct Drift {
+    /// `max |E_n − E₀| / |E₀|`, as a decimal that may exceed the range of an `f64`.
+    pub max_energy_drift: Box<RawValue>,
+    /// Its decimal logarithm; none if there is no drift at all.
+    pub log10_max_energy_drift: Option<f64>,
+    /// The step at which it is reached.
+    pub max_energy_drift_step: u64,
+    /// `exact` or `simulated`.
+    pub max_energy_drift_method: &'static str,
+    /// The step at which a simulation left the range of `f64`, if it did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stopped_at_step: Option<u64>,
+}
+
+impl From<DriftForecast> for Drift {
+    fn from(forecast: DriftForecast) -> Self {
+        let value = forecast.drift.to_f64();
+        let decimal =
+            if value.is_infinite() { forecast.drift.to_decimal(17) } else { format!("{value:?}") };
+        Drift {
+            max_energy_drift: raw(decimal),
+            log10_max_energy_drift: (!forecast.drift.is_zero())
+                .then(|| forecast.drift.log10().to_f64()),
+            max_energy_drift_step: forecast.at_step,
+            max_energy_drift_method: "exact",
+            stopped_at_step: None,
+        }
+    }
+}
+
+impl Drift {
+    pub(super) fn simulated<Sys>(
+        drift: &EnergyDrift<Sys>,
+        stopped: Option<SimulationError>,
+    ) -> Self {
+        let value = drift.largest();
+        let shown = if value.is_finite() { format!("{value:?}") } else { "null".into() };
+        Drift {
+            max_energy_drift: raw(shown),
+            log10_max_energy_drift: Some(value.log10()).filter(|x| x.is_finite()),
+            max_energy_drift_step: drift.at_step(),
+            max_energy_drift_method: "simulated",
+            stopped_at_step: match stopped {
+                Some(SimulationError::NotFinite { step, .. }) => Some(step),
+                _ => None,
+            },
+        }
+    }
+}
+
+/// A JSON number from its digits; the digits are ours, so they parse.
+fn raw(decimal: String) -> Box<RawValue> {
+    RawValue::from_string(decimal).unwrap_or_else(|_| RawValue::NULL.to_owned())
+}

@@ -1,0 +1,149 @@
+//! What theory says of one step of an integrator on a system.
+
+mod answer;
+mod modes;
+
+use libration::analysis::{Linearisation, SymbolicStep, determinant, forecast_drift};
+use libration::number::Wide;
+use libration::simulation::{EnergyDrift, SimulationError, Simulator};
+use libration::{
+    AnySystem, CatalogError, Integrator, Method, Model, State, with_method, with_system,
+};
+use thiserror::Error;
+
+pub use answer::{About, Analysis, Drift};
+use modes::Modes;
+
+/// What is to be analysed.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The system.
+    pub system: AnySystem,
+    /// The integrator.
+    pub method: Method,
+    /// The time step, in s.
+    pub dt: f64,
+    /// Positions at the start.
+    pub q: Vec<f64>,
+    /// Velocities at the start.
+    pub v: Vec<f64>,
+    /// Number of steps over which the energy drift is taken.
+    pub steps: u64,
+}
+
+/// Why there is no analysis.
+#[derive(Debug, Error)]
+pub enum AnalyzeError {
+    /// The system does not exist in as many dimensions as there are coordinates.
+    #[error(transparent)]
+    Dimension(#[from] CatalogError),
+    /// Positions and velocities differ in number.
+    #[error("{q} positions but {v} velocities: expected as many of the one as of the other")]
+    Coordinates {
+        /// Number of positions.
+        q: usize,
+        /// Number of velocities.
+        v: usize,
+    },
+    /// The time step or the start is not usable.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// The Jacobian does not exist at this state.
+    #[error(
+        "the step cannot be linearised about q = {q:?}, v = {v:?}: the force is singular there"
+    )]
+    Singular {
+        /// Positions.
+        q: Vec<f64>,
+        /// Velocities.
+        v: Vec<f64>,
+    },
+}
+
+/// Analyses one step.
+///
+/// # Errors
+/// If the request does not fit the system; before any work.
+pub fn analyze(request: &Request) -> Result<Analysis, AnalyzeError> {
+    if request.q.len() != request.v.len() {
+        return Err(AnalyzeError::Coordinates { q: request.q.len(), v: request.v.len() });
+    }
+    let dimension = request.q.len();
+    with_system!(
+        request.system,
+        dimension,
+        |model, D| with_method!(request.method, |integrator| run::<D>(integrator, model, request)),
+        Err(request.system.entry().wrong_dimension(dimension).into())
+    )
+}
+
+fn run<const D: usize>(
+    integrator: impl Integrator,
+    model: impl Model<D>,
+    request: &Request,
+) -> Result<Analysis, AnalyzeError> {
+    let start = State {
+        q: std::array::from_fn(|i| request.q[i]),
+        v: std::array::from_fn(|i| request.v[i]),
+    };
+    let mut simulator = Simulator::new(model.on::<f64>(), integrator, start, request.dt)?;
+    let linear = Linearisation::new(integrator, model, &start, request.dt);
+    let rows = linear.step.rows();
+    if rows.iter().flatten().any(|x| x.is_nan()) {
+        return Err(AnalyzeError::Singular { q: request.q.clone(), v: request.v.clone() });
+    }
+    let drift = if request.system.is_linear() {
+        forecast_drift(model, &linear.step, &start, request.steps).map(Drift::from)
+    } else {
+        simulated_drift(&mut simulator.clone(), model, request.steps)
+    };
+    simulator.run(1, &mut ()).ok();
+    let modes = Modes::new(&linear);
+    let polynomials = matches!(request.system, AnySystem::Oscillator(_)).then(|| {
+        let symbolic = SymbolicStep::new(integrator)?;
+        let rows = symbolic.matrix.rows();
+        Some(rows.iter().map(|row| row.iter().map(ToString::to_string).collect()).collect())
+    });
+    Ok(Analysis {
+        about: About::new(request),
+        update_matrix: to_f64(&rows),
+        update_matrix_in_z: polynomials.flatten(),
+        determinant: determinant(&linear.step).to_f64(),
+        determinant_minus_one: modes.determinant_minus_one.to_f64(),
+        trace: linear.step.trace().to_f64(),
+        eigenvalues: modes.eigenvalues(),
+        spectral_radius: modes.radius.to_f64(),
+        spectral_radius_minus_one: modes.radius_minus_one.to_f64(),
+        bounded: modes.bounded,
+        symplecticity_defect: defect(linear.step.symplecticity_defect()),
+        reversibility_defect: defect(linear.reversibility_defect()),
+        phase_error_per_step: modes.phase_error.map(Wide::to_f64),
+        force_evaluations_per_step: simulator.evaluations(),
+        drift,
+    })
+}
+
+/// A defect in `f64`; zero where it is rounding of the 1024 bits.
+fn defect(norm: Wide) -> f64 {
+    let value = norm.to_f64();
+    if value < 1e-270 { 0.0 } else { value }
+}
+
+fn to_f64(rows: &[Vec<Wide>]) -> Vec<Vec<f64>> {
+    rows.iter().map(|row| row.iter().map(|x| x.to_f64()).collect()).collect()
+}
+
+/// The drift of a nonlinear system can only be simulated.
+fn simulated_drift<Sys, I, const D: usize>(
+    simulator: &mut Simulator<Sys, I, f64, D>,
+    model: impl Model<D>,
+    steps: u64,
+) -> Option<Drift>
+where
+    Sys: libration::System<f64, D> + Copy,
+    I: Integrator,
+{
+    let mut drift = EnergyDrift::new(model.on::<f64>(), &simulator.sample().state);
+    let stopped = simulator.run(steps, &mut drift).err();
+    (drift.initial() != 0.0).then(|| Drift::simulated(&drift, stopped))
+}

@@ -1,0 +1,58 @@
+//! Figures: one description, two back ends that draw the same.
+//!
+//! A [`Figure`] says what is to be seen. [`svg::inline`] and [`svg::standalone`] draw it for a page
+//! and for a file; [`plotly`] gives the drawing one can look into. Both start from one layout:
+//! ranges, ticks, places of labels and contour lines are computed once.
+//!
+//! ```
+//! use libration_lab::figure::{Axis, Figure, Ink, Mark, Panel, embed, svg};
+//!
+//! let steps = [1e-3, 1e-2, 1e-1];
+//! let panel = Panel::new(
+//!     Axis::log("time step Δt").unit("s"),
+//!     Axis::log("position error after 10 s").unit("m"),
+//! )
+//! .mark(Mark::line(steps, [1.1e-12, 1.0e-8, 1.0e-4]).ink(Ink::Rk4).label("RK4"))
+//! .mark(Mark::prediction(steps, [1e-12, 1e-8, 1e-4]).label("predicted"));
+//! let figure = Figure::new("fig-9-2", "The error of RK4 falls with the fourth power of the step.")
+//!     .number("9.2")
+//!     .caption("Line: measured. Circles: predicted.")
+//!     .description("Log-log: a straight line of slope four.")
+//!     .panel(panel);
+//! assert!(embed(&figure).contains("Figure 9.2 —"));
+//! assert!(svg::standalone(&figure).starts_with("<svg"));
+//! ```
+
+mod axis;
+mod color;
+mod drawn;
+mod envelope;
+mod extent;
+mod geometry;
+mod grid;
+mod label;
+mod layout;
+mod mark;
+mod page;
+mod palette;
+mod panel;
+mod picture;
+mod plotly;
+mod style;
+pub mod svg;
+mod text;
+mod ticks;
+
+#[cfg(test)]
+mod tests;
+
+pub use axis::{Axis, Scale};
+pub use color::{ColorMap, Colors};
+pub use envelope::Envelope;
+pub use grid::{Grid, Polyline};
+pub use mark::{Across, Mark, Shape};
+pub use page::{embed, scripts};
+pub use palette::STYLESHEET;
+pub use panel::{Figure, Panel};
+pub use plotly::plotly;
+pub use style::{Dash, Ink, Marker, Style};

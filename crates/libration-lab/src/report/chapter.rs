@@ -1,0 +1,110 @@
+//! One study as a chapter.
+
+use super::html::{escape, text};
+use crate::figure;
+use crate::notation::number;
+use crate::page::{Block, Chapter};
+use crate::record::{Cell, Finding, Table, Verdict};
+
+/// The chapter: question, evidence, and all its findings.
+pub(super) fn render(chapter: &Chapter) -> String {
+    let (record, page) = (&chapter.record, &chapter.page);
+    let name = escape(&record.name);
+    let blocks: String = page.blocks.iter().map(block).collect();
+    let data: Vec<String> = record
+        .series
+        .iter()
+        .map(|series| format!("<code>data/{name}-{}.parquet</code>", escape(&series.name)))
+        .collect();
+    let shown = match data.as_slice() {
+        [] => String::new(),
+        [only] => format!(" · data: {only}"),
+        [first, .., last] => format!(" · data: {first} … {last}"),
+    };
+    format!(
+        "<section>\n<h2 id=\"{name}\">{title}</h2>\n<p class=\"q\">{question}</p>\n{blocks}\
+         {findings}<p class=\"sub\">Recompute this chapter alone: <code>libration lab \
+         {name}</code>{shown}</p>\n</section>\n",
+        title = text(&page.title),
+        question = text(&record.question),
+        findings = findings(&record.findings),
+    )
+}
+
+fn block(block: &Block) -> String {
+    match block {
+        Block::Heading(heading) => format!("<h3>{}</h3>\n", text(heading)),
+        Block::Paragraph(paragraph) => format!("<p>{}</p>\n", text(paragraph)),
+        Block::Note(note) => format!("<p class=\"note\">{}</p>\n", text(note)),
+        Block::Figure(figure) => figure::embed(figure),
+        Block::Table { table, digits } => self::table(table, *digits),
+    }
+}
+
+/// A table; a column is set as numbers if it has any.
+fn table(table: &Table, digits: usize) -> String {
+    let numeric: Vec<bool> = (0..table.columns.len())
+        .map(|i| table.rows.iter().any(|row| matches!(row[i], Cell::Number(_))))
+        .collect();
+    let class = |i: usize| if numeric[i] { " class=\"num\"" } else { " class=\"formula\"" };
+    let head: String = table
+        .columns
+        .iter()
+        .enumerate()
+        .map(|(i, c)| format!("<th{}>{}</th>", class(i), text(c)))
+        .collect();
+    let cell = |(i, cell): (usize, &Cell)| {
+        let shown = match cell {
+            Cell::Number(x) => number(*x, digits),
+            Cell::Text(words) => text(words),
+        };
+        format!("<td{}>{shown}</td>", class(i))
+    };
+    let rows: String = table
+        .rows
+        .iter()
+        .map(|row| format!("<tr>{}</tr>", row.iter().enumerate().map(cell).collect::<String>()))
+        .collect();
+    format!(
+        "<div class=\"scroll\" tabindex=\"0\"><table><thead><tr>{head}</tr></thead><tbody>{rows}\
+         </tbody></table></div>\n"
+    )
+}
+
+/// All findings, folded away: the page shows the ones that matter, this list keeps it honest.
+fn findings(findings: &[Finding]) -> String {
+    let agree = findings.iter().filter(|f| f.verdict == Verdict::Agrees).count();
+    let predicted = findings.iter().filter(|f| f.predicted.is_some()).count();
+    let rows: String = findings.iter().map(finding).collect();
+    format!(
+        "<details><summary>All findings: {agree} of {predicted} predictions agree with \
+         measurement</summary><div class=\"scroll\" tabindex=\"0\"><table><thead><tr><th>finding</th>\
+         <th class=\"num\">predicted</th><th class=\"num\">measured</th><th class=\"num\">tolerance\
+         </th><th>verdict</th></tr></thead><tbody>{rows}</tbody></table></div></details>\n"
+    )
+}
+
+fn finding(finding: &Finding) -> String {
+    let (class, verdict) = match finding.verdict {
+        Verdict::Agrees => ("ok", "agrees"),
+        Verdict::Disagrees => ("bad", "disagrees"),
+        Verdict::Measured => ("plain", "measured"),
+    };
+    let unit = match finding.unit.as_str() {
+        "1" => String::new(),
+        unit => format!(" {}", escape(unit)),
+    };
+    let value = |x: Option<f64>| x.map_or_else(|| "—".into(), |x| number(x, 8) + &unit);
+    format!(
+        "<tr id=\"{id}\"><td>{text}<br><span class=\"id\">{id}</span></td>\
+         <td class=\"num\">{predicted}</td><td class=\"num\">{measured}</td>\
+         <td class=\"num\" title=\"{reason}\">{tolerance}</td>\
+         <td><span class=\"v {class}\">{verdict}</span></td></tr>",
+        id = escape(&finding.id),
+        text = text(&finding.text),
+        predicted = value(finding.predicted),
+        measured = value(Some(finding.measured)),
+        reason = escape(&finding.tolerance.tolerance_reason),
+        tolerance = finding.tolerance.tolerance.map_or_else(|| "—".into(), |t| number(t, 2)),
+    )
+}

@@ -1,0 +1,130 @@
+//! The report: one self-contained page, rendered from records.
+
+mod chapter;
+mod html;
+mod ledger;
+
+use crate::figure;
+use crate::notation::{number, seconds};
+use crate::page::{Chapter, Highlight};
+use crate::record::ClaimVerdict;
+use crate::session::Results;
+
+const STYLE: &str = include_str!("../../assets/report.css");
+
+/// The report on `results`, whose chapters are shown in turn.
+pub fn render(results: &Results, chapters: &[Chapter]) -> String {
+    let headline = headline(chapters);
+    let mut links =
+        String::from("<a href=\"#top\">The answer</a><a href=\"#ledger\">The ledger</a>");
+    let mut body = String::new();
+    for chapter in chapters {
+        let (name, title) = (html::escape(&chapter.record.name), html::text(&chapter.page.title));
+        links += &format!("<a href=\"#{name}\">{title}</a>");
+        body += &chapter::render(chapter);
+    }
+    links += "<a href=\"#machine\">This machine</a>";
+    format!(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
+         <title>{title}</title>\n<style>{STYLE}</style></head><body>\n\
+         <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\
+         <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{answers}{numbers}{ledger}{body}\
+         {machine}</main>\n{scripts}</body></html>\n",
+        title = html::text(&headline),
+        setting = setting(results),
+        alarm = alarm(results),
+        answers = answers(chapters),
+        numbers = numbers(results, chapters),
+        ledger = ledger::render(chapters),
+        machine = machine(results),
+        scripts = figure::scripts(),
+    )
+}
+
+/// What the report says in one sentence. Later studies rest on earlier ones, so the last that has
+/// a sentence for the head of the page leads.
+fn headline(chapters: &[Chapter]) -> String {
+    let headlines = chapters.iter().rev().map(|c| c.page.headline.clone());
+    headlines.filter(|h| !h.is_empty()).chain(["Libration".to_owned()]).take(1).collect()
+}
+
+fn setting(results: &Results) -> String {
+    let config = &results.config;
+    let (spring, start) = (config.oscillator, config.start);
+    html::text(&format!(
+        "Oscillator, m = {} kg, k = {} N/m, from ({}, {}) · {} integrators · {} · {} · \
+         `libration lab`",
+        number(spring.m, 6),
+        number(spring.k, 6),
+        number(start.q, 6),
+        number(start.v, 6),
+        config.integrators.len(),
+        results.machine.cpu,
+        seconds(results.seconds, 2),
+    ))
+}
+
+/// Findings that contradict theory stand before everything else.
+fn alarm(results: &Results) -> String {
+    let broken: Vec<String> = results
+        .studies
+        .iter()
+        .flat_map(|record| record.disagreements())
+        .map(|f| format!("<li><a href=\"#{0}\">{0}</a></li>", html::escape(&f.id)))
+        .collect();
+    if broken.is_empty() {
+        return String::new();
+    }
+    format!(
+        "<div class=\"alarm\"><b>Measurement and theory disagree:</b><ul>{}</ul></div>\n",
+        broken.concat()
+    )
+}
+
+fn answers(chapters: &[Chapter]) -> String {
+    let answers = chapters.iter().rev().filter(|c| !c.page.answer.is_empty());
+    answers
+        .enumerate()
+        .map(|(i, c)| {
+            let class = if i == 0 { " class=\"lead\"" } else { "" };
+            format!("<p{class}>{}</p>\n", html::text(&c.page.answer))
+        })
+        .collect()
+}
+
+/// Three numbers from the chapters, and the score of the source.
+fn numbers(results: &Results, chapters: &[Chapter]) -> String {
+    let claims = || results.studies.iter().flat_map(|record| &record.claims);
+    let count = |verdict| claims().filter(|c| c.verdict == verdict).count();
+    let score = Highlight {
+        value: format!("{} of {}", count(ClaimVerdict::Confirmed), claims().count()),
+        text: format!(
+            "claims of the source tried here hold as stated; {} under a condition",
+            count(ClaimVerdict::Conditional)
+        ),
+    };
+    let shown = chapters.iter().rev().flat_map(|c| &c.page.highlights).take(3);
+    let boxes: String = shown
+        .chain((claims().count() > 0).then_some(&score))
+        .map(|h| {
+            let (value, text) = (html::text(&h.value), html::text(&h.text));
+            format!("<div><strong>{value}</strong><span>{text}</span></div>")
+        })
+        .collect();
+    format!("<div class=\"four\">{boxes}</div>\n")
+}
+
+fn machine(results: &Results) -> String {
+    let machine = &results.machine;
+    let text = html::text(&format!(
+        "{}, {} cores, {} · Libration {} · {} · all numbers in `results.json`, all series in \
+         `data/`, all figures in `figures/`",
+        machine.cpu,
+        machine.cores,
+        machine.platform,
+        machine.version,
+        seconds(results.seconds, 2),
+    ));
+    format!("<h2 id=\"machine\">This machine</h2>\n<p class=\"sub\">{text}</p>\n")
+}

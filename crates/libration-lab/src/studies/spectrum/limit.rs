@@ -1,0 +1,142 @@
+//! Where stability ends, from the polynomials and from simulation.
+
+use libration::analysis::{self, SymbolicStep, UpdateMatrix};
+use libration::number::Wide;
+use libration::simulation::{Sample, SimulationError, Simulator};
+use libration::system::Oscillator;
+use libration::{Method, Scalar, State, with_method};
+
+use super::step::radius_at;
+use crate::record::{Finding, Tolerance};
+use crate::study::StudyError;
+
+/// Steps of a simulation that decides whether an orbit grows.
+const STEPS: u64 = 20_000;
+
+/// An orbit grows if its largest extent in the second half exceeds that in the first by this.
+const GROWTH: f64 = 1.01;
+
+/// A limit, as predicted and as measured.
+#[derive(Clone, Debug)]
+pub(super) struct Limit {
+    predicted: Option<f64>,
+    measured: f64,
+    tolerance: Tolerance,
+}
+
+impl Limit {
+    /// The first `z` at which the undamped oscillator is unstable: by the exact eigenvalues of the
+    /// polynomial matrix, and by the growth of orbits.
+    pub(super) fn imaginary(method: Method) -> Result<Self, StudyError> {
+        let symbolic = with_method!(method, |m| SymbolicStep::new(m))
+            .ok_or_else(|| StudyError::Exact(format!("deriving {}", method.title())))?;
+        let stable = |z: f64| {
+            let z = Wide::from_f64(z);
+            let matrix: UpdateMatrix<Wide, 1> = symbolic.matrix.map(|p| p.eval_wide(z));
+            analysis::Spectrum::new(&matrix).is_bounded()
+        };
+        let predicted = first_loss(stable);
+        let measured = first_loss(|z| !grows(method, z));
+        Ok(Limit {
+            predicted: Some(predicted),
+            measured,
+            tolerance: Tolerance::absolute(
+                // An orbit that grows by a factor 1 + az² a step shows after STEPS/2 of them.
+                if predicted == 0.0 { 0.01 } else { 1e-6 },
+                format!(
+                    "what {STEPS} steps resolve: growth of 1 % in the second half, beats near a \
+                     double eigenvalue, and the lowest z = 0.01 that is tried"
+                ),
+            ),
+        })
+    }
+
+    /// The first `|λ|Δt` at which a critically damped mode is unstable: by the real polynomial
+    /// `R(z)` of a Runge–Kutta method, and by the eigenvalues of the step in `f64`.
+    pub(super) fn real(method: Method) -> Self {
+        let measured = first_loss(|x| radius_at(method, -x, 0.0) <= 1.0 + 1e-9);
+        let polynomial = matches!(method, Method::ExplicitEuler | Method::Rk4)
+            .then(|| with_method!(method, |m| SymbolicStep::new(m)))
+            .flatten();
+        let predicted = polynomial.map(|step| {
+            // On eigenvalues ±i the matrix is [[c, s], [−s, c]](h) and R(z) = c(−iz) + i·s(−iz):
+            // the coefficients of both, with alternating signs.
+            let (c, s) = (step.matrix.entry(0, 0), step.matrix.entry(0, 1));
+            let coefficient = |k: usize| {
+                let sign = if (k / 2).is_multiple_of(2) { 1.0 } else { -1.0 };
+                sign * (c.coefficient(k) + s.coefficient(k)).to_f64()
+            };
+            let value = |z: f64| (0..8).rev().fold(0.0, |sum, k| sum * z + coefficient(k));
+            first_loss(|x| value(-x).abs() <= 1.0)
+        });
+        Limit {
+            predicted,
+            measured,
+            tolerance: Tolerance::absolute(
+                1e-7,
+                "the critically damped eigenvalue is double: rounding u moves it by √u",
+            ),
+        }
+    }
+
+    /// As a finding; without a prediction where a split step has no stability function.
+    pub(super) fn finding(self, id: String, text: String) -> Finding {
+        match self.predicted {
+            Some(predicted) => {
+                Finding::predicted(id, text, "1", predicted, self.measured, self.tolerance)
+            }
+            None => Finding::measured(id, text, "1", self.measured),
+        }
+    }
+}
+
+/// The first point at which `stable` is lost, walking from 0 in steps of 0.01 and then bisecting;
+/// zero if it is not stable at the first of them, and 8 if it is nowhere lost up to there.
+fn first_loss(stable: impl Fn(f64) -> bool) -> f64 {
+    let grid = |i: u32| f64::from(i) * 0.01;
+    let Some(lost) = (1..=800).find(|&i| !stable(grid(i))) else { return 8.0 };
+    if lost == 1 {
+        return 0.0;
+    }
+    let (mut low, mut high) = (grid(lost - 1), grid(lost));
+    while high - low > 4.0 * f64::EPSILON * high {
+        let middle = 0.5 * (low + high);
+        if stable(middle) { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// Whether the orbits of both unit vectors grow from the first to the second half of a run.
+fn grows(method: Method, z: f64) -> bool {
+    let unit = Oscillator { omega2: 1.0 };
+    let one = |q: f64, v: f64| {
+        let mut extent = [0.0_f64; 2];
+        let mut watch = |sample: &Sample<f64, 1>| {
+            let half = usize::from(sample.step > STEPS / 2);
+            extent[half] = extent[half].max(sample.state.q[0].abs() + sample.state.v[0].abs());
+        };
+        let start = State { q: [q], v: [v] };
+        let outcome = with_method!(method, |m| Simulator::new(unit, m, start, z)
+            .and_then(|mut simulator| simulator.run(STEPS, &mut watch)));
+        matches!(outcome, Err(SimulationError::NotFinite { .. })) || extent[1] > GROWTH * extent[0]
+    };
+    one(1.0, 0.0) || one(0.0, 1.0)
+}
+
+/// At `z = 2` symplectic Euler has the eigenvalue −1 twice and one eigenvector: radius one, and
+/// yet `x` after `n` steps from `(1, 0)` is `±(2n + 1)`.
+pub(super) fn defective_growth() -> Result<Finding, StudyError> {
+    const N: u64 = 1_000_000;
+    let start = State { q: [1.0_f64], v: [0.0] };
+    let method = libration::integrator::SymplecticEuler;
+    let mut simulator = Simulator::new(Oscillator { omega2: 1.0 }, method, start, 2.0)?;
+    simulator.run(N, &mut ())?;
+    Ok(Finding::predicted(
+        "spectrum.symplectic-euler.defective-growth",
+        format!("symplectic Euler at z = 2, spectral radius 1: |x| after {N} steps from (1, 0)"),
+        "m",
+        (2 * N + 1) as f64,
+        simulator.sample().state.q[0].abs(),
+        Tolerance::exact("all numbers are whole and below 2⁵³"),
+    ))
+}

@@ -1,0 +1,177 @@
+//! One integrator at one step: what theory says of it, and what a simulation shows.
+
+use libration::analysis::{Eigenvalues, Linearisation, Spectrum, UpdateMatrix};
+use libration::number::Wide;
+use libration::simulation::Simulator;
+use libration::system::Oscillator;
+use libration::{Float, Integrator, Method, Model, Scalar, State, with_method};
+
+use crate::study::StudyError;
+
+/// Unit roundoff of the simulations.
+const U: f64 = <f64 as Float>::UNIT_ROUNDOFF;
+
+/// What theory says of one step on the oscillator, from 1024 bits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Theory {
+    pub(super) radius_minus_one: f64,
+    pub(super) determinant_minus_one: f64,
+    pub(super) symplecticity_defect: f64,
+    pub(super) reversibility_defect: f64,
+    /// Angle of the step, and its excess over that of the exact solution, in rad; none where the
+    /// eigenvalues are real.
+    pub(super) angle: Option<(f64, f64)>,
+    pub(super) bounded: bool,
+}
+
+impl Theory {
+    pub(super) fn of(method: Method, oscillator: Oscillator<f64>, dt: f64) -> Self {
+        // The step of a linear system is the same about every state.
+        let anywhere = State { q: [1.0], v: [0.0] };
+        let linear = with_method!(method, |m| Linearisation::new(m, oscillator, &anywhere, dt));
+        let spectrum = Spectrum::new(&linear.step);
+        let exact = match Spectrum::new(&linear.generator).eigenvalues {
+            Eigenvalues::Complex { im, .. } => im * linear.dt,
+            _ => Wide::ZERO,
+        };
+        let angle = matches!(spectrum.eigenvalues, Eigenvalues::Complex { .. }).then(|| {
+            let angle = spectrum.angle();
+            (angle.to_f64(), (angle - exact).to_f64())
+        });
+        Theory {
+            radius_minus_one: spectrum.radius_minus_one().to_f64(),
+            determinant_minus_one: spectrum.determinant_minus_one().to_f64(),
+            symplecticity_defect: linear.step.symplecticity_defect().to_f64(),
+            reversibility_defect: linear.reversibility_defect().to_f64(),
+            angle,
+            bounded: spectrum.is_bounded(),
+        }
+    }
+}
+
+/// A measured value and the rounding that it may carry.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Measured {
+    pub(super) value: f64,
+    pub(super) rounding: f64,
+}
+
+/// What a simulation in `f64` shows of many steps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Run {
+    /// Number of steps taken.
+    pub(super) steps: u64,
+    /// Spectral radius minus one.
+    pub(super) radius_minus_one: Measured,
+    /// Angle of a step minus that of the exact solution, in rad.
+    pub(super) phase_error: Option<Measured>,
+}
+
+impl Run {
+    /// Runs the two unit vectors for about `steps` steps; the determinant and the trace of the
+    /// matrix that they span after `n` steps are `ρ²ⁿ` and `2ρⁿ cos nθ`.
+    ///
+    /// The theory is used to choose `n` such that `cos nθ` is near zero, where the angle is best
+    /// resolved, and to count whole turns.
+    pub(super) fn new(
+        method: Method,
+        oscillator: Oscillator<f64>,
+        dt: f64,
+        steps: u64,
+        theory: &Theory,
+    ) -> Result<Self, StudyError> {
+        // Growth to 10^±100 leaves room for products.
+        let allowed = 230.0 / theory.radius_minus_one.ln_1p().abs();
+        let steps = (steps as f64).min(allowed).max(1.0);
+        let steps = match theory.angle {
+            Some((angle, _)) => {
+                let quarter = std::f64::consts::FRAC_PI_2;
+                let turns = ((steps * angle - quarter) / std::f64::consts::PI).floor().max(0.0);
+                ((turns * std::f64::consts::PI + quarter) / angle).round().max(1.0)
+            }
+            None => steps.floor(),
+        } as u64;
+        let after = with_method!(method, |m| fundamental(m, oscillator, dt, steps))?;
+        let (n, determinant) = (steps as f64, after.determinant());
+        let radius_minus_one = (determinant.abs().ln() / (2.0 * n)).exp_m1();
+        // Roundings of a step are independent; n of them add up like √n, and 20 covers the number
+        // of operations of a step and their coefficients.
+        let rounding = 20.0 * U * n.sqrt();
+        let phase_error = theory.angle.map(|(angle, _)| {
+            let half = after.trace() / 2.0;
+            let folded = (determinant - half * half).max(0.0).sqrt().atan2(half);
+            let turns = (n * angle / std::f64::consts::TAU).floor();
+            let rest = n * angle - turns * std::f64::consts::TAU;
+            let total = if rest <= std::f64::consts::PI {
+                turns * std::f64::consts::TAU + folded
+            } else {
+                (turns + 1.0) * std::f64::consts::TAU - folded
+            };
+            let exact = oscillator.omega2.sqrt() * dt;
+            Measured {
+                value: total / n - exact,
+                rounding: (rounding + 4.0 * U * total) / n + 4.0 * U * exact,
+            }
+        });
+        Ok(Run {
+            steps,
+            radius_minus_one: Measured {
+                value: radius_minus_one,
+                rounding: rounding / n + 4.0 * U * radius_minus_one.abs(),
+            },
+            phase_error,
+        })
+    }
+}
+
+/// The matrix of `steps` steps, by simulation from the two unit vectors.
+fn fundamental(
+    integrator: impl Integrator,
+    oscillator: Oscillator<f64>,
+    dt: f64,
+    steps: u64,
+) -> Result<UpdateMatrix<f64, 1>, StudyError> {
+    let run = |q: f64, v: f64| -> Result<State<f64, 1>, StudyError> {
+        let start = State { q: [q], v: [v] };
+        let mut simulator =
+            Simulator::new(Model::<1>::on::<f64>(&oscillator), integrator, start, dt)?;
+        simulator.run(steps, &mut ())?;
+        Ok(simulator.sample().state)
+    };
+    Ok(UpdateMatrix { dq: [run(1.0, 0.0)?], dv: [run(0.0, 1.0)?] })
+}
+
+/// The defects of one step as `f64` arithmetic has them, and the rounding that they may carry.
+pub(super) fn defects(
+    method: Method,
+    oscillator: Oscillator<f64>,
+    dt: f64,
+) -> (Measured, Measured) {
+    with_method!(method, |m| {
+        let step = UpdateMatrix::<f64, 1>::from_map(|e| m.step(&oscillator, e, dt));
+        let back = UpdateMatrix::from_map(|e| m.step(&oscillator, e, -dt));
+        let largest = step.rows().concat().iter().fold(1.0_f64, |a, x| a.max(x.abs()));
+        // An entry carries a few roundings of its own size, and a defect sums products of two.
+        let rounding = 40.0 * U * largest * largest;
+        let measured = |value: f64| Measured { value, rounding };
+        (
+            measured(step.symplecticity_defect()),
+            measured(back.after(&step).distance_from_identity()),
+        )
+    })
+}
+
+/// The largest absolute value of an eigenvalue of a `2 × 2` matrix of floats.
+pub(super) fn radius(matrix: &UpdateMatrix<f64, 1>) -> f64 {
+    let (half, determinant) = (matrix.trace() / 2.0, matrix.determinant());
+    let discriminant = half * half - determinant;
+    if discriminant < 0.0 { determinant.sqrt() } else { half.abs() + discriminant.sqrt() }
+}
+
+/// One step of `method` on a mode `q̈ = −ω²q − γq̇` with eigenvalues `λ, λ̄`, at `Δt = 1`.
+pub(super) fn radius_at(method: Method, re: f64, im: f64) -> f64 {
+    let mode = libration::system::DampedOscillator { omega2: re * re + im * im, gamma: -2.0 * re };
+    with_method!(method, |m| radius(&UpdateMatrix::<f64, 1>::from_map(|e| {
+        m.step(&mode, e, f64::one())
+    })))
+}

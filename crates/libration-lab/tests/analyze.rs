@@ -1,0 +1,102 @@
+//! The analysis of one step, as a user gets it.
+
+#![allow(clippy::unwrap_used)]
+
+use libration::{AnySystem, Method};
+use libration_lab::analyze::{Analysis, AnalyzeError, Request, analyze};
+
+fn request(system: &str, method: Method, dt: f64, q: &[f64], v: &[f64]) -> Request {
+    let system = AnySystem::build(system, &[] as &[(&str, f64)]).unwrap();
+    Request { system, method, dt, q: q.into(), v: v.into(), steps: 1000 }
+}
+
+fn json(analysis: &Analysis) -> serde_json::Value {
+    serde_json::to_value(analysis).unwrap()
+}
+
+#[test]
+fn the_promised_keys_are_there() {
+    let analysis = analyze(&request("oscillator", Method::Rk4, 0.01, &[1.0], &[0.0])).unwrap();
+    let json = json(&analysis);
+    for key in [
+        "update_matrix",
+        "determinant",
+        "trace",
+        "eigenvalues",
+        "spectral_radius",
+        "symplecticity_defect",
+        "reversibility_defect",
+        "phase_error_per_step",
+        "max_energy_drift",
+    ] {
+        assert!(!json[key].is_null(), "{key}");
+    }
+    assert_eq!(json["force_evaluations_per_step"], 4);
+    assert_eq!(json["update_matrix_in_z"][0][0], "1 − z²/2 + z⁴/24");
+}
+
+#[test]
+fn a_drift_beyond_every_float_is_still_a_number_in_json() {
+    let mut request = request("oscillator", Method::ExplicitEuler, 0.1, &[1.0], &[0.0]);
+    request.steps = 1_000_000;
+    let text = serde_json::to_string(&analyze(&request).unwrap()).unwrap();
+    // (1 + z²)ⁿ − 1 with z² = 0.1 and n = 10⁶: 4.84348796603303…·10⁴¹³⁹². The double nearest to
+    // 0.1 is 5.6·10⁻¹⁷ too large, which n·z²/(1 + z²) magnifies to a part in 10¹¹.
+    assert!(text.contains("\"max_energy_drift\":4.8434879660"), "{text}");
+    assert!(text.contains("e41392,"), "{text}");
+}
+
+#[test]
+fn a_nonlinear_step_is_symplectic_about_every_state_if_the_method_is() {
+    for (system, q, v) in [
+        ("pendulum", &[2.0][..], &[0.1][..]),
+        ("henon-heiles", &[0.3, -0.2], &[0.1, 0.25]),
+        ("kepler", &[0.4, 0.1], &[0.2, 2.0]),
+    ] {
+        let defect = |m| analyze(&request(system, m, 0.05, q, v)).unwrap().symplecticity_defect;
+        assert_eq!(defect(Method::VelocityVerlet), 0.0, "{system}");
+        assert_eq!(defect(Method::Yoshida4), 0.0, "{system}");
+        assert!(defect(Method::Rk4) > 1e-12, "{system}");
+        assert!(defect(Method::ExplicitEuler) > 1e-4, "{system}");
+    }
+}
+
+#[test]
+fn a_nonlinear_answer_says_that_it_is_a_linearisation() {
+    let answer = analyze(&request("pendulum", Method::Rk4, 0.01, &[1.0], &[0.0])).unwrap();
+    assert!(!answer.about.linear);
+    assert!(json(&answer)["note"].as_str().unwrap().contains("linearisation"));
+}
+
+#[test]
+fn small_swings_of_the_pendulum_turn_as_the_oscillator_does() {
+    // cos q differs from 1 by q²/2 = 5·10⁻¹⁷ at q = 10⁻⁸, and with it the frequency.
+    let pendulum = analyze(&request("pendulum", Method::VelocityVerlet, 0.1, &[1e-8], &[0.0]));
+    let oscillator = Request {
+        system: AnySystem::build("oscillator", &[("omega2", 9.81)]).unwrap(),
+        ..request("oscillator", Method::VelocityVerlet, 0.1, &[1.0], &[0.0])
+    };
+    let (a, b) = (pendulum.unwrap(), analyze(&oscillator).unwrap());
+    let (a, b) = (a.phase_error_per_step.unwrap(), b.phase_error_per_step.unwrap());
+    assert!((a / b - 1.0).abs() < 1e-12, "{a:e} {b:e}");
+}
+
+#[test]
+fn coupled_modes_are_compared_frequency_by_frequency() {
+    // About the origin Hénon–Heiles is two oscillators with ω = 1: the error of velocity Verlet is
+    // 2 asin(z/2) − z.
+    let answer =
+        analyze(&request("henon-heiles", Method::VelocityVerlet, 0.1, &[1e-9, 1e-9], &[0.0, 0.0]));
+    let expected = 2.0 * (0.05_f64).asin() - 0.1;
+    let got = answer.unwrap().phase_error_per_step.unwrap();
+    // The coupling shifts the frequencies by about q = 10⁻⁹, which turns 10⁻¹⁰ rad in a step.
+    assert!((got - expected).abs() < 1e-12, "{got:e}, not {expected:e}");
+}
+
+#[test]
+fn a_singular_state_and_a_wrong_dimension_are_refused() {
+    let at_the_sun = request("kepler", Method::Rk4, 0.01, &[0.0, 0.0], &[0.0, 1.0]);
+    assert!(matches!(analyze(&at_the_sun), Err(AnalyzeError::Singular { .. })));
+    let flat = request("kepler", Method::Rk4, 0.01, &[1.0], &[1.0]);
+    assert!(matches!(analyze(&flat), Err(AnalyzeError::Dimension(_))));
+}

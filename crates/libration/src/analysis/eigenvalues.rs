@@ -1,0 +1,155 @@
+//! The eigenvalues of a matrix of any size, in 1024 bits.
+//!
+//! Characteristic polynomial by Faddeev and LeVerrier, roots by Weierstrass' simultaneous iteration
+//! (Durand–Kerner). In floats that would be a poor way; with 1024 bits a few hundred are left
+//! after it for matrices as small as those of a time step.
+
+use super::UpdateMatrix;
+use crate::number::Wide;
+use crate::{Elementary, Scalar};
+
+/// Sweeps of the iteration. A double root gains one bit a sweep, a simple one doubles its bits.
+const SWEEPS: usize = 400;
+
+/// Corrections below `2^-SETTLED` of the largest root end the iteration.
+const SETTLED: i64 = 600;
+
+/// A complex number.
+#[derive(Clone, Copy, Debug)]
+pub struct Complex {
+    /// Real part.
+    pub re: Wide,
+    /// Imaginary part.
+    pub im: Wide,
+}
+
+impl Complex {
+    /// The absolute value.
+    pub fn abs(self) -> Wide {
+        (self.re * self.re + self.im * self.im).sqrt()
+    }
+
+    /// The angle in `(−π, π]` rad.
+    pub fn arg(self) -> Wide {
+        self.im.atan2(self.re)
+    }
+
+    fn plus(self, o: Self) -> Self {
+        Complex { re: self.re + o.re, im: self.im + o.im }
+    }
+
+    fn minus(self, o: Self) -> Self {
+        Complex { re: self.re - o.re, im: self.im - o.im }
+    }
+
+    fn times(self, o: Self) -> Self {
+        Complex { re: self.re * o.re - self.im * o.im, im: self.re * o.im + self.im * o.re }
+    }
+
+    fn over(self, o: Self) -> Self {
+        let scale = (o.re * o.re + o.im * o.im).recip();
+        let conjugate = Complex { re: o.re * scale, im: -o.im * scale };
+        self.times(conjugate)
+    }
+}
+
+/// All eigenvalues of `matrix`, multiple ones repeated, by falling real part.
+pub fn eigenvalues<const D: usize>(matrix: &UpdateMatrix<Wide, D>) -> Vec<Complex> {
+    let mut roots = roots(&characteristic_polynomial(matrix));
+    roots.sort_by(|a, b| b.re.partial_cmp(&a.re).unwrap_or(core::cmp::Ordering::Equal));
+    roots
+}
+
+/// The determinant of `matrix`.
+pub fn determinant<const D: usize>(matrix: &UpdateMatrix<Wide, D>) -> Wide {
+    // The dimension 2D is even, so the constant term carries the sign of the determinant.
+    characteristic_polynomial(matrix)[0]
+}
+
+/// The coefficients of `det(λ − A)` from the constant term up; the leading 1 is left out.
+fn characteristic_polynomial<const D: usize>(a: &UpdateMatrix<Wide, D>) -> Vec<Wide> {
+    let n = 2 * D;
+    let mut coefficients = vec![Wide::one(); n + 1];
+    let mut m = UpdateMatrix::<Wide, D>::from_map(|e| e.map(|_| Wide::ZERO));
+    for k in 1..=n {
+        let c = coefficients[n + 1 - k];
+        let image = a.after(&m);
+        m = UpdateMatrix::from_map(|e| image.apply(&e).plus(c, e));
+        coefficients[n - k] = -a.after(&m).trace().ratio(1, k as i32);
+    }
+    coefficients.pop();
+    coefficients
+}
+
+/// The roots of the monic polynomial with these lower coefficients.
+fn roots(coefficients: &[Wide]) -> Vec<Complex> {
+    let real = |re| Complex { re, im: Wide::ZERO };
+    let value = |z: Complex| {
+        coefficients.iter().rev().fold(real(Wide::one()), |sum, &c| sum.times(z).plus(real(c)))
+    };
+    // Cauchy's bound on the roots; the seed is on no axis of symmetry of a real polynomial.
+    let bound = coefficients.iter().fold(Wide::one(), |sum, c| sum + c.abs());
+    let seed = Complex { re: Wide::from_f64(0.4), im: Wide::from_f64(0.9) };
+    let mut power = real(bound);
+    let mut roots: Vec<Complex> = Vec::with_capacity(coefficients.len());
+    for _ in coefficients {
+        power = power.times(seed);
+        roots.push(power);
+    }
+    for _ in 0..SWEEPS {
+        let mut largest = Wide::ZERO;
+        for i in 0..roots.len() {
+            let others = roots.iter().enumerate().filter(|(j, _)| *j != i);
+            let product =
+                others.fold(real(Wide::one()), |product, (_, &r)| product.times(roots[i].minus(r)));
+            if product.abs().is_zero() {
+                continue;
+            }
+            let correction = value(roots[i]).over(product);
+            roots[i] = roots[i].minus(correction);
+            if correction.abs() > largest {
+                largest = correction.abs();
+            }
+        }
+        let scale =
+            roots.iter().map(|r| r.abs()).fold(Wide::ZERO, |a, b| if a > b { a } else { b });
+        match (largest.exponent(), scale.exponent()) {
+            (Some(change), Some(scale)) if change >= scale - SETTLED => {}
+            _ => break,
+        }
+    }
+    roots
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::State;
+
+    #[test]
+    fn a_rotation_with_a_shear_has_its_four_eigenvalues() {
+        // q₀, v₀ rotate by 0.3 rad and shrink by 0.9; q₁, v₁ shear: eigenvalue 1, twice, defective.
+        let (s, c) = Wide::from_f64(0.3).sin_cos();
+        let factor = Wide::from_f64(0.9);
+        let matrix = UpdateMatrix::<Wide, 2>::from_map(|State { q, v }| State {
+            q: [factor * (c * q[0] + s * v[0]), q[1] + v[1]],
+            v: [factor * (c * v[0] - s * q[0]), v[1]],
+        });
+        let found = eigenvalues(&matrix);
+        assert!((determinant(&matrix) - factor * factor).abs().to_f64() < 1e-290);
+        // One bit a sweep for the double root: 2⁻⁴⁰⁰ is 10⁻¹²⁰, and rounding stops it earlier.
+        for one in &found[..2] {
+            assert!((one.re - Wide::one()).abs().to_f64() < 1e-60, "{one:?}");
+        }
+        for turn in &found[2..] {
+            assert!((turn.abs() - factor).abs().to_f64() < 1e-150, "{turn:?}");
+            assert!((turn.arg().abs() - Wide::from_f64(0.3)).abs().to_f64() < 1e-150, "{turn:?}");
+        }
+    }
+
+    #[test]
+    fn a_matrix_of_zeros_has_the_eigenvalue_zero() {
+        let zero = UpdateMatrix::<Wide, 2>::from_map(|e| e.map(|_| Wide::ZERO));
+        assert!(eigenvalues(&zero).iter().all(|z| z.abs().to_f64() < 1e-60));
+    }
+}

@@ -1,0 +1,66 @@
+//! One step as a matrix, in 1024 bits.
+
+use super::UpdateMatrix;
+use crate::number::{Dual, Wide};
+use crate::{Integrator, Model, State, System};
+
+/// A system and one step of an integrator on it, linearised about a state.
+///
+/// For a linear system the matrices are the maps themselves, whatever the state. They carry 1024
+/// bits, so that differences such as `det M − 1` have all the digits of an `f64` left.
+#[derive(Clone, Copy, Debug)]
+pub struct Linearisation<const D: usize> {
+    /// The Jacobian `A` of the rate of change `(q̇, v̇)`.
+    pub generator: UpdateMatrix<Wide, D>,
+    /// The Jacobian `M` of one step.
+    pub step: UpdateMatrix<Wide, D>,
+    /// The Jacobian of a step of `−Δt` from where the step ends.
+    pub back: UpdateMatrix<Wide, D>,
+    /// The time step in seconds.
+    pub dt: Wide,
+}
+
+impl<const D: usize> Linearisation<D> {
+    /// `integrator` with a step of `dt` seconds on `model`, about the state `at`.
+    pub fn new(
+        integrator: impl Integrator,
+        model: impl Model<D>,
+        at: &State<f64, D>,
+        dt: f64,
+    ) -> Self {
+        let system = model.on::<Dual<Wide>>();
+        let at = at.map(wide);
+        let dt = wide(dt);
+        let step = |h: Wide| move |s| integrator.step(&system, s, Dual::constant(h));
+        let end = step(dt)(at.map(Dual::constant)).map(|x| x.re);
+        Linearisation {
+            generator: jacobian(|s| system.rate(s), &at),
+            step: jacobian(step(dt), &at),
+            back: jacobian(step(-dt), &end),
+            dt,
+        }
+    }
+
+    /// `‖M(−Δt)·M(Δt) − 1‖` in the Frobenius norm: zero for a time-reversible method.
+    pub fn reversibility_defect(&self) -> Wide {
+        self.back.after(&self.step).distance_from_identity()
+    }
+}
+
+/// The Jacobian of `f` at `at`, one direction of phase space at a time.
+fn jacobian<const D: usize>(
+    f: impl Fn(State<Dual<Wide>, D>) -> State<Dual<Wide>, D>,
+    at: &State<Wide, D>,
+) -> UpdateMatrix<Wide, D> {
+    UpdateMatrix::from_map(|direction| {
+        f(State {
+            q: core::array::from_fn(|i| Dual { re: at.q[i], du: direction.q[i] }),
+            v: core::array::from_fn(|i| Dual { re: at.v[i], du: direction.v[i] }),
+        })
+        .map(|x| x.du)
+    })
+}
+
+fn wide(x: f64) -> Wide {
+    crate::Scalar::from_f64(x)
+}

@@ -1,0 +1,119 @@
+//! The eigenvalues of a `2 × 2` matrix, in closed form and without cancellation.
+
+use super::UpdateMatrix;
+use crate::number::Wide;
+use crate::{Elementary, Scalar};
+
+/// Differences below this many bits under the leading one are rounding: 1024 bits carry each
+/// operation to `2⁻¹⁰²⁰`, and a step takes far fewer than `2¹²⁰` of them.
+const ROUNDING_BITS: i64 = 900;
+
+/// What a `2 × 2` matrix does when it is applied over and over.
+#[derive(Clone, Copy, Debug)]
+pub struct Spectrum {
+    /// Sum of the eigenvalues.
+    pub trace: Wide,
+    /// Product of the eigenvalues: the factor by which areas grow.
+    pub determinant: Wide,
+    /// The eigenvalues.
+    pub eigenvalues: Eigenvalues,
+}
+
+/// The two eigenvalues of a real `2 × 2` matrix.
+#[derive(Clone, Copy, Debug)]
+pub enum Eigenvalues {
+    /// `re ± i·im` with `im > 0`: a rotation with growth or decay.
+    Complex {
+        /// Real part.
+        re: Wide,
+        /// Imaginary part of the upper one.
+        im: Wide,
+    },
+    /// Two real ones, the larger first: a stretching.
+    Real(Wide, Wide),
+    /// One real eigenvalue twice.
+    Double {
+        /// The eigenvalue.
+        value: Wide,
+        /// Whether it has but one eigenvector, so that powers grow linearly on top of `|λ|ⁿ`.
+        defective: bool,
+    },
+}
+
+impl Spectrum {
+    /// The spectrum of `matrix`.
+    pub fn new(matrix: &UpdateMatrix<Wide, 1>) -> Self {
+        let (trace, determinant) = (matrix.trace(), matrix.determinant());
+        let half = trace.ratio(1, 2);
+        let discriminant = half * half - determinant;
+        let eigenvalues = if negligible(discriminant, half * half) {
+            let off_diagonal = [matrix.entry(0, 1), matrix.entry(1, 0)];
+            let defective = off_diagonal.iter().any(|x| !x.is_zero());
+            Eigenvalues::Double { value: half, defective }
+        } else if discriminant.is_negative() {
+            Eigenvalues::Complex { re: half, im: (-discriminant).sqrt() }
+        } else {
+            let root = discriminant.sqrt();
+            Eigenvalues::Real(half + root, half - root)
+        };
+        Spectrum { trace, determinant, eigenvalues }
+    }
+
+    /// The determinant minus one; zero where it differs from one by rounding only.
+    pub fn determinant_minus_one(&self) -> Wide {
+        let difference = self.determinant - Wide::one();
+        if negligible(difference, Wide::one()) { Wide::ZERO } else { difference }
+    }
+
+    /// The largest absolute value of an eigenvalue.
+    pub fn radius(&self) -> Wide {
+        match self.eigenvalues {
+            Eigenvalues::Complex { .. } => self.determinant.sqrt(),
+            Eigenvalues::Real(larger, smaller) => {
+                if larger.abs() > smaller.abs() {
+                    larger.abs()
+                } else {
+                    smaller.abs()
+                }
+            }
+            Eigenvalues::Double { value, .. } => value.abs(),
+        }
+    }
+
+    /// The spectral radius minus one; zero where it differs from one by rounding only.
+    pub fn radius_minus_one(&self) -> Wide {
+        let difference = self.radius() - Wide::one();
+        if negligible(difference, Wide::one()) { Wide::ZERO } else { difference }
+    }
+
+    /// Whether powers of the matrix stay bounded: no eigenvalue outside the unit circle, and none
+    /// on it that is defective.
+    pub fn is_bounded(&self) -> bool {
+        let excess = self.radius_minus_one();
+        let defective = matches!(self.eigenvalues, Eigenvalues::Double { defective: true, .. });
+        excess.is_negative() || (excess.is_zero() && !defective)
+    }
+
+    /// The angle of the upper eigenvalue, in `[0, π]` rad.
+    pub fn angle(&self) -> Wide {
+        match self.eigenvalues {
+            Eigenvalues::Complex { re, im } => im.atan2(re),
+            Eigenvalues::Real(x, _) | Eigenvalues::Double { value: x, .. } => {
+                if x.is_negative() {
+                    Wide::pi()
+                } else {
+                    Wide::ZERO
+                }
+            }
+        }
+    }
+}
+
+/// Whether `x` is nothing but rounding beside `scale`.
+fn negligible(x: Wide, scale: Wide) -> bool {
+    match (x.exponent(), scale.exponent()) {
+        (None, _) => true,
+        (Some(x), Some(scale)) => x < scale - ROUNDING_BITS,
+        (Some(_), None) => false,
+    }
+}

@@ -1,0 +1,87 @@
+//! `cargo xtask ci`: every check in order, up to the first that fails.
+
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+
+use crate::{Outcome, command, dependencies, examples, report, test, tidy};
+
+/// A headline and what stands under it.
+type Step = (&'static str, fn() -> Outcome);
+
+const STEPS: [Step; 8] = [
+    ("format", || command::run(&mut command::cargo("fmt --all --check"))),
+    ("tidy", tidy::run),
+    ("dependencies", dependencies::run),
+    ("clippy", || {
+        command::run(&mut command::cargo("clippy --workspace --all-targets -- -D warnings"))
+    }),
+    ("documentation", documentation),
+    ("test", || test::run(&[])),
+    ("examples", examples::run),
+    ("report", report::run),
+];
+
+/// Runs the steps and prints how long each took.
+pub(crate) fn run() -> Outcome {
+    let mut durations = Vec::new();
+    let mut failure = None;
+    for (i, (name, step)) in STEPS.iter().enumerate() {
+        println!("\n=== {} of {}: {name}", i + 1, STEPS.len());
+        let start = Instant::now();
+        let outcome = step();
+        durations.push(start.elapsed());
+        let verdict = if outcome.is_ok() { "passed" } else { "failed" };
+        println!("--- {name} {verdict} after {:.1} s", start.elapsed().as_secs_f64());
+        if let Err(reason) = outcome {
+            failure = Some(format!("{name}: {reason}"));
+            break;
+        }
+    }
+    print!("\n{}", summary(&STEPS.map(|(name, _)| name), &durations, failure.is_some()));
+    failure.map_or(Ok(()), Err)
+}
+
+fn documentation() -> Outcome {
+    let flags = std::env::var("RUSTDOCFLAGS").unwrap_or_default();
+    let flags = format!("{flags} -D warnings");
+    command::run(
+        command::cargo("doc --workspace --no-deps").env("RUSTDOCFLAGS", flags.trim_start()),
+    )
+}
+
+/// The table at the end; steps without a duration did not run, the last with one may have failed.
+fn summary(names: &[&str], durations: &[Duration], failed: bool) -> String {
+    let mut table = String::new();
+    for (i, name) in names.iter().enumerate() {
+        let verdict = match i + 1 {
+            n if n > durations.len() => "not run",
+            n if n == durations.len() && failed => "FAILED",
+            _ => "passed",
+        };
+        let seconds =
+            durations.get(i).map_or(String::new(), |d| format!("{:.1} s", d.as_secs_f64()));
+        // Writing to a string cannot fail.
+        let _ = writeln!(table, "{name:<16}{verdict:<10}{seconds:>9}");
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_summary_names_what_failed_and_what_did_not_run() {
+        let durations = [Duration::from_millis(1500), Duration::from_secs(61)];
+        let table = summary(&["format", "tidy", "test"], &durations, true);
+        assert_eq!(
+            table,
+            "format          passed        1.5 s\n\
+             tidy            FAILED       61.0 s\n\
+             test            not run            \n"
+        );
+        assert!(
+            summary(&["format", "tidy"], &durations, false).lines().all(|l| l.contains("passed"))
+        );
+    }
+}

@@ -1,0 +1,51 @@
+//! Programs that a task runs: in the workspace's folder, without standard input.
+
+use std::ffi::OsStr;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use crate::{Outcome, workspace};
+
+/// A command in the workspace's folder that never waits for a keyboard.
+pub(crate) fn program(path: impl AsRef<OsStr>) -> Command {
+    let mut command = Command::new(path);
+    command.current_dir(workspace::root()).stdin(Stdio::null());
+    command
+}
+
+/// The cargo that started this program, with `arguments` separated by blanks.
+pub(crate) fn cargo(arguments: &str) -> Command {
+    let mut command = program(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(arguments.split_whitespace());
+    command
+}
+
+/// Runs `command` to its end; anything but success is an error.
+pub(crate) fn run(command: &mut Command) -> Outcome {
+    let status = command.status().map_err(|error| not_started(command, &error))?;
+    if status.success() { Ok(()) } else { Err(format!("`{}` failed ({status})", shown(command))) }
+}
+
+/// What `command` prints to its standard output.
+pub(crate) fn output(command: &mut Command) -> Result<String, String> {
+    let output = command.output().map_err(|error| not_started(command, &error))?;
+    if !output.status.success() {
+        let complaint = String::from_utf8_lossy(&output.stderr);
+        return Err(format!("`{}` failed ({})\n{complaint}", shown(command), output.status));
+    }
+    String::from_utf8(output.stdout)
+        .map_err(|_| format!("`{}` printed something that is not UTF-8", shown(command)))
+}
+
+fn not_started(command: &Command, error: &std::io::Error) -> String {
+    format!("`{}` could not be started: {error}", shown(command))
+}
+
+/// The command as one would type it, without the folder of the program.
+fn shown(command: &Command) -> String {
+    let path = Path::new(command.get_program());
+    let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
+    command
+        .get_args()
+        .fold(name.into_owned(), |line, argument| format!("{line} {}", argument.to_string_lossy()))
+}

@@ -1,0 +1,69 @@
+//! `cargo xtask examples`: every example compiles, and those that need nothing but patience run.
+
+use std::fs;
+use std::path::Path;
+
+use crate::scratch::Scratch;
+use crate::{Outcome, command, workspace};
+
+/// Folders of examples that run without arguments.
+const PLAIN: [&str; 2] = ["examples", "crates/libration/examples"];
+
+/// Examples of the laboratory that draw into the file named by their first argument.
+const DRAWING: [&str; 1] = ["gallery"];
+
+/// Builds all examples of the workspace, then runs them.
+pub(crate) fn run() -> Outcome {
+    command::run(&mut command::cargo("build --workspace --examples"))?;
+    for folder in PLAIN {
+        for name in examples_in(&workspace::root().join(folder)) {
+            println!("example {name}");
+            command::run(&mut command::program(built(&name)))?;
+        }
+    }
+    let scratch = Scratch::new("examples")?;
+    let drawing = examples_in(&workspace::root().join("crates/libration-lab/examples"));
+    for name in drawing.iter().filter(|name| DRAWING.contains(&name.as_str())) {
+        println!("example {name}");
+        let page = scratch.path().join(format!("{name}.html"));
+        command::run(command::program(built(name)).arg(page))?;
+    }
+    Ok(())
+}
+
+fn built(example: &str) -> std::path::PathBuf {
+    workspace::built(&format!("debug/examples/{example}"))
+}
+
+/// The names of the examples in `folder`, sorted: `NAME.rs` or `NAME/main.rs`.
+fn examples_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|e| e == "rs") || path.join("main.rs").exists())
+        .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
+        .collect();
+    names.sort();
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn examples_are_files_and_folders_with_a_main() {
+        let scratch = Scratch::new("finds-examples").unwrap();
+        fs::write(scratch.path().join("orbit.rs"), "").unwrap();
+        fs::write(scratch.path().join("notes.md"), "").unwrap();
+        fs::create_dir(scratch.path().join("cart")).unwrap();
+        fs::write(scratch.path().join("cart/main.rs"), "").unwrap();
+        fs::create_dir(scratch.path().join("data")).unwrap();
+        assert_eq!(examples_in(scratch.path()), ["cart", "orbit"]);
+    }
+
+    #[test]
+    fn a_folder_that_does_not_exist_holds_no_examples() {
+        assert!(examples_in(Path::new("no/such/folder")).is_empty());
+    }
+}

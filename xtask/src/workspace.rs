@@ -1,0 +1,25 @@
+//! Where the project and its build products lie.
+
+use std::env;
+use std::path::{Path, PathBuf};
+
+/// The folder of the workspace.
+pub(crate) fn root() -> PathBuf {
+    let manifest = env::var_os("CARGO_MANIFEST_DIR")
+        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
+    manifest.parent().map_or_else(|| manifest.clone(), Path::to_path_buf)
+}
+
+/// The folder that cargo builds into.
+pub(crate) fn target() -> PathBuf {
+    match env::var_os("CARGO_TARGET_DIR") {
+        // Commands run in the root, so that is where cargo looks for a relative folder, too.
+        Some(folder) => root().join(folder),
+        None => root().join("target"),
+    }
+}
+
+/// A program that cargo has built, such as `debug/examples/orbit`.
+pub(crate) fn built(program: &str) -> PathBuf {
+    target().join(format!("{program}{}", env::consts::EXE_SUFFIX))
+}
