@@ -1,13 +1,15 @@
 //! The studies, in the order in which they are told.
 
+mod drift;
 mod ink;
 mod spectrum;
 
 use crate::study::Study;
+pub use drift::Drift;
 pub use spectrum::Spectrum;
 
 /// All studies.
-pub const ALL: &[&dyn Study] = &[&Spectrum];
+pub const ALL: &[&dyn Study] = &[&Spectrum, &Drift];
 
 /// The study of that name, if there is one.
 pub fn by_name(name: &str) -> Option<&'static dyn Study> {

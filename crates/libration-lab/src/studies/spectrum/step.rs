@@ -21,7 +21,6 @@ pub(super) struct Theory {
     /// Angle of the step, and its excess over that of the exact solution, in rad; none where the
     /// eigenvalues are real.
     pub(super) angle: Option<(f64, f64)>,
-    pub(super) bounded: bool,
 }
 
 impl Theory {
@@ -44,7 +43,6 @@ impl Theory {
             symplecticity_defect: linear.step.symplecticity_defect().to_f64(),
             reversibility_defect: linear.reversibility_defect().to_f64(),
             angle,
-            bounded: spectrum.is_bounded(),
         }
     }
 }
