@@ -1,5 +1,6 @@
 //! The command line as types: what can be asked, and in which words.
 
+mod analyze;
 mod number;
 mod simulate;
 mod system;
@@ -13,6 +14,7 @@ use libration_lab::{Effort, studies};
 
 use crate::error::Failure;
 
+pub(crate) use analyze::AnalyzeArgs;
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use system::{Setting, StepArgs, SystemArgs};
 
@@ -39,6 +41,8 @@ Examples:
   libration lab --config mine.toml           the studies at your own setting
   libration simulate --system oscillator --integrator rk4 --dt 0.01 --steps 1000
                                              a trajectory as CSV
+  libration analyze --system oscillator --integrator rk4 --dt 0.01
+                                             what theory says of one step
   libration list                             what there is
 
 Exit codes: 0 success, 1 a failed run or a finding that disagrees, 2 wrong input, 130 interrupted";
@@ -47,6 +51,8 @@ Exit codes: 0 success, 1 a failed run or a finding that disagrees, 2 wrong input
 pub(crate) enum Command {
     /// Run studies and write a report
     Lab(LabArgs),
+    /// Say what theory makes of one step of an integrator on a system
+    Analyze(AnalyzeArgs),
     /// Simulate one trajectory and write its rows
     Simulate(SimulateArgs),
     /// List studies, systems and integrators

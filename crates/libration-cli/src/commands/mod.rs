@@ -1,5 +1,6 @@
 //! One module for each subcommand.
 
+mod analyze;
 mod completions;
 mod lab;
 mod list;
@@ -14,6 +15,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
     terminal::set_color(arguments.color);
     match arguments.command {
         Command::Lab(args) => lab::run(&args, arguments.quiet),
+        Command::Analyze(args) => analyze::run(&args),
         Command::Simulate(args) => simulate::run(&args, arguments.quiet),
         Command::List(args) => list::run(&args),
         Command::Completions(args) => completions::run(&args),

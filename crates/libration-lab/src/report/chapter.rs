@@ -55,7 +55,7 @@ fn table(table: &Table, digits: usize) -> String {
         .collect();
     let cell = |(i, cell): (usize, &Cell)| {
         let shown = match cell {
-            Cell::Number(x) => number(*x, digits),
+            Cell::Number(x) => text(&number(*x, digits)),
             Cell::Text(words) => text(words),
         };
         format!("<td{}>{shown}</td>", class(i))
@@ -94,7 +94,7 @@ fn finding(finding: &Finding) -> String {
         "1" => String::new(),
         unit => format!(" {}", escape(unit)),
     };
-    let value = |x: Option<f64>| x.map_or_else(|| "—".into(), |x| number(x, 8) + &unit);
+    let value = |x: Option<f64>| x.map_or_else(|| "—".into(), |x| text(&number(x, 8)) + &unit);
     format!(
         "<tr id=\"{id}\"><td>{text}<br><span class=\"id\">{id}</span></td>\
          <td class=\"num\">{predicted}</td><td class=\"num\">{measured}</td>\
@@ -105,6 +105,6 @@ fn finding(finding: &Finding) -> String {
         predicted = value(finding.predicted),
         measured = value(Some(finding.measured)),
         reason = escape(&finding.tolerance.tolerance_reason),
-        tolerance = finding.tolerance.tolerance.map_or_else(|| "—".into(), |t| number(t, 2)),
+        tolerance = finding.tolerance.tolerance.map_or_else(|| "—".into(), |t| text(&number(t, 2))),
     )
 }

@@ -21,15 +21,45 @@ pub(super) fn text(text: &str) -> String {
     let pieces = text.split('`').enumerate();
     pieces
         .map(|(i, piece)| match i % 2 {
-            0 => escape(piece),
+            0 => raise(&escape(piece)),
             _ => format!("<code>{}</code>", escape(piece)),
         })
         .collect()
 }
 
+/// Runs of raised characters as `<sup>`: fonts that lack them would mix two heights.
+fn raise(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut raised = false;
+    for c in text.chars() {
+        let plain = match c {
+            '⁻' => Some('−'),
+            '¹' => Some('1'),
+            '²' => Some('2'),
+            '³' => Some('3'),
+            '⁰' | '⁴'..='⁹' => char::from_digit(u32::from(c) - u32::from('⁰'), 10),
+            _ => None,
+        };
+        if plain.is_some() != raised {
+            raised = !raised;
+            out.push_str(if raised { "<sup>" } else { "</sup>" });
+        }
+        out.push(plain.unwrap_or(c));
+    }
+    if raised {
+        out.push_str("</sup>");
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn powers_are_raised_together() {
+        assert_eq!(text("2·10⁻¹² m²"), "2·10<sup>−12</sup> m<sup>2</sup>");
+    }
 
     #[test]
     fn no_text_becomes_markup() {

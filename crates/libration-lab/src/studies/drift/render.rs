@@ -27,7 +27,7 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     );
     page.figure(running(record, first)?.number("9.1"));
     page.figure(signed(record, first)?.number("9.2"));
-    page.table(record.table("largest drift")?, 5);
+    page.table(record.table("largest drift")?, 7);
     page.paragraph(
         "The predictions in the table are exact: the largest drift over the discrete orbit, from \
          powers of the update matrix with 1024 bits. The worst start is where the same orbit, \
@@ -64,7 +64,7 @@ fn summary(record: &Record, page: &mut Page, dt: f64) {
         (largest(Method::VelocityVerlet), largest(Method::Rk4), crossover)
     {
         page.headline = format!(
-            "At Δt = {shown} Verlet's energy swings by {} for ever, RK4 has lost {} by the end: it \
+            "At Δt = {shown} Verlet’s energy swings by {} for ever, RK4 has lost {} by the end: it \
              falls behind only after {} steps.",
             number(verlet, 2),
             number(rk4, 2),
@@ -76,7 +76,7 @@ fn summary(record: &Record, page: &mut Page, dt: f64) {
         });
         page.highlights.push(Highlight {
             value: format!("{} steps", number(crossover, 2)),
-            text: "until RK4's loss overtakes Verlet's swing".into(),
+            text: "until RK4’s loss overtakes Verlet’s swing".into(),
         });
     }
     let sizes: Vec<String> = methods(record)
@@ -116,9 +116,9 @@ fn running(record: &Record, dt: f64) -> Result<Figure, RecordError> {
         .panel(panel))
 }
 
-/// What a figure can show: beyond 10³⁰ nothing is to be seen.
+/// What is worth showing: an energy beyond a million times its start has left the figure.
 fn shown(values: &[f64]) -> Vec<f64> {
-    values.iter().map(|&y| if y < 1e30 { y } else { f64::NAN }).collect()
+    values.iter().map(|&y| if y < 1e6 { y } else { f64::NAN }).collect()
 }
 
 /// Every twelfth sample, which is two a decade.

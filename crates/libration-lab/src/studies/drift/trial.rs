@@ -202,7 +202,7 @@ impl Trial {
             (Some(overflow), _) if log10 == self.measured_log10 => {
                 format!("leaves f64 at step {}", crate::notation::count(overflow.measured))
             }
-            _ => number(10_f64.powf(log10), 5),
+            _ => number(10_f64.powf(log10), 7),
         }
     }
 

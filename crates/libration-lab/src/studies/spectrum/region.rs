@@ -6,9 +6,9 @@ use super::step::radius_at;
 use crate::record::Series;
 
 /// The part of the plane of `λΔt` that is mapped: real parts, and imaginary parts either way.
-pub(super) const REAL: [f64; 2] = [-4.0, 1.5];
+pub(super) const REAL: [f64; 2] = [-4.5, 2.0];
 /// See [`REAL`].
-pub(super) const IMAGINARY: [f64; 2] = [-3.6, 3.6];
+pub(super) const IMAGINARY: [f64; 2] = [-3.4, 3.4];
 
 /// The spectral radius of a step on modes with eigenvalues `λ, λ̄`, over a grid of `λΔt`.
 ///

@@ -18,11 +18,12 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     let described: Vec<String> = shown
         .iter()
         .map(|&(m, z)| match z {
-            0.0 => format!("{} is stable for no step at all", m.title()),
+            0.0 => format!("{} none at all", m.title()),
             z => format!("{} up to ωΔt = {}", m.title(), number(z, 6)),
         })
         .collect();
-    page.answer = format!("An undamped oscillator stays bounded under {}.", described.join("; "));
+    page.answer =
+        format!("How large a step keeps an oscillator bounded: {}.", described.join("; "));
     if let Some((method, z)) = shown.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
         page.highlights.push(Highlight {
             value: number(*z, 5),
@@ -71,8 +72,7 @@ fn phase_errors(record: &Record) -> Result<Figure, RecordError> {
         .caption(
             "Symplectic Euler and velocity Verlet turn alike, by z³/24 too far: they have the same \
              eigenvalues. RK4 lags by z⁵/120. Lines are measured, from the angle after thousands of \
-             steps; circles are predicted from the step. Where a line leaves its circles at the \
-             lower left, the error has sunk into the rounding of `f64`.",
+             steps; circles are predicted from the step.",
         )
         .description(
             "Log-log: the phase error of explicit Euler, symplectic Euler and velocity Verlet rises \
@@ -92,7 +92,7 @@ fn regions(record: &Record, shown: &[(Method, f64)]) -> Result<Figure, RecordErr
         )
         .description("Maps of the spectral radius over the complex plane of λΔt.")
         .columns(2)
-        .aspect(1.0);
+        .aspect((REAL[1] - REAL[0]) / (IMAGINARY[1] - IMAGINARY[0]));
     for &(method, limit) in shown {
         let series = record.series(&format!("region-{}", method.name()))?;
         let radius = series.column("radius")?;

@@ -1,0 +1,109 @@
+//! `libration analyze`.
+
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+
+use libration_lab::analyze::{self, Analysis, Request};
+
+use crate::args::{AnalyzeArgs, Setting};
+use crate::error::Failure;
+
+/// Analyses one step and prints what theory says of it.
+pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
+    let Setting { system, q, v } = args.system.resolve()?;
+    let (method, dt) = (args.step.integrator, args.step.dt);
+    let request = Request { system, method, dt, q, v, steps: args.steps };
+    let analysis = analyze::analyze(&request).map_err(Failure::usage)?;
+    let text = match args.json {
+        true => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
+        false => describe(&analysis),
+    };
+    match io::stdout().lock().write_all(text.as_bytes()) {
+        // A reader that has seen enough is not an error.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        outcome => Ok(outcome?),
+    }
+}
+
+/// The analysis for a reader at a terminal.
+fn describe(analysis: &Analysis) -> String {
+    let about = &analysis.about;
+    let parameters: Vec<String> =
+        about.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let mut text = format!(
+        "{} ({}), {} with dt = {} s\n",
+        about.system,
+        parameters.join(", "),
+        about.integrator,
+        about.dt
+    );
+    // Writing into a string cannot fail.
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<22} {value}");
+    };
+    let rows = |rows: &[Vec<f64>]| -> Vec<String> {
+        rows.iter().map(|r| r.iter().map(|x| format!("{x:>24?}")).collect()).collect()
+    };
+    for (i, row) in rows(&analysis.update_matrix).into_iter().enumerate() {
+        line(if i == 0 { "update matrix" } else { "" }, row.trim_end().to_owned());
+    }
+    if let Some(symbolic) = &analysis.update_matrix_in_z {
+        for (i, row) in symbolic.iter().enumerate() {
+            let name = if i == 0 { "at omega = 1, z = dt" } else { "" };
+            line(name, row.iter().map(|entry| format!("{entry:>24}")).collect());
+        }
+    }
+    line(
+        "determinant",
+        format!("{:?}  (1 {:+e})", analysis.determinant, analysis.determinant_minus_one),
+    );
+    line("trace", format!("{:?}", analysis.trace));
+    for (i, [re, im]) in analysis.eigenvalues.iter().enumerate() {
+        let sign = if im.is_sign_negative() { '-' } else { '+' };
+        let name = if i == 0 { "eigenvalues" } else { "" };
+        line(name, format!("{re:?} {sign} {:?} i", im.abs()));
+    }
+    let excess = analysis.spectral_radius_minus_one;
+    line("spectral radius", format!("{:?}  (1 {excess:+e})", analysis.spectral_radius));
+    line(
+        "orbits",
+        match analysis.bounded {
+            Some(true) => "bounded",
+            Some(false) => "unbounded",
+            None => "marginal: whether they stay bounded is not decided by the eigenvalues",
+        }
+        .into(),
+    );
+    line("symplecticity defect", format!("{:e}", analysis.symplecticity_defect));
+    line("reversibility defect", format!("{:e}", analysis.reversibility_defect));
+    line(
+        "phase error per step",
+        match analysis.phase_error_per_step {
+            Some(error) => format!("{error:e} rad"),
+            None => "none: nothing oscillates".into(),
+        },
+    );
+    line("force evaluations", format!("{} a step", analysis.force_evaluations_per_step));
+    line(
+        "largest energy drift",
+        match &analysis.drift {
+            Some(drift) => {
+                let stopped = drift.stopped_at_step.map_or_else(String::new, |step| {
+                    format!("; the state leaves the range of f64 at step {step}")
+                });
+                format!(
+                    "{} of the start, at step {} of {} ({}{stopped})",
+                    drift.max_energy_drift,
+                    drift.max_energy_drift_step,
+                    about.steps,
+                    drift.max_energy_drift_method
+                )
+            }
+            None => "undefined: the energy at the start is zero".into(),
+        },
+    );
+    if let Some(note) = &about.note {
+        let _ = writeln!(text, "note: {note}");
+    }
+    text
+}
