@@ -65,15 +65,9 @@ fn describe(analysis: &Analysis) -> String {
     }
     let excess = analysis.spectral_radius_minus_one;
     line("spectral radius", format!("{:?}  (1 {excess:+e})", analysis.spectral_radius));
-    line(
-        "orbits",
-        match analysis.bounded {
-            Some(true) => "bounded",
-            Some(false) => "unbounded",
-            None => "marginal: whether they stay bounded is not decided by the eigenvalues",
-        }
-        .into(),
-    );
+    if let Some(bounded) = analysis.bounded {
+        line("orbits", if bounded { "bounded" } else { "unbounded" }.into());
+    }
     line("symplecticity defect", format!("{:e}", analysis.symplecticity_defect));
     line("reversibility defect", format!("{:e}", analysis.reversibility_defect));
     line(

@@ -32,7 +32,8 @@ pub struct Analysis {
     pub spectral_radius: f64,
     /// The spectral radius minus one, without cancellation.
     pub spectral_radius_minus_one: f64,
-    /// Whether every orbit of the matrix stays bounded; unknown where coupled modes are marginal.
+    /// Whether every orbit stays bounded; unknown of nonlinear systems, whose linearisation does not
+    /// decide it, and where coupled modes are marginal.
     pub bounded: Option<bool>,
     /// The Frobenius norm of `MᵀJM − J`.
     pub symplecticity_defect: f64,

@@ -114,7 +114,7 @@ fn run<const D: usize>(
         eigenvalues: modes.eigenvalues(),
         spectral_radius: modes.radius.to_f64(),
         spectral_radius_minus_one: modes.radius_minus_one.to_f64(),
-        bounded: modes.bounded,
+        bounded: modes.bounded.filter(|_| request.system.is_linear()),
         symplecticity_defect: defect(linear.step.symplecticity_defect()),
         reversibility_defect: defect(linear.reversibility_defect()),
         phase_error_per_step: modes.phase_error.map(Wide::to_f64),

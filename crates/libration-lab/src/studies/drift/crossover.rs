@@ -1,14 +1,26 @@
 //! The step at which RK4's steady loss overtakes the bounded oscillation of velocity Verlet.
 
-use libration::analysis::{EnergyBand, Linearisation, Spectrum};
+use libration::analysis::{EnergyBand, Linearisation, Spectrum, forecast_drift};
 use libration::simulation::{EnergyDrift, Sample, Simulator};
 use libration::{Method, Model, State, integrator, with_method};
 
 use super::tag;
+use super::trial::Setting;
 use crate::notation::{count, seconds};
 use crate::record::{Finding, Series, Tolerance};
 use crate::study::StudyError;
 use crate::{Lab, Record};
+
+/// What theory says of one time step.
+struct Prediction {
+    /// Steps until RK4's loss equals the depth of Verlet's band.
+    to_the_band: f64,
+    /// The same to leading order in z.
+    leading_order: f64,
+    /// Steps until it equals what Verlet's discrete orbit makes of the band, which is less where
+    /// the orbit closes after a few points.
+    to_the_orbit: f64,
+}
 
 /// Predicts the crossover at every time step, and measures it where the effort reaches it.
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
@@ -19,32 +31,32 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     }
     let reach = lab.effort.choose(1_000_000, 50_000_000, 500_000_000_u64);
     let found = lab.sweep("the crossover of RK4 and Verlet", &config.drift.dt, |&dt| {
-        let predicted = predicted(lab, dt)?;
-        let measured = match predicted < reach as f64 {
-            true => measured(lab, dt, reach)?,
+        let Some(predicted) = predict(lab, dt) else { return Ok(None) };
+        let measured = match predicted.to_the_orbit < reach as f64 {
+            true => simulate(lab, dt, reach)?,
             false => None,
         };
-        Ok((dt, predicted, measured))
+        Ok(Some((dt, predicted, measured)))
     })?;
-    let omega = config.oscillator.omega();
     let mut table = [const { Vec::new() }; 3];
-    for (dt, predicted, measured) in found {
-        let z = omega * dt;
-        let (leading, shown) = (18.0 / z.powi(4), seconds(dt, 3));
-        table.iter_mut().zip([dt, predicted, leading]).for_each(|(c, x)| c.push(x));
+    for (dt, predicted, measured) in found.into_iter().flatten() {
+        let (z, shown) = (config.oscillator.omega() * dt, seconds(dt, 3));
+        let row = [dt, predicted.to_the_band, predicted.leading_order];
+        table.iter_mut().zip(row).for_each(|(column, x)| column.push(x));
         record.find(Finding::predicted(
             format!("drift.crossover.{}.leading-order", tag(dt)),
             format!(
-                "Δt = {shown}: step at which RK4 has lost what Verlet's energy swings by, from the \
-                 exact determinant, beside 18/z⁴"
+                "Δt = {shown}: steps until RK4 has lost what Verlet's energy swings by, from the \
+                 exact determinants, beside the leading order (18/z⁴ from rest)"
             ),
             "steps",
-            leading,
-            predicted,
+            predicted.leading_order,
+            predicted.to_the_band,
             // (z²/4 + z⁴/32 + …)/(z⁶/72 − z⁸/576 + …) = 18/z⁴·(1 + z²/4 + …)
             Tolerance::relative(z * z, "the next term of the expansion is z²/4 of the first"),
         ));
         if let Some(measured) = measured {
+            let setting = Setting { steps: measured, ..Setting::new(config, Method::Rk4, dt) };
             record.find(Finding::predicted(
                 format!("drift.crossover.{}.measured", tag(dt)),
                 format!(
@@ -53,40 +65,55 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
                     count(reach)
                 ),
                 "steps",
-                predicted,
+                predicted.to_the_orbit,
                 measured as f64,
                 Tolerance::absolute(
-                    1.0 + predicted * super::rounding(dt, measured) / (z * z / 4.0),
+                    1.0 + predicted.to_the_orbit * super::rounding(&setting) / (z * z / 4.0),
                     "the crossing falls on a whole step, and rounding moves both drifts",
                 ),
             ));
         }
     }
     let [dt, steps, leading] = table;
-    record.series.push(
-        Series::new("crossover").with("dt", "s", dt).with("steps", "1", steps).with(
-            "leading_order",
-            "1",
-            leading,
-        ),
-    );
+    if !dt.is_empty() {
+        record.series.push(
+            Series::new("crossover").with("dt", "s", dt).with("steps", "1", steps).with(
+                "leading_order",
+                "1",
+                leading,
+            ),
+        );
+    }
     Ok(())
 }
 
-/// `n` with `1 − det Mⁿ` of RK4 equal to the depth of Verlet's band.
-fn predicted(lab: &Lab<'_>, dt: f64) -> Result<f64, StudyError> {
-    let oscillator = lab.config.oscillator.system();
-    let start = State { q: [lab.config.start.q], v: [lab.config.start.v] };
+/// The crossover at one time step; none where it does not exist, because a method is unstable.
+fn predict(lab: &Lab<'_>, dt: f64) -> Option<Prediction> {
+    let config = lab.config;
+    let oscillator = config.oscillator.system();
+    let start = State { q: [config.start.q], v: [config.start.v] };
     let step = |m: Method| with_method!(m, |m| Linearisation::new(m, oscillator, &start, dt)).step;
-    let loss = Spectrum::new(&step(Method::Rk4)).determinant_minus_one().to_f64().ln_1p();
-    let band = EnergyBand::new(oscillator, &step(Method::VelocityVerlet))
-        .map(|band| band.drift_after(&start, 0))
-        .map_or(f64::INFINITY, |(low, high)| low.abs().max(high.abs()));
-    Ok(if loss < 0.0 && band < 1.0 { (-band).ln_1p() / loss } else { f64::INFINITY })
+    let (rk4, verlet) = (step(Method::Rk4), step(Method::VelocityVerlet));
+    // E_n = det Mⁿ·E₀ for RK4.
+    let loss = Spectrum::new(&rk4).determinant_minus_one().to_f64().ln_1p();
+    let steps = |depth: f64| (-depth).ln_1p() / loss;
+    let (low, high) = EnergyBand::new(oscillator, &verlet)?.drift_after(&start, 0);
+    let band = low.abs().max(high.abs());
+    // Verlet's extremes are met to 10⁻⁸ within this many steps, or its orbit has closed.
+    let orbit = forecast_drift(oscillator, &verlet, &start, 100_000)?.drift.to_f64();
+    let z = config.oscillator.omega() * dt;
+    // The band reaches down by the potential and up by the kinetic share of the energy.
+    let potential = oscillator.omega2 * start.q[0] * start.q[0];
+    let share = potential / (potential + start.v[0] * start.v[0]);
+    (loss < 0.0 && band < 1.0).then(|| Prediction {
+        to_the_band: steps(band),
+        leading_order: 18.0 / z.powi(4) * share.max(1.0 - share),
+        to_the_orbit: steps(orbit),
+    })
 }
 
-/// The first step at which RK4's largest drift exceeds Verlet's over the same steps.
-fn measured(lab: &Lab<'_>, dt: f64, reach: u64) -> Result<Option<u64>, StudyError> {
+/// The first step at which RK4's largest drift exceeds Verlet's.
+fn simulate(lab: &Lab<'_>, dt: f64, reach: u64) -> Result<Option<u64>, StudyError> {
     const STRETCH: u64 = 1 << 20;
     let system = Model::<1>::on::<f64>(&lab.config.oscillator.system());
     let start = State { q: [lab.config.start.q], v: [lab.config.start.v] };

@@ -38,6 +38,11 @@ impl Setting {
         }
     }
 
+    /// `z = ωΔt`.
+    pub(super) fn z(&self) -> f64 {
+        self.oscillator.omega2.sqrt() * self.dt
+    }
+
     fn simulate(
         &self,
         start: State<f64, 1>,

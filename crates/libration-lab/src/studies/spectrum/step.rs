@@ -21,6 +21,8 @@ pub(super) struct Theory {
     /// Angle of the step, and its excess over that of the exact solution, in rad; none where the
     /// eigenvalues are real.
     pub(super) angle: Option<(f64, f64)>,
+    /// Whether the eigenvalues are real and equal.
+    double: bool,
 }
 
 impl Theory {
@@ -43,6 +45,7 @@ impl Theory {
             symplecticity_defect: linear.step.symplecticity_defect().to_f64(),
             reversibility_defect: linear.reversibility_defect().to_f64(),
             angle,
+            double: matches!(spectrum.eigenvalues, Eigenvalues::Double { .. }),
         }
     }
 }
@@ -90,15 +93,20 @@ impl Run {
             None => steps.floor(),
         } as u64;
         let after = with_method!(method, |m| fundamental(m, oscillator, dt, steps))?;
-        let (n, determinant) = (steps as f64, after.determinant());
-        let radius_minus_one = (determinant.abs().ln() / (2.0 * n)).exp_m1();
+        let (n, determinant, half) = (steps as f64, after.determinant(), after.trace() / 2.0);
+        // The larger eigenvalue of the matrix of n steps is ρⁿ in size.
+        let size = match theory.angle {
+            Some(_) => determinant.sqrt(),
+            None if theory.double => half.abs(),
+            None => half.abs() + (half * half - determinant).max(0.0).sqrt(),
+        };
+        let radius_minus_one = (size.ln() / n).exp_m1();
         // Roundings of a step are independent; n of them add up like √n, and 20 covers the number
         // of operations of a step. Rounded coefficients such as Δt/6 are the same at every step.
         let exact = oscillator.omega2.sqrt() * dt;
         let rounding = 20.0 * U * n.sqrt();
-        let coefficients = 4.0 * U * exact;
+        let coefficients = 4.0 * U * exact * exact.exp();
         let phase_error = theory.angle.map(|(angle, _)| {
-            let half = after.trace() / 2.0;
             let folded = (determinant - half * half).max(0.0).sqrt().atan2(half);
             let turns = (n * angle / std::f64::consts::TAU).floor();
             let rest = n * angle - turns * std::f64::consts::TAU;
@@ -116,7 +124,7 @@ impl Run {
             steps,
             radius_minus_one: Measured {
                 value: radius_minus_one,
-                rounding: rounding / n + coefficients,
+                rounding: (rounding / n + coefficients) * (1.0 + radius_minus_one),
             },
             phase_error,
         })
