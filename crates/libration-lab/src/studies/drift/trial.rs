@@ -1,9 +1,10 @@
 //! One integrator at one time step, for the whole horizon.
 
-use libration::analysis::{EnergyBand, Linearisation, Spectrum, forecast_drift};
+use libration::analysis::{EnergyBand, Linearisation, Spectrum, UpdateMatrix, forecast_drift};
+use libration::number::Wide;
 use libration::simulation::{EnergyDrift, Sample, Simulator};
 use libration::system::Oscillator;
-use libration::{Hamiltonian, Method, Model, State, with_method};
+use libration::{Hamiltonian, Method, Model, Scalar, State, with_method};
 
 use super::tag;
 use crate::Config;
@@ -85,10 +86,8 @@ pub(super) struct Trial {
 /// The step at which the energy left the range of `f64`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Overflow {
-    pub(super) predicted: f64,
+    pub(super) predicted: u64,
     pub(super) measured: u64,
-    /// Steps of half a turn.
-    pub(super) half_turn: f64,
 }
 
 /// A run from the start that drifts most.
@@ -115,7 +114,6 @@ impl Trial {
         let linear = with_method!(method, |m| Linearisation::new(m, oscillator, &start, dt));
         let band = EnergyBand::new(oscillator, &linear.step);
         let angle = Spectrum::new(&linear.step).angle().to_f64();
-        let growth = Spectrum::new(&linear.step).determinant_minus_one().to_f64();
         let bounds = |n: u64| match &band {
             Some(band) => band.drift_after(&start, n),
             None => (f64::NEG_INFINITY, f64::INFINITY),
@@ -168,12 +166,9 @@ impl Trial {
             let predicted = worst.drift.to_f64();
             Some(Worst { start, predicted, measured })
         });
-        let overflow = overflow.map(|measured| {
-            let initial = Hamiltonian::<f64, 1>::energy(&oscillator, &start);
-            // v² reaches 2E where the potential energy vanishes.
-            let decades = f64::MAX.ln() - (2.0 * initial).ln();
-            let predicted = decades / growth.ln_1p();
-            Overflow { predicted, measured, half_turn: std::f64::consts::PI / angle + 1.0 }
+        let overflow = overflow.map(|measured| Overflow {
+            predicted: predicted_overflow(oscillator, &linear.step, &start, measured),
+            measured,
         });
         Ok(Trial {
             setting: *setting,
@@ -215,7 +210,8 @@ impl Trial {
     pub(super) fn difference(&self) -> String {
         match self.overflow {
             Some(overflow) => {
-                format!("{} steps", number(overflow.measured as f64 - overflow.predicted, 2))
+                let late = overflow.measured as f64 - overflow.predicted as f64;
+                format!("{} steps", number(late, 2))
             }
             None => number(self.measured - self.predicted, 2),
         }
@@ -246,6 +242,45 @@ impl Signed {
         self.bound_low.push(bound.0);
         self.bound_high.push(bound.1);
     }
+}
+
+/// The first step at which a term of the drift is too large for `f64`, by the exact orbit.
+///
+/// Twice the energy, that over ω² and that over E₀ bound all of `v²`, `q²`, `ω²q²`, E and E/E₀. They grow with the
+/// energy of an unstable orbit, so the first step that could overflow is found by bisection, and
+/// the first that does, by walking on from it; `about` bounds the search.
+fn predicted_overflow(
+    oscillator: Oscillator<f64>,
+    step: &UpdateMatrix<Wide, 1>,
+    start: &State<f64, 1>,
+    about: u64,
+) -> u64 {
+    let (system, start) = (Model::<1>::on::<Wide>(&oscillator), start.map(Wide::from_f64));
+    let most = Wide::from_f64(f64::MAX);
+    let after = |n: u64| step.power(n).apply(&start);
+    let initial = Hamiltonian::<Wide, 1>::energy(&system, &start);
+    let could = |state: &State<Wide, 1>| {
+        let twice = Hamiltonian::<Wide, 1>::energy(&system, state) * Wide::from_f64(2.0);
+        [twice, twice / system.omega2, twice / initial].iter().any(|&bound| bound > most)
+    };
+    let does = |state: &State<Wide, 1>| {
+        let (q2, v2) = (state.q[0] * state.q[0], state.v[0] * state.v[0]);
+        let total = Hamiltonian::<Wide, 1>::energy(&system, state);
+        let drift = (total - initial) / initial;
+        [q2, v2, system.omega2 * q2, total, drift].iter().any(|&term| term > most)
+    };
+    let limit = about.saturating_mul(2);
+    let (mut low, mut high) = (0, limit);
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if could(&after(middle)) { high = middle } else { low = middle + 1 }
+    }
+    let mut state = after(low);
+    while !does(&state) && low < limit {
+        state = step.apply(&state);
+        low += 1;
+    }
+    low
 }
 
 /// The larger of two bounds by absolute value.
