@@ -2,6 +2,7 @@
 
 mod drift;
 mod ink;
+mod rounding;
 mod spectrum;
 
 use crate::study::Study;

@@ -51,7 +51,8 @@ fn tag(dt: f64) -> String {
 ///
 /// Roundings of a step are independent and add up like √n, with a coefficient that was measured
 /// between 0.6 and 1.1 for Verlet (Brouwer 1937; Hairer, Lubich, Wanner, §VIII.5); 12 of them cover
-/// RK4 and the largest of a million values, and `e^z` the terms of a step that cancel at large z.
+/// RK4 and the largest of a million values, and `e^z` the terms of a step that cancel at large z (of a
+/// composition, with the sum of the sizes of its substeps for z).
 /// Two kinds of run are biased and add up like n: textbook Verlet, and a `Δt` of so few bits that
 /// its products are exact.
 fn rounding(setting: &Setting) -> f64 {
@@ -59,7 +60,7 @@ fn rounding(setting: &Setting) -> f64 {
     let biased = short || setting.method == Method::TextbookVerlet;
     let n = setting.steps as f64;
     let count = if biased { n } else { n.sqrt() };
-    12.0 * f64::UNIT_ROUNDOFF * setting.z().exp() * count.max(1.0)
+    12.0 * f64::UNIT_ROUNDOFF * setting.path().exp() * count.max(1.0)
 }
 
 /// Where the bound of [`rounding`] comes from, for the reader.

@@ -10,6 +10,7 @@ use super::tag;
 use crate::Config;
 use crate::notation::{number, power_of_ten};
 use crate::record::Series;
+use crate::studies::rounding::path_of_unit_step;
 use crate::study::StudyError;
 
 /// Samples of the running maximum for each decade of steps.
@@ -39,9 +40,9 @@ impl Setting {
         }
     }
 
-    /// `z = ωΔt`.
-    pub(super) fn z(&self) -> f64 {
-        self.oscillator.omega2.sqrt() * self.dt
+    /// `ωΔt`, summed over the sizes of the substeps of a step.
+    pub(super) fn path(&self) -> f64 {
+        self.oscillator.omega2.sqrt() * self.dt * path_of_unit_step(self.method)
     }
 
     fn simulate(

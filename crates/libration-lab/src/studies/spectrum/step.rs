@@ -6,6 +6,7 @@ use libration::simulation::Simulator;
 use libration::system::Oscillator;
 use libration::{Float, Integrator, Method, Model, Scalar, State, with_method};
 
+use crate::studies::rounding::path_of_unit_step;
 use crate::study::StudyError;
 
 /// Unit roundoff of the simulations.
@@ -105,7 +106,7 @@ impl Run {
         // of operations of a step. Rounded coefficients such as Δt/6 are the same at every step.
         let exact = oscillator.omega2.sqrt() * dt;
         let rounding = 20.0 * U * n.sqrt();
-        let coefficients = 4.0 * U * exact * exact.exp();
+        let coefficients = 4.0 * U * exact * (exact * path_of_unit_step(method)).exp();
         let phase_error = theory.angle.map(|(angle, _)| {
             let folded = (determinant - half * half).max(0.0).sqrt().atan2(half);
             let turns = (n * angle / std::f64::consts::TAU).floor();
