@@ -4,8 +4,8 @@ use libration::analysis::{EnergyBand, Linearisation, Spectrum, forecast_drift};
 use libration::simulation::{EnergyDrift, Sample, Simulator};
 use libration::{Method, Model, State, integrator, with_method};
 
+use super::setting::Setting;
 use super::tag;
-use super::trial::Setting;
 use crate::notation::{count, seconds};
 use crate::record::{Finding, Series, Tolerance};
 use crate::study::StudyError;
@@ -70,7 +70,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
                 predicted.to_the_orbit,
                 measured as f64,
                 Tolerance::absolute(
-                    1.0 + predicted.to_the_orbit * super::rounding(&setting) / (z * z / 4.0),
+                    1.0 + predicted.to_the_orbit * setting.rounding() / (z * z / 4.0),
                     "the crossing falls on a whole step, and rounding moves both drifts",
                 ),
             ));

@@ -2,13 +2,17 @@
 
 mod claims;
 mod crossover;
+mod overflow;
 mod portrait;
 mod render;
+mod setting;
 mod trial;
+mod watch;
 
-use libration::{Float, Method};
+use libration::Method;
 
-use self::trial::{Setting, Trial};
+use self::setting::{ROUNDING, Setting};
+use self::trial::Trial;
 use crate::notation::{count, number, seconds};
 use crate::page::Page;
 use crate::record::{Finding, RecordError, Relation, Series, Table, Tolerance};
@@ -46,26 +50,6 @@ impl Study for Drift {
 fn tag(dt: f64) -> String {
     format!("dt-{dt}")
 }
-
-/// The relative error that rounding may leave in an energy after the steps of `setting`.
-///
-/// Roundings of a step are independent and add up like √n, with a coefficient that was measured
-/// between 0.6 and 1.1 for Verlet (Brouwer 1937; Hairer, Lubich, Wanner, §VIII.5); 12 of them cover
-/// RK4 and the largest of a million values, and `e^z` the terms of a step that cancel at large z (of a
-/// composition, with the sum of the sizes of its substeps for z).
-/// Two kinds of run are biased and add up like n: textbook Verlet, and a `Δt` of so few bits that
-/// its products are exact.
-fn rounding(setting: &Setting) -> f64 {
-    let short = setting.dt.to_bits().trailing_zeros() >= 30;
-    let biased = short || setting.method == Method::TextbookVerlet;
-    let n = setting.steps as f64;
-    let count = if biased { n } else { n.sqrt() };
-    12.0 * f64::UNIT_ROUNDOFF * setting.path().exp() * count.max(1.0)
-}
-
-/// Where the bound of [`rounding`] comes from, for the reader.
-const ROUNDING: &str =
-    "12 eᶻ roundings a step, added up as independent ones unless they are biased";
 
 /// Every method at every time step, from the configured and from the worst start.
 fn trials(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
@@ -114,7 +98,7 @@ fn largest(trial: &Trial) -> Finding {
         seconds(dt, 3),
         count(steps)
     );
-    let tolerance = rounding(&trial.setting);
+    let tolerance = trial.setting.rounding();
     match trial.overflow {
         // What no float can hold is compared by the step at which it leaves their range.
         Some(overflow) => Finding::predicted(
@@ -154,7 +138,7 @@ fn within_band(trial: &Trial) -> Finding {
         Relation::AtMost,
         0.0,
         trial.excursion,
-        Tolerance::absolute(rounding(&trial.setting), ROUNDING),
+        Tolerance::absolute(trial.setting.rounding(), ROUNDING),
     )
 }
 
@@ -174,7 +158,7 @@ fn worst(trial: &Trial) -> Option<Finding> {
         "1",
         worst.predicted,
         worst.measured,
-        Tolerance::absolute(rounding(&trial.setting) * (1.0 + worst.predicted), ROUNDING),
+        Tolerance::absolute(trial.setting.rounding() * (1.0 + worst.predicted), ROUNDING),
     ))
 }
 

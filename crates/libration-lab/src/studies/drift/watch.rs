@@ -1,0 +1,142 @@
+//! What is kept of a run of a million steps.
+
+use libration::simulation::Sample;
+
+use crate::record::Series;
+
+/// Samples of the running maximum for each decade of steps.
+const PER_DECADE: f64 = 24.0;
+
+/// Stretches in which the signed drift is kept.
+const STRETCHES: u64 = 480;
+
+/// Keeps the running maximum of the drift, its extremes in stretches of the horizon, and how far
+/// it leaves its bounds.
+pub(super) struct Watch<B> {
+    /// The lowest and highest drift that theory allows after `n` steps; monotone in `n`.
+    bounds: B,
+    steps: u64,
+    stride: u64,
+    sampled: Vec<u64>,
+    stretch: (f64, f64),
+    bound: (f64, f64),
+    /// The largest drift, by absolute value.
+    pub(super) largest: f64,
+    /// The first step whose drift was not finite.
+    pub(super) overflow: Option<u64>,
+    /// How far the drift left its bounds, relative to 1 + |δE|.
+    pub(super) excursion: f64,
+    /// The running maximum at the sampled steps.
+    running: Vec<f64>,
+    /// Lowest and highest drift in stretches of the horizon.
+    pub(super) signed: Signed,
+}
+
+impl<B: Fn(u64) -> (f64, f64)> Watch<B> {
+    pub(super) fn new(steps: u64, bounds: B) -> Self {
+        Watch {
+            bound: bounds(0),
+            bounds,
+            steps,
+            stride: steps.div_ceil(STRETCHES).max(1),
+            sampled: sampled_steps(steps),
+            stretch: (0.0, 0.0),
+            largest: 0.0,
+            overflow: None,
+            excursion: 0.0,
+            running: Vec::new(),
+            signed: Signed::default(),
+        }
+    }
+
+    /// Takes note of one sample and its drift.
+    pub(super) fn see(&mut self, sample: &Sample<f64, 1>, drift: f64) {
+        let n = sample.step;
+        if !drift.is_finite() {
+            self.overflow.get_or_insert(n);
+            return;
+        }
+        self.largest = self.largest.max(drift.abs());
+        self.stretch = (self.stretch.0.min(drift), self.stretch.1.max(drift));
+        if n.is_multiple_of(self.stride) || n == self.steps {
+            self.end_stretch(sample, drift);
+        }
+        if self.sampled.get(self.running.len()) == Some(&n) {
+            self.running.push(self.largest);
+        }
+    }
+
+    fn end_stretch(&mut self, sample: &Sample<f64, 1>, drift: f64) {
+        let ((low, high), begun) = (self.stretch, self.bound);
+        // The bounds are monotone in n: within a stretch the looser end holds.
+        let ended = (self.bounds)(sample.step);
+        let beyond = (high - begun.1.max(ended.1)).max(begun.0.min(ended.0) - low);
+        self.excursion = self.excursion.max(beyond / (1.0 + drift.abs()));
+        if sample.step > 0 {
+            self.signed.push(sample.time, self.stretch, ended);
+        }
+        (self.stretch, self.bound) = ((drift, drift), ended);
+    }
+
+    /// The sampled steps, and the running maximum there; NaN where the run had overflowed.
+    pub(super) fn running(&self) -> (Vec<u64>, Vec<f64>) {
+        let mut running = self.running.clone();
+        running.resize(self.sampled.len(), f64::NAN);
+        (self.sampled.clone(), running)
+    }
+}
+
+/// Lowest and highest drift in stretches of the horizon.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Signed {
+    time: Vec<f64>,
+    low: Vec<f64>,
+    high: Vec<f64>,
+    bound_low: Vec<f64>,
+    bound_high: Vec<f64>,
+}
+
+impl Signed {
+    fn push(&mut self, time: f64, (low, high): (f64, f64), bound: (f64, f64)) {
+        self.time.push(time);
+        self.low.push(low);
+        self.high.push(high);
+        self.bound_low.push(bound.0);
+        self.bound_high.push(bound.1);
+    }
+
+    /// As a series.
+    pub(super) fn to_series(&self, name: String) -> Series {
+        Series::new(name)
+            .with("t", "s", self.time.clone())
+            .with("low", "1", self.low.clone())
+            .with("high", "1", self.high.clone())
+            .with("bound_low", "1", self.bound_low.clone())
+            .with("bound_high", "1", self.bound_high.clone())
+    }
+}
+
+/// Steps from 1 to `last`, evenly spaced in their logarithm, each once.
+fn sampled_steps(last: u64) -> Vec<u64> {
+    let decades = (last as f64).log10();
+    let count = (decades * PER_DECADE).ceil().max(1.0) as u64;
+    let mut steps: Vec<u64> = (0..=count)
+        .map(|i| 10_f64.powf(decades * i as f64 / count as f64).round() as u64)
+        .collect();
+    steps.dedup();
+    steps
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sampled_steps_begin_at_one_end_at_the_last_and_never_repeat() {
+        for last in [1, 2, 7, 1_000_000] {
+            let steps = sampled_steps(last);
+            assert_eq!((steps.first(), steps.last()), (Some(&1), Some(&last)));
+            assert!(steps.windows(2).all(|pair| pair[0] < pair[1]));
+        }
+    }
+}
