@@ -15,6 +15,7 @@ pub mod output;
 pub mod page;
 pub mod record;
 pub mod report;
+pub mod results;
 pub mod session;
 pub mod studies;
 pub mod study;

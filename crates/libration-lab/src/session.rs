@@ -2,35 +2,15 @@
 
 use std::time::Instant;
 
-use serde::Serialize;
 use thiserror::Error;
 
 use crate::export::{ExportError, series_to_parquet};
 use crate::output::{Output, OutputError};
 use crate::page::{Chapter, Page};
 use crate::record::{FigureFile, RecordError};
+use crate::results::{Results, SCHEMA};
 use crate::study::StudyError;
-use crate::{Config, Lab, Machine, Record, Study, figure, report};
-
-/// Version of the contract that `results.json` keeps.
-pub const SCHEMA: &str = "libration.results/1";
-
-/// Everything that a run found; `results.json` holds just this.
-#[derive(Clone, Debug, Serialize)]
-pub struct Results {
-    /// Version of this contract.
-    pub schema: &'static str,
-    /// Where it was run.
-    pub machine: Machine,
-    /// What was asked.
-    pub config: Config,
-    /// Wall-clock time so far, in seconds.
-    pub seconds: f64,
-    /// Whether all studies that were asked for are in it.
-    pub complete: bool,
-    /// The records of the studies that have ended.
-    pub studies: Vec<Record>,
-}
+use crate::{Lab, Machine, Record, Study, figure, report};
 
 /// Why a run ended early.
 #[derive(Debug, Error)]

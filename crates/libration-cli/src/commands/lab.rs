@@ -5,7 +5,8 @@ use std::path::Path;
 
 use libration_lab::output::{Output, OutputError};
 use libration_lab::record::{Finding, Record, Verdict};
-use libration_lab::session::{self, Results, SessionError};
+use libration_lab::results::Results;
+use libration_lab::session::{self, SessionError};
 use libration_lab::{Config, Lab, Study, config, studies};
 
 use crate::args::LabArgs;
@@ -161,7 +162,7 @@ mod tests {
         second.find(finding);
         second.seconds = 12.345;
         Results {
-            schema: session::SCHEMA,
+            schema: libration_lab::results::SCHEMA,
             machine: Machine::detect(),
             config: Config::default(),
             seconds: 13.0,

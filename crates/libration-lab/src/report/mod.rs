@@ -8,7 +8,7 @@ use crate::figure;
 use crate::notation::{number, seconds};
 use crate::page::{Chapter, Highlight};
 use crate::record::ClaimVerdict;
-use crate::session::Results;
+use crate::results::Results;
 
 const STYLE: &str = include_str!("../../assets/report.css");
 

@@ -1,0 +1,25 @@
+//! What a run found, as `results.json` holds it.
+
+use serde::Serialize;
+
+use crate::{Config, Machine, Record};
+
+/// Version of the contract that `results.json` keeps.
+pub const SCHEMA: &str = "libration.results/1";
+
+/// Everything that a run found; `results.json` holds just this.
+#[derive(Clone, Debug, Serialize)]
+pub struct Results {
+    /// Version of this contract.
+    pub schema: &'static str,
+    /// Where it was run.
+    pub machine: Machine,
+    /// What was asked.
+    pub config: Config,
+    /// Wall-clock time so far, in seconds.
+    pub seconds: f64,
+    /// Whether all studies that were asked for are in it.
+    pub complete: bool,
+    /// The records of the studies that have ended.
+    pub studies: Vec<Record>,
+}
