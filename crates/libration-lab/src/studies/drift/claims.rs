@@ -25,6 +25,14 @@ pub(super) fn judge(config: &Config, record: &mut Record) {
     if let Some(dt) = source {
         at_the_source_setting(record, dt);
     }
+    let text = "Two runs of the same start are equal to the bit, for every integrator.";
+    rule(record, ("C26", "3.9, 6.6", text), &["drift.repeat".to_owned()], |f| {
+        Judgement::holds_if(
+            f[0].measured == 0.0,
+            "on several threads, too. A stronger test, against a plain NumPy script, is among the \
+             tests of the project",
+        )
+    });
     let euler = ids(Method::SymplecticEuler, "envelope");
     let others = [Method::ExplicitEuler, Method::VelocityVerlet, Method::Rk4];
     let all: Vec<String> =

@@ -5,6 +5,7 @@ mod crossover;
 mod overflow;
 mod portrait;
 mod render;
+mod repeat;
 mod setting;
 mod trial;
 mod watch;
@@ -35,6 +36,7 @@ impl Study for Drift {
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
         let mut record = Record::new(self.name(), self.question());
         trials(lab, &mut record)?;
+        repeat::compare(lab, &mut record)?;
         crossover::measure(lab, &mut record)?;
         portrait::trace(lab, &mut record)?;
         claims::judge(lab.config, &mut record);

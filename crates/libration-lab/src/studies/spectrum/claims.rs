@@ -7,6 +7,23 @@ use crate::record::{Judgement, Record, Ruling};
 pub(super) fn judge(record: &mut Record) {
     record.judge(
         Ruling {
+            id: "C04",
+            source: "2.3-2.5",
+            text: "The exact oscillator has eigenvalues ±iω: bounded, periodic, of constant energy.",
+            findings: &["spectrum.oscillator.growth", "spectrum.oscillator.frequency"],
+        },
+        |f| {
+            Judgement::holds_if(
+                f[0].measured == 0.0,
+                format!(
+                    "duals through the shipped force give ±i·{} rad/s, with no real part",
+                    number(f[1].measured, 6)
+                ),
+            )
+        },
+    );
+    record.judge(
+        Ruling {
             id: "C05",
             source: "2.5",
             text: "A spectral radius above one means exponential growth.",
@@ -113,7 +130,8 @@ pub(super) fn judge(record: &mut Record) {
             let because = format!(
                 "stability ends at z = {} for the one and z = {} for the other: they have the same \
                  eigenvalues. It holds where stability means a tolerance on the energy, since the \
-                 energy of Verlet varies by z²/4 and that of Euler by about z/2",
+                 energy of Verlet varies by z²/4 and that of Euler by about z/2. The source names \
+                 no criterion; its own z = 0.00316 is far inside both limits",
                 number(verlet, 8),
                 number(euler, 8)
             );

@@ -1,6 +1,7 @@
 //! What one step does: its matrix, eigenvalues, symmetries, and where it is stable.
 
 mod claims;
+mod exact;
 mod limit;
 mod region;
 mod render;
@@ -34,6 +35,7 @@ impl Study for Spectrum {
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
         let mut record = Record::new(self.name(), self.question());
         record.tables.push(matrices(&lab.config.integrators)?);
+        exact::eigenvalues(lab.config, &mut record);
         steps(lab, &mut record)?;
         sweeps(lab, &mut record)?;
         limits(lab, &mut record)?;
