@@ -11,6 +11,7 @@ use crate::record::ClaimVerdict;
 use crate::results::Results;
 
 const STYLE: &str = include_str!("../../assets/report.css");
+const SCRIPT: &str = include_str!("../../assets/report.js");
 
 /// The report on `results`, whose chapters are shown in turn.
 pub fn render(results: &Results, chapters: &[Chapter]) -> String {
@@ -30,7 +31,7 @@ pub fn render(results: &Results, chapters: &[Chapter]) -> String {
          <title>{title}</title>\n<style>{STYLE}</style></head><body>\n\
          <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\
          <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{answers}{numbers}{ledger}{body}\
-         {machine}</main>\n{scripts}</body></html>\n",
+         {machine}</main>\n{scripts}<script>{SCRIPT}</script>\n</body></html>\n",
         title = html::text(&headline),
         setting = setting(results),
         alarm = alarm(results),

@@ -1,0 +1,144 @@
+//! What a run writes: the contract of `results.json`, and a page that needs nothing but itself.
+
+#![allow(clippy::unwrap_used)]
+
+use std::collections::HashSet;
+use std::fs;
+use std::path::PathBuf;
+use std::sync::OnceLock;
+use std::sync::atomic::AtomicBool;
+
+use libration_lab::output::Output;
+use libration_lab::{Config, Effort, Lab, Silent, session, studies};
+use serde_json::Value;
+
+/// The folder of one quick run, made once.
+fn folder() -> &'static PathBuf {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    FOLDER.get_or_init(|| {
+        let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("report");
+        let _ = fs::remove_dir_all(&folder);
+        let (config, stop) = (Config::default(), AtomicBool::new(false));
+        let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
+        session::run(&lab, studies::ALL, &Output::open(&folder).unwrap()).unwrap();
+        folder
+    })
+}
+
+fn results() -> Value {
+    serde_json::from_str(&fs::read_to_string(folder().join("results.json")).unwrap()).unwrap()
+}
+
+fn page() -> String {
+    fs::read_to_string(folder().join("report.html")).unwrap()
+}
+
+/// The values of an attribute wherever it stands in `html`, scripts left out.
+fn attributes<'a>(html: &'a str, name: &str) -> Vec<&'a str> {
+    let mark = format!(" {name}=\"");
+    html.split(&mark).skip(1).filter_map(|rest| rest.split('"').next()).collect()
+}
+
+/// The page without the insides of its scripts.
+fn markup() -> String {
+    let page = page();
+    let mut pieces = page.split("<script");
+    let first = pieces.next().unwrap().to_owned();
+    pieces.fold(first, |mut kept, piece| {
+        let (head, rest) = piece.split_once('>').unwrap();
+        kept.push_str(&format!("<script{head}>"));
+        kept.push_str(rest.split_once("</script>").unwrap().1);
+        kept
+    })
+}
+
+#[test]
+fn results_keep_their_contract() {
+    let results = results();
+    assert_eq!(results["schema"], "libration.results/1");
+    assert_eq!(results["complete"], true);
+    for key in ["machine", "config"] {
+        assert!(results[key].is_object(), "{key}");
+    }
+    assert!(results["seconds"].as_f64().unwrap() > 0.0);
+    for study in results["studies"].as_array().unwrap() {
+        assert!(study["question"].as_str().unwrap().ends_with('?'));
+        let mut ids = HashSet::new();
+        for finding in study["findings"].as_array().unwrap() {
+            ids.insert(finding["id"].as_str().unwrap());
+            let verdict = finding["verdict"].as_str().unwrap();
+            assert!(["agrees", "disagrees", "measured"].contains(&verdict), "{verdict}");
+            assert!(finding["measured"].is_f64() && finding["unit"].is_string(), "{finding}");
+        }
+        for claim in study["claims"].as_array().unwrap() {
+            for id in claim["findings"].as_array().unwrap() {
+                assert!(ids.contains(id.as_str().unwrap()), "{claim}");
+            }
+            assert!(!claim["because"].as_str().unwrap().is_empty());
+        }
+        for table in study["tables"].as_array().unwrap() {
+            let width = table["columns"].as_array().unwrap().len();
+            assert!(
+                table["rows"]
+                    .as_array()
+                    .unwrap()
+                    .iter()
+                    .all(|r| r.as_array().unwrap().len() == width)
+            );
+        }
+        for figure in study["figures"].as_array().unwrap() {
+            let svg = fs::read_to_string(folder().join(figure["file"].as_str().unwrap())).unwrap();
+            roxmltree::Document::parse(&svg).unwrap();
+            assert!(
+                markup().contains(&format!("data-figure=\"{}\"", figure["id"].as_str().unwrap()))
+            );
+        }
+    }
+}
+
+#[test]
+fn the_page_asks_for_nothing_from_anywhere() {
+    let page = markup();
+    for name in ["src", "href", "srcset", "data", "action"] {
+        for value in attributes(&page, name) {
+            let own = value.starts_with('#') || value.starts_with("data:image/png;base64,");
+            assert!(own, "{name}=\"{value:.80}\"");
+        }
+    }
+    assert!(!page.contains("@import"));
+    assert!(page.split("url(").skip(1).all(|rest| rest.starts_with('#')));
+    assert!(page.len() < 3_000_000);
+}
+
+#[test]
+fn every_link_of_the_page_has_its_target_and_every_id_is_unique() {
+    let page = markup();
+    let ids = attributes(&page, "id");
+    let unique: HashSet<_> = ids.iter().collect();
+    assert_eq!(unique.len(), ids.len(), "an id is given twice");
+    let links = attributes(&page, "href");
+    for target in links.iter().filter_map(|link| link.strip_prefix('#')) {
+        assert!(unique.contains(&target), "{target} leads nowhere");
+    }
+}
+
+#[test]
+fn every_claim_and_every_finding_of_the_results_is_on_the_page() {
+    let (results, page) = (results(), markup());
+    let ids: HashSet<_> = attributes(&page, "id").into_iter().collect();
+    for study in results["studies"].as_array().unwrap() {
+        for item in ["findings", "claims"].iter().flat_map(|k| study[*k].as_array().unwrap()) {
+            assert!(ids.contains(item["id"].as_str().unwrap()), "{}", item["id"]);
+        }
+    }
+}
+
+#[test]
+fn every_series_is_a_parquet_file() {
+    let files: Vec<_> = fs::read_dir(folder().join("data")).unwrap().map(Result::unwrap).collect();
+    assert!(files.len() >= 20, "{} files", files.len());
+    for file in files {
+        let bytes = fs::read(file.path()).unwrap();
+        assert!(bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"), "{:?}", file.path());
+    }
+}
