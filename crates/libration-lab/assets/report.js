@@ -1,4 +1,4 @@
-// A link to a finding opens the fold in which it lies; paper shows every fold.
+// A link to a finding opens the fold in which it lies.
 (() => {
   const reveal = () => {
     const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
@@ -10,10 +10,4 @@
   };
   addEventListener("hashchange", reveal);
   reveal();
-  let opened = [];
-  addEventListener("beforeprint", () => {
-    opened = [...document.querySelectorAll("details:not([open])")];
-    opened.forEach((fold) => (fold.open = true));
-  });
-  addEventListener("afterprint", () => opened.forEach((fold) => (fold.open = false)));
 })();

@@ -15,7 +15,7 @@ pub(super) fn render(chapters: &[Chapter]) -> String {
     format!(
         "<section>\n<h2 id=\"ledger\">The ledger</h2>\n<p class=\"q\">Which claims of the source \
          report stand?</p>\n<p>Each verdict is computed from the findings named below it, at the \
-         setting of this run.</p>\n<div class=\"scroll\" tabindex=\"0\"><table><thead><tr>\
+         setting of this run.</p>\n<div class=\"scroll\" tabindex=\"0\"><table class=\"ledger\"><thead><tr>\
          <th>claim</th><th>the source says</th><th>we find</th><th>verdict</th></tr></thead><tbody>\
          {rows}</tbody></table></div>\n</section>\n"
     )

@@ -122,7 +122,7 @@ fn at_the_source_setting(record: &mut Record, dt: f64) {
     let z = SOURCE_OMEGA2.sqrt() * SOURCE_DT;
     let crossover = 18.0 / z.powi(4);
     let side = format!(
-        "the source's own setting, z = {} and {} steps, lies at {} of it",
+        "the source’s own setting, z = {} and {} steps, lies at {} of it",
         number(z, 3),
         count(SOURCE_STEPS as u64),
         number(SOURCE_STEPS / crossover, 2)

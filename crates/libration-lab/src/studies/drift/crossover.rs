@@ -47,7 +47,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         let expansion = (z < 0.5).then(|| Finding::predicted(
             format!("drift.crossover.{}.leading-order", tag(dt)),
             format!(
-                "Δt = {shown}: steps until RK4 has lost what Verlet's energy swings by, from the \
+                "Δt = {shown}: steps until RK4 has lost what Verlet’s energy swings by, from the \
                  exact determinants, beside the leading order (18/z⁴ from rest)"
             ),
             "steps",
@@ -62,7 +62,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
             record.find(Finding::predicted(
                 format!("drift.crossover.{}.measured", tag(dt)),
                 format!(
-                    "Δt = {shown}: step at which RK4's drift overtakes Verlet's in simulation, \
+                    "Δt = {shown}: step at which RK4’s drift overtakes Verlet’s in simulation, \
                      within {} steps",
                     count(reach)
                 ),

@@ -34,12 +34,12 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          entered at another phase, swings most; the configured start may be a flattering one.",
     );
     for &dt in &dts[1..] {
-        page.figure(running(record, dt)?);
+        page.figure(running(record, dt)?.caption("As before, with a larger step."));
     }
     if record.series("crossover").is_ok() {
         page.heading("When RK4 falls behind");
         page.paragraph(
-            "RK4 loses z⁶/72 of the energy a step, Verlet's swings by z²/4: the loss overtakes the \
+            "RK4 loses z⁶/72 of the energy a step, Verlet’s swings by z²/4: the loss overtakes the \
              swing after 18/z⁴ steps. Below that line RK4 holds the energy better, however \
              symplectic the other is.",
         );
@@ -84,7 +84,7 @@ fn summary(record: &Record, page: &mut Page, dt: f64) {
         .filter_map(|m| Some(format!("{} {}", m.title(), number(largest(m)?, 3))))
         .collect();
     page.answer = format!(
-        "Largest relative energy drift at Δt = {shown}: {}. Each is what the method's own step says \
+        "Largest relative energy drift at Δt = {shown}: {}. Each is what the method’s own step says \
          it must be.",
         sizes.join(", ")
     );
@@ -184,7 +184,7 @@ fn crossover(record: &Record) -> Result<Figure, RecordError> {
     let note = |x: f64, y: f64, text: &str| Mark::note(x, y, text).ink(Ink::Neutral);
     let middle = (low * high).sqrt();
     let top = steps.iter().copied().filter(|s| s.is_finite()).fold(1.0, f64::max);
-    Ok(Figure::new("crossover", "The step at which RK4's loss overtakes Verlet's swing")
+    Ok(Figure::new("crossover", "The step at which RK4’s loss overtakes Verlet’s swing")
         .caption(
             "Above the line Verlet holds the energy better, below it RK4 does. A million steps, the \
              horizon of the source, crosses it between the largest two steps.",
@@ -204,8 +204,8 @@ fn portraits(record: &Record, dt: f64) -> Result<Figure, RecordError> {
         Figure::new("portraits", format!("Six turns in phase space at Δt = {}", seconds(dt, 3)))
             .caption(
                 "Dots: the simulated orbit, in units in which the exact one is the thin circle. \
-                 Lines: the curve that the step carries along. Symplectic Euler's is a tilted \
-                 ellipse, Verlet's an upright one; explicit Euler and RK4 have circles that grow \
+                 Lines: the curve that the step carries along. Symplectic Euler’s is a tilted \
+                 ellipse, Verlet’s an upright one; explicit Euler and RK4 have circles that grow \
                  and shrink by √det M a step.",
             )
             .description("Phase portraits, one for each integrator.")

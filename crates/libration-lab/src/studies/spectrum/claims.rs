@@ -192,7 +192,7 @@ pub(super) fn judge(record: &mut Record) {
             Judgement::holds_if(
                 f[0].measured > 0.0,
                 format!(
-                    "up to z = {}. It does not set them apart: RK4's includes the axis up to {}",
+                    "up to z = {}. It does not set them apart: RK4’s includes the axis up to {}",
                     number(f[0].measured, 8),
                     number(f[1].measured, 8)
                 ),

@@ -85,7 +85,7 @@ fn phase_errors(record: &Record) -> Result<Figure, RecordError> {
 fn regions(record: &Record, shown: &[(Method, f64)]) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("stability-regions", "Where a step is stable")
         .caption(
-            "The contour is ρ = 1. Explicit Euler's disc touches the imaginary axis at the origin \
+            "The contour is ρ = 1. Explicit Euler’s disc touches the imaginary axis at the origin \
              alone; the region of RK4 takes in a piece of it, as those of the symplectic methods \
              do: on the axis they have ρ = 1 exactly, up to ωΔt = 2. The bar marks the stable piece \
              of the axis, measured by simulation.",
