@@ -1,0 +1,117 @@
+//! `libration analyze`, through the binary.
+
+#![allow(clippy::unwrap_used)]
+
+use assert_cmd::Command;
+use serde_json::Value;
+
+fn libration(words: &[&str]) -> assert_cmd::assert::Assert {
+    Command::cargo_bin("libration").unwrap().args(words).assert()
+}
+
+fn json(words: &[&str]) -> Value {
+    let output = libration(&[words, &["--json"]].concat()).success().get_output().stdout.clone();
+    let text = String::from_utf8(output).unwrap();
+    // A drift beyond f64 is a valid JSON number that this reader refuses; its logarithm is tested.
+    let fits = |line: &&str| {
+        !line.contains("\"max_energy_drift\"") || {
+            let number = line.rsplit(' ').next().unwrap().trim_end_matches(',');
+            number.parse::<f64>().unwrap().is_finite()
+        }
+    };
+    let kept: Vec<&str> = text.lines().filter(fits).collect();
+    serde_json::from_str(&kept.join("\n")).unwrap()
+}
+
+/// A number of the oracle; beyond `f64` it reads as infinite.
+fn number(value: &Value) -> f64 {
+    value.as_str().map_or_else(|| value.as_f64().unwrap(), |text| text.parse().unwrap())
+}
+
+const NAMES: [(&str, &str); 5] = [
+    ("explicit_euler", "explicit-euler"),
+    ("semi_implicit_euler", "symplectic-euler"),
+    ("semi_implicit_euler_drift_first", "symplectic-euler-drift-first"),
+    ("velocity_verlet", "velocity-verlet"),
+    ("rk4", "rk4"),
+];
+
+#[test]
+fn every_case_of_the_oracle_is_met_to_12_digits() {
+    let oracle = include_str!("../../libration/tests/reference/oracle.json");
+    let oracle: Value = serde_json::from_str(oracle).unwrap();
+    for case in oracle["cases"].as_array().unwrap() {
+        let (w2, dt) = (number(&case["w2"]), number(&case["dt"]));
+        for (theirs, ours) in NAMES {
+            let want = &case["integrators"][theirs];
+            let (set, dt) = (format!("omega2={w2}"), dt.to_string());
+            let words = ["analyze", "--system", "oscillator", "--set", &set, "--dt", &dt];
+            let got = json(&[&words[..], &["--integrator", ours]].concat());
+            let close = |got: &Value, want: &Value, key: &str| {
+                let want = number(want);
+                let got = got.as_f64().unwrap_or_else(|| panic!("{key} of {ours}: {got}"));
+                let near = got == want || (got - want).abs() <= 1e-12 * want.abs();
+                assert!(near, "{key} of {ours} at w2 = {w2}, dt = {dt}: {got:e}, not {want:e}");
+            };
+            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                close(&got["update_matrix"][i][j], &want["M"][i][j], "update_matrix");
+            }
+            for (mine, key) in [
+                ("determinant", "det"),
+                ("trace", "trace"),
+                ("spectral_radius", "spectral_radius"),
+                ("spectral_radius_minus_one", "spectral_radius_minus_1"),
+                ("symplecticity_defect", "MtJM_minus_J_frobenius"),
+                ("reversibility_defect", "reversible_defect_frobenius_M(-dt)M(dt)-I"),
+                ("phase_error_per_step", "phase_error_per_step"),
+            ] {
+                close(&got[mine], &want[key], mine);
+            }
+            let largest = want["max_rel_energy_drift_1e6"].as_str().unwrap();
+            if number(&Value::from(largest)).is_finite() {
+                close(&got["max_energy_drift"], &Value::from(largest), "max_energy_drift");
+            } else {
+                let (mantissa, exponent) = largest.split_once("e+").unwrap();
+                let log10: f64 =
+                    mantissa.parse::<f64>().unwrap().log10() + exponent.parse::<f64>().unwrap();
+                let got = got["log10_max_energy_drift"].as_f64().unwrap();
+                assert!((got / log10 - 1.0).abs() < 1e-12, "{ours}: 10^{got}, not 10^{log10}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_negative_velocity_and_several_coordinates_are_taken_as_they_stand() {
+    let words = ["analyze", "--system", "oscillator", "--integrator", "leapfrog", "--dt", "0.1"];
+    let got = json(&[&words[..], &["--q", "1,-2", "--v", "-0.3,4"]].concat());
+    assert_eq!(got["v"], serde_json::json!([-0.3, 4.0]));
+    assert_eq!(got["update_matrix"].as_array().unwrap().len(), 4);
+    assert_eq!(got["bounded"], true);
+}
+
+#[test]
+fn a_nonlinear_answer_says_that_it_is_a_linearisation() {
+    let words = ["analyze", "--system", "pendulum", "--integrator", "rk4", "--dt", "0.1"];
+    let text = libration(&words).success().get_output().stdout.clone();
+    assert!(String::from_utf8(text).unwrap().contains("linearisation"));
+}
+
+#[test]
+fn wrong_input_is_named_with_exit_code_2_and_nothing_on_stdout() {
+    let kepler = ["analyze", "--system", "kepler", "--integrator", "rk4"];
+    for (words, told) in [
+        (&["--dt", "0.1", "--q", "0,0"][..], "singular"),
+        (&["--dt", "0.1", "--q", "1"], "--q `1` has 1 coordinate"),
+        (&["--dt", "0"], "greater than 0"),
+        (&["--dt", "nan"], "greater than 0"),
+        (&["--dt", "0.1", "--steps", "0"], "--steps"),
+        (&["--dt", "0.1", "--set", "nu=1"], "`mu`"),
+        (&["--dt", "0.1", "--set", "mu=-1"], "-1"),
+    ] {
+        let output = libration(&[&kepler[..], words].concat()).code(2).get_output().clone();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(error.contains(told), "{words:?}: {error}");
+        assert!(output.stdout.is_empty(), "{words:?}");
+    }
+}
