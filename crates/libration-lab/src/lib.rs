@@ -19,6 +19,7 @@ pub mod results;
 pub mod session;
 pub mod studies;
 pub mod study;
+mod text;
 pub mod trajectory;
 
 pub use config::Config;

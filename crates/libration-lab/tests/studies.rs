@@ -130,8 +130,8 @@ fn verdicts_on_the_source_are_these() {
 fn a_verdict_follows_the_numbers_and_not_the_source() {
     // At z² = 0.4 RK4 has lost nearly everything after 10⁵ steps: what is refuted at the source's
     // own step holds there, so no verdict of this kind is given without the source's step.
-    let mut config = Config::default();
-    config.drift = Drift { dt: vec![0.001, 0.2], steps: 100_000 };
+    let drift = Drift { dt: vec![0.001, 0.2], steps: 100_000 };
+    let mut config = Config { drift, ..Config::default() };
     let records = run(&config);
     let claim = |id: &str| records.iter().flat_map(|r| &r.claims).find(|c| c.id == id).cloned();
     assert_eq!(claim("C73").unwrap().verdict, Refuted);

@@ -6,8 +6,8 @@ use super::layout::{Frame, LABEL, SMALL};
 use super::mark::{Across, Shape};
 use super::panel::Panel;
 use super::style::Ink;
-use super::text;
 use super::ticks;
+use crate::text;
 
 /// A text beside the mark it names.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,8 +8,8 @@ use super::geometry::Rect;
 use super::label::{self, Label};
 use super::mark::{Mark, Shape};
 use super::panel::{Figure, Panel};
-use super::text;
 use super::ticks::{Tick, ticks};
+use crate::text;
 
 /// The width of every figure, in pixels.
 pub(super) const WIDTH: f64 = 860.0;

@@ -40,7 +40,6 @@ mod picture;
 mod plotly;
 mod style;
 pub mod svg;
-mod text;
 mod ticks;
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use super::palette::STYLESHEET;
 use super::panel::Figure;
 use super::plotly::plotly;
 use super::svg;
-use super::text;
+use crate::text;
 
 const PLOTLY: &[u8] = include_bytes!("../../assets/plotly.min.js.gz");
 const SCRIPT: &str = include_str!("../../assets/figure.js");

@@ -11,8 +11,8 @@ use super::layout::{Layout, NORMAL, SMALL, WIDTH};
 use super::mark::Shape;
 use super::panel::Figure;
 use super::style::Style;
-use super::text;
 use super::ticks::Tick;
+use crate::text;
 
 const FONT: &str = "system-ui, -apple-system, 'Segoe UI', sans-serif";
 

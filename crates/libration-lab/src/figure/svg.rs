@@ -9,7 +9,7 @@ use super::layout::{LABEL, Layout, NORMAL, Placed, SMALL, WIDTH, title_size};
 use super::palette::{Tone, concrete};
 use super::panel::Figure;
 use super::picture;
-use super::text::{self, escape};
+use crate::text::{self, escape};
 use path::px;
 
 /// The figure for an HTML page that has the [stylesheet](super::STYLESHEET): it follows light, dark

@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use super::drawn::Drawn;
 use super::layout::{Layout, WIDTH};
 use super::*;
+use crate::text;
 
 fn figure(panel: Panel) -> Figure {
     Figure::new("fig-1", "A title").description("A description").panel(panel)

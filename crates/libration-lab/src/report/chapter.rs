@@ -1,10 +1,10 @@
 //! One study as a chapter.
 
-use super::html::{escape, text};
 use crate::figure;
 use crate::notation::number;
 use crate::page::{Block, Chapter};
 use crate::record::{Cell, Finding, Table, Verdict};
+use crate::text::{escape, prose};
 
 /// The chapter: question, evidence, and all its findings.
 pub(super) fn render(chapter: &Chapter) -> String {
@@ -25,17 +25,17 @@ pub(super) fn render(chapter: &Chapter) -> String {
         "<section>\n<h2 id=\"{name}\">{title}</h2>\n<p class=\"q\">{question}</p>\n{blocks}\
          {findings}<p class=\"sub\">Recompute this chapter alone: <code>libration lab \
          {name}</code>{shown}</p>\n</section>\n",
-        title = text(&page.title),
-        question = text(&record.question),
+        title = prose(&page.title),
+        question = prose(&record.question),
         findings = findings(&record.findings),
     )
 }
 
 fn block(block: &Block) -> String {
     match block {
-        Block::Heading(heading) => format!("<h3>{}</h3>\n", text(heading)),
-        Block::Paragraph(paragraph) => format!("<p>{}</p>\n", text(paragraph)),
-        Block::Note(note) => format!("<p class=\"note\">{}</p>\n", text(note)),
+        Block::Heading(heading) => format!("<h3>{}</h3>\n", prose(heading)),
+        Block::Paragraph(paragraph) => format!("<p>{}</p>\n", prose(paragraph)),
+        Block::Note(note) => format!("<p class=\"note\">{}</p>\n", prose(note)),
         Block::Figure(figure) => figure::embed(figure),
         Block::Table { table, digits } => self::table(table, *digits),
     }
@@ -51,12 +51,12 @@ fn table(table: &Table, digits: usize) -> String {
         .columns
         .iter()
         .enumerate()
-        .map(|(i, c)| format!("<th{}>{}</th>", class(i), text(c)))
+        .map(|(i, c)| format!("<th{}>{}</th>", class(i), prose(c)))
         .collect();
     let cell = |(i, cell): (usize, &Cell)| {
         let shown = match cell {
-            Cell::Number(x) => text(&number(*x, digits)),
-            Cell::Text(words) => text(words),
+            Cell::Number(x) => prose(&number(*x, digits)),
+            Cell::Text(words) => prose(words),
         };
         format!("<td{}>{shown}</td>", class(i))
     };
@@ -94,17 +94,18 @@ fn finding(finding: &Finding) -> String {
         "1" => String::new(),
         unit => format!(" {}", escape(unit)),
     };
-    let value = |x: Option<f64>| x.map_or_else(|| "—".into(), |x| text(&number(x, 8)) + &unit);
+    let value = |x: Option<f64>| x.map_or_else(|| "—".into(), |x| prose(&number(x, 8)) + &unit);
     format!(
         "<tr id=\"{id}\"><td>{text}<br><span class=\"id\">{id}</span></td>\
          <td class=\"num\">{predicted}</td><td class=\"num\">{measured}</td>\
          <td class=\"num\" title=\"{reason}\">{tolerance}</td>\
          <td><span class=\"v {class}\">{verdict}</span></td></tr>",
         id = escape(&finding.id),
-        text = text(&finding.text),
+        text = prose(&finding.text),
         predicted = value(finding.predicted),
         measured = value(Some(finding.measured)),
         reason = escape(&finding.tolerance.tolerance_reason),
-        tolerance = finding.tolerance.tolerance.map_or_else(|| "—".into(), |t| text(&number(t, 2))),
+        tolerance =
+            finding.tolerance.tolerance.map_or_else(|| "—".into(), |t| prose(&number(t, 2))),
     )
 }

@@ -1,8 +1,8 @@
 //! What the source report claims, and what is true of it.
 
-use super::html::{escape, text};
 use crate::page::Chapter;
 use crate::record::{Claim, ClaimVerdict};
+use crate::text::{escape, prose};
 
 /// The table of all claims that were judged, in the order of their numbers.
 pub(super) fn render(chapters: &[Chapter]) -> String {
@@ -39,8 +39,8 @@ fn row(claim: &Claim) -> String {
          <td><span class=\"v {class}\">{verdict}</span></td></tr>",
         id = escape(&claim.id),
         source = escape(&claim.source),
-        says = text(&claim.text),
-        because = text(&claim.because),
+        says = prose(&claim.text),
+        because = prose(&claim.because),
         findings = findings.join(" "),
     )
 }

@@ -1,7 +1,6 @@
 //! The report: one self-contained page, rendered from records.
 
 mod chapter;
-mod html;
 mod ledger;
 
 use crate::figure;
@@ -9,6 +8,7 @@ use crate::notation::{number, seconds};
 use crate::page::{Chapter, Highlight};
 use crate::record::ClaimVerdict;
 use crate::results::Results;
+use crate::text::{escape, prose};
 
 const STYLE: &str = include_str!("../../assets/report.css");
 const SCRIPT: &str = include_str!("../../assets/report.js");
@@ -20,7 +20,7 @@ pub fn render(results: &Results, chapters: &[Chapter]) -> String {
         String::from("<a href=\"#top\">The answer</a><a href=\"#ledger\">The ledger</a>");
     let mut body = String::new();
     for chapter in chapters {
-        let (name, title) = (html::escape(&chapter.record.name), html::text(&chapter.page.title));
+        let (name, title) = (escape(&chapter.record.name), prose(&chapter.page.title));
         links += &format!("<a href=\"#{name}\">{title}</a>");
         body += &chapter::render(chapter);
     }
@@ -32,7 +32,7 @@ pub fn render(results: &Results, chapters: &[Chapter]) -> String {
          <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\
          <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{answers}{numbers}{ledger}{body}\
          {machine}</main>\n{scripts}<script>{SCRIPT}</script>\n</body></html>\n",
-        title = html::text(&headline),
+        title = prose(&headline),
         setting = setting(results),
         alarm = alarm(results),
         answers = answers(chapters),
@@ -53,7 +53,7 @@ fn headline(chapters: &[Chapter]) -> String {
 fn setting(results: &Results) -> String {
     let config = &results.config;
     let (spring, start) = (config.oscillator, config.start);
-    html::text(&format!(
+    prose(&format!(
         "Oscillator, m = {} kg, k = {} N/m, from ({}, {}) · {} integrators · {} · {} · \
          `libration lab`",
         number(spring.m, 6),
@@ -72,7 +72,7 @@ fn alarm(results: &Results) -> String {
         .studies
         .iter()
         .flat_map(|record| record.disagreements())
-        .map(|f| format!("<li><a href=\"#{0}\">{0}</a></li>", html::escape(&f.id)))
+        .map(|f| format!("<li><a href=\"#{0}\">{0}</a></li>", escape(&f.id)))
         .collect();
     if broken.is_empty() {
         return String::new();
@@ -89,7 +89,7 @@ fn answers(chapters: &[Chapter]) -> String {
         .enumerate()
         .map(|(i, c)| {
             let class = if i == 0 { " class=\"lead\"" } else { "" };
-            format!("<p{class}>{}</p>\n", html::text(&c.page.answer))
+            format!("<p{class}>{}</p>\n", prose(&c.page.answer))
         })
         .collect()
 }
@@ -109,7 +109,7 @@ fn numbers(results: &Results, chapters: &[Chapter]) -> String {
     let boxes: String = shown
         .chain((claims().count() > 0).then_some(&score))
         .map(|h| {
-            let (value, text) = (html::text(&h.value), html::text(&h.text));
+            let (value, text) = (prose(&h.value), prose(&h.text));
             format!("<div><strong>{value}</strong><span>{text}</span></div>")
         })
         .collect();
@@ -118,7 +118,7 @@ fn numbers(results: &Results, chapters: &[Chapter]) -> String {
 
 fn machine(results: &Results) -> String {
     let machine = &results.machine;
-    let text = html::text(&format!(
+    let text = prose(&format!(
         "{}, {} cores, {} · Libration {} · {} · all numbers in `results.json`, all series in \
          `data/`, all figures in `figures/`",
         machine.cpu,

@@ -9,8 +9,8 @@ use crate::figure::drawn::{contour, edges, runs};
 use crate::figure::layout::{Bar, EDGE, Placed, SMALL, WIDTH};
 use crate::figure::mark::{Mark, Shape};
 use crate::figure::style::{Marker, Style};
-use crate::figure::text;
 use crate::figure::ticks::Tick;
+use crate::text;
 
 /// A list in which what has no place on the axis is `null`.
 fn values(values: &[f64], scale: Scale) -> Vec<Option<f64>> {

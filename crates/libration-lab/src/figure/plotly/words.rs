@@ -6,7 +6,7 @@ use super::Number;
 use crate::figure::axis::Ruler;
 use crate::figure::label::Label;
 use crate::figure::layout::{LABEL, NORMAL, Placed, WIDTH, title_size};
-use crate::figure::text;
+use crate::text;
 
 /// Text at a place on the page.
 pub(super) fn words(

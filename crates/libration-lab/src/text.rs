@@ -1,10 +1,10 @@
-//! Words with superscripts and subscripts, for both back ends.
+//! Words with superscripts and subscripts, for pages and figures.
 
 use std::fmt::Write;
 
 /// Where a run of characters stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Lift {
+pub(crate) enum Lift {
     Base,
     Above,
     Below,
@@ -15,7 +15,7 @@ const RAISED_PLAIN: &str = "0123456789−+n";
 const LOWERED: &str = "₀₁₂₃₄₅₆₇₈₉₋₊ₙ";
 
 /// Splits text into runs: `10^{-3}`, `10^-3`, `10⁻³`, `E_{max}`, `E_0` and `E₀` all work.
-pub(super) fn runs(text: &str) -> Vec<(Lift, String)> {
+pub(crate) fn runs(text: &str) -> Vec<(Lift, String)> {
     let mut runs: Vec<(Lift, String)> = Vec::new();
     let mut push = |lift: Lift, c: char| match runs.last_mut() {
         Some((last, run)) if *last == lift => run.push(c),
@@ -68,7 +68,7 @@ fn script(chars: &[char], at: usize) -> (&[char], usize) {
 }
 
 /// Escapes text for XML and HTML, in content and in attributes. Characters that XML forbids go.
-pub(super) fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -85,7 +85,7 @@ pub(super) fn escape(text: &str) -> String {
 }
 
 /// The content of an SVG text element of a font size.
-pub(super) fn svg(text: &str, size: f64) -> String {
+pub(crate) fn svg(text: &str, size: f64) -> String {
     let (mut out, mut height) = (String::new(), 0.0);
     for (lift, run) in runs(text) {
         let target = match lift {
@@ -106,7 +106,7 @@ pub(super) fn svg(text: &str, size: f64) -> String {
 }
 
 /// The same text as HTML.
-pub(super) fn html(text: &str) -> String {
+pub(crate) fn html(text: &str) -> String {
     let wrap = |(lift, run): (Lift, String)| {
         let run = escape(&run);
         match lift {
@@ -118,13 +118,24 @@ pub(super) fn html(text: &str) -> String {
     runs(text).into_iter().map(wrap).collect()
 }
 
+/// The same text as HTML, with what stands between backticks as code.
+pub(crate) fn prose(text: &str) -> String {
+    let pieces = text.split('`').enumerate();
+    pieces
+        .map(|(i, piece)| match i % 2 {
+            0 => html(piece),
+            _ => format!("<code>{}</code>", escape(piece)),
+        })
+        .collect()
+}
+
 /// A width that bold text does not exceed in the usual sans-serif fonts.
-pub(super) fn bold_width(text: &str, size: f64) -> f64 {
+pub(crate) fn bold_width(text: &str, size: f64) -> f64 {
     1.12 * width(text, size)
 }
 
 /// A width that the text does not exceed in the usual sans-serif fonts.
-pub(super) fn width(text: &str, size: f64) -> f64 {
+pub(crate) fn width(text: &str, size: f64) -> f64 {
     let advance = |c: char| match c {
         'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' | '·' => 0.34,
         ' ' | 'f' | 't' | 'r' | '(' | ')' | 'I' | '/' => 0.42,
@@ -160,5 +171,13 @@ mod tests {
             "10<tspan dy=\"-3.8\" class=\"script\">2</tspan><tspan dy=\"3.8\"> s</tspan>"
         );
         assert_eq!(html("x^2 < 1"), "x<sup>2</sup> &lt; 1");
+    }
+
+    #[test]
+    fn no_prose_becomes_markup() {
+        assert_eq!(
+            prose("a < b & 10⁻¹² in `<i>^2`"),
+            "a &lt; b &amp; 10<sup>−12</sup> in <code>&lt;i&gt;^2</code>"
+        );
     }
 }
