@@ -3,11 +3,12 @@
 #![allow(clippy::unwrap_used)]
 
 use libration::{AnySystem, Method};
-use libration_lab::analyze::{Analysis, AnalyzeError, Request, analyze};
+use libration_lab::analyze::{Analysis, AnalyzeError, Criteria, Request, analyze};
 
 fn request(system: &str, method: Method, dt: f64, q: &[f64], v: &[f64]) -> Request {
     let system = AnySystem::build(system, &[] as &[(&str, f64)]).unwrap();
-    Request { system, method, dt, q: q.into(), v: v.into(), steps: 1000 }
+    let criteria = Criteria::default();
+    Request { system, method, dt, q: q.into(), v: v.into(), steps: 1000, criteria }
 }
 
 fn json(analysis: &Analysis) -> serde_json::Value {

@@ -19,6 +19,8 @@ pub enum Method {
     Rk4,
     /// [`YOSHIDA4`](crate::integrator::YOSHIDA4).
     Yoshida4,
+    /// [`SUZUKI4`](crate::integrator::SUZUKI4).
+    Suzuki4,
 }
 
 /// Names `$m` the integrator behind a [`Method`] and evaluates `$body` once for its type.
@@ -61,13 +63,17 @@ macro_rules! with_method {
                 let $m = integrator::YOSHIDA4;
                 $body
             }
+            Method::Suzuki4 => {
+                let $m = integrator::SUZUKI4;
+                $body
+            }
         }
     }};
 }
 
 impl Method {
     /// All of them, by rising order.
-    pub const ALL: [Method; 8] = [
+    pub const ALL: [Method; 9] = [
         Method::ExplicitEuler,
         Method::SymplecticEuler,
         Method::SymplecticEulerDriftFirst,
@@ -76,6 +82,7 @@ impl Method {
         Method::Leapfrog,
         Method::Rk4,
         Method::Yoshida4,
+        Method::Suzuki4,
     ];
 
     /// Name on the command line and in configurations.
@@ -89,6 +96,7 @@ impl Method {
             Method::Leapfrog => "leapfrog",
             Method::Rk4 => "rk4",
             Method::Yoshida4 => "yoshida4",
+            Method::Suzuki4 => "suzuki4",
         }
     }
 
@@ -103,6 +111,7 @@ impl Method {
             Method::Leapfrog => "leapfrog",
             Method::Rk4 => "RK4",
             Method::Yoshida4 => "Yoshida 4",
+            Method::Suzuki4 => "Suzuki 4",
         }
     }
 
@@ -117,6 +126,7 @@ impl Method {
             Method::Leapfrog => "order 2; symplectic, time-reversible; drift, kick, drift",
             Method::Rk4 => "order 4; classical Runge-Kutta; not symplectic",
             Method::Yoshida4 => "order 4; symplectic, time-reversible; three Verlet substeps",
+            Method::Suzuki4 => "order 4; symplectic, time-reversible; five Verlet substeps",
         }
     }
 
@@ -127,7 +137,7 @@ impl Method {
                 1
             }
             Method::VelocityVerlet | Method::TextbookVerlet | Method::Leapfrog => 2,
-            Method::Rk4 | Method::Yoshida4 => 4,
+            Method::Rk4 | Method::Yoshida4 | Method::Suzuki4 => 4,
         }
     }
 

@@ -38,6 +38,10 @@ const GOLDEN: &[(&str, &str, u64, u64)] = &[
     ("yoshida4", "f32", 0xab38e08099f948dd, 0xbd506904da9d48e8),
     ("yoshida4", "f16", 0xeec4031b4cf37691, 0x39ab5c772c5692f5),
     ("yoshida4", "bf16", 0x3f170e387cdbc686, 0x773242648e8820f7),
+    ("suzuki4", "f64", 0xddea9d67ed192c9a, 0x5bfe074d1cbc6881),
+    ("suzuki4", "f32", 0xdc9cb69a88fa59f6, 0x5d7a85b173c4b808),
+    ("suzuki4", "f16", 0x05e2f5a0003471db, 0x942a996b4de98487),
+    ("suzuki4", "bf16", 0x7f279f12403fdb82, 0x804bedc22f943dd3),
 ];
 
 const STEPS: usize = 1000;

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::number::steps;
+use super::number::{positive, steps};
 use super::{StepArgs, SystemArgs};
 
 /// What theory says of one step.
@@ -16,6 +16,15 @@ pub(crate) struct AnalyzeArgs {
     /// Number of steps over which the largest energy drift is taken
     #[arg(long, value_name = "N", default_value = "1000000", value_parser = steps, allow_hyphen_values = true)]
     pub(crate) steps: u64,
+    /// Also say the largest dt whose relative energy drift stays below this over --steps
+    #[arg(long, value_name = "DRIFT", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_drift: Option<f64>,
+    /// Also say the largest dt at which |q| stays below this over --steps
+    #[arg(long, value_name = "LENGTH", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_amplitude: Option<f64>,
+    /// Also say the largest dt whose error stays below this part of the amplitude over --steps
+    #[arg(long, value_name = "ERROR", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_error: Option<f64>,
     /// Print JSON, with all digits
     #[arg(long)]
     pub(crate) json: bool,
@@ -24,6 +33,7 @@ pub(crate) struct AnalyzeArgs {
 const EXAMPLES: &str = "\
 Examples:
   libration analyze --system oscillator --set omega2=10 --integrator rk4 --dt 0.01
+  libration analyze --system oscillator --integrator velocity-verlet --dt 0.01 --max-drift 1e-3
   libration analyze --system pendulum --q 2.5 --integrator velocity-verlet --dt 0.05 --json
 
 Of a nonlinear system, matrix and eigenvalues are those of one step linearised about --q, --v.";

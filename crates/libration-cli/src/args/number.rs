@@ -53,6 +53,16 @@ pub(super) fn time_step(text: &str) -> Result<f64, String> {
     Ok(dt)
 }
 
+/// Reads a tolerance.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    let rule = "it must be finite and greater than 0";
+    match text.trim().parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        Ok(_) => Err(rule.into()),
+        Err(_) => Err(format!("it is not a number; {rule}")),
+    }
+}
+
 /// Reads a number of steps; also as `1e6`.
 pub(super) fn steps(text: &str) -> Result<u64, String> {
     let steps = whole_number(text).ok_or_else(|| {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 
-use libration_lab::analyze::{self, Analysis, Request};
+use libration_lab::analyze::{self, Analysis, Criteria, ModifiedHamiltonian, Request};
 
 use crate::args::{AnalyzeArgs, Setting};
 use crate::error::Failure;
@@ -12,11 +12,16 @@ use crate::error::Failure;
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     let Setting { system, q, v } = args.system.resolve()?;
     let (method, dt) = (args.step.integrator, args.step.dt);
-    let request = Request { system, method, dt, q, v, steps: args.steps };
+    let criteria = Criteria {
+        max_drift: args.max_drift,
+        max_amplitude: args.max_amplitude,
+        max_error: args.max_error,
+    };
+    let request = Request { system, method, dt, q, v, steps: args.steps, criteria };
     let analysis = analyze::analyze(&request).map_err(Failure::usage)?;
     let text = match args.json {
         true => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
-        false => describe(&analysis),
+        false => describe(&analysis, &request.criteria),
     };
     match io::stdout().lock().write_all(text.as_bytes()) {
         // A reader that has seen enough is not an error.
@@ -26,7 +31,7 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
 }
 
 /// The analysis for a reader at a terminal.
-fn describe(analysis: &Analysis) -> String {
+fn describe(analysis: &Analysis, criteria: &Criteria) -> String {
     let about = &analysis.about;
     let parameters: Vec<String> =
         about.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
@@ -68,6 +73,31 @@ fn describe(analysis: &Analysis) -> String {
     if let Some(bounded) = analysis.bounded {
         line("orbits", if bounded { "bounded" } else { "unbounded" }.into());
     }
+    if let Some(windows) = &analysis.stability_windows {
+        let end = |x: Option<f64>| x.map_or("∞".into(), |x| format!("{x:?}"));
+        let shown: Vec<String> =
+            windows.iter().map(|&[from, to]| format!("{} to {}", end(from), end(to))).collect();
+        let shown = if shown.is_empty() { "none".into() } else { shown.join(", ") };
+        line("stable for dt in s", shown);
+    }
+    let mut largest = |what: &str, asked: Option<f64>, dt: Option<f64>| {
+        if let Some(asked) = asked {
+            line("largest dt in s", format!("{} for {what} {asked}", known(dt)));
+        }
+    };
+    if let Some(dt) = &analysis.largest_dt {
+        largest("drift", criteria.max_drift, dt.energy_drift);
+        largest("drift from the worst start", criteria.max_drift, dt.energy_drift_worst_start);
+        largest("amplitude", criteria.max_amplitude, dt.amplitude);
+        largest("error", criteria.max_error, dt.trajectory_error);
+    }
+    if let Some(form) = &analysis.modified_hamiltonian {
+        let ModifiedHamiltonian { qq, qv, vv } = form;
+        line("conserved", format!("{vv:?} v² {:+?} q v {qq:+?} q²", 2.0 * qv));
+    }
+    if let Some(word) = &analysis.order_of_word {
+        line("splitting", format!("order {}: {}", word.order, word.word.join(", ")));
+    }
     line("symplecticity defect", format!("{:e}", analysis.symplecticity_defect));
     line("reversibility defect", format!("{:e}", analysis.reversibility_defect));
     line(
@@ -100,4 +130,9 @@ fn describe(analysis: &Analysis) -> String {
         let _ = writeln!(text, "note: {note}");
     }
     text
+}
+
+/// A largest time step, in words where there is none.
+fn known(dt: Option<f64>) -> String {
+    dt.map_or_else(|| "no limit found".into(), |dt| format!("{dt:?}"))
 }

@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use libration::analysis::DriftForecast;
+use libration::Scalar;
+use libration::analysis::{DriftForecast, QuadraticForm, Spectrum, UpdateMatrix};
+use libration::number::Wide;
 use libration::simulation::{EnergyDrift, SimulationError};
 use serde::Serialize;
 use serde_json::value::RawValue;
 
-use super::Request;
+use super::{LargestDt, OrderOfWord, Request};
 
 /// What theory says of one step; the fields are the keys of `analyze --json`.
 #[derive(Debug, Serialize)]
@@ -35,6 +37,20 @@ pub struct Analysis {
     /// Whether every orbit stays bounded; unknown of nonlinear systems, whose linearisation does not
     /// decide it, and where coupled modes are marginal.
     pub bounded: Option<bool>,
+    /// For linear systems in one dimension or without coupling: the intervals of Δt in s, each as
+    /// `[from, to]`, within which every orbit stays bounded; isolated exactly. An end that does not
+    /// exist is `null`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stability_windows: Option<Vec<[Option<f64>; 2]>>,
+    /// For the oscillator: the largest time steps that meet the criteria asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_dt: Option<LargestDt>,
+    /// The quadratic form that a symplectic linear step conserves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub modified_hamiltonian: Option<ModifiedHamiltonian>,
+    /// Of a splitting method, its order by the expansion of its word of kicks and drifts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub order_of_word: Option<OrderOfWord>,
     /// The Frobenius norm of `MᵀJM − J`.
     pub symplecticity_defect: f64,
     /// The Frobenius norm of `M(−Δt)·M(Δt) − 1`.
@@ -90,6 +106,34 @@ impl About {
                     .into()
             }),
         }
+    }
+}
+
+/// `qq·q² + 2·qv·q·v + vv·v²` per unit mass, in each degree of freedom: what a symplectic step
+/// conserves in place of the energy. It is scaled so that `vv = ½`.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ModifiedHamiltonian {
+    /// Coefficient of `q²`, in s⁻².
+    pub qq: f64,
+    /// Half the coefficient of `q·v`, in s⁻¹.
+    pub qv: f64,
+    /// Coefficient of `v²`.
+    pub vv: f64,
+}
+
+impl ModifiedHamiltonian {
+    /// The form of a linear step; none if the step does not conserve areas in each degree of
+    /// freedom, or keeps `q` from depending on `v`.
+    pub(super) fn of<const D: usize>(step: &UpdateMatrix<Wide, D>) -> Option<Self> {
+        let blocks = step.decoupled()?;
+        let conserves = blocks.iter().all(|m| Spectrum::new(m).determinant_minus_one().is_zero());
+        let form = QuadraticForm::carried_by(&blocks[0]);
+        let scaled = |x: Wide| (x / form.vv).ratio(1, 2).to_f64();
+        (conserves && !form.vv.is_zero()).then(|| ModifiedHamiltonian {
+            qq: scaled(form.qq),
+            qv: scaled(form.qv),
+            vv: scaled(form.vv),
+        })
     }
 }
 

@@ -1,6 +1,8 @@
 //! What theory says of one step of an integrator on a system.
 
 mod answer;
+mod criteria;
+mod limits;
 mod modes;
 
 use libration::analysis::{Linearisation, SymbolicStep, determinant, forecast_drift};
@@ -11,7 +13,9 @@ use libration::{
 };
 use thiserror::Error;
 
-pub use answer::{About, Analysis, Drift};
+pub use answer::{About, Analysis, Drift, ModifiedHamiltonian};
+pub use criteria::Criteria;
+pub use limits::{LargestDt, OrderOfWord};
 use modes::Modes;
 
 /// What is to be analysed.
@@ -29,6 +33,8 @@ pub struct Request {
     pub v: Vec<f64>,
     /// Number of steps over which the energy drift is taken.
     pub steps: u64,
+    /// What the largest time step is asked for.
+    pub criteria: Criteria,
 }
 
 /// Why there is no analysis.
@@ -48,6 +54,14 @@ pub enum AnalyzeError {
     /// The time step or the start is not usable.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// A criterion was given for a system whose largest time step is not known in closed form.
+    #[error("--{flag} is answered for the system `oscillator`, not for `{system}`")]
+    Criterion {
+        /// The flag.
+        flag: &'static str,
+        /// The system.
+        system: &'static str,
+    },
     /// The Jacobian does not exist at this state.
     #[error(
         "the step cannot be linearised about q = {q:?}, v = {v:?}: the force is singular there"
@@ -67,6 +81,11 @@ pub enum AnalyzeError {
 pub fn analyze(request: &Request) -> Result<Analysis, AnalyzeError> {
     if request.q.len() != request.v.len() {
         return Err(AnalyzeError::Coordinates { q: request.q.len(), v: request.v.len() });
+    }
+    if let (Some(flag), false) =
+        (request.criteria.first(), matches!(request.system, AnySystem::Oscillator(_)))
+    {
+        return Err(AnalyzeError::Criterion { flag, system: request.system.name() });
     }
     let dimension = request.q.len();
     with_system!(
@@ -99,22 +118,31 @@ fn run<const D: usize>(
     };
     simulator.run(1, &mut ()).ok();
     let modes = Modes::new(&linear);
-    let polynomials = matches!(request.system, AnySystem::Oscillator(_)).then(|| {
-        let symbolic = SymbolicStep::new(integrator)?;
+    let polynomials = matches!(request.system, AnySystem::Oscillator(_))
+        .then(|| SymbolicStep::new(integrator))
+        .flatten();
+    let in_z = |symbolic: &SymbolicStep| -> Vec<Vec<String>> {
         let rows = symbolic.matrix.rows();
-        Some(rows.iter().map(|row| row.iter().map(ToString::to_string).collect()).collect())
-    });
+        rows.iter().map(|row| row.iter().map(ToString::to_string).collect()).collect()
+    };
+    let linear_system = request.system.is_linear();
     Ok(Analysis {
         about: About::new(request),
         update_matrix: to_f64(&rows),
-        update_matrix_in_z: polynomials.flatten(),
+        update_matrix_in_z: polynomials.as_ref().map(in_z),
         determinant: determinant(&linear.step).to_f64(),
         determinant_minus_one: modes.determinant_minus_one.to_f64(),
         trace: linear.step.trace().to_f64(),
         eigenvalues: modes.eigenvalues(),
         spectral_radius: modes.radius.to_f64(),
         spectral_radius_minus_one: modes.radius_minus_one.to_f64(),
-        bounded: modes.bounded.filter(|_| request.system.is_linear()),
+        bounded: modes.bounded.filter(|_| linear_system),
+        stability_windows: limits::stability_windows(integrator, request.system),
+        largest_dt: limits::largest_dt(polynomials.as_ref(), request),
+        modified_hamiltonian: linear_system
+            .then(|| ModifiedHamiltonian::of(&linear.step))
+            .flatten(),
+        order_of_word: OrderOfWord::of(integrator),
         symplecticity_defect: defect(linear.step.symplecticity_defect()),
         reversibility_defect: defect(linear.reversibility_defect()),
         phase_error_per_step: modes.phase_error.map(Wide::to_f64),

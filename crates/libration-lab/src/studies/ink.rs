@@ -15,5 +15,6 @@ pub(crate) fn ink(method: Method) -> Ink {
         Method::Leapfrog => Ink::Leapfrog,
         Method::Rk4 => Ink::Rk4,
         Method::Yoshida4 => Ink::Yoshida4,
+        Method::Suzuki4 => Ink::Accent(2),
     }
 }

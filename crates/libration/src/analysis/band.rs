@@ -1,6 +1,6 @@
 //! Between which energies an orbit of a linear step moves.
 
-use super::UpdateMatrix;
+use super::{QuadraticForm, UpdateMatrix};
 use crate::number::Wide;
 use crate::{Elementary, Hamiltonian, Model, Scalar, State};
 
@@ -14,8 +14,8 @@ use crate::{Elementary, Hamiltonian, Model, Scalar, State};
 #[derive(Clone, Copy, Debug)]
 pub struct EnergyBand {
     growth: Wide,
-    energy: Form,
-    invariant: Form,
+    energy: QuadraticForm<Wide>,
+    invariant: QuadraticForm<Wide>,
     lowest: Wide,
     highest: Wide,
 }
@@ -24,12 +24,8 @@ impl EnergyBand {
     /// The band of `step` on `model`; none where no form is definite, so that orbits escape.
     pub fn new(model: impl Model<1>, step: &UpdateMatrix<Wide, 1>) -> Option<Self> {
         let system = model.on::<Wide>();
-        let energy = Form::of(|state| system.energy(state));
-        let invariant = Form {
-            qq: -step.entry(1, 0),
-            qv: (step.entry(0, 0) - step.entry(1, 1)).ratio(1, 2),
-            vv: step.entry(0, 1),
-        };
+        let energy = QuadraticForm::of(|state| system.energy(state));
+        let invariant = QuadraticForm::carried_by(step);
         let a = invariant.determinant();
         if a.is_zero() || a.is_negative() || invariant.vv.is_negative() {
             return None;
@@ -68,7 +64,7 @@ impl EnergyBand {
     /// none if all starts are alike.
     pub fn worst_start(&self) -> Option<State<f64, 1>> {
         let r = self.lowest;
-        let singular = self.energy.minus(r, &self.invariant);
+        let singular = self.energy.plus(-r, &self.invariant);
         let alike = (self.highest - self.lowest).to_f64() <= 1e-100 * self.highest.to_f64();
         // The null vector of a singular 2 × 2 form, from its larger row.
         let (q, v) = if singular.qq.abs() > singular.vv.abs() {
@@ -99,41 +95,6 @@ impl EnergyBand {
                 State { q: [q], v: [radius * sin - qv * q] }
             })
             .collect()
-    }
-}
-
-/// The quadratic form `qq·q² + 2·qv·q·v + vv·v²`.
-#[derive(Clone, Copy, Debug)]
-struct Form {
-    qq: Wide,
-    qv: Wide,
-    vv: Wide,
-}
-
-impl Form {
-    /// The form with these values, by polarisation.
-    fn of(f: impl Fn(&State<Wide, 1>) -> Wide) -> Self {
-        let at = |q: f64, v: f64| f(&State { q: [Wide::from_f64(q)], v: [Wide::from_f64(v)] });
-        let (qq, vv) = (at(1.0, 0.0), at(0.0, 1.0));
-        Form { qq, vv, qv: (at(1.0, 1.0) - qq - vv).ratio(1, 2) }
-    }
-
-    fn at(&self, State { q: [q], v: [v] }: &State<Wide, 1>) -> Wide {
-        let cross = self.qv * *q * *v;
-        self.qq * *q * *q + cross + cross + self.vv * *v * *v
-    }
-
-    fn determinant(&self) -> Wide {
-        self.mixed(self)
-    }
-
-    /// Half the coefficient of `s·t` in `det(s·self + t·other)`.
-    fn mixed(&self, other: &Form) -> Wide {
-        (self.qq * other.vv + self.vv * other.qq).ratio(1, 2) - self.qv * other.qv
-    }
-
-    fn minus(&self, r: Wide, other: &Form) -> Form {
-        Form { qq: self.qq - r * other.qq, qv: self.qv - r * other.qv, vv: self.vv - r * other.vv }
     }
 }
 

@@ -6,15 +6,28 @@
 mod band;
 mod eigenvalues;
 mod energy;
+mod form;
+mod largest_step;
 mod linearisation;
 mod matrix;
+mod order;
+mod roots;
+mod slip;
 mod spectrum;
 mod symbolic;
+mod tableau;
+mod window;
 
 pub use band::EnergyBand;
 pub use eigenvalues::{Complex, determinant, eigenvalues};
 pub use energy::{DriftForecast, forecast_drift};
+pub use form::QuadraticForm;
+pub use largest_step::{Criterion, LargestStep};
 pub use linearisation::Linearisation;
 pub use matrix::UpdateMatrix;
+pub use order::OrderCertificate;
+pub use slip::Slip;
 pub use spectrum::{Eigenvalues, Spectrum};
 pub use symbolic::{SymbolicStep, UnknownStep};
+pub use tableau::{Letter, Tableau};
+pub use window::StabilityWindow;

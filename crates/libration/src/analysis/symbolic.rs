@@ -1,17 +1,18 @@
-//! One step on the oscillator as a matrix of exact polynomials.
+//! One step on a linear system as a matrix of exact polynomials.
 
-use super::UpdateMatrix;
+use super::{QuadraticForm, UpdateMatrix};
 use crate::number::Poly;
 use crate::system::Oscillator;
-use crate::{Integrator, Scalar};
+use crate::{Integrator, Scalar, System};
 
 /// Polynomials in the unknown `z = ωΔt`. Thirty-two coefficients hold the determinant of a
 /// composition of three Verlet steps with room to spare.
 pub type UnknownStep = Poly<32>;
 
-/// The update matrix of an integrator on the oscillator with `ω = 1`, exact in `z = ωΔt`.
+/// The update matrix of an integrator on a linear system, exact in the time step.
 ///
-/// For another `ω` the entry that maps `v` to `q` is divided by `ω`, the one that maps `q` to `v`
+/// [`SymbolicStep::new`] takes the oscillator with `ω = 1`, for which the unknown is `z = ωΔt`. For
+/// another `ω` the entry that maps `v` to `q` is divided by `ω`, the one that maps `q` to `v`
 /// multiplied by it; trace and determinant are the same.
 #[derive(Clone, Copy, Debug)]
 pub struct SymbolicStep {
@@ -20,23 +21,74 @@ pub struct SymbolicStep {
 }
 
 impl SymbolicStep {
-    /// Runs one step of `integrator` on polynomials; none if they outgrow their exact arithmetic.
+    /// One step of `integrator` on the oscillator with `ω = 1`; none if the polynomials outgrow
+    /// their exact arithmetic.
     pub fn new(integrator: impl Integrator) -> Option<Self> {
-        let oscillator = Oscillator { omega2: UnknownStep::one() };
-        let z = UnknownStep::unknown();
-        let matrix = UpdateMatrix::from_map(|e| integrator.step(&oscillator, e, z));
+        SymbolicStep::of(integrator, &Oscillator { omega2: UnknownStep::one() })
+    }
+
+    /// One step of `integrator` on a linear system, in powers of `Δt`; none if the system is not
+    /// linear, or the polynomials outgrow their exact arithmetic.
+    pub fn of(integrator: impl Integrator, system: &impl System<UnknownStep, 1>) -> Option<Self> {
+        let dt = UnknownStep::unknown();
+        let matrix = UpdateMatrix::from_map(|e| integrator.step(system, e, dt));
         let valid = matrix.rows().iter().flatten().all(UnknownStep::is_valid);
         let symbolic = SymbolicStep { matrix };
         (valid && symbolic.determinant().is_valid()).then_some(symbolic)
     }
 
-    /// `λ₁ + λ₂` as a polynomial in `z`.
+    /// `λ₁ + λ₂` as a polynomial.
     pub fn trace(&self) -> UnknownStep {
         self.matrix.trace()
     }
 
-    /// `λ₁ · λ₂` as a polynomial in `z`.
+    /// `λ₁ · λ₂` as a polynomial.
     pub fn determinant(&self) -> UnknownStep {
         self.matrix.determinant()
+    }
+
+    /// The quadratic form `Q` that the step carries along, `Q(My) = det M · Q(y)`, as polynomials.
+    pub fn invariant(&self) -> QuadraticForm<UnknownStep> {
+        QuadraticForm::carried_by(&self.matrix)
+    }
+
+    /// Whether the determinant is one for every time step, so that [`Self::invariant`] is conserved.
+    pub fn is_symplectic(&self) -> bool {
+        self.determinant() == UnknownStep::one()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrator::{Rk4, SymplecticEuler, VelocityVerlet};
+    use crate::number::Ratio;
+    use crate::system::{DampedOscillator, Pendulum};
+
+    fn coefficients(p: &UnknownStep) -> [f64; 4] {
+        [0, 1, 2, 3].map(|k| p.coefficient(k).to_f64())
+    }
+
+    #[test]
+    fn the_modified_hamiltonians_are_those_of_the_textbooks() {
+        // ½(v² + (1 − z²/4)x²) and ½(v² + x² − z·x·v), times 2z.
+        let form = SymbolicStep::new(VelocityVerlet).unwrap().invariant();
+        assert_eq!(coefficients(&form.qq), [0.0, 1.0, 0.0, -0.25]);
+        assert_eq!(coefficients(&form.qv), [0.0; 4]);
+        assert_eq!(coefficients(&form.vv), [0.0, 1.0, 0.0, 0.0]);
+        let form = SymbolicStep::new(SymplecticEuler).unwrap().invariant();
+        assert_eq!(coefficients(&form.qv), [0.0, 0.0, -0.5, 0.0]);
+        assert!(!SymbolicStep::new(Rk4).unwrap().is_symplectic());
+    }
+
+    #[test]
+    fn a_damped_mode_has_its_window_and_a_pendulum_has_no_matrix() {
+        let damped = DampedOscillator { omega2: UnknownStep::one(), gamma: UnknownStep::one() };
+        let step = SymbolicStep::of(crate::integrator::ExplicitEuler, &damped).unwrap();
+        // det = 1 − γΔt + ω²Δt² ≤ 1 up to Δt = γ/ω².
+        let [window] = step.stability_windows()[..] else { panic!() };
+        assert_eq!(window.to.unwrap().to_f64(), 1.0);
+        let pendulum = Pendulum { omega2: UnknownStep::constant(Ratio::ONE) };
+        assert!(SymbolicStep::of(VelocityVerlet, &pendulum).is_none());
     }
 }

@@ -8,15 +8,17 @@ mod composition;
 mod euler;
 mod leapfrog;
 mod runge_kutta;
+mod splitting;
 mod textbook_verlet;
 mod velocity_verlet;
 
 use crate::{Scalar, State, System};
 
-pub use composition::{Composition, YOSHIDA4, Yoshida4};
+pub use composition::{Composition, SUZUKI4, Suzuki4, YOSHIDA4, Yoshida4};
 pub use euler::{ExplicitEuler, SymplecticEuler, SymplecticEulerDriftFirst};
 pub use leapfrog::Leapfrog;
 pub use runge_kutta::Rk4;
+pub use splitting::Splitting;
 pub use textbook_verlet::TextbookVerlet;
 pub use velocity_verlet::VelocityVerlet;
 

@@ -6,6 +6,7 @@ use core::fmt;
 use bnum::Uint;
 use bnum::cast::As;
 use bnum::types::{U1024, U2048};
+use num_bigint::{BigInt, Sign};
 
 use super::Wide;
 use super::bits::{decode, nearest_f64};
@@ -127,6 +128,12 @@ impl Ratio {
         Ratio { num, den, exponent: -self.exponent, ..self }
     }
 
+    /// The exact value of `x`; none if it does not fit.
+    pub fn from_wide(x: Wide) -> Option<Self> {
+        let (negative, significand, exponent) = x.parts()?;
+        Ratio::normal(negative, significand.as_(), Ratio::ONE.den, exponent.try_into().ok()?)
+    }
+
     /// `self / other`; none if `other` has no [`recip`](Self::recip) or the quotient does not fit.
     pub fn checked_div(self, other: Self) -> Option<Self> {
         (self * other.recip()).checked()
@@ -151,6 +158,14 @@ impl Ratio {
     /// Sign, odd numerator, odd denominator and power of two.
     pub(super) fn parts(self) -> Option<(bool, U2048, U1024, i32)> {
         self.is_valid().then_some((self.negative, self.num, self.den, self.exponent))
+    }
+
+    /// Numerator with the sign of the fraction, odd denominator, and power of two.
+    pub(crate) fn to_big(self) -> Option<(BigInt, BigInt, i32)> {
+        let (negative, num, den, exponent) = self.parts()?;
+        let sign = if negative { Sign::Minus } else { Sign::Plus };
+        let num = BigInt::from_bytes_le(sign, &num.to_le_bytes());
+        Some((num, BigInt::from_bytes_le(Sign::Plus, &den.to_le_bytes()), exponent))
     }
 
     /// Numerator and denominator as integers, if both have at most `bits` bits.

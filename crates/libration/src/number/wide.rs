@@ -81,6 +81,11 @@ impl Wide {
         Wide { negative, exponent, significand }
     }
 
+    /// Sign, significand and power of two; none of NaN.
+    pub(super) fn parts(self) -> Option<(bool, U1024, i64)> {
+        (!self.is_nan()).then_some((self.negative, self.significand, self.exponent))
+    }
+
     /// Whether this is zero.
     pub fn is_zero(self) -> bool {
         self.significand.is_zero() && !self.is_nan()

@@ -82,6 +82,15 @@ def yoshida4(x, v, dt, a):
     return x, v
 
 
+P = 1 / (4 - 4 ** (1 / 3))
+
+
+def suzuki4(x, v, dt, a):
+    for w in [P, P, 1 - 4 * P, P, P]:
+        x, v = velocity_verlet(x, v, w * dt, a)
+    return x, v
+
+
 METHODS = {
     "explicit-euler": explicit_euler,
     "symplectic-euler": symplectic_euler,
@@ -91,6 +100,7 @@ METHODS = {
     "leapfrog": leapfrog,
     "rk4": rk4,
     "yoshida4": yoshida4,
+    "suzuki4": suzuki4,
 }
 
 

@@ -1,0 +1,120 @@
+//! How large a time step may be, and how the order of a method is known.
+
+use libration::analysis::{
+    Criterion, Letter, OrderCertificate, SymbolicStep, Tableau, UnknownStep,
+};
+use libration::number::Wide;
+use libration::{AnySystem, Elementary, Integrator, Model, Scalar, State};
+use serde::Serialize;
+
+use super::Request;
+
+/// The largest time steps, in s, that meet the criteria over the horizon of the request; each with
+/// every smaller one. None where every step meets it.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LargestDt {
+    /// Every orbit stays bounded.
+    pub bounded: Option<f64>,
+    /// The energy drift from the start of the request stays below `--max-drift`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy_drift: Option<f64>,
+    /// The same from the worst start.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy_drift_worst_start: Option<f64>,
+    /// `|q|` stays below `--max-amplitude`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub amplitude: Option<f64>,
+    /// The error of the worst start stays below `--max-error` of its amplitude; searched, where the
+    /// others are roots of polynomials.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trajectory_error: Option<f64>,
+}
+
+/// The order of a splitting method on every system.
+#[derive(Clone, Debug, Serialize)]
+pub struct OrderOfWord {
+    /// The word, in the order of time.
+    pub word: Vec<String>,
+    /// The order.
+    pub order: usize,
+    /// For words of 1, 2, … letters: the largest difference of a coefficient from that of the exact
+    /// flow, relative to it.
+    pub residuals: Vec<f64>,
+}
+
+/// Letters up to which words are compared.
+const LETTERS: usize = 6;
+
+impl OrderOfWord {
+    /// None if the method is not a product of kicks and drifts.
+    pub(super) fn of(integrator: impl Integrator) -> Option<Self> {
+        let shown = |letter: &Letter| match letter {
+            Letter::Kick(w) => format!("kick {}", w.to_f64()),
+            Letter::Drift(w) => format!("drift {}", w.to_f64()),
+        };
+        let word = Tableau::new(integrator)?.word()?;
+        let certificate = OrderCertificate::new(integrator, LETTERS)?;
+        Some(OrderOfWord {
+            word: word.iter().map(shown).collect(),
+            order: certificate.order(),
+            residuals: certificate.residuals.iter().map(|r| r.to_f64()).collect(),
+        })
+    }
+}
+
+/// The windows of a linear system, in s.
+pub(super) fn stability_windows(
+    integrator: impl Integrator,
+    system: AnySystem,
+) -> Option<Vec<[Option<f64>; 2]>> {
+    // In powers of z for an oscillator of any stiffness, and of Δt where there is damping.
+    let (step, unit) = match system {
+        AnySystem::Oscillator(model) => (SymbolicStep::new(integrator)?, period(model.omega2)),
+        AnySystem::DampedOscillator(model) => {
+            let system = Model::<1>::on::<UnknownStep>(&model);
+            (SymbolicStep::of(integrator, &system)?, Wide::one())
+        }
+        _ => return None,
+    };
+    let in_seconds = |z: Wide| (z * unit).to_f64();
+    let windows = step.stability_windows();
+    Some(windows.iter().map(|w| [Some(in_seconds(w.from)), w.to.map(in_seconds)]).collect())
+}
+
+/// `1/ω`, in s.
+fn period(omega2: f64) -> Wide {
+    Wide::from_f64(omega2).sqrt().recip()
+}
+
+/// The largest steps for an oscillator, whose polynomials are given.
+pub(super) fn largest_dt(step: Option<&SymbolicStep>, request: &Request) -> Option<LargestDt> {
+    let AnySystem::Oscillator(model) = request.system else { return None };
+    let (step, unit) = (step?, period(model.omega2));
+    let seconds = |z: f64| (Wide::from_f64(z) * unit).to_f64();
+    let (criteria, steps) = (&request.criteria, request.steps);
+    let largest = |criterion: &Criterion| {
+        let z = step.largest_step(criterion)?.to_f64();
+        z.is_finite().then(|| seconds(z))
+    };
+    // A criterion on one coordinate is answered for the orbit of the first.
+    let omega = model.omega2.sqrt();
+    let start = State { q: [request.q[0]], v: [request.v[0] / omega] };
+    let drift = |start| {
+        let steps = request.steps;
+        criteria
+            .max_drift
+            .and_then(|tolerance| largest(&Criterion::EnergyDrift { tolerance, steps, start }))
+    };
+    Some(LargestDt {
+        bounded: largest(&Criterion::Bounded),
+        energy_drift: drift(Some(start)),
+        energy_drift_worst_start: drift(None),
+        amplitude: criteria
+            .max_amplitude
+            .and_then(|limit| largest(&Criterion::Amplitude { limit, steps, start })),
+        trajectory_error: criteria
+            .max_error
+            .and_then(|tolerance| step.largest_step_for_error(tolerance, steps))
+            .map(seconds),
+    })
+}
