@@ -4,7 +4,7 @@
 //! (Durand–Kerner). In floats that would be a poor way; with 1024 bits a few hundred are left
 //! after it for matrices as small as those of a time step.
 
-use super::UpdateMatrix;
+use super::{Complex, UpdateMatrix};
 use crate::number::Wide;
 use crate::{Elementary, Scalar};
 
@@ -13,45 +13,6 @@ const SWEEPS: usize = 400;
 
 /// Corrections below `2^-SETTLED` of the largest root end the iteration.
 const SETTLED: i64 = 600;
-
-/// A complex number.
-#[derive(Clone, Copy, Debug)]
-pub struct Complex {
-    /// Real part.
-    pub re: Wide,
-    /// Imaginary part.
-    pub im: Wide,
-}
-
-impl Complex {
-    /// The absolute value.
-    pub fn abs(self) -> Wide {
-        (self.re * self.re + self.im * self.im).sqrt()
-    }
-
-    /// The angle in `(−π, π]` rad.
-    pub fn arg(self) -> Wide {
-        self.im.atan2(self.re)
-    }
-
-    fn plus(self, o: Self) -> Self {
-        Complex { re: self.re + o.re, im: self.im + o.im }
-    }
-
-    fn minus(self, o: Self) -> Self {
-        Complex { re: self.re - o.re, im: self.im - o.im }
-    }
-
-    fn times(self, o: Self) -> Self {
-        Complex { re: self.re * o.re - self.im * o.im, im: self.re * o.im + self.im * o.re }
-    }
-
-    fn over(self, o: Self) -> Self {
-        let scale = (o.re * o.re + o.im * o.im).recip();
-        let conjugate = Complex { re: o.re * scale, im: -o.im * scale };
-        self.times(conjugate)
-    }
-}
 
 /// All eigenvalues of `matrix`, multiple ones repeated, by falling real part.
 pub fn eigenvalues<const D: usize>(matrix: &UpdateMatrix<Wide, D>) -> Vec<Complex> {

@@ -4,8 +4,10 @@
 //! on polynomials in the time step, or with 1024 bits, and the answer is read off.
 
 mod band;
+mod complex;
 mod eigenvalues;
 mod energy;
+mod error;
 mod form;
 mod largest_step;
 mod linearisation;
@@ -19,8 +21,10 @@ mod tableau;
 mod window;
 
 pub use band::EnergyBand;
-pub use eigenvalues::{Complex, determinant, eigenvalues};
+pub use complex::Complex;
+pub use eigenvalues::{determinant, eigenvalues};
 pub use energy::{DriftForecast, forecast_drift};
+pub use error::ErrorForecast;
 pub use form::QuadraticForm;
 pub use largest_step::{Criterion, LargestStep};
 pub use linearisation::Linearisation;
