@@ -56,7 +56,14 @@ impl Config {
         self.oscillator.check()?;
         self.start.check(self.oscillator)?;
         number("spectrum.dt", limits::TIME_STEP, self.spectrum.dt)?;
-        self.check_drift()
+        list("drift.dt", "time step", limits::TIME_STEP, &self.drift.dt)?;
+        steps("drift.steps", self.drift.steps.into())?;
+        number("error.dt", limits::TIME_STEP, self.error.dt)?;
+        steps("error.steps", self.error.steps.into())?;
+        list("stability.tolerances", "tolerance", limits::TOLERANCE, &self.stability.tolerances)?;
+        counts("stability.steps", &self.stability.steps)?;
+        list("efficiency.tolerances", "tolerance", limits::TOLERANCE, &self.efficiency.tolerances)?;
+        counts("efficiency.periods", &self.efficiency.periods)
     }
 
     fn check_names(&self) -> Result<(), Fault> {
@@ -81,22 +88,6 @@ impl Config {
             }
         }
         Ok(())
-    }
-
-    fn check_drift(&self) -> Result<(), Fault> {
-        const DT: &str = "drift.dt";
-        let dt = &self.drift.dt;
-        if dt.is_empty() {
-            return Err(Fault::new(DT, "`drift.dt` must hold at least one time step"));
-        }
-        for (i, &step) in dt.iter().enumerate() {
-            let fault = |message| Fault::at(DT, i, message);
-            within(limits::TIME_STEP, DT, step).map_err(fault)?;
-            if dt[..i].contains(&step) {
-                return Err(fault(format!("the time step {step:?} stands in `drift.dt` twice")));
-            }
-        }
-        steps("drift.steps", self.drift.steps.into()).map(drop)
     }
 }
 
@@ -146,4 +137,38 @@ fn number(key: &'static str, allowed: Allowed, value: f64) -> Result<(), Fault> 
 
 pub(super) fn steps(key: &'static str, value: i128) -> Result<u64, Fault> {
     limits::steps(key, value).map_err(|message| Fault::new(key, message))
+}
+
+/// Numbers of which there must be one at least, and each once.
+fn list(key: &'static str, what: &str, allowed: Allowed, values: &[f64]) -> Result<(), Fault> {
+    if values.is_empty() {
+        return Err(Fault::new(key, format!("`{key}` must hold at least one {what}")));
+    }
+    for (i, &value) in values.iter().enumerate() {
+        let fault = |message| Fault::at(key, i, message);
+        within(allowed, key, value).map_err(fault)?;
+        if values[..i].contains(&value) {
+            return Err(fault(format!("the {what} {value:?} stands in `{key}` twice")));
+        }
+    }
+    Ok(())
+}
+
+/// Horizons, of which there must be one at least, and each once.
+fn counts(key: &'static str, values: &[u64]) -> Result<(), Fault> {
+    if values.is_empty() {
+        return Err(Fault::new(key, format!("`{key}` must hold at least one number")));
+    }
+    for (i, &value) in values.iter().enumerate() {
+        count(key, i, value.into())?;
+        if values[..i].contains(&value) {
+            return Err(Fault::at(key, i, format!("{value} stands in `{key}` twice")));
+        }
+    }
+    Ok(())
+}
+
+/// The `i`-th number of a list of horizons.
+pub(super) fn count(key: &'static str, i: usize, value: i128) -> Result<u64, Fault> {
+    limits::steps(key, value).map_err(|message| Fault::at(key, i, message))
 }

@@ -6,7 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::locate::Document;
 use super::value::{Count, Number};
-use super::{Config, ConfigError, Drift, Fault, Spectrum, Spring, Start, check, names, schema};
+use super::{
+    Config, ConfigError, Drift, Efficiency, Error, Fault, Spectrum, Spring, Stability, Start,
+    check, names, schema,
+};
 use crate::Effort;
 
 /// The default configuration with comments, ready to edit.
@@ -34,6 +37,12 @@ pub(super) struct File {
     spectrum: SpectrumTable,
     /// The study of energy drift.
     drift: DriftTable,
+    /// The study of the error against the exact solution.
+    error: ErrorTable,
+    /// The study of the largest stable time step.
+    stability: StabilityTable,
+    /// The study of cost against stability and accuracy.
+    efficiency: EfficiencyTable,
 }
 
 /// A mass on a spring, m q'' = -k q.
@@ -81,6 +90,42 @@ struct DriftTable {
     steps: Count,
 }
 
+/// Settings of the study `error`.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+struct ErrorTable {
+    /// Time step in s.
+    #[schemars(schema_with = "schema::time_step")]
+    dt: Number,
+    /// Number of steps.
+    #[schemars(schema_with = "schema::steps")]
+    steps: Count,
+}
+
+/// Settings of the study `stability`.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+struct StabilityTable {
+    /// Relative energy drifts that are tolerated, each once.
+    #[schemars(schema_with = "schema::tolerances")]
+    tolerances: Vec<Number>,
+    /// Numbers of steps, each once.
+    #[schemars(schema_with = "schema::horizons")]
+    steps: Vec<Count>,
+}
+
+/// Settings of the study `efficiency`.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+struct EfficiencyTable {
+    /// Errors that are tolerated, in energy and in state, each once.
+    #[schemars(schema_with = "schema::tolerances")]
+    tolerances: Vec<Number>,
+    /// Horizons in periods of the oscillator, each once.
+    #[schemars(schema_with = "schema::horizons")]
+    periods: Vec<Count>,
+}
+
 /// Reads a configuration; keys that are not given take their defaults.
 ///
 /// # Errors
@@ -119,8 +164,12 @@ pub fn parse_bytes(bytes: &[u8], file_name: &str) -> Result<Config, ConfigError>
 
 impl Default for File {
     fn default() -> Self {
-        let Config { studies, effort, integrators, oscillator, start, spectrum, drift } =
-            Config::default();
+        let config = Config::default();
+        let Config { studies, effort, integrators, oscillator, start, spectrum, drift, .. } =
+            config;
+        let Config { error, stability, efficiency, .. } = config;
+        let numbers = |list: Vec<f64>| list.into_iter().map(Number).collect();
+        let counts = |list: Vec<u64>| list.into_iter().map(|n| Count(n.into())).collect();
         File {
             studies,
             effort: effort.name().into(),
@@ -131,6 +180,15 @@ impl Default for File {
             drift: DriftTable {
                 dt: drift.dt.into_iter().map(Number).collect(),
                 steps: Count(drift.steps.into()),
+            },
+            error: ErrorTable { dt: Number(error.dt), steps: Count(error.steps.into()) },
+            stability: StabilityTable {
+                tolerances: numbers(stability.tolerances),
+                steps: counts(stability.steps),
+            },
+            efficiency: EfficiencyTable {
+                tolerances: numbers(efficiency.tolerances),
+                periods: counts(efficiency.periods),
             },
         }
     }
@@ -150,14 +208,18 @@ default_of_table!(
     SpringTable = oscillator,
     StartTable = start,
     SpectrumTable = spectrum,
-    DriftTable = drift
+    DriftTable = drift,
+    ErrorTable = error,
+    StabilityTable = stability,
+    EfficiencyTable = efficiency
 );
 
 impl TryFrom<File> for Config {
     type Error = Fault;
 
     fn try_from(file: File) -> Result<Self, Fault> {
-        let File { studies, effort, integrators, oscillator, start, spectrum, drift } = file;
+        let File { studies, effort, integrators, oscillator, start, spectrum, drift, .. } = file;
+        let File { error, stability, efficiency, .. } = file;
         let effort = Effort::from_name(&effort).ok_or_else(|| {
             let fault = Fault::new("effort", format!("unknown effort `{effort}`"));
             fault.help(names::suggest("efforts", &effort, Effort::ALL.map(Effort::name)))
@@ -169,6 +231,10 @@ impl TryFrom<File> for Config {
             })
         };
         let steps = check::steps("drift.steps", drift.steps.0)?;
+        let numbers = |list: Vec<Number>| list.into_iter().map(|Number(x)| x).collect();
+        let counts = |key, list: Vec<Count>| -> Result<Vec<u64>, Fault> {
+            list.into_iter().enumerate().map(|(i, n)| check::count(key, i, n.0)).collect()
+        };
         Ok(Config {
             studies,
             effort,
@@ -176,7 +242,16 @@ impl TryFrom<File> for Config {
             oscillator: Spring { m: oscillator.m.0, k: oscillator.k.0 },
             start: Start { q: start.q.0, v: start.v.0 },
             spectrum: Spectrum { dt: spectrum.dt.0 },
-            drift: Drift { dt: drift.dt.into_iter().map(|Number(dt)| dt).collect(), steps },
+            drift: Drift { dt: numbers(drift.dt), steps },
+            error: Error { dt: error.dt.0, steps: check::steps("error.steps", error.steps.0)? },
+            stability: Stability {
+                tolerances: numbers(stability.tolerances),
+                steps: counts("stability.steps", stability.steps)?,
+            },
+            efficiency: Efficiency {
+                tolerances: numbers(efficiency.tolerances),
+                periods: counts("efficiency.periods", efficiency.periods)?,
+            },
         })
     }
 }

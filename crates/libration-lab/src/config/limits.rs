@@ -10,6 +10,8 @@ pub const TIME_STEP: Allowed = Allowed::Positive;
 pub const SPRING: Allowed = Allowed::Positive;
 /// Coordinates of a start.
 pub const COORDINATE: Allowed = Allowed::Finite;
+/// Errors that are tolerated.
+pub const TOLERANCE: Allowed = Allowed::Positive;
 /// Numbers of steps.
 pub const STEPS: RangeInclusive<u64> = 1..=1_000_000_000;
 

@@ -38,6 +38,12 @@ pub struct Config {
     pub spectrum: Spectrum,
     /// Settings of the study `drift`.
     pub drift: Drift,
+    /// Settings of the study `error`.
+    pub error: Error,
+    /// Settings of the study `stability`.
+    pub stability: Stability,
+    /// Settings of the study `efficiency`.
+    pub efficiency: Efficiency,
 }
 
 /// A mass on a spring.
@@ -86,6 +92,33 @@ pub struct Drift {
     pub steps: u64,
 }
 
+/// Settings of the study `error`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Error {
+    /// The time step, in s.
+    pub dt: f64,
+    /// Number of steps.
+    pub steps: u64,
+}
+
+/// Settings of the study `stability`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Stability {
+    /// Relative energy drifts that are tolerated, rising.
+    pub tolerances: Vec<f64>,
+    /// Numbers of steps, rising.
+    pub steps: Vec<u64>,
+}
+
+/// Settings of the study `efficiency`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Efficiency {
+    /// Errors that are tolerated, in energy and in state, rising.
+    pub tolerances: Vec<f64>,
+    /// Horizons, in periods of the oscillator, rising.
+    pub periods: Vec<u64>,
+}
+
 impl Default for Config {
     fn default() -> Self {
         Config {
@@ -101,14 +134,27 @@ impl Default for Config {
             start: Start { q: 1.0, v: 0.0 },
             spectrum: Spectrum { dt: 0.01 },
             drift: Drift { dt: vec![1e-3, 1e-2, 1e-1], steps: 1_000_000 },
+            error: Error { dt: 1e-3, steps: 1_000_000 },
+            stability: Stability {
+                tolerances: vec![1e-3, 1e-2, 1e-1],
+                steps: vec![1_000, 10_000, 100_000],
+            },
+            efficiency: Efficiency {
+                tolerances: vec![1e-6, 1e-4, 1e-2],
+                periods: vec![10, 1_000, 1_000_000],
+            },
         }
     }
 }
 
 impl Config {
-    /// The same configuration with its time steps rising.
+    /// The same configuration with its lists rising.
     fn sorted(mut self) -> Self {
         self.drift.dt.sort_by(f64::total_cmp);
+        self.stability.tolerances.sort_by(f64::total_cmp);
+        self.stability.steps.sort_unstable();
+        self.efficiency.tolerances.sort_by(f64::total_cmp);
+        self.efficiency.periods.sort_unstable();
         self
     }
 }

@@ -47,6 +47,16 @@ pub(super) fn time_steps(generator: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "array", "uniqueItems": true, "minItems": 1, "items": items })
 }
 
+pub(super) fn tolerances(_: &mut SchemaGenerator) -> Schema {
+    let items = number(limits::TOLERANCE);
+    json_schema!({ "type": "array", "uniqueItems": true, "minItems": 1, "items": items })
+}
+
+pub(super) fn horizons(generator: &mut SchemaGenerator) -> Schema {
+    let items = steps(generator);
+    json_schema!({ "type": "array", "uniqueItems": true, "minItems": 1, "items": items })
+}
+
 pub(super) fn steps(_: &mut SchemaGenerator) -> Schema {
     let (low, high) = (limits::STEPS.start(), limits::STEPS.end());
     json_schema!({ "type": "integer", "minimum": low, "maximum": high })

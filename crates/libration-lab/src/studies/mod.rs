@@ -1,16 +1,18 @@
 //! The studies, in the order in which they are told.
 
 mod drift;
+mod error;
 mod ink;
 mod rounding;
 mod spectrum;
 
 use crate::study::Study;
 pub use drift::Drift;
+pub use error::Error;
 pub use spectrum::Spectrum;
 
 /// All studies.
-pub const ALL: &[&dyn Study] = &[&Spectrum, &Drift];
+pub const ALL: &[&dyn Study] = &[&Spectrum, &Drift, &Error];
 
 /// The study of that name, if there is one.
 pub fn by_name(name: &str) -> Option<&'static dyn Study> {

@@ -5,8 +5,8 @@
 //! after it for matrices as small as those of a time step.
 
 use super::{Complex, UpdateMatrix};
+use crate::Scalar;
 use crate::number::Wide;
-use crate::{Elementary, Scalar};
 
 /// Sweeps of the iteration. A double root gains one bit a sweep, a simple one doubles its bits.
 const SWEEPS: usize = 400;

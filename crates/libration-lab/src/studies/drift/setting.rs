@@ -2,10 +2,10 @@
 
 use libration::simulation::{EnergyDrift, Sample, Simulator};
 use libration::system::Oscillator;
-use libration::{Float, Method, Model, State, with_method};
+use libration::{Method, Model, State, with_method};
 
 use crate::Config;
-use crate::studies::rounding::path_of_unit_step;
+use crate::studies::rounding::rounding_of_run;
 use crate::study::StudyError;
 
 /// Where the bound of [`Setting::rounding`] comes from, for the reader.
@@ -33,25 +33,9 @@ impl Setting {
         }
     }
 
-    /// `ωΔt`, summed over the sizes of the substeps of a step.
-    fn path(&self) -> f64 {
-        self.oscillator.omega2.sqrt() * self.dt * path_of_unit_step(self.method)
-    }
-
     /// The relative error that rounding may leave in an energy at the end.
-    ///
-    /// Roundings of a step are independent and add up like √n, with a coefficient that was measured
-    /// between 0.6 and 1.1 for Verlet (Brouwer 1937; Hairer, Lubich, Wanner, §VIII.5); 12 of them
-    /// cover RK4 and the largest of a million values, and `e^z` the terms of a step that cancel at
-    /// large z (of a composition, with the sum of the sizes of its substeps for z). Two kinds of
-    /// run are biased and add up like n: textbook Verlet, and a `Δt` of so few bits that its
-    /// products are exact.
     pub(super) fn rounding(&self) -> f64 {
-        let short = self.dt.to_bits().trailing_zeros() >= 30;
-        let biased = short || self.method == Method::TextbookVerlet;
-        let n = self.steps as f64;
-        let count = if biased { n } else { n.sqrt() };
-        12.0 * f64::UNIT_ROUNDOFF * self.path().exp() * count.max(1.0)
+        rounding_of_run(self.method, self.oscillator.omega2.sqrt(), self.dt, self.steps)
     }
 
     /// Simulates from `start`; `watch` sees each sample with its relative drift.

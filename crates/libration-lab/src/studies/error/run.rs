@@ -1,0 +1,158 @@
+//! One integrator beside the exact solution.
+
+use libration::analysis::{ErrorForecast, Linearisation, UpdateMatrix};
+use libration::number::{TwoFloat, Wide};
+use libration::simulation::{Sample, Simulator};
+use libration::system::Oscillator;
+use libration::{Elementary, Float, Method, Model, Scalar, State, with_method};
+
+use crate::studies::rounding::rounding_of_run;
+use crate::study::StudyError;
+
+/// Samples of the running error for each decade of steps.
+const PER_DECADE: f64 = 16.0;
+
+/// What is run.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Setting {
+    pub(super) method: Method,
+    pub(super) oscillator: Oscillator<f64>,
+    pub(super) start: State<f64, 1>,
+    pub(super) dt: f64,
+    pub(super) steps: u64,
+}
+
+/// Errors in position, in m: each state beside the solution at its own time, and beside the
+/// solution one step before.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Errors {
+    pub(super) aligned: f64,
+    pub(super) late: f64,
+}
+
+/// A finished run.
+pub(super) struct Run {
+    pub(super) setting: Setting,
+    /// None where the step does not oscillate.
+    pub(super) forecast: Option<ErrorForecast>,
+    /// Root mean square over all steps.
+    pub(super) rms: Errors,
+    /// The aligned error after the last step.
+    pub(super) last: f64,
+    /// Steps at which the running errors were taken, and these.
+    pub(super) sampled: Vec<u64>,
+    pub(super) running: Vec<Errors>,
+    /// Largest `|x|` of the run.
+    pub(super) amplitude: f64,
+    /// Whether the run stayed within `f64`.
+    pub(super) finished: bool,
+}
+
+impl Setting {
+    /// The forecast of the shipped step.
+    pub(super) fn forecast(&self) -> Option<ErrorForecast> {
+        let Setting { method, oscillator, start, dt, .. } = *self;
+        let step = with_method!(method, |m| Linearisation::new(m, oscillator, &start, dt)).step;
+        ErrorForecast::new(oscillator, &step, dt, &start)
+    }
+
+    /// The error in m that rounding may leave in a position, for an orbit of this amplitude.
+    ///
+    /// The run rounds as any other; and the coefficients of a step are rounded once for all steps,
+    /// which turns the orbit by 8 roundings of the angle `ωt`.
+    pub(super) fn rounding(&self, amplitude: f64) -> f64 {
+        let omega = self.oscillator.omega2.sqrt();
+        let angle = omega * self.dt * self.steps as f64;
+        let run = rounding_of_run(self.method, omega, self.dt, self.steps);
+        amplitude * (run + 8.0 * f64::UNIT_ROUNDOFF * angle)
+    }
+
+    /// Simulates in `f64`, beside an exact solution in double-double.
+    pub(super) fn run(&self) -> Result<Run, StudyError> {
+        let sampled = sampled_steps(self.steps);
+        let mut watch = Watch::new(self, &sampled);
+        let system = Model::<1>::on::<f64>(&self.oscillator);
+        let finished = with_method!(self.method, |m| {
+            let mut simulator = Simulator::new(system, m, self.start, self.dt)?;
+            // Leaving the range of f64 is a result; what was seen until then is kept.
+            simulator.run(self.steps, &mut |sample: &Sample<f64, 1>| watch.see(sample)).is_ok()
+        });
+        let Watch { sums, running, last, amplitude, .. } = watch;
+        let rms = root_mean(sums, self.steps);
+        let forecast = self.forecast();
+        Ok(Run { setting: *self, forecast, rms, last, sampled, running, amplitude, finished })
+    }
+}
+
+/// Follows a run beside the exact solution.
+struct Watch<'a> {
+    /// The exact flow of one step.
+    rotation: UpdateMatrix<TwoFloat, 1>,
+    exact: State<TwoFloat, 1>,
+    sampled: &'a [u64],
+    sums: Errors,
+    running: Vec<Errors>,
+    last: f64,
+    amplitude: f64,
+}
+
+impl<'a> Watch<'a> {
+    fn new(setting: &Setting, sampled: &'a [u64]) -> Self {
+        Watch {
+            rotation: rotation(setting.oscillator, setting.dt),
+            exact: setting.start.map(TwoFloat::from_f64),
+            sampled,
+            sums: Errors::default(),
+            running: Vec::new(),
+            last: 0.0,
+            amplitude: 0.0,
+        }
+    }
+
+    fn see(&mut self, sample: &Sample<f64, 1>) {
+        let [x] = sample.state.q;
+        self.amplitude = self.amplitude.max(x.abs());
+        if sample.step == 0 {
+            return;
+        }
+        let difference = |exact: &State<TwoFloat, 1>| (TwoFloat::from_f64(x) - exact.q[0]).to_f64();
+        let late = difference(&self.exact);
+        self.exact = self.rotation.apply(&self.exact);
+        self.last = difference(&self.exact);
+        self.sums.aligned += self.last * self.last;
+        self.sums.late += late * late;
+        if self.sampled.get(self.running.len()) == Some(&sample.step) {
+            self.running.push(root_mean(self.sums, sample.step));
+        }
+    }
+}
+
+/// The exact flow over `dt` as a matrix.
+fn rotation(oscillator: Oscillator<f64>, dt: f64) -> UpdateMatrix<TwoFloat, 1> {
+    let omega = Wide::from_f64(oscillator.omega2).sqrt();
+    let (sin, cos) = (omega * Wide::from_f64(dt)).sin_cos();
+    let two = |x: Wide| {
+        let high = x.to_f64();
+        TwoFloat::from_sum(high, (x - Wide::from_f64(high)).to_f64())
+    };
+    UpdateMatrix {
+        dq: [State { q: [two(cos)], v: [two(-omega * sin)] }],
+        dv: [State { q: [two(sin / omega)], v: [two(cos)] }],
+    }
+}
+
+fn root_mean(sums: Errors, steps: u64) -> Errors {
+    let root = |sum: f64| (sum / steps as f64).sqrt();
+    Errors { aligned: root(sums.aligned), late: root(sums.late) }
+}
+
+/// Steps from 1 to `last`, evenly spaced in their logarithm, each once.
+fn sampled_steps(last: u64) -> Vec<u64> {
+    let decades = (last as f64).log10();
+    let count = (decades * PER_DECADE).ceil().max(1.0);
+    let mut steps: Vec<u64> = (0..=count as u64)
+        .map(|i| 10_f64.powf(decades * i as f64 / count).round() as u64)
+        .collect();
+    steps.dedup();
+    steps
+}
