@@ -173,21 +173,22 @@ fn dragging_zooms_into_a_figure_and_its_button_resets_it() {
 }
 
 #[test]
-fn an_open_figure_takes_the_colours_of_the_dark_and_back() {
+fn open_figures_take_the_colours_of_the_dark_and_back() {
     visit(WIDTHS[0], |page| {
-        for (index, name) in figures(page).iter().enumerate() {
-            explore(page, index);
+        let names = figures(page);
+        (0..names.len()).for_each(|index| explore(page, index));
+        let colors = ["light", "dark", "light"].map(|scheme| {
+            page.prefer(scheme);
+            page.frame();
             // Axes carry the colour of the rules, whatever lies between them.
-            let line =
-                format!("{}.querySelector('.live')._fullLayout.xaxis.linecolor", figure(index));
-            let mut colors = Vec::new();
-            for scheme in ["light", "dark", "light"] {
-                page.prefer(scheme);
-                page.frame();
-                colors.push(page.eval(&line));
-            }
-            assert_ne!(colors[0], colors[1], "{name} stays light in the dark");
-            assert_eq!(colors[0], colors[2], "{name} stays dark in the light");
+            page.texts(
+                "[...document.querySelectorAll('.live')].map((live) => live._fullLayout.xaxis.linecolor)",
+            )
+        });
+        for (index, name) in names.iter().enumerate() {
+            let [light, dark, again] = [0, 1, 2].map(|i| &colors[i][index]);
+            assert_ne!(light, dark, "{name} stays light in the dark");
+            assert_eq!(light, again, "{name} stays dark in the light");
         }
     });
 }

@@ -79,6 +79,7 @@ fn nothing_makes_the_page_wider_than_its_window() {
 fn every_link_leads_to_its_target_even_into_a_fold() {
     for width in WIDTHS {
         visit(width, |page| {
+            unfold(page);
             let lost = page.texts(
                 "(async () => {
                    const frame = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
