@@ -63,7 +63,7 @@ pub(super) fn render(chapters: &[Chapter]) -> String {
         "<section>\n<h2 id=\"ledger\">The ledger</h2>\n<p class=\"q\">Which claims of the source \
          report stand?</p>\n<p>Each verdict is computed from the findings named below it, at the \
          setting of this run.</p>\n{}<table class=\"ledger\"><thead><tr><th>claim</th><th>the \
-         source says</th><th>we find, and ran</th><th>verdict</th></tr></thead><tbody>{rows}\
+         source says</th><th>what was run, and what came out</th><th>verdict</th></tr></thead><tbody>{rows}\
          </tbody></table></div>\n</section>\n",
         super::scroll("The ledger")
     )
