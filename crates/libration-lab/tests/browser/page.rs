@@ -112,21 +112,14 @@ impl Page {
 
     /// Presses a key and lets it go.
     pub(crate) fn press(&mut self, key: &str) {
-        let text = match key {
-            "Enter" => "\r",
-            "Tab" => "",
-            key if key.len() == 1 => key,
-            _ => "",
+        let (code, text) = match key {
+            "Tab" => (9, ""),
+            "Enter" => (13, "\r"),
+            "Escape" => (27, ""),
+            "ArrowRight" => (39, ""),
+            character => (0, character),
         };
-        let code = match key {
-            "Tab" => 9,
-            "Enter" => 13,
-            "Escape" => 27,
-            "ArrowRight" => 39,
-            _ => 0,
-        };
-        let mut event =
-            json!({"type": "keyDown", "key": key, "code": key, "windowsVirtualKeyCode": code});
+        let mut event = json!({"type": "keyDown", "key": key, "windowsVirtualKeyCode": code});
         if text.is_empty() {
             event["type"] = "rawKeyDown".into();
         } else {
