@@ -55,6 +55,7 @@
       this.svg = element.querySelector("svg.plot");
       this.tools = document.createElement("div");
       this.tools.className = "tools";
+      this.title = this.svg.querySelector("title").textContent;
       this.toggle = this.button("Explore", () => (this.live ? this.leave() : this.enter()));
       this.reset = this.button("Reset", () => this.home());
       this.reset.hidden = true;
@@ -68,10 +69,28 @@
     button(text, act) {
       const button = document.createElement("button");
       button.type = "button";
-      button.textContent = text;
+      this.label(button, text);
       button.addEventListener("click", act);
       this.tools.append(button);
       return button;
+    }
+
+    // A page has many such buttons: read out, each says whose it is.
+    label(button, text) {
+      button.textContent = text;
+      button.setAttribute("aria-label", `${text}: ${this.title}`);
+    }
+
+    // Where the window is narrower than the figure, the keys must be able to move it.
+    fit() {
+      const wider = this.canvas.scrollWidth > this.canvas.clientWidth;
+      if (wider) {
+        this.canvas.tabIndex = 0;
+        this.canvas.setAttribute("role", "group");
+        this.canvas.setAttribute("aria-label", `Scrolls sideways: ${this.title}`);
+      } else {
+        for (const name of ["tabindex", "role", "aria-label"]) this.canvas.removeAttribute(name);
+      }
     }
 
     source() {
@@ -101,7 +120,7 @@
       live.tabIndex = 0;
       live.setAttribute("role", "application");
       live.setAttribute("aria-label",
-        `${this.svg.querySelector("title").textContent} Arrow keys step through points and lines, plus and minus zoom, 0 resets, Escape returns.`);
+        `${this.title} Arrow keys step through points and lines, plus and minus zoom, 0 resets, Escape returns.`);
       this.canvas.append(live);
       this.start = this.drawing();
       const config = { displayModeBar: false, doubleClick: false, showTips: false, scrollZoom: false };
@@ -111,7 +130,7 @@
       live.on("plotly_relayout", (change) => this.zoomed(change));
       live.on("plotly_doubleclick", () => this.home());
       live.addEventListener("keydown", (event) => this.key(event));
-      this.toggle.textContent = "Done";
+      this.label(this.toggle, "Done");
       this.toggle.disabled = false;
       this.say("Drag to zoom, double-click to reset.");
       live.focus({ preventScroll: true });
@@ -123,7 +142,7 @@
       this.live.remove();
       this.live = null;
       this.element.classList.remove("exploring");
-      this.toggle.textContent = "Explore";
+      this.label(this.toggle, "Explore");
       this.reset.hidden = true;
       this.say("");
       this.toggle.focus({ preventScroll: true });
@@ -232,9 +251,11 @@
   const figures = [...document.querySelectorAll("figure[data-figure]")].map((element) => {
     const figure = new Figure(element);
     const wide = new ResizeObserver(() => {
+      figure.fit();
       if (figure.live && Math.abs(figure.svg.getBoundingClientRect().width - figure.width) > 0.5) figure.redraw();
     });
     wide.observe(figure.svg);
+    wide.observe(figure.canvas);
     // Unpack while the reader is on the way to the button.
     element.addEventListener("pointerenter", () => void plotly(), { once: true });
     return figure;

@@ -134,6 +134,46 @@ fn every_claim_and_every_finding_of_the_results_is_on_the_page() {
 }
 
 #[test]
+fn the_page_opens_with_the_score_of_all_claims() {
+    let (results, page) = (results(), markup());
+    let head = page.split("<h2").next().unwrap();
+    let studies = results["studies"].as_array().unwrap();
+    let claims: Vec<&Value> =
+        studies.iter().flat_map(|s| s["claims"].as_array().unwrap()).collect();
+    let mut counted = 0;
+    for verdict in ["confirmed", "conditional", "refuted", "not reproducible"] {
+        let name = verdict.replace(' ', "-");
+        let count = claims.iter().filter(|c| c["verdict"] == name.as_str()).count();
+        let before = head.split(&format!("\">{verdict}</span>")).next().unwrap();
+        let shown = before.rsplit("<strong>").next().unwrap().split('<').next().unwrap();
+        assert_eq!(shown, count.to_string(), "{verdict}");
+        counted += count;
+    }
+    assert_eq!(counted, claims.len());
+    assert!(head.contains(&format!("{counted} claims")));
+}
+
+#[test]
+fn an_entry_of_the_ledger_shows_its_section_its_condition_and_every_finding() {
+    let (results, page) = (results(), markup());
+    for study in results["studies"].as_array().unwrap() {
+        for claim in study["claims"].as_array().unwrap() {
+            let text = |key: &str| claim[key].as_str().unwrap_or_default();
+            let row = page.split(&format!("<tr id=\"{}\">", text("id"))).nth(1).unwrap();
+            let row = row.split("</tr>").next().unwrap();
+            assert!(row.contains(&format!("§ {}<", text("source"))), "{row}");
+            assert_eq!(row.contains("class=\"if\""), claim["condition"].is_string(), "{row}");
+            for id in claim["findings"].as_array().unwrap() {
+                assert!(
+                    row.contains(&format!("href=\"#{}\"", id.as_str().unwrap())),
+                    "{id}: {row}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn every_series_is_a_parquet_file() {
     let files: Vec<_> = fs::read_dir(folder().join("data")).unwrap().map(Result::unwrap).collect();
     assert!(files.len() >= 20, "{} files", files.len());

@@ -127,6 +127,14 @@ fn verdicts_on_the_source_are_these() {
 }
 
 #[test]
+fn a_conditional_verdict_says_its_condition_and_no_other_has_one() {
+    for claim in default().iter().flat_map(|r| &r.claims) {
+        let stated = claim.condition.as_ref().is_some_and(|words| !words.is_empty());
+        assert_eq!(stated, claim.verdict == Conditional, "{}", claim.id);
+    }
+}
+
+#[test]
 fn a_verdict_follows_the_numbers_and_not_the_source() {
     // At z² = 0.4 RK4 has lost nearly everything after 10⁵ steps: what is refuted at the source's
     // own step holds there, so no verdict of this kind is given without the source's step.

@@ -24,29 +24,41 @@ pub enum ClaimVerdict {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judgement {
     verdict: ClaimVerdict,
+    condition: Option<String>,
     because: String,
 }
 
 impl Judgement {
+    fn new(verdict: ClaimVerdict, because: impl Into<String>) -> Self {
+        Judgement { verdict, condition: None, because: because.into() }
+    }
+
     /// The claim holds as it stands.
     pub fn confirmed(because: impl Into<String>) -> Self {
-        Judgement { verdict: ClaimVerdict::Confirmed, because: because.into() }
+        Judgement::new(ClaimVerdict::Confirmed, because)
     }
 
     /// The claim holds under a condition; the reason names it, and the side on which the
     /// source's own setting lies.
     pub fn conditional(because: impl Into<String>) -> Self {
-        Judgement { verdict: ClaimVerdict::Conditional, because: because.into() }
+        Judgement::new(ClaimVerdict::Conditional, because)
+    }
+
+    /// The condition of a conditional verdict in a few words, to stand beside it.
+    #[must_use]
+    pub fn only(mut self, condition: impl Into<String>) -> Self {
+        self.condition = Some(condition.into());
+        self
     }
 
     /// The claim does not hold.
     pub fn refuted(because: impl Into<String>) -> Self {
-        Judgement { verdict: ClaimVerdict::Refuted, because: because.into() }
+        Judgement::new(ClaimVerdict::Refuted, because)
     }
 
     /// The source does not say enough to try the claim.
     pub fn not_reproducible(because: impl Into<String>) -> Self {
-        Judgement { verdict: ClaimVerdict::NotReproducible, because: because.into() }
+        Judgement::new(ClaimVerdict::NotReproducible, because)
     }
 
     /// Confirmed if `holds`, refuted otherwise.
@@ -79,6 +91,8 @@ pub struct Claim {
     pub text: String,
     /// The verdict.
     pub verdict: ClaimVerdict,
+    /// Where a conditional verdict holds, in a few words.
+    pub condition: Option<String>,
     /// Why.
     pub because: String,
     /// Identifiers of the findings that decided.
@@ -92,19 +106,20 @@ impl Claim {
             .filter(|f| f.verdict == Verdict::Disagrees)
             .map(|f| f.id.as_str())
             .collect();
-        let Judgement { verdict, because } = if broken.is_empty() {
+        let Judgement { verdict, condition, because } = if broken.is_empty() {
             judgement
         } else {
-            Judgement {
-                verdict: ClaimVerdict::Undecided,
-                because: format!("measurement and theory disagree in {}", broken.join(", ")),
-            }
+            Judgement::new(
+                ClaimVerdict::Undecided,
+                format!("measurement and theory disagree in {}", broken.join(", ")),
+            )
         };
         Claim {
             id: ruling.id.into(),
             source: ruling.source.into(),
             text: ruling.text.into(),
             verdict,
+            condition,
             because,
             findings: ruling.findings.iter().map(|&id| id.into()).collect(),
         }

@@ -66,8 +66,8 @@ fn table(table: &Table, digits: usize) -> String {
         .map(|row| format!("<tr>{}</tr>", row.iter().enumerate().map(cell).collect::<String>()))
         .collect();
     format!(
-        "<div class=\"scroll\" tabindex=\"0\"><table><thead><tr>{head}</tr></thead><tbody>{rows}\
-         </tbody></table></div>\n"
+        "{}<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>\n",
+        super::scroll(&format!("Table: {}", table.name))
     )
 }
 
@@ -78,9 +78,10 @@ fn findings(findings: &[Finding]) -> String {
     let rows: String = findings.iter().map(finding).collect();
     format!(
         "<details><summary>All findings: {agree} of {predicted} predictions agree with \
-         measurement</summary><div class=\"scroll\" tabindex=\"0\"><table><thead><tr><th>finding</th>\
+         measurement</summary>{}<table><thead><tr><th>finding</th>\
          <th class=\"num\">predicted</th><th class=\"num\">measured</th><th class=\"num\">tolerance\
-         </th><th>verdict</th></tr></thead><tbody>{rows}</tbody></table></div></details>\n"
+         </th><th>verdict</th></tr></thead><tbody>{rows}</tbody></table></div></details>\n",
+        super::scroll("All findings")
     )
 }
 

@@ -5,8 +5,7 @@ mod ledger;
 
 use crate::figure;
 use crate::notation::{number, seconds};
-use crate::page::{Chapter, Highlight};
-use crate::record::ClaimVerdict;
+use crate::page::Chapter;
 use crate::results::Results;
 use crate::text::{escape, prose};
 
@@ -16,8 +15,10 @@ const SCRIPT: &str = include_str!("../../assets/report.js");
 /// The report on `results`, whose chapters are shown in turn.
 pub fn render(results: &Results, chapters: &[Chapter]) -> String {
     let headline = headline(chapters);
-    let mut links =
-        String::from("<a href=\"#top\">The answer</a><a href=\"#ledger\">The ledger</a>");
+    let mut links = String::from("<a href=\"#top\">The answer</a>");
+    if ledger::exists(chapters) {
+        links += "<a href=\"#ledger\">The ledger</a>";
+    }
     let mut body = String::new();
     for chapter in chapters {
         let (name, title) = (escape(&chapter.record.name), prose(&chapter.page.title));
@@ -30,13 +31,14 @@ pub fn render(results: &Results, chapters: &[Chapter]) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>{title}</title>\n<style>{STYLE}</style></head><body>\n\
          <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\
-         <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{answers}{numbers}{ledger}{body}\
+         <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{score}{answers}{numbers}{ledger}{body}\
          {machine}</main>\n{scripts}<script>{SCRIPT}</script>\n</body></html>\n",
         title = prose(&headline),
         setting = setting(results),
         alarm = alarm(results),
+        score = ledger::score(chapters),
         answers = answers(chapters),
-        numbers = numbers(results, chapters),
+        numbers = numbers(chapters),
         ledger = ledger::render(chapters),
         machine = machine(results),
         scripts = figure::scripts(),
@@ -94,26 +96,24 @@ fn answers(chapters: &[Chapter]) -> String {
         .collect()
 }
 
-/// Three numbers from the chapters, and the score of the source.
-fn numbers(results: &Results, chapters: &[Chapter]) -> String {
-    let claims = || results.studies.iter().flat_map(|record| &record.claims);
-    let count = |verdict| claims().filter(|c| c.verdict == verdict).count();
-    let score = Highlight {
-        value: format!("{} of {}", count(ClaimVerdict::Confirmed), claims().count()),
-        text: format!(
-            "claims of the source tried here hold as stated; {} under a condition",
-            count(ClaimVerdict::Conditional)
-        ),
-    };
-    let shown = chapters.iter().rev().flat_map(|c| &c.page.highlights).take(3);
-    let boxes: String = shown
-        .chain((claims().count() > 0).then_some(&score))
+/// The most telling numbers of the chapters.
+fn numbers(chapters: &[Chapter]) -> String {
+    let boxes: String = chapters
+        .iter()
+        .rev()
+        .flat_map(|c| &c.page.highlights)
+        .take(4)
         .map(|h| {
             let (value, text) = (prose(&h.value), prose(&h.text));
             format!("<div><strong>{value}</strong><span>{text}</span></div>")
         })
         .collect();
     format!("<div class=\"four\">{boxes}</div>\n")
+}
+
+/// Opens what scrolls sideways where it is too wide: the keys reach it, and it has a name.
+fn scroll(name: &str) -> String {
+    format!("<div class=\"scroll\" role=\"group\" tabindex=\"0\" aria-label=\"{}\">", escape(name))
 }
 
 fn machine(results: &Results) -> String {

@@ -164,7 +164,7 @@ fn at_the_source_setting(record: &mut Record, dt: f64) {
             );
             // The claim holds at the source's own setting only if its horizon reaches that far.
             if SOURCE_STEPS < f[2].measured {
-                Judgement::conditional(because)
+                Judgement::conditional(because).only("beyond 18/z⁴ steps")
             } else {
                 Judgement::confirmed(because)
             }

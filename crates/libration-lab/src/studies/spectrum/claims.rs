@@ -139,6 +139,7 @@ pub(super) fn judge(record: &mut Record) {
                 Judgement::confirmed(because)
             } else {
                 Judgement::conditional(because)
+                    .only("where the energy must stay within a tolerance")
             }
         },
     );

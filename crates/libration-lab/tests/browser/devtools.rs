@@ -1,0 +1,63 @@
+//! The DevTools protocol: commands, their answers, and the events in between.
+
+use std::net::TcpStream;
+use std::time::Duration;
+
+use serde_json::{Value, json};
+use tungstenite::{Message, WebSocket};
+
+/// An answer that takes longer than this will not come.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A connection to the browser or to one of its pages.
+pub(crate) struct DevTools {
+    socket: WebSocket<TcpStream>,
+    sent: u64,
+    events: Vec<Value>,
+}
+
+impl DevTools {
+    /// Connects to `path` on `host`.
+    pub(crate) fn connect(host: &str, path: &str) -> DevTools {
+        let stream = TcpStream::connect(host).unwrap();
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        stream.set_nodelay(true).unwrap();
+        let (socket, _) = tungstenite::client(format!("ws://{host}{path}"), stream).unwrap();
+        DevTools { socket, sent: 0, events: Vec::new() }
+    }
+
+    /// Sends a command and gives its result; events that arrive before it are kept.
+    pub(crate) fn call(&mut self, method: &str, parameters: Value) -> Value {
+        self.sent += 1;
+        let command = json!({"id": self.sent, "method": method, "params": parameters});
+        self.socket.send(Message::text(command.to_string())).unwrap();
+        loop {
+            let mut message = self.receive(method);
+            if message["id"] == self.sent {
+                assert!(message["error"].is_null(), "{method}: {}", message["error"]);
+                return message["result"].take();
+            }
+            self.events.push(message);
+        }
+    }
+
+    /// Waits for an event, which may have arrived already.
+    pub(crate) fn wait(&mut self, event: &str) {
+        while !self.events.iter().any(|e| e["method"] == event) {
+            let message = self.receive(event);
+            self.events.push(message);
+        }
+    }
+
+    /// What has happened so far, in order.
+    pub(crate) fn events(&self) -> &[Value] {
+        &self.events
+    }
+
+    fn receive(&mut self, awaited: &str) -> Value {
+        match self.socket.read() {
+            Ok(message) => serde_json::from_str(message.to_text().unwrap()).unwrap(),
+            Err(error) => panic!("while waiting for {awaited}: {error}"),
+        }
+    }
+}
