@@ -2,17 +2,20 @@
 
 mod drift;
 mod error;
+mod growth;
 mod ink;
 mod rounding;
 mod spectrum;
+mod stability;
 
 use crate::study::Study;
 pub use drift::Drift;
 pub use error::Error;
 pub use spectrum::Spectrum;
+pub use stability::Stability;
 
 /// All studies.
-pub const ALL: &[&dyn Study] = &[&Spectrum, &Drift, &Error];
+pub const ALL: &[&dyn Study] = &[&Spectrum, &Drift, &Error, &Stability];
 
 /// The study of that name, if there is one.
 pub fn by_name(name: &str) -> Option<&'static dyn Study> {

@@ -53,7 +53,8 @@ fn number_of_the_source(f: &[&Finding], printed: f64, digits: f64) -> Judgement 
             "only if states are compared with the solution one step too early: {both}. The source \
              states neither the step nor the number of steps; this is the one setting at which its \
              first three numbers come out"
-        )),
+        ))
+        .only("states are compared with the solution one step earlier"),
         (false, false) => Judgement::not_reproducible(format!(
             "{both}. No reading of the comparison gives {printed}; the table of slips shows which \
              errors in an RK4 come near it"

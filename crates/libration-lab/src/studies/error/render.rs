@@ -103,8 +103,8 @@ fn running(record: &Record) -> Result<Figure, RecordError> {
             let every =
                 |values: &[f64]| -> Vec<f64> { values.iter().rev().step_by(8).copied().collect() };
             panel = panel
-                .mark(Mark::line(t, measured).ink(ink(method)).label(method.title()))
-                .mark(Mark::prediction(every(t), every(predicted)));
+                .mark(Mark::line(t, shown(measured)).ink(ink(method)).label(method.title()))
+                .mark(Mark::prediction(every(t), every(&shown(predicted))));
         }
         figure = figure.panel(panel);
     }
@@ -118,8 +118,12 @@ fn steps(record: &Record) -> Result<Figure, RecordError> {
     for (method, series) in with_series(record, "step") {
         let dt = series.column("dt")?;
         panel = panel
-            .mark(Mark::line(dt, series.column("measured")?).ink(ink(method)).label(method.title()))
-            .mark(Mark::prediction(dt, series.column("predicted")?));
+            .mark(
+                Mark::line(dt, shown(series.column("measured")?))
+                    .ink(ink(method))
+                    .label(method.title()),
+            )
+            .mark(Mark::prediction(dt, shown(series.column("predicted")?)));
     }
     Ok(Figure::new("error-step", "RMS error over the same time, for larger steps")
         .caption(
@@ -128,6 +132,12 @@ fn steps(record: &Record) -> Result<Figure, RecordError> {
         )
         .description("Log-log: error against time step, flat where the phase is lost.")
         .panel(panel))
+}
+
+/// What is worth showing: an error below rounding is none, and one beyond a thousand amplitudes has
+/// left the figure.
+fn shown(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|&y| if (1e-16..1e3).contains(&y) { y } else { f64::NAN }).collect()
 }
 
 /// The growth of explicit Euler.

@@ -1,0 +1,159 @@
+//! The claims of the source report about stable time steps.
+
+use libration::Method;
+
+use super::largest::{Case, Limit, limits};
+use crate::Config;
+use crate::notation::{count, number};
+use crate::record::{Finding, Judgement, Record, Ruling};
+
+/// Methods that the claims compare, in the order in which their findings are handed over.
+const COMPARED: [Method; 4] =
+    [Method::ExplicitEuler, Method::SymplecticEuler, Method::VelocityVerlet, Method::Rk4];
+
+/// A row of findings: a criterion, a horizon, and the largest steps of [`COMPARED`].
+struct Row {
+    words: String,
+    steps: u64,
+    dt: [f64; 4],
+}
+
+/// Judges them from the findings of the record.
+pub(super) fn judge(config: &Config, record: &mut Record) {
+    let drifts: Vec<(Limit, u64)> = rows(config, record, |l| matches!(l, Limit::Drift(_)));
+    let ids: Vec<String> = ids(&drifts);
+    let ids: Vec<&str> = ids.iter().map(String::as_str).collect();
+    if !ids.is_empty() {
+        by_drift(record, &drifts, &ids);
+    }
+    stricter(config, record);
+    record.judge(
+        Ruling {
+            id: "C27",
+            source: "4.1",
+            text: "Stable means ρ ≤ 1, bounded and without growth; RK4 is so for short runs only.",
+            findings: &["stability.rk4.window-1-to", "stability.velocity-verlet.window-1-to"],
+        },
+        |f| {
+            Judgement::holds_if(
+                f[0].measured < f[1].measured,
+                format!(
+                    "by that definition RK4 is stable up to z = {}, for runs of any length, and \
+                     velocity Verlet up to {}",
+                    number(f[0].measured, 7),
+                    number(f[1].measured, 7)
+                ),
+            )
+        },
+    );
+}
+
+/// The criteria and horizons for which all compared methods have a finding.
+fn rows(config: &Config, record: &Record, wanted: impl Fn(&Limit) -> bool) -> Vec<(Limit, u64)> {
+    let all = limits(config).into_iter().filter(wanted);
+    let horizons = &config.stability.steps;
+    all.flat_map(|limit| horizons.iter().map(move |&n| (limit, n)))
+        .filter(|row| ids(&[*row]).iter().all(|id| record.finding(id).is_ok()))
+        .collect()
+}
+
+fn ids(rows: &[(Limit, u64)]) -> Vec<String> {
+    let of =
+        |&(limit, steps): &(Limit, u64)| COMPARED.map(|method| Case { method, limit, steps }.id());
+    rows.iter().flat_map(of).collect()
+}
+
+fn read(rows: &[(Limit, u64)], findings: &[&Finding]) -> Vec<Row> {
+    let of = |(&(limit, steps), f): (&(Limit, u64), &[&Finding])| Row {
+        words: limit.words(),
+        steps,
+        dt: [0, 1, 2, 3].map(|i| f[i].measured),
+    };
+    rows.iter().zip(findings.chunks(COMPARED.len())).map(of).collect()
+}
+
+impl Row {
+    fn verlet_is_largest(&self) -> bool {
+        let [explicit, euler, verlet, rk4] = self.dt;
+        verlet > explicit && verlet > euler && verlet > rk4
+    }
+
+    fn name(&self) -> String {
+        format!("{} over {} steps", self.words, count(self.steps))
+    }
+}
+
+fn by_drift(record: &mut Record, rows: &[(Limit, u64)], ids: &[&str]) {
+    let list = |rows: &[&Row]| {
+        let names: Vec<String> = rows.iter().map(|row| row.name()).collect();
+        if names.is_empty() { "nowhere".into() } else { names.join("; ") }
+    };
+    let depends = |f: &[&Finding], extra: &str| {
+        let read = read(rows, f);
+        let (verlet, others): (Vec<&Row>, Vec<&Row>) =
+            read.iter().partition(|row| row.verlet_is_largest());
+        let because = format!(
+            "Verlet’s step is the largest for an {}; it is not for an {}. Without a tolerance on the \
+             energy its limit is that of symplectic Euler, and RK4’s is larger{extra}",
+            list(&verlet),
+            list(&others)
+        );
+        match (verlet.is_empty(), others.is_empty()) {
+            (true, _) => Judgement::refuted(because),
+            (_, true) => Judgement::confirmed(because),
+            _ => Judgement::conditional(because)
+                .only("energy drift below a tolerance under 1, over more than N*(ε) steps"),
+        }
+    };
+    let text = "The stable step is smallest for explicit Euler, moderate for symplectic Euler, and \
+                largest for velocity Verlet; RK4’s serves short runs.";
+    record.judge(Ruling { id: "C30", source: "4.4", text, findings: ids }, |f| {
+        depends(f, ". The source names neither tolerance nor horizon")
+    });
+    let text = "Velocity Verlet has the largest stable time step.";
+    record.judge(Ruling { id: "C80", source: "9.3", text, findings: ids }, |f| depends(f, ""));
+    let text = "Velocity Verlet is the most suitable for long conservative runs.";
+    record.judge(Ruling { id: "C35", source: "4.8", text, findings: ids }, |f| {
+        depends(f, ". And it is about the energy: for the orbit itself RK4 is ahead at small steps")
+    });
+    let text = "Methods of higher order may do worse over long horizons.";
+    record.judge(Ruling { id: "C70", source: "8.3", text, findings: ids }, |f| {
+        let read = read(rows, f);
+        let worse: Vec<&Row> = read.iter().filter(|row| row.dt[3] < row.dt[2]).collect();
+        let because = format!("RK4 allows a smaller step than Verlet for an {}", list(&worse));
+        match worse.len() {
+            0 => Judgement::refuted("RK4 allows the larger step under every criterion tried"),
+            n if n == read.len() => Judgement::confirmed(because),
+            _ => Judgement::conditional(because).only("beyond N*(ε) steps"),
+        }
+    });
+}
+
+/// Whether a tolerance on the energy is stricter than one on the amplitude.
+fn stricter(config: &Config, record: &mut Record) {
+    let amplitude = rows(config, record, |l| matches!(l, Limit::Amplitude(_)));
+    let drift = rows(config, record, |l| matches!(l, Limit::Drift(_)));
+    let pairs: Vec<(Limit, u64)> = drift
+        .iter()
+        .filter_map(|row| Some([*row, *amplitude.iter().find(|a| a.1 == row.1)?]))
+        .flatten()
+        .collect();
+    let ids = ids(&pairs);
+    if ids.is_empty() {
+        return;
+    }
+    let ids: Vec<&str> = ids.iter().map(String::as_str).collect();
+    let text = "A bound on the energy drift is stricter than the detection of explosions.";
+    record.judge(Ruling { id: "C28", source: "4.2", text, findings: &ids }, |f| {
+        let read = read(&pairs, f);
+        let holds = read.chunks(2).all(|pair| {
+            pair[0].dt.iter().zip(pair[1].dt).all(|(drift, amplitude)| *drift <= amplitude)
+        });
+        Judgement::holds_if(
+            holds,
+            "at every tolerance and horizon tried, for each of the four. From a tolerance of 1 on it \
+             would be the same test for velocity Verlet from rest, whose drift cannot reach it \
+             before z = 2",
+        )
+    });
+}

@@ -1,0 +1,40 @@
+//! The largest stable time step: windows, criteria, horizons.
+
+mod claims;
+mod curves;
+mod largest;
+mod render;
+mod windows;
+
+use crate::page::Page;
+use crate::record::RecordError;
+use crate::study::{Study, StudyError};
+use crate::{Lab, Record};
+
+/// The study `stability`.
+#[derive(Clone, Copy, Debug)]
+pub struct Stability;
+
+impl Study for Stability {
+    fn name(&self) -> &'static str {
+        "stability"
+    }
+
+    fn question(&self) -> &'static str {
+        "How large may a time step be, and what does “stable” have to mean for it?"
+    }
+
+    fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
+        let mut record = Record::new(self.name(), self.question());
+        windows::measure(lab, &mut record)?;
+        largest::measure(lab, &mut record)?;
+        curves::draw(lab, &mut record)?;
+        curves::crossovers(lab, &mut record)?;
+        claims::judge(lab.config, &mut record);
+        Ok(record)
+    }
+
+    fn render(&self, record: &Record, page: &mut Page) -> Result<(), RecordError> {
+        render::render(record, page)
+    }
+}
