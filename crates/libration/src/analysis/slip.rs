@@ -41,10 +41,20 @@ impl Slip {
     /// The largest `‖Mⁿ − R(nz)‖₂` within `steps` steps, over all phases: the trajectory error of the
     /// worst start relative to its amplitude, bounded for every orbit and nearly reached by long ones.
     pub fn worst_error_within(&self, steps: u64) -> f64 {
+        // The error rises with growth and slip until the slip is half a turn. Where the orbit
+        // decays, the largest error may have been earlier.
+        const EARLIER: u32 = 64;
+        let at = |n: f64| {
+            let slip = (n * self.phase.abs()).min(PI);
+            self.largest_over_phases(slip, (n * self.growth).exp())
+        };
         let n = steps as f64;
-        // The error rises with growth and slip until the slip is half a turn.
-        let slip = (n * self.phase.abs()).min(PI);
-        self.largest_over_phases(slip, (n * self.growth).exp())
+        if self.growth >= 0.0 {
+            return at(n);
+        }
+        let until = n.min(PI / self.phase.abs());
+        let earlier = (1..=EARLIER).map(|i| at(until * f64::from(i) / f64::from(EARLIER)));
+        earlier.fold(at(n), f64::max)
     }
 
     fn largest_over_phases(&self, slip: f64, size: f64) -> f64 {
@@ -58,8 +68,9 @@ impl Slip {
             let im = (size * alpha - 1.0) * sin + 2.0 * Elementary::cos(middle) * half;
             (re * re + im * im).sqrt() + size * beta * sin.abs()
         };
-        const PHASES: u32 = 720;
-        (0..PHASES).map(|i| error(f64::from(i) * TAU / f64::from(PHASES))).fold(0.0, f64::max)
+        // On a circle all phases are alike.
+        let phases = if beta == 0.0 { 1 } else { 720 };
+        (0..phases).map(|i| error(f64::from(i) * TAU / f64::from(phases))).fold(0.0, f64::max)
     }
 }
 

@@ -1,12 +1,13 @@
 //! The largest time step that meets a criterion, as a root and by search.
 
-use libration::analysis::{Criterion, LargestStep, Linearisation, SymbolicStep, forecast_drift};
+use libration::analysis::{Criterion, LargestStep, SymbolicStep};
 use libration::simulation::{EnergyDrift, Sample, Simulator};
 use libration::system::Oscillator;
 use libration::{Integrator, Method, Model, State, with_method};
 
 use crate::notation::{count, number};
 use crate::record::{Cell, Finding, Relation, Table, Tolerance};
+use crate::studies::coverage::lacking;
 use crate::studies::rounding::rounding_of_run;
 use crate::study::StudyError;
 use crate::{Config, Lab, Record};
@@ -187,7 +188,7 @@ fn allowed(config: &Config, case: &Case, z: f64) -> (Tolerance, Relation) {
     // Just beyond a limit an orbit grows as exp(n√(2δ)): it takes so much for e¹⁰ or so to show.
     let late = (20.0 / n).powi(2);
     let (lacking, size) = match case.limit {
-        Limit::Drift(tolerance) => (lacking(config, case, z), tolerance),
+        Limit::Drift(tolerance) => (lacking(case.method, &start(config), case.steps, z), tolerance),
         Limit::Amplitude(limit) => (short_of(config, case, z, limit), limit),
     };
     let relative = 2.0 * lacking + late + 4.0 * rounding / size + 2.0 * PRECISION;
@@ -216,18 +217,6 @@ fn short_of(config: &Config, case: &Case, z: f64, limit: f64) -> f64 {
     let orbit = std::iter::successors(Some(start(config)), |state| Some(matrix.apply(state)));
     let largest = orbit.take(case.steps as usize).fold(0.0_f64, |a, s| a.max(s.q[0].abs()));
     (1.0 - largest / limit).clamp(0.0, 1.0)
-}
-
-/// By which part the largest drift of the discrete orbit stays below that of its curve at `z`.
-fn lacking(config: &Config, case: &Case, z: f64) -> f64 {
-    let Limit::Drift(tolerance) = case.limit else { return 0.0 };
-    let unit = Oscillator { omega2: 1.0 };
-    let start = start(config);
-    let step = with_method!(case.method, |m| Linearisation::new(m, unit, &start, z)).step;
-    match forecast_drift(unit, &step, &start, case.steps) {
-        Some(forecast) => (1.0 - forecast.drift.to_f64() / tolerance).clamp(0.0, 1.0),
-        None => 0.0,
-    }
 }
 
 /// Whether a run keeps to its limit.
