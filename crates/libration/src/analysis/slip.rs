@@ -53,8 +53,10 @@ impl Slip {
             return at(n);
         }
         let until = n.min(PI / self.phase.abs());
-        let earlier = (1..=EARLIER).map(|i| at(until * f64::from(i) / f64::from(EARLIER)));
-        earlier.fold(at(n), f64::max)
+        let part = until / f64::from(EARLIER);
+        let earlier = (1..=EARLIER).map(|i| f64::from(i) * part);
+        let near = earlier.fold(until, |best, m| if at(m) > at(best) { m } else { best });
+        at(n).max(at(largest_near(at, near - part, (near + part).min(until))))
     }
 
     fn largest_over_phases(&self, slip: f64, size: f64) -> f64 {
@@ -72,6 +74,15 @@ impl Slip {
         let phases = if beta == 0.0 { 1 } else { 720 };
         (0..phases).map(|i| error(f64::from(i) * TAU / f64::from(phases))).fold(0.0, f64::max)
     }
+}
+
+/// Where `f` is largest between `low` and `high`, with a single maximum there: by thirds.
+fn largest_near(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    for _ in 0..60 {
+        let third = (high - low) / 3.0;
+        if f(low + third) < f(high - third) { low += third } else { high -= third }
+    }
+    0.5 * (low + high)
 }
 
 impl SymbolicStep {
