@@ -56,7 +56,9 @@ impl Config {
         self.oscillator.check()?;
         self.start.check(self.oscillator)?;
         number("spectrum.dt", limits::TIME_STEP, self.spectrum.dt)?;
-        self.check_drift()
+        self.check_drift()?;
+        check_systems("convergence.systems", &self.convergence.systems)?;
+        coarsest("convergence.coarsest", self.convergence.coarsest.into()).map(drop)
     }
 
     fn check_names(&self) -> Result<(), Fault> {
@@ -140,10 +142,40 @@ impl Start {
     }
 }
 
+fn check_systems(key: &'static str, systems: &[String]) -> Result<(), Fault> {
+    if systems.is_empty() {
+        return Err(Fault::new(key, format!("`{key}` must name at least one system")));
+    }
+    for (i, name) in systems.iter().enumerate() {
+        if !studies::SYSTEMS.contains(&name.as_str()) {
+            let fault = Fault::at(key, i, format!("no system `{name}` can be studied"));
+            return Err(fault.help(names::suggest("systems", name, studies::SYSTEMS)));
+        }
+        if systems[..i].contains(name) {
+            return Err(Fault::at(key, i, format!("the system `{name}` is named twice")));
+        }
+    }
+    Ok(())
+}
+
 fn number(key: &'static str, allowed: Allowed, value: f64) -> Result<(), Fault> {
     within(allowed, key, value).map(drop).map_err(|message| Fault::new(key, message))
 }
 
 pub(super) fn steps(key: &'static str, value: i128) -> Result<u64, Fault> {
     limits::steps(key, value).map_err(|message| Fault::new(key, message))
+}
+
+pub(super) fn coarsest(key: &'static str, value: i128) -> Result<u64, Fault> {
+    let multiple = limits::COARSEST_UNIT;
+    match u64::try_from(value) {
+        Ok(steps) if limits::COARSEST.contains(&steps) && steps.is_multiple_of(multiple) => {
+            Ok(steps)
+        }
+        _ => {
+            let (low, high) = (limits::COARSEST.start(), limits::COARSEST.end());
+            let allowed = format!("a multiple of {multiple} from {low} to {high}");
+            Err(Fault::new(key, format!("`{key}` is {value}, but it must be {allowed}")))
+        }
+    }
 }

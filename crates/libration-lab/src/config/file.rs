@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::locate::Document;
 use super::value::{Count, Number};
-use super::{Config, ConfigError, Drift, Fault, Spectrum, Spring, Start, check, names, schema};
+use super::{
+    Config, ConfigError, Convergence, Drift, Fault, Spectrum, Spring, Start, check, names, schema,
+};
 use crate::Effort;
 
 /// The default configuration with comments, ready to edit.
@@ -34,6 +36,8 @@ pub(super) struct File {
     spectrum: SpectrumTable,
     /// The study of energy drift.
     drift: DriftTable,
+    /// The study of orders.
+    convergence: ConvergenceTable,
 }
 
 /// A mass on a spring, m q'' = -k q.
@@ -81,6 +85,18 @@ struct DriftTable {
     steps: Count,
 }
 
+/// Settings of the study `convergence`.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+struct ConvergenceTable {
+    /// The systems under study, each once.
+    #[schemars(schema_with = "schema::systems")]
+    systems: Vec<String>,
+    /// Steps a turn at the largest time step, a multiple of 16.
+    #[schemars(schema_with = "schema::coarsest")]
+    coarsest: Count,
+}
+
 /// Reads a configuration; keys that are not given take their defaults.
 ///
 /// # Errors
@@ -119,8 +135,16 @@ pub fn parse_bytes(bytes: &[u8], file_name: &str) -> Result<Config, ConfigError>
 
 impl Default for File {
     fn default() -> Self {
-        let Config { studies, effort, integrators, oscillator, start, spectrum, drift } =
-            Config::default();
+        let Config {
+            studies,
+            effort,
+            integrators,
+            oscillator,
+            start,
+            spectrum,
+            drift,
+            convergence,
+        } = Config::default();
         File {
             studies,
             effort: effort.name().into(),
@@ -131,6 +155,10 @@ impl Default for File {
             drift: DriftTable {
                 dt: drift.dt.into_iter().map(Number).collect(),
                 steps: Count(drift.steps.into()),
+            },
+            convergence: ConvergenceTable {
+                systems: convergence.systems,
+                coarsest: Count(convergence.coarsest.into()),
             },
         }
     }
@@ -150,14 +178,16 @@ default_of_table!(
     SpringTable = oscillator,
     StartTable = start,
     SpectrumTable = spectrum,
-    DriftTable = drift
+    DriftTable = drift,
+    ConvergenceTable = convergence
 );
 
 impl TryFrom<File> for Config {
     type Error = Fault;
 
     fn try_from(file: File) -> Result<Self, Fault> {
-        let File { studies, effort, integrators, oscillator, start, spectrum, drift } = file;
+        let File { studies, effort, integrators, oscillator, start, spectrum, drift, convergence } =
+            file;
         let effort = Effort::from_name(&effort).ok_or_else(|| {
             let fault = Fault::new("effort", format!("unknown effort `{effort}`"));
             fault.help(names::suggest("efforts", &effort, Effort::ALL.map(Effort::name)))
@@ -169,6 +199,7 @@ impl TryFrom<File> for Config {
             })
         };
         let steps = check::steps("drift.steps", drift.steps.0)?;
+        let coarsest = check::coarsest("convergence.coarsest", convergence.coarsest.0)?;
         Ok(Config {
             studies,
             effort,
@@ -177,6 +208,7 @@ impl TryFrom<File> for Config {
             start: Start { q: start.q.0, v: start.v.0 },
             spectrum: Spectrum { dt: spectrum.dt.0 },
             drift: Drift { dt: drift.dt.into_iter().map(|Number(dt)| dt).collect(), steps },
+            convergence: Convergence { systems: convergence.systems, coarsest },
         })
     }
 }

@@ -13,6 +13,11 @@ pub const COORDINATE: Allowed = Allowed::Finite;
 /// Numbers of steps.
 pub const STEPS: RangeInclusive<u64> = 1..=1_000_000_000;
 
+/// Steps a turn at the largest step of a sequence of halvings.
+pub const COARSEST: RangeInclusive<u64> = COARSEST_UNIT..=4096;
+/// What such a number must be a multiple of: orbits are compared that often in a turn.
+pub const COARSEST_UNIT: u64 = crate::studies::Halvings::SAMPLES;
+
 /// `value`, if `allowed` admits it as `what`.
 ///
 /// # Errors

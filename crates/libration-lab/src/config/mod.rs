@@ -38,6 +38,8 @@ pub struct Config {
     pub spectrum: Spectrum,
     /// Settings of the study `drift`.
     pub drift: Drift,
+    /// Settings of the study `convergence`.
+    pub convergence: Convergence,
 }
 
 /// A mass on a spring.
@@ -86,6 +88,15 @@ pub struct Drift {
     pub steps: u64,
 }
 
+/// Settings of the study `convergence`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Convergence {
+    /// The systems under study, each once, of [`SYSTEMS`](crate::studies::SYSTEMS).
+    pub systems: Vec<String>,
+    /// Steps a turn at the largest time step, a multiple of 16.
+    pub coarsest: u64,
+}
+
 impl Default for Config {
     fn default() -> Self {
         Config {
@@ -101,6 +112,12 @@ impl Default for Config {
             start: Start { q: 1.0, v: 0.0 },
             spectrum: Spectrum { dt: 0.01 },
             drift: Drift { dt: vec![1e-3, 1e-2, 1e-1], steps: 1_000_000 },
+            convergence: Convergence {
+                systems: ["oscillator", "pendulum", "henon-heiles", "kepler"]
+                    .map(String::from)
+                    .to_vec(),
+                coarsest: 64,
+            },
         }
     }
 }

@@ -52,6 +52,17 @@ pub(super) fn steps(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "integer", "minimum": low, "maximum": high })
 }
 
+pub(super) fn systems(_: &mut SchemaGenerator) -> Schema {
+    let items = one_of(&studies::SYSTEMS);
+    json_schema!({ "type": "array", "uniqueItems": true, "minItems": 1, "items": items })
+}
+
+pub(super) fn coarsest(_: &mut SchemaGenerator) -> Schema {
+    let (low, high) = (limits::COARSEST.start(), limits::COARSEST.end());
+    let unit = limits::COARSEST_UNIT;
+    json_schema!({ "type": "integer", "minimum": low, "maximum": high, "multipleOf": unit })
+}
+
 fn number(allowed: Allowed) -> Schema {
     match allowed {
         Allowed::Positive => json_schema!({ "type": "number", "exclusiveMinimum": 0 }),

@@ -1,16 +1,20 @@
 //! The studies, in the order in which they are told.
 
+mod convergence;
 mod drift;
 mod ink;
 mod rounding;
 mod spectrum;
+mod subject;
 
 use crate::study::Study;
+pub use convergence::Convergence;
 pub use drift::Drift;
 pub use spectrum::Spectrum;
+pub use subject::{Errors, Halvings, Kind, Law, Problem, SYSTEMS, Subject, Symmetry};
 
 /// All studies.
-pub const ALL: &[&dyn Study] = &[&Spectrum, &Drift];
+pub const ALL: &[&dyn Study] = &[&Spectrum, &Drift, &Convergence::CONFIGURED];
 
 /// The study of that name, if there is one.
 pub fn by_name(name: &str) -> Option<&'static dyn Study> {
