@@ -1,6 +1,7 @@
 //! What makes a configuration a sound one.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 
 use libration::catalog::Allowed;
 use libration::{Hamiltonian, State};
@@ -58,7 +59,10 @@ impl Config {
         number("spectrum.dt", limits::TIME_STEP, self.spectrum.dt)?;
         self.check_drift()?;
         check_systems("convergence.systems", &self.convergence.systems)?;
-        coarsest("convergence.coarsest", self.convergence.coarsest.into()).map(drop)
+        coarsest("convergence.coarsest", self.convergence.coarsest.into())?;
+        check_systems("nonlinear.systems", &self.nonlinear.systems)?;
+        steps_a_turn("nonlinear.steps", self.nonlinear.steps.into())?;
+        turns("nonlinear.turns", self.nonlinear.turns.into()).map(drop)
     }
 
     fn check_names(&self) -> Result<(), Fault> {
@@ -178,4 +182,19 @@ pub(super) fn coarsest(key: &'static str, value: i128) -> Result<u64, Fault> {
             Err(Fault::new(key, format!("`{key}` is {value}, but it must be {allowed}")))
         }
     }
+}
+
+pub(super) fn steps_a_turn(key: &'static str, value: i128) -> Result<u64, Fault> {
+    count_in(key, limits::STEPS_A_TURN, value)
+}
+
+pub(super) fn turns(key: &'static str, value: i128) -> Result<u64, Fault> {
+    count_in(key, limits::TURNS, value)
+}
+
+fn count_in(key: &'static str, allowed: RangeInclusive<u64>, value: i128) -> Result<u64, Fault> {
+    let (low, high) = (allowed.start(), allowed.end());
+    u64::try_from(value).ok().filter(|count| allowed.contains(count)).ok_or_else(|| {
+        Fault::new(key, format!("`{key}` is {value}, but it must be {low} to {high}"))
+    })
 }

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::locate::Document;
 use super::value::{Count, Number};
 use super::{
-    Config, ConfigError, Convergence, Drift, Fault, Spectrum, Spring, Start, check, names, schema,
+    Config, ConfigError, Convergence, Drift, Fault, Nonlinear, Spectrum, Spring, Start, check,
+    names, schema,
 };
 use crate::Effort;
 
@@ -38,6 +39,8 @@ pub(super) struct File {
     drift: DriftTable,
     /// The study of orders.
     convergence: ConvergenceTable,
+    /// The study of nonlinear systems.
+    nonlinear: NonlinearTable,
 }
 
 /// A mass on a spring, m q'' = -k q.
@@ -97,6 +100,21 @@ struct ConvergenceTable {
     coarsest: Count,
 }
 
+/// Settings of the study `nonlinear`.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+struct NonlinearTable {
+    /// The systems under study, each once.
+    #[schemars(schema_with = "schema::systems")]
+    systems: Vec<String>,
+    /// Steps a turn over the long horizon.
+    #[schemars(schema_with = "schema::steps_a_turn")]
+    steps: Count,
+    /// Turns of the long horizon.
+    #[schemars(schema_with = "schema::turns")]
+    turns: Count,
+}
+
 /// Reads a configuration; keys that are not given take their defaults.
 ///
 /// # Errors
@@ -144,6 +162,7 @@ impl Default for File {
             spectrum,
             drift,
             convergence,
+            nonlinear,
         } = Config::default();
         File {
             studies,
@@ -159,6 +178,11 @@ impl Default for File {
             convergence: ConvergenceTable {
                 systems: convergence.systems,
                 coarsest: Count(convergence.coarsest.into()),
+            },
+            nonlinear: NonlinearTable {
+                systems: nonlinear.systems,
+                steps: Count(nonlinear.steps.into()),
+                turns: Count(nonlinear.turns.into()),
             },
         }
     }
@@ -179,15 +203,25 @@ default_of_table!(
     StartTable = start,
     SpectrumTable = spectrum,
     DriftTable = drift,
-    ConvergenceTable = convergence
+    ConvergenceTable = convergence,
+    NonlinearTable = nonlinear
 );
 
 impl TryFrom<File> for Config {
     type Error = Fault;
 
     fn try_from(file: File) -> Result<Self, Fault> {
-        let File { studies, effort, integrators, oscillator, start, spectrum, drift, convergence } =
-            file;
+        let File {
+            studies,
+            effort,
+            integrators,
+            oscillator,
+            start,
+            spectrum,
+            drift,
+            convergence,
+            nonlinear,
+        } = file;
         let effort = Effort::from_name(&effort).ok_or_else(|| {
             let fault = Fault::new("effort", format!("unknown effort `{effort}`"));
             fault.help(names::suggest("efforts", &effort, Effort::ALL.map(Effort::name)))
@@ -200,6 +234,8 @@ impl TryFrom<File> for Config {
         };
         let steps = check::steps("drift.steps", drift.steps.0)?;
         let coarsest = check::coarsest("convergence.coarsest", convergence.coarsest.0)?;
+        let steps_a_turn = check::steps_a_turn("nonlinear.steps", nonlinear.steps.0)?;
+        let turns = check::turns("nonlinear.turns", nonlinear.turns.0)?;
         Ok(Config {
             studies,
             effort,
@@ -209,6 +245,7 @@ impl TryFrom<File> for Config {
             spectrum: Spectrum { dt: spectrum.dt.0 },
             drift: Drift { dt: drift.dt.into_iter().map(|Number(dt)| dt).collect(), steps },
             convergence: Convergence { systems: convergence.systems, coarsest },
+            nonlinear: Nonlinear { systems: nonlinear.systems, steps: steps_a_turn, turns },
         })
     }
 }

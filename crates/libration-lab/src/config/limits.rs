@@ -18,6 +18,11 @@ pub const COARSEST: RangeInclusive<u64> = COARSEST_UNIT..=4096;
 /// What such a number must be a multiple of: orbits are compared that often in a turn.
 pub const COARSEST_UNIT: u64 = crate::studies::Halvings::SAMPLES;
 
+/// Steps a turn over a long horizon.
+pub const STEPS_A_TURN: RangeInclusive<u64> = 16..=10_000;
+/// Turns of a long horizon: fewer than these show no growth.
+pub const TURNS: RangeInclusive<u64> = 100..=100_000;
+
 /// `value`, if `allowed` admits it as `what`.
 ///
 /// # Errors

@@ -40,6 +40,8 @@ pub struct Config {
     pub drift: Drift,
     /// Settings of the study `convergence`.
     pub convergence: Convergence,
+    /// Settings of the study `nonlinear`.
+    pub nonlinear: Nonlinear,
 }
 
 /// A mass on a spring.
@@ -97,6 +99,17 @@ pub struct Convergence {
     pub coarsest: u64,
 }
 
+/// Settings of the study `nonlinear`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Nonlinear {
+    /// The systems under study, each once, of [`SYSTEMS`](crate::studies::SYSTEMS).
+    pub systems: Vec<String>,
+    /// Steps a turn over the long horizon.
+    pub steps: u64,
+    /// Turns of the long horizon.
+    pub turns: u64,
+}
+
 impl Default for Config {
     fn default() -> Self {
         Config {
@@ -117,6 +130,11 @@ impl Default for Config {
                     .map(String::from)
                     .to_vec(),
                 coarsest: 64,
+            },
+            nonlinear: Nonlinear {
+                systems: ["pendulum", "henon-heiles", "kepler"].map(String::from).to_vec(),
+                steps: 200,
+                turns: 1000,
             },
         }
     }

@@ -1,5 +1,7 @@
 //! The configuration as a JSON schema, for editors.
 
+use std::ops::RangeInclusive;
+
 use libration::Method;
 use libration::catalog::Allowed;
 use schemars::generate::SchemaSettings;
@@ -48,8 +50,7 @@ pub(super) fn time_steps(generator: &mut SchemaGenerator) -> Schema {
 }
 
 pub(super) fn steps(_: &mut SchemaGenerator) -> Schema {
-    let (low, high) = (limits::STEPS.start(), limits::STEPS.end());
-    json_schema!({ "type": "integer", "minimum": low, "maximum": high })
+    count(limits::STEPS)
 }
 
 pub(super) fn systems(_: &mut SchemaGenerator) -> Schema {
@@ -61,6 +62,19 @@ pub(super) fn coarsest(_: &mut SchemaGenerator) -> Schema {
     let (low, high) = (limits::COARSEST.start(), limits::COARSEST.end());
     let unit = limits::COARSEST_UNIT;
     json_schema!({ "type": "integer", "minimum": low, "maximum": high, "multipleOf": unit })
+}
+
+pub(super) fn steps_a_turn(_: &mut SchemaGenerator) -> Schema {
+    count(limits::STEPS_A_TURN)
+}
+
+pub(super) fn turns(_: &mut SchemaGenerator) -> Schema {
+    count(limits::TURNS)
+}
+
+fn count(allowed: RangeInclusive<u64>) -> Schema {
+    let (low, high) = (allowed.start(), allowed.end());
+    json_schema!({ "type": "integer", "minimum": low, "maximum": high })
 }
 
 fn number(allowed: Allowed) -> Schema {

@@ -3,6 +3,7 @@
 mod convergence;
 mod drift;
 mod ink;
+mod nonlinear;
 mod rounding;
 mod spectrum;
 mod subject;
@@ -10,11 +11,16 @@ mod subject;
 use crate::study::Study;
 pub use convergence::Convergence;
 pub use drift::Drift;
+pub use nonlinear::Nonlinear;
 pub use spectrum::Spectrum;
-pub use subject::{Errors, Halvings, Kind, Law, Problem, SYSTEMS, Subject, Symmetry};
+pub use subject::{
+    Change, Changes, Errors, Halvings, Horizon, Kind, Law, Orbits, Portrait, Problem, SYSTEMS,
+    Subject, Symmetry,
+};
 
 /// All studies.
-pub const ALL: &[&dyn Study] = &[&Spectrum, &Drift, &Convergence::CONFIGURED];
+pub const ALL: &[&dyn Study] =
+    &[&Spectrum, &Drift, &Convergence::CONFIGURED, &Nonlinear::CONFIGURED];
 
 /// The study of that name, if there is one.
 pub fn by_name(name: &str) -> Option<&'static dyn Study> {

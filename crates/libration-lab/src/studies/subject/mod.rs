@@ -1,19 +1,25 @@
 //! A system under study, whichever it is: one of the catalogue's, or one of the user's own.
 
 mod catalogue;
+mod energy;
 mod errors;
 mod fit;
 mod flow;
+mod portrait;
 mod problem;
+mod stability;
 mod symmetry;
 
 use libration::Method;
 
 pub use self::catalogue::SYSTEMS;
 pub(crate) use self::catalogue::configured;
+pub use self::energy::{Change, Changes, Horizon};
 pub use self::errors::{Errors, Kind};
 pub(crate) use self::fit::Fit;
+pub use self::portrait::Portrait;
 pub use self::problem::Problem;
+pub use self::stability::Orbits;
 pub(crate) use self::symmetry::ROUNDING;
 pub use self::symmetry::Symmetry;
 use crate::study::StudyError;
@@ -72,6 +78,39 @@ pub trait Subject: Sync {
     /// # Errors
     /// If no time step or start is possible.
     fn errors(&self, kind: Kind, method: Method, halvings: Halvings) -> Result<Errors, StudyError>;
+
+    /// What `method` does to the energy at ever smaller steps, until the order settles.
+    ///
+    /// # Errors
+    /// If no time step or start is possible.
+    fn changes(
+        &self,
+        change: Change,
+        method: Method,
+        halvings: Halvings,
+    ) -> Result<Changes, StudyError>;
+
+    /// The running maximum of the energy drift over `turns` turns of `steps` steps.
+    ///
+    /// # Errors
+    /// If no time step or start is possible.
+    fn horizon(&self, method: Method, steps: u64, turns: u64) -> Result<Horizon, StudyError>;
+
+    /// Whether the orbit is closed: what is odd under time reversal averages out over it.
+    fn closes(&self) -> bool;
+
+    /// The highest angular frequency of small oscillations about the equilibrium, in rad/s.
+    fn frequency(&self) -> Option<f64>;
+
+    /// The largest time step in s up to which no orbit of `steps` steps is lost; zero if the
+    /// smallest that is tried loses it, none if none does.
+    fn loss(&self, orbits: Orbits, method: Method, steps: u64) -> Option<f64>;
+
+    /// The first `steps` points of the orbit at a time step `dt`.
+    ///
+    /// # Errors
+    /// If no time step or start is possible.
+    fn portrait(&self, method: Method, dt: f64, steps: u64) -> Result<Portrait, StudyError>;
 
     /// The defects of one step at `steps` steps a turn, the root of their mean square along the
     /// orbit, in 1024 bits.

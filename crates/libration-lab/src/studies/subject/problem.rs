@@ -8,19 +8,23 @@ use libration::simulation::{Sample, SimulationError, Simulator};
 use libration::{Float, Method, Model, Scalar, State, integrator, with_method};
 
 use super::errors::{self, Orbit};
-use super::{Errors, Halvings, Kind, Law, Subject, Symmetry, symmetry};
+use super::{
+    Change, Changes, Errors, Halvings, Horizon, Kind, Law, Orbits, Portrait, Subject, Symmetry,
+    energy, portrait, stability, symmetry,
+};
 use crate::study::StudyError;
 
 /// A system of any kind under study: all that the laboratory must know of it.
 ///
 /// ```
 /// use libration::{State, system::Duffing};
-/// use libration_lab::studies::{Convergence, Problem};
+/// use libration_lab::studies::{Convergence, Nonlinear, Problem, Subject};
 ///
 /// let wells = Duffing { alpha: -1.0, beta: 1.0 };
 /// let problem = Problem::new("wells", wells, State { q: [1.5], v: [0.0] }, 4.4);
-/// let study = Convergence::of(&[&problem]);
-/// # let _ = study;
+/// let own = [&problem as &dyn Subject];
+/// let studies = (Convergence::of(&own), Nonlinear::of(&own));
+/// # let _ = studies;
 /// ```
 #[derive(Debug)]
 pub struct Problem<M, const D: usize> {
@@ -126,6 +130,35 @@ impl<M: Model<D>, const D: usize> Subject for Problem<M, D> {
 
     fn errors(&self, kind: Kind, method: Method, halvings: Halvings) -> Result<Errors, StudyError> {
         errors::measure(self, kind, method, halvings)
+    }
+
+    fn changes(
+        &self,
+        change: Change,
+        method: Method,
+        halvings: Halvings,
+    ) -> Result<Changes, StudyError> {
+        energy::changes(self, change, method, halvings)
+    }
+
+    fn horizon(&self, method: Method, steps: u64, turns: u64) -> Result<Horizon, StudyError> {
+        energy::horizon(self, method, steps, turns)
+    }
+
+    fn closes(&self) -> bool {
+        energy::closes(self)
+    }
+
+    fn frequency(&self) -> Option<f64> {
+        stability::frequency(self)
+    }
+
+    fn loss(&self, orbits: Orbits, method: Method, steps: u64) -> Option<f64> {
+        stability::loss(self, orbits, method, steps)
+    }
+
+    fn portrait(&self, method: Method, dt: f64, steps: u64) -> Result<Portrait, StudyError> {
+        portrait::trace(self, method, dt, steps)
     }
 
     fn symmetry(&self, method: Method, steps: u64) -> Symmetry {
