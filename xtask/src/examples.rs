@@ -12,6 +12,10 @@ const PLAIN: [&str; 2] = ["examples", "crates/libration/examples"];
 /// Examples of the laboratory that draw into the file named by their first argument.
 const DRAWING: [&str; 1] = ["gallery"];
 
+/// Examples of the laboratory that study something at the effort of their own configuration and
+/// report into the folder named by their second argument.
+const STUDYING: [&str; 1] = ["own_system"];
+
 /// Builds all examples of the workspace, then runs them.
 pub(crate) fn run() -> Outcome {
     command::run(&mut command::cargo("build --workspace --examples"))?;
@@ -22,7 +26,17 @@ pub(crate) fn run() -> Outcome {
         }
     }
     let scratch = Scratch::new("examples")?;
-    let drawing = examples_in(&workspace::root().join("crates/libration-lab/examples"));
+    let folder = workspace::root().join("crates/libration-lab/examples");
+    let drawing = examples_in(&folder);
+    for name in STUDYING {
+        println!("example {name}");
+        let config = folder.join(format!("{name}.toml"));
+        let report = scratch.path().join(name);
+        command::run(command::program(built(name)).arg(config).arg(&report))?;
+        if !report.join("report.html").exists() {
+            return Err(format!("example {name} wrote no report"));
+        }
+    }
     for name in drawing.iter().filter(|name| DRAWING.contains(&name.as_str())) {
         println!("example {name}");
         let page = scratch.path().join(format!("{name}.html"));

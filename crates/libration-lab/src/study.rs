@@ -40,6 +40,9 @@ pub enum StudyError {
     /// The study misused its own record.
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// A system could not be built.
+    #[error(transparent)]
+    System(#[from] libration::CatalogError),
     /// Exact arithmetic ran out of digits.
     #[error("exact arithmetic overflowed while {0}")]
     Exact(String),

@@ -70,6 +70,20 @@ fn bad_values_are_named_with_what_is_allowed() {
         ("[start]\nv = inf", "inf", "`start.v` is inf, but it must be finite"),
         ("[start]\nq = 1e200", "1e200", "the energy at `start.q` = 1e200"),
         ("[start]\nq = 1e-200", "1e-200", "the energy at `start.q` = 1e-200"),
+        (
+            "[convergence]\nsystems = ['pendulum', 'keppler']",
+            "'keppler'",
+            "no system `keppler` can be studied",
+        ),
+        ("[convergence]\nsystems = []", "[]", "`convergence.systems` must name at least one"),
+        ("[convergence]\ncoarsest = 40", "40", "must be a multiple of 16 from 16 to 4096"),
+        (
+            "[nonlinear]\nsystems = ['kepler', \"kepler\"]",
+            "\"kepler\"",
+            "the system `kepler` is named twice",
+        ),
+        ("[nonlinear]\nsteps = 3", "3", "`nonlinear.steps` is 3, but it must be 16 to 10000"),
+        ("[nonlinear]\nturns = 10", "10", "`nonlinear.turns` is 10, but it must be 100 to"),
         ("integrators = []", "[]", "`integrators` must name at least one"),
         ("integrators = ['rk4', \"rk4\"]", "\"rk4\"", "the integrator `rk4` is named twice"),
         ("integrators = ['rk5']", "'rk5'", "unknown integrator `rk5`"),
@@ -203,6 +217,11 @@ fn the_schema_admits_the_default_and_refuses_what_the_parser_refuses() {
         ("/drift/dt", json!([0.1, 0.1])),
         ("/drift/steps", json!(0)),
         ("/drift/steps", json!(1_000_000_001)),
+        ("/convergence/coarsest", json!(40)),
+        ("/convergence/systems", json!([])),
+        ("/nonlinear/systems", json!(["keppler"])),
+        ("/nonlinear/steps", json!(15)),
+        ("/nonlinear/turns", json!(99)),
         ("/integrators", json!(["rk5"])),
         ("/effort", json!("quik")),
         ("/start", json!({ "x": 1 })),
@@ -223,6 +242,6 @@ fn the_schema_describes_every_key() {
         }
     }
     let schema = schema();
-    assert_eq!(schema["properties"].as_object().unwrap().len(), 7);
+    assert_eq!(schema["properties"].as_object().unwrap().len(), 9);
     assert_described(&schema);
 }

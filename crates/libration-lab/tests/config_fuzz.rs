@@ -21,7 +21,7 @@ fn check(outcome: Result<Config, ConfigError>) -> Result<(), TestCaseError> {
 
 /// A piece of a configuration file, or of nonsense.
 fn piece() -> impl Strategy<Value = String> {
-    let known = "studies|effort|integrators|oscillator|start|spectrum|drift|dt|steps|m|k|q|v|rk4";
+    let known = "studies|effort|integrators|oscillator|start|drift|convergence|nonlinear|systems|dt|steps|m|k|q|v|rk4";
     prop_oneof![
         known,
         "[\\[\\]{}=.,\"'#\t \r\n\u{feff}]{1,3}",

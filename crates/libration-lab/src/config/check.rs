@@ -1,6 +1,7 @@
 //! What makes a configuration a sound one.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 
 use libration::catalog::Allowed;
 use libration::{Hamiltonian, State};
@@ -63,7 +64,12 @@ impl Config {
         list("stability.tolerances", "tolerance", limits::TOLERANCE, &self.stability.tolerances)?;
         counts("stability.steps", &self.stability.steps)?;
         list("efficiency.tolerances", "tolerance", limits::TOLERANCE, &self.efficiency.tolerances)?;
-        counts("efficiency.periods", &self.efficiency.periods)
+        counts("efficiency.periods", &self.efficiency.periods)?;
+        check_systems("convergence.systems", &self.convergence.systems)?;
+        coarsest("convergence.coarsest", self.convergence.coarsest.into())?;
+        check_systems("nonlinear.systems", &self.nonlinear.systems)?;
+        steps_a_turn("nonlinear.steps", self.nonlinear.steps.into())?;
+        turns("nonlinear.turns", self.nonlinear.turns.into()).map(drop)
     }
 
     fn check_names(&self) -> Result<(), Fault> {
@@ -131,6 +137,22 @@ impl Start {
     }
 }
 
+fn check_systems(key: &'static str, systems: &[String]) -> Result<(), Fault> {
+    if systems.is_empty() {
+        return Err(Fault::new(key, format!("`{key}` must name at least one system")));
+    }
+    for (i, name) in systems.iter().enumerate() {
+        if !studies::SYSTEMS.contains(&name.as_str()) {
+            let fault = Fault::at(key, i, format!("no system `{name}` can be studied"));
+            return Err(fault.help(names::suggest("systems", name, studies::SYSTEMS)));
+        }
+        if systems[..i].contains(name) {
+            return Err(Fault::at(key, i, format!("the system `{name}` is named twice")));
+        }
+    }
+    Ok(())
+}
+
 fn number(key: &'static str, allowed: Allowed, value: f64) -> Result<(), Fault> {
     within(allowed, key, value).map(drop).map_err(|message| Fault::new(key, message))
 }
@@ -171,4 +193,33 @@ fn counts(key: &'static str, values: &[u64]) -> Result<(), Fault> {
 /// The `i`-th number of a list of horizons.
 pub(super) fn count(key: &'static str, i: usize, value: i128) -> Result<u64, Fault> {
     limits::steps(key, value).map_err(|message| Fault::at(key, i, message))
+}
+
+pub(super) fn coarsest(key: &'static str, value: i128) -> Result<u64, Fault> {
+    let multiple = limits::COARSEST_UNIT;
+    match u64::try_from(value) {
+        Ok(steps) if limits::COARSEST.contains(&steps) && steps.is_multiple_of(multiple) => {
+            Ok(steps)
+        }
+        _ => {
+            let (low, high) = (limits::COARSEST.start(), limits::COARSEST.end());
+            let allowed = format!("a multiple of {multiple} from {low} to {high}");
+            Err(Fault::new(key, format!("`{key}` is {value}, but it must be {allowed}")))
+        }
+    }
+}
+
+pub(super) fn steps_a_turn(key: &'static str, value: i128) -> Result<u64, Fault> {
+    count_in(key, limits::STEPS_A_TURN, value)
+}
+
+pub(super) fn turns(key: &'static str, value: i128) -> Result<u64, Fault> {
+    count_in(key, limits::TURNS, value)
+}
+
+fn count_in(key: &'static str, allowed: RangeInclusive<u64>, value: i128) -> Result<u64, Fault> {
+    let (low, high) = (allowed.start(), allowed.end());
+    u64::try_from(value).ok().filter(|count| allowed.contains(count)).ok_or_else(|| {
+        Fault::new(key, format!("`{key}` is {value}, but it must be {low} to {high}"))
+    })
 }

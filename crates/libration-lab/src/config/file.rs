@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::locate::Document;
 use super::value::{Count, Number};
 use super::{
-    Config, ConfigError, Drift, Efficiency, Error, Fault, Spectrum, Spring, Stability, Start,
-    check, names, schema,
+    Config, ConfigError, Convergence, Drift, Efficiency, Error, Fault, Nonlinear, Spectrum, Spring,
+    Stability, Start, check, names, schema,
 };
 use crate::Effort;
 
@@ -43,6 +43,10 @@ pub(super) struct File {
     stability: StabilityTable,
     /// The study of cost against stability and accuracy.
     efficiency: EfficiencyTable,
+    /// The study of orders.
+    convergence: ConvergenceTable,
+    /// The study of nonlinear systems.
+    nonlinear: NonlinearTable,
 }
 
 /// A mass on a spring, m q'' = -k q.
@@ -126,6 +130,33 @@ struct EfficiencyTable {
     periods: Vec<Count>,
 }
 
+/// Settings of the study `convergence`.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+struct ConvergenceTable {
+    /// The systems under study, each once.
+    #[schemars(schema_with = "schema::systems")]
+    systems: Vec<String>,
+    /// Steps a turn at the largest time step, a multiple of 16.
+    #[schemars(schema_with = "schema::coarsest")]
+    coarsest: Count,
+}
+
+/// Settings of the study `nonlinear`.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+struct NonlinearTable {
+    /// The systems under study, each once.
+    #[schemars(schema_with = "schema::systems")]
+    systems: Vec<String>,
+    /// Steps a turn over the long horizon.
+    #[schemars(schema_with = "schema::steps_a_turn")]
+    steps: Count,
+    /// Turns of the long horizon.
+    #[schemars(schema_with = "schema::turns")]
+    turns: Count,
+}
+
 /// Reads a configuration; keys that are not given take their defaults.
 ///
 /// # Errors
@@ -167,7 +198,7 @@ impl Default for File {
         let config = Config::default();
         let Config { studies, effort, integrators, oscillator, start, spectrum, drift, .. } =
             config;
-        let Config { error, stability, efficiency, .. } = config;
+        let Config { error, stability, efficiency, convergence, nonlinear, .. } = config;
         let numbers = |list: Vec<f64>| list.into_iter().map(Number).collect();
         let counts = |list: Vec<u64>| list.into_iter().map(|n| Count(n.into())).collect();
         File {
@@ -190,6 +221,15 @@ impl Default for File {
                 tolerances: numbers(efficiency.tolerances),
                 periods: counts(efficiency.periods),
             },
+            convergence: ConvergenceTable {
+                systems: convergence.systems,
+                coarsest: Count(convergence.coarsest.into()),
+            },
+            nonlinear: NonlinearTable {
+                systems: nonlinear.systems,
+                steps: Count(nonlinear.steps.into()),
+                turns: Count(nonlinear.turns.into()),
+            },
         }
     }
 }
@@ -211,7 +251,9 @@ default_of_table!(
     DriftTable = drift,
     ErrorTable = error,
     StabilityTable = stability,
-    EfficiencyTable = efficiency
+    EfficiencyTable = efficiency,
+    ConvergenceTable = convergence,
+    NonlinearTable = nonlinear
 );
 
 impl TryFrom<File> for Config {
@@ -219,7 +261,7 @@ impl TryFrom<File> for Config {
 
     fn try_from(file: File) -> Result<Self, Fault> {
         let File { studies, effort, integrators, oscillator, start, spectrum, drift, .. } = file;
-        let File { error, stability, efficiency, .. } = file;
+        let File { error, stability, efficiency, convergence, nonlinear, .. } = file;
         let effort = Effort::from_name(&effort).ok_or_else(|| {
             let fault = Fault::new("effort", format!("unknown effort `{effort}`"));
             fault.help(names::suggest("efforts", &effort, Effort::ALL.map(Effort::name)))
@@ -235,6 +277,9 @@ impl TryFrom<File> for Config {
         let counts = |key, list: Vec<Count>| -> Result<Vec<u64>, Fault> {
             list.into_iter().enumerate().map(|(i, n)| check::count(key, i, n.0)).collect()
         };
+        let coarsest = check::coarsest("convergence.coarsest", convergence.coarsest.0)?;
+        let steps_a_turn = check::steps_a_turn("nonlinear.steps", nonlinear.steps.0)?;
+        let turns = check::turns("nonlinear.turns", nonlinear.turns.0)?;
         Ok(Config {
             studies,
             effort,
@@ -252,6 +297,8 @@ impl TryFrom<File> for Config {
                 tolerances: numbers(efficiency.tolerances),
                 periods: counts("efficiency.periods", efficiency.periods)?,
             },
+            convergence: Convergence { systems: convergence.systems, coarsest },
+            nonlinear: Nonlinear { systems: nonlinear.systems, steps: steps_a_turn, turns },
         })
     }
 }

@@ -15,6 +15,16 @@ pub const TOLERANCE: Allowed = Allowed::Positive;
 /// Numbers of steps.
 pub const STEPS: RangeInclusive<u64> = 1..=1_000_000_000;
 
+/// Steps a turn at the largest step of a sequence of halvings.
+pub const COARSEST: RangeInclusive<u64> = COARSEST_UNIT..=4096;
+/// What such a number must be a multiple of: orbits are compared that often in a turn.
+pub const COARSEST_UNIT: u64 = crate::studies::Halvings::SAMPLES;
+
+/// Steps a turn over a long horizon.
+pub const STEPS_A_TURN: RangeInclusive<u64> = 16..=10_000;
+/// Turns of a long horizon: fewer than these show no growth.
+pub const TURNS: RangeInclusive<u64> = 100..=100_000;
+
 /// `value`, if `allowed` admits it as `what`.
 ///
 /// # Errors

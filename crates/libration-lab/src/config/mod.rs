@@ -44,6 +44,10 @@ pub struct Config {
     pub stability: Stability,
     /// Settings of the study `efficiency`.
     pub efficiency: Efficiency,
+    /// Settings of the study `convergence`.
+    pub convergence: Convergence,
+    /// Settings of the study `nonlinear`.
+    pub nonlinear: Nonlinear,
 }
 
 /// A mass on a spring.
@@ -119,6 +123,26 @@ pub struct Efficiency {
     pub periods: Vec<u64>,
 }
 
+/// Settings of the study `convergence`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Convergence {
+    /// The systems under study, each once, of [`SYSTEMS`](crate::studies::SYSTEMS).
+    pub systems: Vec<String>,
+    /// Steps a turn at the largest time step, a multiple of 16.
+    pub coarsest: u64,
+}
+
+/// Settings of the study `nonlinear`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Nonlinear {
+    /// The systems under study, each once, of [`SYSTEMS`](crate::studies::SYSTEMS).
+    pub systems: Vec<String>,
+    /// Steps a turn over the long horizon.
+    pub steps: u64,
+    /// Turns of the long horizon.
+    pub turns: u64,
+}
+
 impl Default for Config {
     fn default() -> Self {
         Config {
@@ -142,6 +166,17 @@ impl Default for Config {
             efficiency: Efficiency {
                 tolerances: vec![1e-6, 1e-4, 1e-2],
                 periods: vec![10, 1_000, 1_000_000],
+            },
+            convergence: Convergence {
+                systems: ["oscillator", "pendulum", "henon-heiles", "kepler"]
+                    .map(String::from)
+                    .to_vec(),
+                coarsest: 64,
+            },
+            nonlinear: Nonlinear {
+                systems: ["pendulum", "henon-heiles", "kepler"].map(String::from).to_vec(),
+                steps: 200,
+                turns: 1000,
             },
         }
     }

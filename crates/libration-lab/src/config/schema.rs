@@ -1,5 +1,7 @@
 //! The configuration as a JSON schema, for editors.
 
+use std::ops::RangeInclusive;
+
 use libration::Method;
 use libration::catalog::Allowed;
 use schemars::generate::SchemaSettings;
@@ -58,7 +60,30 @@ pub(super) fn horizons(generator: &mut SchemaGenerator) -> Schema {
 }
 
 pub(super) fn steps(_: &mut SchemaGenerator) -> Schema {
-    let (low, high) = (limits::STEPS.start(), limits::STEPS.end());
+    count(limits::STEPS)
+}
+
+pub(super) fn systems(_: &mut SchemaGenerator) -> Schema {
+    let items = one_of(&studies::SYSTEMS);
+    json_schema!({ "type": "array", "uniqueItems": true, "minItems": 1, "items": items })
+}
+
+pub(super) fn coarsest(_: &mut SchemaGenerator) -> Schema {
+    let (low, high) = (limits::COARSEST.start(), limits::COARSEST.end());
+    let unit = limits::COARSEST_UNIT;
+    json_schema!({ "type": "integer", "minimum": low, "maximum": high, "multipleOf": unit })
+}
+
+pub(super) fn steps_a_turn(_: &mut SchemaGenerator) -> Schema {
+    count(limits::STEPS_A_TURN)
+}
+
+pub(super) fn turns(_: &mut SchemaGenerator) -> Schema {
+    count(limits::TURNS)
+}
+
+fn count(allowed: RangeInclusive<u64>) -> Schema {
+    let (low, high) = (allowed.start(), allowed.end());
     json_schema!({ "type": "integer", "minimum": low, "maximum": high })
 }
 

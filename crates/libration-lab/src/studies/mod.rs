@@ -1,24 +1,41 @@
 //! The studies, in the order in which they are told.
 
+mod convergence;
 mod coverage;
 mod drift;
 mod efficiency;
 mod error;
 mod growth;
 mod ink;
+mod nonlinear;
 mod rounding;
 mod spectrum;
 mod stability;
+mod subject;
 
 use crate::study::Study;
+pub use convergence::Convergence;
 pub use drift::Drift;
 pub use efficiency::Efficiency;
 pub use error::Error;
+pub use nonlinear::Nonlinear;
 pub use spectrum::Spectrum;
 pub use stability::Stability;
+pub use subject::{
+    Change, Changes, Errors, Halvings, Horizon, Kind, Law, Orbits, Portrait, Problem, SYSTEMS,
+    Subject, Symmetry,
+};
 
 /// All studies.
-pub const ALL: &[&dyn Study] = &[&Spectrum, &Drift, &Error, &Stability, &Efficiency];
+pub const ALL: &[&dyn Study] = &[
+    &Spectrum,
+    &Drift,
+    &Error,
+    &Stability,
+    &Efficiency,
+    &Convergence::CONFIGURED,
+    &Nonlinear::CONFIGURED,
+];
 
 /// The study of that name, if there is one.
 pub fn by_name(name: &str) -> Option<&'static dyn Study> {

@@ -28,14 +28,7 @@ impl Limit {
     /// The first `z` at which the undamped oscillator is unstable: by the exact eigenvalues of the
     /// polynomial matrix, and by the growth of orbits.
     pub(super) fn imaginary(method: Method) -> Result<Self, StudyError> {
-        let symbolic = with_method!(method, |m| SymbolicStep::new(m))
-            .ok_or_else(|| StudyError::Exact(format!("deriving {}", method.title())))?;
-        let stable = |z: f64| {
-            let z = Wide::from_f64(z);
-            let matrix: UpdateMatrix<Wide, 1> = symbolic.matrix.map(|p| p.eval_wide(z));
-            analysis::Spectrum::new(&matrix).is_bounded()
-        };
-        let predicted = first_loss(stable);
+        let predicted = largest_stable(method)?;
         let measured = first_loss(|z| !grows(method, z));
         Ok(Limit {
             predicted: Some(predicted),
@@ -88,6 +81,18 @@ impl Limit {
             None => Finding::measured(id, text, "1", self.measured),
         }
     }
+}
+
+/// The first `z = ωΔt` at which `method` is unstable on the undamped oscillator, by the exact
+/// eigenvalues of its polynomial matrix.
+pub(in crate::studies) fn largest_stable(method: Method) -> Result<f64, StudyError> {
+    let symbolic = with_method!(method, |m| SymbolicStep::new(m))
+        .ok_or_else(|| StudyError::Exact(format!("deriving {}", method.title())))?;
+    Ok(first_loss(|z| {
+        let z = Wide::from_f64(z);
+        let matrix: UpdateMatrix<Wide, 1> = symbolic.matrix.map(|p| p.eval_wide(z));
+        analysis::Spectrum::new(&matrix).is_bounded()
+    }))
 }
 
 /// The first point at which `stable` is lost, walking from 0 in steps of 0.01 and then bisecting;

@@ -12,6 +12,7 @@ use libration::system::Oscillator;
 use libration::{Method, with_method};
 
 use self::limit::Limit;
+pub(super) use self::limit::largest_stable;
 use self::region::Region;
 use self::step::{Measured, Run, Theory, defects};
 use crate::page::Page;

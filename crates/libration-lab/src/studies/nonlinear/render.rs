@@ -1,0 +1,205 @@
+//! The chapter on nonlinear systems.
+
+use libration::Method;
+
+use crate::figure::{Axis, Dash, Figure, Ink, Mark, Panel};
+use crate::notation::{number, seconds};
+use crate::page::{Highlight, Page};
+use crate::record::{Cell, Record, RecordError};
+use crate::studies::ink::ink;
+
+/// Writes the chapter.
+pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
+    page.title = "Nonlinear systems".into();
+    let systems = systems(record)?;
+    summary(record, page, &systems);
+    page.paragraph(
+        "Where forces are not linear no matrix says what a million steps do. What theory does say \
+         are powers: a symplectic method of order p keeps the energy within a band that shrinks as \
+         Δt^p and does not widen with time; the others drift, and the drift grows with the \
+         horizon.",
+    );
+    page.figure(growth(record, &systems)?);
+    page.table(record.table("growth")?, 3);
+    page.figure(swings(record, &systems)?);
+    page.paragraph(
+        "Within one turn every method’s energy swings by Δt^p. What is left after a turn is another \
+         matter: of an even order p the term Δt^p is odd under time reversal, so that a closed orbit \
+         gives back on one half what it took on the other. RK4 therefore drifts by Δt⁵ a turn, and \
+         explicit Euler by Δt.",
+    );
+    page.heading("One step");
+    page.paragraph(
+        "Duals of 1024 bits carry the Jacobian of each shipped step along the orbit. A defect is \
+         either zero to all bits, or a power of Δt:",
+    );
+    page.table(record.table("defects")?, 3);
+    page.heading("Where stability ends");
+    page.paragraph(
+        "Close to an equilibrium a step is stable as far as on the oscillator of the same highest \
+         frequency, and simulation finds the limit there. From the configured start it ends where \
+         it ends: the search scans upward, then again below the first loss with a finer grid and \
+         longer runs, since resonances open narrow gaps.",
+    );
+    page.table(record.table("limits")?, 4);
+    page.figure(portraits(record, &systems)?);
+    Ok(())
+}
+
+/// The systems studied: name and title.
+fn systems(record: &Record) -> Result<Vec<(String, String)>, RecordError> {
+    let words = |cell: &Cell| match cell {
+        Cell::Text(words) => words.clone(),
+        Cell::Number(x) => x.to_string(),
+    };
+    let rows = &record.table("systems")?.rows;
+    Ok(rows.iter().map(|row| (words(&row[0]), words(&row[1]))).collect())
+}
+
+/// The answer, from the drifts over the whole horizon.
+fn summary(record: &Record, page: &mut Page, systems: &[(String, String)]) {
+    let found = |system: &str, method: Method, quantity: &str| {
+        let id = format!("nonlinear.{system}.{}.{quantity}", method.name());
+        record.finding(&id).ok().map(|f| f.measured)
+    };
+    let largest: Vec<String> = systems
+        .iter()
+        .map(|(name, title)| {
+            let of = |m: Method| {
+                Some(format!("{} {}", m.title(), number(found(name, m, "largest")?, 2)))
+            };
+            let all: Vec<String> = Method::ALL.into_iter().filter_map(of).collect();
+            format!("{title}: {}", all.join(", "))
+        })
+        .collect();
+    page.answer =
+        format!("Largest relative energy drift over the whole horizon: {}.", largest.join("; "));
+    let growths = |keep: fn(&f64) -> bool| {
+        let growth = record.findings.iter().filter(|f| f.id.ends_with(".growth"));
+        growth.filter(move |f| f.predicted.as_ref().is_some_and(keep)).map(|f| f.measured)
+    };
+    if let Some(worst) = growths(|&p| p == 0.0).reduce(f64::max) {
+        page.highlights.push(Highlight {
+            value: format!("t^{{{}}}", number(worst.max(0.0), 2)),
+            text: "fastest growth of a symplectic method’s drift on a nonlinear system".into(),
+        });
+    }
+    if let Some(rate) = systems.iter().find_map(|(name, _)| found(name, Method::Rk4, "rate-order"))
+    {
+        page.highlights.push(Highlight {
+            value: format!("Δt^{{{}}}", number(rate, 3)),
+            text: "mean energy change of RK4 in a turn".into(),
+        });
+    }
+}
+
+/// A figure with a panel for each system.
+fn figure(id: &str, title: &str, systems: &[(String, String)]) -> Figure {
+    let figure = Figure::new(id, title);
+    match systems.len() {
+        1 => figure,
+        _ => figure.columns(2).aspect(1.25),
+    }
+}
+
+/// What is worth drawing: an energy beyond a thousand times its start has left the figure.
+fn shown(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|&y| if y < 1e3 { y } else { f64::NAN }).collect()
+}
+
+/// The running maxima against time.
+fn growth(record: &Record, systems: &[(String, String)]) -> Result<Figure, RecordError> {
+    let title = "Largest energy drift so far";
+    let mut figure = figure("nonlinear-growth", title, systems)
+        .caption(
+            "The symplectic methods fill a band within a few turns and stay in it. RK4 swings less \
+             at first and then climbs in proportion to time; explicit Euler leaves the figure at \
+             once.",
+        )
+        .description("Log-log: the running maximum of the energy drift against turns.");
+    for (name, title) in systems {
+        let series = record.series(&format!("growth-{name}"))?;
+        let turns = series.column("turns")?;
+        let mut panel =
+            Panel::new(Axis::log("turns"), Axis::log("largest |E − E₀|/|E₀|")).title(title);
+        for method in Method::ALL {
+            let Ok(largest) = series.column(method.name()) else { continue };
+            let line = Mark::line(turns, shown(largest));
+            panel = panel.mark(line.ink(ink(method)).label(method.title()));
+        }
+        figure = figure.panel(panel);
+    }
+    Ok(figure)
+}
+
+/// The swing within a turn and the mean change of a turn against the step.
+fn swings(record: &Record, systems: &[(String, String)]) -> Result<Figure, RecordError> {
+    let title = "Energy drift against the time step";
+    let mut figure = figure("nonlinear-swing", title, systems)
+        .caption(
+            "Lines: the largest drift within a turn, which falls as Δt^p. Crosses: the mean change \
+             in a turn of the methods that are not symplectic, which for RK4 falls as Δt⁵.",
+        )
+        .description("Log-log: energy drift within a turn against Δt, one line a method.");
+    for (name, title) in systems {
+        let mut panel = Panel::new(Axis::log("time step Δt").unit("s"), Axis::log("|E − E₀|/|E₀|"))
+            .title(title);
+        for method in Method::ALL {
+            let name = format!("{name}-{}", method.name());
+            let Ok(swing) = record.series(&format!("swing-{name}")) else { continue };
+            let line = Mark::line(swing.column("dt")?, shown(swing.column("swing")?));
+            panel = panel.mark(line.ink(ink(method)).label(method.title()));
+            let Ok(rate) = record.series(&format!("rate-{name}")) else { continue };
+            let points = Mark::points(rate.column("dt")?, shown(rate.column("rate")?));
+            panel = panel.mark(points.ink(ink(method)).marker(crate::figure::Marker::Cross));
+        }
+        figure = figure.panel(panel);
+    }
+    Ok(figure)
+}
+
+/// Orbits at a large step: each system with Verlet, or the first symplectic method, beside RK4.
+fn portraits(record: &Record, systems: &[(String, String)]) -> Result<Figure, RecordError> {
+    let mut figure = Figure::new("nonlinear-portraits", "Orbits at a large step")
+        .caption(
+            "At two fifths of the largest step that velocity Verlet bears. A symplectic method \
+             stays about the orbit’s place for as long as one looks, even where the orbit turns \
+             or scatters; RK4 sinks towards rest, or towards the centre. Position and velocity in \
+             one dimension, the plane of motion in two. Thin line: the path of the first turns in \
+             small steps.",
+        )
+        .description("Points of orbits, one panel for each system and method.")
+        .columns(2)
+        .aspect(1.35);
+    for (name, title) in systems {
+        let reach = [Method::VelocityVerlet, Method::Rk4].iter().filter_map(|m| {
+            let series = record.series(&format!("portrait-{name}-{}", m.name())).ok()?;
+            let size = |column: &str| {
+                let values = series.column(column).ok()?;
+                values.iter().take(40).map(|x| x.abs()).reduce(f64::max)
+            };
+            Some(size("x")?.max(size("y")?))
+        });
+        let reach = 1.5 * reach.fold(0.0, f64::max);
+        for method in [Method::VelocityVerlet, Method::Rk4] {
+            let Ok(series) = record.series(&format!("portrait-{name}-{}", method.name())) else {
+                continue;
+            };
+            let dt = series.column("dt")?.first().copied().unwrap_or(f64::NAN);
+            let title = format!("{title}: {}, Δt = {}", method.title(), seconds(dt, 2));
+            let mut panel = Panel::new(
+                Axis::linear("q").range(-reach, reach),
+                Axis::linear("v or second q").range(-reach, reach),
+            )
+            .title(title)
+            .equal();
+            if let Ok(path) = record.series(&format!("path-{name}")) {
+                let line = Mark::line(path.column("x")?, path.column("y")?);
+                panel = panel.mark(line.ink(Ink::Neutral).dash(Dash::Solid).width(0.8));
+            }
+            let points = Mark::points(series.column("x")?, series.column("y")?);
+            figure = figure.panel(panel.mark(points.ink(ink(method)).radius(1.4)));
+        }
+    }
+    Ok(figure)
+}
