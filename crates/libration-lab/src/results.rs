@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::untried::Untried;
 use crate::{Config, Machine, Record};
 
 /// Version of the contract that `results.json` keeps.
@@ -20,6 +21,8 @@ pub struct Results {
     pub seconds: f64,
     /// Whether all studies that were asked for are in it.
     pub complete: bool,
+    /// Claims of the source report that no study tries, and why.
+    pub untried: &'static [Untried],
     /// The records of the studies that have ended.
     pub studies: Vec<Record>,
 }

@@ -10,6 +10,7 @@ use crate::page::{Chapter, Page};
 use crate::record::{FigureFile, RecordError};
 use crate::results::{Results, SCHEMA};
 use crate::study::StudyError;
+use crate::untried::UNTRIED;
 use crate::{Lab, Machine, Record, Study, figure, report};
 
 /// Why a run ended early.
@@ -58,6 +59,7 @@ pub fn run(
         config: lab.config.clone(),
         seconds: 0.0,
         complete: false,
+        untried: UNTRIED,
         studies: Vec::new(),
     };
     let mut chapters = Vec::new();

@@ -43,6 +43,8 @@ pub struct Axis {
     pub scale: Scale,
     /// The smallest and largest value shown; those of the data, with some air, if absent.
     pub range: Option<[f64; 2]>,
+    /// Names in place of numbers: the first stands at 0, the next at −1, and so on downwards.
+    pub names: Vec<String>,
 }
 
 impl Axis {
@@ -54,6 +56,13 @@ impl Axis {
     /// A logarithmic axis.
     pub fn log(label: impl Into<String>) -> Self {
         Self { label: label.into(), scale: Scale::Log, ..Self::default() }
+    }
+
+    /// A vertical axis of names, from top to bottom.
+    pub fn names(label: impl Into<String>, names: impl IntoIterator<Item = String>) -> Self {
+        let names: Vec<String> = names.into_iter().collect();
+        let range = Some([0.4 - names.len() as f64, 0.6]);
+        Self { label: label.into(), names, range, ..Self::default() }
     }
 
     /// Names the unit.

@@ -168,7 +168,10 @@ impl<'a> Placed<'a> {
             _ => None,
         });
         let x_ticks = ticks(&x.span, rect.width, 62.0);
-        let y_ticks = ticks(&y.span, rect.height, 34.0);
+        let y_ticks = match panel.y.names.as_slice() {
+            [] => ticks(&y.span, rect.height, 34.0),
+            names => named(names),
+        };
         let mut drawn: Vec<Drawn> =
             panel.marks.iter().map(|m| Drawn::of(&m.shape, &frame)).collect();
         let labels = label::place(panel, &drawn, &frame, columns, bar.is_some());
@@ -221,4 +224,10 @@ impl<'a> Bar<'a> {
     fn right(&self) -> f64 {
         self.title() + 4.0
     }
+}
+
+/// A tick for each name, from 0 downwards.
+fn named(names: &[String]) -> Vec<Tick> {
+    let tick = |(i, name): (usize, &String)| Tick { value: -(i as f64), label: name.clone() };
+    names.iter().enumerate().map(tick).collect()
 }

@@ -4,6 +4,7 @@ use crate::notation::number;
 use crate::page::Chapter;
 use crate::record::{Claim, ClaimVerdict, Finding, Relation};
 use crate::text::{escape, prose};
+use crate::untried::{UNTRIED, Untried};
 
 /// How many findings of a claim are shown; the others are folded away.
 const SHOWN: usize = 3;
@@ -64,8 +65,28 @@ pub(super) fn render(chapters: &[Chapter]) -> String {
          report stand?</p>\n<p>Each verdict is computed from the findings named below it, at the \
          setting of this run.</p>\n{}<table class=\"ledger\"><thead><tr><th>claim</th><th>the \
          source says</th><th>what was run, and what came out</th><th>verdict</th></tr></thead><tbody>{rows}\
-         </tbody></table></div>\n</section>\n",
-        super::scroll("The ledger")
+         </tbody></table></div>\n{}</section>\n",
+        super::scroll("The ledger"),
+        untried()
+    )
+}
+
+/// The claims that no study tries, folded away.
+fn untried() -> String {
+    let entry = |claim: &Untried| {
+        format!(
+            "<li>{} (§ {}): {} Not tried: {}.</li>",
+            escape(claim.id),
+            escape(claim.source),
+            prose(claim.text),
+            prose(claim.because)
+        )
+    };
+    let entries: String = UNTRIED.iter().map(entry).collect();
+    let count = UNTRIED.len();
+    format!(
+        "<details><summary>{count} further claims are accounted for without a verdict</summary>\
+         <ul>{entries}</ul></details>\n"
     )
 }
 

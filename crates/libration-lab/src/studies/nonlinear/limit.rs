@@ -14,7 +14,7 @@ use crate::study::StudyError;
 const SMALL_STEPS: u64 = 20_000;
 
 /// Points of a portrait.
-const POINTS: u64 = 800;
+const POINTS: u64 = 280;
 
 /// Searches the limits of every trial.
 pub(super) fn search(

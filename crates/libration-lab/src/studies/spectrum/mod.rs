@@ -215,7 +215,7 @@ fn limits(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
 
 /// Maps of the spectral radius over the complex plane.
 fn regions(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let side = lab.effort.choose(61, 121, 181);
+    let side = lab.effort.choose(61, 91, 181);
     let maps = lab.sweep("stability regions", &lab.config.integrators, |&method| {
         Ok(Region::new(method, side).into_series(method))
     })?;

@@ -77,26 +77,32 @@ impl Row {
         let [explicit, euler, verlet, rk4] = self.dt;
         verlet > explicit && verlet > euler && verlet > rk4
     }
-
-    fn name(&self) -> String {
-        format!("{} over {} steps", self.words, count(self.steps))
-    }
 }
 
 fn by_drift(record: &mut Record, rows: &[(Limit, u64)], ids: &[&str]) {
+    // The horizons of each criterion, criteria in their order.
     let list = |rows: &[&Row]| {
-        let names: Vec<String> = rows.iter().map(|row| row.name()).collect();
-        if names.is_empty() { "nowhere".into() } else { names.join("; ") }
+        let mut groups: Vec<(&str, Vec<String>)> = Vec::new();
+        for row in rows {
+            match groups.last_mut().filter(|(words, _)| *words == row.words) {
+                Some((_, horizons)) => horizons.push(count(row.steps)),
+                None => groups.push((&row.words, vec![count(row.steps)])),
+            }
+        }
+        let group = |(words, horizons): &(&str, Vec<String>)| {
+            format!("an {words} over {} steps", horizons.join(", "))
+        };
+        groups.iter().map(group).collect::<Vec<_>>().join("; ")
     };
     let depends = |f: &[&Finding], extra: &str| {
         let read = read(rows, f);
         let (verlet, others): (Vec<&Row>, Vec<&Row>) =
             read.iter().partition(|row| row.verlet_is_largest());
         let because = format!(
-            "Verlet’s step is the largest for an {}; it is not for an {}. Without a tolerance on the \
-             energy its limit is that of symplectic Euler, and RK4’s is larger{extra}",
-            list(&verlet),
-            list(&others)
+            "Verlet’s step is the largest for {}; RK4’s is for {}. Without a tolerance on the energy \
+             its limit is that of symplectic Euler, and RK4’s is larger{extra}",
+            if verlet.is_empty() { "no criterion tried".into() } else { list(&verlet) },
+            if others.is_empty() { "none".into() } else { list(&others) }
         );
         match (verlet.is_empty(), others.is_empty()) {
             (true, _) => Judgement::refuted(because),
@@ -120,7 +126,7 @@ fn by_drift(record: &mut Record, rows: &[(Limit, u64)], ids: &[&str]) {
     record.judge(Ruling { id: "C70", source: "8.3", text, findings: ids }, |f| {
         let read = read(rows, f);
         let worse: Vec<&Row> = read.iter().filter(|row| row.dt[3] < row.dt[2]).collect();
-        let because = format!("RK4 allows a smaller step than Verlet for an {}", list(&worse));
+        let because = format!("RK4 allows a smaller step than Verlet for {}", list(&worse));
         match worse.len() {
             0 => Judgement::refuted("RK4 allows the larger step under every criterion tried"),
             n if n == read.len() => Judgement::confirmed(because),

@@ -71,32 +71,28 @@ fn summary(record: &Record, page: &mut Page) -> Result<(), RecordError> {
 /// The windows as bars.
 fn windows(record: &Record) -> Result<Figure, RecordError> {
     let series = record.series("windows")?;
-    let names: Vec<&Cell> =
-        record.table("windows")?.rows.iter().filter_map(|row| row.first()).collect();
+    let named = record.table("windows")?.rows.iter().filter_map(|row| match row.first()? {
+        Cell::Text(name) => Some(name.clone()),
+        Cell::Number(_) => None,
+    });
+    let names: Vec<String> = named.collect();
     let (rows, from, to) = (series.column("row")?, series.column("from")?, series.column("to")?);
-    let count = names.len() as f64;
     let last = to.iter().copied().filter(|x| x.is_finite()).fold(1.0, f64::max);
     let mut panel = Panel::new(
-        Axis::linear("z = ωΔt").range(0.0, 1.35 * last),
-        Axis::linear("integrator").range(-count, 1.0),
+        Axis::linear("z = ωΔt").range(0.0, 1.04 * last),
+        Axis::names("", names.iter().cloned()),
     );
     for (i, name) in names.iter().enumerate() {
-        let Cell::Text(name) = name else { continue };
         let y = -(i as f64);
         let of = |row: f64| row as usize == i;
-        let colour = Method::ALL
-            .into_iter()
-            .find(|m| m.title() == name.as_str())
-            .map_or(Ink::Accent(3), ink);
-        let mut end = 0.0;
+        let colour =
+            Method::ALL.into_iter().find(|m| m.title() == name).map_or(Ink::Accent(3), ink);
         for ((&row, &from), &to) in rows.iter().zip(from).zip(to) {
             if of(row) {
                 let bar = Mark::line([from, to], [y, y]);
                 panel = panel.mark(bar.ink(colour).dash(Dash::Solid).width(7.0));
-                end = to;
             }
         }
-        panel = panel.mark(Mark::note(end + 0.03 * last, y, name.as_str()).ink(Ink::Neutral));
     }
     Ok(Figure::new("windows", "The steps at which every orbit stays bounded")
         .caption(

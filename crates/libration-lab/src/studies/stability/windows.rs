@@ -60,10 +60,12 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         for finding in subject.findings() {
             record.find(finding);
         }
+        // All digits are in the findings; several windows leave no room for them.
+        let digits = if subject.windows.len() > 1 { 5 } else { 15 };
         let windows: Vec<String> = subject
             .windows
             .iter()
-            .map(|[from, to]| format!("{} to {}", number(*from, 15), number(*to, 15)))
+            .map(|[from, to]| format!("{} to {}", number(*from, digits), number(*to, digits)))
             .collect();
         let windows = if windows.is_empty() { "nowhere".into() } else { windows.join(", ") };
         let cells: [Cell; 3] = [
