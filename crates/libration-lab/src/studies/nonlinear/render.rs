@@ -80,7 +80,7 @@ fn summary(record: &Record, page: &mut Page, systems: &[(String, String)]) {
     };
     if let Some(worst) = growths(|&p| p == 0.0).reduce(f64::max) {
         page.highlights.push(Highlight {
-            value: format!("t^{{{}}}", number(worst.max(0.0), 2)),
+            value: format!("t^{{{:.2}}}", worst.max(0.0)),
             text: "fastest growth of a symplectic method’s drift on a nonlinear system".into(),
         });
     }
