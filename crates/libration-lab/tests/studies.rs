@@ -155,7 +155,7 @@ fn a_force_that_depends_on_the_velocity_is_promised_no_order_by_a_splitting_meth
     assert_eq!(order("velocity-verlet").predicted, None);
     assert!((order("velocity-verlet").measured - 1.0).abs() < 0.1);
     assert_eq!(order("rk4").predicted, Some(4.0));
-    all_agree(&[record.clone()], "damped");
+    all_agree(std::slice::from_ref(&record), "damped");
 }
 
 #[test]

@@ -106,25 +106,29 @@ fn portraits(
         let verlet =
             trials.iter().zip(limits).find(|(t, _)| same(t) && t.method == Method::VelocityVerlet);
         let limit = verlet.and_then(|(_, limit)| *limit).filter(|&limit| limit > 0.0);
-        limit.map_or(trial.subject.turn() / 16.0, |limit| 0.4 * limit)
+        limit.map_or(trial.subject.turn() / 16.0, |limit| 0.5 * limit)
     };
     let found = lab.sweep("portraits", trials, |trial| {
         trial.subject.portrait(trial.method, step(trial), POINTS)
     })?;
     for (trial, portrait) in trials.iter().zip(found) {
         let n = portrait.x.len();
-        record.series.push(
-            Series::new(format!("portrait-{}-{}", trial.subject.name(), trial.method.name()))
-                .with("x", "", portrait.x)
-                .with("y", "", portrait.y)
-                .with("dt", "s", vec![step(trial); n]),
-        );
+        let named = |series: Series, x, y| match trial.subject.dimension() {
+            1 => series.with("q", "", x).with("v·turn/2π", "", y),
+            _ => series.with("q₀", "", x).with("q₁", "", y),
+        };
+        let name = format!("portrait-{}-{}", trial.subject.name(), trial.method.name());
+        record.series.push(named(Series::new(name), portrait.x, portrait.y).with(
+            "dt",
+            "s",
+            vec![step(trial); n],
+        ));
         let path = format!("path-{}", trial.subject.name());
         if record.series(&path).is_err() {
             // RK4 at 400 steps a turn is the orbit itself, to the width of a line.
             let dt = trial.subject.turn() / 400.0;
             let exact = trial.subject.portrait(Method::Rk4, dt, 2 * POINTS)?;
-            record.series.push(Series::new(path).with("x", "", exact.x).with("y", "", exact.y));
+            record.series.push(named(Series::new(path), exact.x, exact.y));
         }
     }
     Ok(())

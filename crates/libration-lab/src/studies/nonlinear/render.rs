@@ -5,7 +5,7 @@ use libration::Method;
 use crate::figure::{Axis, Dash, Figure, Ink, Mark, Panel};
 use crate::notation::{number, seconds};
 use crate::page::{Highlight, Page};
-use crate::record::{Cell, Record, RecordError};
+use crate::record::{Cell, Column, Record, RecordError};
 use crate::studies::ink::ink;
 
 /// Writes the chapter.
@@ -80,7 +80,7 @@ fn summary(record: &Record, page: &mut Page, systems: &[(String, String)]) {
     };
     if let Some(worst) = growths(|&p| p == 0.0).reduce(f64::max) {
         page.highlights.push(Highlight {
-            value: format!("t^{{{}}}", number(worst.max(0.0), 2)),
+            value: format!("t^{{{:.2}}}", worst.max(0.0)),
             text: "fastest growth of a symplectic method’s drift on a nonlinear system".into(),
         });
     }
@@ -113,8 +113,8 @@ fn growth(record: &Record, systems: &[(String, String)]) -> Result<Figure, Recor
     let mut figure = figure("nonlinear-growth", title, systems)
         .caption(
             "The symplectic methods fill a band within a few turns and stay in it. RK4 swings less \
-             at first and then climbs in proportion to time; explicit Euler leaves the figure at \
-             once.",
+             at first and then climbs in proportion to time; explicit Euler takes up the whole \
+             energy, or more, within some turns.",
         )
         .description("Log-log: the running maximum of the energy drift against turns.");
     for (name, title) in systems {
@@ -158,47 +158,39 @@ fn swings(record: &Record, systems: &[(String, String)]) -> Result<Figure, Recor
     Ok(figure)
 }
 
-/// Orbits at a large step: each system with Verlet, or the first symplectic method, beside RK4.
+/// Orbits at a large step: velocity Verlet beside RK4.
 fn portraits(record: &Record, systems: &[(String, String)]) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("nonlinear-portraits", "Orbits at a large step")
         .caption(
-            "At two fifths of the largest step that velocity Verlet bears. A symplectic method \
-             stays about the orbit’s place for as long as one looks, even where the orbit turns \
-             or scatters; RK4 sinks towards rest, or towards the centre. Position and velocity in \
-             one dimension, the plane of motion in two. Thin line: the path of the first turns in \
-             small steps.",
+            "At half of the largest step that velocity Verlet was found to bear. Its orbit may turn \
+             about or scatter within a band, but neither grows nor shrinks; that of RK4 keeps its \
+             place better and sinks. Position and velocity in one dimension, the plane of motion in \
+             two. Thin line: the same start in small steps.",
         )
         .description("Points of orbits, one panel for each system and method.")
         .columns(2)
         .aspect(1.35);
     for (name, title) in systems {
-        let reach = [Method::VelocityVerlet, Method::Rk4].iter().filter_map(|m| {
-            let series = record.series(&format!("portrait-{name}-{}", m.name())).ok()?;
-            let size = |column: &str| {
-                let values = series.column(column).ok()?;
-                values.iter().take(40).map(|x| x.abs()).reduce(f64::max)
-            };
-            Some(size("x")?.max(size("y")?))
-        });
-        let reach = 1.5 * reach.fold(0.0, f64::max);
         for method in [Method::VelocityVerlet, Method::Rk4] {
             let Ok(series) = record.series(&format!("portrait-{name}-{}", method.name())) else {
                 continue;
             };
-            let dt = series.column("dt")?.first().copied().unwrap_or(f64::NAN);
-            let title = format!("{title}: {}, Δt = {}", method.title(), seconds(dt, 2));
-            let mut panel = Panel::new(
-                Axis::linear("q").range(-reach, reach),
-                Axis::linear("v or second q").range(-reach, reach),
-            )
-            .title(title)
-            .equal();
-            if let Ok(path) = record.series(&format!("path-{name}")) {
-                let line = Mark::line(path.column("x")?, path.column("y")?);
-                panel = panel.mark(line.ink(Ink::Neutral).dash(Dash::Solid).width(0.8));
-            }
-            let points = Mark::points(series.column("x")?, series.column("y")?);
-            figure = figure.panel(panel.mark(points.ink(ink(method)).radius(1.4)));
+            let path = record.series(&format!("path-{name}"))?;
+            let [x, y, dt, ..] = &series.columns[..] else { continue };
+            let path = |column: &Column| path.column(&column.name).map(<[f64]>::to_vec);
+            let (path_x, path_y) = (path(x)?, path(y)?);
+            let reach = 1.3 * path_x.iter().chain(&path_y).fold(0.0_f64, |a, x| a.max(x.abs()));
+            let dt = dt.values.first().copied().unwrap_or(f64::NAN);
+            figure = figure.panel(
+                Panel::new(
+                    Axis::linear(x.name.clone()).range(-reach, reach),
+                    Axis::linear(y.name.clone()).range(-reach, reach),
+                )
+                .title(format!("{title}: {}, Δt = {}", method.title(), seconds(dt, 2)))
+                .equal()
+                .mark(Mark::points(x.values.clone(), y.values.clone()).ink(ink(method)).radius(1.4))
+                .mark(Mark::line(path_x, path_y).ink(Ink::Neutral).dash(Dash::Solid).width(0.7)),
+            );
         }
     }
     Ok(figure)

@@ -63,6 +63,9 @@ pub trait Subject: Sync {
     /// Name in running text.
     fn title(&self) -> &str;
 
+    /// Degrees of freedom.
+    fn dimension(&self) -> usize;
+
     /// About the time that one revolution takes, in s; time steps are given as fractions of it.
     fn turn(&self) -> f64;
 

@@ -110,6 +110,10 @@ impl<M: Model<D>, const D: usize> Subject for Problem<M, D> {
         &self.title
     }
 
+    fn dimension(&self) -> usize {
+        D
+    }
+
     fn turn(&self) -> f64 {
         self.turn
     }
