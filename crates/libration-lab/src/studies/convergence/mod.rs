@@ -3,6 +3,7 @@
 mod claims;
 mod render;
 mod trap;
+mod words;
 
 use libration::Method;
 
@@ -49,6 +50,7 @@ impl Study for Convergence<'_> {
         symmetries(lab, subjects, &mut record)?;
         if self.own.is_empty() {
             trap::set(lab, &mut record)?;
+            words::certify(lab, &mut record)?;
             claims::judge(&mut record);
         }
         Ok(record)

@@ -36,6 +36,17 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
         );
         page.figure(trapped(trap)?);
     }
+    if let Ok(words) = record.table("words") {
+        page.heading("What no oscillator can tell");
+        page.paragraph(
+            "A splitting method is a word of kicks and drifts. Its exponentials, multiplied out in two \
+             letters that do not commute, must agree with `e^(K + D)` on all words of up to p letters; \
+             then the order is p on every system, without a run. On an oscillator words with a \
+             repeated letter vanish: the lookalike, whose weights fit all others, has order 4 there \
+             and order 3 on a pendulum, as its word says.",
+        );
+        page.table(words, 3);
+    }
     Ok(())
 }
 
