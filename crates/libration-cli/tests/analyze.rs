@@ -98,6 +98,21 @@ fn a_nonlinear_answer_says_that_it_is_a_linearisation() {
 }
 
 #[test]
+fn criteria_are_taken_and_wrong_ones_refused() {
+    let words =
+        ["analyze", "--system", "oscillator", "--integrator", "velocity-verlet", "--dt", "0.1"];
+    let got = json(&[&words[..], &["--max-drift", "1e-3"]].concat());
+    let dt = got["largest_dt"]["energy_drift"].as_f64().unwrap();
+    assert!((dt - 0.02).abs() < 1e-15, "{dt}");
+    assert!(got["largest_dt"]["amplitude"].is_null());
+    for (flag, value) in [("--max-drift", "0"), ("--max-amplitude", "-1"), ("--max-error", "nan")] {
+        let output = libration(&[&words[..], &[flag, value]].concat()).code(2).get_output().clone();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(error.contains(flag) && error.contains("greater than 0"), "{error}");
+    }
+}
+
+#[test]
 fn wrong_input_is_named_with_exit_code_2_and_nothing_on_stdout() {
     let kepler = ["analyze", "--system", "kepler", "--integrator", "rk4"];
     for (words, told) in [

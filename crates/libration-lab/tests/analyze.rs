@@ -37,6 +37,62 @@ fn the_promised_keys_are_there() {
 }
 
 #[test]
+fn stability_windows_are_in_seconds_and_have_gaps() {
+    let windows = |system: &str, method| {
+        let answer = analyze(&request(system, method, 0.01, &[1.0], &[0.0])).unwrap();
+        json(&answer)["stability_windows"].clone()
+    };
+    // 2/√10 s, and for Suzuki's composition two windows, found by a scan of its trace.
+    let verlet = windows("oscillator", Method::VelocityVerlet);
+    assert_eq!(verlet, serde_json::json!([[0.0, 0.6324555320336759]]));
+    assert_eq!(windows("oscillator", Method::ExplicitEuler), serde_json::json!([]));
+    let suzuki = windows("oscillator", Method::Suzuki4);
+    for (i, want) in [[0.0, 2.72098], [4.01989, 4.30167]].into_iter().enumerate() {
+        for (end, z) in want.into_iter().enumerate() {
+            let got = suzuki[i][end].as_f64().unwrap() * 10.0_f64.sqrt();
+            assert!((got - z).abs() < 1e-5, "{got}, not {z}");
+        }
+    }
+    // det M = 1 − γΔt + ω²Δt² is one at Δt = γ/ω²; the defaults are ω² = 10 and γ = 0.1.
+    let damped = windows("damped-oscillator", Method::ExplicitEuler)[0][1].as_f64().unwrap();
+    let parameters =
+        AnySystem::build("damped-oscillator", &[] as &[(&str, f64)]).unwrap().parameters();
+    let of = |name| parameters.iter().find(|p| p.0 == name).unwrap().1;
+    assert!((damped / (of("gamma") / of("omega2")) - 1.0).abs() < 1e-15, "{damped}");
+    assert!(windows("pendulum", Method::Rk4).is_null());
+}
+
+#[test]
+fn the_conserved_form_of_verlet_is_the_energy_of_a_softer_spring() {
+    let answer =
+        analyze(&request("oscillator", Method::VelocityVerlet, 0.1, &[1.0], &[0.0])).unwrap();
+    let form = answer.modified_hamiltonian.unwrap();
+    // ½(v² + ω²(1 − z²/4)q²) with ω² = 10 and z² = 0.1.
+    assert_eq!((form.qv, form.vv), (0.0, 0.5));
+    assert!((form.qq - 5.0 * (1.0 - 0.025)).abs() < 1e-15, "{}", form.qq);
+    let rk4 = analyze(&request("oscillator", Method::Rk4, 0.1, &[1.0], &[0.0])).unwrap();
+    assert!(rk4.modified_hamiltonian.is_none() && rk4.order_of_word.is_none());
+}
+
+#[test]
+fn the_largest_step_is_given_for_the_criteria_that_are_asked() {
+    let criteria =
+        Criteria { max_drift: Some(1e-4), max_amplitude: Some(1.1), max_error: Some(0.01) };
+    let asked =
+        Request { criteria, ..request("oscillator", Method::SymplecticEuler, 0.1, &[1.0], &[0.0]) };
+    let dt = analyze(&asked).unwrap().largest_dt.unwrap();
+    let omega = 10.0_f64.sqrt();
+    let close = |got: Option<f64>, want: f64| assert!((got.unwrap() / want - 1.0).abs() < 1e-14);
+    close(dt.bounded, 2.0 / omega);
+    close(dt.energy_drift, 2e-4 / 1.0001 / omega);
+    close(dt.amplitude, 2.0 * (1.0 - 1.0 / 1.21_f64).sqrt() / omega);
+    assert!(dt.trajectory_error.unwrap() < dt.bounded.unwrap());
+    let pendulum = Request { criteria, ..request("pendulum", Method::Rk4, 0.1, &[1.0], &[0.0]) };
+    let error = analyze(&pendulum).unwrap_err().to_string();
+    assert!(error.contains("--max-drift") && error.contains("pendulum"), "{error}");
+}
+
+#[test]
 fn a_drift_beyond_every_float_is_still_a_number_in_json() {
     let mut request = request("oscillator", Method::ExplicitEuler, 0.1, &[1.0], &[0.0]);
     request.steps = 1_000_000;
