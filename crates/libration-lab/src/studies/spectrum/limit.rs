@@ -1,10 +1,10 @@
 //! Where stability ends, from the polynomials and from simulation.
 
-use libration::analysis::{self, SymbolicStep, UpdateMatrix};
+use libration::analysis::SymbolicStep;
 use libration::number::Wide;
 use libration::simulation::{Sample, SimulationError, Simulator};
 use libration::system::Oscillator;
-use libration::{Method, Scalar, State, with_method};
+use libration::{Method, State, with_method};
 
 use super::step::radius_at;
 use crate::record::{Finding, Tolerance};
@@ -16,6 +16,9 @@ const STEPS: u64 = 20_000;
 /// An orbit grows if its largest extent in the second half exceeds that in the first by this.
 const GROWTH: f64 = 1.01;
 
+/// Where the search for a limit ends.
+const HIGHEST: f64 = 8.0;
+
 /// A limit, as predicted and as measured.
 #[derive(Clone, Debug)]
 pub(super) struct Limit {
@@ -25,17 +28,14 @@ pub(super) struct Limit {
 }
 
 impl Limit {
-    /// The first `z` at which the undamped oscillator is unstable: by the exact eigenvalues of the
-    /// polynomial matrix, and by the growth of orbits.
+    /// The first `z` at which the undamped oscillator is unstable: by the exact windows of stability
+    /// of the polynomial matrix, and by the growth of orbits.
     pub(super) fn imaginary(method: Method) -> Result<Self, StudyError> {
         let symbolic = with_method!(method, |m| SymbolicStep::new(m))
             .ok_or_else(|| StudyError::Exact(format!("deriving {}", method.title())))?;
-        let stable = |z: f64| {
-            let z = Wide::from_f64(z);
-            let matrix: UpdateMatrix<Wide, 1> = symbolic.matrix.map(|p| p.eval_wide(z));
-            analysis::Spectrum::new(&matrix).is_bounded()
-        };
-        let predicted = first_loss(stable);
+        // The first window of stability, if it begins at zero.
+        let first = symbolic.stability_windows().into_iter().find(|window| window.from.is_zero());
+        let predicted = first.map_or(0.0, |window| window.to.map_or(HIGHEST, Wide::to_f64));
         let measured = first_loss(|z| !grows(method, z));
         Ok(Limit {
             predicted: Some(predicted),
@@ -91,10 +91,10 @@ impl Limit {
 }
 
 /// The first point at which `stable` is lost, walking from 0 in steps of 0.01 and then bisecting;
-/// zero if it is not stable at the first of them, and 8 if it is nowhere lost up to there.
+/// zero if it is not stable at the first of them, and [`HIGHEST`] if it is nowhere lost up to there.
 fn first_loss(stable: impl Fn(f64) -> bool) -> f64 {
     let grid = |i: u32| f64::from(i) * 0.01;
-    let Some(lost) = (1..=800).find(|&i| !stable(grid(i))) else { return 8.0 };
+    let Some(lost) = (1..=800).find(|&i| !stable(grid(i))) else { return HIGHEST };
     if lost == 1 {
         return 0.0;
     }
