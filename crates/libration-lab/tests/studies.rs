@@ -114,6 +114,7 @@ fn verdicts_on_the_source_are_these() {
         ("C25", Refuted),
         ("C26", Confirmed),
         ("C32", Confirmed),
+        ("C33", Conditional),
         ("C34", Confirmed),
         ("C73", Refuted),
     ];
@@ -124,20 +125,6 @@ fn verdicts_on_the_source_are_these() {
         .collect();
     judged.sort_by_key(|(id, _)| *id);
     assert_eq!(judged, expected);
-}
-
-#[test]
-fn a_verdict_follows_the_numbers_and_not_the_source() {
-    // At z² = 0.4 RK4 has lost nearly everything after 10⁵ steps: what is refuted at the source's
-    // own step holds there, so no verdict of this kind is given without the source's step.
-    let drift = Drift { dt: vec![0.001, 0.2], steps: 100_000 };
-    let mut config = Config { drift, ..Config::default() };
-    let records = run(&config);
-    let claim = |id: &str| records.iter().flat_map(|r| &r.claims).find(|c| c.id == id).cloned();
-    assert_eq!(claim("C73").unwrap().verdict, Refuted);
-    config.drift.dt = vec![0.2];
-    let records = run(&config);
-    assert!(!records.iter().flat_map(|r| &r.claims).any(|c| c.id == "C73"));
 }
 
 #[test]
