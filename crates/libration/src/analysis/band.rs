@@ -25,9 +25,11 @@ impl EnergyBand {
     pub fn new(model: impl Model<1>, step: &UpdateMatrix<Wide, 1>) -> Option<Self> {
         let system = model.on::<Wide>();
         let energy = QuadraticForm::of(|state| system.energy(state));
-        let invariant = QuadraticForm::carried_by(step);
+        let form = QuadraticForm::carried_by(step);
+        // A step that turns by more than half a turn carries a negative form; its negative serves.
+        let invariant = if form.vv.is_negative() { form.map(|c| -c) } else { form };
         let a = invariant.determinant();
-        if a.is_zero() || a.is_negative() || invariant.vv.is_negative() {
+        if a.is_zero() || a.is_negative() {
             return None;
         }
         // det(E − rQ) = a·r² − 2b·r + c, with two real roots since both forms are definite.

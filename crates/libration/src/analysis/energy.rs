@@ -4,10 +4,6 @@ use super::UpdateMatrix;
 use crate::number::{TwoFloat, Wide};
 use crate::{Elementary, Float, Hamiltonian, Model, Scalar, State};
 
-/// Steps that are searched one by one. Over more of them, a bounded orbit comes closer to its
-/// extremes by less than a part in 10¹².
-const SEARCHED: u64 = 4_000_000;
-
 /// Steps before the last that are tried where the orbit leaves the range of the search; a growing
 /// spiral has its largest energy in its last turn.
 const LAST_TURN: u64 = 64;
@@ -19,6 +15,12 @@ pub struct DriftForecast {
     pub drift: Wide,
     /// The step `n` at which it is reached.
     pub at_step: u64,
+}
+
+impl DriftForecast {
+    /// Steps that are searched one by one. Over more of them, an orbit that does not close comes
+    /// closer to its extremes by less than a part in 10¹².
+    pub const SEARCHED: u64 = 4_000_000;
 }
 
 /// The largest relative energy drift within `steps` steps of the linear map `step` from `start`.
@@ -33,8 +35,8 @@ pub fn forecast_drift<const D: usize>(
     steps: u64,
 ) -> Option<DriftForecast> {
     let drift = exact_drift(model, step, start)?;
-    let (found, covered) = search(model, step, start, steps.min(SEARCHED));
-    let tail = if covered < steps.min(SEARCHED) { LAST_TURN } else { 1 };
+    let (found, covered) = search(model, step, start, steps.min(DriftForecast::SEARCHED));
+    let tail = if covered < steps.min(DriftForecast::SEARCHED) { LAST_TURN } else { 1 };
     let candidates = (steps.saturating_sub(tail - 1)..=steps).chain([found]);
     candidates
         .map(|n| DriftForecast { drift: drift(n), at_step: n })
@@ -65,7 +67,7 @@ fn search<const D: usize>(
     steps: u64,
 ) -> (u64, u64) {
     let system = model.on::<TwoFloat>();
-    let step = step.map(two_float);
+    let step = step.map(TwoFloat::from);
     let mut state = start.map(TwoFloat::from_f64);
     let initial = system.energy(&state);
     let (mut largest, mut at_step) = (TwoFloat::zero(), 0);
@@ -80,10 +82,4 @@ fn search<const D: usize>(
         }
     }
     (at_step, steps)
-}
-
-/// The nearest double-double.
-fn two_float(x: Wide) -> TwoFloat {
-    let hi = x.to_f64();
-    TwoFloat::from_sum(hi, (x - Wide::from_f64(hi)).to_f64())
 }

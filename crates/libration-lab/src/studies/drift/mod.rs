@@ -2,6 +2,7 @@
 
 mod claims;
 mod crossover;
+mod invariant;
 mod overflow;
 mod portrait;
 mod render;
@@ -12,7 +13,7 @@ mod watch;
 
 use libration::Method;
 
-use self::setting::{ROUNDING, Setting};
+use self::setting::{ROUNDING, Setting, UNCERTAINTY};
 use self::trial::Trial;
 use crate::notation::{count, number, seconds};
 use crate::page::Page;
@@ -48,9 +49,13 @@ impl Study for Drift {
     }
 }
 
-/// A time step in identifiers and names of series, as in `dt-0.001`.
+/// Where rounding may leave half of an energy, nothing is predicted.
+const LOST: f64 = 0.5;
+
+/// A time step in identifiers and names of series and files, as in `dt-0.001` or `dt-1e-300`.
 fn tag(dt: f64) -> String {
-    format!("dt-{dt}")
+    let plain = format!("dt-{dt}");
+    if plain.len() > 24 { format!("dt-{dt:e}") } else { plain }
 }
 
 /// Every method at every time step, from the configured and from the worst start.
@@ -68,10 +73,8 @@ fn trials(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
     let mut table = Table::new("largest drift", &columns);
     for trial in &found {
         record.find(largest(trial));
-        record.find(within_band(trial));
-        if let Some(worst) = worst(trial) {
-            record.find(worst);
-        }
+        let others = [within_band(trial), conserved(trial), worst(trial)];
+        others.into_iter().flatten().for_each(|finding| record.find(finding));
         table.push([
             trial.setting.dt.into(),
             trial.setting.method.title().into(),
@@ -100,7 +103,6 @@ fn largest(trial: &Trial) -> Finding {
         seconds(dt, 3),
         count(steps)
     );
-    let tolerance = trial.setting.rounding();
     match trial.overflow {
         // What no float can hold is compared by the step at which it leaves their range.
         Some(overflow) => Finding::predicted(
@@ -113,23 +115,40 @@ fn largest(trial: &Trial) -> Finding {
             "steps",
             overflow.predicted as f64,
             overflow.measured as f64,
-            Tolerance::absolute(1.0, "rounding may move the crossing of a limit by a step"),
+            Tolerance::absolute(
+                overflow.uncertainty(&trial.setting),
+                "rounding may move the crossing of a limit by a step, and as many as the energy \
+                 takes to grow by what rounding leaves",
+            ),
         ),
-        None => Finding::predicted(
-            id,
-            text,
-            "1",
-            trial.predicted(),
-            trial.measured(),
-            Tolerance::absolute(tolerance * (1.0 + trial.predicted()), ROUNDING),
-        ),
+        None => unless_lost(trial, id, text, trial.predicted(), trial.measured(), trial.band),
     }
 }
 
-/// The whole run lies within the closed-form envelope.
-fn within_band(trial: &Trial) -> Finding {
+/// A largest drift beside its prediction; without one where rounding may leave as much as the orbit.
+fn unless_lost(
+    trial: &Trial,
+    id: String,
+    text: String,
+    predicted: f64,
+    measured: f64,
+    band: Option<(f64, f64)>,
+) -> Finding {
+    let uncertainty = trial.setting.uncertainty(predicted, band);
+    if uncertainty < LOST * (1.0 + predicted) {
+        let tolerance = Tolerance::absolute(uncertainty, UNCERTAINTY);
+        Finding::predicted(id, text, "1", predicted, measured, tolerance)
+    } else {
+        Finding::measured(id, text, "1", measured)
+    }
+}
+
+/// The whole run lies within the closed-form envelope, where there is one.
+fn within_band(trial: &Trial) -> Option<Finding> {
     let Setting { method, dt, .. } = trial.setting;
-    Finding::related(
+    let excursion = trial.excursion?;
+    let rounding = Some(trial.setting.rounding()).filter(|&rounding| rounding < LOST)?;
+    Some(Finding::related(
         format!("drift.{}.{}.envelope", method.name(), tag(dt)),
         format!(
             "{} at Δt = {}: largest excursion beyond the closed-form envelope, relative to 1 + |δE|",
@@ -139,16 +158,39 @@ fn within_band(trial: &Trial) -> Finding {
         "1",
         Relation::AtMost,
         0.0,
-        trial.excursion,
-        Tolerance::absolute(trial.setting.rounding(), ROUNDING),
-    )
+        excursion,
+        Tolerance::absolute(rounding, ROUNDING),
+    ))
+}
+
+/// What a symplectic step conserves stays what it is: this tells rounding, which may grow with the
+/// run, from the error of the method, which does not.
+fn conserved(trial: &Trial) -> Option<Finding> {
+    let Setting { method, dt, steps, .. } = trial.setting;
+    let strayed = trial.invariant?;
+    let rounding = Some(trial.setting.rounding()).filter(|&rounding| rounding < LOST)?;
+    Some(Finding::predicted(
+        format!("drift.{}.{}.invariant", method.name(), tag(dt)),
+        format!(
+            "{} at Δt = {}: largest relative change over {} steps of the quadratic form that its \
+             step conserves",
+            method.title(),
+            seconds(dt, 3),
+            count(steps)
+        ),
+        "1",
+        0.0,
+        strayed,
+        Tolerance::absolute(rounding, ROUNDING),
+    ))
 }
 
 /// The largest drift from the start that drifts most, if starts differ.
 fn worst(trial: &Trial) -> Option<Finding> {
     let Setting { method, dt, .. } = trial.setting;
     let worst = trial.worst?;
-    Some(Finding::predicted(
+    Some(unless_lost(
+        trial,
         format!("drift.{}.{}.worst", method.name(), tag(dt)),
         format!(
             "{} at Δt = {}: largest drift from the worst start, ({}, {})",
@@ -157,10 +199,9 @@ fn worst(trial: &Trial) -> Option<Finding> {
             number(worst.start.q[0], 3),
             number(worst.start.v[0], 3)
         ),
-        "1",
         worst.predicted,
         worst.measured,
-        Tolerance::absolute(trial.setting.rounding() * (1.0 + worst.predicted), ROUNDING),
+        worst.band,
     ))
 }
 

@@ -1,15 +1,19 @@
 //! The step at which an energy leaves the range of `f64`.
 
-use libration::analysis::UpdateMatrix;
+use libration::analysis::{Spectrum, UpdateMatrix};
 use libration::number::Wide;
 use libration::system::Oscillator;
 use libration::{Hamiltonian, Model, Scalar, State};
+
+use super::setting::Setting;
 
 /// The step at which the energy left the range of `f64`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Overflow {
     pub(super) predicted: u64,
     pub(super) measured: u64,
+    /// Logarithm of the factor by which the energy grows in a step.
+    growth: f64,
 }
 
 impl Overflow {
@@ -20,7 +24,15 @@ impl Overflow {
         step: &UpdateMatrix<Wide, 1>,
         start: &State<f64, 1>,
     ) -> Self {
-        Overflow { predicted: predict(oscillator, step, start, measured), measured }
+        let growth = 2.0 * Spectrum::new(step).radius_minus_one().to_f64().ln_1p();
+        Overflow { predicted: predict(oscillator, step, start, measured), measured, growth }
+    }
+
+    /// By how many steps rounding may move the overflow: one, since it falls on a whole step, and as
+    /// many as the energy takes to grow by what rounding leaves, at most a factor of e.
+    pub(super) fn uncertainty(&self, setting: &Setting) -> f64 {
+        let rounding = Setting { steps: self.measured, ..*setting }.rounding();
+        1.0 + rounding.min(1.0) / self.growth
     }
 }
 

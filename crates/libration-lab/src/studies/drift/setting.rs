@@ -1,16 +1,22 @@
 //! One integrator at one time step, and the rounding that its run may carry.
 
+use libration::analysis::DriftForecast;
 use libration::simulation::{EnergyDrift, Sample, Simulator};
 use libration::system::Oscillator;
 use libration::{Method, Model, State, with_method};
 
 use crate::Config;
-use crate::studies::rounding::rounding_of_run;
+use crate::studies::rounding::{rounding_of_run, slip_of_run};
 use crate::study::StudyError;
 
 /// Where the bound of [`Setting::rounding`] comes from, for the reader.
-pub(super) const ROUNDING: &str =
-    "12 eᶻ roundings a step, added up as independent ones unless they are biased";
+pub(super) const ROUNDING: &str = "eᶻ(12√n + s·n) roundings, with s = z/10 for products of shears and z² \
+                                   for others, times the condition of the eigenvectors";
+
+/// Where that of [`Setting::uncertainty`] comes from.
+pub(super) const UNCERTAINTY: &str = "eᶻ(12√n + s·n) roundings, with s = z/10 for products of shears and z² for others, times the \
+     condition of the eigenvectors; and what the slip of the phase changes where the orbit does not \
+     reach the edge of its band";
 
 /// What is run.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +42,26 @@ impl Setting {
     /// The relative error that rounding may leave in an energy at the end.
     pub(super) fn rounding(&self) -> f64 {
         rounding_of_run(self.method, self.oscillator.omega2.sqrt(), self.dt, self.steps)
+    }
+
+    /// The absolute error that rounding may leave in a largest drift that is predicted for an orbit
+    /// within a band of drifts.
+    ///
+    /// Where the orbit fills its band, a slip of the phase does not change the largest drift. Where it
+    /// closes after a few points, or has not come round yet, it stays off the edge by a gap
+    /// `g = W·sin²α`, with `W` the width of the band and `α` the phase that is missing, and a slip `Φ`
+    /// changes it by up to `W(sin²(α + Φ) − sin²α) ≤ 2√(g(W − g))·Φ + W·Φ²`. Beyond the steps that a
+    /// forecast searches one by one, the orbit may come closer by all of the gap.
+    pub(super) fn uncertainty(&self, predicted: f64, band: Option<(f64, f64)>) -> f64 {
+        let rounding = self.rounding() * (1.0 + predicted);
+        let Some((low, high)) = band else { return rounding };
+        let (width, edge) = (high - low, low.abs().max(high.abs()));
+        let gap = (edge - predicted).max(0.0);
+        let sooner = gap.min(0.5 * width);
+        let slip = slip_of_run(self.method, self.oscillator.omega2.sqrt(), self.dt, self.steps);
+        let moved = (2.0 * (sooner * (width - sooner)).sqrt() + width * slip) * slip;
+        let later = if self.steps > DriftForecast::SEARCHED { gap } else { 0.0 };
+        rounding + moved.min(width) + later
     }
 
     /// Simulates from `start`; `watch` sees each sample with its relative drift.

@@ -3,6 +3,7 @@
 use libration::analysis::{EnergyBand, Linearisation, Spectrum, forecast_drift};
 use libration::{State, with_method};
 
+use super::invariant::Invariant;
 use super::overflow::Overflow;
 use super::setting::Setting;
 use super::tag;
@@ -27,7 +28,11 @@ pub(super) struct Trial {
     /// The envelope's value there.
     pub(super) predicted_running: Vec<f64>,
     /// How far the drift leaves the envelope, relative to 1 + |δE|.
-    pub(super) excursion: f64,
+    pub(super) excursion: Option<f64>,
+    /// How far what a symplectic step conserves strayed; none where no definite form is conserved.
+    pub(super) invariant: Option<f64>,
+    /// Lowest and highest drift of an orbit whose drift depends on its phase.
+    pub(super) band: Option<(f64, f64)>,
     /// When the energy overflowed, if it did.
     pub(super) overflow: Option<Overflow>,
     /// The worst start; none if all starts are alike.
@@ -41,6 +46,7 @@ pub(super) struct Worst {
     pub(super) start: State<f64, 1>,
     pub(super) predicted: f64,
     pub(super) measured: f64,
+    pub(super) band: Option<(f64, f64)>,
 }
 
 impl Trial {
@@ -48,19 +54,24 @@ impl Trial {
         let Setting { method, dt, steps, oscillator, start } = *setting;
         let linear = with_method!(method, |m| Linearisation::new(m, oscillator, &start, dt));
         let band = EnergyBand::new(oscillator, &linear.step);
-        let angle = Spectrum::new(&linear.step).angle().to_f64();
+        let spectrum = Spectrum::new(&linear.step);
+        let angle = spectrum.angle().to_f64();
+        let keeps_areas = spectrum.determinant_minus_one().is_zero();
         let bounds = |n: u64| match &band {
             Some(band) => band.drift_after(&start, n),
             None => (f64::NEG_INFINITY, f64::INFINITY),
         };
         let mut watch = Watch::new(steps, bounds);
-        setting.simulate(start, |sample, drift| watch.see(sample, drift))?;
+        let mut invariant =
+            band.filter(|_| keeps_areas).map(|_| Invariant::new(&linear.step, &start, steps));
+        setting.simulate(start, |sample, drift| {
+            watch.see(sample, drift);
+            invariant.iter_mut().for_each(|invariant| invariant.see(sample));
+        })?;
         let (sampled, running) = watch.running();
         // A band that depends on the phase is filled after half a turn.
-        let filled = match band.and_then(|band| band.worst_start()) {
-            Some(_) => (std::f64::consts::PI / angle).ceil() as u64,
-            None => 0,
-        };
+        let phased = band.filter(|band| keeps_areas && band.worst_start().is_some());
+        let filled = phased.map_or(0, |_| (std::f64::consts::PI / angle).ceil() as u64);
         let size = |n: u64| {
             let (low, high) = bounds(n);
             low.abs().max(high.abs())
@@ -76,7 +87,8 @@ impl Trial {
             let mut measured = 0.0_f64;
             setting.simulate(start, |_, drift| measured = measured.max(drift.abs())).ok()?;
             let predicted = worst.drift.to_f64();
-            Some(Worst { start, predicted, measured })
+            let band = phased.map(|band| band.drift_after(&start, 0));
+            Some(Worst { start, predicted, measured, band })
         });
         let overflow = watch
             .overflow
@@ -91,6 +103,8 @@ impl Trial {
             running,
             predicted_running,
             excursion: watch.excursion,
+            invariant: invariant.map(|invariant| invariant.largest),
+            band: phased.map(|band| band.drift_after(&start, 0)),
             overflow,
             worst,
             signed: watch.signed,

@@ -24,8 +24,8 @@ pub(super) struct Watch<B> {
     pub(super) largest: f64,
     /// The first step whose drift was not finite.
     pub(super) overflow: Option<u64>,
-    /// How far the drift left its bounds, relative to 1 + |δE|.
-    pub(super) excursion: f64,
+    /// How far the drift left its bounds, relative to 1 + |δE|; none where there are no bounds.
+    pub(super) excursion: Option<f64>,
     /// The running maximum at the sampled steps.
     running: Vec<f64>,
     /// Lowest and highest drift in stretches of the horizon.
@@ -43,7 +43,7 @@ impl<B: Fn(u64) -> (f64, f64)> Watch<B> {
             stretch: (0.0, 0.0),
             largest: 0.0,
             overflow: None,
-            excursion: 0.0,
+            excursion: None,
             running: Vec::new(),
             signed: Signed::default(),
         }
@@ -71,7 +71,10 @@ impl<B: Fn(u64) -> (f64, f64)> Watch<B> {
         // The bounds are monotone in n: within a stretch the looser end holds.
         let ended = (self.bounds)(sample.step);
         let beyond = (high - begun.1.max(ended.1)).max(begun.0.min(ended.0) - low);
-        self.excursion = self.excursion.max(beyond / (1.0 + drift.abs()));
+        let beyond = beyond / (1.0 + high.max(-low));
+        if beyond.is_finite() {
+            self.excursion = Some(self.excursion.unwrap_or(0.0).max(beyond));
+        }
         if sample.step > 0 {
             self.signed.push(sample.time, self.stretch, ended);
         }

@@ -42,7 +42,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<Vec<Cost>, S
                 "1",
                 tableau.c.len() as f64,
                 evaluations as f64,
-                Tolerance::exact("a count"),
+                Tolerance::exact("both are counts"),
             ));
         }
         record.find(Finding::measured(

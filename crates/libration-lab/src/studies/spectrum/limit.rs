@@ -1,20 +1,18 @@
 //! Where stability ends, from the polynomials and from simulation.
 
-use libration::analysis::{self, SymbolicStep, UpdateMatrix};
+use libration::analysis::SymbolicStep;
 use libration::number::Wide;
-use libration::simulation::{Sample, SimulationError, Simulator};
+use libration::simulation::Simulator;
 use libration::system::Oscillator;
-use libration::{Method, Scalar, State, with_method};
+use libration::{Method, State, with_method};
 
 use super::step::radius_at;
 use crate::record::{Finding, Tolerance};
+use crate::studies::growth::{STEPS, grows};
 use crate::study::StudyError;
 
-/// Steps of a simulation that decides whether an orbit grows.
-const STEPS: u64 = 20_000;
-
-/// An orbit grows if its largest extent in the second half exceeds that in the first by this.
-const GROWTH: f64 = 1.01;
+/// Where the search for a limit ends.
+const HIGHEST: f64 = 8.0;
 
 /// A limit, as predicted and as measured.
 #[derive(Clone, Debug)]
@@ -25,11 +23,11 @@ pub(super) struct Limit {
 }
 
 impl Limit {
-    /// The first `z` at which the undamped oscillator is unstable: by the exact eigenvalues of the
-    /// polynomial matrix, and by the growth of orbits.
+    /// The first `z` at which the undamped oscillator is unstable: by the exact windows of stability
+    /// of the polynomial matrix, and by the growth of orbits.
     pub(super) fn imaginary(method: Method) -> Result<Self, StudyError> {
         let predicted = largest_stable(method)?;
-        let measured = first_loss(|z| !grows(method, z));
+        let measured = first_loss(|z| !with_method!(method, |m| grows(m, z)));
         Ok(Limit {
             predicted: Some(predicted),
             measured,
@@ -83,23 +81,20 @@ impl Limit {
     }
 }
 
-/// The first `z = ωΔt` at which `method` is unstable on the undamped oscillator, by the exact
-/// eigenvalues of its polynomial matrix.
+/// The first `z = ωΔt` at which `method` is unstable on the undamped oscillator: the end of its first
+/// window of stability, if that begins at zero.
 pub(in crate::studies) fn largest_stable(method: Method) -> Result<f64, StudyError> {
     let symbolic = with_method!(method, |m| SymbolicStep::new(m))
         .ok_or_else(|| StudyError::Exact(format!("deriving {}", method.title())))?;
-    Ok(first_loss(|z| {
-        let z = Wide::from_f64(z);
-        let matrix: UpdateMatrix<Wide, 1> = symbolic.matrix.map(|p| p.eval_wide(z));
-        analysis::Spectrum::new(&matrix).is_bounded()
-    }))
+    let first = symbolic.stability_windows().into_iter().find(|window| window.from.is_zero());
+    Ok(first.map_or(0.0, |window| window.to.map_or(HIGHEST, Wide::to_f64)))
 }
 
 /// The first point at which `stable` is lost, walking from 0 in steps of 0.01 and then bisecting;
-/// zero if it is not stable at the first of them, and 8 if it is nowhere lost up to there.
+/// zero if it is not stable at the first of them, and [`HIGHEST`] if it is nowhere lost up to there.
 fn first_loss(stable: impl Fn(f64) -> bool) -> f64 {
     let grid = |i: u32| f64::from(i) * 0.01;
-    let Some(lost) = (1..=800).find(|&i| !stable(grid(i))) else { return 8.0 };
+    let Some(lost) = (1..=800).find(|&i| !stable(grid(i))) else { return HIGHEST };
     if lost == 1 {
         return 0.0;
     }
@@ -109,23 +104,6 @@ fn first_loss(stable: impl Fn(f64) -> bool) -> f64 {
         if stable(middle) { low = middle } else { high = middle }
     }
     0.5 * (low + high)
-}
-
-/// Whether the orbits of both unit vectors grow from the first to the second half of a run.
-fn grows(method: Method, z: f64) -> bool {
-    let unit = Oscillator { omega2: 1.0 };
-    let one = |q: f64, v: f64| {
-        let mut extent = [0.0_f64; 2];
-        let mut watch = |sample: &Sample<f64, 1>| {
-            let half = usize::from(sample.step > STEPS / 2);
-            extent[half] = extent[half].max(sample.state.q[0].abs() + sample.state.v[0].abs());
-        };
-        let start = State { q: [q], v: [v] };
-        let outcome = with_method!(method, |m| Simulator::new(unit, m, start, z)
-            .and_then(|mut simulator| simulator.run(STEPS, &mut watch)));
-        matches!(outcome, Err(SimulationError::NotFinite { .. })) || extent[1] > GROWTH * extent[0]
-    };
-    one(1.0, 0.0) || one(0.0, 1.0)
 }
 
 /// At `z = 2` symplectic Euler has the eigenvalue −1 twice and one eigenvector: radius one, and

@@ -7,7 +7,7 @@ use libration::{Integrator, Method, Model, State, with_method};
 
 use crate::notation::{count, number};
 use crate::record::{Cell, Finding, Relation, Table, Tolerance};
-use crate::studies::coverage::lacking;
+use crate::studies::coverage::{exponent, lacking};
 use crate::studies::rounding::rounding_of_run;
 use crate::study::StudyError;
 use crate::{Config, Lab, Record};
@@ -184,24 +184,28 @@ fn search(
 /// How far search and root may lie apart, and why.
 fn allowed(config: &Config, case: &Case, z: f64) -> (Tolerance, Relation) {
     let n = case.steps as f64;
-    let rounding = rounding_of_run(case.method, 1.0, z, case.steps);
+    let rounding = 4.0 * rounding_of_run(case.method, 1.0, z, case.steps);
     // Just beyond a limit an orbit grows as exp(n√(2δ)): it takes so much for e¹⁰ or so to show.
     let late = (20.0 / n).powi(2);
-    let (lacking, size) = match case.limit {
-        Limit::Drift(tolerance) => (lacking(case.method, &start(config), case.steps, z), tolerance),
-        Limit::Amplitude(limit) => (short_of(config, case, z, limit), limit),
+    // In the criterion, and from there in z.
+    let (lacking, rounding) = match case.limit {
+        Limit::Drift(tolerance) => {
+            let start = start(config);
+            let steepness = exponent(case.method, &start, case.steps, z).clamp(1e-6, 1.0);
+            let lacking = lacking(case.method, &start, case.steps, z);
+            (lacking / steepness, rounding / tolerance / steepness)
+        }
+        Limit::Amplitude(limit) => (short_of(config, case, z, limit), rounding / limit),
     };
-    let relative = 2.0 * lacking + late + 4.0 * rounding / size + 2.0 * PRECISION;
+    let relative = 2.0 * lacking + late + rounding + 2.0 * PRECISION;
     let reason = "twice what the discrete orbit lacks of its curve’s extreme, (20/n)² for growth to \
                   show beyond a limit, rounding relative to the criterion, and the search";
     // A run of less than a turn may never see the extreme: then the root is a bound.
     if relative < 0.2 {
         (Tolerance::relative(relative, reason), Relation::Equal)
     } else {
-        (
-            Tolerance::relative(late + 4.0 * rounding / size + 2.0 * PRECISION, reason),
-            Relation::AtLeast,
-        )
+        let relative = late + rounding + 2.0 * PRECISION;
+        (Tolerance::relative(relative, reason), Relation::AtLeast)
     }
 }
 

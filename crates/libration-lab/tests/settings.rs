@@ -1,0 +1,148 @@
+//! The studies of one step and of the drift, at settings far from the default.
+
+#![allow(clippy::unwrap_used)]
+
+use std::sync::atomic::AtomicBool;
+
+use libration::Method;
+use libration_lab::config::{Drift, Spectrum, Spring};
+use libration_lab::record::{Finding, Verdict};
+use libration_lab::{Config, Effort, Lab, Record, Silent, Study, studies};
+
+fn run(study: &dyn Study, config: &Config) -> Record {
+    let stop = AtomicBool::new(false);
+    study.run(&Lab::new(config, Effort::Quick, &Silent, &stop)).unwrap()
+}
+
+fn drift(dt: &[f64], steps: u64) -> Drift {
+    Drift { dt: dt.to_vec(), steps }
+}
+
+fn spring(k: f64) -> Spring {
+    Spring { m: 1.0, k }
+}
+
+#[track_caller]
+fn agrees(study: &dyn Study, config: &Config, what: &str) -> Record {
+    let record = run(study, config);
+    let broken: Vec<_> = record.disagreements().collect();
+    assert!(broken.is_empty(), "{what}: {broken:#?}");
+    record
+}
+
+fn tolerance(finding: &Finding) -> f64 {
+    finding.tolerance.tolerance.unwrap()
+}
+
+fn judged(record: &Record, id: &str) -> bool {
+    record.claims.iter().any(|claim| claim.id == id)
+}
+
+#[test]
+fn an_orbit_that_closes_after_a_few_points_drifts_as_predicted() {
+    // z = 1 and √3: six and three points. The slip of the phase counts there to first order.
+    for (k, dt) in [(1e6, 1e-3), (100.0, 0.1), (3e6, 1e-3), (4.0, 0.2)] {
+        let base = Config { oscillator: spring(k), ..Config::default() };
+        let config = Config { drift: drift(&[dt], 1_000_000), ..base };
+        let record = agrees(&studies::Drift, &config, &format!("k = {k}"));
+        let id = format!("drift.velocity-verlet.dt-{dt}.largest");
+        // 10⁶ steps slip by 8uz·10⁶ = 10⁻⁹ rad: a tolerance far below the drift of 0.2.
+        assert!(tolerance(record.finding(&id).unwrap()) < 1e-8, "{id}");
+    }
+}
+
+#[test]
+fn rounding_of_round_numbers_is_biased_and_covered() {
+    // Δt·ω² = 1 and 2: the additions of Verlet round in a pattern, 0.006 and 0.024 u a step.
+    let config = Config {
+        integrators: vec![Method::VelocityVerlet, Method::Leapfrog],
+        drift: drift(&[0.1, 0.2], 10_000_000),
+        ..Config::default()
+    };
+    let record = agrees(&studies::Drift, &config, "10⁷ steps");
+    let strayed = record.finding("drift.velocity-verlet.dt-0.2.invariant").unwrap();
+    // 12·√n·e^z·u is what independent roundings would leave.
+    assert!(strayed.measured > 12.0 * 1e7_f64.sqrt() * 1.88 * 1.1e-16, "{}", strayed.measured);
+}
+
+#[test]
+fn findings_agree_up_to_the_limit_of_stability_and_at_it() {
+    let dts = [0.6324, 0.632455, 0.6324555320336759];
+    let config = Config { drift: drift(&dts, 100_000), ..Config::default() };
+    agrees(&studies::Drift, &config, "drift");
+    for dt in dts {
+        let config = Config { spectrum: Spectrum { dt }, ..Config::default() };
+        agrees(&studies::Spectrum, &config, &format!("spectrum at {dt}"));
+    }
+}
+
+#[test]
+fn an_extreme_step_ends_no_study_and_takes_no_longer() {
+    for (k, dt) in [(10.0, 1e-30), (10.0, 1e-9), (1e-30, 0.01), (10.0, 1e9), (1e300, 1e308)] {
+        let spectrum = Spectrum { dt };
+        let config = Config { oscillator: spring(k), spectrum, ..Config::default() };
+        agrees(&studies::Spectrum, &config, &format!("k = {k}, Δt = {dt}"));
+    }
+    for (k, dt) in [(10.0, 1e-30), (10.0, 1e-300), (1e-30, 0.1)] {
+        let drift = drift(&[dt], 100_000);
+        let config = Config { oscillator: spring(k), drift, ..Config::default() };
+        let record = agrees(&studies::Drift, &config, &format!("k = {k}, Δt = {dt}"));
+        let longest = record.series.iter().map(|series| series.name.len()).max();
+        assert!(longest.unwrap() < 60);
+    }
+}
+
+#[test]
+fn what_a_symplectic_step_conserves_strays_by_rounding_alone() {
+    let record = run(&studies::Drift, &Config::default());
+    for dt in ["dt-0.001", "dt-0.01", "dt-0.1"] {
+        for method in ["symplectic-euler", "velocity-verlet"] {
+            let finding = record.finding(&format!("drift.{method}.{dt}.invariant")).unwrap();
+            assert_eq!((finding.predicted, finding.verdict), (Some(0.0), Verdict::Agrees));
+            let swing = record.finding(&format!("drift.{method}.{dt}.largest")).unwrap().measured;
+            assert!(finding.measured > 0.0 && finding.measured < 1e-6 * swing, "{method} {dt}");
+        }
+        for method in ["explicit-euler", "rk4"] {
+            assert!(record.finding(&format!("drift.{method}.{dt}.invariant")).is_err());
+        }
+    }
+    for id in ["C10", "C12"] {
+        let claim = record.claims.iter().find(|claim| claim.id == id).unwrap();
+        assert!(claim.findings.iter().any(|finding| finding.ends_with(".invariant")), "{id}");
+    }
+}
+
+#[test]
+fn where_no_form_is_definite_there_is_no_envelope_and_no_verdict_from_it() {
+    // z = 2.85, beyond the limits of all methods.
+    let config = Config { drift: drift(&[0.9], 1000), ..Config::default() };
+    let record = agrees(&studies::Drift, &config, "z = 2.85");
+    assert!(record.finding("drift.velocity-verlet.dt-0.9.envelope").is_err());
+    assert!(record.finding("drift.rk4.dt-0.9.envelope").is_ok());
+    assert!(!judged(&record, "C34") && !judged(&record, "C10") && !judged(&record, "C12"));
+}
+
+#[test]
+fn a_claim_about_the_source_s_runs_is_judged_at_its_own_setting_alone() {
+    let base = Config::default();
+    let others = [
+        Config { oscillator: spring(1e5), ..base.clone() },
+        Config { drift: drift(&[1e-3], 10), ..base.clone() },
+        Config { drift: drift(&[2e-3], 1_000_000), ..base.clone() },
+        Config { start: libration_lab::config::Start { q: 0.0, v: 1.0 }, ..base },
+    ];
+    for config in others {
+        let record = run(&studies::Drift, &config);
+        for id in ["C03", "C16", "C25", "C73"] {
+            assert!(!judged(&record, id), "{id} at {config:?}");
+        }
+    }
+}
+
+#[test]
+fn a_drift_that_is_no_more_than_rounding_confirms_nothing() {
+    // RK4 loses z⁶/72 = 1.4·10⁻¹⁷ a step at Δt = 1 ms.
+    let config = Config { drift: drift(&[1e-3], 10), ..Config::default() };
+    let record = agrees(&studies::Drift, &config, "ten steps");
+    assert!(!judged(&record, "C15") && !judged(&record, "C33") && judged(&record, "C22"));
+}
