@@ -10,9 +10,6 @@ use super::step::radius_at;
 use crate::record::{Finding, Tolerance};
 use crate::study::StudyError;
 
-/// Steps of a simulation that decides whether an orbit grows.
-const STEPS: u64 = 20_000;
-
 /// An orbit grows if its largest extent in the second half exceeds that in the first by this.
 const GROWTH: f64 = 1.01;
 
@@ -30,21 +27,24 @@ pub(super) struct Limit {
 impl Limit {
     /// The first `z` at which the undamped oscillator is unstable: by the exact windows of stability
     /// of the polynomial matrix, and by the growth of orbits.
-    pub(super) fn imaginary(method: Method) -> Result<Self, StudyError> {
+    ///
+    /// `steps` are simulated to decide whether an orbit grows.
+    pub(super) fn imaginary(method: Method, steps: u64) -> Result<Self, StudyError> {
         let symbolic = with_method!(method, |m| SymbolicStep::new(m))
             .ok_or_else(|| StudyError::Exact(format!("deriving {}", method.title())))?;
         // The first window of stability, if it begins at zero.
         let first = symbolic.stability_windows().into_iter().find(|window| window.from.is_zero());
         let predicted = first.map_or(0.0, |window| window.to.map_or(HIGHEST, Wide::to_f64));
-        let measured = first_loss(|z| !grows(method, z));
+        let measured = first_loss(|z| !grows(method, z, steps));
         Ok(Limit {
             predicted: Some(predicted),
             measured,
             tolerance: Tolerance::absolute(
-                // An orbit that grows by a factor 1 + az² a step shows after STEPS/2 of them.
-                if predicted == 0.0 { 0.01 } else { 1e-6 },
+                // An orbit that grows by 1 % in half of the steps: by 1 + az² a step from zero on, and
+                // by about 1 + (z − limit) beyond a limit.
+                if predicted == 0.0 { 0.01 } else { 2.0 * (GROWTH - 1.0) / steps as f64 },
                 format!(
-                    "what {STEPS} steps resolve: growth of 1 % in the second half, beats near a \
+                    "what {steps} steps resolve: growth of 1 % in the second half, beats near a \
                      double eigenvalue, and the lowest z = 0.01 that is tried"
                 ),
             ),
@@ -107,17 +107,17 @@ fn first_loss(stable: impl Fn(f64) -> bool) -> f64 {
 }
 
 /// Whether the orbits of both unit vectors grow from the first to the second half of a run.
-fn grows(method: Method, z: f64) -> bool {
+fn grows(method: Method, z: f64, steps: u64) -> bool {
     let unit = Oscillator { omega2: 1.0 };
     let one = |q: f64, v: f64| {
         let mut extent = [0.0_f64; 2];
         let mut watch = |sample: &Sample<f64, 1>| {
-            let half = usize::from(sample.step > STEPS / 2);
+            let half = usize::from(sample.step > steps / 2);
             extent[half] = extent[half].max(sample.state.q[0].abs() + sample.state.v[0].abs());
         };
         let start = State { q: [q], v: [v] };
         let outcome = with_method!(method, |m| Simulator::new(unit, m, start, z)
-            .and_then(|mut simulator| simulator.run(STEPS, &mut watch)));
+            .and_then(|mut simulator| simulator.run(steps, &mut watch)));
         matches!(outcome, Err(SimulationError::NotFinite { .. })) || extent[1] > GROWTH * extent[0]
     };
     one(1.0, 0.0) || one(0.0, 1.0)
