@@ -130,3 +130,23 @@ fn wrong_input_is_named_with_exit_code_2_and_nothing_on_stdout() {
         assert!(output.stdout.is_empty(), "{words:?}");
     }
 }
+
+#[test]
+fn a_linear_forecast_reaches_the_crossover_and_a_simulation_has_its_limit() {
+    // RK4 has lost what Verlet swings by, z²/4 = 2.5·10⁻⁶, after 18/z⁴ = 1.8·10¹¹ steps.
+    let words = ["analyze", "--integrator", "rk4", "--dt", "0.001", "--steps", "1.8e11"];
+    let system = ["--system", "oscillator", "--set", "omega2=10"];
+    let drift = json(&[&words[..], &system].concat())["max_energy_drift"].as_f64().unwrap();
+    // 1 − e^−x = x to the next terms: x/2 of it and z².
+    assert!((drift / 2.5e-6 - 1.0).abs() < 1e-5, "{drift}");
+    libration(&[&words[..], &["--system", "pendulum"]].concat()).code(2);
+}
+
+#[test]
+fn the_time_of_a_driven_oscillator_passes_at_its_own_rate() {
+    let words = ["--system", "driven-oscillator", "--integrator", "rk4", "--dt", "0.1"];
+    let refused = libration(&[&["analyze"], &words[..], &["--v", "0,2"]].concat()).code(2);
+    let said = String::from_utf8(refused.get_output().stderr.clone()).unwrap();
+    assert!(said.contains("--v") && said.contains("must be 1"), "{said}");
+    libration(&[&["analyze"], &words[..], &["--v", "3,1"]].concat()).success();
+}

@@ -101,7 +101,7 @@ fn the_format_follows_the_extension() {
         libration(&folder, &words).assert().success().stdout(is_empty()).stderr(is_empty());
         assert!(fs::read(folder.path().join(name)).unwrap().starts_with(magic), "{name}");
     }
-    libration(&folder, &format!("{REPORT} --format csv --output y.npy")).assert().success();
+    libration(&folder, &format!("{REPORT} --format npy --output y")).assert().success();
     assert!(fs::read(folder.path().join("y.npy")).unwrap().starts_with(b"step"));
     assert_eq!(names(&folder).len(), 6, "no temporary file stays");
 }
@@ -150,6 +150,8 @@ fn wrong_input_is_named_with_what_is_allowed() {
         ("--q 1,x", &["--q", "x", "commas"]),
         ("--q 1e6 --v 0 --float f16", &["--q", "1000000", "f16"]),
         ("--output taken", &["taken", "--output"]),
+        ("--output a.xyz", &["a.xyz", "--output", ".parquet", "--format"]),
+        ("--format json --output y.csv", &["json", "y.csv", "contradict"]),
         ("--output no/such/x.csv", &["no/such/x.csv", "--output"]),
     ];
     let basic = [

@@ -30,10 +30,44 @@ impl Output {
     /// If the folder cannot be created or written.
     pub fn open(folder: impl Into<PathBuf>) -> Result<Self, OutputError> {
         let output = Output { folder: folder.into() };
-        output.write(".libration", b"")?;
-        let probe = output.path(".libration");
-        fs::remove_file(&probe).map_err(|source| OutputError { path: probe, source })?;
+        for name in [".libration", "figures/.libration", "data/.libration"] {
+            output.write(name, b"")?;
+            output.remove(name)?;
+        }
+        for name in ["report.html", "results.json"] {
+            output.takes_a_file(output.path(name))?;
+        }
+        for name in ["figures", "data"] {
+            let path = output.path(name);
+            let entries = fs::read_dir(&path).map_err(|source| OutputError { path, source })?;
+            let written = |path: &PathBuf| path.extension().is_some();
+            let paths = entries.flatten().map(|entry| entry.path());
+            paths.filter(written).try_for_each(|path| output.takes_a_file(path))?;
+        }
         Ok(output)
+    }
+
+    /// Fails if there is a folder where a file is to be.
+    fn takes_a_file(&self, path: PathBuf) -> Result<(), OutputError> {
+        if !path.is_dir() {
+            return Ok(());
+        }
+        let reason = "it is a folder, but it must be a file";
+        Err(OutputError { path, source: io::Error::new(io::ErrorKind::IsADirectory, reason) })
+    }
+
+    /// Removes the file `name`, if there is one.
+    ///
+    /// # Errors
+    /// If the file system refuses.
+    pub fn remove(&self, name: &str) -> Result<(), OutputError> {
+        let path = self.path(name);
+        match fs::remove_file(&path) {
+            Err(source) if source.kind() != io::ErrorKind::NotFound => {
+                Err(OutputError { path, source })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The folder itself.

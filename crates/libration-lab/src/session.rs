@@ -63,6 +63,8 @@ pub fn run(
         studies: Vec::new(),
     };
     let mut chapters = Vec::new();
+    // An older report would stand beside newer results.
+    output.remove("report.html")?;
     write_results(&results, output)?;
     for &study in studies {
         let begun = Instant::now();

@@ -157,3 +157,50 @@ fn a_singular_state_and_a_wrong_dimension_are_refused() {
     let flat = request("kepler", Method::Rk4, 0.01, &[1.0], &[1.0]);
     assert!(matches!(analyze(&flat), Err(AnalyzeError::Dimension(_))));
 }
+
+#[test]
+fn nothing_cancels_at_tiny_and_huge_steps() {
+    let oscillator = |method, omega2: f64, dt| {
+        let system = AnySystem::build("oscillator", &[("omega2", omega2)]).unwrap();
+        analyze(&Request { system, ..request("oscillator", method, dt, &[1.0], &[0.0]) }).unwrap()
+    };
+    let close = |got: f64, want: f64| assert!((got / want - 1.0).abs() < 1e-14, "{got:e} {want:e}");
+    // ω² = 10. The next terms of the expansions are smaller by z².
+    let verlet = oscillator(Method::VelocityVerlet, 10.0, 1e-80);
+    close(verlet.phase_error_per_step.unwrap(), 10_f64.powf(1.5) * 1e-240 / 24.0);
+    let rk4 = oscillator(Method::Rk4, 10.0, 1e-50);
+    close(rk4.determinant_minus_one, -1e3 * 1e-300 / 72.0);
+    close(oscillator(Method::ExplicitEuler, 10.0, 1e-140).determinant_minus_one, 1e-279);
+    for dt in [1e-65, 1e-140] {
+        let answer = oscillator(Method::SymplecticEuler, 10.0, dt);
+        close(answer.eigenvalues[0][1], 10_f64.sqrt() * dt);
+        assert_eq!(answer.bounded, Some(true), "{dt}");
+    }
+    // −z⁵/120 and z⁶/72 of z = 3·10⁻⁶⁵ are below every f64.
+    let tiny = oscillator(Method::Rk4, 10.0, 1e-65);
+    assert_eq!(tiny.phase_error_per_step, Some(0.0));
+    assert_eq!(json(&tiny)["max_energy_drift"], 0.0);
+    // z = 10⁸⁰.
+    let huge = oscillator(Method::VelocityVerlet, 1e100, 1e30);
+    assert_eq!((huge.determinant, huge.determinant_minus_one), (1.0, 0.0));
+    assert_eq!((huge.symplecticity_defect, huge.reversibility_defect), (0.0, 0.0));
+    assert_eq!(huge.bounded, Some(false));
+}
+
+#[test]
+fn a_drift_that_is_undefined_keeps_its_keys() {
+    let at_rest = analyze(&request("oscillator", Method::Rk4, 0.1, &[0.0], &[0.0])).unwrap();
+    let json = json(&at_rest);
+    for key in ["max_energy_drift", "log10_max_energy_drift", "max_energy_drift_step"] {
+        assert!(json.as_object().unwrap().get(key).is_some_and(|value| value.is_null()), "{key}");
+    }
+}
+
+#[test]
+fn a_step_without_a_linearisation_says_what_a_start_must_be() {
+    let message = |request: &Request| analyze(request).unwrap_err().to_string();
+    let kepler = message(&request("kepler", Method::Rk4, 0.01, &[0.0, 0.0], &[0.0, 1.0]));
+    assert!(kepler.contains("--q must not be the origin"), "{kepler}");
+    let pendulum = message(&request("pendulum", Method::Rk4, 0.01, &[1e300], &[0.0]));
+    assert!(pendulum.contains("--q") && pendulum.contains("rad"), "{pendulum}");
+}

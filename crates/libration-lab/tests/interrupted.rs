@@ -88,3 +88,43 @@ fn a_study_that_was_stopped_is_not_in_the_results_but_those_before_it_are() {
     assert_eq!(results["studies"].as_array().unwrap().len(), 1);
     assert_eq!(results["studies"][0]["name"], "first");
 }
+
+#[test]
+fn an_older_report_is_gone_and_an_unfinished_one_says_so() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("patience-0");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("report.html"), "an older report").unwrap();
+    assert!(run(0).0.is_ok(), "nobody stops a run before its first part");
+    assert!(!std::fs::read_to_string(folder.join("report.html")).unwrap().contains("incomplete"));
+    // Stopped within the first study, and within the second.
+    for (patience, report) in [(10, false), (120, true)] {
+        let folder =
+            PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("patience-{patience}"));
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(folder.join("report.html"), "an older report").unwrap();
+        assert!(run(patience).0.is_err());
+        let found = std::fs::read_to_string(folder.join("report.html"));
+        assert_eq!(found.is_ok(), report);
+        assert!(found.is_err() || found.unwrap().contains("This report is incomplete"));
+    }
+}
+
+#[test]
+fn a_folder_that_cannot_take_the_files_is_refused_before_any_work() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("half");
+    for (name, is_folder) in [
+        ("figures", false),
+        ("report.html", true),
+        ("results.json", true),
+        ("data/x.parquet", true),
+    ] {
+        std::fs::remove_dir_all(&folder).ok();
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join(name);
+        match is_folder {
+            true => std::fs::create_dir_all(&path).unwrap(),
+            false => std::fs::write(&path, "").unwrap(),
+        }
+        assert!(Output::open(&folder).is_err(), "{name}");
+    }
+}

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::number::{positive, steps};
+use super::number::{forecast_steps, positive};
 use super::{StepArgs, SystemArgs};
 
 /// What theory says of one step.
@@ -13,8 +13,14 @@ pub(crate) struct AnalyzeArgs {
     pub(crate) system: SystemArgs,
     #[command(flatten)]
     pub(crate) step: StepArgs,
-    /// Number of steps over which the largest energy drift is taken
-    #[arg(long, value_name = "N", default_value = "1000000", value_parser = steps, allow_hyphen_values = true)]
+    /// Number of steps over which the largest energy drift is taken; of a linear system up to 1e15
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "1000000",
+        value_parser = forecast_steps,
+        allow_hyphen_values = true
+    )]
     pub(crate) steps: u64,
     /// Also say the largest dt whose relative energy drift stays below this over --steps
     #[arg(long, value_name = "DRIFT", value_parser = positive, allow_hyphen_values = true)]

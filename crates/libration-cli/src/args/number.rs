@@ -71,6 +71,14 @@ pub(super) fn steps(text: &str) -> Result<u64, String> {
     limits::steps("--steps", steps)
 }
 
+/// Reads a number of steps of a forecast; also as `1e12`.
+pub(super) fn forecast_steps(text: &str) -> Result<u64, String> {
+    let steps = whole_number(text).ok_or_else(|| {
+        format!("it is not a whole number; steps must be {}", limits::forecast_steps_allowed())
+    })?;
+    limits::forecast_steps("--steps", steps)
+}
+
 /// The whole number that `text` stands for, written as `1000` or `1e3`.
 pub(super) fn whole_number(text: &str) -> Option<i128> {
     let text = text.trim();

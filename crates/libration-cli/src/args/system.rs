@@ -79,7 +79,16 @@ impl SystemArgs {
             Some(given) => given.0.clone(),
             None => default,
         };
-        Ok(Setting { system, q: or_default(&self.q, q), v: or_default(&self.v, v) })
+        let (q, v) = (or_default(&self.q, q), or_default(&self.v, v));
+        match (system, v.as_slice()) {
+            (AnySystem::DrivenOscillator(_), &[_, rate]) if rate != 1.0 => {
+                Err(Failure::usage(format!(
+                    "--v ends in {rate}, but the second coordinate of {} is time, so it must be 1",
+                    entry.name
+                )))
+            }
+            _ => Ok(Setting { system, q, v }),
+        }
     }
 }
 

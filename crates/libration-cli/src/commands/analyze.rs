@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::io::{self, Write as _};
 
 use libration_lab::analyze::{self, Analysis, Criteria, ModifiedHamiltonian, Request};
+use libration_lab::config::limits;
 
 use crate::args::{AnalyzeArgs, Setting};
 use crate::error::Failure;
@@ -12,6 +13,10 @@ use crate::error::Failure;
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     let Setting { system, q, v } = args.system.resolve()?;
     let (method, dt) = (args.step.integrator, args.step.dt);
+    if !system.is_linear() {
+        // What cannot be forecast is simulated.
+        limits::steps("--steps", args.steps.into()).map_err(Failure::usage)?;
+    }
     let criteria = Criteria {
         max_drift: args.max_drift,
         max_amplitude: args.max_amplitude,

@@ -70,7 +70,7 @@ fn unwritable(folder: &Path, error: &OutputError) -> Failure {
     let reason = if folder.is_file() {
         "it is a file, but it must be a folder".to_owned()
     } else {
-        error.source.to_string()
+        format!("`{}`: {}", error.path.display(), error.source)
     };
     Failure::usage(format!("cannot write into the folder `{}` (--out): {reason}", folder.display()))
 }

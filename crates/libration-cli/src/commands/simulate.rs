@@ -18,8 +18,7 @@ const BUFFER: usize = 1 << 18;
 /// Simulates a trajectory and writes its rows.
 pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
     let request = request(args)?;
-    let from_path = || args.output.as_deref().and_then(Format::of_path);
-    let format = args.format.or_else(from_path).unwrap_or_default();
+    let format = format(args)?;
     let stop = interrupt::listen()?;
     let stopped = match &args.output {
         Some(path) => into_file(path, &request, format, stop)?,
@@ -32,6 +31,28 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
         ));
     }
     Ok(())
+}
+
+/// The format that is asked for, by name or by the ending of the file; both must say the same.
+fn format(args: &SimulateArgs) -> Result<Format, Failure> {
+    let Some(path) = args.output.as_deref() else { return Ok(args.format.unwrap_or_default()) };
+    match (args.format, Format::of_path(path)) {
+        (Some(named), Some(ending)) if named != ending => Err(Failure::usage(format!(
+            "--format {} and --output `{}` contradict each other: the file ends in .{}",
+            named.name(),
+            path.display(),
+            ending.name()
+        ))),
+        (None, None) if path.extension().is_some() => {
+            let endings = Format::ALL.map(|format| format!(".{}", format.name())).join(", ");
+            Err(Failure::usage(format!(
+                "--output `{}` does not tell the format: it must end in one of {endings}, or \
+                 --format must be given",
+                path.display()
+            )))
+        }
+        (named, ending) => Ok(named.or(ending).unwrap_or_default()),
+    }
 }
 
 fn request(args: &SimulateArgs) -> Result<Request, Failure> {

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use libration::Scalar;
-use libration::analysis::{DriftForecast, QuadraticForm, Spectrum, UpdateMatrix};
+use libration::analysis::{DriftForecast, QuadraticForm, UpdateMatrix};
 use libration::number::Wide;
 use libration::simulation::{EnergyDrift, SimulationError};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use serde_json::value::RawValue;
 
 use super::{LargestDt, OrderOfWord, Request};
@@ -60,8 +60,17 @@ pub struct Analysis {
     /// Force evaluations that one step takes, counted.
     pub force_evaluations_per_step: u64,
     /// The energy drift; none where the initial energy is zero.
-    #[serde(flatten)]
+    #[serde(flatten, serialize_with = "drift_or_nulls")]
     pub drift: Option<Drift>,
+}
+
+/// The keys of a drift are there also where there is none.
+fn drift_or_nulls<S: Serializer>(drift: &Option<Drift>, serializer: S) -> Result<S::Ok, S::Error> {
+    if let Some(drift) = drift {
+        return drift.serialize(serializer);
+    }
+    let keys = ["max_energy_drift", "log10_max_energy_drift", "max_energy_drift_step"];
+    serializer.collect_map(keys.map(|key| (key, None::<f64>)))
 }
 
 /// What was asked.
@@ -124,9 +133,11 @@ pub struct ModifiedHamiltonian {
 impl ModifiedHamiltonian {
     /// The form of a linear step; none if the step does not conserve areas in each degree of
     /// freedom, or keeps `q` from depending on `v`.
-    pub(super) fn of<const D: usize>(step: &UpdateMatrix<Wide, D>) -> Option<Self> {
+    pub(super) fn of<const D: usize>(
+        step: &UpdateMatrix<Wide, D>,
+        conserves: bool,
+    ) -> Option<Self> {
         let blocks = step.decoupled()?;
-        let conserves = blocks.iter().all(|m| Spectrum::new(m).determinant_minus_one().is_zero());
         let form = QuadraticForm::carried_by(&blocks[0]);
         let scaled = |x: Wide| (x / form.vv).ratio(1, 2).to_f64();
         (conserves && !form.vv.is_zero()).then(|| ModifiedHamiltonian {

@@ -5,11 +5,12 @@ mod criteria;
 mod limits;
 mod modes;
 
-use libration::analysis::{Linearisation, SymbolicStep, determinant, forecast_drift};
+use libration::analysis::{Linearisation, Spectrum, SymbolicStep, forecast_drift};
 use libration::number::Wide;
 use libration::simulation::{EnergyDrift, SimulationError, Simulator};
 use libration::{
-    AnySystem, CatalogError, Integrator, Method, Model, State, with_method, with_system,
+    AnySystem, CatalogError, Elementary, Integrator, Method, Model, Scalar, State, with_method,
+    with_system,
 };
 use thiserror::Error;
 
@@ -64,9 +65,12 @@ pub enum AnalyzeError {
     },
     /// The Jacobian does not exist at this state.
     #[error(
-        "the step cannot be linearised about q = {q:?}, v = {v:?}: the force is singular there"
+        "the step cannot be linearised about q = {q:?} (--q), v = {v:?} (--v): the force or its \
+         derivative does not exist there or after a step from there; {allowed}"
     )]
     Singular {
+        /// What a start must be.
+        allowed: &'static str,
         /// Positions.
         q: Vec<f64>,
         /// Velocities.
@@ -109,7 +113,8 @@ fn run<const D: usize>(
     let linear = Linearisation::new(integrator, model, &start, request.dt);
     let rows = linear.step.rows();
     if rows.iter().flatten().any(|x| x.is_nan()) {
-        return Err(AnalyzeError::Singular { q: request.q.clone(), v: request.v.clone() });
+        let (q, v) = (request.q.clone(), request.v.clone());
+        return Err(AnalyzeError::Singular { allowed: allowed(request.system), q, v });
     }
     let drift = if request.system.is_linear() {
         forecast_drift(model, &linear.step, &start, request.steps).map(Drift::from)
@@ -117,10 +122,17 @@ fn run<const D: usize>(
         simulated_drift(&mut simulator.clone(), model, request.steps)
     };
     simulator.run(1, &mut ()).ok();
-    let modes = Modes::new(&linear);
     let polynomials = matches!(request.system, AnySystem::Oscillator(_))
         .then(|| SymbolicStep::new(integrator))
         .flatten();
+    let exact = polynomials.as_ref().zip(omega(request.system));
+    let modes = Modes::new(
+        &linear,
+        exact.and_then(|(step, omega)| Spectrum::of_polynomials(step, omega * linear.dt)),
+    );
+    let reversibility = exact
+        .and_then(|(step, omega)| reversibility_defect::<D>(step, omega, linear.dt))
+        .unwrap_or_else(|| linear.reversibility_defect());
     let in_z = |symbolic: &SymbolicStep| -> Vec<Vec<String>> {
         let rows = symbolic.matrix.rows();
         rows.iter().map(|row| row.iter().map(ToString::to_string).collect()).collect()
@@ -130,7 +142,7 @@ fn run<const D: usize>(
         about: About::new(request),
         update_matrix: to_f64(&rows),
         update_matrix_in_z: polynomials.as_ref().map(in_z),
-        determinant: determinant(&linear.step).to_f64(),
+        determinant: modes.determinant.to_f64(),
         determinant_minus_one: modes.determinant_minus_one.to_f64(),
         trace: linear.step.trace().to_f64(),
         eigenvalues: modes.eigenvalues(),
@@ -140,21 +152,55 @@ fn run<const D: usize>(
         stability_windows: limits::stability_windows(integrator, request.system),
         largest_dt: limits::largest_dt(polynomials.as_ref(), request),
         modified_hamiltonian: linear_system
-            .then(|| ModifiedHamiltonian::of(&linear.step))
+            .then(|| ModifiedHamiltonian::of(&linear.step, modes.determinant_minus_one.is_zero()))
             .flatten(),
         order_of_word: OrderOfWord::of(integrator),
-        symplecticity_defect: defect(linear.step.symplecticity_defect()),
-        reversibility_defect: defect(linear.reversibility_defect()),
+        symplecticity_defect: defect(modes.symplecticity_defect, exact.is_some()),
+        reversibility_defect: defect(reversibility, exact.is_some()),
         phase_error_per_step: modes.phase_error.map(Wide::to_f64),
         force_evaluations_per_step: simulator.evaluations(),
         drift,
     })
 }
 
-/// A defect in `f64`; zero where it is rounding of the 1024 bits.
-fn defect(norm: Wide) -> f64 {
+/// Where the force of a system has a derivative, for the reader.
+fn allowed(system: AnySystem) -> &'static str {
+    match system {
+        AnySystem::Kepler(_) => "--q must not be the origin, where the attraction has no bound",
+        AnySystem::Pendulum(_) | AnySystem::DrivenOscillator(_) => {
+            "coordinates must stay so small that angles are below 10¹⁵⁴ rad"
+        }
+        _ => "coordinates must stay within the range of floats",
+    }
+}
+
+/// A defect in `f64`; zero where it is rounding of the 1024 bits, unless it is exact.
+fn defect(norm: Wide, exact: bool) -> f64 {
     let value = norm.to_f64();
-    if value < 1e-270 { 0.0 } else { value }
+    if value < 1e-270 && !exact { 0.0 } else { value }
+}
+
+/// The angular frequency of an oscillator, in rad/s.
+fn omega(system: AnySystem) -> Option<Wide> {
+    match system {
+        AnySystem::Oscillator(model) => Some(Wide::from_f64(model.omega2).sqrt()),
+        _ => None,
+    }
+}
+
+/// `‖M(−Δt)·M(Δt) − 1‖` of an oscillator in `D` dimensions, from the polynomials of one.
+fn reversibility_defect<const D: usize>(
+    step: &SymbolicStep,
+    omega: Wide,
+    dt: Wide,
+) -> Option<Wide> {
+    let residual = step.reversibility_residual()?.map(|p| p.eval_wide(omega * dt));
+    let entry = |i, j, unit: Wide| residual.entry(i, j) * unit;
+    let one = Wide::one();
+    let entries =
+        [entry(0, 0, one), entry(0, 1, omega.recip()), entry(1, 0, omega), entry(1, 1, one)];
+    let squares = entries.into_iter().fold(Wide::ZERO, |sum, x| sum + x * x);
+    Some((squares * Wide::from_f64(D as f64)).sqrt())
 }
 
 fn to_f64(rows: &[Vec<Wide>]) -> Vec<Vec<f64>> {

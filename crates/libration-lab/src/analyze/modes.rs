@@ -1,10 +1,10 @@
 //! The eigenvalues of a step, and how its modes turn beside those of the system.
 
-use libration::Scalar;
 use libration::analysis::{
-    Complex, Eigenvalues, Linearisation, Spectrum, determinant, eigenvalues,
+    Complex, Eigenvalues, Linearisation, Spectrum, UpdateMatrix, determinant, eigenvalues,
 };
 use libration::number::Wide;
+use libration::{Elementary, Scalar};
 
 /// Differences from one below this are rounding of the 1024 bits, amplified by a double root.
 const ROUNDING: f64 = 1e-50;
@@ -12,6 +12,7 @@ const ROUNDING: f64 = 1e-50;
 /// What the eigenvalues of one step say.
 pub(super) struct Modes {
     values: Vec<Complex>,
+    pub(super) determinant: Wide,
     pub(super) determinant_minus_one: Wide,
     pub(super) radius: Wide,
     pub(super) radius_minus_one: Wide,
@@ -19,12 +20,18 @@ pub(super) struct Modes {
     pub(super) bounded: Option<bool>,
     /// The largest phase error of a mode, in rad; none where nothing oscillates.
     pub(super) phase_error: Option<Wide>,
+    /// The Frobenius norm of `MᵀJM − J`.
+    pub(super) symplecticity_defect: Wide,
 }
 
 impl Modes {
-    pub(super) fn new<const D: usize>(linear: &Linearisation<D>) -> Self {
+    /// The modes of a step; `exact` is the spectrum of every one of them, if it is known without
+    /// cancellation.
+    pub(super) fn new<const D: usize>(linear: &Linearisation<D>, exact: Option<Spectrum>) -> Self {
+        let spectrum =
+            |block: UpdateMatrix<Wide, 1>| exact.unwrap_or_else(|| Spectrum::new(&block));
         match linear.step.decoupled() {
-            Some(blocks) => Modes::decoupled(linear, &blocks.map(|block| Spectrum::new(&block))),
+            Some(blocks) => Modes::decoupled(linear, &blocks.map(spectrum)),
             None => Modes::coupled(linear),
         }
     }
@@ -39,19 +46,20 @@ impl Modes {
             })
         });
         let errors = spectra.iter().zip(frequencies.into_iter().flatten());
-        let product = spectra.iter().fold(Wide::one(), |product, s| product * s.determinant);
-        let difference = match spectra.as_slice() {
-            [only] => only.determinant_minus_one(),
-            _ => unless_rounding(product - Wide::one()),
-        };
+        let excesses = || spectra.iter().map(Spectrum::determinant_minus_one);
+        // (1 + a)(1 + b) − 1; and MᵀJM − J of a block is its excess times J.
+        let difference = excesses().fold(Wide::ZERO, |a, b| a + b + a * b);
+        let defect = excesses().fold(Wide::ZERO, |sum, e| sum + (e * e).scaled(1)).sqrt();
         Modes {
             values: spectra.iter().flat_map(pair).collect(),
+            determinant: spectra.iter().fold(Wide::one(), |product, s| product * s.determinant),
             determinant_minus_one: difference,
+            symplecticity_defect: defect,
             radius: largest(spectra.iter().map(Spectrum::radius)),
             radius_minus_one: excess,
             bounded: Some(spectra.iter().all(Spectrum::is_bounded)),
             phase_error: errors
-                .filter_map(|(s, omega)| Some(s.angle() - omega? * linear.dt))
+                .filter_map(|(s, omega)| Some(difference_of(s.angle(), omega? * linear.dt)))
                 .reduce(larger_size),
         }
     }
@@ -73,8 +81,13 @@ impl Modes {
         // Modes are told apart by the order of their frequencies.
         let comparable = numeric.len() == exact.len();
         let errors = numeric.iter().zip(&exact).map(|(&n, &e)| n - e);
+        let product = determinant(&linear.step);
+        let values: Vec<Complex> =
+            values.iter().map(|z| Complex { re: z.re, im: unless_rounding(z.im) }).collect();
         Modes {
-            determinant_minus_one: unless_rounding(determinant(&linear.step) - Wide::one()),
+            determinant: product,
+            determinant_minus_one: unless_rounding(product - Wide::one()),
+            symplecticity_defect: linear.step.symplecticity_defect(),
             radius,
             radius_minus_one,
             bounded: (!radius_minus_one.is_zero()).then(|| radius_minus_one.is_negative()),
@@ -85,8 +98,7 @@ impl Modes {
 
     /// The eigenvalues as pairs of real and imaginary part.
     pub(super) fn eigenvalues(&self) -> Vec<[f64; 2]> {
-        let shown = |x: Wide| unless_rounding(x).to_f64();
-        self.values.iter().map(|z| [z.re.to_f64(), shown(z.im)]).collect()
+        self.values.iter().map(|z| [z.re.to_f64(), z.im.to_f64()]).collect()
     }
 }
 
@@ -100,6 +112,16 @@ fn pair(spectrum: &Spectrum) -> [Complex; 2] {
 
 fn real(re: Wide) -> Complex {
     Complex { re, im: Wide::ZERO }
+}
+
+/// `a − b`, or zero where that is rounding of the 1024 bits. Of a phase error it is no loss: it is of
+/// third order at least, and below every `f64` where its part of the angle is below 2⁻⁹⁰⁰.
+fn difference_of(a: Wide, b: Wide) -> Wide {
+    let difference = a - b;
+    match (difference.exponent(), b.exponent()) {
+        (Some(left), Some(of)) if left < of - 900 => Wide::ZERO,
+        _ => difference,
+    }
 }
 
 fn unless_rounding(x: Wide) -> Wide {

@@ -15,6 +15,9 @@ pub const TOLERANCE: Allowed = Allowed::Positive;
 /// Numbers of steps.
 pub const STEPS: RangeInclusive<u64> = 1..=1_000_000_000;
 
+/// Numbers of steps over which a linear system is forecast, in closed form.
+pub const FORECAST_STEPS: RangeInclusive<u64> = 1..=1_000_000_000_000_000;
+
 /// Steps a turn at the largest step of a sequence of halvings.
 pub const COARSEST: RangeInclusive<u64> = COARSEST_UNIT..=4096;
 /// What such a number must be a multiple of: orbits are compared that often in a turn.
@@ -46,6 +49,22 @@ pub fn steps(what: &str, steps: i128) -> Result<u64, String> {
         Ok(allowed) if STEPS.contains(&allowed) => Ok(allowed),
         _ => Err(format!("`{what}` is {steps}, but it must be {}", steps_allowed())),
     }
+}
+
+/// `steps`, if a linear system can be forecast over as many for `what`.
+///
+/// # Errors
+/// A sentence that names the value and what is allowed.
+pub fn forecast_steps(what: &str, steps: i128) -> Result<u64, String> {
+    match u64::try_from(steps) {
+        Ok(allowed) if FORECAST_STEPS.contains(&allowed) => Ok(allowed),
+        _ => Err(format!("`{what}` is {steps}, but it must be {}", forecast_steps_allowed())),
+    }
+}
+
+/// The allowed numbers of steps of a forecast, in words.
+pub fn forecast_steps_allowed() -> String {
+    format!("{} to {}", FORECAST_STEPS.start(), FORECAST_STEPS.end())
 }
 
 /// The allowed numbers of steps, in words.

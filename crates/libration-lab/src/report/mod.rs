@@ -68,8 +68,21 @@ fn setting(results: &Results) -> String {
     ))
 }
 
-/// Findings that contradict theory stand before everything else.
+/// What a reader must know stands before everything else: that studies are missing, and findings that
+/// contradict theory.
 fn alarm(results: &Results) -> String {
+    let incomplete = match results.complete {
+        true => String::new(),
+        false => {
+            "<div class=\"alarm\"><b>This report is incomplete:</b> the run had not ended when \
+                  it was written.</div>\n"
+                .into()
+        }
+    };
+    incomplete + &disagreements(results)
+}
+
+fn disagreements(results: &Results) -> String {
     let broken: Vec<String> = results
         .studies
         .iter()

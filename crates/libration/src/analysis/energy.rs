@@ -26,8 +26,8 @@ impl DriftForecast {
 /// The largest relative energy drift within `steps` steps of the linear map `step` from `start`.
 ///
 /// The step `n` of the maximum is found by iterating the map in double-double, and the drift there
-/// is computed from `Mⁿ` in 1024 bits: what is returned carries no visible rounding. None where the
-/// initial energy is zero.
+/// is computed from `Mⁿ` in 1024 bits: what is returned carries no visible rounding, and is zero where
+/// there is nothing else, below `2⁻¹⁰⁰⁰` for each step. None where the initial energy is zero.
 pub fn forecast_drift<const D: usize>(
     model: impl Model<D>,
     step: &UpdateMatrix<Wide, D>,
@@ -54,7 +54,10 @@ fn exact_drift<const D: usize>(
     let scale = initial.abs().recip();
     let drift = move |n| {
         let energy = system.energy(&step.power(n).apply(&start));
-        (energy - initial).abs() * scale
+        let drift = (energy - initial).abs() * scale;
+        // n steps of a few operations, each to 2⁻¹⁰²³.
+        let rounding = Wide::from_f64(n as f64).scaled(-1000);
+        if drift < rounding { Wide::ZERO } else { drift }
     };
     (!initial.is_zero()).then_some(drift)
 }

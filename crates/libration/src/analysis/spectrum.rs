@@ -1,6 +1,6 @@
 //! The eigenvalues of a `2 × 2` matrix, in closed form and without cancellation.
 
-use super::UpdateMatrix;
+use super::{SymbolicStep, UpdateMatrix};
 use crate::number::Wide;
 use crate::{Elementary, Scalar};
 
@@ -17,6 +17,8 @@ pub struct Spectrum {
     pub determinant: Wide,
     /// The eigenvalues.
     pub eigenvalues: Eigenvalues,
+    /// The determinant minus one, without cancellation where it is known so.
+    excess: Wide,
 }
 
 /// The two eigenvalues of a real `2 × 2` matrix.
@@ -40,29 +42,61 @@ pub enum Eigenvalues {
     },
 }
 
+impl Eigenvalues {
+    /// `half ± √discriminant`, whose product is `determinant`.
+    fn new(half: Wide, discriminant: Wide, determinant: Wide, defective: bool) -> Self {
+        if discriminant.is_zero() {
+            return Eigenvalues::Double { value: half, defective };
+        }
+        if discriminant.is_negative() {
+            return Eigenvalues::Complex { re: half, im: (-discriminant).sqrt() };
+        }
+        let root = discriminant.sqrt();
+        // The sum does not cancel for the one of the larger size; the other follows from the product.
+        if half.is_negative() {
+            let smaller = half - root;
+            Eigenvalues::Real(determinant / smaller, smaller)
+        } else {
+            let larger = half + root;
+            Eigenvalues::Real(larger, determinant / larger)
+        }
+    }
+}
+
 impl Spectrum {
     /// The spectrum of `matrix`.
     pub fn new(matrix: &UpdateMatrix<Wide, 1>) -> Self {
         let (trace, determinant) = (matrix.trace(), matrix.determinant());
         let half = trace.ratio(1, 2);
-        let discriminant = half * half - determinant;
-        let eigenvalues = if negligible(discriminant, half * half) {
-            let off_diagonal = [matrix.entry(0, 1), matrix.entry(1, 0)];
-            let defective = off_diagonal.iter().any(|x| !x.is_zero());
-            Eigenvalues::Double { value: half, defective }
-        } else if discriminant.is_negative() {
-            Eigenvalues::Complex { re: half, im: (-discriminant).sqrt() }
-        } else {
-            let root = discriminant.sqrt();
-            Eigenvalues::Real(half + root, half - root)
-        };
-        Spectrum { trace, determinant, eigenvalues }
+        let unless_rounding = |x: Wide, scale| if negligible(x, scale) { Wide::ZERO } else { x };
+        let discriminant = unless_rounding(half * half - determinant, half * half);
+        let off_diagonal = [matrix.entry(0, 1), matrix.entry(1, 0)];
+        let defective = off_diagonal.iter().any(|x| !x.is_zero());
+        Spectrum {
+            trace,
+            determinant,
+            eigenvalues: Eigenvalues::new(half, discriminant, determinant, defective),
+            excess: unless_rounding(determinant - Wide::one(), Wide::one()),
+        }
+    }
+
+    /// The spectrum of a step on the oscillator at `z = ωΔt`, from its polynomials: what cancels at
+    /// very small or large `z` has cancelled exactly, before anything is rounded.
+    pub fn of_polynomials(step: &SymbolicStep, z: Wide) -> Option<Self> {
+        let (trace, determinant) = (step.trace(), step.determinant());
+        let discriminant = ((trace * trace).ratio(1, 4) - determinant).checked()?.eval_wide(z);
+        let excess = (determinant - Scalar::one()).checked()?.eval_wide(z);
+        let (trace, determinant) = (trace.eval_wide(z), excess + Wide::one());
+        let off_diagonal = [step.matrix.entry(0, 1), step.matrix.entry(1, 0)];
+        let defective = off_diagonal.iter().any(|p| !p.eval_wide(z).is_zero());
+        let half = trace.ratio(1, 2);
+        let eigenvalues = Eigenvalues::new(half, discriminant, determinant, defective);
+        Some(Spectrum { trace, determinant, eigenvalues, excess })
     }
 
     /// The determinant minus one; zero where it differs from one by rounding only.
     pub fn determinant_minus_one(&self) -> Wide {
-        let difference = self.determinant - Wide::one();
-        if negligible(difference, Wide::one()) { Wide::ZERO } else { difference }
+        self.excess
     }
 
     /// The largest absolute value of an eigenvalue.
@@ -82,6 +116,10 @@ impl Spectrum {
 
     /// The spectral radius minus one; zero where it differs from one by rounding only.
     pub fn radius_minus_one(&self) -> Wide {
+        if let Eigenvalues::Complex { .. } = self.eigenvalues {
+            // √(1 + e) − 1
+            return self.excess / (self.determinant.sqrt() + Wide::one());
+        }
         let difference = self.radius() - Wide::one();
         if negligible(difference, Wide::one()) { Wide::ZERO } else { difference }
     }

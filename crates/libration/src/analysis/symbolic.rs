@@ -47,6 +47,15 @@ impl SymbolicStep {
         self.matrix.determinant()
     }
 
+    /// `M(−z)·M(z) − 1`, which is zero for a time-reversible method; none if the polynomials outgrow
+    /// their exact arithmetic.
+    pub fn reversibility_residual(&self) -> Option<UpdateMatrix<UnknownStep, 1>> {
+        let round_trip = self.matrix.map(UnknownStep::reflected).after(&self.matrix);
+        let residual =
+            UpdateMatrix::from_map(|e| round_trip.apply(&e).plus(-UnknownStep::one(), e));
+        residual.rows().iter().flatten().all(UnknownStep::is_valid).then_some(residual)
+    }
+
     /// The quadratic form `Q` that the step carries along, `Q(My) = det M · Q(y)`, as polynomials.
     pub fn invariant(&self) -> QuadraticForm<UnknownStep> {
         QuadraticForm::carried_by(&self.matrix)

@@ -105,6 +105,14 @@ impl<const N: usize> Poly<N> {
         self.coefficients[..length].iter().rev()
     }
 
+    /// The polynomial in `−z`.
+    pub fn reflected(mut self) -> Self {
+        for c in self.coefficients.iter_mut().skip(1).step_by(2) {
+            *c = -*c;
+        }
+        self
+    }
+
     /// The derivative with respect to `z`.
     pub fn derivative(&self) -> Self {
         let mut p = Poly::ZERO;

@@ -8,7 +8,7 @@ use libration::{Method, State, with_method};
 
 use super::step::radius_at;
 use crate::record::{Finding, Tolerance};
-use crate::studies::growth::{STEPS, grows};
+use crate::studies::growth::{GROWTH, grows};
 use crate::study::StudyError;
 
 /// Where the search for a limit ends.
@@ -25,17 +25,20 @@ pub(super) struct Limit {
 impl Limit {
     /// The first `z` at which the undamped oscillator is unstable: by the exact windows of stability
     /// of the polynomial matrix, and by the growth of orbits.
-    pub(super) fn imaginary(method: Method) -> Result<Self, StudyError> {
+    ///
+    /// `steps` are simulated to decide whether an orbit grows.
+    pub(super) fn imaginary(method: Method, steps: u64) -> Result<Self, StudyError> {
         let predicted = largest_stable(method)?;
-        let measured = first_loss(|z| !with_method!(method, |m| grows(m, z)));
+        let measured = first_loss(|z| !with_method!(method, |m| grows(m, z, steps)));
         Ok(Limit {
             predicted: Some(predicted),
             measured,
             tolerance: Tolerance::absolute(
-                // An orbit that grows by a factor 1 + az² a step shows after STEPS/2 of them.
-                if predicted == 0.0 { 0.01 } else { 1e-6 },
+                // An orbit that grows by 1 % in half of the steps: by 1 + az² a step from zero on, and
+                // by about 1 + (z − limit) beyond a limit.
+                if predicted == 0.0 { 0.01 } else { 2.0 * (GROWTH - 1.0) / steps as f64 },
                 format!(
-                    "what {STEPS} steps resolve: growth of 1 % in the second half, beats near a \
+                    "what {steps} steps resolve: growth of 1 % in the second half, beats near a \
                      double eigenvalue, and the lowest z = 0.01 that is tried"
                 ),
             ),

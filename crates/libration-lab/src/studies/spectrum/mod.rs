@@ -199,8 +199,9 @@ fn sweeps(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
 
 /// The ends of the stability intervals on the imaginary and the negative real axis.
 fn limits(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
+    let steps = lab.effort.choose(5_000, 20_000, 20_000);
     let found = lab.sweep("stability limits", &lab.config.integrators, |&method| {
-        Ok((method, Limit::imaginary(method)?, Limit::real(method)))
+        Ok((method, Limit::imaginary(method, steps)?, Limit::real(method)))
     })?;
     for (method, imaginary, real) in found {
         let (name, title) = (method.name(), method.title());

@@ -11,7 +11,7 @@ use libration::{Integrator, Scalar, State, with_method};
 
 use crate::notation::number;
 use crate::record::{Cell, Finding, Series, Table, Tolerance};
-use crate::studies::growth::{STEPS, grows};
+use crate::studies::growth::grows;
 use crate::study::StudyError;
 use crate::{Lab, Record};
 
@@ -20,6 +20,9 @@ use crate::{Lab, Record};
 const UNEVEN_THIRDS: Composition<VelocityVerlet, 3> =
     Composition { base: VelocityVerlet, weights: [0.33, 0.34, 0.33] };
 const UNEVEN: (&str, &str) = ("uneven-thirds", "Verlet in thirds of 33, 34 and 33 %");
+
+/// Steps of a simulation that decides whether an orbit grows.
+const STEPS: u64 = 20_000;
 
 /// What a hasty search does: a grid of steps, short runs, and the largest step that survived.
 const HASTY_GRID: f64 = 0.05;
@@ -128,7 +131,7 @@ fn examine(
 fn boundary(integrator: impl Integrator, mut stable: f64, mut unstable: f64) -> f64 {
     while (unstable - stable).abs() > 1e-12 * stable {
         let middle = 0.5 * (stable + unstable);
-        if grows(integrator, middle) { unstable = middle } else { stable = middle }
+        if grows(integrator, middle, STEPS) { unstable = middle } else { stable = middle }
     }
     0.5 * (stable + unstable)
 }
