@@ -167,6 +167,7 @@ mod tests {
             config: Config::default(),
             seconds: 13.0,
             complete: true,
+            untried: &[],
             studies: vec![first, second],
         }
     }

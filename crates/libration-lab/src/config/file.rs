@@ -5,6 +5,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::locate::Document;
+use super::tables::{
+    ConvergenceTable, DriftTable, EfficiencyTable, ErrorTable, NonlinearTable, SpectrumTable,
+    SpringTable, StabilityTable, StartTable,
+};
 use super::value::{Count, Number};
 use super::{
     Config, ConfigError, Convergence, Drift, Efficiency, Error, Fault, Nonlinear, Spectrum, Spring,
@@ -22,139 +26,31 @@ pub const DEFAULT: &str = include_str!("default.toml");
 pub(super) struct File {
     /// The studies to run, in this order; all of them if empty.
     #[schemars(schema_with = "schema::studies")]
-    studies: Vec<String>,
+    pub(super) studies: Vec<String>,
     /// How much work a run may take.
     #[schemars(schema_with = "schema::effort")]
-    effort: String,
+    pub(super) effort: String,
     /// The integrators under study, each once.
     #[schemars(schema_with = "schema::integrators")]
-    integrators: Vec<String>,
+    pub(super) integrators: Vec<String>,
     /// The harmonic oscillator that is simulated.
-    oscillator: SpringTable,
+    pub(super) oscillator: SpringTable,
     /// The state at time zero; `q` and `v` must not both be 0.
-    start: StartTable,
+    pub(super) start: StartTable,
     /// The study of update matrices, eigenvalues and stability regions.
-    spectrum: SpectrumTable,
+    pub(super) spectrum: SpectrumTable,
     /// The study of energy drift.
-    drift: DriftTable,
+    pub(super) drift: DriftTable,
     /// The study of the error against the exact solution.
-    error: ErrorTable,
+    pub(super) error: ErrorTable,
     /// The study of the largest stable time step.
-    stability: StabilityTable,
+    pub(super) stability: StabilityTable,
     /// The study of cost against stability and accuracy.
-    efficiency: EfficiencyTable,
+    pub(super) efficiency: EfficiencyTable,
     /// The study of orders.
-    convergence: ConvergenceTable,
+    pub(super) convergence: ConvergenceTable,
     /// The study of nonlinear systems.
-    nonlinear: NonlinearTable,
-}
-
-/// A mass on a spring, m q'' = -k q.
-#[derive(Deserialize, JsonSchema, Serialize)]
-#[serde(default, deny_unknown_fields)]
-struct SpringTable {
-    /// Mass in kg.
-    #[schemars(schema_with = "schema::spring")]
-    m: Number,
-    /// Stiffness in N/m.
-    #[schemars(schema_with = "schema::spring")]
-    k: Number,
-}
-
-/// A state.
-#[derive(Deserialize, JsonSchema, Serialize)]
-#[serde(default, deny_unknown_fields)]
-struct StartTable {
-    /// Position in m.
-    #[schemars(schema_with = "schema::coordinate")]
-    q: Number,
-    /// Velocity in m/s.
-    #[schemars(schema_with = "schema::coordinate")]
-    v: Number,
-}
-
-/// Settings of the study `spectrum`.
-#[derive(Deserialize, JsonSchema, Serialize)]
-#[serde(default, deny_unknown_fields)]
-struct SpectrumTable {
-    /// Time step in s at which numbers are shown.
-    #[schemars(schema_with = "schema::time_step")]
-    dt: Number,
-}
-
-/// Settings of the study `drift`.
-#[derive(Deserialize, JsonSchema, Serialize)]
-#[serde(default, deny_unknown_fields)]
-struct DriftTable {
-    /// Time steps in s, each once.
-    #[schemars(schema_with = "schema::time_steps")]
-    dt: Vec<Number>,
-    /// Number of steps at each of them.
-    #[schemars(schema_with = "schema::steps")]
-    steps: Count,
-}
-
-/// Settings of the study `error`.
-#[derive(Deserialize, JsonSchema, Serialize)]
-#[serde(default, deny_unknown_fields)]
-struct ErrorTable {
-    /// Time step in s.
-    #[schemars(schema_with = "schema::time_step")]
-    dt: Number,
-    /// Number of steps.
-    #[schemars(schema_with = "schema::steps")]
-    steps: Count,
-}
-
-/// Settings of the study `stability`.
-#[derive(Deserialize, JsonSchema, Serialize)]
-#[serde(default, deny_unknown_fields)]
-struct StabilityTable {
-    /// Relative energy drifts that are tolerated, each once.
-    #[schemars(schema_with = "schema::tolerances")]
-    tolerances: Vec<Number>,
-    /// Numbers of steps, each once.
-    #[schemars(schema_with = "schema::horizons")]
-    steps: Vec<Count>,
-}
-
-/// Settings of the study `efficiency`.
-#[derive(Deserialize, JsonSchema, Serialize)]
-#[serde(default, deny_unknown_fields)]
-struct EfficiencyTable {
-    /// Errors that are tolerated, in energy and in state, each once.
-    #[schemars(schema_with = "schema::tolerances")]
-    tolerances: Vec<Number>,
-    /// Horizons in periods of the oscillator, each once.
-    #[schemars(schema_with = "schema::horizons")]
-    periods: Vec<Count>,
-}
-
-/// Settings of the study `convergence`.
-#[derive(Deserialize, JsonSchema, Serialize)]
-#[serde(default, deny_unknown_fields)]
-struct ConvergenceTable {
-    /// The systems under study, each once.
-    #[schemars(schema_with = "schema::systems")]
-    systems: Vec<String>,
-    /// Steps a turn at the largest time step, a multiple of 16.
-    #[schemars(schema_with = "schema::coarsest")]
-    coarsest: Count,
-}
-
-/// Settings of the study `nonlinear`.
-#[derive(Deserialize, JsonSchema, Serialize)]
-#[serde(default, deny_unknown_fields)]
-struct NonlinearTable {
-    /// The systems under study, each once.
-    #[schemars(schema_with = "schema::systems")]
-    systems: Vec<String>,
-    /// Steps a turn over the long horizon.
-    #[schemars(schema_with = "schema::steps_a_turn")]
-    steps: Count,
-    /// Turns of the long horizon.
-    #[schemars(schema_with = "schema::turns")]
-    turns: Count,
+    pub(super) nonlinear: NonlinearTable,
 }
 
 /// Reads a configuration; keys that are not given take their defaults.
@@ -233,28 +129,6 @@ impl Default for File {
         }
     }
 }
-
-macro_rules! default_of_table {
-    ($($table:ident = $key:ident),*) => {
-        $(impl Default for $table {
-            fn default() -> Self {
-                File::default().$key
-            }
-        })*
-    };
-}
-
-default_of_table!(
-    SpringTable = oscillator,
-    StartTable = start,
-    SpectrumTable = spectrum,
-    DriftTable = drift,
-    ErrorTable = error,
-    StabilityTable = stability,
-    EfficiencyTable = efficiency,
-    ConvergenceTable = convergence,
-    NonlinearTable = nonlinear
-);
 
 impl TryFrom<File> for Config {
     type Error = Fault;

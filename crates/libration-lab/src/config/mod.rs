@@ -7,6 +7,7 @@ pub mod limits;
 mod locate;
 pub mod names;
 mod schema;
+mod tables;
 mod value;
 
 use libration::Method;

@@ -149,13 +149,9 @@ fn search(
         return Ok(None);
     }
     let start = State { q: [config.start.q], v: [config.start.v] };
-    let limit = match case.limit {
-        Limit::Amplitude(limit) => Limit::Amplitude(limit),
-        drift => drift,
-    };
     let meets = |dt: f64| -> Result<bool, StudyError> {
         lab.check()?;
-        Ok(stays_within(oscillator, integrator, start, dt, case.steps, limit))
+        Ok(stays_within(oscillator, integrator, start, dt, case.steps, case.limit))
     };
     // Two decades below the prediction are enough to see a gap below it, were there one.
     let mut low = 1e-2 * predicted / omega;

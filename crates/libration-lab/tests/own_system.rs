@@ -1,0 +1,64 @@
+//! A system of the user's own, through the studies that take any.
+
+#![allow(clippy::unwrap_used)]
+
+use std::sync::atomic::AtomicBool;
+
+use libration::system::{DampedOscillator, Duffing};
+use libration::{Method, State};
+use libration_lab::studies::{Convergence, Nonlinear, Problem, Subject};
+use libration_lab::{Config, Effort, Lab, Record, Silent, Study};
+
+#[track_caller]
+fn all_agree(records: &[Record], what: &str) {
+    let broken: Vec<_> = records.iter().flat_map(Record::disagreements).collect();
+    assert!(broken.is_empty(), "{what}: {broken:#?}");
+}
+
+#[test]
+fn a_system_of_ones_own_goes_through_the_same_studies() {
+    // A single well, whose orbits are closed; its small oscillations have the frequency √2.
+    let well = Duffing { alpha: 2.0, beta: 1.0 };
+    let start = State { q: [1.2], v: [0.4] };
+    let problem = Problem::new("my well", well, start, 3.6).about(State::origin());
+    let own: [&dyn Subject; 1] = [&problem];
+    let config = Config { integrators: Method::ALL.to_vec(), ..Config::default() };
+    let stop = AtomicBool::new(false);
+    let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
+    let records =
+        [Convergence::of(&own).run(&lab).unwrap(), Nonlinear::of(&own).run(&lab).unwrap()];
+    all_agree(&records, "a system of one’s own");
+    let of = |record: &Record, id: &str| record.finding(id).unwrap().clone();
+    let order = of(&records[0], "convergence.my-well.yoshida4.global-order");
+    assert_eq!(order.predicted, Some(4.0));
+    let limit = of(&records[1], "nonlinear.my-well.leapfrog.small-limit");
+    assert!((limit.measured - 2.0_f64.sqrt()).abs() < 1e-3, "{limit:?}");
+    for record in &records {
+        assert!(record.findings.iter().all(|f| f.id.contains(".my-well.")));
+        let mut page = libration_lab::page::Page::default();
+        match record.name.as_str() {
+            "convergence" => Convergence::of(&own).render(record, &mut page).unwrap(),
+            _ => Nonlinear::of(&own).render(record, &mut page).unwrap(),
+        }
+        assert!(page.figures().count() >= 2);
+    }
+}
+
+#[test]
+fn a_force_that_depends_on_the_velocity_is_promised_no_order_by_a_splitting_method() {
+    let damped = DampedOscillator { omega2: 1.0, gamma: 0.3 };
+    let start = State { q: [1.0], v: [0.2] };
+    let problem = Problem::new("damped", damped, start, 6.3);
+    let own: [&dyn Subject; 1] = [&problem];
+    let config = Config::default();
+    let stop = AtomicBool::new(false);
+    let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
+    let record = Convergence::of(&own).run(&lab).unwrap();
+    let order = |method: &str| {
+        record.finding(&format!("convergence.damped.{method}.global-order")).unwrap().clone()
+    };
+    assert_eq!(order("velocity-verlet").predicted, None);
+    assert!((order("velocity-verlet").measured - 1.0).abs() < 0.1);
+    assert_eq!(order("rk4").predicted, Some(4.0));
+    all_agree(std::slice::from_ref(&record), "damped");
+}
