@@ -11,7 +11,7 @@ use libration_lab::config::{Drift, Spring, Start};
 use libration_lab::record::ClaimVerdict::{self, Conditional, Confirmed, NotReproducible, Refuted};
 use libration_lab::record::Verdict;
 use libration_lab::studies;
-use libration_lab::{Config, Effort, Lab, Record, Silent, Study};
+use libration_lab::{Config, Effort, Lab, Record, Silent};
 
 fn run(config: &Config) -> Vec<Record> {
     let stop = AtomicBool::new(false);
