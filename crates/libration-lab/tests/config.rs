@@ -223,6 +223,6 @@ fn the_schema_describes_every_key() {
         }
     }
     let schema = schema();
-    assert_eq!(schema["properties"].as_object().unwrap().len(), 7);
+    assert_eq!(schema["properties"].as_object().unwrap().len(), 10);
     assert_described(&schema);
 }

@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 
 use libration::Method;
 use libration_lab::config::{Drift, Spring, Start};
-use libration_lab::record::ClaimVerdict::{self, Conditional, Confirmed, Refuted};
+use libration_lab::record::ClaimVerdict::{self, Conditional, Confirmed, NotReproducible, Refuted};
 use libration_lab::record::Verdict;
 use libration_lab::{Config, Effort, Lab, Record, Silent, studies};
 
@@ -109,6 +109,7 @@ fn verdicts_on_the_source_are_these() {
         ("C16", Conditional),
         ("C17", Refuted),
         ("C18", Confirmed),
+        ("C19", Refuted),
         ("C22", Confirmed),
         ("C23", Confirmed),
         ("C25", Refuted),
@@ -117,6 +118,12 @@ fn verdicts_on_the_source_are_these() {
         ("C33", Conditional),
         ("C34", Confirmed),
         ("C73", Refuted),
+        ("C74", Confirmed),
+        ("C75", Conditional),
+        ("C76", Conditional),
+        ("C77", NotReproducible),
+        ("C78", Refuted),
+        ("C79", Refuted),
     ];
     let mut judged: Vec<_> = default()
         .iter()
