@@ -116,7 +116,7 @@ fn criteria_are_taken_and_wrong_ones_refused() {
 fn wrong_input_is_named_with_exit_code_2_and_nothing_on_stdout() {
     let kepler = ["analyze", "--system", "kepler", "--integrator", "rk4"];
     for (words, told) in [
-        (&["--dt", "0.1", "--q", "0,0"][..], "singular"),
+        (&["--dt", "0.1", "--q", "0,0"][..], "--q must not be the origin"),
         (&["--dt", "0.1", "--q", "1"], "--q `1` has 1 coordinate"),
         (&["--dt", "0"], "greater than 0"),
         (&["--dt", "nan"], "greater than 0"),

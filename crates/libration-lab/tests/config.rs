@@ -242,6 +242,6 @@ fn the_schema_describes_every_key() {
         }
     }
     let schema = schema();
-    assert_eq!(schema["properties"].as_object().unwrap().len(), 9);
+    assert_eq!(schema["properties"].as_object().unwrap().len(), 12);
     assert_described(&schema);
 }

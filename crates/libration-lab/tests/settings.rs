@@ -77,6 +77,18 @@ fn findings_agree_up_to_the_limit_of_stability_and_at_it() {
 }
 
 #[test]
+fn a_composition_rounds_in_each_of_its_substeps() {
+    // Beyond the limit of Yoshida's composition; z = 1.63.
+    let config = Config {
+        integrators: Method::ALL.to_vec(),
+        oscillator: spring(0.1272938754405746),
+        spectrum: Spectrum { dt: 4.562678649912722 },
+        ..Config::default()
+    };
+    agrees(&studies::Spectrum, &config, "z = 1.63");
+}
+
+#[test]
 fn an_extreme_step_ends_no_study_and_takes_no_longer() {
     for (k, dt) in [(10.0, 1e-30), (10.0, 1e-9), (1e-30, 0.01), (10.0, 1e9), (1e300, 1e308)] {
         let spectrum = Spectrum { dt };

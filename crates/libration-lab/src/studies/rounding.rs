@@ -16,6 +16,15 @@ pub(super) fn path_of_unit_step(method: Method) -> f64 {
     }
 }
 
+/// The number of substeps of a step: a composition rounds as often as all of them.
+pub(super) fn substeps(method: Method) -> usize {
+    match method {
+        Method::Yoshida4 => YOSHIDA4.weights.len(),
+        Method::Suzuki4 => SUZUKI4.weights.len(),
+        _ => 1,
+    }
+}
+
 /// How many times the rounding of one step `n` steps at `z` may leave: `√n` where their roundings are
 /// independent (Brouwer 1937; Hairer, Lubich, Wanner, §VIII.5).
 ///

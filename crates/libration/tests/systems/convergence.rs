@@ -55,6 +55,8 @@ fn every_method_converges_at_its_order_in_position_and_velocity() {
             let steps = match order {
                 1 => 1 << 13,
                 2 => 1 << 9,
+                // Its error is so small that with more steps rounding would show.
+                _ if method == Method::Suzuki4 => 1 << 6,
                 _ => 1 << 7,
             };
             let [coarse, middle, fine] = [steps, 2 * steps, 4 * steps].map(|steps| {

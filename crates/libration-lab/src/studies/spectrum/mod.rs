@@ -124,7 +124,7 @@ fn steps(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
         for (quantity, norm, predicted, measured) in defects {
             if measured.tells(1.0 + predicted) {
                 let text = format!("{title}: {norm} of one step in f64");
-                let why = "40 roundings of the largest product of entries";
+                let why = "40 roundings of the largest product of entries, in each substep";
                 find(quantity, text, "1", predicted, measured, why);
             }
         }

@@ -6,7 +6,7 @@ use libration::simulation::Simulator;
 use libration::system::Oscillator;
 use libration::{Float, Integrator, Method, Model, Scalar, State, with_method};
 
-use crate::studies::rounding::{accumulated, condition, path_of_unit_step};
+use crate::studies::rounding::{accumulated, condition, path_of_unit_step, substeps};
 use crate::study::StudyError;
 
 /// Unit roundoff of the simulations.
@@ -224,8 +224,9 @@ pub(super) fn defects(
         let step = UpdateMatrix::<f64, 1>::from_map(|e| m.step(&oscillator, e, dt));
         let back = UpdateMatrix::from_map(|e| m.step(&oscillator, e, -dt));
         let largest = step.rows().concat().iter().fold(1.0_f64, |a, x| a.max(x.abs()));
-        // An entry carries a few roundings of its own size, and a defect sums products of two.
-        let rounding = 40.0 * U * largest * largest;
+        // An entry carries a few roundings of its own size in each substep, and a defect sums products
+        // of two.
+        let rounding = 40.0 * substeps(method) as f64 * U * largest * largest;
         let measured = |value: f64| Measured { value, rounding };
         (
             measured(step.symplecticity_defect()),
