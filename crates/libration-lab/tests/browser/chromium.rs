@@ -14,7 +14,7 @@ use std::{env, process};
 const NAMES: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
 
 /// Quiet, reproducible, and awake: a window that nobody sees must not fall asleep.
-const FLAGS: [&str; 14] = [
+const FLAGS: [&str; 15] = [
     "--headless",
     "--no-sandbox",
     "--disable-gpu",
@@ -24,6 +24,8 @@ const FLAGS: [&str; 14] = [
     "--no-default-browser-check",
     "--disable-background-networking",
     "--disable-component-update",
+    // The tests follow more links in a second than a reader would.
+    "--disable-ipc-flooding-protection",
     "--disable-sync",
     "--disable-renderer-backgrounding",
     "--disable-backgrounding-occluded-windows",

@@ -84,7 +84,9 @@ fn every_link_leads_to_its_target_even_into_a_fold() {
                 "(async () => {
                    const frame = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
                    const lost = [];
-                   const links = [...document.querySelectorAll('a[href]')].filter((a) => a.checkVisibility());
+                   const all = [...document.querySelectorAll('a[href]')].filter((a) => a.checkVisibility());
+                   // Several claims rest on the same finding.
+                   const links = [...new Map(all.map((a) => [a.getAttribute('href'), a])).values()];
                    if (!links.some((a) => a.closest('.ledger'))) lost.push('no link in the ledger');
                    for (const link of links) {
                      document.querySelectorAll('details').forEach((fold) => { fold.open = false; });
@@ -92,12 +94,14 @@ fn every_link_leads_to_its_target_even_into_a_fold() {
                      scrollTo(0, 0);
                      link.closest('details')?.setAttribute('open', '');
                      link.click();
-                     await frame();
                      const target = document.getElementById(link.hash.slice(1));
-                     const box = target?.getBoundingClientRect();
-                     if (!target?.checkVisibility() || box.height === 0 || box.bottom <= 0 || box.top >= innerHeight) {
-                       lost.push(link.getAttribute('href'));
-                     }
+                     const seen = () => {
+                       const box = target?.getBoundingClientRect();
+                       return target?.checkVisibility() && box.height > 0 && box.bottom > 0 && box.top < innerHeight;
+                     };
+                     // A busy machine opens a fold and scrolls to it some frames later.
+                     for (let i = 0; i < 60 && !seen(); i++) await frame();
+                     if (!seen()) lost.push(link.getAttribute('href'));
                    }
                    return lost;
                  })()",
