@@ -58,7 +58,7 @@ const TASKS: [Task; 6] = [
     },
     Task {
         name: "report",
-        summary: "a quick `libration lab` of the release binary, and its files checked",
+        summary: "a quick `libration lab` and its files checked",
         action: Action::Plain(report::run),
     },
 ];
