@@ -11,7 +11,7 @@ use crate::{Outcome, command, workspace};
 /// With the binary that the tests have built: a release build would take as long as all of them, and
 /// differs in nothing but its speed.
 pub(crate) fn run() -> Outcome {
-    command::run(&mut command::cargo("build --workspace"))?;
+    command::run(&mut command::cargo("test --workspace --no-run"))?;
     let scratch = Scratch::new("report")?;
     let out = scratch.path().join("out");
     command::run(
