@@ -9,6 +9,8 @@ mod growth;
 mod ink;
 mod nonlinear;
 mod rounding;
+mod sampled;
+mod source;
 mod spectrum;
 mod stability;
 mod subject;

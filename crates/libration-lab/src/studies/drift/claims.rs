@@ -6,13 +6,7 @@ use super::tag;
 use crate::Config;
 use crate::notation::{number, seconds};
 use crate::record::{Finding, Judgement, Record, Ruling};
-
-/// The source's own setting (§4.3 and the numbers of §9.2): ω² in s⁻², Δt in s, number of steps, and
-/// the start.
-const SOURCE_OMEGA2: f64 = 10.0;
-const SOURCE_DT: f64 = 1e-3;
-const SOURCE_STEPS: u64 = 1_000_000;
-const SOURCE_START: [f64; 2] = [1.0, 0.0];
+use crate::studies::source;
 
 /// Where RK4 stops losing energy and begins to gain it: z = 2√2.
 const RK4_LIMIT: f64 = 2.0 * std::f64::consts::SQRT_2;
@@ -49,10 +43,9 @@ fn id(method: Method, dt: f64, what: &str) -> String {
 
 /// A claim about the source's own runs says nothing of other springs, starts, steps and horizons.
 fn is_the_source_setting(config: &Config) -> bool {
-    config.oscillator.k / config.oscillator.m == SOURCE_OMEGA2
-        && [config.start.q, config.start.v] == SOURCE_START
-        && config.drift.dt.contains(&SOURCE_DT)
-        && config.drift.steps == SOURCE_STEPS
+    source::is_its_orbit(config)
+        && config.drift.dt.contains(&source::DT)
+        && config.drift.steps == source::STEPS
 }
 
 /// Those of `ids` that the record holds: explicit Euler overflows at large steps.
@@ -205,7 +198,7 @@ fn without_symplecticity(config: &Config, record: &mut Record) {
 
 /// The claims about the source's own time step and horizon.
 fn at_the_source_setting(record: &mut Record) {
-    let dt = SOURCE_DT;
+    let dt = source::DT;
     let of = |m: Method| id(m, dt, "largest");
     let leading = format!("drift.crossover.{}.leading-order", tag(dt));
     let pair = vec![of(Method::Rk4), of(Method::VelocityVerlet), leading];
@@ -227,8 +220,8 @@ fn at_the_source_setting(record: &mut Record) {
                 "for the energy it holds only beyond 18/z⁴ steps, {} at this step; the source’s own \
                  setting, z = {} and a million steps, lies at {} of it; {}",
                 number(crossover, 2),
-                number(SOURCE_OMEGA2.sqrt() * dt, 3),
-                number(SOURCE_STEPS as f64 / crossover, 2),
+                number(source::OMEGA2.sqrt() * dt, 3),
+                number(source::STEPS as f64 / crossover, 2),
                 compared(f)
             );
             if f[0].measured < f[1].measured {

@@ -3,6 +3,7 @@
 use libration::simulation::Sample;
 
 use crate::record::Series;
+use crate::studies::sampled::sampled_steps;
 
 /// Samples of the running maximum for each decade of steps.
 const PER_DECADE: f64 = 24.0;
@@ -39,7 +40,7 @@ impl<B: Fn(u64) -> (f64, f64)> Watch<B> {
             bounds,
             steps,
             stride: steps.div_ceil(STRETCHES).max(1),
-            sampled: sampled_steps(steps),
+            sampled: sampled_steps(steps, PER_DECADE),
             stretch: (0.0, 0.0),
             largest: 0.0,
             overflow: None,
@@ -116,30 +117,5 @@ impl Signed {
             .with("high", "1", self.high.clone())
             .with("bound_low", "1", self.bound_low.clone())
             .with("bound_high", "1", self.bound_high.clone())
-    }
-}
-
-/// Steps from 1 to `last`, evenly spaced in their logarithm, each once.
-fn sampled_steps(last: u64) -> Vec<u64> {
-    let decades = (last as f64).log10();
-    let count = (decades * PER_DECADE).ceil().max(1.0) as u64;
-    let mut steps: Vec<u64> = (0..=count)
-        .map(|i| 10_f64.powf(decades * i as f64 / count as f64).round() as u64)
-        .collect();
-    steps.dedup();
-    steps
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sampled_steps_begin_at_one_end_at_the_last_and_never_repeat() {
-        for last in [1, 2, 7, 1_000_000] {
-            let steps = sampled_steps(last);
-            assert_eq!((steps.first(), steps.last()), (Some(&1), Some(&last)));
-            assert!(steps.windows(2).all(|pair| pair[0] < pair[1]));
-        }
     }
 }

@@ -3,6 +3,7 @@
 use crate::Config;
 use crate::notation::{count, number};
 use crate::record::{Finding, Judgement, Record, Ruling};
+use crate::studies::source;
 
 /// The numbers that §9.2 of the source prints, and half a unit of their last digit.
 const PRINTED: [(&str, &str, &str, f64, f64); 4] = [
@@ -12,17 +13,10 @@ const PRINTED: [(&str, &str, &str, f64, f64); 4] = [
     ("C77", "rk4", "RK4", 0.90339, 0.000005),
 ];
 
-/// Whether this is the setting of the source's numbers: ω² = 10, from (1, 0), 10⁶ steps of 1 ms.
-fn is_the_sources(config: &Config) -> bool {
-    config.error.dt == 1e-3
-        && config.error.steps == 1_000_000
-        && config.oscillator.system().omega2 == 10.0
-        && (config.start.q, config.start.v) == (1.0, 0.0)
-}
-
 /// Judges them from the findings of the record, where the setting is the source's own.
 pub(super) fn judge(config: &Config, record: &mut Record) {
-    if !is_the_sources(config) {
+    let is_its_run = (config.error.dt, config.error.steps) == (source::DT, source::STEPS);
+    if !is_its_run || !source::is_its_orbit(config) {
         return;
     }
     for (id, method, title, printed, digits) in PRINTED {

@@ -19,8 +19,8 @@ use crate::{Lab, Record};
 pub struct Error;
 
 /// Where the bound on rounding comes from, for the reader.
-const ROUNDING: &str = "12 eᶻ roundings a step, added up as independent ones unless they are \
-                        biased, and 8 roundings of the angle ωt for the rounded coefficients";
+const ROUNDING: &str = "the rounding of a run, as for its energy drift, and 8 roundings of the angle ωt for the \
+                        rounded coefficients";
 
 impl Study for Error {
     fn name(&self) -> &'static str {

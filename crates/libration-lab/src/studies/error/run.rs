@@ -7,6 +7,7 @@ use libration::system::Oscillator;
 use libration::{Elementary, Float, Method, Model, Scalar, State, with_method};
 
 use crate::studies::rounding::rounding_of_run;
+use crate::studies::sampled::sampled_steps;
 use crate::study::StudyError;
 
 /// Samples of the running error for each decade of steps.
@@ -69,7 +70,7 @@ impl Setting {
 
     /// Simulates in `f64`, beside an exact solution in double-double.
     pub(super) fn run(&self) -> Result<Run, StudyError> {
-        let sampled = sampled_steps(self.steps);
+        let sampled = sampled_steps(self.steps, PER_DECADE);
         let mut watch = Watch::new(self, &sampled);
         let system = Model::<1>::on::<f64>(&self.oscillator);
         let finished = with_method!(self.method, |m| {
@@ -131,10 +132,7 @@ impl<'a> Watch<'a> {
 fn rotation(oscillator: Oscillator<f64>, dt: f64) -> UpdateMatrix<TwoFloat, 1> {
     let omega = Wide::from_f64(oscillator.omega2).sqrt();
     let (sin, cos) = (omega * Wide::from_f64(dt)).sin_cos();
-    let two = |x: Wide| {
-        let high = x.to_f64();
-        TwoFloat::from_sum(high, (x - Wide::from_f64(high)).to_f64())
-    };
+    let two = TwoFloat::from;
     UpdateMatrix {
         dq: [State { q: [two(cos)], v: [two(-omega * sin)] }],
         dv: [State { q: [two(sin / omega)], v: [two(cos)] }],
@@ -144,15 +142,4 @@ fn rotation(oscillator: Oscillator<f64>, dt: f64) -> UpdateMatrix<TwoFloat, 1> {
 fn root_mean(sums: Errors, steps: u64) -> Errors {
     let root = |sum: f64| (sum / steps as f64).sqrt();
     Errors { aligned: root(sums.aligned), late: root(sums.late) }
-}
-
-/// Steps from 1 to `last`, evenly spaced in their logarithm, each once.
-fn sampled_steps(last: u64) -> Vec<u64> {
-    let decades = (last as f64).log10();
-    let count = (decades * PER_DECADE).ceil().max(1.0);
-    let mut steps: Vec<u64> = (0..=count as u64)
-        .map(|i| 10_f64.powf(decades * i as f64 / count).round() as u64)
-        .collect();
-    steps.dedup();
-    steps
 }

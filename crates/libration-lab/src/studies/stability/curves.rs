@@ -8,6 +8,7 @@ use libration::{Method, Model, State, integrator};
 use super::largest::{Case, Limit, limits, root, start};
 use crate::notation::number;
 use crate::record::{Finding, Series, Tolerance};
+use crate::studies::rounding::rounding_of_run;
 use crate::study::StudyError;
 use crate::{Lab, Record};
 
@@ -64,7 +65,10 @@ pub(super) fn crossovers(lab: &Lab<'_>, record: &mut Record) -> Result<(), Study
             true => Some(steps_until(lab, z, tolerance, 2 * reach)?),
             false => None,
         };
-        Ok(Some((tolerance, predicted, measured)))
+        // What rounding makes of the drift, at the pace at which RK4 loses energy.
+        let rounding = rounding_of_run(Method::Rk4, 1.0, z, predicted as u64);
+        let allowed = 1.0 + predicted * rounding / tolerance;
+        Ok(Some((tolerance, predicted, measured.map(|steps| (steps, allowed)))))
     })?;
     let mut columns = [const { Vec::new() }; 2];
     for (tolerance, predicted, measured) in found.into_iter().flatten() {
@@ -75,7 +79,7 @@ pub(super) fn crossovers(lab: &Lab<'_>, record: &mut Record) -> Result<(), Study
             "Steps at which RK4 and Verlet allow the same Δt, for an energy drift of {}",
             number(tolerance, 3)
         );
-        if let Some(measured) = measured {
+        if let Some((measured, allowed)) = measured {
             record.find(Finding::predicted(
                 id,
                 format!("{text}: the step at which RK4 has lost as much, at Verlet’s largest Δt"),
@@ -83,7 +87,7 @@ pub(super) fn crossovers(lab: &Lab<'_>, record: &mut Record) -> Result<(), Study
                 predicted,
                 measured as f64,
                 Tolerance::absolute(
-                    1.0 + predicted * 1e-13 / tolerance * predicted.sqrt(),
+                    allowed,
                     "a crossing falls on a whole step, and rounding moves it",
                 ),
             ));

@@ -5,6 +5,7 @@ use libration::simulation::{EnergyDrift, Sample, SimulationError};
 use libration::{Float, Hamiltonian, Method, Model, Scalar, State};
 
 use super::{Fit, Halvings, Problem, Subject};
+use crate::studies::sampled::sampled_steps;
 use crate::study::StudyError;
 
 /// Turns over which the mean change of the energy is taken. A method of first order needs few,
@@ -135,12 +136,7 @@ pub(super) fn horizon<M: Model<D>, const D: usize>(
     turns: u64,
 ) -> Result<Horizon, StudyError> {
     let last = steps * turns;
-    let decades = (last as f64).log10();
-    let count = (decades * PER_DECADE).ceil().max(1.0);
-    let mut step: Vec<u64> = (0..=count as u64)
-        .map(|i| 10_f64.powf(decades * i as f64 / count).round() as u64)
-        .collect();
-    step.dedup();
+    let step = sampled_steps(last, PER_DECADE);
     let mut drift = EnergyDrift::new(problem.model.on::<f64>(), &problem.start);
     let mut largest = Vec::with_capacity(step.len());
     let mut watch = |s: &Sample<f64, D>| {
