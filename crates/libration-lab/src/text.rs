@@ -34,7 +34,7 @@ pub(crate) fn runs(text: &str) -> Vec<(Lift, String)> {
             push(Lift::Above, c);
         } else if let Some(c) = plain(LOWERED) {
             push(Lift::Below, c);
-        } else if c == '^' || c == '_' {
+        } else if c == '^' || (c == '_' && !inside_a_word(&chars[..at - 1], chars.get(at))) {
             let lift = if c == '^' { Lift::Above } else { Lift::Below };
             let (script, end) = script(&chars, at);
             if script.is_empty() {
@@ -47,6 +47,13 @@ pub(crate) fn runs(text: &str) -> Vec<(Lift, String)> {
         }
     }
     runs
+}
+
+/// Whether an underscore between these belongs to a name, such as `x86_64`: only a single letter
+/// has an index without braces.
+fn inside_a_word(before: &[char], after: Option<&char>) -> bool {
+    let word = before.iter().rev().take_while(|c| c.is_alphanumeric()).count();
+    word > 1 && after != Some(&'{')
 }
 
 /// The script after `^` or `_`, and where the text goes on.
@@ -129,6 +136,22 @@ pub(crate) fn prose(text: &str) -> String {
         .collect()
 }
 
+/// The same text without any markup, as for the title of a window: `10⁻³`, `E₀`.
+pub(crate) fn plain(text: &str) -> String {
+    let lift = |table: &str, c: char| {
+        let place = RAISED_PLAIN.chars().position(|p| p == c);
+        place.and_then(|place| table.chars().nth(place)).unwrap_or(c)
+    };
+    let write = |(height, run): (Lift, String)| -> String {
+        match height {
+            Lift::Base => run.replace('`', ""),
+            Lift::Above => run.chars().map(|c| lift(RAISED, c)).collect(),
+            Lift::Below => run.chars().map(|c| lift(LOWERED, c)).collect(),
+        }
+    };
+    runs(text).into_iter().map(write).collect()
+}
+
 /// A width that bold text does not exceed in the usual sans-serif fonts.
 pub(crate) fn bold_width(text: &str, size: f64) -> f64 {
     1.12 * width(text, size)
@@ -161,7 +184,9 @@ mod tests {
             assert_eq!(runs(text), expected, "{text}");
         }
         assert_eq!(runs("E_0"), runs("E₀"));
-        assert_eq!(runs("a_file_name").len(), 1, "words with underscores stay words");
+        for name in ["a_file_name", "x86_64"] {
+            assert_eq!(runs(name).len(), 1, "words with underscores stay words");
+        }
     }
 
     #[test]
@@ -171,6 +196,11 @@ mod tests {
             "10<tspan dy=\"-3.8\" class=\"script\">2</tspan><tspan dy=\"3.8\"> s</tspan>"
         );
         assert_eq!(html("x^2 < 1"), "x<sup>2</sup> &lt; 1");
+    }
+
+    #[test]
+    fn plain_text_has_no_markup() {
+        assert_eq!(plain("off by 1.1·10^{-9} m, `E_0`"), "off by 1.1·10⁻⁹ m, E₀");
     }
 
     #[test]

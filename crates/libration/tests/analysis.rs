@@ -117,6 +117,29 @@ fn drifts_over_a_million_steps_meet_the_oracle_even_where_they_exceed_every_floa
 }
 
 #[test]
+fn the_largest_drift_of_an_orbit_too_slow_for_a_search_is_found() {
+    // (2/z)·drift of symplectic Euler from rest over a quarter turn and more is 1; of Verlet (4/z²).
+    let model = Oscillator { omega2: 1.0 };
+    for (method, dt, drift) in
+        [(Method::SymplecticEuler, 1e-8, 5e-9), (Method::VelocityVerlet, 1e-7, 2.5e-15)]
+    {
+        let step = linearise(method, 1.0, dt).step;
+        let start = State { q: [1.0], v: [0.0] };
+        // Half a turn.
+        let got = forecast_drift(model, &step, &start, (3.2 / dt) as u64).unwrap();
+        let got = got.drift.to_f64();
+        // The next term is a factor 1 + z/2.
+        assert!((got / drift - 1.0).abs() < 1e-7, "{}: {got}, not {drift}", method.name());
+    }
+    // Nearly √2: the orbit goes round its curve in 10⁹ steps, eight points at a time.
+    let step = linearise(Method::VelocityVerlet, 1.0, 1.414_213_56).step;
+    let start = State { q: [1.0], v: [0.7] };
+    let got = forecast_drift(model, &step, &start, 10_000_000_000).unwrap().drift.to_f64();
+    // From powers of the matrix with mpmath.
+    assert!((got - 0.335_57).abs() < 1e-5, "{got}");
+}
+
+#[test]
 fn a_tiny_step_loses_no_digits() {
     // At z = 10⁻¹² RK4 has det M − 1 = −z⁶/72 + z⁸/576 and a phase error of −z⁵/120 + O(z⁷).
     let dt = 1e-12;

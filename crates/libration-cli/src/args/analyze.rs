@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::number::{forecast_steps, positive};
+use super::number::{criterion, forecast_steps};
 use super::{StepArgs, SystemArgs};
 
 /// What theory says of one step.
@@ -22,14 +22,17 @@ pub(crate) struct AnalyzeArgs {
         allow_hyphen_values = true
     )]
     pub(crate) steps: u64,
-    /// Also say the largest dt whose relative energy drift stays below this over --steps
-    #[arg(long, value_name = "DRIFT", value_parser = positive, allow_hyphen_values = true)]
+    /// Also say the largest dt whose relative energy drift stays below this over --steps, whatever phase
+    /// of its orbit a run visits (oscillator)
+    #[arg(long, value_name = "DRIFT", value_parser = criterion, allow_hyphen_values = true)]
     pub(crate) max_drift: Option<f64>,
-    /// Also say the largest dt at which |q| stays below this over --steps
-    #[arg(long, value_name = "LENGTH", value_parser = positive, allow_hyphen_values = true)]
+    /// Also say the largest dt at which |q| stays below this over --steps, whatever phase of its orbit a
+    /// run visits (oscillator)
+    #[arg(long, value_name = "LENGTH", value_parser = criterion, allow_hyphen_values = true)]
     pub(crate) max_amplitude: Option<f64>,
-    /// Also say the largest dt whose error stays below this part of the amplitude over --steps
-    #[arg(long, value_name = "ERROR", value_parser = positive, allow_hyphen_values = true)]
+    /// Also say the largest dt whose error stays below this part of the amplitude over --steps, from any
+    /// start (oscillator)
+    #[arg(long, value_name = "ERROR", value_parser = criterion, allow_hyphen_values = true)]
     pub(crate) max_error: Option<f64>,
     /// Print JSON, with all digits
     #[arg(long)]

@@ -53,11 +53,11 @@ pub(super) fn time_step(text: &str) -> Result<f64, String> {
     Ok(dt)
 }
 
-/// Reads a tolerance.
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    let rule = "it must be finite and greater than 0";
+/// Reads what a criterion tolerates. Roots are known to 96 digits, which is why it ends somewhere.
+pub(super) fn criterion(text: &str) -> Result<f64, String> {
+    let rule = "it must be between 1e-60 and 1e60";
     match text.trim().parse::<f64>() {
-        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        Ok(x) if (1e-60..=1e60).contains(&x) => Ok(x),
         Ok(_) => Err(rule.into()),
         Err(_) => Err(format!("it is not a number; {rule}")),
     }

@@ -85,7 +85,11 @@ fn describe(analysis: &Analysis, criteria: &Criteria) -> String {
         let shown = if shown.is_empty() { "none".into() } else { shown.join(", ") };
         line("stable for dt in s", shown);
     }
-    let mut largest = |what: &str, asked: Option<f64>, dt: Option<f64>| {
+    let one_mode = matches!(about.system, "oscillator" | "damped-oscillator");
+    if analysis.stability_windows.is_none() && one_mode {
+        line("stable for dt in s", UNKNOWN.into());
+    }
+    let mut largest = |what: &str, asked: Option<f64>, dt: Option<Option<f64>>| {
         if let Some(asked) = asked {
             line("largest dt in s", format!("{} for {what} {asked}", known(dt)));
         }
@@ -120,12 +124,13 @@ fn describe(analysis: &Analysis, criteria: &Criteria) -> String {
                 let stopped = drift.stopped_at_step.map_or_else(String::new, |step| {
                     format!("; the state leaves the range of f64 at step {step}")
                 });
+                let size = match drift.max_energy_drift.get() {
+                    "null" => "beyond the range of f64; more than any part",
+                    size => size,
+                };
                 format!(
-                    "{} of the start, at step {} of {} ({}{stopped})",
-                    drift.max_energy_drift,
-                    drift.max_energy_drift_step,
-                    about.steps,
-                    drift.max_energy_drift_method
+                    "{size} of the start, at step {} of {} ({}{stopped})",
+                    drift.max_energy_drift_step, about.steps, drift.max_energy_drift_method
                 )
             }
             None => "undefined: the energy at the start is zero".into(),
@@ -137,7 +142,14 @@ fn describe(analysis: &Analysis, criteria: &Criteria) -> String {
     text
 }
 
+/// What stands for a number that is not derived.
+const UNKNOWN: &str = "not known: the polynomials of this step outgrow exact arithmetic";
+
 /// A largest time step, in words where there is none.
-fn known(dt: Option<f64>) -> String {
-    dt.map_or_else(|| "no limit found".into(), |dt| format!("{dt:?}"))
+fn known(dt: Option<Option<f64>>) -> String {
+    match dt {
+        Some(Some(dt)) => format!("{dt:?}"),
+        Some(None) => "any".into(),
+        None => UNKNOWN.into(),
+    }
 }

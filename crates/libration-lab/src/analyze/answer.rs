@@ -140,9 +140,16 @@ impl ModifiedHamiltonian {
         let blocks = step.decoupled()?;
         let form = QuadraticForm::carried_by(&blocks[0]);
         let scaled = |x: Wide| (x / form.vv).ratio(1, 2).to_f64();
+        // A cross term that symmetry forbids comes out as rounding of the 1024 bits.
+        let (cross, square) = (form.qv * form.qv, form.qq * form.vv);
+        let rounding = match (cross.exponent(), square.exponent()) {
+            (Some(cross), Some(square)) => cross < square - 1800,
+            _ => false,
+        };
+        let qv = if rounding { 0.0 } else { scaled(form.qv) };
         (conserves && !form.vv.is_zero()).then(|| ModifiedHamiltonian {
             qq: scaled(form.qq),
-            qv: scaled(form.qv),
+            qv,
             vv: scaled(form.vv),
         })
     }

@@ -5,7 +5,7 @@
 pub struct Criteria {
     /// Largest relative energy drift.
     pub max_drift: Option<f64>,
-    /// Largest `|q|`.
+    /// Largest length of `q`.
     pub max_amplitude: Option<f64>,
     /// Largest distance from the exact orbit, relative to its amplitude.
     pub max_error: Option<f64>,

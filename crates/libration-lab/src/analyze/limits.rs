@@ -1,7 +1,8 @@
 //! How large a time step may be, and how the order of a method is known.
 
 use libration::analysis::{
-    Criterion, Letter, OrderCertificate, SymbolicStep, Tableau, UnknownStep,
+    Criterion, LargestStep, Letter, OrbitStart, OrderCertificate, SymbolicStep, Tableau,
+    UnknownStep,
 };
 use libration::number::Wide;
 use libration::{AnySystem, Elementary, Integrator, Model, Scalar, State};
@@ -10,27 +11,32 @@ use serde::Serialize;
 use super::Request;
 
 /// The largest time steps, in s, that meet the criteria over the horizon of the request; each with
-/// every smaller one. None where every step meets it.
+/// every smaller one. `null` where every step meets it; absent where the criterion was not asked for,
+/// or its polynomials outgrow exact arithmetic.
+///
+/// Drift and amplitude are taken over the whole curve that an orbit fills. A run of few steps may
+/// visit no extreme of it, and then a larger step would do for that run.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct LargestDt {
     /// Every orbit stays bounded.
     pub bounded: Option<f64>,
     /// The energy drift from the start of the request stays below `--max-drift`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub energy_drift: Option<f64>,
+    pub energy_drift: Option<Option<f64>>,
     /// The same from the worst start.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub energy_drift_worst_start: Option<f64>,
-    /// `|q|` stays below `--max-amplitude`.
+    pub energy_drift_worst_start: Option<Option<f64>>,
+    /// The length of `q` stays below `--max-amplitude`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub amplitude: Option<f64>,
+    pub amplitude: Option<Option<f64>>,
     /// The error of the worst start stays below `--max-error` of its amplitude; searched, where the
     /// others are roots of polynomials.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub trajectory_error: Option<f64>,
+    pub trajectory_error: Option<Option<f64>>,
 }
 
-/// The order of a splitting method on every system.
+/// The order of a splitting method on every system whose force depends on positions alone: a kick by a
+/// force that depends on velocities is not the flow of anything, and most orders fall to one.
 #[derive(Clone, Debug, Serialize)]
 pub struct OrderOfWord {
     /// The word, in the order of time.
@@ -78,7 +84,9 @@ pub(super) fn stability_windows(
     };
     let in_seconds = |z: Wide| (z * unit).to_f64();
     let windows = step.stability_windows();
-    Some(windows.iter().map(|w| [Some(in_seconds(w.from)), w.to.map(in_seconds)]).collect())
+    let ends = windows.iter().map(|w| [Some(in_seconds(w.from)), w.to.map(in_seconds)]);
+    // A window between two neighbouring floats holds no time step.
+    Some(ends.filter(|[from, to]| from != to).collect())
 }
 
 /// `1/ω`, in s.
@@ -86,27 +94,29 @@ fn period(omega2: f64) -> Wide {
     Wide::from_f64(omega2).sqrt().recip()
 }
 
-/// The largest steps for an oscillator, whose polynomials are given.
-pub(super) fn largest_dt(step: Option<&SymbolicStep>, request: &Request) -> Option<LargestDt> {
+/// The largest steps for an oscillator in `D` dimensions, whose polynomials are given.
+pub(super) fn largest_dt<const D: usize>(
+    step: Option<&SymbolicStep>,
+    start: &State<f64, D>,
+    request: &Request,
+) -> Option<LargestDt> {
     let AnySystem::Oscillator(model) = request.system else { return None };
     let (step, unit) = (step?, period(model.omega2));
-    let seconds = |z: f64| (Wide::from_f64(z) * unit).to_f64();
-    let (criteria, steps) = (&request.criteria, request.steps);
-    let largest = |criterion: &Criterion| {
-        let z = step.largest_step(criterion)?.to_f64();
-        z.is_finite().then(|| seconds(z))
+    let in_seconds = |z: LargestStep| match z {
+        LargestStep::Limit(z) => Some((z * unit).to_f64()),
+        LargestStep::Unlimited => None,
     };
-    // A criterion on one coordinate is answered for the orbit of the first.
+    let (criteria, steps) = (&request.criteria, request.steps);
+    let largest = |criterion: &Criterion| step.largest_step(criterion).map(in_seconds);
     let omega = model.omega2.sqrt();
-    let start = State { q: [request.q[0]], v: [request.v[0] / omega] };
+    let start = OrbitStart::new(&State { q: start.q, v: start.v.map(|v| v / omega) });
     let drift = |start| {
-        let steps = request.steps;
         criteria
             .max_drift
             .and_then(|tolerance| largest(&Criterion::EnergyDrift { tolerance, steps, start }))
     };
     Some(LargestDt {
-        bounded: largest(&Criterion::Bounded),
+        bounded: largest(&Criterion::Bounded)?,
         energy_drift: drift(Some(start)),
         energy_drift_worst_start: drift(None),
         amplitude: criteria
@@ -114,7 +124,6 @@ pub(super) fn largest_dt(step: Option<&SymbolicStep>, request: &Request) -> Opti
             .and_then(|limit| largest(&Criterion::Amplitude { limit, steps, start })),
         trajectory_error: criteria
             .max_error
-            .and_then(|tolerance| step.largest_step_for_error(tolerance, steps))
-            .map(seconds),
+            .map(|tolerance| in_seconds(step.largest_step_for_error(tolerance, steps))),
     })
 }

@@ -150,11 +150,11 @@ fn run<const D: usize>(
         spectral_radius_minus_one: modes.radius_minus_one.to_f64(),
         bounded: modes.bounded.filter(|_| linear_system),
         stability_windows: limits::stability_windows(integrator, request.system),
-        largest_dt: limits::largest_dt(polynomials.as_ref(), request),
+        largest_dt: limits::largest_dt(polynomials.as_ref(), &start, request),
         modified_hamiltonian: linear_system
             .then(|| ModifiedHamiltonian::of(&linear.step, modes.determinant_minus_one.is_zero()))
             .flatten(),
-        order_of_word: OrderOfWord::of(integrator),
+        order_of_word: positional(request.system).then(|| OrderOfWord::of(integrator)).flatten(),
         symplecticity_defect: defect(modes.symplecticity_defect, exact.is_some()),
         reversibility_defect: defect(reversibility, exact.is_some()),
         phase_error_per_step: modes.phase_error.map(Wide::to_f64),
@@ -178,6 +178,11 @@ fn allowed(system: AnySystem) -> &'static str {
 fn defect(norm: Wide, exact: bool) -> f64 {
     let value = norm.to_f64();
     if value < 1e-270 && !exact { 0.0 } else { value }
+}
+
+/// Whether the force depends on positions alone, as the order of a word takes it to.
+fn positional(system: AnySystem) -> bool {
+    !matches!(system, AnySystem::DampedOscillator(_) | AnySystem::DrivenOscillator(_))
 }
 
 /// The angular frequency of an oscillator, in rad/s.

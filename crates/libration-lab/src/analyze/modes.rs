@@ -59,7 +59,11 @@ impl Modes {
             radius_minus_one: excess,
             bounded: Some(spectra.iter().all(Spectrum::is_bounded)),
             phase_error: errors
-                .filter_map(|(s, omega)| Some(difference_of(s.angle(), omega? * linear.dt)))
+                .filter_map(|(s, omega)| {
+                    let exact = omega? * linear.dt;
+                    let turns = matches!(s.eigenvalues, Eigenvalues::Complex { .. });
+                    turns.then(|| difference_of(s.turn(exact), exact))
+                })
                 .reduce(larger_size),
         }
     }

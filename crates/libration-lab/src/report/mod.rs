@@ -7,7 +7,7 @@ use crate::figure;
 use crate::notation::{number, seconds};
 use crate::page::Chapter;
 use crate::results::Results;
-use crate::text::{escape, prose};
+use crate::text::{escape, plain, prose};
 
 const STYLE: &str = include_str!("../../assets/report.css");
 const SCRIPT: &str = include_str!("../../assets/report.js");
@@ -29,10 +29,11 @@ pub fn render(results: &Results, chapters: &[Chapter]) -> String {
     format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
-         <title>{title}</title>\n<style>{STYLE}</style></head><body>\n\
+         <title>{name}</title>\n<style>{STYLE}</style></head><body>\n\
          <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\
          <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{score}{answers}{numbers}{ledger}{body}\
          {machine}</main>\n{scripts}<script>{SCRIPT}</script>\n</body></html>\n",
+        name = escape(&plain(&headline)),
         title = prose(&headline),
         setting = setting(results),
         alarm = alarm(results),

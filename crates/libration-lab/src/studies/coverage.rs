@@ -18,6 +18,44 @@ pub(super) fn exponent(method: Method, start: &State<f64, 1>, steps: u64, z: f64
     below.map_or(1.0, |(a, b)| (b - a) / PART)
 }
 
+/// How far beyond `z`, relative to it, a run of `steps` steps may still keep its energy within
+/// `tolerance`, at which its curve ends: a discrete orbit visits some phases and not others, few of
+/// them where a turn is nearly a whole number of steps. None if further than anybody looks.
+pub(super) fn slack(
+    method: Method,
+    start: &State<f64, 1>,
+    steps: u64,
+    z: f64,
+    tolerance: f64,
+) -> Option<f64> {
+    const LOOKS: u32 = 80;
+    const FURTHEST: f64 = 0.2;
+    // Longer runs only visit more.
+    const ENOUGH: u64 = 300_000;
+    let unit = Oscillator { omega2: 1.0 };
+    let beyond = |i: u32| FURTHEST * (f64::from(i) / f64::from(LOOKS)).powi(2);
+    let keeps = |i: &u32| {
+        let z = z * (1.0 + beyond(*i));
+        let step = with_method!(method, |m| Linearisation::new(m, unit, start, z)).step;
+        forecast_drift(unit, &step, start, steps.min(ENOUGH))
+            .is_some_and(|forecast| forecast.drift.to_f64() <= tolerance)
+    };
+    let last = (0..=LOOKS).rev().find(keeps);
+    match last {
+        None => Some(0.0),
+        Some(LOOKS) => None,
+        Some(i) => Some(beyond(i + 1)),
+    }
+}
+
+/// Whether orbits at `z = ωΔt` turn: at the end of stability and beyond, a start may be one that the
+/// step merely repeats or stretches, and no extreme of any curve comes by.
+pub(super) fn turns(method: Method, start: &State<f64, 1>, z: f64) -> bool {
+    let unit = Oscillator { omega2: 1.0 };
+    let step = with_method!(method, |m| Linearisation::new(m, unit, start, z)).step;
+    EnergyBand::new(unit, &step).is_some()
+}
+
 /// By which part the largest drift of `steps` steps may stay below that of their curve, at `z = ωΔt`
 /// and at slightly larger steps, which shift the last phase by up to four radians: where a turn is
 /// nearly a whole number of steps an orbit visits few phases, and a search slips through. The start

@@ -25,9 +25,11 @@ impl DriftForecast {
 
 /// The largest relative energy drift within `steps` steps of the linear map `step` from `start`.
 ///
-/// The step `n` of the maximum is found by iterating the map in double-double, and the drift there
-/// is computed from `Mⁿ` in 1024 bits: what is returned carries no visible rounding, and is zero where
-/// there is nothing else, below `2⁻¹⁰⁰⁰` for each step. None where the initial energy is zero.
+/// The step `n` of the maximum is found by iterating the map in double-double: step by step, and
+/// over longer runs also in strides from the first step to the last, from the best of which it climbs
+/// to the top. The drift there is computed from `Mⁿ` in 1024 bits: what is returned carries no visible
+/// rounding, and is zero where there is nothing else, below `2⁻¹⁰⁰⁰` for each step. None where the
+/// initial energy is zero.
 pub fn forecast_drift<const D: usize>(
     model: impl Model<D>,
     step: &UpdateMatrix<Wide, D>,
@@ -35,12 +37,38 @@ pub fn forecast_drift<const D: usize>(
     steps: u64,
 ) -> Option<DriftForecast> {
     let drift = exact_drift(model, step, start)?;
-    let (found, covered) = search(model, step, start, steps.min(DriftForecast::SEARCHED));
-    let tail = if covered < steps.min(DriftForecast::SEARCHED) { LAST_TURN } else { 1 };
-    let candidates = (steps.saturating_sub(tail - 1)..=steps).chain([found]);
-    candidates
-        .map(|n| DriftForecast { drift: drift(n), at_step: n })
-        .reduce(|best, next| if next.drift > best.drift { next } else { best })
+    let searched = steps.min(DriftForecast::SEARCHED);
+    let (found, covered) = search(model, step, start, searched);
+    let tail = if covered < searched { LAST_TURN } else { 1 };
+    let forecast = |n| DriftForecast { drift: drift(n), at_step: n };
+    let mut best = forecast(found);
+    let mut consider = |n: u64| {
+        let next = forecast(n);
+        let better = next.drift > best.drift;
+        if better {
+            best = next;
+        }
+        better
+    };
+    (steps.saturating_sub(tail - 1)..=steps).for_each(|n| {
+        consider(n);
+    });
+    // Orbits so slow that the search saw but a part of a turn.
+    let stride = steps / DriftForecast::SEARCHED;
+    if stride > 1 {
+        let (far, _) = search(model, &step.power(stride), start, searched);
+        let mut at = far * stride;
+        consider(at);
+        let mut reach = stride;
+        while reach > 0 {
+            let near = [at.saturating_sub(reach), (at + reach).min(steps)];
+            match near.into_iter().find(|&n| consider(n)) {
+                Some(n) => at = n,
+                None => reach /= 2,
+            }
+        }
+    }
+    Some(best)
 }
 
 /// The relative drift after `n` steps as a function of `n`.

@@ -4,21 +4,62 @@ use super::roots::IntegerPoly;
 use super::window::Cells;
 use super::{SymbolicStep, UnknownStep};
 use crate::number::{Ratio, Wide};
-use crate::{Scalar, State};
+use crate::{Elementary, Scalar, State};
 
-/// What a time step must keep to; states are in units in which `ω = 1`, as `(q, v/ω)`.
+/// Where an orbit of an isotropic oscillator starts, as far as criteria ask: the sums of `q²`, `q·v`
+/// and `v²` over its degrees of freedom.
+#[derive(Clone, Copy, Debug)]
+pub struct OrbitStart {
+    qq: Wide,
+    qv: Wide,
+    vv: Wide,
+}
+
+/// Coordinates this many bits below the largest are left out: a criterion is answered to 96 digits.
+const NEGLIGIBLE: i64 = 200;
+
+impl OrbitStart {
+    /// The start at `state`, in units in which `ω = 1`, as `(q, v/ω)`.
+    pub fn new<const D: usize>(state: &State<f64, D>) -> Self {
+        let state = state.map(Wide::from_f64);
+        let largest = state.coordinates().filter_map(Wide::exponent).max().unwrap_or(0);
+        let seen = |x: Wide| match x.exponent() {
+            Some(exponent) if exponent >= largest - NEGLIGIBLE => x,
+            _ => Wide::ZERO,
+        };
+        let sum = |a: [Wide; D], b: [Wide; D]| {
+            a.into_iter().zip(b).fold(Wide::ZERO, |sum, (a, b)| sum + seen(a) * seen(b))
+        };
+        let State { q, v } = state;
+        OrbitStart { qq: sum(q, q), qv: sum(q, v), vv: sum(v, v) }
+    }
+
+    /// The largest `q²` on the circle of the exact orbit.
+    fn reach(&self) -> Wide {
+        let mean = (self.qq + self.vv).ratio(1, 2);
+        let side = (self.qq - self.vv).ratio(1, 2);
+        mean + (side * side + self.qv * self.qv).sqrt()
+    }
+
+    /// Twice the energy.
+    fn size(&self) -> Wide {
+        self.qq + self.vv
+    }
+}
+
+/// What a time step must keep to.
 #[derive(Clone, Copy, Debug)]
 pub enum Criterion {
     /// Every orbit stays bounded for ever.
     Bounded,
-    /// `|q|` stays below `limit` on the orbits through all phases of the start's curve.
+    /// The length of `q` stays below `limit` at all phases of the curve that the orbit fills.
     Amplitude {
         /// The largest `|q|` allowed.
         limit: f64,
         /// Number of steps.
         steps: u64,
         /// Where the orbit starts.
-        start: State<f64, 1>,
+        start: OrbitStart,
     },
     /// The relative energy drift stays below `tolerance`.
     EnergyDrift {
@@ -27,7 +68,7 @@ pub enum Criterion {
         /// Number of steps.
         steps: u64,
         /// Where the orbit starts; none for the worst start.
-        start: Option<State<f64, 1>>,
+        start: Option<OrbitStart>,
     },
 }
 
@@ -39,10 +80,16 @@ impl SymbolicStep {
     /// that a short one happens to visit. The criterion then is a set of polynomial inequalities in
     /// `z`, and the answer the first root at which one of them changes its sign; so a narrow gap is
     /// never stepped over. None where there is no such form: for a step that neither conserves areas
-    /// nor commutes with the exact flow.
+    /// nor commutes with the exact flow; nor where the polynomials outgrow their exact arithmetic, or
+    /// a limit or tolerance is not positive and finite.
     pub fn largest_step(&self, criterion: &Criterion) -> Option<LargestStep> {
-        if let Criterion::Bounded = criterion {
-            return Some(self.end_of_first_window());
+        let bound = match criterion {
+            Criterion::Bounded => return Some(self.end_of_first_window()),
+            Criterion::Amplitude { limit, .. } => *limit,
+            Criterion::EnergyDrift { tolerance, .. } => *tolerance,
+        };
+        if !(bound > 0.0 && bound.is_finite()) {
+            return None;
         }
         let conditions = if self.is_symplectic() {
             self.conserving(criterion)?
@@ -73,27 +120,45 @@ impl SymbolicStep {
         m.entry(0, 0) == m.entry(1, 1) && m.entry(0, 1) == -m.entry(1, 0)
     }
 
-    /// What must not be negative where the form `Q` is conserved. The energies `E = r·Q` on a curve
-    /// of `Q` lie between the roots of `det(E − rQ) = a·r² − 2b·r + ¼`.
+    /// What must not be negative where the form `Q` is conserved.
+    ///
+    /// In coordinates in which the step is a rotation, a form is a mean plus a part that turns at
+    /// twice the angle; over the degrees of freedom the means add up, and of the turning parts what
+    /// the angular momentum `L² = Σq²·Σv² − (Σqv)²` leaves: with `a = det Q` and `b` the mixed
+    /// determinant, the energies `E` on the orbit fill the interval in which
+    /// `a·E² − 2b·E·Q + ¼Q² + (4b² − a)·L²` is not positive.
     fn conserving(&self, criterion: &Criterion) -> Option<Vec<UnknownStep>> {
         let form = self.invariant();
         let (a, b) = (form.determinant(), (form.qq + form.vv).ratio(1, 4));
         let number = UnknownStep::from_f64;
-        let at = |start: &State<f64, 1>| form.at(&start.map(number));
+        // Q, ½(q² + v²) and L² of a start.
+        let values = |start: &OrbitStart| {
+            let [qq, qv, vv] = [constant(start.qq)?, constant(start.qv)?, constant(start.vv)?];
+            let level = form.qq * qq + (form.qv * qv).ratio(2, 1) + form.vv * vv;
+            Some((level, (qq + vv).ratio(1, 2), qq * vv - qv * qv))
+        };
         Some(match criterion {
             Criterion::Bounded => return None,
-            // max q² on the curve is Q(start)·vv/a.
+            // The squares of q fill the interval in which a·s² − s·vv·Q + vv²·L² is not positive.
             Criterion::Amplitude { limit, start, .. } => {
-                vec![number(*limit) * number(*limit) * a - at(start) * form.vv]
+                if wide(*limit).exponent() > start.size().exponent().map(|e| e / 2 + NEGLIGIBLE) {
+                    return Some(vec![a]);
+                }
+                let (level, _, momentum) = values(start)?;
+                let square = number(*limit) * number(*limit);
+                vec![
+                    a * square * square - square * form.vv * level + form.vv * form.vv * momentum,
+                    (a * square).ratio(2, 1) - form.vv * level,
+                ]
             }
-            // The quadratic at r = (1 ± ε)·E(start)/Q(start), times Q(start)².
+            // At (1 ± ε)·E(start).
             Criterion::EnergyDrift { tolerance, start: Some(start), .. } => {
-                let energy = energy(start);
-                let level = at(start);
+                let (level, energy, momentum) = values(start)?;
                 let side = |tolerance: f64| {
-                    let scaled = (UnknownStep::one() + number(tolerance)) * energy;
-                    a * scaled * scaled - (b * scaled * level).ratio(2, 1)
+                    let reached = (UnknownStep::one() + number(tolerance)) * energy;
+                    a * reached * reached - (b * reached * level).ratio(2, 1)
                         + (level * level).ratio(1, 4)
+                        + ((b * b).ratio(4, 1) - a) * momentum
                 };
                 vec![side(*tolerance), side(-*tolerance)]
             }
@@ -115,9 +180,7 @@ impl SymbolicStep {
         Some(match criterion {
             Criterion::Bounded => return None,
             Criterion::Amplitude { limit, steps, start } => {
-                let energy = number(start.q[0]) * number(start.q[0])
-                    + number(start.v[0]) * number(start.v[0]);
-                vec![at_most(number(*limit) * number(*limit) / energy, *steps)?]
+                vec![at_most(number(*limit) * number(*limit) / start.reach(), *steps)?]
             }
             Criterion::EnergyDrift { tolerance, steps, .. } => {
                 let mut conditions = vec![at_most(one + number(*tolerance), *steps)?];
@@ -158,24 +221,26 @@ impl LargestStep {
     }
 }
 
-/// The left end of the first cell in which a polynomial is negative.
+/// Where one of the polynomials first turns negative.
 fn first_violation(conditions: &[IntegerPoly]) -> LargestStep {
-    let cells = Cells::of(&conditions.iter().collect::<Vec<_>>());
-    let violated = |i: &usize| {
-        let x = cells.sample(*i);
-        conditions.iter().any(|p| p.sign_at(&x) < 0)
-    };
-    match (0..=cells.roots.len()).find(violated) {
+    let ends = conditions.iter().map(first_negative);
+    ends.fold(LargestStep::Unlimited, LargestStep::min)
+}
+
+/// The left end of the first cell in which `p` is negative.
+fn first_negative(p: &IntegerPoly) -> LargestStep {
+    let (p, squares) = IntegerPoly::in_squares([p]);
+    let cells = Cells::of(&p.each_ref());
+    match (0..=cells.roots.len()).find(|&i| p[0].sign_at(&cells.sample(i)) < 0) {
         None => LargestStep::Unlimited,
         Some(0) => LargestStep::Limit(Wide::ZERO),
+        Some(i) if squares => LargestStep::Limit(cells.roots[i - 1].value().sqrt()),
         Some(i) => LargestStep::Limit(cells.roots[i - 1].value()),
     }
 }
 
-/// `½(q² + v²)`.
-fn energy(State { q: [q], v: [v] }: &State<f64, 1>) -> UnknownStep {
-    let square = |x: f64| UnknownStep::from_f64(x) * UnknownStep::from_f64(x);
-    (square(*q) + square(*v)).ratio(1, 2)
+fn wide(x: f64) -> Wide {
+    Wide::from_f64(x)
 }
 
 fn constant(x: Wide) -> Option<UnknownStep> {
@@ -199,14 +264,16 @@ mod tests {
     use super::*;
     use crate::{Method, with_method};
 
-    const REST: State<f64, 1> = State { q: [1.0], v: [0.0] };
+    fn rest() -> OrbitStart {
+        OrbitStart::new(&State { q: [1.0], v: [0.0] })
+    }
 
     fn largest(method: Method, criterion: Criterion) -> f64 {
         let step = with_method!(method, |m| SymbolicStep::new(m)).unwrap();
         step.largest_step(&criterion).unwrap().to_f64()
     }
 
-    fn drift(tolerance: f64, steps: u64, start: Option<State<f64, 1>>) -> Criterion {
+    fn drift(tolerance: f64, steps: u64, start: Option<OrbitStart>) -> Criterion {
         Criterion::EnergyDrift { tolerance, steps, start }
     }
 
@@ -216,9 +283,9 @@ mod tests {
             let close = |got: f64, want: f64| {
                 assert!((got / want - 1.0).abs() < 1e-15, "{e}: {got:?}, not {want:?}");
             };
-            let rest = |m| largest(m, drift(e, 1000, Some(REST)));
-            close(rest(Method::VelocityVerlet), 2.0 * e.sqrt());
-            close(rest(Method::SymplecticEuler), 2.0 * e / (1.0 + e));
+            let at_rest = |m| largest(m, drift(e, 1000, Some(rest())));
+            close(at_rest(Method::VelocityVerlet), 2.0 * e.sqrt());
+            close(at_rest(Method::SymplecticEuler), 2.0 * e / (1.0 + e));
             let worst = largest(Method::VelocityVerlet, drift(e, 1000, None));
             close(worst, 2.0 * (e / (1.0 + e)).sqrt());
         }
@@ -227,7 +294,7 @@ mod tests {
     #[test]
     fn the_table_of_largest_steps_is_met_to_its_last_digit() {
         // ω² = 10, from (1, 0): an independent brute-force search in NumPy printed six decimals.
-        let amplitude = |limit, steps| Criterion::Amplitude { limit, steps, start: REST };
+        let amplitude = |limit, steps| Criterion::Amplitude { limit, steps, start: rest() };
         use Method::{ExplicitEuler as E, Rk4 as R, SymplecticEuler as S, VelocityVerlet as V};
         for (method, criterion, dt) in [
             (E, Criterion::Bounded, 0.0),
@@ -241,13 +308,13 @@ mod tests {
             (S, amplitude(10.0, 10_000), 0.629285),
             (R, amplitude(10.0, 10_000), 0.894456),
             (R, amplitude(1e6, 10_000), 0.894601),
-            (E, drift(0.01, 1000, Some(REST)), 0.000998),
-            (R, drift(1e-3, 1_000_000, Some(REST)), 0.020400),
-            (R, drift(0.01, 1_000_000, Some(REST)), 0.029969),
-            (S, drift(0.1, 10_000, Some(REST)), 0.057496),
-            (V, drift(1.0, 10_000, Some(REST)), 0.632456),
-            (S, drift(10.0, 10_000, Some(REST)), 0.574960),
-            (R, drift(10.0, 10_000, Some(REST)), 0.894442),
+            (E, drift(0.01, 1000, Some(rest())), 0.000998),
+            (R, drift(1e-3, 1_000_000, Some(rest())), 0.020400),
+            (R, drift(0.01, 1_000_000, Some(rest())), 0.029969),
+            (S, drift(0.1, 10_000, Some(rest())), 0.057496),
+            (V, drift(1.0, 10_000, Some(rest())), 0.632456),
+            (S, drift(10.0, 10_000, Some(rest())), 0.574960),
+            (R, drift(10.0, 10_000, Some(rest())), 0.894442),
         ] {
             let got = largest(method, criterion) / 10.0_f64.sqrt();
             assert!((got - dt).abs() <= 5.1e-7, "{} {criterion:?}: {got}", method.name());
@@ -256,7 +323,7 @@ mod tests {
 
     #[test]
     fn a_start_beyond_the_limit_has_no_step_at_all() {
-        let beyond = Criterion::Amplitude { limit: 0.5, steps: 10, start: REST };
+        let beyond = Criterion::Amplitude { limit: 0.5, steps: 10, start: rest() };
         for method in [Method::VelocityVerlet, Method::Rk4] {
             assert_eq!(largest(method, beyond), 0.0, "{}", method.name());
         }

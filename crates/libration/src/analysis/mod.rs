@@ -26,7 +26,7 @@ pub use eigenvalues::{determinant, eigenvalues};
 pub use energy::{DriftForecast, forecast_drift};
 pub use error::ErrorForecast;
 pub use form::QuadraticForm;
-pub use largest_step::{Criterion, LargestStep};
+pub use largest_step::{Criterion, LargestStep, OrbitStart};
 pub use linearisation::Linearisation;
 pub use matrix::UpdateMatrix;
 pub use order::OrderCertificate;

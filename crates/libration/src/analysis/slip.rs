@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use super::{EnergyBand, Spectrum, SymbolicStep, UpdateMatrix};
+use super::{EnergyBand, LargestStep, Spectrum, SymbolicStep, UpdateMatrix};
 use crate::number::Wide;
 use crate::system::Oscillator;
 use crate::{Elementary, Scalar};
@@ -25,15 +25,19 @@ pub struct Slip {
 }
 
 impl Slip {
-    /// The slip of a step at `z = ωΔt`; none where it does not turn, or no form is definite.
+    /// The slip of a step at `z = ωΔt`; none where it does not turn, or no form is definite, or `z` is
+    /// not positive and finite.
     pub fn new(step: &SymbolicStep, z: f64) -> Option<Self> {
+        if !(z > 0.0 && z.is_finite()) {
+            return None;
+        }
         let z = Wide::from_f64(z);
         let matrix: UpdateMatrix<Wide, 1> = step.matrix.map(|p| p.eval_wide(z));
         let band = EnergyBand::new(Oscillator { omega2: 1.0 }, &matrix)?;
         let spectrum = Spectrum::new(&matrix);
         Some(Slip {
-            growth: 0.5 * spectrum.determinant_minus_one().to_f64().ln_1p(),
-            phase: (spectrum.angle() - z).to_f64(),
+            growth: 0.5 * ln_one_plus(spectrum.determinant_minus_one()),
+            phase: (spectrum.turn(z) - z).to_f64(),
             ellipse: 0.5 * band.worst_drift_after(0).ln_1p(),
         })
     }
@@ -46,7 +50,7 @@ impl Slip {
         const EARLIER: u32 = 64;
         let at = |n: f64| {
             let slip = (n * self.phase.abs()).min(PI);
-            self.largest_over_phases(slip, (n * self.growth).exp())
+            self.largest_over_phases(slip, (n * self.growth).exp_m1())
         };
         let n = steps as f64;
         if self.growth >= 0.0 {
@@ -59,21 +63,40 @@ impl Slip {
         at(n).max(at(largest_near(at, near - part, (near + part).min(until))))
     }
 
-    fn largest_over_phases(&self, slip: f64, size: f64) -> f64 {
-        let (alpha, beta) = (self.ellipse.cosh(), self.ellipse.sinh().abs());
+    /// For a slip in rad and the relative growth `ρⁿ − 1`.
+    fn largest_over_phases(&self, slip: f64, grown: f64) -> f64 {
+        // Beyond this the exact orbit is nothing beside the other, and squares overflow.
+        if grown > 1e150 {
+            return grown;
+        }
+        let (size, beta) = (1.0 + grown, self.ellipse.sinh().abs());
+        // α − 1 = cosh ln κ − 1
+        let stretched = 2.0 * (0.5 * self.ellipse).sinh().powi(2);
         let error = |phi: f64| {
             let (sin, cos) = (Elementary::sin(phi), Elementary::cos(phi));
             // Differences of nearly equal sines, by the half angle.
             let half = Elementary::sin(0.5 * slip);
             let middle = phi - 0.5 * slip;
-            let re = (size - 1.0) * cos - 2.0 * Elementary::sin(middle) * half;
-            let im = (size * alpha - 1.0) * sin + 2.0 * Elementary::cos(middle) * half;
+            let re = grown * cos - 2.0 * Elementary::sin(middle) * half;
+            let im = (grown + size * stretched) * sin + 2.0 * Elementary::cos(middle) * half;
             (re * re + im * im).sqrt() + size * beta * sin.abs()
         };
         // On a circle all phases are alike.
-        let phases = if beta == 0.0 { 1 } else { 720 };
-        (0..phases).map(|i| error(f64::from(i) * TAU / f64::from(phases))).fold(0.0, f64::max)
+        if beta == 0.0 {
+            return error(0.0);
+        }
+        const PHASES: u32 = 720;
+        let part = TAU / f64::from(PHASES);
+        let phases = (0..PHASES).map(|i| f64::from(i) * part);
+        let best = phases.fold(0.0, |best, phi| if error(phi) > error(best) { phi } else { best });
+        error(best).max(error(largest_near(error, best - part, best + part)))
     }
+}
+
+/// `ln(1 + x)`, also where `x` is beyond the range of `f64`.
+fn ln_one_plus(x: Wide) -> f64 {
+    let small = x.to_f64();
+    if small < 1e300 { small.ln_1p() } else { x.ln().to_f64() }
 }
 
 /// Where `f` is largest between `low` and `high`, with a single maximum there: by thirds.
@@ -87,28 +110,33 @@ fn largest_near(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
 
 impl SymbolicStep {
     /// The largest `z` up to which the trajectory error of the worst start stays below `tolerance`
-    /// for `steps` steps, and for every smaller `z` that was tried; none if no step was found.
+    /// for `steps` steps, and for every smaller `z` that was tried.
     ///
-    /// There is no closed form: the error of [`Slip`] is followed upwards from `z = 10⁻⁶` in steps of
-    /// 2 % up to the end of the first window of stability, and the first crossing is bisected to 12
+    /// There is no closed form: the error of [`Slip`] is followed upwards from `z = 10⁻¹⁰⁰`, in steps of
+    /// 2 % where a method may have an end of stability, and the first crossing is bisected to 12
     /// digits. Within a window the phase error of the methods at hand rises monotonically.
-    pub fn largest_step_for_error(&self, tolerance: f64, steps: u64) -> Option<f64> {
+    pub fn largest_step_for_error(&self, tolerance: f64, steps: u64) -> LargestStep {
         let meets = |z: f64| {
             Slip::new(self, z).is_some_and(|slip| slip.worst_error_within(steps) <= tolerance)
         };
-        let mut low = 1e-6;
+        // Below all structure and beyond it the error is a power of the step.
+        let stride = |z: f64| if (1e-4..1e2).contains(&z) { 1.02 } else { 2.0 };
+        let mut low = 1e-100;
         if !meets(low) {
-            return None;
+            return LargestStep::Limit(Wide::ZERO);
         }
-        while meets(low * 1.02) {
-            low *= 1.02;
+        while meets(low * stride(low)) {
+            low *= stride(low);
+            if low > 1e100 {
+                return LargestStep::Unlimited;
+            }
         }
-        let mut high = low * 1.02;
+        let mut high = low * stride(low);
         while high - low > 1e-12 * high {
             let middle = 0.5 * (low + high);
             if meets(middle) { low = middle } else { high = middle }
         }
-        Some(low)
+        LargestStep::Limit(Wide::from_f64(low))
     }
 }
 
@@ -150,9 +178,36 @@ mod tests {
     }
 
     #[test]
+    fn beyond_half_a_turn_the_phase_error_is_still_that_of_the_polynomials() {
+        let step = SymbolicStep::new(crate::integrator::Rk4).unwrap();
+        for z in [2.3_f64, 2.44, 2.46, 2.7] {
+            // RK4 turns by the argument of 1 + iz − z²/2 − iz³/6 + z⁴/24.
+            let (re, im) = (1.0 - z * z / 2.0 + z.powi(4) / 24.0, z - z.powi(3) / 6.0);
+            let turned = f64::atan2(im, re).rem_euclid(TAU);
+            let phase = Slip::new(&step, z).unwrap().phase;
+            assert!((phase - (turned - z)).abs() < 1e-14, "{z}: {phase}, not {}", turned - z);
+        }
+    }
+
+    #[test]
+    fn steps_that_no_run_survives_and_tolerances_that_all_meet_are_told_apart() {
+        let euler = SymbolicStep::new(crate::integrator::ExplicitEuler).unwrap();
+        // After one step the error is z for small z: √(1 + z²)·(…) ≈ z²/2 along, z − z away.
+        let z = euler.largest_step_for_error(1e-20, 1).to_f64();
+        assert!((z * z / 2.0 / 1e-20 - 1.0).abs() < 1e-9, "{z}");
+        // After 10¹² steps it is half the growth of n·z² in ln.
+        let z = euler.largest_step_for_error(1e-9, 1_000_000_000_000).to_f64();
+        assert!((z * z * 0.5e12 / 1e-9 - 1.0).abs() < 1e-6, "{z}");
+        let rk4 = SymbolicStep::new(crate::integrator::Rk4).unwrap();
+        // A polynomial of fourth degree: z⁴/24 is all that is left at this size.
+        let z = rk4.largest_step_for_error(1e80, 1).to_f64();
+        assert!((z.powi(4) / 24.0 / 1e80 - 1.0).abs() < 1e-9, "{z}");
+    }
+
+    #[test]
     fn the_largest_step_for_an_error_meets_it_and_no_larger_one_does() {
         let step = SymbolicStep::new(crate::integrator::VelocityVerlet).unwrap();
-        let z = step.largest_step_for_error(0.01, 1000).unwrap();
+        let z = step.largest_step_for_error(0.01, 1000).to_f64();
         // n·z³/24 = 0.01, with the ellipse of z²/8 beside it.
         assert!((0.05..0.063).contains(&z), "{z}");
         let error = |z| Slip::new(&step, z).unwrap().worst_error_within(1000);

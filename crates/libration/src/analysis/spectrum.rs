@@ -19,6 +19,9 @@ pub struct Spectrum {
     pub eigenvalues: Eigenvalues,
     /// The determinant minus one, without cancellation where it is known so.
     excess: Wide,
+    /// Whether the matrix takes a velocity to a negative position, as a rotation does by more than
+    /// half a turn.
+    beyond_half_a_turn: bool,
 }
 
 /// The two eigenvalues of a real `2 × 2` matrix.
@@ -77,6 +80,7 @@ impl Spectrum {
             determinant,
             eigenvalues: Eigenvalues::new(half, discriminant, determinant, defective),
             excess: unless_rounding(determinant - Wide::one(), Wide::one()),
+            beyond_half_a_turn: matrix.entry(0, 1).is_negative(),
         }
     }
 
@@ -87,11 +91,23 @@ impl Spectrum {
         let discriminant = ((trace * trace).ratio(1, 4) - determinant).checked()?.eval_wide(z);
         let excess = (determinant - Scalar::one()).checked()?.eval_wide(z);
         let (trace, determinant) = (trace.eval_wide(z), excess + Wide::one());
-        let off_diagonal = [step.matrix.entry(0, 1), step.matrix.entry(1, 0)];
-        let defective = off_diagonal.iter().any(|p| !p.eval_wide(z).is_zero());
+        let off_diagonal =
+            [step.matrix.entry(0, 1), step.matrix.entry(1, 0)].map(|p| p.eval_wide(z));
+        let defective = off_diagonal.iter().any(|x| !x.is_zero());
         let half = trace.ratio(1, 2);
         let eigenvalues = Eigenvalues::new(half, discriminant, determinant, defective);
-        Some(Spectrum { trace, determinant, eigenvalues, excess })
+        let beyond_half_a_turn = off_diagonal[0].is_negative();
+        Some(Spectrum { trace, determinant, eigenvalues, excess, beyond_half_a_turn })
+    }
+
+    /// The angle in rad by which the matrix turns the plane of `(q, v)` from `v` towards `q`, as the
+    /// flow of an oscillator does: of those that differ by whole turns, the one nearest to `near`.
+    pub fn turn(&self, near: Wide) -> Wide {
+        let angle = self.angle();
+        let angle = if self.beyond_half_a_turn { -angle } else { angle };
+        let whole = Wide::pi().scaled(1);
+        let turns = ((near - angle) / whole).to_f64().round();
+        angle + whole * Wide::from_f64(turns)
     }
 
     /// The determinant minus one; zero where it differs from one by rounding only.

@@ -2,8 +2,8 @@
 
 use super::roots::{Dyadic, IntegerPoly, Root, positive_roots};
 use super::{SymbolicStep, UnknownStep};
-use crate::Scalar;
 use crate::number::Wide;
+use crate::{Elementary, Scalar};
 
 /// A largest open interval of time steps at which every orbit stays bounded.
 #[derive(Clone, Copy, Debug)]
@@ -30,12 +30,16 @@ impl SymbolicStep {
         for i in 0..=cells.roots.len() {
             let stable = conditions.bounded_at(&cells.sample(i));
             let left = i.checked_sub(1).map(|i| &cells.roots[i]);
-            let to = cells.roots.get(i).map(Root::value);
+            let value = |root: &Root| match conditions.squares {
+                true => root.value().sqrt(),
+                false => root.value(),
+            };
+            let to = cells.roots.get(i).map(value);
             let joined = before && left.is_some_and(|root| !conditions.defective_at(root));
             match windows.last_mut() {
                 Some(window) if stable && joined => window.to = to,
                 _ if stable => {
-                    windows.push(StabilityWindow { from: left.map_or(Wide::ZERO, Root::value), to })
+                    windows.push(StabilityWindow { from: left.map_or(Wide::ZERO, value), to })
                 }
                 _ => {}
             }
@@ -47,12 +51,15 @@ impl SymbolicStep {
     fn conditions(&self) -> Option<Conditions> {
         let (one, trace, determinant) = (UnknownStep::one(), self.trace(), self.determinant());
         let of = |p: UnknownStep| IntegerPoly::of(&p);
-        Some(Conditions {
-            area: of(one - determinant)?,
-            plus: of(one + determinant - trace)?,
-            minus: of(one + determinant + trace)?,
-            off_diagonal: [of(self.matrix.entry(0, 1))?, of(self.matrix.entry(1, 0))?],
-        })
+        let [area, plus, minus] = [
+            of(one - determinant)?,
+            of(one + determinant - trace)?,
+            of(one + determinant + trace)?,
+        ];
+        let [b, c] = [of(self.matrix.entry(0, 1))?, of(self.matrix.entry(1, 0))?];
+        let ([area, plus, minus, b, c], squares) =
+            IntegerPoly::in_squares([&area, &plus, &minus, &b, &c]);
+        Some(Conditions { area, plus, minus, off_diagonal: [b, c], squares })
     }
 }
 
@@ -65,6 +72,8 @@ struct Conditions {
     /// `1 + det + tr`: zero where −1 is an eigenvalue.
     minus: IntegerPoly,
     off_diagonal: [IntegerPoly; 2],
+    /// Whether the unknown of the polynomials is the square of the time step.
+    squares: bool,
 }
 
 impl Conditions {
@@ -110,7 +119,7 @@ impl Cells {
     pub(super) fn of(polynomials: &[&IntegerPoly]) -> Self {
         let one = IntegerPoly::new(vec![1.into()]);
         let factors = polynomials.iter().filter(|p| !p.is_zero());
-        let product = factors.fold(one, |product, p| product.times(&p.square_free()));
+        let product = factors.fold(one, |product, p| product.times(p));
         Cells { roots: positive_roots(&product) }
     }
 

@@ -1,5 +1,7 @@
 //! The claims of the source report about energy.
 
+use std::f64::consts::{E, TAU};
+
 use libration::Method;
 
 use super::tag;
@@ -11,18 +13,28 @@ use crate::studies::source;
 /// Where RK4 stops losing energy and begins to gain it: z = 2√2.
 const RK4_LIMIT: f64 = 2.0 * std::f64::consts::SQRT_2;
 
+/// The drift of an energy that has grown e-fold: less does not tell an exponential from a line.
+const E_FOLD: f64 = E - 1.0;
+
 /// Judges them from the findings of the record.
 pub(super) fn judge(config: &Config, record: &mut Record) {
-    let dts = &config.drift.dt;
+    let long = long_enough(config);
     let ids =
-        |m: Method, what: &str| -> Vec<String> { dts.iter().map(|&dt| id(m, dt, what)).collect() };
+        |m: Method, what: &str| -> Vec<String> { long.iter().map(|&dt| id(m, dt, what)).collect() };
     let seen = above_rounding(record, &ids(Method::ExplicitEuler, "largest"));
-    explicit_euler(record, &seen);
+    let grown: Vec<String> = seen
+        .into_iter()
+        .filter(|id| record.finding(id).is_ok_and(|f| f.measured >= E_FOLD))
+        .collect();
+    explicit_euler(record, &grown);
     bounded(record, &ids);
     start_matters(record, &ids);
-    let seen = above_rounding(record, &ids(Method::Rk4, "largest"));
+    let loses = |dt: &&f64| config.oscillator.omega() * **dt < RK4_LIMIT;
+    let rk4: Vec<String> =
+        long.iter().filter(loses).map(|&dt| id(Method::Rk4, dt, "largest")).collect();
+    let seen = above_rounding(record, &rk4);
     steady_loss(record, &seen);
-    without_symplecticity(config, record);
+    without_symplecticity(record, &long, config.oscillator.omega());
     if is_the_source_setting(config) {
         at_the_source_setting(record);
     }
@@ -34,7 +46,16 @@ pub(super) fn judge(config: &Config, record: &mut Record) {
              tests of the project",
         )
     });
-    portraits(config, record);
+    portraits(record, &long, config.oscillator.omega());
+}
+
+/// Turns of a run that may be called long.
+const LONG: f64 = 10.0;
+
+/// The time steps at which the run is long: a short one shows neither a swing nor a drift.
+fn long_enough(config: &Config) -> Vec<f64> {
+    let turns = |dt: f64| config.oscillator.omega() * dt * config.drift.steps as f64 / TAU;
+    config.drift.dt.iter().copied().filter(|&dt| turns(dt) >= LONG).collect()
 }
 
 fn id(method: Method, dt: f64, what: &str) -> String {
@@ -166,18 +187,15 @@ fn steady_loss(record: &mut Record, seen: &[String]) {
 }
 
 /// Both non-symplectic methods at the smallest step at which RK4's loss is more than rounding.
-fn without_symplecticity(config: &Config, record: &mut Record) {
-    let omega = config.oscillator.omega();
+fn without_symplecticity(record: &mut Record, dts: &[f64], omega: f64) {
     let shows = |dt: f64| -> Option<Vec<String>> {
         let rk4 = above_rounding(record, &[id(Method::Rk4, dt, "largest")]);
         let mut euler = above_rounding(record, &[id(Method::ExplicitEuler, dt, "largest")]);
         euler.extend(existing(record, &[id(Method::ExplicitEuler, dt, "overflow")]));
         (!rk4.is_empty() && !euler.is_empty()).then(|| [euler, rk4].concat())
     };
-    let loses = config.drift.dt.iter().filter(|&&dt| omega * dt < RK4_LIMIT);
-    let Some((dt, evidence)) = loses.filter_map(|&dt| Some((dt, shows(dt)?))).next() else {
-        return;
-    };
+    let mut loses = dts.iter().filter(|&&dt| omega * dt < RK4_LIMIT);
+    let Some((dt, evidence)) = loses.find_map(|&dt| Some((dt, shows(dt)?))) else { return };
     let text = "Non-symplectic methods produce long-term drift.";
     rule(record, ("C33", "4.6", text), &evidence, |f| {
         let gained = match f[0].unit.as_str() {
@@ -253,12 +271,11 @@ fn at_the_source_setting(record: &mut Record) {
 }
 
 /// The claim about orbits, at the steps at which every method has the kind of orbit it names.
-fn portraits(config: &Config, record: &mut Record) {
+fn portraits(record: &mut Record, dts: &[f64], omega: f64) {
     let methods =
         [Method::ExplicitEuler, Method::SymplecticEuler, Method::VelocityVerlet, Method::Rk4];
-    let dts = &config.drift.dt;
     let mut evidence = Vec::new();
-    for &dt in dts.iter().filter(|&&dt| config.oscillator.omega() * dt < RK4_LIMIT) {
+    for &dt in dts.iter().filter(|&&dt| omega * dt < RK4_LIMIT) {
         let found = existing(record, &methods.map(|m| id(m, dt, "envelope")));
         if found.len() == methods.len() {
             evidence.extend(found);

@@ -11,8 +11,8 @@ use crate::record::{Finding, Series, Tolerance};
 use crate::study::StudyError;
 use crate::{Lab, Record};
 
-/// Steps within which Verlet's orbit is searched for its extremes.
-const FORECAST: u64 = 100_000;
+/// Steps of Verlet's orbit that are seen before RK4's begin.
+const STRETCH: u64 = 1 << 20;
 
 /// What theory says of one time step.
 struct Prediction {
@@ -20,8 +20,8 @@ struct Prediction {
     to_the_band: f64,
     /// The same to leading order in z.
     leading_order: f64,
-    /// Steps until it equals what Verlet's discrete orbit makes of the band, which is less where
-    /// the orbit closes after a few points.
+    /// Steps until it equals what Verlet's discrete orbit makes of the band within the simulation,
+    /// which is less where the orbit closes, or nearly so, after a few points.
     to_the_orbit: f64,
     /// What Verlet's discrete orbit makes of its band, and the band.
     depth: f64,
@@ -37,7 +37,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     }
     let reach = lab.effort.choose(1_000_000, 50_000_000, 500_000_000_u64);
     let found = lab.sweep("the crossover of RK4 and Verlet", &config.drift.dt, |&dt| {
-        let Some(predicted) = predict(lab, dt) else { return Ok(None) };
+        let Some(predicted) = predict(lab, dt, reach) else { return Ok(None) };
         let measured = match predicted.to_the_orbit < reach as f64 {
             true => simulate(lab, dt, reach)?,
             false => None,
@@ -71,11 +71,8 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         if let Some(measured) = measured {
             let at_crossing = |m| Setting { steps: measured, ..Setting::new(config, m, dt) };
             let Prediction { to_the_orbit, depth, band: (low, high), .. } = predicted;
-            // Verlet's orbit may come closer to the edge of its band than it did in the forecast.
-            let gap = (low.abs().max(high.abs()) - depth).max(0.0);
             let moved = at_crossing(Method::Rk4).rounding()
-                + at_crossing(Method::VelocityVerlet).uncertainty(depth, Some((low, high)))
-                + if measured > FORECAST { gap } else { 0.0 };
+                + at_crossing(Method::VelocityVerlet).uncertainty(depth, Some((low, high)));
             let id = format!("drift.crossover.{}.measured", tag(dt));
             let text = format!(
                 "Δt = {shown}: step at which RK4’s drift overtakes Verlet’s in simulation, within {} \
@@ -109,7 +106,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
 }
 
 /// The crossover at one time step; none where it does not exist, because a method is unstable.
-fn predict(lab: &Lab<'_>, dt: f64) -> Option<Prediction> {
+fn predict(lab: &Lab<'_>, dt: f64, reach: u64) -> Option<Prediction> {
     let config = lab.config;
     let oscillator = config.oscillator.system();
     let start = State { q: [config.start.q], v: [config.start.v] };
@@ -120,8 +117,13 @@ fn predict(lab: &Lab<'_>, dt: f64) -> Option<Prediction> {
     let steps = |depth: f64| (-depth).ln_1p() / loss;
     let (low, high) = EnergyBand::new(oscillator, &verlet)?.drift_after(&start, 0);
     let band = low.abs().max(high.abs());
-    // Verlet's extremes are met to 10⁻⁸ within this many steps, or its orbit has closed.
-    let orbit = forecast_drift(oscillator, &verlet, &start, FORECAST)?.drift.to_f64();
+    // The simulation sees Verlet's orbit to the end of the stretch in which RK4 overtakes it.
+    let mut seen = STRETCH.min(reach);
+    let mut orbit = forecast_drift(oscillator, &verlet, &start, seen)?.drift.to_f64();
+    if steps(orbit) > seen as f64 {
+        seen = ((steps(orbit) / STRETCH as f64).ceil() as u64 * STRETCH).min(reach);
+        orbit = forecast_drift(oscillator, &verlet, &start, seen)?.drift.to_f64();
+    }
     let z = config.oscillator.omega() * dt;
     // The band reaches down by the potential and up by the kinetic share of the energy.
     let potential = oscillator.omega2 * start.q[0] * start.q[0];
@@ -137,7 +139,6 @@ fn predict(lab: &Lab<'_>, dt: f64) -> Option<Prediction> {
 
 /// The first step at which RK4's largest drift exceeds Verlet's.
 fn simulate(lab: &Lab<'_>, dt: f64, reach: u64) -> Result<Option<u64>, StudyError> {
-    const STRETCH: u64 = 1 << 20;
     let system = Model::<1>::on::<f64>(&lab.config.oscillator.system());
     let start = State { q: [lab.config.start.q], v: [lab.config.start.v] };
     let mut verlet = Simulator::new(system, integrator::VelocityVerlet, start, dt)?;

@@ -21,8 +21,8 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     summary(record, page, first);
     page.paragraph(
         "Theory leaves no room: a step carries a quadratic form along, `Q(My) = det M · Q(y)`, and \
-         an orbit is caught between two multiples of it. Where the determinant is one, the energy \
-         stays in a band for ever; where it is not, it grows or decays by that factor a step. The \
+         an orbit is caught between two multiples of it. Where the determinant is one and the step is \
+         stable, the energy stays in a band for ever; else it grows or decays, step by step. The \
          circles below are that envelope, derived from the shipped steps; the lines are simulated.",
     );
     page.figure(running(record, first)?.number("9.1"));
@@ -39,9 +39,10 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     if record.series("crossover").is_ok() {
         page.heading("When RK4 falls behind");
         page.paragraph(
-            "RK4 loses z⁶/72 of the energy a step, Verlet’s swings by z²/4: the loss overtakes the \
-             swing after 18/z⁴ steps. Below that line RK4 holds the energy better, however \
-             symplectic the other is.",
+            "RK4 loses z⁶/72 of the energy a step, from whatever start; from rest Verlet’s swings by \
+             z²/4, and the loss overtakes the swing after 18/z⁴ steps. From a start in motion the \
+             swing is another, and so is the number of steps: the line is that of the configured \
+             start. Below it RK4 holds the energy better, however symplectic the other is.",
         );
         page.figure(crossover(record)?);
     }
@@ -62,6 +63,7 @@ fn summary(record: &Record, page: &mut Page, dt: f64) {
     let shown = seconds(dt, 3);
     if let (Some(verlet), Some(rk4), Some(crossover)) =
         (largest(Method::VelocityVerlet), largest(Method::Rk4), crossover)
+        && fills_its_band(record, dt)
     {
         page.headline = format!(
             "At Δt = {shown} Verlet’s energy swings by {} for ever, RK4 has lost {} by the end: it \
@@ -83,11 +85,28 @@ fn summary(record: &Record, page: &mut Page, dt: f64) {
         .into_iter()
         .filter_map(|m| Some(format!("{} {}", m.title(), number(largest(m)?, 3))))
         .collect();
+    let left: Vec<String> = methods(record)
+        .into_iter()
+        .filter_map(|m| {
+            let overflow =
+                record.finding(&format!("drift.{}.{}.overflow", m.name(), tag(dt))).ok()?;
+            Some(format!("; {} leaves the range of f64 at step {}", m.title(), overflow.measured))
+        })
+        .collect();
     page.answer = format!(
-        "Largest relative energy drift at Δt = {shown}: {}. Each is what the method’s own step says \
-         it must be.",
-        sizes.join(", ")
+        "Largest relative energy drift at Δt = {shown}: {}{}. Each is what the method’s own step \
+         says it must be.",
+        sizes.join(", "),
+        left.concat()
     );
+}
+
+/// Whether Verlet’s run was long enough for its energy to swing as far as it ever will.
+fn fills_its_band(record: &Record, dt: f64) -> bool {
+    let predicted = format!("{} predicted", Method::VelocityVerlet.name());
+    let series = record.series(&tag(dt));
+    let column = series.ok().and_then(|series| series.column(&predicted).ok());
+    column.and_then(|column| column.last()).is_some_and(|size| size.is_finite())
 }
 
 /// The running maximum of the drift at one time step.
@@ -108,9 +127,10 @@ fn running(record: &Record, dt: f64) -> Result<Figure, RecordError> {
         if tag(dt) == "dt-0.001" { "fig-9-1".into() } else { format!("drift-{}", tag(dt)) };
     Ok(Figure::new(number, format!("Largest energy drift so far, Δt = {}", seconds(dt, 3)))
         .caption(
-            "Explicit Euler explodes; the symplectic methods fill their band within a turn and \
-             never leave it; RK4 loses energy steadily. Lines: simulated in f64. Circles: the \
-             envelope that follows from the step, from the first half-turn on.",
+            "Explicit Euler gains energy at every step. Within their stability limits the symplectic \
+             methods fill a band within a turn and never leave it, and RK4 loses energy steadily. \
+             Lines: simulated in f64. Circles: the envelope that follows from the step, from the \
+             first half-turn on.",
         )
         .description("Log-log: running maximum of the relative energy drift against steps.")
         .panel(panel))
@@ -131,8 +151,8 @@ fn each_half_decade(x: &[f64], y: &[f64]) -> (Vec<f64>, Vec<f64>) {
 fn signed(record: &Record, dt: f64) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("fig-9-2", "Energy drift with its sign, without explicit Euler")
         .caption(
-            "Each method on its own scale. Symplectic Euler swings both ways, Verlet from rest only \
-             down, RK4 goes down for good. Shaded: lowest to highest drift in each stretch of the \
+            "Each method on its own scale. From rest symplectic Euler swings both ways and Verlet only \
+             down; RK4 goes down for good. Shaded: lowest to highest drift in each stretch of the \
              run. Thin lines: the envelope that follows from the step.",
         )
         .description("The drift of each method against time, with its closed-form envelope.")
@@ -185,17 +205,31 @@ fn crossover(record: &Record) -> Result<Figure, RecordError> {
     let middle = (low * high).sqrt();
     let top = steps.iter().copied().filter(|s| s.is_finite()).fold(1.0, f64::max);
     Ok(Figure::new("crossover", "The step at which RK4’s loss overtakes Verlet’s swing")
-        .caption(
-            "Above the line Verlet holds the energy better, below it RK4 does. A million steps, the \
-             horizon of the source, crosses it between the largest two steps.",
-        )
+        .caption(format!(
+            "Above the line Verlet holds the energy better, below it RK4 does.{}",
+            crossed(dt, steps)
+        ))
         .description("Log-log: the crossover falls with the fourth power of the time step.")
         .aspect(2.2)
-        .panel(
-            panel
-                .mark(note(middle * 1.6, top / 30.0, "Verlet better"))
-                .mark(note(low * 1.3, 3e3, "RK4 better")),
-        ))
+        .panel(panel.mark(note(middle * 1.6, top / 30.0, "Verlet better")).mark(note(
+            low * 1.3,
+            3e3,
+            "RK4 better",
+        ))))
+}
+
+/// Where the horizon of the source crosses the line, in words.
+fn crossed(dt: &[f64], steps: &[f64]) -> String {
+    const HORIZON: f64 = 1e6;
+    let pairs = dt.windows(2).zip(steps.windows(2));
+    let crossing = pairs.into_iter().find(|(_, n)| n[0] >= HORIZON && n[1] < HORIZON);
+    crossing.map_or_else(String::new, |(dt, _)| {
+        format!(
+            " A million steps, the horizon of the source, crosses it between Δt = {} and {}.",
+            seconds(dt[0], 3),
+            seconds(dt[1], 3)
+        )
+    })
 }
 
 /// The orbits of all methods at the largest time step.

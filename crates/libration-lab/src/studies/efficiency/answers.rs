@@ -10,7 +10,7 @@ use super::cost::Cost;
 use super::demand::{Demand, Kind, steps_for};
 use crate::notation::{count, number};
 use crate::record::{Cell, Finding, Table, Tolerance};
-use crate::studies::coverage::lacking;
+use crate::studies::coverage::{lacking, turns};
 use crate::studies::rounding::rounding_of_run;
 use crate::study::StudyError;
 use crate::{Lab, Record};
@@ -115,7 +115,7 @@ fn try_out(
         let (method, tolerance) = (offer.cost.method, demand.tolerance);
         // A start of less than a turn may not see the extreme, and near the end of stability an
         // orbit grows before it is seen: only what covers its curve is compared.
-        if lacks > 0.1 {
+        if lacks > 0.1 || !turns(method, &demand.start, offer.z) {
             continue;
         }
         let rounding = 4.0 * rounding_of_run(method, 1.0, offer.z, steps) / tolerance;

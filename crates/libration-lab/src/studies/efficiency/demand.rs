@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use libration::analysis::{Criterion, LargestStep, Slip, SymbolicStep};
+use libration::analysis::{Criterion, LargestStep, OrbitStart, Slip, SymbolicStep};
 use libration::number::Wide;
 use libration::{Method, Scalar, State, with_method};
 
@@ -48,7 +48,7 @@ impl Demand {
         match self.kind {
             Kind::Energy if step.is_symplectic() => {
                 // The band does not depend on the horizon.
-                let (tolerance, start) = (self.tolerance, Some(self.start));
+                let (tolerance, start) = (self.tolerance, Some(OrbitStart::new(&self.start)));
                 let criterion = Criterion::EnergyDrift { tolerance, steps: 1, start };
                 step.largest_step(&criterion).map(LargestStep::to_f64)
             }

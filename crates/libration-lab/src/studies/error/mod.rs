@@ -1,6 +1,7 @@
 //! The error against the exact solution, and what the source's numbers really are.
 
 mod claims;
+mod mean;
 mod render;
 mod run;
 mod suspects;
@@ -145,7 +146,9 @@ fn amplitude(run: &Run) -> Result<Option<Series>, StudyError> {
     let omega2 = oscillator.omega2;
     let radius = start.q[0].hypot(start.v[0] / omega2.sqrt());
     let growth = (omega2 * dt * dt).ln_1p() / 2.0;
-    let stride = steps.div_ceil(STRETCHES).max(1);
+    // A stretch of less than a turn would miss the extremes.
+    let turn = std::f64::consts::TAU / (omega2.sqrt() * dt);
+    let stride = steps.div_ceil(STRETCHES).max(turn.ceil() as u64).max(1);
     let mut columns = [const { Vec::new() }; 4];
     let mut range = (0.0_f64, 0.0_f64);
     let mut watch = |sample: &Sample<f64, 1>| {

@@ -6,6 +6,7 @@ use libration::simulation::{Sample, Simulator};
 use libration::system::Oscillator;
 use libration::{Elementary, Float, Method, Model, Scalar, State, with_method};
 
+use super::mean::SumOfSquares;
 use crate::studies::rounding::rounding_of_run;
 use crate::studies::sampled::sampled_steps;
 use crate::study::StudyError;
@@ -23,9 +24,9 @@ pub(super) struct Setting {
     pub(super) steps: u64,
 }
 
-/// Errors in position, in m: each state beside the solution at its own time, and beside the
-/// solution one step before.
-#[derive(Clone, Copy, Debug, Default)]
+/// Errors in position, in m, at as many instants as steps are taken, from the start on: of the state
+/// there, and of the state one step later beside the same solution.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Errors {
     pub(super) aligned: f64,
     pub(super) late: f64,
@@ -36,7 +37,7 @@ pub(super) struct Run {
     pub(super) setting: Setting,
     /// None where the step does not oscillate.
     pub(super) forecast: Option<ErrorForecast>,
-    /// Root mean square over all steps.
+    /// Root mean squares over all instants.
     pub(super) rms: Errors,
     /// The aligned error after the last step.
     pub(super) last: f64,
@@ -78,8 +79,8 @@ impl Setting {
             // Leaving the range of f64 is a result; what was seen until then is kept.
             simulator.run(self.steps, &mut |sample: &Sample<f64, 1>| watch.see(sample)).is_ok()
         });
-        let Watch { sums, running, last, amplitude, .. } = watch;
-        let rms = root_mean(sums, self.steps);
+        let Watch { aligned, late, running, last, amplitude, .. } = watch;
+        let rms = root_mean(aligned, late, self.steps);
         let forecast = self.forecast();
         Ok(Run { setting: *self, forecast, rms, last, sampled, running, amplitude, finished })
     }
@@ -91,7 +92,8 @@ struct Watch<'a> {
     rotation: UpdateMatrix<TwoFloat, 1>,
     exact: State<TwoFloat, 1>,
     sampled: &'a [u64],
-    sums: Errors,
+    aligned: SumOfSquares,
+    late: SumOfSquares,
     running: Vec<Errors>,
     last: f64,
     amplitude: f64,
@@ -103,7 +105,8 @@ impl<'a> Watch<'a> {
             rotation: rotation(setting.oscillator, setting.dt),
             exact: setting.start.map(TwoFloat::from_f64),
             sampled,
-            sums: Errors::default(),
+            aligned: SumOfSquares::default(),
+            late: SumOfSquares::default(),
             running: Vec::new(),
             last: 0.0,
             amplitude: 0.0,
@@ -117,13 +120,13 @@ impl<'a> Watch<'a> {
             return;
         }
         let difference = |exact: &State<TwoFloat, 1>| (TwoFloat::from_f64(x) - exact.q[0]).to_f64();
+        self.aligned.add(self.last);
         let late = difference(&self.exact);
         self.exact = self.rotation.apply(&self.exact);
         self.last = difference(&self.exact);
-        self.sums.aligned += self.last * self.last;
-        self.sums.late += late * late;
+        self.late.add(late);
         if self.sampled.get(self.running.len()) == Some(&sample.step) {
-            self.running.push(root_mean(self.sums, sample.step));
+            self.running.push(root_mean(self.aligned, self.late, sample.step));
         }
     }
 }
@@ -139,7 +142,6 @@ fn rotation(oscillator: Oscillator<f64>, dt: f64) -> UpdateMatrix<TwoFloat, 1> {
     }
 }
 
-fn root_mean(sums: Errors, steps: u64) -> Errors {
-    let root = |sum: f64| (sum / steps as f64).sqrt();
-    Errors { aligned: root(sums.aligned), late: root(sums.late) }
+fn root_mean(aligned: SumOfSquares, late: SumOfSquares, steps: u64) -> Errors {
+    Errors { aligned: aligned.root_mean(steps), late: late.root_mean(steps) }
 }

@@ -3,10 +3,10 @@
 use libration::Method;
 
 use super::super::spectrum::largest_stable;
-use super::super::subject::Orbits;
+use super::super::subject::{Loss, Orbits};
 use super::Trial;
 use crate::Lab;
-use crate::notation::{count, number};
+use crate::notation::{count, number, seconds};
 use crate::record::{Finding, Record, Series, Table, Tolerance};
 use crate::study::StudyError;
 
@@ -39,16 +39,18 @@ pub(super) fn search(
     let mut table = Table::new("limits", &columns);
     for (trial, (small, large)) in trials.iter().zip(&found) {
         let mut cells = ["—".to_owned(), "—".to_owned(), "—".to_owned()];
-        if let Some((predicted, omega, Some(measured))) = *small {
+        if let Some((predicted, omega, Some(Loss { dt: measured, .. }))) = *small {
             record.find(small_orbit(trial, predicted, omega, measured));
             cells[0] = number(predicted, 6);
             cells[1] = number(measured, 6);
         }
-        if let Some(measured) = *large {
+        if let Some(Loss { dt: measured, apart }) = *large {
             let what = format!(
-                "largest Δt up to which the energy never changes by as much as there was, from the \
-                 configured start within {} steps",
-                count(4 * steps)
+                "first Δt at which the energy changes by as much as there was, from the configured \
+                 start within {} steps, among steps that are {} apart: a gap between two of them \
+                 would not be seen",
+                count(4 * steps),
+                seconds(apart, 2)
             );
             record.find(Finding::measured(
                 trial.id("start-limit"),
@@ -65,7 +67,7 @@ pub(super) fn search(
         );
     }
     record.tables.push(table);
-    let larges: Vec<Option<f64>> = found.iter().map(|(_, large)| *large).collect();
+    let larges: Vec<Option<f64>> = found.iter().map(|(_, l)| l.map(|loss| loss.dt)).collect();
     portraits(lab, trials, &larges, record)
 }
 

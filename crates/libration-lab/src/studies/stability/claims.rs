@@ -11,6 +11,9 @@ use crate::record::{Finding, Judgement, Record, Ruling};
 const COMPARED: [Method; 4] =
     [Method::ExplicitEuler, Method::SymplecticEuler, Method::VelocityVerlet, Method::Rk4];
 
+/// How far boundedness alone lets RK4 and velocity Verlet go.
+const BOUNDED: [&str; 2] = ["stability.rk4.window-1-to", "stability.velocity-verlet.window-1-to"];
+
 /// A row of findings: a criterion, a horizon, and the largest steps of [`COMPARED`].
 struct Row {
     words: String,
@@ -21,10 +24,10 @@ struct Row {
 /// Judges them from the findings of the record.
 pub(super) fn judge(config: &Config, record: &mut Record) {
     let drifts: Vec<(Limit, u64)> = rows(config, record, |l| matches!(l, Limit::Drift(_)));
-    let ids: Vec<String> = ids(&drifts);
-    let ids: Vec<&str> = ids.iter().map(String::as_str).collect();
-    if !ids.is_empty() {
-        by_drift(record, &drifts, &ids);
+    // From a tolerance of one on the energy bounds nothing that the spectrum does not.
+    if drifts.iter().any(|(limit, _)| matches!(limit, Limit::Drift(tolerance) if *tolerance < 1.0))
+    {
+        by_drift(record, &drifts);
     }
     stricter(config, record);
     record.judge(
@@ -32,7 +35,7 @@ pub(super) fn judge(config: &Config, record: &mut Record) {
             id: "C27",
             source: "4.1",
             text: "Stable means ρ ≤ 1, bounded and without growth; RK4 is so for short runs only.",
-            findings: &["stability.rk4.window-1-to", "stability.velocity-verlet.window-1-to"],
+            findings: &BOUNDED,
         },
         |f| {
             Judgement::holds_if(
@@ -79,57 +82,84 @@ impl Row {
     }
 }
 
-fn by_drift(record: &mut Record, rows: &[(Limit, u64)], ids: &[&str]) {
-    // The horizons of each criterion, criteria in their order.
-    let list = |rows: &[&Row]| {
-        let mut groups: Vec<(&str, Vec<String>)> = Vec::new();
-        for row in rows {
-            match groups.last_mut().filter(|(words, _)| *words == row.words) {
-                Some((_, horizons)) => horizons.push(count(row.steps)),
-                None => groups.push((&row.words, vec![count(row.steps)])),
-            }
+/// Rows in words: the horizons of each criterion, criteria in their order.
+fn list(rows: &[&Row]) -> String {
+    let mut groups: Vec<(&str, Vec<String>)> = Vec::new();
+    for row in rows {
+        match groups.last_mut().filter(|(words, _)| *words == row.words) {
+            Some((_, horizons)) => horizons.push(count(row.steps)),
+            None => groups.push((&row.words, vec![count(row.steps)])),
         }
-        let group = |(words, horizons): &(&str, Vec<String>)| {
-            format!("an {words} over {} steps", horizons.join(", "))
-        };
-        groups.iter().map(group).collect::<Vec<_>>().join("; ")
+    }
+    let group = |(words, horizons): &(&str, Vec<String>)| {
+        format!("an {words} over {} steps", horizons.join(", "))
+    };
+    groups.iter().map(group).collect::<Vec<_>>().join("; ")
+}
+
+/// The horizons from which on Verlet allows the larger step, in words, and whether there are any.
+fn ties(record: &Record) -> Option<String> {
+    let series = record.series("crossovers").ok()?;
+    let pairs = series.column("tolerance").ok()?.iter().zip(series.column("steps").ok()?);
+    let words: Vec<String> = pairs
+        .map(|(e, n)| format!("{} steps for a drift of {}", number(*n, 3), number(*e, 2)))
+        .collect();
+    (!words.is_empty()).then(|| words.join(", "))
+}
+
+/// The claims that say which method allows the largest step.
+fn by_drift(record: &mut Record, rows: &[(Limit, u64)]) {
+    let ids: Vec<String> = ids(rows);
+    let ids: Vec<&str> = ids.iter().map(String::as_str).chain(BOUNDED).collect();
+    let ties = ties(record);
+    let later = |none: &str| match &ties {
+        Some(ties) => format!("{none} that was tried, but beyond {ties}"),
+        None => format!("{none} that was tried"),
     };
     let depends = |f: &[&Finding], extra: &str| {
+        let (f, bounded) = f.split_at(f.len() - BOUNDED.len());
         let read = read(rows, f);
         let (verlet, others): (Vec<&Row>, Vec<&Row>) =
             read.iter().partition(|row| row.verlet_is_largest());
+        let holds = match verlet.is_empty() {
+            true => later("no criterion"),
+            false => list(&verlet),
+        };
+        let rk4 =
+            if others.is_empty() { String::new() } else { format!("{}, and for ", list(&others)) };
         let because = format!(
-            "Verlet’s step is the largest for {}; RK4’s is for {}. Without a tolerance on the energy \
-             its limit is that of symplectic Euler, and RK4’s is larger{extra}",
-            if verlet.is_empty() { "no criterion tried".into() } else { list(&verlet) },
-            if others.is_empty() { "none".into() } else { list(&others) }
+            "Verlet’s step is the largest for {holds}; RK4’s is for {rk4}boundedness without a \
+             tolerance on the energy, up to z = {} against {}{extra}",
+            number(bounded[0].measured, 4),
+            number(bounded[1].measured, 4)
         );
-        match (verlet.is_empty(), others.is_empty()) {
-            (true, _) => Judgement::refuted(because),
-            (_, true) => Judgement::confirmed(because),
-            _ => Judgement::conditional(because)
+        match verlet.is_empty() && ties.is_none() {
+            true => Judgement::refuted(because),
+            false => Judgement::conditional(because)
                 .only("energy drift below a tolerance under 1, over more than N*(ε) steps"),
         }
     };
     let text = "The stable step is smallest for explicit Euler, moderate for symplectic Euler, and \
                 largest for velocity Verlet; RK4’s serves short runs.";
-    record.judge(Ruling { id: "C30", source: "4.4", text, findings: ids }, |f| {
+    record.judge(Ruling { id: "C30", source: "4.4", text, findings: &ids }, |f| {
         depends(f, ". The source names neither tolerance nor horizon")
     });
     let text = "Velocity Verlet has the largest stable time step.";
-    record.judge(Ruling { id: "C80", source: "9.3", text, findings: ids }, |f| depends(f, ""));
+    record.judge(Ruling { id: "C80", source: "9.3", text, findings: &ids }, |f| depends(f, ""));
     let text = "Velocity Verlet is the most suitable for long conservative runs.";
-    record.judge(Ruling { id: "C35", source: "4.8", text, findings: ids }, |f| {
+    record.judge(Ruling { id: "C35", source: "4.8", text, findings: &ids }, |f| {
         depends(f, ". And it is about the energy: for the orbit itself RK4 is ahead at small steps")
     });
     let text = "Methods of higher order may do worse over long horizons.";
+    let ids = &ids[..ids.len() - BOUNDED.len()];
     record.judge(Ruling { id: "C70", source: "8.3", text, findings: ids }, |f| {
         let read = read(rows, f);
         let worse: Vec<&Row> = read.iter().filter(|row| row.dt[3] < row.dt[2]).collect();
-        let because = format!("RK4 allows a smaller step than Verlet for {}", list(&worse));
-        match worse.len() {
-            0 => Judgement::refuted("RK4 allows the larger step under every criterion tried"),
-            n if n == read.len() => Judgement::confirmed(because),
+        let where_ = if worse.is_empty() { later("no criterion") } else { list(&worse) };
+        let because = format!("RK4 allows a smaller step than Verlet for {where_}");
+        match (worse.len(), &ties) {
+            (0, None) => Judgement::refuted(because),
+            (n, _) if n == read.len() => Judgement::confirmed(because),
             _ => Judgement::conditional(because).only("beyond N*(ε) steps"),
         }
     });
@@ -152,14 +182,28 @@ fn stricter(config: &Config, record: &mut Record) {
     let text = "A bound on the energy drift is stricter than the detection of explosions.";
     record.judge(Ruling { id: "C28", source: "4.2", text, findings: &ids }, |f| {
         let read = read(&pairs, f);
-        let holds = read.chunks(2).all(|pair| {
+        let stricter = |pair: &&[Row]| {
             pair[0].dt.iter().zip(pair[1].dt).all(|(drift, amplitude)| *drift <= amplitude)
-        });
-        Judgement::holds_if(
-            holds,
-            "at every tolerance and horizon tried, for each of the four. From a tolerance of 1 on it \
-             would be the same test for velocity Verlet from rest, whose drift cannot reach it \
-             before z = 2",
-        )
+        };
+        let (holds, fails): (Vec<&[Row]>, Vec<&[Row]>) = read.chunks(2).partition(stricter);
+        let first = |pairs: &[&[Row]]| list(&pairs.iter().map(|pair| &pair[0]).collect::<Vec<_>>());
+        let than = "than one on the amplitude allows, for each of the four";
+        match (holds.is_empty(), fails.is_empty()) {
+            (_, true) => Judgement::confirmed(format!(
+                "no larger step {than}, at every tolerance and horizon tried. From a tolerance of 1 \
+                 on it would be the same test for velocity Verlet from rest, whose drift cannot \
+                 reach it before z = 2"
+            )),
+            (true, _) => Judgement::refuted(format!(
+                "an {} lets one of the four take a larger step than a tenfold amplitude does",
+                first(&fails).trim_start_matches("an ")
+            )),
+            _ => Judgement::conditional(format!(
+                "no larger step {than}, for {}; but for {} one of the four takes a larger one",
+                first(&holds),
+                first(&fails)
+            ))
+            .only("tolerances that an amplitude of ten times the start does not meet anyway"),
+        }
     });
 }

@@ -1,13 +1,13 @@
 //! The largest time step that meets a criterion, as a root and by search.
 
-use libration::analysis::{Criterion, LargestStep, SymbolicStep};
+use libration::analysis::{Criterion, LargestStep, OrbitStart, SymbolicStep};
 use libration::simulation::{EnergyDrift, Sample, Simulator};
 use libration::system::Oscillator;
 use libration::{Integrator, Method, Model, State, with_method};
 
 use crate::notation::{count, number};
 use crate::record::{Cell, Finding, Relation, Table, Tolerance};
-use crate::studies::coverage::{exponent, lacking};
+use crate::studies::coverage::{exponent, slack};
 use crate::studies::rounding::rounding_of_run;
 use crate::study::StudyError;
 use crate::{Config, Lab, Record};
@@ -81,7 +81,7 @@ pub(super) fn start(config: &Config) -> State<f64, 1> {
 /// The largest step for a case as a root, in units in which `ω = 1`; none where it has no such form.
 pub(super) fn root(config: &Config, case: &Case) -> Option<LargestStep> {
     let step = with_method!(case.method, |m| SymbolicStep::new(m))?;
-    let (steps, start) = (case.steps, start(config));
+    let (steps, start) = (case.steps, OrbitStart::new(&start(config)));
     step.largest_step(&match case.limit {
         Limit::Amplitude(limit) => Criterion::Amplitude { limit, steps, start },
         Limit::Drift(tolerance) => Criterion::EnergyDrift { tolerance, steps, start: Some(start) },
@@ -184,18 +184,19 @@ fn allowed(config: &Config, case: &Case, z: f64) -> (Tolerance, Relation) {
     // Just beyond a limit an orbit grows as exp(n√(2δ)): it takes so much for e¹⁰ or so to show.
     let late = (20.0 / n).powi(2);
     // In the criterion, and from there in z.
-    let (lacking, rounding) = match case.limit {
+    let (slack, rounding) = match case.limit {
         Limit::Drift(tolerance) => {
             let start = start(config);
             let steepness = exponent(case.method, &start, case.steps, z).clamp(1e-6, 1.0);
-            let lacking = lacking(case.method, &start, case.steps, z);
-            (lacking / steepness, rounding / tolerance / steepness)
+            let slack = slack(case.method, &start, case.steps, z, tolerance);
+            (slack.unwrap_or(f64::INFINITY), rounding / tolerance / steepness)
         }
-        Limit::Amplitude(limit) => (short_of(config, case, z, limit), rounding / limit),
+        Limit::Amplitude(limit) => (2.0 * short_of(config, case, z, limit), rounding / limit),
     };
-    let relative = 2.0 * lacking + late + rounding + 2.0 * PRECISION;
-    let reason = "twice what the discrete orbit lacks of its curve’s extreme, (20/n)² for growth to \
-                  show beyond a limit, rounding relative to the criterion, and the search";
+    let relative = slack + late + rounding + 2.0 * PRECISION;
+    let reason = "how far beyond its curve’s limit the discrete orbit may keep to the criterion, \
+                  (20/n)² for growth to show beyond a limit, rounding relative to the criterion, and \
+                  the search";
     // A run of less than a turn may never see the extreme: then the root is a bound.
     if relative < 0.2 {
         (Tolerance::relative(relative, reason), Relation::Equal)

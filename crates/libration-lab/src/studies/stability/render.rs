@@ -30,9 +30,9 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.table(record.table("largest steps")?, 5);
     page.paragraph(
         "The largest step of Verlet does not shrink with the horizon, that of RK4 does, with its \
-         sixth root. So for every tolerance ε below one there is a number of steps N*(ε) ≈ 9/(8ε²) \
-         up to which RK4 allows the larger step, and beyond which Verlet does. Count force \
-         evaluations, two against four here, and Verlet leads earlier.",
+         sixth root. So for every tolerance ε below one there is a number of steps N*(ε) up to which \
+         RK4 allows the larger step, and beyond which Verlet does; from rest it is about 9/(8ε²). \
+         Count force evaluations, two against four here, and Verlet leads earlier.",
     );
     Ok(())
 }
@@ -52,8 +52,8 @@ fn summary(record: &Record, page: &mut Page) -> Result<(), RecordError> {
         return Ok(());
     }
     page.answer = format!(
-        "“Verlet allows the largest step” is true of an energy tolerance over long enough runs: RK4’s \
-         largest step falls below Verlet’s after {}. Of boundedness alone it is false.",
+        "“Verlet allows a larger step than RK4” is true of an energy tolerance over long enough runs: \
+         RK4’s largest step falls below Verlet’s after {}. Of boundedness alone it is false.",
         ties.join(", ")
     );
     if let (Some(e), Some(n)) = (tolerance.first(), steps.first()) {

@@ -19,6 +19,7 @@ pub use self::errors::{Errors, Kind};
 pub(crate) use self::fit::Fit;
 pub use self::portrait::Portrait;
 pub use self::problem::Problem;
+pub(super) use self::stability::Loss;
 pub use self::stability::Orbits;
 pub(crate) use self::symmetry::ROUNDING;
 pub use self::symmetry::Symmetry;
@@ -105,9 +106,9 @@ pub trait Subject: Sync {
     /// The highest angular frequency of small oscillations about the equilibrium, in rad/s.
     fn frequency(&self) -> Option<f64>;
 
-    /// The largest time step in s up to which no orbit of `steps` steps is lost; zero if the
-    /// smallest that is tried loses it, none if none does.
-    fn loss(&self, orbits: Orbits, method: Method, steps: u64) -> Option<f64>;
+    /// Up to which time step no orbit of `steps` steps is lost; none if nothing is lost however large
+    /// the step.
+    fn loss(&self, orbits: Orbits, method: Method, steps: u64) -> Option<Loss>;
 
     /// The first `steps` points of the orbit at a time step `dt`.
     ///

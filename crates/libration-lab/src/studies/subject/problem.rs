@@ -9,8 +9,8 @@ use libration::{Float, Method, Model, Scalar, State, integrator, with_method};
 
 use super::errors::{self, Orbit};
 use super::{
-    Change, Changes, Errors, Halvings, Horizon, Kind, Law, Orbits, Portrait, Subject, Symmetry,
-    energy, portrait, stability, symmetry,
+    Change, Changes, Errors, Halvings, Horizon, Kind, Law, Loss, Orbits, Portrait, Subject,
+    Symmetry, energy, portrait, stability, symmetry,
 };
 use crate::study::StudyError;
 
@@ -157,7 +157,7 @@ impl<M: Model<D>, const D: usize> Subject for Problem<M, D> {
         stability::frequency(self)
     }
 
-    fn loss(&self, orbits: Orbits, method: Method, steps: u64) -> Option<f64> {
+    fn loss(&self, orbits: Orbits, method: Method, steps: u64) -> Option<Loss> {
         stability::loss(self, orbits, method, steps)
     }
 

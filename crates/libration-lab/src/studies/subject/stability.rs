@@ -46,18 +46,32 @@ pub(super) fn frequency<M: Model<D>, const D: usize>(problem: &Problem<M, D>) ->
     imaginary.into_iter().reduce(f64::max).filter(|&omega| omega > 0.0)
 }
 
-/// The largest time step in s up to which no orbit of `steps` steps is lost; zero if the smallest
-/// that is tried loses it, and none if nothing is lost however large the step.
+/// Up to where orbits were not lost.
+#[derive(Clone, Copy, Debug)]
+pub struct Loss {
+    /// The largest time step in s up to which no step that was tried lost its orbit; zero if the
+    /// smallest did.
+    pub dt: f64,
+    /// How far apart the steps that were tried are, in s: of a narrower gap nothing is known.
+    pub apart: f64,
+}
+
+/// Steps of the fine scan for each of the coarse one.
+const FINER: f64 = 48.0;
+
+/// The first loss of an orbit of `steps` steps as the time step rises; none if nothing is lost however
+/// large the step.
 ///
-/// A scan finds a first loss; a second one below it, four times as fine and with runs four times as
-/// long, finds gaps of stability that the first stepped over and orbits that take their time; the
-/// same once more in the last interval. Bisection alone would find some end of some gap.
+/// A scan finds a first loss. Orbits from the configured start may be lost in gaps far below it: in
+/// resonances, or in chaos that takes its time. A second scan begins at a hundredth of the first loss,
+/// much finer and with runs four times as long. Then the last interval is narrowed down; bisection
+/// alone would find some end of some gap.
 pub(super) fn loss<M: Model<D>, const D: usize>(
     problem: &Problem<M, D>,
     orbits: Orbits,
     method: Method,
     steps: u64,
-) -> Option<f64> {
+) -> Option<Loss> {
     let omega = match orbits {
         Orbits::Small => frequency(problem)?,
         Orbits::Configured => std::f64::consts::TAU / problem.turn(),
@@ -74,12 +88,12 @@ pub(super) fn loss<M: Model<D>, const D: usize>(
     let mut width = 0.05;
     let mut first = scan(0.0, FURTHEST, width, steps)?;
     if first <= width {
-        return Some(0.0);
+        return Some(Loss { dt: 0.0, apart: width / omega });
     }
     // About the equilibrium growth is monotone in the step: there are no gaps to be found.
     if orbits == Orbits::Configured {
-        width /= 4.0;
-        let from = 0.4 * first;
+        width /= FINER;
+        let from = 0.01 * first;
         first = scan(from, first, width, 4 * steps).unwrap_or(first);
     }
     let steps = if orbits == Orbits::Configured { 4 * steps } else { steps };
@@ -92,7 +106,7 @@ pub(super) fn loss<M: Model<D>, const D: usize>(
             None => low = high - part,
         }
     }
-    Some(low / omega)
+    Some(Loss { dt: low / omega, apart: width / omega })
 }
 
 /// A state near the equilibrium, off it in every coordinate.

@@ -97,7 +97,7 @@ impl IntegerPoly {
     }
 
     /// A multiple of the quotient of the division by `divisor`, which is not zero.
-    fn quotient(&self, divisor: &Self) -> Self {
+    pub(super) fn quotient(&self, divisor: &Self) -> Self {
         let mut rest = self.coefficients.clone();
         IntegerPoly::new(self.eliminate(divisor, &mut rest))
     }
@@ -133,16 +133,27 @@ impl IntegerPoly {
         a
     }
 
-    /// The polynomial with each of its roots once.
-    pub(crate) fn square_free(&self) -> Self {
-        let common = self.gcd(&self.derivative());
-        if common.coefficients.len() <= 1 { self.clone() } else { self.quotient(&common) }
-    }
-
     /// The polynomial divided by the highest power of `x` that divides it.
     pub(super) fn without_roots_at_zero(&self) -> Self {
         let zeros = self.coefficients.iter().take_while(|c| c.sign() == Sign::NoSign).count();
         IntegerPoly { coefficients: self.coefficients[zeros..].to_vec() }
+    }
+
+    /// The polynomials without their roots at zero, and in `x²` in place of `x` if all of them are
+    /// even then: that halves their degrees. On the positive axis signs stay what they were.
+    pub(crate) fn in_squares<const N: usize>(polynomials: [&Self; N]) -> ([Self; N], bool) {
+        let stripped = polynomials.map(IntegerPoly::without_roots_at_zero);
+        let odd = |p: &Self| p.coefficients.iter().skip(1).step_by(2).any(|c| c != &BigInt::ZERO);
+        if stripped.iter().any(odd) {
+            return (stripped, false);
+        }
+        let halved = |p: Self| p.coefficients.into_iter().step_by(2).collect();
+        (stripped.map(|p| IntegerPoly { coefficients: halved(p) }), true)
+    }
+
+    /// Whether this is a constant.
+    pub(super) fn is_constant(&self) -> bool {
+        self.coefficients.len() <= 1
     }
 
     /// Exponents `a < b` such that every positive root lies in `(2^a, 2^b)`; none if there is no

@@ -32,9 +32,9 @@ impl Root {
 /// Roots are counted by Sturm's theorem (Basu, Pollack, Roy: Algorithms in Real Algebraic Geometry,
 /// 2nd ed., §2.2.2) on whole numbers of any size, so that none is missed, however close two are.
 pub(crate) fn positive_roots(p: &IntegerPoly) -> Vec<Root> {
-    let p = p.without_roots_at_zero().square_free();
+    let p = p.without_roots_at_zero();
     let Some((lowest, highest)) = p.octaves_of_positive_roots() else { return Vec::new() };
-    let chain = SturmChain::new(&p);
+    let chain = SturmChain::new(p);
     let mut roots = Vec::new();
     chain.split_octaves(lowest, highest, &mut roots);
     roots
@@ -46,9 +46,21 @@ struct SturmChain {
 }
 
 impl SturmChain {
-    /// The chain of a polynomial without multiple roots.
-    fn new(p: &IntegerPoly) -> Self {
-        let mut members = vec![p.clone(), p.derivative()];
+    /// The chain of a polynomial, with each of its roots once.
+    fn new(p: IntegerPoly) -> Self {
+        let chain = SturmChain::of_remainders(p);
+        // The last member is the greatest common divisor of the polynomial and its derivative.
+        match chain.members.as_slice() {
+            [p, .., common] if !common.is_constant() => {
+                SturmChain::of_remainders(p.quotient(common))
+            }
+            _ => chain,
+        }
+    }
+
+    fn of_remainders(p: IntegerPoly) -> Self {
+        let derivative = p.derivative();
+        let mut members = vec![p, derivative];
         while let [.., a, b] = members.as_slice() {
             if b.is_zero() {
                 members.pop();
@@ -121,7 +133,7 @@ impl IntegerPoly {
     /// Whether this has a root in the interval of `root`.
     pub(crate) fn vanishes_within(&self, root: &Root) -> bool {
         self.sign_at(&root.high) == 0
-            || SturmChain::new(&self.square_free()).count(&root.low, &root.high) > 0
+            || SturmChain::new(self.clone()).count(&root.low, &root.high) > 0
     }
 }
 
