@@ -105,10 +105,16 @@ fn criteria_are_taken_and_wrong_ones_refused() {
     let dt = got["largest_dt"]["energy_drift"].as_f64().unwrap();
     assert!((dt - 0.02).abs() < 1e-15, "{dt}");
     assert!(got["largest_dt"]["amplitude"].is_null());
-    for (flag, value) in [("--max-drift", "0"), ("--max-amplitude", "-1"), ("--max-error", "nan")] {
+    for (flag, value) in [
+        ("--max-drift", "0"),
+        ("--max-amplitude", "-1"),
+        ("--max-error", "nan"),
+        ("--max-drift", "1e-300"),
+        ("--max-amplitude", "inf"),
+    ] {
         let output = libration(&[&words[..], &[flag, value]].concat()).code(2).get_output().clone();
         let error = String::from_utf8(output.stderr).unwrap();
-        assert!(error.contains(flag) && error.contains("greater than 0"), "{error}");
+        assert!(error.contains(flag) && error.contains("between 1e-60 and 1e60"), "{error}");
     }
 }
 

@@ -91,7 +91,7 @@ fn describe(analysis: &Analysis, criteria: &Criteria) -> String {
     }
     let mut largest = |what: &str, asked: Option<f64>, dt: Option<Option<f64>>| {
         if let Some(asked) = asked {
-            line("largest dt in s", format!("{} for {what} {asked}", known(dt)));
+            line("largest dt in s", format!("{} for {what} {asked:?}", known(dt)));
         }
     };
     if let Some(dt) = &analysis.largest_dt {

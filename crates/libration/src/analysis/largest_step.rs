@@ -91,6 +91,9 @@ impl SymbolicStep {
         if !(bound > 0.0 && bound.is_finite()) {
             return None;
         }
+        if matches!(criterion, Criterion::Amplitude { start, .. } if start.size().is_zero()) {
+            return Some(LargestStep::Unlimited);
+        }
         let conditions = if self.is_symplectic() {
             self.conserving(criterion)?
         } else if self.commutes_with_rotation() {

@@ -121,7 +121,8 @@ fn predict(lab: &Lab<'_>, dt: f64, reach: u64) -> Option<Prediction> {
     let mut seen = STRETCH.min(reach);
     let mut orbit = forecast_drift(oscillator, &verlet, &start, seen)?.drift.to_f64();
     if steps(orbit) > seen as f64 {
-        seen = ((steps(orbit) / STRETCH as f64).ceil() as u64 * STRETCH).min(reach);
+        let stretches = (steps(orbit) / STRETCH as f64).ceil() as u64;
+        seen = stretches.saturating_mul(STRETCH).min(reach);
         orbit = forecast_drift(oscillator, &verlet, &start, seen)?.drift.to_f64();
     }
     let z = config.oscillator.omega() * dt;
