@@ -20,12 +20,13 @@ pub(super) fn exponent(method: Method, start: &State<f64, 1>, steps: u64, z: f64
 
 /// How far beyond `z`, relative to it, a run of `steps` steps may still keep its energy within
 /// `tolerance`, at which its curve ends: a discrete orbit visits some phases and not others, few of
-/// them where a turn is nearly a whole number of steps. None if further than anybody looks.
+/// them where some turns are nearly a whole number of steps. That is looked up in powers of the matrix, at
+/// many steps and at the one where a search has ended. None if further than anybody looks.
 pub(super) fn slack(
     method: Method,
     start: &State<f64, 1>,
     steps: u64,
-    z: f64,
+    (z, ended): (f64, f64),
     tolerance: f64,
 ) -> Option<f64> {
     const LOOKS: u32 = 80;
@@ -34,17 +35,18 @@ pub(super) fn slack(
     const ENOUGH: u64 = 300_000;
     let unit = Oscillator { omega2: 1.0 };
     let beyond = |i: u32| FURTHEST * (f64::from(i) / f64::from(LOOKS)).powi(2);
-    let keeps = |i: &u32| {
-        let z = z * (1.0 + beyond(*i));
+    let keeps = |z: f64| {
         let step = with_method!(method, |m| Linearisation::new(m, unit, start, z)).step;
         forecast_drift(unit, &step, start, steps.min(ENOUGH))
             .is_some_and(|forecast| forecast.drift.to_f64() <= tolerance)
     };
-    let last = (0..=LOOKS).rev().find(keeps);
+    // A search ends just where the criterion fails.
+    let there = if keeps(ended * (1.0 - 1e-6)) { ended / z - 1.0 } else { 0.0 };
+    let last = (0..=LOOKS).rev().find(|&i| keeps(z * (1.0 + beyond(i))));
     match last {
-        None => Some(0.0),
+        None => Some(there.max(0.0)),
         Some(LOOKS) => None,
-        Some(i) => Some(beyond(i + 1)),
+        Some(i) => Some(there.max(beyond(i + 1))),
     }
 }
 

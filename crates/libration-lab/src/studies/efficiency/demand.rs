@@ -79,11 +79,14 @@ impl Demand {
             }
         }
         let mut high = 1.05 * low;
-        while high - low > 1e-13 * high {
+        // To neighbouring floats: over many steps a drift magnifies what is left.
+        loop {
             let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                return Some(low);
+            }
             if meets(middle) { low = middle } else { high = middle }
         }
-        Some(low)
     }
 }
 

@@ -173,12 +173,12 @@ fn search(
         if meets(middle)? { low = middle } else { high = middle }
     }
     let measured = 0.5 * (low + high);
-    let (tolerance, relation) = allowed(config, case, predicted);
+    let (tolerance, relation) = allowed(config, case, predicted, measured * omega);
     Ok(Some(Outcome { predicted: predicted / omega, measured, tolerance, relation }))
 }
 
-/// How far search and root may lie apart, and why.
-fn allowed(config: &Config, case: &Case, z: f64) -> (Tolerance, Relation) {
+/// How far the root `z` and the search, which `ended` there, may lie apart, and why.
+fn allowed(config: &Config, case: &Case, z: f64, ended: f64) -> (Tolerance, Relation) {
     let n = case.steps as f64;
     let rounding = 4.0 * rounding_of_run(case.method, 1.0, z, case.steps);
     // Just beyond a limit an orbit grows as exp(n√(2δ)): it takes so much for e¹⁰ or so to show.
@@ -188,7 +188,7 @@ fn allowed(config: &Config, case: &Case, z: f64) -> (Tolerance, Relation) {
         Limit::Drift(tolerance) => {
             let start = start(config);
             let steepness = exponent(case.method, &start, case.steps, z).clamp(1e-6, 1.0);
-            let slack = slack(case.method, &start, case.steps, z, tolerance);
+            let slack = slack(case.method, &start, case.steps, (z, ended), tolerance);
             (slack.unwrap_or(f64::INFINITY), rounding / tolerance / steepness)
         }
         Limit::Amplitude(limit) => (2.0 * short_of(config, case, z, limit), rounding / limit),
