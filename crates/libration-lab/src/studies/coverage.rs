@@ -29,10 +29,10 @@ pub(super) fn slack(
     (z, ended): (f64, f64),
     tolerance: f64,
 ) -> Option<f64> {
-    const LOOKS: u32 = 80;
+    const LOOKS: u32 = 32;
     const FURTHEST: f64 = 0.2;
     // Longer runs only visit more.
-    const ENOUGH: u64 = 300_000;
+    const ENOUGH: u64 = 100_000;
     let unit = Oscillator { omega2: 1.0 };
     let beyond = |i: u32| FURTHEST * (f64::from(i) / f64::from(LOOKS)).powi(2);
     let keeps = |z: f64| {
