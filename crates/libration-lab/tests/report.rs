@@ -96,6 +96,31 @@ fn results_keep_their_contract() {
     }
 }
 
+/// Tables with text that may look like numbers: polynomials, some of which are constant, and rows
+/// that horizons head in words.
+const IN_WORDS: [&str; 2] = ["update matrices", "largest steps"];
+
+#[test]
+fn every_number_of_a_table_is_a_number_of_the_file() {
+    for study in results()["studies"].as_array().unwrap() {
+        let tables = study["tables"].as_array().unwrap().iter();
+        let in_words = |table: &&Value| IN_WORDS.contains(&table["name"].as_str().unwrap());
+        for table in tables.filter(|table| !in_words(table)) {
+            let rows = table["rows"].as_array().unwrap();
+            for cell in rows.iter().flat_map(|row| row.as_array().unwrap()) {
+                let Some(text) = cell.as_str() else { continue };
+                assert!(
+                    text.contains(char::is_alphabetic),
+                    "{}: “{text}” is no word",
+                    table["name"]
+                );
+                let typeset = text.contains("·10") || text.contains('\u{202f}');
+                assert!(!typeset, "{}: “{text}” is set in type", table["name"]);
+            }
+        }
+    }
+}
+
 #[test]
 fn the_page_asks_for_nothing_from_anywhere() {
     let page = markup();

@@ -8,7 +8,6 @@ mod words;
 use libration::Method;
 
 use super::subject::{Errors, Fit, Halvings, Kind, Law, ROUNDING, Subject, configured};
-use crate::notation::number;
 use crate::page::Page;
 use crate::record::{Cell, Finding, RecordError, Relation, Series, Table, Tolerance};
 use crate::study::{Study, StudyError};
@@ -160,7 +159,7 @@ impl Trial<'_> {
                 None => Finding::measured(id, text, "1", fit.exponent),
             });
         }
-        cells.map(|x| x.map_or_else(|| "—".into(), |x| number(x, 4).into()))
+        cells.map(Cell::from)
     }
 }
 
