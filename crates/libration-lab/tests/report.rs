@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 
 use libration_lab::output::Output;
-use libration_lab::{Config, Effort, Lab, Silent, session, studies};
+use libration_lab::{Config, Effort, Lab, Silent, session, studies, tried};
 use serde_json::Value;
 
 /// The folder of one quick run, made once.
@@ -195,6 +195,38 @@ fn an_entry_of_the_ledger_shows_its_section_its_condition_and_every_finding() {
                 );
             }
         }
+    }
+}
+
+/// Claims whose evidence no figure shows: the oscillator itself, a single orbit, defects that are
+/// zero, and equality to the bit.
+const UNSEEN: [&str; 4] = ["C04", "C06", "C11", "C26"];
+
+#[test]
+fn an_entry_of_the_ledger_leads_to_the_figures_that_show_its_evidence() {
+    let (results, page) = (results(), markup());
+    let mut figures = HashSet::new();
+    let mut numbers = HashSet::new();
+    for figure in page.split("<figure ").skip(1) {
+        figures.insert(figure.split("id=\"").nth(1).unwrap().split('"').next().unwrap());
+        let head = figure.split("<figcaption><b>").nth(1).unwrap();
+        numbers.extend(head.strip_prefix("Figure ").and_then(|rest| rest.split(' ').next()));
+    }
+    for claim in tried::TRIED {
+        for name in claim.figures {
+            let there = figures.contains(name) || numbers.contains(name);
+            assert!(there, "{} names the figure {name}, which the page lacks", claim.id);
+        }
+    }
+    for claim in
+        results["studies"].as_array().unwrap().iter().flat_map(|s| s["claims"].as_array().unwrap())
+    {
+        let id = claim["id"].as_str().unwrap();
+        let row = page.split(&format!("<tr id=\"{id}\">")).nth(1).unwrap();
+        let row = row.split("</tr>").next().unwrap();
+        let linked = attributes(row, "href").into_iter().filter_map(|link| link.strip_prefix('#'));
+        let shown = linked.filter(|target| figures.contains(target)).count();
+        assert_eq!(shown > 0, !UNSEEN.contains(&id), "{id}: {row}");
     }
 }
 

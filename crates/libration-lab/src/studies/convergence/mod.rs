@@ -11,6 +11,7 @@ use super::subject::{Errors, Fit, Halvings, Kind, Law, ROUNDING, Subject, config
 use crate::page::Page;
 use crate::record::{Cell, Finding, RecordError, Relation, Series, Table, Tolerance};
 use crate::study::{Study, StudyError};
+use crate::tried::{self, Tried};
 use crate::{Lab, Record};
 
 /// The study `convergence`.
@@ -38,6 +39,11 @@ impl Study for Convergence<'_> {
 
     fn question(&self) -> &'static str {
         "Does the error fall with the power of the time step that each method promises?"
+    }
+
+    fn tries(&self) -> Vec<&'static Tried> {
+        // The source says nothing of a user's own systems.
+        if self.own.is_empty() { tried::by(self.name()) } else { Vec::new() }
     }
 
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
