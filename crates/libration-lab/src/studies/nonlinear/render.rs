@@ -2,10 +2,11 @@
 
 use libration::Method;
 
+use super::words::{growths, rates, step_of_portraits};
 use crate::figure::{Axis, Dash, Figure, Ink, Mark, Panel};
-use crate::notation::{list, number, seconds};
+use crate::notation::{number, seconds};
 use crate::page::{Highlight, Page};
-use crate::record::{Column, Finding, Record, RecordError};
+use crate::record::{Column, Record, RecordError};
 use crate::studies::ink::ink;
 
 /// Writes the chapter.
@@ -27,7 +28,7 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
             "Within one turn the energy of a method of order p swings by Δt^p, where forces are not \
              linear. What is left after a turn is another matter: of an even order p the term Δt^p \
              is odd under time reversal, so that a closed orbit gives back on one half what it took \
-             on the other. On a closed orbit the energy therefore drifts by {rates} a turn."
+             on the other. In a turn of a closed orbit the energy therefore drifts by {rates}."
         ));
     }
     page.heading("One step");
@@ -55,7 +56,7 @@ fn systems(record: &Record) -> Result<Vec<(String, String)>, RecordError> {
 }
 
 /// The answer, from the drifts over the whole horizon.
-fn summary(
+pub(super) fn summary(
     record: &Record,
     page: &mut Page,
     systems: &[(String, String)],
@@ -104,49 +105,6 @@ fn summary(
         });
     }
     Ok(())
-}
-
-/// The powers of Δt by which theory lets the energy of each method drift in a turn of a closed orbit,
-/// where that was found.
-fn rates(record: &Record) -> Option<String> {
-    let rate = |m: Method| {
-        let end = format!(".{}.rate-order", m.name());
-        let mut found = record.findings.iter().filter(|f| f.id.ends_with(&end) && f.agrees());
-        Some(format!("Δt^{{{}}} with {}", number(found.next()?.predicted?, 2), m.title()))
-    };
-    let rates: Vec<String> = Method::ALL.into_iter().filter_map(rate).collect();
-    let rates: Vec<&str> = rates.iter().map(String::as_str).collect();
-    (!rates.is_empty()).then(|| list(&rates))
-}
-
-/// What the runs showed of each method’s growth: that it stays in a band, climbs, or takes up as
-/// much energy as there was.
-fn growths(record: &Record) -> Result<String, RecordError> {
-    let of = |m: Method| {
-        let end = format!(".{}.growth", m.name());
-        record.findings.iter().filter(move |f| f.id.ends_with(&end))
-    };
-    let with = |keep: &dyn Fn(Method) -> bool| {
-        let titles: Vec<&str> =
-            Method::ALL.into_iter().filter(|&m| keep(m)).map(Method::title).collect();
-        (!titles.is_empty()).then(|| list(&titles))
-    };
-    let as_promised = |f: &Finding, exponent: f64| f.predicted == Some(exponent) && f.agrees();
-    let stays = |m| of(m).next().is_some() && of(m).all(|f| as_promised(f, 0.0));
-    let climbs = |m| of(m).any(|f| as_promised(f, 1.0));
-    let rows = &record.table("growth")?.rows;
-    let taken_up = |m: Method| {
-        let mut own = rows.iter().filter(|row| row[1].typeset(6) == m.title());
-        own.any(|row| row[2].value().is_none_or(|drift| drift >= 1.0))
-    };
-    let sentences = [
-        (with(&stays), "fill a band and stay in it on every system."),
-        (with(&climbs), "climb in proportion to time where the orbit is closed."),
-        (with(&taken_up), "take up as much energy as there was, or more, on some system."),
-    ];
-    let sentences =
-        sentences.into_iter().filter_map(|(who, what)| Some(format!("{}: {what}", who?)));
-    Ok(sentences.collect::<Vec<_>>().join(" "))
 }
 
 /// A figure with a panel for each system.
@@ -211,38 +169,6 @@ fn swings(record: &Record, systems: &[(String, String)]) -> Result<Figure, Recor
         figure = figure.panel(panel);
     }
     Ok(figure)
-}
-
-/// Where the step of the portraits comes from, and what to look for.
-fn step_of_portraits(record: &Record, systems: &[(String, String)]) -> String {
-    let shown = |m: Method| {
-        let end = format!("-{}", m.name());
-        record.series.iter().any(|s| s.name.starts_with("portrait-") && s.name.ends_with(&end))
-    };
-    let limit = |(name, _): &(String, String)| {
-        let id = format!("nonlinear.{name}.{}.start-limit", Method::VelocityVerlet.name());
-        record.finding(&id).is_ok_and(|f| f.measured > 0.0)
-    };
-    let found = systems.iter().filter(|system| limit(system)).count();
-    let step = match found {
-        0 => "At a sixteenth of a turn.",
-        all if all == systems.len() => {
-            "At half of the largest step that velocity Verlet was found to bear."
-        }
-        _ => {
-            "At half of the largest step that velocity Verlet was found to bear, or at a sixteenth \
-             of a turn where none was found."
-        }
-    };
-    let mut words = step.to_owned();
-    if shown(Method::VelocityVerlet) {
-        words += " Verlet keeps areas of phase space: its orbit may turn about or scatter, but does \
-                  not spiral.";
-    }
-    if shown(Method::Rk4) {
-        words += " RK4 does not keep them.";
-    }
-    words
 }
 
 /// Orbits at a large step: velocity Verlet beside RK4.
