@@ -115,28 +115,32 @@ pub fn unjudged(config: &Config, studies: &[&dyn Study], records: &[Record]) -> 
         .filter(|claim| !judged(claim))
         .map(|claim| {
             let missing = (!in_hand.contains(&claim)).then_some(claim.study);
-            Unjudged { id: claim.id, because: claim.why_not(config, missing), missing }
+            let because = match missing {
+                None => claim.why_not(config),
+                Some(study) if records.iter().any(|r| r.name == study) => {
+                    format!("its study, `{study}`, was run on other systems")
+                }
+                Some(study) => format!("its study, `{study}`, was not run"),
+            };
+            Unjudged { id: claim.id, because, missing }
         })
         .collect()
 }
 
 impl Tried {
     /// Why no run under this configuration judged it.
-    fn why_not(&self, config: &Config, missing: Option<&str>) -> String {
-        if let Some(study) = missing {
-            return format!("its study, `{study}`, was not run");
-        }
+    fn why_not(&self, config: &Config) -> String {
         let left_out = self.integrators.iter().filter(|m| !config.integrators.contains(m));
         let left_out: Vec<&str> = left_out.map(|m| m.title()).collect();
         if !left_out.is_empty() {
-            return format!("it speaks of what was left out: {}", left_out.join(", "));
+            return format!("about integrators that were left out: {}", left_out.join(", "));
         }
         if self.own_run {
-            return "it is about the source’s own run: ω² = 10 s⁻², from (1, 0), a million steps of \
+            return "about the source’s own run: ω² = 10 s⁻², from (1, 0), a million steps of \
                     1 ms"
                 .into();
         }
-        "nothing that was run bears on it: drifts within rounding, steps beyond the limits of \
+        "without evidence at this setting: drifts within rounding, steps beyond the limits of \
          stability, or horizons and systems that were not tried"
             .into()
     }

@@ -106,8 +106,18 @@ fn orders(lab: &Lab<'_>, subjects: &[&dyn Subject], record: &mut Record) -> Resu
         let errors = |kind| trial.subject.errors(kind, trial.method, halvings(lab));
         Ok([errors(Kind::Global)?, errors(Kind::Local)?])
     })?;
-    let columns =
-        ["system", "integrator", "global: q", "v", "q, v", "±", "local: q", "v", "q, v", "±"];
+    let columns = [
+        "system",
+        "integrator",
+        "global: q",
+        "global: v",
+        "global: q, v",
+        "global: ±",
+        "local: q",
+        "local: v",
+        "local: q, v",
+        "local: ±",
+    ];
     let mut table = Table::new("orders", &columns);
     for (trial, [global, local]) in trials.iter().zip(&found) {
         let mut row: Vec<Cell> = vec![trial.subject.title().into(), trial.method.title().into()];
