@@ -96,6 +96,30 @@ fn results_keep_their_contract() {
     }
 }
 
+/// The keys of all objects in `value`, those of the configuration left out.
+fn keys(value: &Value, found: &mut HashSet<String>) {
+    match value {
+        Value::Object(entries) => entries.iter().for_each(|(key, value)| {
+            found.insert(key.clone());
+            if key != "config" {
+                keys(value, found);
+            }
+        }),
+        Value::Array(values) => values.iter().for_each(|value| keys(value, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_key_of_the_results_is_documented() {
+    let document = include_str!("../../../docs/results.md");
+    let mut found = HashSet::new();
+    keys(&results(), &mut found);
+    for key in found {
+        assert!(document.contains(&format!("`{key}`")), "`{key}` is not in docs/results.md");
+    }
+}
+
 /// Tables with text that may look like numbers: polynomials, some of which are constant, and rows
 /// that horizons head in words.
 const IN_WORDS: [&str; 2] = ["update matrices", "largest steps"];
