@@ -21,6 +21,7 @@ pub mod studies;
 pub mod study;
 mod text;
 pub mod trajectory;
+pub mod tried;
 pub mod untried;
 
 pub use config::Config;

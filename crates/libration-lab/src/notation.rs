@@ -32,6 +32,21 @@ pub(crate) fn count(n: u64) -> String {
     group(&n.to_string())
 }
 
+/// A count of things: `1 integrator`, `4 integrators`.
+pub(crate) fn plural(n: usize, thing: &str) -> String {
+    let ending = if n == 1 { "" } else { "s" };
+    format!("{} {thing}{ending}", count(n as u64))
+}
+
+/// Words in a row: `a`, `a and b`, `a, b and c`.
+pub(crate) fn list(words: &[&str]) -> String {
+    match words {
+        [] => String::new(),
+        [only] => (*only).into(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
 /// A power of ten given by its logarithm: `4.84·10⁴¹³⁹²`.
 pub(crate) fn power_of_ten(logarithm: f64, digits: usize) -> String {
     let exponent = logarithm.floor();
@@ -99,6 +114,8 @@ mod tests {
         assert_eq!(number(2.0, 6), "2");
         assert_eq!(number(0.0, 3), "0");
         assert_eq!(count(1_000_000), "1\u{202f}000\u{202f}000");
+        assert_eq!((plural(1, "core"), plural(4, "core")), ("1 core".into(), "4 cores".into()));
+        assert_eq!((list(&["a"]), list(&["a", "b", "c"])), ("a".into(), "a, b and c".into()));
         assert_eq!(power_of_ten(41392.685158, 3), "4.84·10⁴¹³⁹²");
         assert_eq!(seconds(0.01, 3), "10 ms");
     }

@@ -63,9 +63,12 @@ impl Page {
         self.blocks.push(Block::Note(text.into()));
     }
 
-    /// Adds a figure.
+    /// Adds a figure, if there is anything to be seen in it: a configuration may leave out all that
+    /// a figure is about, and a caption under nothing misleads.
     pub fn figure(&mut self, figure: Figure) {
-        self.blocks.push(Block::Figure(Box::new(figure)));
+        if figure.shows_anything() {
+            self.blocks.push(Block::Figure(Box::new(figure)));
+        }
     }
 
     /// The figures, from top to bottom.
@@ -89,4 +92,26 @@ pub struct Chapter {
     pub record: Record,
     /// How they are shown.
     pub page: Page,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Axis, Mark, Panel};
+
+    #[test]
+    fn a_figure_in_which_nothing_is_drawn_is_not_shown() {
+        let panel = || Panel::new(Axis::log("steps"), Axis::log("drift"));
+        let with = |mark: Mark| Figure::new("x", "").panel(panel().mark(mark));
+        let mut page = Page::default();
+        page.figure(Figure::new("no-panels", ""));
+        page.figure(Figure::new("no-marks", "").panel(panel()));
+        // What is not positive leaves a gap on a logarithmic axis.
+        page.figure(with(Mark::line([1.0, 2.0], [0.0, f64::NAN])));
+        page.figure(with(Mark::horizontal(1e-3).label("rounding")));
+        assert_eq!(page.figures().count(), 0);
+        page.figure(with(Mark::line([1.0, 2.0], [0.1, 0.2])));
+        page.figure(with(Mark::prediction([1.0], [0.1])));
+        assert_eq!(page.figures().count(), 2);
+    }
 }

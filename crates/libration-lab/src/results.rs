@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::tried::Unjudged;
 use crate::untried::Untried;
 use crate::{Config, Machine, Record};
 
@@ -23,6 +24,8 @@ pub struct Results {
     pub complete: bool,
     /// Claims of the source report that no study tries, and why.
     pub untried: &'static [Untried],
+    /// Claims that studies try, but that none has judged in this run, and why.
+    pub unjudged: Vec<Unjudged>,
     /// The records of the studies that have ended.
     pub studies: Vec<Record>,
 }

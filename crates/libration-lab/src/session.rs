@@ -10,6 +10,7 @@ use crate::page::{Chapter, Page};
 use crate::record::{FigureFile, RecordError};
 use crate::results::{Results, SCHEMA};
 use crate::study::StudyError;
+use crate::tried::unjudged;
 use crate::untried::UNTRIED;
 use crate::{Lab, Machine, Record, Study, figure, report};
 
@@ -60,6 +61,7 @@ pub fn run(
         seconds: 0.0,
         complete: false,
         untried: UNTRIED,
+        unjudged: unjudged(lab.config, &[], &[]),
         studies: Vec::new(),
     };
     let mut chapters = Vec::new();
@@ -84,6 +86,8 @@ pub fn run(
         results.studies.push(record.clone());
         chapters.push(Chapter { record, page });
         results.seconds = started.elapsed().as_secs_f64();
+        let ended = &studies[..results.studies.len()];
+        results.unjudged = unjudged(lab.config, ended, &results.studies);
         results.complete = results.studies.len() == studies.len();
         write_results(&results, output)?;
         output.write("report.html", report::render(&results, &chapters).as_bytes())?;

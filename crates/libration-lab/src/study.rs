@@ -5,6 +5,7 @@ use thiserror::Error;
 
 use crate::page::Page;
 use crate::record::RecordError;
+use crate::tried::{self, Tried};
 use crate::{Lab, Record};
 
 /// A question, the way to its answer, and the chapter that gives it.
@@ -14,6 +15,11 @@ pub trait Study: Sync {
 
     /// The question that the study answers.
     fn question(&self) -> &'static str;
+
+    /// The claims of the source report that it tries.
+    fn tries(&self) -> Vec<&'static Tried> {
+        tried::by(self.name())
+    }
 
     /// Does the work; leaves numbers only.
     ///

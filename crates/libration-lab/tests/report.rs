@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 
 use libration_lab::output::Output;
-use libration_lab::{Config, Effort, Lab, Silent, session, studies};
+use libration_lab::{Config, Effort, Lab, Silent, session, studies, tried};
 use serde_json::Value;
 
 /// The folder of one quick run, made once.
@@ -96,6 +96,55 @@ fn results_keep_their_contract() {
     }
 }
 
+/// The keys of all objects in `value`, those of the configuration left out.
+fn keys(value: &Value, found: &mut HashSet<String>) {
+    match value {
+        Value::Object(entries) => entries.iter().for_each(|(key, value)| {
+            found.insert(key.clone());
+            if key != "config" {
+                keys(value, found);
+            }
+        }),
+        Value::Array(values) => values.iter().for_each(|value| keys(value, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_key_of_the_results_is_documented() {
+    let document = include_str!("../../../docs/results.md");
+    let mut found = HashSet::new();
+    keys(&results(), &mut found);
+    for key in found {
+        assert!(document.contains(&format!("`{key}`")), "`{key}` is not in docs/results.md");
+    }
+}
+
+/// Tables with text that may look like numbers: polynomials, some of which are constant, and rows
+/// that horizons head in words.
+const IN_WORDS: [&str; 2] = ["update matrices", "largest steps"];
+
+#[test]
+fn every_number_of_a_table_is_a_number_of_the_file() {
+    for study in results()["studies"].as_array().unwrap() {
+        let tables = study["tables"].as_array().unwrap().iter();
+        let in_words = |table: &&Value| IN_WORDS.contains(&table["name"].as_str().unwrap());
+        for table in tables.filter(|table| !in_words(table)) {
+            let rows = table["rows"].as_array().unwrap();
+            for cell in rows.iter().flat_map(|row| row.as_array().unwrap()) {
+                let Some(text) = cell.as_str() else { continue };
+                assert!(
+                    text.contains(char::is_alphabetic),
+                    "{}: “{text}” is no word",
+                    table["name"]
+                );
+                let typeset = text.contains("·10") || text.contains('\u{202f}');
+                assert!(!typeset, "{}: “{text}” is set in type", table["name"]);
+            }
+        }
+    }
+}
+
 #[test]
 fn the_page_asks_for_nothing_from_anywhere() {
     let page = markup();
@@ -170,6 +219,38 @@ fn an_entry_of_the_ledger_shows_its_section_its_condition_and_every_finding() {
                 );
             }
         }
+    }
+}
+
+/// Claims whose evidence no figure shows: the oscillator itself, a single orbit, defects that are
+/// zero, and equality to the bit.
+const UNSEEN: [&str; 4] = ["C04", "C06", "C11", "C26"];
+
+#[test]
+fn an_entry_of_the_ledger_leads_to_the_figures_that_show_its_evidence() {
+    let (results, page) = (results(), markup());
+    let mut figures = HashSet::new();
+    let mut numbers = HashSet::new();
+    for figure in page.split("<figure ").skip(1) {
+        figures.insert(figure.split("id=\"").nth(1).unwrap().split('"').next().unwrap());
+        let head = figure.split("<figcaption><b>").nth(1).unwrap();
+        numbers.extend(head.strip_prefix("Figure ").and_then(|rest| rest.split(' ').next()));
+    }
+    for claim in tried::TRIED {
+        for name in claim.figures {
+            let there = figures.contains(name) || numbers.contains(name);
+            assert!(there, "{} names the figure {name}, which the page lacks", claim.id);
+        }
+    }
+    for claim in
+        results["studies"].as_array().unwrap().iter().flat_map(|s| s["claims"].as_array().unwrap())
+    {
+        let id = claim["id"].as_str().unwrap();
+        let row = page.split(&format!("<tr id=\"{id}\">")).nth(1).unwrap();
+        let row = row.split("</tr>").next().unwrap();
+        let linked = attributes(row, "href").into_iter().filter_map(|link| link.strip_prefix('#'));
+        let shown = linked.filter(|target| figures.contains(target)).count();
+        assert_eq!(shown > 0, !UNSEEN.contains(&id), "{id}: {row}");
     }
 }
 

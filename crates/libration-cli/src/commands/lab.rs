@@ -168,6 +168,7 @@ mod tests {
             seconds: 13.0,
             complete: true,
             untried: &[],
+            unjudged: Vec::new(),
             studies: vec![first, second],
         }
     }

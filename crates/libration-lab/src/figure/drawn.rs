@@ -62,6 +62,17 @@ impl Drawn {
         }
     }
 
+    /// Whether nothing of the mark is to be seen.
+    pub(super) fn is_empty(&self) -> bool {
+        match self {
+            Self::Lines(parts) | Self::Areas(parts) => parts.iter().all(Vec::is_empty),
+            Self::Points(places) => places.is_empty(),
+            Self::Levels(levels) => levels.iter().all(|(_, parts)| parts.is_empty()),
+            Self::Picture(rect) => !(rect.width > 0.0 && rect.height > 0.0),
+            Self::Words(_) => false,
+        }
+    }
+
     /// Opens contour lines where a label stands on them.
     pub(super) fn make_room(&mut self, label: &Rect) {
         let Self::Levels(levels) = self else { return };

@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::axis::Axis;
-use super::mark::Mark;
+use super::layout::Layout;
+use super::mark::{Mark, Shape};
 
 /// A figure: what both back ends draw.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -81,6 +82,15 @@ impl Figure {
     pub fn aspect(mut self, aspect: f64) -> Self {
         self.aspect = aspect;
         self
+    }
+
+    /// Whether data are drawn in any panel; lines across a panel and words are none.
+    pub fn shows_anything(&self) -> bool {
+        Layout::of(self).panels.iter().any(|placed| {
+            let data = |mark: &Mark| !matches!(mark.shape, Shape::Rule { .. } | Shape::Note { .. });
+            let mut marks = placed.panel.marks.iter().zip(&placed.drawn);
+            marks.any(|(mark, drawn)| data(mark) && !drawn.is_empty())
+        })
     }
 }
 

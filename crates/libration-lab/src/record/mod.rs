@@ -1,5 +1,6 @@
 //! What a study leaves behind: numbers, and nothing that is alive.
 
+mod cell;
 mod claim;
 mod finding;
 mod series;
@@ -8,10 +9,11 @@ mod table;
 use serde::Serialize;
 use thiserror::Error;
 
+pub use cell::{Cell, Quantity};
 pub use claim::{Claim, ClaimVerdict, Judgement, Ruling};
 pub use finding::{Finding, Relation, Tolerance, Verdict};
 pub use series::{Column, Series};
-pub use table::{Cell, Table};
+pub use table::Table;
 
 /// The outcome of one study; the report is rendered from it and from nothing else.
 #[derive(Clone, Debug, Serialize)]

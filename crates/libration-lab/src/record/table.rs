@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::Cell;
+
 /// Rows under named columns.
 #[derive(Clone, Debug, Serialize, PartialEq)]
 pub struct Table {
@@ -11,34 +13,6 @@ pub struct Table {
     pub columns: Vec<String>,
     /// The rows, each as long as `columns`.
     pub rows: Vec<Vec<Cell>>,
-}
-
-/// One entry of a table.
-#[derive(Clone, Debug, Serialize, PartialEq)]
-#[serde(untagged)]
-pub enum Cell {
-    /// A number, with all its digits.
-    Number(f64),
-    /// Words, or a formula.
-    Text(String),
-}
-
-impl From<f64> for Cell {
-    fn from(x: f64) -> Self {
-        Cell::Number(x)
-    }
-}
-
-impl From<&str> for Cell {
-    fn from(text: &str) -> Self {
-        Cell::Text(text.into())
-    }
-}
-
-impl From<String> for Cell {
-    fn from(text: String) -> Self {
-        Cell::Text(text)
-    }
 }
 
 impl Table {

@@ -3,7 +3,7 @@
 use crate::figure;
 use crate::notation::number;
 use crate::page::{Block, Chapter};
-use crate::record::{Cell, Finding, Table, Verdict};
+use crate::record::{Cell, Finding, Quantity, Table, Verdict};
 use crate::text::{escape, prose};
 
 /// The chapter: question, evidence, and all its findings.
@@ -43,9 +43,12 @@ fn block(block: &Block) -> String {
 
 /// A table; a column is set as numbers if it has any.
 fn table(table: &Table, digits: usize) -> String {
-    let numeric: Vec<bool> = (0..table.columns.len())
-        .map(|i| table.rows.iter().any(|row| matches!(row[i], Cell::Number(_))))
-        .collect();
+    let is_number = |cell: &Cell| match cell {
+        Cell::Number(quantity) => !matches!(quantity, Quantity::Intervals(..)),
+        Cell::Text(_) => false,
+    };
+    let numeric: Vec<bool> =
+        (0..table.columns.len()).map(|i| table.rows.iter().any(|row| is_number(&row[i]))).collect();
     let class = |i: usize| if numeric[i] { " class=\"num\"" } else { " class=\"formula\"" };
     let head: String = table
         .columns
@@ -54,11 +57,7 @@ fn table(table: &Table, digits: usize) -> String {
         .map(|(i, c)| format!("<th{}>{}</th>", class(i), prose(c)))
         .collect();
     let cell = |(i, cell): (usize, &Cell)| {
-        let shown = match cell {
-            Cell::Number(x) => prose(&number(*x, digits)),
-            Cell::Text(words) => prose(words),
-        };
-        format!("<td{}>{shown}</td>", class(i))
+        format!("<td{}>{}</td>", class(i), prose(&cell.typeset(digits)))
     };
     let rows: String = table
         .rows

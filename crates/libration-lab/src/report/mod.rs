@@ -4,7 +4,7 @@ mod chapter;
 mod ledger;
 
 use crate::figure;
-use crate::notation::{number, seconds};
+use crate::notation::{number, plural, seconds};
 use crate::page::Chapter;
 use crate::results::Results;
 use crate::text::{escape, plain, prose};
@@ -16,7 +16,7 @@ const SCRIPT: &str = include_str!("../../assets/report.js");
 pub fn render(results: &Results, chapters: &[Chapter]) -> String {
     let headline = headline(chapters);
     let mut links = String::from("<a href=\"#top\">The answer</a>");
-    if ledger::exists(chapters) {
+    if ledger::exists(results, chapters) {
         links += "<a href=\"#ledger\">The ledger</a>";
     }
     let mut body = String::new();
@@ -37,10 +37,10 @@ pub fn render(results: &Results, chapters: &[Chapter]) -> String {
         title = prose(&headline),
         setting = setting(results),
         alarm = alarm(results),
-        score = ledger::score(chapters),
+        score = ledger::score(results, chapters),
         answers = answers(chapters),
         numbers = numbers(chapters),
-        ledger = ledger::render(chapters),
+        ledger = ledger::render(results, chapters),
         machine = machine(results),
         scripts = figure::scripts(),
     )
@@ -57,13 +57,13 @@ fn setting(results: &Results) -> String {
     let config = &results.config;
     let (spring, start) = (config.oscillator, config.start);
     prose(&format!(
-        "Oscillator, m = {} kg, k = {} N/m, from ({}, {}) · {} integrators · {} · {} · \
+        "Oscillator, m = {} kg, k = {} N/m, from ({}, {}) · {} · {} · {} · \
          `libration lab`",
         number(spring.m, 6),
         number(spring.k, 6),
         number(start.q, 6),
         number(start.v, 6),
-        config.integrators.len(),
+        plural(config.integrators.len(), "integrator"),
         results.machine.cpu,
         seconds(results.seconds, 2),
     ))
@@ -133,10 +133,10 @@ fn scroll(name: &str) -> String {
 fn machine(results: &Results) -> String {
     let machine = &results.machine;
     let text = prose(&format!(
-        "{}, {} cores, {} · Libration {} · {} · all numbers in `results.json`, all series in \
+        "{}, {}, {} · Libration {} · {} · all numbers in `results.json`, all series in \
          `data/`, all figures in `figures/`",
         machine.cpu,
-        machine.cores,
+        plural(machine.cores, "core"),
         machine.platform,
         machine.version,
         seconds(results.seconds, 2),

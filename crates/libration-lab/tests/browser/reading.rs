@@ -2,6 +2,8 @@
 
 use std::collections::HashSet;
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 
 use crate::page::{Page, WIDTHS, visit};
@@ -109,6 +111,59 @@ fn every_link_leads_to_its_target_even_into_a_fold() {
             assert!(lost.is_empty(), "at {width} pixels these lead nowhere: {lost:#?}");
         });
     }
+}
+
+/// How many pixels of the outer eight columns of an element, left and right, its background changes.
+fn shaded(page: &mut Page, element: &str) -> [usize; 2] {
+    let mut picture = |background: &str| {
+        page.eval(&format!("void ({element}.style.background = '{background}')"));
+        page.frame();
+        let clip = page.eval(&format!(
+            "(() => {{
+               const {{ x, y, width, height }} = {element}.getBoundingClientRect();
+               return {{ x: x + scrollX, y: y + scrollY, width, height, scale: 1 }};
+             }})()"
+        ));
+        let shot = page.ask("Page.captureScreenshot", json!({"format": "png", "clip": clip}));
+        let bytes = STANDARD.decode(shot["data"].as_str().unwrap()).unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut pixels).unwrap();
+        (pixels, info.line_size, info.color_type.samples())
+    };
+    let ((with, line, size), (without, ..)) = (picture(""), picture("none"));
+    page.eval(&format!("void ({element}.style.background = '')"));
+    let rows = || with.chunks(line).zip(without.chunks(line));
+    let differ = |columns: std::ops::Range<usize>| {
+        let at = |row: &[u8], i: usize| row[i * size..(i + 1) * size].to_vec();
+        rows().map(|(a, b)| columns.clone().filter(|&i| at(a, i) != at(b, i)).count()).sum()
+    };
+    let width = line / size;
+    [differ(0..8), differ(width - 8..width)]
+}
+
+#[test]
+fn what_scrolls_sideways_is_shaded_where_it_goes_on() {
+    visit(WIDTHS[1], |page| {
+        for scheme in ["light", "dark"] {
+            page.prefer(scheme);
+            for element in ["figure[data-figure] .canvas", "main > section > .scroll"] {
+                let element = format!(
+                    "[...document.querySelectorAll('{element}')].find((e) => e.scrollWidth > e.clientWidth + 50)"
+                );
+                page.bring(&element);
+                let [left, right] = shaded(page, &element);
+                assert!(left == 0 && right > 100, "{scheme}, {element}: {left}, {right}");
+                page.eval(&format!("void ({element}.scrollLeft = 1e6)"));
+                let [left, right] = shaded(page, &element);
+                assert!(
+                    left > 100 && right == 0,
+                    "{scheme}, {element} at its end: {left}, {right}"
+                );
+                page.eval(&format!("void ({element}.scrollLeft = 0)"));
+            }
+        }
+    });
 }
 
 /// The elements that the tab key should reach, in the order of the page.

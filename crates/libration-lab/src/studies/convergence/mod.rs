@@ -8,10 +8,10 @@ mod words;
 use libration::Method;
 
 use super::subject::{Errors, Fit, Halvings, Kind, Law, ROUNDING, Subject, configured};
-use crate::notation::number;
 use crate::page::Page;
 use crate::record::{Cell, Finding, RecordError, Relation, Series, Table, Tolerance};
 use crate::study::{Study, StudyError};
+use crate::tried::{self, Tried};
 use crate::{Lab, Record};
 
 /// The study `convergence`.
@@ -39,6 +39,11 @@ impl Study for Convergence<'_> {
 
     fn question(&self) -> &'static str {
         "Does the error fall with the power of the time step that each method promises?"
+    }
+
+    fn tries(&self) -> Vec<&'static Tried> {
+        // The source says nothing of a user's own systems.
+        if self.own.is_empty() { tried::by(self.name()) } else { Vec::new() }
     }
 
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
@@ -101,8 +106,18 @@ fn orders(lab: &Lab<'_>, subjects: &[&dyn Subject], record: &mut Record) -> Resu
         let errors = |kind| trial.subject.errors(kind, trial.method, halvings(lab));
         Ok([errors(Kind::Global)?, errors(Kind::Local)?])
     })?;
-    let columns =
-        ["system", "integrator", "global: q", "v", "q, v", "±", "local: q", "v", "q, v", "±"];
+    let columns = [
+        "system",
+        "integrator",
+        "global: q",
+        "global: v",
+        "global: q, v",
+        "global: ±",
+        "local: q",
+        "local: v",
+        "local: q, v",
+        "local: ±",
+    ];
     let mut table = Table::new("orders", &columns);
     for (trial, [global, local]) in trials.iter().zip(&found) {
         let mut row: Vec<Cell> = vec![trial.subject.title().into(), trial.method.title().into()];
@@ -160,7 +175,7 @@ impl Trial<'_> {
                 None => Finding::measured(id, text, "1", fit.exponent),
             });
         }
-        cells.map(|x| x.map_or_else(|| "—".into(), |x| number(x, 4).into()))
+        cells.map(Cell::from)
     }
 }
 

@@ -5,7 +5,7 @@ use libration::Method;
 use crate::figure::{Axis, Dash, Figure, Ink, Mark, Panel};
 use crate::notation::number;
 use crate::page::{Highlight, Page};
-use crate::record::{Cell, Record, RecordError, Series};
+use crate::record::{Record, RecordError, Series};
 use crate::studies::ink::ink;
 
 /// Writes the chapter.
@@ -52,12 +52,8 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
 
 /// The systems studied: name and title.
 fn systems(record: &Record) -> Result<Vec<(String, String)>, RecordError> {
-    let words = |cell: &Cell| match cell {
-        Cell::Text(words) => words.clone(),
-        Cell::Number(x) => x.to_string(),
-    };
     let rows = &record.table("systems")?.rows;
-    Ok(rows.iter().map(|row| (words(&row[0]), words(&row[1]))).collect())
+    Ok(rows.iter().map(|row| (row[0].typeset(6), row[1].typeset(6))).collect())
 }
 
 /// The answer: the range of the exponents of each method.
@@ -77,17 +73,22 @@ fn summary(record: &Record, page: &mut Page, systems: &[(String, String)]) {
         Method::ALL.into_iter().filter_map(|m| Some((m, range(m)?))).collect();
     let shown: Vec<String> = found.iter().map(|(m, r)| format!("{} {r}", m.title())).collect();
     let names: Vec<&str> = systems.iter().map(|(_, title)| title.as_str()).collect();
+    if shown.is_empty() {
+        return;
+    }
     page.answer = format!(
         "Order of the error over an orbit, fitted on {}: {}.",
         names.join("; "),
         shown.join(", ")
     );
     let off = record.findings.iter().filter(|f| f.id.ends_with("-order"));
-    let worst = off.filter_map(|f| Some((f.measured - f.predicted?).abs())).fold(0.0, f64::max);
-    page.highlights.push(Highlight {
-        value: number(worst, 2),
-        text: "largest distance of a fitted order from the promised one, in phase space".into(),
-    });
+    let distances = off.filter_map(|f| Some((f.measured - f.predicted?).abs()));
+    if let Some(worst) = distances.reduce(f64::max) {
+        page.highlights.push(Highlight {
+            value: number(worst, 2),
+            text: "largest distance of a fitted order from the promised one, in phase space".into(),
+        });
+    }
 }
 
 /// Errors against the step, one panel a system, with guide slopes.
@@ -105,9 +106,9 @@ fn errors(
         format!("Error of {of} against the time step"),
     )
     .caption(format!(
-        "Each line falls with the slope {rise} of its method, on the oscillator and on nonlinear \
-         systems alike. Thin lines: whole slopes through the smallest step. Error in phase space, \
-         velocities in units of 2π/turn."
+        "{} Thin lines: whole slopes through the smallest step. Error in phase space, velocities \
+         in units of 2π/turn.",
+        slopes(record, systems, kind, rise)
     ))
     .description(format!("Log-log: the error of {of} against Δt for each method and system."))
     .columns(if systems.len() > 1 { 2 } else { 1 })
@@ -117,6 +118,21 @@ fn errors(
         figure = figure.panel(panel(series, title, kind == "local")?);
     }
     Ok(figure)
+}
+
+/// What the fitted orders say of the lines: theory promises nothing where forces depend on velocities.
+fn slopes(record: &Record, systems: &[(String, String)], kind: &str, rise: &str) -> String {
+    let end = format!(".{kind}-order");
+    let orders = || record.findings.iter().filter(|f| f.id.ends_with(&end));
+    let everywhere = if systems.len() > 1 { ", on every system alike" } else { "" };
+    match (orders().any(|f| f.agrees()), orders().all(|f| f.agrees())) {
+        (true, true) => format!("Each line falls with the slope {rise} of its method{everywhere}."),
+        (true, false) => format!(
+            "Lines fall with the slope {rise} of their method where theory promises it and the \
+             table says so."
+        ),
+        _ => "No line was found to fall with a promised slope.".into(),
+    }
 }
 
 fn panel(series: &Series, title: &str, local: bool) -> Result<Panel, RecordError> {
@@ -170,6 +186,23 @@ fn trapped(series: &Series) -> Result<Figure, RecordError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::{Finding, Tolerance};
+
+    #[test]
+    fn a_caption_promises_a_slope_only_where_it_was_found() {
+        let mut record = Record::new("convergence", "?");
+        let systems = [("a".to_owned(), "a".to_owned())];
+        let caption = |record: &Record| slopes(record, &systems, "global", "p");
+        assert!(caption(&record).starts_with("No line"));
+        let tolerance = Tolerance::absolute(0.1, "");
+        let id = "convergence.a.rk4.global-order";
+        record.find(Finding::predicted(id, "", "1", 4.0, 4.01, tolerance));
+        assert_eq!(caption(&record), "Each line falls with the slope p of its method.");
+        // A splitting method under friction, of which no order is promised.
+        let id = "convergence.a.leapfrog.global-order";
+        record.find(Finding::measured(id, "", "1", 1.0));
+        assert!(caption(&record).contains("where theory promises it"));
+    }
 
     #[test]
     fn a_guide_passes_through_the_smallest_step_with_its_slope() {

@@ -8,7 +8,6 @@ use libration::system::{Oscillator, Pendulum};
 use libration::{Elementary, Float, Integrator, Model, Scalar, State, with_method};
 
 use super::super::subject::Fit;
-use crate::notation::number;
 use crate::record::{Finding, Table, Tolerance};
 use crate::study::StudyError;
 use crate::{Lab, Record};
@@ -35,12 +34,7 @@ pub(super) fn certify(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     let mut row = |title: &str, certificate: &OrderCertificate| {
         let order = certificate.order();
         let first = certificate.residuals.get(order).map_or(0.0, |r| r.to_f64());
-        let cells = [
-            title.into(),
-            (order as f64).into(),
-            first.into(),
-            number(order as f64 + 1.0, 2).into(),
-        ];
+        let cells = [title.into(), (order as u64).into(), first.into(), (order as u64 + 1).into()];
         table.push(cells);
     };
     for &method in &lab.config.integrators {

@@ -17,7 +17,7 @@ use self::setting::{ROUNDING, Setting, UNCERTAINTY};
 use self::trial::Trial;
 use crate::notation::{count, number, seconds};
 use crate::page::Page;
-use crate::record::{Finding, RecordError, Relation, Series, Table, Tolerance};
+use crate::record::{Cell, Finding, RecordError, Relation, Series, Table, Tolerance};
 use crate::study::{Study, StudyError};
 use crate::{Lab, Record};
 
@@ -69,7 +69,15 @@ fn trials(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
         .collect();
     let what = format!("energy drift over {} steps", count(config.drift.steps));
     let found = lab.sweep(&what, &settings, Trial::run)?;
-    let columns = ["Δt (s)", "integrator", "predicted", "measured", "difference", "worst start"];
+    let columns = [
+        "Δt (s)",
+        "integrator",
+        "predicted",
+        "log₁₀ predicted",
+        "measured",
+        "difference",
+        "worst start",
+    ];
     let mut table = Table::new("largest drift", &columns);
     for trial in &found {
         record.find(largest(trial));
@@ -78,10 +86,11 @@ fn trials(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
         table.push([
             trial.setting.dt.into(),
             trial.setting.method.title().into(),
-            trial.shown(trial.predicted_log10).into(),
-            trial.shown(trial.measured_log10).into(),
-            trial.difference().into(),
-            trial.worst.map_or_else(|| "any".into(), |w| number(w.measured, 5).into()),
+            trial.predicted_cell(),
+            Cell::rounded(trial.predicted_log10, 6),
+            trial.measured_cell(),
+            trial.difference(),
+            trial.worst.map_or_else(|| Cell::absent("any"), |w| Cell::rounded(w.measured, 5)),
         ]);
     }
     record.tables.push(table);

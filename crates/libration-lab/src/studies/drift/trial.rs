@@ -9,16 +9,15 @@ use super::setting::Setting;
 use super::tag;
 use super::watch::{Signed, Watch};
 use crate::notation::{count, number, power_of_ten};
-use crate::record::Series;
+use crate::record::{Cell, Series};
 use crate::study::StudyError;
 
 /// What one setting gave, and what was to be expected.
 #[derive(Clone, Debug)]
 pub(super) struct Trial {
     pub(super) setting: Setting,
-    /// Decimal logarithms of the largest drift.
+    /// Decimal logarithm of the predicted largest drift, which `f64` may not hold.
     pub(super) predicted_log10: f64,
-    pub(super) measured_log10: f64,
     measured: f64,
     predicted: f64,
     /// Steps at which the running maximum was taken.
@@ -96,7 +95,6 @@ impl Trial {
         Ok(Trial {
             setting: *setting,
             predicted_log10,
-            measured_log10: watch.largest.log10(),
             measured: watch.largest,
             predicted,
             sampled,
@@ -121,25 +119,32 @@ impl Trial {
         self.measured
     }
 
-    /// A drift given by its logarithm, in words where `f64` cannot hold it.
-    pub(super) fn shown(&self, log10: f64) -> String {
-        match (self.overflow, log10 > 308.0) {
-            (_, true) => power_of_ten(log10, 3),
-            (Some(overflow), _) if log10 == self.measured_log10 => {
-                format!("leaves f64 at step {}", count(overflow.measured))
-            }
-            _ => number(10_f64.powf(log10), 7),
+    /// The predicted drift for a table; no number where `f64` cannot hold it.
+    pub(super) fn predicted_cell(&self) -> Cell {
+        match self.predicted_log10 > 308.0 {
+            true => Cell::absent(power_of_ten(self.predicted_log10, 3)),
+            false => Cell::rounded(self.predicted, 7),
         }
     }
 
-    /// Measured minus predicted, in words.
-    pub(super) fn difference(&self) -> String {
+    /// The measured drift for a table; no number if the run left the range of `f64`.
+    pub(super) fn measured_cell(&self) -> Cell {
+        match self.overflow {
+            Some(overflow) => {
+                Cell::absent(format!("leaves f64 at step {}", count(overflow.measured)))
+            }
+            None => Cell::rounded(self.measured, 7),
+        }
+    }
+
+    /// Measured minus predicted; of overflows, which are compared by their steps, in words.
+    pub(super) fn difference(&self) -> Cell {
         match self.overflow {
             Some(overflow) => {
                 let late = overflow.measured as f64 - overflow.predicted as f64;
-                format!("{} steps", number(late, 2))
+                Cell::absent(format!("{} steps", number(late, 2)))
             }
-            None => number(self.measured - self.predicted, 2),
+            None => Cell::rounded(self.measured - self.predicted, 2),
         }
     }
 

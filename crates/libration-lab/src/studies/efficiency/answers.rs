@@ -76,13 +76,13 @@ pub(super) fn give(lab: &Lab<'_>, costs: &[Cost], record: &mut Record) -> Result
         let cells: [Cell; 9] = [
             demand.kind.name().into(),
             demand.tolerance.into(),
-            count(demand.periods).into(),
+            demand.periods.into(),
             best.cost.method.title().into(),
             best.z.into(),
             best.work().into(),
             best.time().into(),
-            next.map_or("—", |offer| offer.cost.method.title()).into(),
-            next.map_or_else(|| "—".into(), |offer| offer.work().into()),
+            next.map_or_else(|| Cell::absent("—"), |offer| offer.cost.method.title().into()),
+            next.map(Offer::work).into(),
         ];
         table.push(cells);
     }

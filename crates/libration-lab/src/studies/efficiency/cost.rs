@@ -53,7 +53,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<Vec<Cost>, S
         ));
         table.push([
             title.into(),
-            (evaluations as f64).into(),
+            evaluations.into(),
             nanoseconds.into(),
             (times[REPEATS - 1] - times[0]).into(),
         ]);

@@ -3,10 +3,11 @@
 use libration::Method;
 
 use crate::figure::{Axis, Figure, Mark, Panel};
-use crate::notation::number;
+use crate::notation::list;
 use crate::page::{Highlight, Page};
 use crate::record::{Cell, Record, RecordError, Series};
 use crate::studies::ink::ink;
+use crate::studies::subject::Symmetry;
 
 /// Writes the chapter.
 pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
@@ -19,11 +20,12 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          orbit can show, by the eigenvalues and the conserved form of the shipped step.",
     );
     page.figure(precision(record)?.number("9.6"));
-    page.paragraph(
-        "Read from left to right, a line that lies lower gives more accuracy for the same work. The \
-         order of a method is its slope. For the energy a symplectic method needs the same work for a \
-         period or for a million; RK4 and explicit Euler pay for the horizon.",
-    );
+    let methods: Vec<Method> = series(record).map(|(method, _)| method).collect();
+    page.paragraph(format!(
+        "Read from left to right, a line that lies lower gives more accuracy for the same work. Its \
+         slope is the order of the error.{}",
+        who_pays(&methods)
+    ));
     page.table(record.table("answers")?, 4);
     page.heading("What a step costs");
     page.paragraph(
@@ -35,13 +37,27 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     Ok(())
 }
 
+/// Whose work for a tolerance on the energy depends on the horizon, of the methods that are shown.
+fn who_pays(methods: &[Method]) -> String {
+    let (keep, pay): (Vec<Method>, Vec<Method>) =
+        methods.iter().partition(|m| Symmetry::of_method(**m).0);
+    let titles = |methods: &[Method]| list(&methods.iter().map(|m| m.title()).collect::<Vec<_>>());
+    let free = match keep.is_empty() {
+        true => "",
+        false => {
+            " For the energy the symplectic methods need the same work for a period or for a million."
+        }
+    };
+    match pay.as_slice() {
+        [] => free.into(),
+        pay => format!("{free} What {} must spend on it grows with the horizon.", titles(pay)),
+    }
+}
+
 /// The answers in words, for the middle tolerance over the longest time.
 fn answer(record: &Record, page: &mut Page) -> Result<(), RecordError> {
     let rows = &record.table("answers")?.rows;
-    let text = |cell: &Cell| match cell {
-        Cell::Text(text) => text.clone(),
-        Cell::Number(x) => number(*x, 3),
-    };
+    let text = |cell: &Cell| cell.typeset(3);
     let tolerances: Vec<String> = {
         let mut all: Vec<String> = rows.iter().map(|row| text(&row[1])).collect();
         all.dedup();
@@ -98,12 +114,13 @@ fn series(record: &Record) -> impl Iterator<Item = (Method, &Series)> {
 /// Errors against work, a panel for each kind.
 fn precision(record: &Record) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("fig-9-6", "Work and precision, from one run each")
-        .caption(
-            "Lines: simulated. Circles: bounds over all phases of the orbit. The line that lies lowest \
-             at an error is the cheapest way to it; that of a method whose error grows with the run \
-             would lie higher after a longer one.",
+        .caption(format!(
+            "Lines: simulated. Circles: bounds over all phases of the orbit.{}",
+            for_a_percent(record)?
+        ))
+        .description(
+            "Log-log: error in energy, phase and state against force evaluations a period.",
         )
-        .description("Log-log: error in energy, phase and state against force evaluations a period.")
         .columns(2)
         .aspect(1.2);
     for (title, column, axis) in [
@@ -133,7 +150,68 @@ fn precision(record: &Record) -> Result<Figure, RecordError> {
     Ok(figure)
 }
 
+/// Who reaches an error of a percent with the least work in these runs, and who does not at all.
+fn for_a_percent(record: &Record) -> Result<String, RecordError> {
+    let mut least = Vec::new();
+    let mut never = Vec::new();
+    for column in ["energy", "phase", "state"] {
+        let mut best: Option<(Method, f64)> = None;
+        for (method, series) in series(record) {
+            let work = series.column("force_evaluations_per_period")?;
+            let pairs = || work.iter().zip(series.column(column).unwrap_or_default());
+            let enough = pairs().filter(|(_, error)| **error <= 0.01).map(|(&work, _)| work);
+            match enough.reduce(f64::min) {
+                Some(work) if best.is_none_or(|(_, least)| work < least) => {
+                    best = Some((method, work));
+                }
+                None if column == "state" => never.push(method.title()),
+                _ => {}
+            }
+        }
+        least.extend(best.map(|(method, _)| format!("{} in {column}", method.title())));
+    }
+    let least: Vec<&str> = least.iter().map(String::as_str).collect();
+    let mut words = match least.as_slice() {
+        [] => String::new(),
+        least => format!(" An error of a percent takes the least work with {}.", list(least)),
+    };
+    if !never.is_empty() {
+        words += &format!(" At no step shown does {} reach it in state.", list(&never));
+    }
+    Ok(words)
+}
+
 /// What is worth showing: below rounding there is nothing, and beyond a hundredfold no use.
 fn shown(values: &[f64]) -> Vec<f64> {
     values.iter().map(|&y| if (1e-15..1e2).contains(&y) { y } else { f64::NAN }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_caption_names_who_was_cheapest_and_who_never_arrived() {
+        let mut record = Record::new("efficiency", "?");
+        let work = vec![8.0, 16.0, 32.0];
+        for (method, errors) in [
+            (Method::Leapfrog, vec![0.1, 0.005, 0.001]),
+            (Method::ExplicitEuler, vec![9.0, 3.0, f64::NAN]),
+        ] {
+            let mut series = Series::new(format!("work-{}", method.name())).with(
+                "force_evaluations_per_period",
+                "1",
+                work.clone(),
+            );
+            for column in ["energy", "phase", "state"] {
+                series = series.with(column, "1", errors.clone());
+            }
+            record.series.push(series);
+        }
+        let caption = for_a_percent(&record).unwrap_or_default();
+        assert!(caption.contains("leapfrog in energy, leapfrog in phase and leapfrog in state"));
+        assert!(caption.ends_with("At no step shown does explicit Euler reach it in state."));
+        assert!(!who_pays(&[Method::Leapfrog]).contains("RK4"));
+        assert!(who_pays(&[Method::Leapfrog, Method::Rk4]).contains("What RK4 must"));
+    }
 }

@@ -44,8 +44,8 @@ pub(super) fn measure(
             size(grown.last),
             size(grown.half),
             match grown.exponent() {
-                exponent if exponent.is_finite() => number(exponent, 2).into(),
-                _ => "—".into(),
+                exponent if exponent.is_finite() => Cell::rounded(exponent, 2),
+                _ => Cell::absent("—"),
             },
         ]);
     }
@@ -60,7 +60,7 @@ pub(super) fn measure(
 
 /// A drift as a cell.
 fn size(drift: f64) -> Cell {
-    if drift.is_finite() { drift.into() } else { "overflows".into() }
+    if drift.is_finite() { drift.into() } else { Cell::absent("overflows") }
 }
 
 /// The running maximum after a turn, half-way, and at the end.

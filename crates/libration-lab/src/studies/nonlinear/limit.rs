@@ -6,8 +6,8 @@ use super::super::spectrum::largest_stable;
 use super::super::subject::{Loss, Orbits};
 use super::Trial;
 use crate::Lab;
-use crate::notation::{count, number, seconds};
-use crate::record::{Finding, Record, Series, Table, Tolerance};
+use crate::notation::{count, seconds};
+use crate::record::{Cell, Finding, Record, Series, Table, Tolerance};
 use crate::study::StudyError;
 
 /// Steps of an orbit about the equilibrium.
@@ -38,11 +38,11 @@ pub(super) fn search(
         ["system", "integrator", "small: predicted (s)", "measured (s)", "from the start (s)"];
     let mut table = Table::new("limits", &columns);
     for (trial, (small, large)) in trials.iter().zip(&found) {
-        let mut cells = ["—".to_owned(), "—".to_owned(), "—".to_owned()];
+        let mut cells = [const { None }; 3];
         if let Some((predicted, omega, Some(Loss { dt: measured, .. }))) = *small {
             record.find(small_orbit(trial, predicted, omega, measured));
-            cells[0] = number(predicted, 6);
-            cells[1] = number(measured, 6);
+            cells[0] = Some(Cell::rounded(predicted, 6));
+            cells[1] = Some(Cell::rounded(measured, 6));
         }
         if let Some(Loss { dt: measured, apart }) = *large {
             let what = format!(
@@ -58,12 +58,12 @@ pub(super) fn search(
                 "s",
                 measured,
             ));
-            cells[2] = number(measured, 4);
+            cells[2] = Some(measured.into());
         }
         table.push(
             [trial.subject.title().into(), trial.method.title().into()]
                 .into_iter()
-                .chain(cells.map(Into::into)),
+                .chain(cells.map(|cell| cell.unwrap_or_else(|| Cell::absent("—")))),
         );
     }
     record.tables.push(table);

@@ -4,6 +4,7 @@ mod growth;
 mod limit;
 mod render;
 mod symmetries;
+mod words;
 
 use libration::Method;
 

@@ -2,17 +2,18 @@
 
 use libration::Method;
 
+use super::words::{growths, rates, step_of_portraits};
 use crate::figure::{Axis, Dash, Figure, Ink, Mark, Panel};
 use crate::notation::{number, seconds};
 use crate::page::{Highlight, Page};
-use crate::record::{Cell, Column, Record, RecordError};
+use crate::record::{Column, Record, RecordError};
 use crate::studies::ink::ink;
 
 /// Writes the chapter.
 pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
     page.title = "Nonlinear systems".into();
     let systems = systems(record)?;
-    summary(record, page, &systems);
+    summary(record, page, &systems)?;
     page.paragraph(
         "Where forces are not linear no matrix says what a million steps do. What theory does say \
          are powers: a symplectic method of order p keeps the energy within a band that shrinks as \
@@ -22,16 +23,18 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.figure(growth(record, &systems)?);
     page.table(record.table("growth")?, 3);
     page.figure(swings(record, &systems)?);
-    page.paragraph(
-        "Within one turn every method’s energy swings by Δt^p. What is left after a turn is another \
-         matter: of an even order p the term Δt^p is odd under time reversal, so that a closed orbit \
-         gives back on one half what it took on the other. RK4 therefore drifts by Δt⁵ a turn, and \
-         explicit Euler by Δt.",
-    );
+    if let Some(rates) = rates(record) {
+        page.paragraph(format!(
+            "Within one turn the energy of a method of order p swings by Δt^p, where forces are not \
+             linear. What is left after a turn is another matter: of an even order p the term Δt^p \
+             is odd under time reversal, so that a closed orbit gives back on one half what it took \
+             on the other. In a turn of a closed orbit the energy therefore drifts by {rates}."
+        ));
+    }
     page.heading("One step");
     page.paragraph(
         "Duals of 1024 bits carry the Jacobian of each shipped step along the orbit. A defect is \
-         either zero to all bits, or a power of Δt:",
+         either zero to all bits, or a power of Δt; the sizes are those at 256 steps a turn.",
     );
     page.table(record.table("defects")?, 3);
     page.heading("Where stability ends");
@@ -48,32 +51,40 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
 
 /// The systems studied: name and title.
 fn systems(record: &Record) -> Result<Vec<(String, String)>, RecordError> {
-    let words = |cell: &Cell| match cell {
-        Cell::Text(words) => words.clone(),
-        Cell::Number(x) => x.to_string(),
-    };
     let rows = &record.table("systems")?.rows;
-    Ok(rows.iter().map(|row| (words(&row[0]), words(&row[1]))).collect())
+    Ok(rows.iter().map(|row| (row[0].typeset(6), row[1].typeset(6))).collect())
 }
 
 /// The answer, from the drifts over the whole horizon.
-fn summary(record: &Record, page: &mut Page, systems: &[(String, String)]) {
+pub(super) fn summary(
+    record: &Record,
+    page: &mut Page,
+    systems: &[(String, String)],
+) -> Result<(), RecordError> {
     let found = |system: &str, method: Method, quantity: &str| {
         let id = format!("nonlinear.{system}.{}.{quantity}", method.name());
         record.finding(&id).ok().map(|f| f.measured)
     };
+    let rows = &record.table("growth")?.rows;
     let largest: Vec<String> = systems
         .iter()
-        .map(|(name, title)| {
+        .filter_map(|(_, title)| {
+            // A run that left the floats has no size, and says so in the table.
             let of = |m: Method| {
-                Some(format!("{} {}", m.title(), number(found(name, m, "largest")?, 2)))
+                let row =
+                    rows.iter().find(|r| r[0].typeset(6) == *title && r[1].typeset(6) == m.title());
+                Some(format!("{} {}", m.title(), row?[2].typeset(2)))
             };
             let all: Vec<String> = Method::ALL.into_iter().filter_map(of).collect();
-            format!("{title}: {}", all.join(", "))
+            (!all.is_empty()).then(|| format!("{title}: {}", all.join(", ")))
         })
         .collect();
-    page.answer =
-        format!("Largest relative energy drift over the whole horizon: {}.", largest.join("; "));
+    if !largest.is_empty() {
+        page.answer = format!(
+            "Largest relative energy drift over the whole horizon: {}.",
+            largest.join("; ")
+        );
+    }
     let growths = |keep: fn(&f64) -> bool| {
         let growth = record.findings.iter().filter(|f| f.id.ends_with(".growth"));
         growth.filter(move |f| f.predicted.as_ref().is_some_and(keep)).map(|f| f.measured)
@@ -81,16 +92,19 @@ fn summary(record: &Record, page: &mut Page, systems: &[(String, String)]) {
     if let Some(worst) = growths(|&p| p == 0.0).reduce(f64::max) {
         page.highlights.push(Highlight {
             value: format!("t^{{{:.2}}}", worst.max(0.0)),
-            text: "fastest growth of a symplectic method’s drift on a nonlinear system".into(),
+            text: "fastest growth of a symplectic method’s energy drift".into(),
         });
     }
-    if let Some(rate) = systems.iter().find_map(|(name, _)| found(name, Method::Rk4, "rate-order"))
-    {
+    let rate = |(name, title): &(String, String)| {
+        Some((found(name, Method::Rk4, "rate-order")?, title.clone()))
+    };
+    if let Some((rate, title)) = systems.iter().find_map(rate) {
         page.highlights.push(Highlight {
             value: format!("Δt^{{{}}}", number(rate, 3)),
-            text: "mean energy change of RK4 in a turn".into(),
+            text: format!("mean energy change of RK4 in a turn: {title}"),
         });
     }
+    Ok(())
 }
 
 /// A figure with a panel for each system.
@@ -111,11 +125,7 @@ fn shown(values: &[f64]) -> Vec<f64> {
 fn growth(record: &Record, systems: &[(String, String)]) -> Result<Figure, RecordError> {
     let title = "Largest energy drift so far";
     let mut figure = figure("nonlinear-growth", title, systems)
-        .caption(
-            "The symplectic methods fill a band within a few turns and stay in it. RK4 swings less \
-             at first and then climbs in proportion to time; explicit Euler takes up the whole \
-             energy, or more, within some turns.",
-        )
+        .caption(growths(record)?)
         .description("Log-log: the running maximum of the energy drift against turns.");
     for (name, title) in systems {
         let series = record.series(&format!("growth-{name}"))?;
@@ -136,10 +146,13 @@ fn growth(record: &Record, systems: &[(String, String)]) -> Result<Figure, Recor
 fn swings(record: &Record, systems: &[(String, String)]) -> Result<Figure, RecordError> {
     let title = "Energy drift against the time step";
     let mut figure = figure("nonlinear-swing", title, systems)
-        .caption(
-            "Lines: the largest drift within a turn, which falls as Δt^p. Crosses: the mean change \
-             in a turn of the methods that are not symplectic, which for RK4 falls as Δt⁵.",
-        )
+        .caption(match record.series.iter().any(|series| series.name.starts_with("rate-")) {
+            true => {
+                "Lines: the largest drift within a turn. Crosses: the mean change in a turn, of what \
+                 does not keep areas of phase space."
+            }
+            false => "Lines: the largest drift within a turn.",
+        })
         .description("Log-log: energy drift within a turn against Δt, one line a method.");
     for (name, title) in systems {
         let mut panel = Panel::new(Axis::log("time step Δt").unit("s"), Axis::log("|E − E₀|/|E₀|"))
@@ -161,12 +174,11 @@ fn swings(record: &Record, systems: &[(String, String)]) -> Result<Figure, Recor
 /// Orbits at a large step: velocity Verlet beside RK4.
 fn portraits(record: &Record, systems: &[(String, String)]) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("nonlinear-portraits", "Orbits at a large step")
-        .caption(
-            "At half of the largest step that velocity Verlet was found to bear. Its orbit may turn \
-             about or scatter within a band, but neither grows nor shrinks; that of RK4 keeps its \
-             place better and sinks. Position and velocity in one dimension, the plane of motion in \
-             two. Thin line: the same start in small steps.",
-        )
+        .caption(format!(
+            "{} Position and velocity in one dimension, the plane of motion in two. Thin line: the \
+             same start in small steps.",
+            step_of_portraits(record, systems)
+        ))
         .description("Points of orbits, one panel for each system and method.")
         .columns(2)
         .aspect(1.35);

@@ -6,7 +6,6 @@ use libration::number::TwoFloat;
 use super::super::subject::{Fit, Halvings, ROUNDING};
 use super::Trial;
 use crate::Lab;
-use crate::notation::number;
 use crate::record::{Finding, Record, Relation, Table, Tolerance};
 use crate::study::StudyError;
 
@@ -25,7 +24,16 @@ pub(super) fn measure(
     let found = lab.sweep("symmetries along the orbit", trials, |trial| {
         Ok(STEPS.steps().map(|n| trial.subject.symmetry(trial.method, n)).collect::<Vec<_>>())
     })?;
-    let columns = ["system", "integrator", "‖MᵀJM − J‖", "‖M₋M − 1‖", "|Φ₋Φ(y) − y|"];
+    let columns = [
+        "system",
+        "integrator",
+        "‖MᵀJM − J‖",
+        "exponent of ‖MᵀJM − J‖",
+        "‖M₋M − 1‖",
+        "exponent of ‖M₋M − 1‖",
+        "|Φ₋Φ(y) − y|",
+        "exponent of |Φ₋Φ(y) − y|",
+    ];
     let mut table = Table::new("defects", &columns);
     for (trial, defects) in trials.iter().zip(&found) {
         let dt: Vec<f64> = STEPS.steps().map(|n| trial.subject.turn() / n as f64).collect();
@@ -49,7 +57,7 @@ pub(super) fn measure(
             ),
             (
                 "reversibility",
-                columns[3],
+                columns[4],
                 trial.reversible,
                 time,
                 ROUNDING,
@@ -58,7 +66,7 @@ pub(super) fn measure(
             ),
             (
                 "return",
-                columns[4],
+                columns[6],
                 trial.reversible,
                 time,
                 100.0 * TwoFloat::UNIT_ROUNDOFF,
@@ -70,10 +78,9 @@ pub(super) fn measure(
         for (quantity, symbol, vanishes, order, bound, why, sizes) in quantities {
             let fit = Fit::new(&dt, &sizes);
             let vanishes = vanishes && !trial.law.velocity_dependent;
-            row.push(match (vanishes, fit) {
-                (false, Some(fit)) => format!("∝ Δt^{{{}}}", number(fit.exponent, 3)).into(),
-                _ => sizes[0].into(),
-            });
+            row.push(sizes[0].into());
+            let power = fit.filter(|_| !vanishes).map(|fit| fit.exponent);
+            row.push(power.into());
             let largest = sizes.iter().copied().fold(0.0, f64::max);
             if trial.law.velocity_dependent {
                 let what = format!("{symbol} of a step, largest of five steps");

@@ -86,7 +86,7 @@ pub(super) fn judge(record: &mut Record) {
                 (f[1].measured - 2.0).abs() < 1e-6,
                 format!(
                     "the determinant is 1 within rounding, and stability ends at z = {}",
-                    number(f[1].measured, 8)
+                    resolved(f[1])
                 ),
             )
         });
@@ -132,8 +132,8 @@ pub(super) fn judge(record: &mut Record) {
                  eigenvalues. It holds where stability means a tolerance on the energy, since the \
                  energy of Verlet varies by z²/4 and that of Euler by about z/2. The source names \
                  no criterion; its own z = 0.00316 is far inside both limits",
-                number(verlet, 8),
-                number(euler, 8)
+                resolved(f[0]),
+                resolved(f[1])
             );
             if verlet > euler + 1e-5 {
                 Judgement::confirmed(because)
@@ -166,8 +166,8 @@ pub(super) fn judge(record: &mut Record) {
                 f[0].measured > 0.0,
                 format!(
                     "up to z = {}. It does not set them apart: RK4’s includes the axis up to {}",
-                    number(f[0].measured, 8),
-                    number(f[1].measured, 8)
+                    resolved(f[0]),
+                    resolved(f[1])
                 ),
             )
         },
@@ -221,9 +221,41 @@ fn strictly_inside(record: &mut Record) {
                      z = {}: with `<` no method that conserves anything would ever be stable. The \
                      source itself says ≤ in 2.7; and a split step has no function R(z) at all",
                     number(f[0].measured.abs(), 2),
-                    number(f[1].measured, 8)
+                    resolved(f[1])
                 ),
             )
         },
     );
+}
+
+/// A measured value in the digits that its tolerance leaves: the others are the search's.
+fn resolved(finding: &Finding) -> String {
+    let size = finding.measured.abs().log10().floor();
+    let digits = match finding.tolerance.tolerance {
+        // Half a unit of the last digit is at least the tolerance.
+        Some(tolerance) if tolerance > 0.0 => (size + 1.0 - (2.0 * tolerance).log10()).floor(),
+        _ => MOST_DIGITS,
+    };
+    number(finding.measured, digits.clamp(1.0, MOST_DIGITS) as usize)
+}
+
+/// As many digits as a limit is ever shown with.
+const MOST_DIGITS: f64 = 8.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Tolerance;
+
+    #[test]
+    fn a_limit_is_shown_with_the_digits_that_its_search_resolves() {
+        let shown = |predicted: f64, measured: f64, tolerance: f64| {
+            let tolerance = Tolerance::absolute(tolerance, "");
+            resolved(&Finding::predicted("a.b", "", "1", predicted, measured, tolerance))
+        };
+        assert_eq!(shown(8_f64.sqrt(), 2.828_428_7, 4e-6), "2.82843");
+        assert_eq!(shown(2.0, 1.999_999_9, 4e-6), "2");
+        assert_eq!(shown(8_f64.sqrt(), 8_f64.sqrt(), 0.0), "2.8284271");
+        assert_eq!(shown(0.0, 0.0, 0.01), "0");
+    }
 }

@@ -128,7 +128,7 @@ fn steps(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
                 find(quantity, text, "1", predicted, measured, why);
             }
         }
-        let phase = theory.angle.map_or_else(|| "—".into(), |(_, error)| error.into());
+        let phase = theory.angle.map(|(_, error)| error).into();
         table.push([
             title.into(),
             theory.determinant_minus_one.into(),

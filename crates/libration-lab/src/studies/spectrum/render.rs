@@ -4,10 +4,11 @@ use libration::Method;
 
 use super::region::{IMAGINARY, REAL};
 use crate::figure::{Axis, ColorMap, Colors, Dash, Figure, Grid, Ink, Mark, Panel};
-use crate::notation::number;
+use crate::notation::{list, number};
 use crate::page::{Highlight, Page};
 use crate::record::{Record, RecordError};
 use crate::studies::ink::ink;
+use crate::studies::subject::Symmetry;
 
 /// Writes the chapter.
 pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
@@ -56,9 +57,11 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
 fn phase_errors(record: &Record) -> Result<Figure, RecordError> {
     let mut panel =
         Panel::new(Axis::log("z = ωΔt"), Axis::log("|phase error| of a step").unit("rad"));
+    let mut shown = Vec::new();
     for series in record.series.iter().filter(|s| s.name.starts_with("sweep-")) {
         let name = &series.name["sweep-".len()..];
         let Some(method) = Method::from_name(name) else { continue };
+        shown.push(method);
         let z = series.column("z")?;
         let size = |column: &str| -> Result<Vec<f64>, RecordError> {
             Ok(series.column(column)?.iter().map(|x| x.abs()).collect())
@@ -69,27 +72,71 @@ fn phase_errors(record: &Record) -> Result<Figure, RecordError> {
             .mark(Mark::prediction(z, size("phase_error_predicted")?));
     }
     Ok(Figure::new("phase-error", "Phase error of one step against the size of the step")
-        .caption(
-            "Symplectic Euler and velocity Verlet turn alike, by z³/24 too far: they have the same \
-             eigenvalues. RK4 lags by z⁵/120. Lines are measured, from the angle after thousands of \
-             steps; circles are predicted from the step.",
-        )
-        .description(
-            "Log-log: the phase error of explicit Euler, symplectic Euler and velocity Verlet rises \
-             with the third power of z, that of RK4 with the fifth.",
-        )
+        .caption(format!(
+            "{}Lines are measured, from the angle after thousands of steps; circles are predicted \
+             from the step.",
+            phases(&shown)
+        ))
+        .description(powers(&shown))
         .panel(panel))
+}
+
+/// What theory says of the phase errors of those methods that are shown.
+fn phases(shown: &[Method]) -> String {
+    let mut words = String::new();
+    if [Method::SymplecticEuler, Method::VelocityVerlet].iter().all(|m| shown.contains(m)) {
+        words += "Symplectic Euler and velocity Verlet turn alike, by z³/24 too far: they have the \
+                  same eigenvalues. ";
+    }
+    if shown.contains(&Method::Rk4) {
+        words += "RK4 lags by z⁵/120. ";
+    }
+    words
+}
+
+/// The powers of `z` with which phase errors rise: the third for orders one and two, the fifth for
+/// order four.
+fn powers(shown: &[Method]) -> String {
+    let of = |orders: std::ops::RangeInclusive<u32>| {
+        let methods = shown.iter().filter(|m| orders.contains(&m.order()));
+        list(&methods.map(|m| m.title()).collect::<Vec<_>>())
+    };
+    let rises = [(of(1..=2), "third"), (of(4..=4), "fifth")];
+    let rises = rises.iter().filter(|(methods, _)| !methods.is_empty());
+    let parts: Vec<String> =
+        rises.map(|(methods, power)| format!("that of {methods} with the {power} power")).collect();
+    format!("Log-log: the phase error against z. It rises: {}.", parts.join(", "))
+}
+
+/// Which piece of the imaginary axis each region takes in, from the limits that were measured.
+fn pieces(shown: &[(Method, f64)]) -> String {
+    let mut words = "The contour is ρ = 1.".to_owned();
+    if shown.iter().any(|&(m, z)| m == Method::ExplicitEuler && z == 0.0) {
+        words += " Explicit Euler’s disc touches the imaginary axis at the origin alone.";
+    }
+    let up_to = |(m, z): &(Method, f64)| format!("{} up to ωΔt = {}", m.title(), number(*z, 4));
+    let of = |symplectic: bool| {
+        let some =
+            shown.iter().filter(|(m, z)| Symmetry::of_method(*m).0 == symplectic && *z > 0.0);
+        some.map(up_to).collect::<Vec<_>>().join(", ")
+    };
+    let (symplectic, others) = (of(true), of(false));
+    if !others.is_empty() {
+        words += &format!(" A piece of the axis is stable for {others}.");
+    }
+    if !symplectic.is_empty() {
+        words += &format!(" The symplectic methods have ρ = 1 exactly there: {symplectic}.");
+    }
+    if shown.iter().any(|&(_, z)| z > 0.0) {
+        words += " The bar marks the stable piece, measured by simulation.";
+    }
+    words
 }
 
 /// Maps of the spectral radius, one a method.
 fn regions(record: &Record, shown: &[(Method, f64)]) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("stability-regions", "Where a step is stable")
-        .caption(
-            "The contour is ρ = 1. Explicit Euler’s disc touches the imaginary axis at the origin \
-             alone; the region of RK4 takes in a piece of it, as those of the symplectic methods \
-             do: on the axis they have ρ = 1 exactly, up to ωΔt = 2. The bar marks the stable piece \
-             of the axis, measured by simulation.",
-        )
+        .caption(pieces(shown))
         .description("Maps of the spectral radius over the complex plane of λΔt.")
         .columns(2)
         .aspect((REAL[1] - REAL[0]) / (IMAGINARY[1] - IMAGINARY[0]));
@@ -126,4 +173,26 @@ fn regions(record: &Record, shown: &[(Method, f64)]) -> Result<Figure, RecordErr
         figure = figure.panel(panel);
     }
     Ok(figure)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn captions_speak_of_the_methods_that_are_shown_and_of_no_others() {
+        let limits = [(Method::VelocityVerlet, 2.0), (Method::Yoshida4, 1.573_401_9)];
+        let caption = pieces(&limits);
+        assert!(caption.contains("velocity Verlet up to ωΔt = 2, Yoshida"), "{caption}");
+        assert!(caption.contains("ωΔt = 1.573.") && !caption.contains("Euler"), "{caption}");
+        assert!(!pieces(&[(Method::ExplicitEuler, 0.0)]).contains("bar"));
+        assert_eq!(phases(&[Method::SymplecticEuler]), "");
+        let both = powers(&[Method::Leapfrog, Method::Rk4]);
+        assert!(
+            both.ends_with(
+                "that of leapfrog with the third power, that of RK4 with the fifth power."
+            ),
+            "{both}"
+        );
+    }
 }

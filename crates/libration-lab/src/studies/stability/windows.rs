@@ -56,7 +56,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         Some(m) => with_method!(*m, |i| examine(m.name(), m.title(), i)),
         None => examine(UNEVEN.0, UNEVEN.1, UNEVEN_THIRDS),
     })?;
-    let columns = ["integrator", "stable for z = ωΔt", "a hasty sweep says"];
+    let columns = ["integrator", "stable for z = ωΔt", "a hasty sweep says: up to"];
     let mut table = Table::new("windows", &columns);
     let mut series = [const { Vec::new() }; 3];
     for (i, subject) in subjects.iter().enumerate() {
@@ -65,16 +65,10 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         }
         // All digits are in the findings; several windows leave no room for them.
         let digits = if subject.windows.len() > 1 { 5 } else { 15 };
-        let windows: Vec<String> = subject
-            .windows
-            .iter()
-            .map(|[from, to]| format!("{} to {}", number(*from, digits), number(*to, digits)))
-            .collect();
-        let windows = if windows.is_empty() { "nowhere".into() } else { windows.join(", ") };
         let cells: [Cell; 3] = [
             subject.title.into(),
-            windows.into(),
-            format!("up to {}", number(subject.hasty, 3)).into(),
+            Cell::intervals(&subject.windows, digits),
+            Cell::rounded(subject.hasty, 3),
         ];
         table.push(cells);
         for [from, to] in &subject.windows {

@@ -1,0 +1,140 @@
+//! One entry of a table: numbers are kept as numbers, and set in type by the page alone.
+
+use serde::{Serialize, Serializer};
+
+use crate::notation::{count, number};
+
+/// One entry of a table.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+#[serde(untagged)]
+pub enum Cell {
+    /// A number, or the statement that there is none.
+    Number(Quantity),
+    /// Words, or a formula.
+    Text(String),
+}
+
+/// What stands in a column of numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Quantity {
+    /// A number with all its digits, and how many of them mean something; without that, as many as the
+    /// table shows.
+    Real(f64, Option<usize>),
+    /// A whole number of things.
+    Count(u64),
+    /// Intervals in rising order, and how many digits of their ends to show.
+    Intervals(Vec<[f64; 2]>, usize),
+    /// No number that a file can hold; these words stand in its place on the page.
+    Absent(String),
+}
+
+impl Cell {
+    /// A number of which the page shows `digits` digits, whatever its table shows.
+    pub fn rounded(x: f64, digits: usize) -> Self {
+        Cell::Number(Quantity::Real(x, Some(digits)))
+    }
+
+    /// No number, and the words that stand in its place on the page; `null` in `results.json`.
+    pub fn absent(words: impl Into<String>) -> Self {
+        Cell::Number(Quantity::Absent(words.into()))
+    }
+
+    /// Intervals, as pairs of numbers.
+    pub fn intervals(intervals: &[[f64; 2]], digits: usize) -> Self {
+        Cell::Number(Quantity::Intervals(intervals.to_vec(), digits))
+    }
+
+    /// The number, if it is one.
+    pub fn value(&self) -> Option<f64> {
+        match self {
+            Cell::Number(Quantity::Real(x, _)) => Some(*x),
+            Cell::Number(Quantity::Count(n)) => Some(*n as f64),
+            _ => None,
+        }
+    }
+
+    /// The entry as the page sets it, with `digits` significant digits if it says no others.
+    pub(crate) fn typeset(&self, digits: usize) -> String {
+        match self {
+            Cell::Number(Quantity::Real(x, own)) => number(*x, own.unwrap_or(digits)),
+            Cell::Number(Quantity::Count(n)) => count(*n),
+            Cell::Number(Quantity::Intervals(intervals, _)) if intervals.is_empty() => {
+                "nowhere".into()
+            }
+            Cell::Number(Quantity::Intervals(intervals, digits)) => {
+                let one = |[from, to]: &[f64; 2]| {
+                    format!("{} to {}", number(*from, *digits), number(*to, *digits))
+                };
+                intervals.iter().map(one).collect::<Vec<_>>().join(", ")
+            }
+            Cell::Number(Quantity::Absent(words)) | Cell::Text(words) => words.clone(),
+        }
+    }
+}
+
+impl Serialize for Quantity {
+    /// JSON has no infinity and no NaN: both are `null`.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Quantity::Real(x, _) => serializer.serialize_f64(*x),
+            Quantity::Count(n) => serializer.serialize_u64(*n),
+            Quantity::Intervals(intervals, _) => intervals.serialize(serializer),
+            Quantity::Absent(_) => serializer.serialize_none(),
+        }
+    }
+}
+
+impl From<f64> for Cell {
+    fn from(x: f64) -> Self {
+        Cell::Number(Quantity::Real(x, None))
+    }
+}
+
+impl From<u64> for Cell {
+    fn from(n: u64) -> Self {
+        Cell::Number(Quantity::Count(n))
+    }
+}
+
+/// A number, or a dash where there is none.
+impl From<Option<f64>> for Cell {
+    fn from(x: Option<f64>) -> Self {
+        x.map_or_else(|| Cell::absent("—"), Cell::from)
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Cell::Text(text.into())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Cell::Text(text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn a_number_is_a_number_in_the_file_and_set_in_type_on_the_page() {
+        for (cell, in_file, on_page) in [
+            (Cell::from(2.5e-6), json!(2.5e-6), "2.5·10⁻⁶"),
+            (Cell::rounded(1.234_56, 2), json!(1.234_56), "1.2"),
+            (Cell::from(100_000), json!(100_000), "100\u{202f}000"),
+            (Cell::intervals(&[[0.0, 2.0]], 3), json!([[0.0, 2.0]]), "0 to 2"),
+            (Cell::intervals(&[], 3), json!([]), "nowhere"),
+            (Cell::absent("overflows"), json!(null), "overflows"),
+            (Cell::from(None), json!(null), "—"),
+            (Cell::from("RK4"), json!("RK4"), "RK4"),
+        ] {
+            assert_eq!(serde_json::to_value(&cell).ok(), Some(in_file));
+            assert_eq!(cell.typeset(4), on_page);
+        }
+    }
+}
