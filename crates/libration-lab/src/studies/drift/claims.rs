@@ -4,11 +4,10 @@ use std::f64::consts::{E, TAU};
 
 use libration::Method;
 
-use super::tag;
+use super::{source_setting, tag};
 use crate::Config;
 use crate::notation::{number, seconds};
 use crate::record::{Finding, Judgement, Record, Ruling};
-use crate::studies::source;
 
 /// Where RK4 stops losing energy and begins to gain it: z = 2√2.
 const RK4_LIMIT: f64 = 2.0 * std::f64::consts::SQRT_2;
@@ -35,8 +34,8 @@ pub(super) fn judge(config: &Config, record: &mut Record) {
     let seen = above_rounding(record, &rk4);
     steady_loss(record, &seen);
     without_symplecticity(record, &long, config.oscillator.omega());
-    if is_the_source_setting(config) {
-        at_the_source_setting(record);
+    if source_setting::is_run(config) {
+        source_setting::judge(record);
     }
     let text = "Two runs of the same start are equal to the bit, for every integrator.";
     rule(record, ("C26", "3.9, 6.6", text), &["drift.repeat".to_owned()], |f| {
@@ -58,15 +57,8 @@ fn long_enough(config: &Config) -> Vec<f64> {
     config.drift.dt.iter().copied().filter(|&dt| turns(dt) >= LONG).collect()
 }
 
-fn id(method: Method, dt: f64, what: &str) -> String {
+pub(super) fn id(method: Method, dt: f64, what: &str) -> String {
     format!("drift.{}.{}.{what}", method.name(), tag(dt))
-}
-
-/// A claim about the source's own runs says nothing of other springs, starts, steps and horizons.
-fn is_the_source_setting(config: &Config) -> bool {
-    source::is_its_orbit(config)
-        && config.drift.dt.contains(&source::DT)
-        && config.drift.steps == source::STEPS
 }
 
 /// Those of `ids` that the record holds: explicit Euler overflows at large steps.
@@ -94,7 +86,7 @@ fn listed(findings: &[&Finding]) -> String {
 }
 
 /// [`Record::judge`] with identifiers that were made at run time.
-fn rule(
+pub(super) fn rule(
     record: &mut Record,
     (id, source, text): (&str, &str, &str),
     findings: &[String],
@@ -211,62 +203,6 @@ fn without_symplecticity(record: &mut Record, dts: &[f64], omega: f64) {
             number(f[1].measured, 3)
         ))
         .only("of methods that do not conserve the energy by other means")
-    });
-}
-
-/// The claims about the source's own time step and horizon.
-fn at_the_source_setting(record: &mut Record) {
-    let dt = source::DT;
-    let of = |m: Method| id(m, dt, "largest");
-    let leading = format!("drift.crossover.{}.leading-order", tag(dt));
-    let pair = vec![of(Method::Rk4), of(Method::VelocityVerlet), leading];
-    let compared = |f: &[&Finding]| {
-        format!(
-            "at Δt = {} RK4 has drifted by {} and velocity Verlet by {}",
-            seconds(dt, 3),
-            number(f[0].measured, 3),
-            number(f[1].measured, 3)
-        )
-    };
-    for (claim, source, text) in [
-        ("C03", "2.6, 8.3", "Symplectic integrators are better over long horizons."),
-        ("C16", "2.11, 4.4, 9.1", "RK4 fails a long-horizon test of a million steps."),
-    ] {
-        rule(record, (claim, source, text), &pair, |f| {
-            let crossover = f[2].measured;
-            let because = format!(
-                "for the energy it holds only beyond 18/z⁴ steps, {} at this step; the source’s own \
-                 setting, z = {} and a million steps, lies at {} of it; {}",
-                number(crossover, 2),
-                number(source::OMEGA2.sqrt() * dt, 3),
-                number(source::STEPS as f64 / crossover, 2),
-                compared(f)
-            );
-            if f[0].measured < f[1].measured {
-                Judgement::conditional(because).only("beyond 18/z⁴ steps")
-            } else {
-                Judgement::confirmed(because)
-            }
-        });
-    }
-    let text = "The drift of RK4 becomes evident in million-step tests.";
-    rule(record, ("C25", "3.8", text), &pair[..2], |f| {
-        Judgement::holds_if(f[0].measured > f[1].measured, compared(f))
-    });
-    let names = ["RK4", "velocity Verlet", "symplectic Euler"];
-    let all = vec![of(Method::Rk4), of(Method::VelocityVerlet), of(Method::SymplecticEuler)];
-    let text = "Of all methods velocity Verlet preserves the energy most effectively.";
-    rule(record, ("C73", "9.1", text), &all, |f| {
-        let best = names.iter().zip(f).min_by(|a, b| a.1.measured.total_cmp(&b.1.measured));
-        let best = best.map_or("", |(name, _)| name);
-        Judgement::holds_if(
-            best == names[1],
-            format!(
-                "{}, symplectic Euler by {}: {best} preserves it best at this step and horizon",
-                compared(f),
-                number(f[2].measured, 3)
-            ),
-        )
     });
 }
 

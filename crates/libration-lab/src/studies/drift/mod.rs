@@ -8,6 +8,7 @@ mod portrait;
 mod render;
 mod repeat;
 mod setting;
+mod source_setting;
 mod trial;
 mod watch;
 
