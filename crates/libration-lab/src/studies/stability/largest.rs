@@ -108,10 +108,10 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     let columns: Vec<&str> = ["criterion", "steps"].into_iter().chain(titles).collect();
     let mut table = Table::new("largest steps", &columns);
     for (row, outcomes) in rows.iter().zip(found.chunks(config.integrators.len().max(1))) {
-        let head: [Cell; 2] = [row.0.words().into(), count(row.1).into()];
+        let head: [Cell; 2] = [row.0.words().into(), row.1.into()];
         let cells = outcomes.iter().map(|outcome| match outcome {
             Some(outcome) => Cell::from(outcome.measured),
-            None => "—".into(),
+            None => Cell::absent("—"),
         });
         table.push(head.into_iter().chain(cells));
     }
