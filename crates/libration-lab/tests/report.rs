@@ -120,8 +120,7 @@ fn every_key_of_the_results_is_documented() {
     }
 }
 
-/// Tables with text that may look like numbers: polynomials, some of which are constant, and rows
-/// that horizons head in words.
+/// Tables with text that may look like numbers: polynomials, some of which are constant.
 const IN_WORDS: [&str; 1] = ["update matrices"];
 
 #[test]
