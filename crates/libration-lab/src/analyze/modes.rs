@@ -61,7 +61,7 @@ impl Modes {
             phase_error: errors
                 .filter_map(|(s, omega)| {
                     let exact = omega? * linear.dt;
-                    let turns = matches!(s.eigenvalues, Eigenvalues::Complex { .. });
+                    let turns = !matches!(s.eigenvalues, Eigenvalues::Real(..));
                     turns.then(|| difference_of(s.turn(exact), exact))
                 })
                 .reduce(larger_size),
