@@ -252,3 +252,30 @@ fn numpy_reads_what_was_written() {
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     }
 }
+
+#[test]
+fn many_trajectories_have_the_same_bits_on_every_instruction_set_and_number_of_threads() {
+    let folder = folder();
+    let words = "simulate --system kepler --integrator suzuki4 --dt 0.01 --steps 20 --every 20 \
+                 --count 500 --spread 0.1 --float f32";
+    let here = stdout(&folder, words);
+    assert!(here.starts_with("trajectory,step,t,q0,q1,v0,v1,energy\n0,0,0.0,"), "{here:.80}");
+    assert_eq!(here.lines().count(), 1 + 2 * 500);
+    for more in ["--simd baseline", "--threads 1", "--threads 3 --simd baseline"] {
+        assert_eq!(stdout(&folder, &format!("{words} {more}")), here, "{more}");
+    }
+}
+
+#[test]
+fn flags_of_many_trajectories_without_a_count_are_refused() {
+    let folder = folder();
+    for more in ["--spread 0.1", "--simd baseline", "--threads 2", "--count 0", "--count 1e30"] {
+        libration(&folder, &format!("{REPORT} {more}"))
+            .assert()
+            .code(2)
+            .stderr(contains("--count"));
+    }
+    libration(&folder, &format!("{REPORT} --count 2 --simd mmx")).assert().code(2);
+    let f16 = format!("{REPORT} --count 2 --float f16");
+    libration(&folder, &f16).assert().code(2).stderr(contains("--float is f16"));
+}

@@ -17,7 +17,7 @@ use parquet::record::RowAccessor;
 fn words<S: Number>(values: &[S]) -> Vec<String> {
     let mut bytes = Vec::new();
     let mut csv = Csv::new(&mut bytes, ["step", "t"]).unwrap();
-    csv.row(u64::MAX, 0.1, values).unwrap();
+    csv.row(&[u64::MAX], 0.1, values).unwrap();
     let text = String::from_utf8(bytes).unwrap();
     let (head, row) = text.split_once('\n').unwrap();
     assert_eq!(head, "step,t");
@@ -69,8 +69,8 @@ fn a_float_is_printed_as_one_of_its_own_type() {
 fn json_has_null_for_what_is_not_finite() {
     let mut bytes = Vec::new();
     let mut json = Json::new(&mut bytes, &[("name", "x".into())]).unwrap();
-    json.row(0, 0.0, &[1.5_f32, f32::NAN]).unwrap();
-    json.row(1, 1e-7, &[0.1, f32::INFINITY]).unwrap();
+    json.row(&[0], 0.0, &[1.5_f32, f32::NAN]).unwrap();
+    json.row(&[1], 1e-7, &[0.1, f32::INFINITY]).unwrap();
     json.finish("stopped", &None::<u64>).unwrap();
     let value: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
     let rows = serde_json::json!([[0, 0.0, 1.5, null], [1, 1e-7, 0.1, null]]);

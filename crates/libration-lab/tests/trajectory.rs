@@ -7,13 +7,14 @@ use std::sync::atomic::AtomicBool;
 use libration::{AnySystem, Method, catalog};
 use libration_lab::export::Values;
 use libration_lab::trajectory::{
-    FloatType, Format, Request, Trajectory, TrajectoryError, simulate, write,
+    Copies, Ending, FloatType, Format, Request, Trajectory, TrajectoryError, simulate, write,
 };
 
 fn request(system: &str, method: Method, dt: f64, steps: u64) -> Request {
     let system = AnySystem::build(system, &[] as &[(&str, f64)]).unwrap();
     let float = FloatType::F64;
-    Request { system, method, float, dt, steps, q: vec![1.0], v: vec![0.0], every: 1 }
+    let (q, v) = (vec![1.0], vec![0.0]);
+    Request { system, method, float, dt, steps, q, v, every: 1, copies: None }
 }
 
 fn steps(trajectory: &Trajectory) -> Vec<u64> {
@@ -35,7 +36,7 @@ fn the_start_and_the_last_step_are_always_there() {
     let of = |n, every| {
         let request = Request { every, ..request("oscillator", Method::Rk4, 0.01, n) };
         let trajectory = simulate(&request).unwrap();
-        assert_eq!(trajectory.stopped, None);
+        assert_eq!(trajectory.ending, Ending::Whole);
         assert_eq!(trajectory.table.rows() as u64, request.rows());
         steps(&trajectory)
     };
@@ -94,7 +95,7 @@ fn an_overflow_ends_the_rows_at_the_last_finite_state() {
         let request = request("oscillator", Method::ExplicitEuler, 0.1, 100_000);
         let request = Request { every, ..request };
         let trajectory = simulate(&request).unwrap();
-        let stopped = trajectory.stopped.unwrap();
+        let Ending::Stopped(stopped) = trajectory.ending else { panic!("it overflows") };
         assert_eq!((stopped.step, stopped.t), (step, step as f64 * 0.1));
         assert_eq!(steps(&trajectory).last(), Some(&(step - 1)));
         assert!(f64s(&trajectory, "q0").iter().all(|q| q.is_finite()));
@@ -123,7 +124,7 @@ fn every_system_runs_in_every_float_type_and_format() {
             assert_eq!(units, request.column_units());
             for format in Format::ALL {
                 let mut bytes = Vec::new();
-                assert_eq!(write(&request, format, &mut bytes, &never).unwrap(), None);
+                assert_eq!(write(&request, format, &mut bytes, &never).unwrap(), Ending::Whole);
                 assert!(bytes.len() > 9 * (2 * d + 3));
             }
         }
@@ -165,4 +166,66 @@ fn a_set_flag_stops_the_work() {
     let request = Request { every: 1_000_000, ..request };
     let error = write(&request, Format::Csv, &mut Vec::new(), &AtomicBool::new(true)).unwrap_err();
     assert!(matches!(error, TrajectoryError::Interrupted));
+}
+
+const COPIES: Copies = Copies { count: 1, spread: 0.0, threads: 0, instructions: None };
+
+#[test]
+fn each_of_many_trajectories_has_the_rows_that_it_has_alone() {
+    let alone = Request { every: 7, ..request("pendulum", Method::Yoshida4, 0.1, 30) };
+    let copies = Copies { count: 5, spread: 0.5, ..COPIES };
+    let many = simulate(&Request { copies: Some(copies), ..alone.clone() }).unwrap();
+    assert_eq!(many.ending, Ending::Whole);
+    assert_eq!(many.table.rows(), 5 * 6);
+    for n in 0..5 {
+        let scale = copies.scale(n);
+        assert_eq!(scale, 0.5 + 0.25 * n as f64);
+        let lone = simulate(&Request { q: vec![scale], ..alone.clone() }).unwrap();
+        for name in ["q0", "v0", "energy"] {
+            let of_n: Vec<f64> = f64s(&many, name).into_iter().skip(n).step_by(5).collect();
+            assert_eq!(of_n, f64s(&lone, name), "{name} of {n}");
+        }
+    }
+    let Some(Values::U64(numbers)) = many.table.column("trajectory") else { panic!() };
+    assert_eq!(numbers[..6], [0, 1, 2, 3, 4, 0]);
+}
+
+#[test]
+fn one_that_overflows_is_named_and_the_others_go_on() {
+    let copies = Some(Copies { count: 3, spread: 1.0, ..COPIES });
+    let unstable = request("oscillator", Method::ExplicitEuler, 0.1, 20_000);
+    let request = Request { every: 20_000, copies, ..unstable };
+    let trajectory = simulate(&request).unwrap();
+    // The first starts at rest in the origin, where it stays.
+    assert_eq!(trajectory.ending, Ending::NotFinite { count: 2, first: vec![1, 2] });
+    assert_eq!(f64s(&trajectory, "q0")[3], 0.0);
+    let mut bytes = Vec::new();
+    write(&request, Format::Json, &mut bytes, &AtomicBool::new(false)).unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
+    assert_eq!(json["not_finite"]["first"], serde_json::json!([1, 2]));
+    assert_eq!((&json["count"], &json["columns"][0]), (&3.into(), &"trajectory".into()));
+}
+
+#[test]
+fn what_no_ensemble_can_do_is_refused_before_any_work() {
+    let base = request("oscillator", Method::Rk4, 0.1, 10);
+    let of = |copies: Copies, float| {
+        let request = Request { float, copies: Some(copies), ..base.clone() };
+        simulate(&request).unwrap_err().to_string()
+    };
+    let (f64, f16) = (FloatType::F64, FloatType::F16);
+    for (copies, float, told) in [
+        (Copies { count: 0, ..COPIES }, f64, "`count` is 0, but it must be at least 1"),
+        (
+            Copies { count: 1 << 40, ..COPIES },
+            f64,
+            "`count` is 1099511627776, but it must be at most",
+        ),
+        (Copies { count: 2, spread: f64::INFINITY, ..COPIES }, f64, "`spread` is inf"),
+        (Copies { count: 2, spread: 1e300, ..COPIES }, FloatType::F32, "`spread` is 1e300"),
+        (COPIES, f16, "`float` is f16, but it must be f64 or f32"),
+    ] {
+        let error = of(copies, float);
+        assert!(error.contains(told), "{error}");
+    }
 }

@@ -9,6 +9,7 @@
 pub mod analysis;
 pub mod catalog;
 pub mod elementary;
+pub mod ensemble;
 pub mod integrator;
 mod method;
 pub mod number;
@@ -18,6 +19,7 @@ mod state;
 pub mod system;
 
 pub use catalog::{AnySystem, CatalogError};
+pub use ensemble::Ensemble;
 pub use integrator::Integrator;
 pub use method::Method;
 pub use scalar::{Elementary, Float, Scalar};

@@ -39,7 +39,13 @@ impl<S: Scalar, const D: usize> State<S, D> {
     /// `v += h·a(q, v)`: the flow of the potential energy.
     #[inline(always)]
     pub fn kick(self, system: &impl System<S, D>, h: S) -> Self {
-        State { v: axpy(self.v, h, system.acceleration(&self)), ..self }
+        self.kicked(system.acceleration(&self), h)
+    }
+
+    /// `v += h·acceleration`: [`State::kick`] where the acceleration is known.
+    #[inline(always)]
+    pub fn kicked(self, acceleration: [S; D], h: S) -> Self {
+        State { v: axpy(self.v, h, acceleration), ..self }
     }
 
     /// `q += h·v`: the flow of the kinetic energy.

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use libration_lab::export::ExportError;
-use libration_lab::trajectory::{self, Format, Request, Stopped, TrajectoryError};
+use libration_lab::trajectory::{self, Copies, Ending, Format, Request, Stopped, TrajectoryError};
 
 use crate::args::{Setting, SimulateArgs};
 use crate::error::Failure;
@@ -20,15 +20,27 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
     let request = request(args)?;
     let format = format(args)?;
     let stop = interrupt::listen()?;
-    let stopped = match &args.output {
+    let ending = match &args.output {
         Some(path) => into_file(path, &request, format, stop)?,
         None => into_stdout(&request, format, stop)?,
     };
-    if let Some(Stopped { step, t, reason }) = stopped.filter(|_| !quiet) {
-        let last = step - 1;
-        terminal::say(&format!(
-            "note: {reason} at step {step} (t = {t} s); the last row is step {last}"
-        ));
+    match ending {
+        _ if quiet => {}
+        Ending::Whole => {}
+        Ending::Stopped(Stopped { step, t, reason }) => {
+            let last = step - 1;
+            terminal::say(&format!(
+                "note: {reason} at step {step} (t = {t} s); the last row is step {last}"
+            ));
+        }
+        Ending::NotFinite { count, first } => {
+            let named: Vec<String> = first.iter().map(usize::to_string).collect();
+            let more = if count > first.len() { ", …" } else { "" };
+            terminal::say(&format!(
+                "note: {count} trajectories are not finite in the end: {}{more}",
+                named.join(", ")
+            ));
+        }
     }
     Ok(())
 }
@@ -66,6 +78,12 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
         q,
         v,
         every: args.every,
+        copies: args.count.map(|count| Copies {
+            count,
+            spread: args.spread,
+            threads: args.threads,
+            instructions: args.simd,
+        }),
     })
 }
 
@@ -74,12 +92,12 @@ fn into_file(
     request: &Request,
     format: Format,
     stop: &AtomicBool,
-) -> Result<Option<Stopped>, Failure> {
+) -> Result<Ending, Failure> {
     let unwritable =
         |error: io::Error| format!("cannot write `{}` (--output): {error}", path.display());
     let file = OutputFile::create(path).map_err(|error| Failure::usage(unwritable(error)))?;
     let mut out = BufWriter::with_capacity(BUFFER, file);
-    let stopped =
+    let ending =
         trajectory::write(request, format, &mut out, stop).map_err(|error| match error {
             TrajectoryError::Export(ExportError::Io(error)) => Failure::run(unwritable(error)),
             TrajectoryError::Interrupted => {
@@ -89,14 +107,10 @@ fn into_file(
         })?;
     let written = out.into_inner().map_err(|error| error.into_error());
     written.and_then(OutputFile::keep).map_err(|error| Failure::run(unwritable(error)))?;
-    Ok(stopped)
+    Ok(ending)
 }
 
-fn into_stdout(
-    request: &Request,
-    format: Format,
-    stop: &AtomicBool,
-) -> Result<Option<Stopped>, Failure> {
+fn into_stdout(request: &Request, format: Format, stop: &AtomicBool) -> Result<Ending, Failure> {
     if format.is_binary() && io::stdout().is_terminal() {
         let name = format.name();
         return Err(Failure::usage(format!(
@@ -112,7 +126,7 @@ fn into_stdout(
             if error.kind() == ErrorKind::BrokenPipe =>
         {
             drop(out.into_parts());
-            Ok(None)
+            Ok(Ending::Whole)
         }
         Err(TrajectoryError::Export(ExportError::Io(error))) => {
             drop(out.into_parts());
@@ -135,6 +149,7 @@ fn failure(error: TrajectoryError) -> Failure {
         }
         TrajectoryError::Parameter { .. } => Failure::usage(format!("{error} (--float)")),
         TrajectoryError::Catalog(_) | TrajectoryError::Simulation(_) => Failure::usage(error),
+        TrajectoryError::Ensemble(_) | TrajectoryError::Memory(_) => Failure::usage(error),
         TrajectoryError::Export(_) | TrajectoryError::Interrupted => Failure::run(error),
     }
 }

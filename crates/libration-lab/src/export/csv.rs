@@ -30,9 +30,12 @@ impl<W: Write> Csv<W> {
 }
 
 impl<W: Write, S: Number> Rows<S> for Csv<W> {
-    fn row(&mut self, step: u64, t: f64, values: &[S]) -> Result<(), ExportError> {
+    fn row(&mut self, index: &[u64], t: f64, values: &[S]) -> Result<(), ExportError> {
         self.line.clear();
-        let _infallible = write!(self.line, "{step},{t:?}");
+        for number in index {
+            let _infallible = write!(self.line, "{number},");
+        }
+        let _infallible = write!(self.line, "{t:?}");
         for value in values {
             self.line.push(',');
             value.append_text(&mut self.line);

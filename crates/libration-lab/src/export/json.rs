@@ -50,13 +50,16 @@ fn entry(out: &mut impl Write, key: &str, value: &impl Serialize) -> Result<(), 
 }
 
 impl<W: Write, S: Number> Rows<S> for Json<W> {
-    fn row(&mut self, step: u64, t: f64, values: &[S]) -> Result<(), ExportError> {
+    fn row(&mut self, index: &[u64], t: f64, values: &[S]) -> Result<(), ExportError> {
         self.line.clear();
         self.line.push_str(if self.first { "\n    [" } else { ",\n    [" });
         self.first = false;
-        let _infallible = write!(self.line, "{step}");
+        for whole in index {
+            let _infallible = write!(self.line, "{whole}, ");
+        }
         number(&mut self.line, t);
         for &value in values {
+            self.line.push_str(", ");
             number(&mut self.line, value);
         }
         self.line.push(']');
@@ -65,7 +68,6 @@ impl<W: Write, S: Number> Rows<S> for Json<W> {
 }
 
 fn number<S: Number>(line: &mut String, value: S) {
-    line.push_str(", ");
     if value.is_finite() {
         value.append_text(line);
     } else {

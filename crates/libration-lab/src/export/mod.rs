@@ -21,9 +21,10 @@ pub use table::{Column, Table, Values};
 
 /// Takes the rows of a trajectory in turn.
 pub trait Rows<S> {
-    /// Takes the row of step `step` at time `t` seconds; `values` are the other columns.
+    /// Takes the row at time `t` seconds: `index` holds the columns of whole numbers before it, the
+    /// last of which is the step, `values` the columns after it.
     ///
     /// # Errors
     /// If the row cannot be written or kept.
-    fn row(&mut self, step: u64, t: f64, values: &[S]) -> Result<(), ExportError>;
+    fn row(&mut self, index: &[u64], t: f64, values: &[S]) -> Result<(), ExportError>;
 }

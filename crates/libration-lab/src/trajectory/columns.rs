@@ -8,7 +8,8 @@ use crate::export::{Column, ExportError, Number, Rows, Table, Values};
 /// Columns that grow by a row at a time.
 #[derive(Debug)]
 pub(super) struct Columns<S> {
-    step: Vec<u64>,
+    /// `step`, or `trajectory` and `step`.
+    index: Vec<Vec<u64>>,
     t: Vec<f64>,
     values: Vec<Vec<S>>,
 }
@@ -18,7 +19,9 @@ impl<S: Number> Columns<S> {
     pub(super) fn new(request: &Request) -> Result<Self, ExportError> {
         let rows = request.rows();
         Ok(Columns {
-            step: room(rows)?,
+            index: (0..1 + usize::from(request.copies.is_some()))
+                .map(|_| room(rows))
+                .collect::<Result<_, _>>()?,
             t: room(rows)?,
             values: (0..=2 * request.q.len()).map(|_| room(rows)).collect::<Result<_, _>>()?,
         })
@@ -26,8 +29,9 @@ impl<S: Number> Columns<S> {
 
     /// The columns under their names and units.
     pub(super) fn into_table(self, request: &Request) -> Result<Table<'static>, ExportError> {
-        let first = [Values::U64(Cow::Owned(self.step)), Values::F64(Cow::Owned(self.t))];
-        let values = first.into_iter().chain(self.values.into_iter().map(S::values));
+        let index = self.index.into_iter().map(|column| Values::U64(Cow::Owned(column)));
+        let first = index.chain([Values::F64(Cow::Owned(self.t))]);
+        let values = first.chain(self.values.into_iter().map(S::values));
         let heads = request.column_names().into_iter().zip(request.column_units());
         let column = |((name, unit), values): ((String, &'static str), _)| Column {
             name: Cow::Owned(name),
@@ -47,8 +51,10 @@ fn room<T>(rows: u64) -> Result<Vec<T>, ExportError> {
 }
 
 impl<S: Number> Rows<S> for Columns<S> {
-    fn row(&mut self, step: u64, t: f64, values: &[S]) -> Result<(), ExportError> {
-        self.step.push(step);
+    fn row(&mut self, index: &[u64], t: f64, values: &[S]) -> Result<(), ExportError> {
+        for (column, &number) in self.index.iter_mut().zip(index) {
+            column.push(number);
+        }
         self.t.push(t);
         for (column, &value) in self.values.iter_mut().zip(values) {
             column.push(value);

@@ -1,10 +1,12 @@
 //! What can be wrong with a request, and what can go wrong with a trajectory.
 
 use libration::CatalogError;
+use libration::ensemble::EnsembleError;
 use libration::simulation::SimulationError;
 use thiserror::Error;
 
 use crate::export::ExportError;
+use crate::machine::NoRoom;
 
 /// Why there is no trajectory.
 #[derive(Debug, Error)]
@@ -39,6 +41,12 @@ pub enum TrajectoryError {
     /// The simulator refused to start.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// The ensemble could not be made.
+    #[error(transparent)]
+    Ensemble(#[from] EnsembleError),
+    /// There is not memory enough.
+    #[error("{0}; fewer trajectories (--count) or a narrower float (--float f32) need less")]
+    Memory(NoRoom),
     /// The result could not be written or kept.
     #[error(transparent)]
     Export(#[from] ExportError),

@@ -1,12 +1,15 @@
-//! One trajectory as a table: what `libration simulate` writes.
+//! Trajectories as a table: what `libration simulate` writes.
 //!
-//! The columns are `step`, `t`, `q0` …, `v0` … and `energy`. A state that overflows ends the
-//! table; it is a result and not an error.
+//! The columns are `step`, `t`, `q0` …, `v0` … and `energy`, with `trajectory` before them where there
+//! are several. A state that overflows ends the table of one trajectory; of several, the others go
+//! on. It is a result and not an error.
 
 mod columns;
+mod copies;
 mod error;
 mod float_type;
 mod format;
+mod many;
 mod request;
 mod run;
 mod units;
@@ -17,9 +20,11 @@ use std::sync::atomic::AtomicBool;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::export::{Csv, Json, Number, Table, write_npy, write_parquet};
+use crate::export::{Csv, Json, Table, write_npy, write_parquet};
 use columns::Columns;
+use many::Many;
 
+pub use copies::Copies;
 pub use error::TrajectoryError;
 pub use float_type::FloatType;
 pub use format::Format;
@@ -33,8 +38,38 @@ pub const SCHEMA: &str = "libration.trajectory/1";
 pub struct Trajectory {
     /// The rows: the start, each step that was asked for, and the last.
     pub table: Table<'static>,
-    /// Why there are fewer steps than were asked for, if there are.
-    pub stopped: Option<Stopped>,
+    /// Whether all states were finite.
+    pub ending: Ending,
+}
+
+/// Whether all states were finite, to the end.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ending {
+    /// They were.
+    Whole,
+    /// The only trajectory ends early.
+    Stopped(Stopped),
+    /// Some of several trajectories are not finite in the end; they have disturbed no other.
+    NotFinite {
+        /// How many.
+        count: usize,
+        /// The first ten of them.
+        first: Vec<usize>,
+    },
+}
+
+impl Ending {
+    /// What a file says of it: the key, and its value.
+    fn told(&self, several: bool) -> (&'static str, Value) {
+        match self {
+            Ending::Stopped(stopped) => ("stopped", json!(stopped)),
+            Ending::NotFinite { count, first } => {
+                ("not_finite", json!({ "count": count, "first": first }))
+            }
+            Ending::Whole if several => ("not_finite", json!({ "count": 0, "first": [] })),
+            Ending::Whole => ("stopped", Value::Null),
+        }
+    }
 }
 
 /// The end of a trajectory whose state stopped being finite.
@@ -75,7 +110,7 @@ pub fn write(
     format: Format,
     out: &mut (dyn Write + Send),
     stop: &AtomicBool,
-) -> Result<Option<Stopped>, TrajectoryError> {
+) -> Result<Ending, TrajectoryError> {
     match request.float {
         FloatType::F64 => write_as::<f64>(request, format, out, stop),
         FloatType::F32 => write_as::<f32>(request, format, out, stop),
@@ -84,21 +119,22 @@ pub fn write(
     }
 }
 
-fn keep<S: Number>(request: &Request, stop: &AtomicBool) -> Result<Trajectory, TrajectoryError> {
+fn keep<S: Many>(request: &Request, stop: &AtomicBool) -> Result<Trajectory, TrajectoryError> {
     request.check::<S>()?;
     let mut columns = Columns::<S>::new(request)?;
-    let stopped = run::run(request, &mut columns, stop)?;
-    Ok(Trajectory { table: columns.into_table(request)?, stopped })
+    let ending = run::run(request, &mut columns, stop)?;
+    Ok(Trajectory { table: columns.into_table(request)?, ending })
 }
 
-fn write_as<S: Number>(
+fn write_as<S: Many>(
     request: &Request,
     format: Format,
     out: &mut (dyn Write + Send),
     stop: &AtomicBool,
-) -> Result<Option<Stopped>, TrajectoryError> {
+) -> Result<Ending, TrajectoryError> {
     request.check::<S>()?;
-    let stopped = match format {
+    let several = request.copies.is_some();
+    let ending = match format {
         Format::Csv => {
             let names = request.column_names();
             let mut csv = Csv::new(&mut *out, names.iter().map(String::as_str))?;
@@ -106,34 +142,36 @@ fn write_as<S: Number>(
         }
         Format::Json => {
             let mut json = Json::new(&mut *out, &head(request))?;
-            let stopped = run::run::<S>(request, &mut json, stop)?;
-            json.finish("stopped", &stopped)?;
-            stopped
+            let ending = run::run::<S>(request, &mut json, stop)?;
+            let (key, value) = ending.told(several);
+            json.finish(key, &value)?;
+            ending
         }
         Format::Npy => {
-            let Trajectory { table, stopped } = keep::<S>(request, stop)?;
+            let Trajectory { table, ending } = keep::<S>(request, stop)?;
             write_npy(&table, &mut *out)?;
-            stopped
+            ending
         }
         Format::Parquet => {
-            let Trajectory { table, stopped } = keep::<S>(request, stop)?;
+            let Trajectory { table, ending } = keep::<S>(request, stop)?;
             let mut about: serde_json::Map<_, _> =
                 head(request).into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
-            about.insert("stopped".to_owned(), json!(stopped));
+            let (key, value) = ending.told(several);
+            about.insert(key.to_owned(), value);
             let about = Value::Object(about).to_string();
             write_parquet(&table, &[("libration.trajectory", &about)], &mut *out)?;
-            stopped
+            ending
         }
     };
     out.flush().map_err(crate::export::ExportError::from)?;
-    Ok(stopped)
+    Ok(ending)
 }
 
 /// What was asked, as it stands at the head of a JSON file.
 fn head(request: &Request) -> Vec<(&'static str, Value)> {
     let parameters: serde_json::Map<_, _> =
         request.system.parameters().into_iter().map(|(k, v)| (k.to_owned(), v.into())).collect();
-    vec![
+    let mut head: Vec<(&'static str, Value)> = vec![
         ("schema", SCHEMA.into()),
         ("system", request.system.name().into()),
         ("parameters", parameters.into()),
@@ -144,5 +182,10 @@ fn head(request: &Request) -> Vec<(&'static str, Value)> {
         ("every", request.every.into()),
         ("columns", request.column_names().into()),
         ("units", request.column_units().into()),
-    ]
+    ];
+    if let Some(copies) = request.copies {
+        head.push(("count", copies.count.into()));
+        head.push(("spread", copies.spread.into()));
+    }
+    head
 }

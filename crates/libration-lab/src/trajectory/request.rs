@@ -3,7 +3,7 @@
 use libration::catalog::Allowed;
 use libration::{AnySystem, Float, Method};
 
-use super::{FloatType, TrajectoryError, units};
+use super::{Copies, FloatType, TrajectoryError, units};
 
 /// Largest number of values in a table: 8 GB of them, 2·10⁸ rows in one dimension.
 const MOST_VALUES: u64 = 1_000_000_000;
@@ -27,13 +27,16 @@ pub struct Request {
     pub v: Vec<f64>,
     /// Keep the start, each step that is a multiple of this, and the last step.
     pub every: u64,
+    /// Several trajectories in place of one.
+    pub copies: Option<Copies>,
 }
 
 impl Request {
     /// Names of the columns, from left to right.
     pub fn column_names(&self) -> Vec<String> {
         let coordinates = |x, d| (0..d).map(move |i| format!("{x}{i}"));
-        let mut names = vec!["step".to_owned(), "t".to_owned()];
+        let mut names = self.copies.map_or_else(Vec::new, |_| vec!["trajectory".to_owned()]);
+        names.extend(["step".to_owned(), "t".to_owned()]);
         names.extend(coordinates('q', self.q.len()));
         names.extend(coordinates('v', self.v.len()));
         names.push("energy".to_owned());
@@ -42,13 +45,19 @@ impl Request {
 
     /// Units of the columns, from left to right.
     pub fn column_units(&self) -> Vec<&'static str> {
-        units::of_columns(self.system, self.q.len())
+        let trajectory = self.copies.map(|_| "1").into_iter();
+        trajectory.chain(units::of_columns(self.system, self.q.len())).collect()
+    }
+
+    /// Number of steps that are kept if the state stays finite.
+    fn kept(&self) -> u64 {
+        let every = self.every.max(1);
+        (self.steps / every).saturating_add(1 + u64::from(!self.steps.is_multiple_of(every)))
     }
 
     /// Number of rows if the state stays finite.
     pub fn rows(&self) -> u64 {
-        let every = self.every.max(1);
-        (self.steps / every).saturating_add(1 + u64::from(!self.steps.is_multiple_of(every)))
+        self.kept().saturating_mul(self.copies.map_or(1, |copies| copies.count as u64))
     }
 
     /// Checks every value, and that the float type `S` can hold it.
@@ -60,6 +69,9 @@ impl Request {
             if count == 0 {
                 return Err(wrong(name, count, "at least 1"));
             }
+        }
+        if let Some(copies) = &self.copies {
+            self.check_copies::<S>(copies)?;
         }
         self.check_rows()
     }
@@ -81,6 +93,22 @@ impl Request {
             }
         }
         Ok(())
+    }
+
+    fn check_copies<S: Float>(&self, copies: &Copies) -> Result<(), TrajectoryError> {
+        if copies.count == 0 {
+            return Err(wrong("count", 0, "at least 1"));
+        }
+        if !copies.spread.is_finite() {
+            return Err(wrong("spread", format!("{:?}", copies.spread), Allowed::Finite));
+        }
+        let furthest = 1.0 + copies.spread.abs();
+        let all = self.q.iter().chain(&self.v);
+        if !all.into_iter().all(|&x| S::from_f64(furthest * x).is_finite()) {
+            let allowed = format!("so small that every start is finite in {}", S::NAME);
+            return Err(wrong("spread", format!("{:?}", copies.spread), allowed));
+        }
+        copies.execution().map(|_| ())
     }
 
     fn check_time_step<S: Float>(&self) -> Result<(), TrajectoryError> {
@@ -115,8 +143,13 @@ impl Request {
         if rows <= most {
             return Ok(());
         }
+        let count = self.copies.map_or(1, |copies| copies.count as u64);
+        if count.saturating_mul(2) > most {
+            let allowed = format!("at most {}: a table holds {most} rows", most / 2);
+            return Err(wrong("count", count, allowed));
+        }
         // Besides each `every`-th step there are the start and perhaps the last step.
-        let least = self.steps.div_ceil(most - 2);
+        let least = self.steps.div_ceil((most / count).saturating_sub(2).max(1));
         let allowed = format!(
             "at least {least}: {} steps make {rows} rows, and a table holds at most {most}",
             self.steps

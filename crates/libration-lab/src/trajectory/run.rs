@@ -5,18 +5,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use libration::simulation::{SimulationError, Simulator};
 use libration::{Hamiltonian, Integrator, Model, Scalar, State, with_method, with_system};
 
-use super::{Request, Stopped, TrajectoryError};
+use super::many::Many;
+use super::{Ending, Request, Stopped, TrajectoryError};
 use crate::export::{Number, Rows};
 
 /// Steps between two looks at whether to stop.
 const CHUNK: u64 = 1 << 16;
 
 /// Simulates `request`, which has been checked, in the float type `S`.
-pub(super) fn run<S: Number>(
+pub(super) fn run<S: Many>(
     request: &Request,
     rows: &mut dyn Rows<S>,
     stop: &AtomicBool,
-) -> Result<Option<Stopped>, TrajectoryError> {
+) -> Result<Ending, TrajectoryError> {
+    if let Some(copies) = &request.copies {
+        return S::many(request, copies, rows, stop);
+    }
     let dimension = request.q.len();
     with_system!(
         request.system,
@@ -31,7 +35,7 @@ fn on_model<S: Number, const D: usize, M: Model<D>>(
     request: &Request,
     rows: &mut dyn Rows<S>,
     stop: &AtomicBool,
-) -> Result<Option<Stopped>, TrajectoryError> {
+) -> Result<Ending, TrajectoryError> {
     let system = model.on::<S>();
     let coordinates = |x: &[f64]| core::array::from_fn(|i| x.get(i).map_or(S::zero(), number));
     let start = State { q: coordinates(&request.q), v: coordinates(&request.v) };
@@ -53,7 +57,7 @@ fn advance<S: Number, const D: usize, Sys: Hamiltonian<S, D> + Copy, I: Integrat
     request: &Request,
     rows: &mut dyn Rows<S>,
     stop: &AtomicBool,
-) -> Result<Option<Stopped>, TrajectoryError> {
+) -> Result<Ending, TrajectoryError> {
     let Request { steps, every, .. } = *request;
     let mut values = Vec::with_capacity(2 * D + 1);
     let mut show = |simulator: &Simulator<Sys, I, S, D>| {
@@ -61,7 +65,7 @@ fn advance<S: Number, const D: usize, Sys: Hamiltonian<S, D> + Copy, I: Integrat
         values.clear();
         values.extend(sample.state.coordinates());
         values.push(system.energy(&sample.state));
-        rows.row(sample.step, sample.time, &values)
+        rows.row(&[sample.step], sample.time, &values)
     };
     show(&simulator)?;
     let (mut step, mut shown) = (0, 0);
@@ -81,10 +85,10 @@ fn advance<S: Number, const D: usize, Sys: Hamiltonian<S, D> + Copy, I: Integrat
             Ok(()) => {}
             Err(SimulationError::NotFinite { step, time: t }) => {
                 let reason = "the state stopped being finite";
-                return Ok(Some(Stopped { step, t, reason }));
+                return Ok(Ending::Stopped(Stopped { step, t, reason }));
             }
             Err(error) => return Err(error.into()),
         }
     }
-    Ok(None)
+    Ok(Ending::Whole)
 }

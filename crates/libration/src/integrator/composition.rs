@@ -47,6 +47,8 @@ pub const SUZUKI4: Suzuki4 = Composition {
 };
 
 impl<I: Integrator, const N: usize> Integrator for Composition<I, N> {
+    const CARRIES: bool = I::CARRIES;
+
     #[inline(always)]
     fn step<S: Scalar, const D: usize>(
         self,
@@ -57,5 +59,18 @@ impl<I: Integrator, const N: usize> Integrator for Composition<I, N> {
         self.weights
             .iter()
             .fold(state, |state, &weight| self.base.step(system, state, dt * S::from_f64(weight)))
+    }
+
+    #[inline(always)]
+    fn carried<S: Scalar, const D: usize>(
+        self,
+        system: &impl System<S, D>,
+        state: State<S, D>,
+        acceleration: [S; D],
+        dt: S,
+    ) -> (State<S, D>, [S; D]) {
+        self.weights.iter().fold((state, acceleration), |(state, acceleration), &weight| {
+            self.base.carried(system, state, acceleration, dt * S::from_f64(weight))
+        })
     }
 }

@@ -26,6 +26,10 @@ pub use velocity_verlet::VelocityVerlet;
 ///
 /// A step never fails, allocates, branches on data or reads a clock.
 pub trait Integrator: Copy + Send + Sync {
+    /// Whether a step ends with the force evaluation with which the next begins, so that
+    /// [`Integrator::carried`] saves one.
+    const CARRIES: bool = false;
+
     /// Advances `state` by one step of length `dt`.
     fn step<S: Scalar, const D: usize>(
         self,
@@ -33,4 +37,22 @@ pub trait Integrator: Copy + Send + Sync {
         state: State<S, D>,
         dt: S,
     ) -> State<S, D>;
+
+    /// [`Integrator::step`] from a state whose acceleration is known, to a state and its
+    /// acceleration: the same bits.
+    ///
+    /// Where the method [carries](Integrator::CARRIES), the system must be
+    /// [positional](System::POSITIONAL): the acceleration that is handed on was evaluated before
+    /// the last kick.
+    #[inline(always)]
+    fn carried<S: Scalar, const D: usize>(
+        self,
+        system: &impl System<S, D>,
+        state: State<S, D>,
+        _acceleration: [S; D],
+        dt: S,
+    ) -> (State<S, D>, [S; D]) {
+        let state = self.step(system, state, dt);
+        (state, system.acceleration(&state))
+    }
 }

@@ -14,17 +14,29 @@ use crate::{Scalar, State, System};
 pub struct TextbookVerlet;
 
 impl Integrator for TextbookVerlet {
+    const CARRIES: bool = true;
+
     #[inline(always)]
     fn step<S: Scalar, const D: usize>(
         self,
         system: &impl System<S, D>,
-        State { q, v }: State<S, D>,
+        state: State<S, D>,
         dt: S,
     ) -> State<S, D> {
+        self.carried(system, state, system.acceleration(&state), dt).0
+    }
+
+    #[inline(always)]
+    fn carried<S: Scalar, const D: usize>(
+        self,
+        system: &impl System<S, D>,
+        State { q, v }: State<S, D>,
+        a: [S; D],
+        dt: S,
+    ) -> (State<S, D>, [S; D]) {
         let half = dt.ratio(1, 2);
-        let a = system.acceleration(&State { q, v });
         let q = from_fn(|i| q[i] + dt * v[i] + half * dt * a[i]);
         let next = system.acceleration(&State { q, v });
-        State { q, v: from_fn(|i| v[i] + half * (a[i] + next[i])) }
+        (State { q, v: from_fn(|i| v[i] + half * (a[i] + next[i])) }, next)
     }
 }

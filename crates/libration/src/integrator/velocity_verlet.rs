@@ -11,6 +11,8 @@ use crate::{Scalar, State, System};
 pub struct VelocityVerlet;
 
 impl Integrator for VelocityVerlet {
+    const CARRIES: bool = true;
+
     #[inline(always)]
     fn step<S: Scalar, const D: usize>(
         self,
@@ -18,7 +20,20 @@ impl Integrator for VelocityVerlet {
         state: State<S, D>,
         dt: S,
     ) -> State<S, D> {
+        self.carried(system, state, system.acceleration(&state), dt).0
+    }
+
+    #[inline(always)]
+    fn carried<S: Scalar, const D: usize>(
+        self,
+        system: &impl System<S, D>,
+        state: State<S, D>,
+        acceleration: [S; D],
+        dt: S,
+    ) -> (State<S, D>, [S; D]) {
         let half = dt.ratio(1, 2);
-        state.kick(system, half).drift(dt).kick(system, half)
+        let state = state.kicked(acceleration, half).drift(dt);
+        let acceleration = system.acceleration(&state);
+        (state.kicked(acceleration, half), acceleration)
     }
 }

@@ -19,6 +19,8 @@ impl<'a, Sys> Counted<'a, Sys> {
 }
 
 impl<S: Scalar, Sys: System<S, D>, const D: usize> System<S, D> for Counted<'_, Sys> {
+    const POSITIONAL: bool = Sys::POSITIONAL;
+
     #[inline(always)]
     fn acceleration(&self, state: &State<S, D>) -> [S; D] {
         self.count.set(self.count.get() + 1);

@@ -19,6 +19,8 @@ pub struct Duffing<S> {
 }
 
 impl<S: Scalar> System<S, 1> for Duffing<S> {
+    const POSITIONAL: bool = true;
+
     #[inline(always)]
     fn acceleration(&self, &State { q: [q], .. }: &State<S, 1>) -> [S; 1] {
         [-self.alpha * q - self.beta * (q * q * q)]

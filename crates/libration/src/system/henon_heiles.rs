@@ -23,6 +23,8 @@ impl Default for HenonHeiles<f64> {
 }
 
 impl<S: Scalar> System<S, 2> for HenonHeiles<S> {
+    const POSITIONAL: bool = true;
+
     #[inline(always)]
     fn acceleration(&self, &State { q: [x, y], .. }: &State<S, 2>) -> [S; 2] {
         let xy = x * y;

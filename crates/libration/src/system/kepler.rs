@@ -34,6 +34,8 @@ fn inverse_distance<S: Elementary>([x, y]: [S; 2]) -> S {
 }
 
 impl<S: Elementary> System<S, 2> for Kepler<S> {
+    const POSITIONAL: bool = true;
+
     #[inline(always)]
     fn acceleration(&self, &State { q, .. }: &State<S, 2>) -> [S; 2] {
         let inverse = inverse_distance(q);

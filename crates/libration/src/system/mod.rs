@@ -22,6 +22,11 @@ pub use pendulum::Pendulum;
 ///
 /// Time, where a system needs it, is a coordinate with velocity 1 and acceleration 0.
 pub trait System<S: Scalar, const D: usize> {
+    /// Whether the acceleration depends on the positions alone.
+    ///
+    /// An [`Ensemble`](crate::Ensemble) then hands it from the end of a Verlet step to the next.
+    const POSITIONAL: bool = false;
+
     /// The acceleration `a(q, v)`.
     fn acceleration(&self, state: &State<S, D>) -> [S; D];
 

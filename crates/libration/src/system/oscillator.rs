@@ -17,7 +17,18 @@ impl Oscillator<f64> {
     }
 }
 
+impl<S: Scalar> Oscillator<S> {
+    /// The energy per unit mass at `q` and `v`, of which there are as many.
+    #[inline(always)]
+    pub(crate) fn energy_of(&self, q: &[S], v: &[S]) -> S {
+        let square = q.iter().fold(S::zero(), |sum, &q| sum + q * q);
+        kinetic(v) + (self.omega2 * square).ratio(1, 2)
+    }
+}
+
 impl<S: Scalar, const D: usize> System<S, D> for Oscillator<S> {
+    const POSITIONAL: bool = true;
+
     #[inline(always)]
     fn acceleration(&self, state: &State<S, D>) -> [S; D] {
         state.q.map(|q| -self.omega2 * q)
@@ -27,8 +38,7 @@ impl<S: Scalar, const D: usize> System<S, D> for Oscillator<S> {
 impl<S: Scalar, const D: usize> Hamiltonian<S, D> for Oscillator<S> {
     #[inline(always)]
     fn energy(&self, state: &State<S, D>) -> S {
-        let square = state.q.iter().fold(S::zero(), |sum, &q| sum + q * q);
-        kinetic(&state.v) + (self.omega2 * square).ratio(1, 2)
+        self.energy_of(&state.q, &state.v)
     }
 }
 

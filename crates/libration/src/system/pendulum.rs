@@ -16,6 +16,8 @@ pub struct Pendulum<S> {
 }
 
 impl<S: Elementary> System<S, 1> for Pendulum<S> {
+    const POSITIONAL: bool = true;
+
     #[inline(always)]
     fn acceleration(&self, &State { q: [angle], .. }: &State<S, 1>) -> [S; 1] {
         [-self.omega2 * angle.sin()]

@@ -1,0 +1,109 @@
+//! The rows of an ensemble.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use half::{bf16, f16};
+use libration::ensemble::BatchFloat;
+
+use super::{Copies, Ending, Request, TrajectoryError};
+use crate::export::{Number, Rows};
+use crate::machine;
+
+/// Trajectory steps between two looks at whether to stop: a second of the slowest kernel.
+const CHUNK: u64 = 1 << 26;
+
+/// A float type in which many trajectories may be asked for.
+pub(super) trait Many: Number {
+    /// Simulates the copies of a request that has been checked.
+    fn many(
+        request: &Request,
+        copies: &Copies,
+        rows: &mut dyn Rows<Self>,
+        stop: &AtomicBool,
+    ) -> Result<Ending, TrajectoryError>;
+}
+
+macro_rules! vectors {
+    ($($float:ident)*) => {$(
+        impl Many for $float {
+            fn many(
+                request: &Request,
+                copies: &Copies,
+                rows: &mut dyn Rows<Self>,
+                stop: &AtomicBool,
+            ) -> Result<Ending, TrajectoryError> {
+                run::<$float>(request, copies, rows, stop)
+            }
+        }
+    )*};
+}
+
+macro_rules! scalar_only {
+    ($($float:ident)*) => {$(
+        impl Many for $float {
+            fn many(
+                request: &Request,
+                _: &Copies,
+                _: &mut dyn Rows<Self>,
+                _: &AtomicBool,
+            ) -> Result<Ending, TrajectoryError> {
+                Err(TrajectoryError::Value {
+                    name: "float",
+                    value: request.float.name().to_owned(),
+                    allowed: "f64 or f32 where there are many trajectories".to_owned(),
+                })
+            }
+        }
+    )*};
+}
+
+vectors!(f64 f32);
+scalar_only!(f16 bf16);
+
+fn run<S: BatchFloat + Number>(
+    request: &Request,
+    copies: &Copies,
+    rows: &mut dyn Rows<S>,
+    stop: &AtomicBool,
+) -> Result<Ending, TrajectoryError> {
+    let Request { system, method, dt, steps, every, .. } = *request;
+    let (dimension, count) = (request.q.len(), copies.count);
+    machine::has_room(S::ensemble_bytes(dimension, count)).map_err(TrajectoryError::Memory)?;
+    let coordinate = |i: usize| match i.checked_sub(dimension) {
+        None => request.q.get(i),
+        Some(i) => request.v.get(i),
+    };
+    let start = |n, i| S::from_f64(copies.scale(n) * coordinate(i).copied().unwrap_or(0.0));
+    let mut all = S::ensemble(system, dimension, count, copies.execution()?, &start)?;
+    let mut values = Vec::with_capacity(2 * dimension + 1);
+    let at_once = (CHUNK / (count as u64).max(1)).max(1);
+    loop {
+        let step = all.step();
+        let time = step as f64 * S::from_f64(dt).to_f64();
+        if step.is_multiple_of(every) || step == steps {
+            for n in 0..count {
+                if stop.load(Ordering::Relaxed) {
+                    return Err(TrajectoryError::Interrupted);
+                }
+                values.clear();
+                let planes =
+                    (0..dimension).map(|i| all.q(i)).chain((0..dimension).map(|i| all.v(i)));
+                values.extend(planes.flatten().filter_map(|plane| plane.get(n).copied()));
+                values.extend(all.energy(n));
+                rows.row(&[n as u64, step], time, &values)?;
+            }
+        }
+        if step == steps {
+            let lost = all.not_finite();
+            return Ok(match lost.len() {
+                0 => Ending::Whole,
+                count => Ending::NotFinite { count, first: lost.into_iter().take(10).collect() },
+            });
+        }
+        if stop.load(Ordering::Relaxed) {
+            return Err(TrajectoryError::Interrupted);
+        }
+        let to_next_row = (every - step % every).min(steps - step);
+        all.advance(method, S::from_f64(dt), to_next_row.min(at_once));
+    }
+}

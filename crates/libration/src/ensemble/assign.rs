@@ -1,0 +1,71 @@
+//! Values that trajectories share or have each for themselves.
+
+/// A value for every trajectory of an ensemble: [one for all](All) or [one each](Each).
+pub trait Assign<X>: Copy + Send + Sync {
+    /// The values of a block of `W` neighbouring trajectories.
+    type Lanes<const W: usize>: Copy;
+
+    /// The values of the `count` trajectories from `first` on; lanes beyond repeat the last.
+    fn lanes<const W: usize>(self, first: usize, count: usize) -> Self::Lanes<W>;
+
+    /// The value in lane `l`.
+    fn lane<const W: usize>(lanes: &Self::Lanes<W>, l: usize) -> X;
+
+    /// The number of trajectories for which there is a value, unless there is one for all.
+    fn count(self) -> Option<usize>;
+}
+
+/// The same value for all trajectories.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct All<X>(pub X);
+
+/// A value of its own for each trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Each<'a, X>(pub &'a [X]);
+
+impl<X: Copy + Send + Sync> Assign<X> for All<X> {
+    type Lanes<const W: usize> = X;
+
+    #[inline(always)]
+    fn lanes<const W: usize>(self, _: usize, _: usize) -> X {
+        self.0
+    }
+
+    #[inline(always)]
+    fn lane<const W: usize>(&lanes: &X, _: usize) -> X {
+        lanes
+    }
+
+    #[inline(always)]
+    fn count(self) -> Option<usize> {
+        None
+    }
+}
+
+impl<X: Copy + Send + Sync> Assign<X> for Each<'_, X> {
+    type Lanes<const W: usize> = [X; W];
+
+    #[inline(always)]
+    fn lanes<const W: usize>(self, first: usize, count: usize) -> [X; W] {
+        padded(&self.0[first..first + count])
+    }
+
+    #[inline(always)]
+    fn lane<const W: usize>(lanes: &[X; W], l: usize) -> X {
+        lanes[l]
+    }
+
+    #[inline(always)]
+    fn count(self) -> Option<usize> {
+        Some(self.0.len())
+    }
+}
+
+/// The values, of which there is at least one and there are at most `W`, and then the last again.
+#[inline(always)]
+pub(super) fn padded<X: Copy, const W: usize>(values: &[X]) -> [X; W] {
+    match values.try_into() {
+        Ok(&whole) => whole,
+        Err(_) => core::array::from_fn(|l| values[l.min(values.len() - 1)]),
+    }
+}

@@ -1,0 +1,53 @@
+//! What can be wrong with an ensemble.
+
+use super::InstructionSet;
+use crate::CatalogError;
+
+/// Why an ensemble cannot be made or run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EnsembleError {
+    /// The system refused the memory.
+    #[error("{len} trajectories need {bytes} bytes, which the system does not give")]
+    Memory {
+        /// How many trajectories there were to be.
+        len: usize,
+        /// The bytes that they take.
+        bytes: u128,
+    },
+    /// The processor lacks the instruction set.
+    #[error("this processor has no {}, only {}", asked.name(), available())]
+    Instructions {
+        /// What was asked for.
+        asked: InstructionSet,
+    },
+    /// The system did not give the threads.
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads {
+        /// How many were asked for; 0 for as many as there are cores.
+        threads: usize,
+        /// What the system says.
+        reason: String,
+    },
+    /// There are more or fewer values than trajectories.
+    #[error(
+        "there are {values} {what} for {len} trajectories; there must be one each, or one for all"
+    )]
+    Length {
+        /// What the values are.
+        what: &'static str,
+        /// How many there are.
+        values: usize,
+        /// How many trajectories there are.
+        len: usize,
+    },
+    /// The system does not exist so.
+    #[error(transparent)]
+    System(CatalogError),
+    /// An observer is to look every 0 steps.
+    #[error("`every` is 0; it must be at least 1 step")]
+    Every,
+}
+
+fn available() -> String {
+    InstructionSet::available().map(InstructionSet::name).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,128 @@
+//! The instruction sets that a kernel is compiled for.
+
+use pulp::{Simd, WithSimd};
+
+/// An instruction set. The bits of a result do not depend on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum InstructionSet {
+    /// What every processor of the architecture has: SSE2 on x86-64, NEON on AArch64.
+    Baseline,
+    /// AVX2, 256 bits wide (x86-64-v3).
+    Avx2,
+    /// AVX-512, 512 bits wide (x86-64-v4).
+    Avx512,
+}
+
+impl InstructionSet {
+    /// All of them, by rising width.
+    pub const ALL: [InstructionSet; 3] =
+        [InstructionSet::Baseline, InstructionSet::Avx2, InstructionSet::Avx512];
+
+    /// Name on the command line and in configurations.
+    pub const fn name(self) -> &'static str {
+        match self {
+            InstructionSet::Baseline => "baseline",
+            InstructionSet::Avx2 => "avx2",
+            InstructionSet::Avx512 => "avx512",
+        }
+    }
+
+    /// The instruction set of that name, if there is one.
+    pub fn from_name(name: &str) -> Option<InstructionSet> {
+        InstructionSet::ALL.into_iter().find(|set| set.name() == name)
+    }
+
+    /// Whether this processor has it.
+    pub fn is_available(self) -> bool {
+        match self {
+            InstructionSet::Baseline => true,
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 => pulp::x86::V3::is_available(),
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => pulp::x86::V4::is_available(),
+            #[cfg(not(target_arch = "x86_64"))]
+            InstructionSet::Avx2 | InstructionSet::Avx512 => false,
+        }
+    }
+
+    /// Those that this processor has, by rising width.
+    pub fn available() -> impl Iterator<Item = InstructionSet> {
+        InstructionSet::ALL.into_iter().filter(|set| set.is_available())
+    }
+
+    /// The widest that this processor has.
+    pub fn widest() -> InstructionSet {
+        InstructionSet::available().last().unwrap_or(InstructionSet::Baseline)
+    }
+}
+
+/// An instruction set as a type, so that what is compiled for it can depend on it.
+pub(super) trait Target: Copy + Send + Sync {
+    /// Vector registers that the architecture names.
+    const REGISTERS: usize;
+    /// Bytes in one of them.
+    const BYTES: usize;
+
+    /// Runs `kernel`, compiled for this instruction set.
+    fn run<K: WithSimd>(self, kernel: K) -> K::Output;
+}
+
+/// [`InstructionSet::Baseline`].
+#[derive(Clone, Copy)]
+pub(super) struct Baseline;
+
+impl Target for Baseline {
+    const REGISTERS: usize = if cfg!(target_arch = "aarch64") { 32 } else { 16 };
+    const BYTES: usize = 16;
+
+    #[inline(always)]
+    fn run<K: WithSimd>(self, kernel: K) -> K::Output {
+        Simd::vectorize(pulp::Scalar::new(), kernel)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Target for pulp::x86::V3 {
+    const REGISTERS: usize = 16;
+    const BYTES: usize = 32;
+
+    #[inline(always)]
+    fn run<K: WithSimd>(self, kernel: K) -> K::Output {
+        Simd::vectorize(self, kernel)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Target for pulp::x86::V4 {
+    const REGISTERS: usize = 32;
+    const BYTES: usize = 64;
+
+    #[inline(always)]
+    fn run<K: WithSimd>(self, kernel: K) -> K::Output {
+        Simd::vectorize(self, kernel)
+    }
+}
+
+/// Work that is compiled once for every instruction set, to be run on one of them.
+pub(super) trait Targeted {
+    /// What it yields.
+    type Output;
+
+    /// Runs on `target`.
+    fn on<I: Target>(self, target: I) -> Self::Output;
+}
+
+impl InstructionSet {
+    /// Runs `work` on this instruction set, or on the baseline where the processor lacks it.
+    pub(super) fn run<K: Targeted>(self, work: K) -> K::Output {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 if let Some(target) = pulp::x86::V4::try_new() => {
+                work.on(target)
+            }
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 if let Some(target) = pulp::x86::V3::try_new() => work.on(target),
+            _ => work.on(Baseline),
+        }
+    }
+}

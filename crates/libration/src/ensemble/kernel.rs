@@ -1,0 +1,100 @@
+//! The steps of a block of trajectories: the scalar step in a loop over lanes.
+
+use core::array::from_fn;
+
+use pulp::{Simd, WithSimd};
+
+use super::assign::Assign;
+use super::planes::Share;
+use crate::{Float, Integrator, State, System};
+
+/// Takes `steps` steps with all trajectories of a block, which stays in registers where it fits.
+///
+/// A named struct rather than a closure: a closure is called through a shim that the compiler may
+/// leave outside the vector code, which silently loses the vectors.
+pub(super) struct Advance<
+    'b,
+    'a,
+    T,
+    M,
+    A: Assign<Sys>,
+    C: Assign<T>,
+    Sys,
+    const D: usize,
+    const W: usize,
+> {
+    pub(super) block: &'b mut Share<'a, T, D>,
+    pub(super) method: M,
+    pub(super) systems: A::Lanes<W>,
+    pub(super) dt: C::Lanes<W>,
+    pub(super) steps: u64,
+}
+
+impl<T, M, A, C, Sys, const D: usize, const W: usize> WithSimd
+    for Advance<'_, '_, T, M, A, C, Sys, D, W>
+where
+    T: Float,
+    M: Integrator,
+    A: Assign<Sys>,
+    C: Assign<T>,
+    Sys: System<T, D>,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Advance { block, method, systems, dt, steps } = self;
+        let carries = const { M::CARRIES && Sys::POSITIONAL };
+        // Locals of a fixed size: what the compiler can keep in registers.
+        let (q, v) = block.load::<W>();
+        let (mut q, mut v) = (Lines(q), Lines(v));
+        let mut a = Lines([[T::zero(); W]; D]);
+        if carries {
+            for l in 0..W {
+                put(
+                    &mut a.0,
+                    l,
+                    A::lane(&systems, l).acceleration(&State { q: at(&q.0, l), v: at(&v.0, l) }),
+                );
+            }
+        }
+        for _ in 0..steps {
+            for l in 0..W {
+                let (system, dt) = (A::lane(&systems, l), C::lane(&dt, l));
+                let state = State { q: at(&q.0, l), v: at(&v.0, l) };
+                let state = if carries {
+                    let (state, acceleration) = method.carried(&system, state, at(&a.0, l), dt);
+                    put(&mut a.0, l, acceleration);
+                    state
+                } else {
+                    method.step(&system, state, dt)
+                };
+                put(&mut q.0, l, state.q);
+                put(&mut v.0, l, state.v);
+            }
+        }
+        block.store(&q.0, &v.0);
+    }
+}
+
+/// Planes that begin with a cache line: no vector that is kept in memory lies across two.
+#[repr(align(64))]
+struct Lines<P>(P);
+
+/// Lane `l` of each plane.
+#[inline(always)]
+fn at<T: Copy, const D: usize, const W: usize>(planes: &[[T; W]; D], l: usize) -> [T; D] {
+    from_fn(|i| planes[i][l])
+}
+
+/// Sets lane `l` of each plane.
+#[inline(always)]
+fn put<T: Copy, const D: usize, const W: usize>(
+    planes: &mut [[T; W]; D],
+    l: usize,
+    values: [T; D],
+) {
+    for i in 0..D {
+        planes[i][l] = values[i];
+    }
+}

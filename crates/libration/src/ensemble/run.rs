@@ -1,0 +1,144 @@
+//! A thread's share of the trajectories, for the whole horizon.
+
+use core::ops::Range;
+
+use pulp::{Simd, WithSimd};
+
+use super::assign::Assign;
+use super::instructions::{Target, Targeted};
+use super::kernel::Advance;
+use super::planes::Share;
+use super::{Lanes, Observer};
+use crate::{Float, Integrator, System};
+
+/// What is done with the trajectories of a share.
+pub(super) struct Run<'a, T, M, A, C, Sys, O, const D: usize> {
+    pub(super) share: Share<'a, T, D>,
+    pub(super) method: M,
+    pub(super) systems: A,
+    pub(super) dt: C,
+    /// Steps taken before and after.
+    pub(super) steps: Range<u64>,
+    /// Sees every so many steps, if anybody.
+    pub(super) watch: Option<(u64, &'a mut O)>,
+    pub(super) system: core::marker::PhantomData<(T, Sys)>,
+}
+
+/// Widths of a block, in lanes.
+const WIDTHS: [usize; 10] = [8, 16, 24, 32, 48, 64, 96, 128, 160, 208];
+
+/// The width of the blocks in which a kernel runs fastest, as measured.
+///
+/// Wide enough that the latency of one lane's arithmetic is hidden behind the others. With 32
+/// registers the planes of a block fill most of them; with 16 they live in the nearest cache.
+const fn width<I: Target, T, const D: usize>(carries: bool) -> usize {
+    let (planes, room) = match (carries, I::REGISTERS >= 32) {
+        (false, true) => (2 * D, 26),
+        (true, true) => (3 * D, 26),
+        (false, false) => (2 * D, 48),
+        (true, false) => (3 * D, 40),
+    };
+    let lanes = room / planes * I::BYTES / size_of::<T>();
+    let mut i = WIDTHS.len() - 1;
+    while i > 0 && WIDTHS[i] > lanes {
+        i -= 1;
+    }
+    WIDTHS[i]
+}
+
+impl<T, M, A, C, Sys, O, const D: usize> Targeted for Run<'_, T, M, A, C, Sys, O, D>
+where
+    T: Float,
+    M: Integrator,
+    A: Assign<Sys>,
+    C: Assign<T>,
+    Sys: System<T, D>,
+    O: Observer<T, D>,
+{
+    type Output = ();
+
+    fn on<I: Target>(self, target: I) {
+        // Of these arms the compiler keeps one.
+        match const { width::<I, T, D>(M::CARRIES && Sys::POSITIONAL) } {
+            8 => self.blocks::<I, 8>(target),
+            16 => self.blocks::<I, 16>(target),
+            24 => self.blocks::<I, 24>(target),
+            32 => self.blocks::<I, 32>(target),
+            48 => self.blocks::<I, 48>(target),
+            64 => self.blocks::<I, 64>(target),
+            96 => self.blocks::<I, 96>(target),
+            128 => self.blocks::<I, 128>(target),
+            160 => self.blocks::<I, 160>(target),
+            _ => self.blocks::<I, 208>(target),
+        }
+    }
+}
+
+impl<T, M, A, C, Sys, O, const D: usize> Run<'_, T, M, A, C, Sys, O, D>
+where
+    T: Float,
+    M: Integrator,
+    A: Assign<Sys>,
+    C: Assign<T>,
+    Sys: System<T, D>,
+    O: Observer<T, D>,
+{
+    /// Block after block, each from the first step to the last.
+    fn blocks<I: Target, const W: usize>(mut self, target: I) {
+        while self.share.len() > 1 {
+            let block = self.share.split_off(W);
+            self.block::<I, W>(target, block);
+        }
+        if self.share.len() == 1 {
+            let block = self.share.split_off(1);
+            self.block::<I, 1>(target, block);
+        }
+    }
+
+    fn block<I: Target, const W: usize>(&mut self, target: I, mut block: Share<'_, T, D>) {
+        let (method, first, count) = (self.method, block.first, block.len());
+        let systems = self.systems.lanes::<W>(first, count);
+        let dt = self.dt.lanes::<W>(first, count);
+        let mut step = self.steps.start;
+        if let Some((_, observer)) = &mut self.watch
+            && step == 0
+        {
+            target.run(Observe { observer: *observer, lanes: block.lanes(step) });
+        }
+        while step < self.steps.end {
+            let next = match self.watch {
+                Some((every, _)) => (step - step % every).saturating_add(every).min(self.steps.end),
+                None => self.steps.end,
+            };
+            let steps = next - step;
+            target.run(Advance::<T, M, A, C, Sys, D, W> {
+                block: &mut block,
+                method,
+                systems,
+                dt,
+                steps,
+            });
+            step = next;
+            if let Some((every, observer)) = &mut self.watch
+                && step.is_multiple_of(*every)
+            {
+                target.run(Observe { observer: *observer, lanes: block.lanes(step) });
+            }
+        }
+    }
+}
+
+/// A look at a block, compiled for the instruction set.
+struct Observe<'o, 'l, T, O, const D: usize> {
+    observer: &'o mut O,
+    lanes: Lanes<'l, T, D>,
+}
+
+impl<T, O: Observer<T, D>, const D: usize> WithSimd for Observe<'_, '_, T, O, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.observer.observe(&self.lanes);
+    }
+}
