@@ -56,9 +56,12 @@ impl<I: Integrator, const N: usize> Integrator for Composition<I, N> {
         state: State<S, D>,
         dt: S,
     ) -> State<S, D> {
-        self.weights
-            .iter()
-            .fold(state, |state, &weight| self.base.step(system, state, dt * S::from_f64(weight)))
+        // A loop and not a fold: a long closure is called, and a call in a batch is no vector.
+        let mut state = state;
+        for weight in self.weights {
+            state = self.base.step(system, state, dt * S::from_f64(weight));
+        }
+        state
     }
 
     #[inline(always)]
@@ -69,8 +72,10 @@ impl<I: Integrator, const N: usize> Integrator for Composition<I, N> {
         acceleration: [S; D],
         dt: S,
     ) -> (State<S, D>, [S; D]) {
-        self.weights.iter().fold((state, acceleration), |(state, acceleration), &weight| {
-            self.base.carried(system, state, acceleration, dt * S::from_f64(weight))
-        })
+        let mut known = (state, acceleration);
+        for weight in self.weights {
+            known = self.base.carried(system, known.0, known.1, dt * S::from_f64(weight));
+        }
+        known
     }
 }
