@@ -131,6 +131,13 @@ fn the_largest_drift_of_an_orbit_too_slow_for_a_search_is_found() {
         // The next term is a factor 1 + z/2.
         assert!((got / drift - 1.0).abs() < 1e-7, "{}: {got}, not {drift}", method.name());
     }
+    // The first extreme of symplectic Euler, after an eighth of a turn, a little beyond the steps that
+    // are searched one by one.
+    let step = linearise(Method::SymplecticEuler, 1.0, 1.428e-7).step;
+    let start = State { q: [1.0], v: [0.0] };
+    let got = forecast_drift(model, &step, &start, 7_000_000).unwrap();
+    assert!((got.drift.to_f64() / 0.714e-7 - 1.0).abs() < 1e-6, "{:?}", got.drift.to_f64());
+    assert!(got.at_step.abs_diff(5_500_000) < 5_000, "{}", got.at_step);
     // Nearly √2: the orbit goes round its curve in 10⁹ steps, eight points at a time.
     let step = linearise(Method::VelocityVerlet, 1.0, f64::from(141_421_356) * 1e-8).step;
     let start = State { q: [1.0], v: [0.7] };

@@ -9,8 +9,8 @@ use libration::analysis::{Linearisation, Spectrum, SymbolicStep, forecast_drift}
 use libration::number::Wide;
 use libration::simulation::{EnergyDrift, SimulationError, Simulator};
 use libration::{
-    AnySystem, CatalogError, Elementary, Integrator, Method, Model, Scalar, State, with_method,
-    with_system,
+    AnySystem, CatalogError, Elementary, Integrator, Method, Model, Scalar, State, System,
+    with_method, with_system,
 };
 use thiserror::Error;
 
@@ -154,7 +154,7 @@ fn run<const D: usize>(
         modified_hamiltonian: linear_system
             .then(|| ModifiedHamiltonian::of(&linear.step, modes.determinant_minus_one.is_zero()))
             .flatten(),
-        order_of_word: positional(request.system).then(|| OrderOfWord::of(integrator)).flatten(),
+        order_of_word: positional(&model).then(|| OrderOfWord::of(integrator)).flatten(),
         symplecticity_defect: defect(modes.symplecticity_defect, exact.is_some()),
         reversibility_defect: defect(reversibility, exact.is_some()),
         phase_error_per_step: modes.phase_error.map(Wide::to_f64),
@@ -181,8 +181,8 @@ fn defect(norm: Wide, exact: bool) -> f64 {
 }
 
 /// Whether the force depends on positions alone, as the order of a word takes it to.
-fn positional(system: AnySystem) -> bool {
-    !matches!(system, AnySystem::DampedOscillator(_) | AnySystem::DrivenOscillator(_))
+fn positional<M: Model<D>, const D: usize>(_: &M) -> bool {
+    <M::On<f64> as System<f64, D>>::POSITIONAL
 }
 
 /// The angular frequency of an oscillator, in rad/s.
@@ -219,7 +219,7 @@ fn simulated_drift<Sys, I, const D: usize>(
     steps: u64,
 ) -> Option<Drift>
 where
-    Sys: libration::System<f64, D> + Copy,
+    Sys: System<f64, D> + Copy,
     I: Integrator,
 {
     let mut drift = EnergyDrift::new(model.on::<f64>(), &simulator.sample().state);

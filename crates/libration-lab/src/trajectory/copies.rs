@@ -1,6 +1,6 @@
 //! Many trajectories at once, from starts around the one that is asked for.
 
-use libration::ensemble::{EnsembleError, Execution, InstructionSet};
+use libration::ensemble::{Execution, InstructionSet};
 
 use super::TrajectoryError;
 
@@ -27,21 +27,20 @@ impl Copies {
         1.0 + self.spread * (2.0 * n as f64 / (self.count - 1) as f64 - 1.0)
     }
 
+    /// The instruction set, if this processor has it.
+    pub(super) fn instruction_set(&self) -> Result<InstructionSet, TrajectoryError> {
+        let set = self.instructions.unwrap_or_else(InstructionSet::widest);
+        set.is_available().then_some(set).ok_or_else(|| TrajectoryError::Value {
+            name: "simd",
+            value: set.name().to_owned(),
+            allowed: format!("one that this processor has: {}", available()),
+        })
+    }
+
     /// Where they run.
     pub(super) fn execution(&self) -> Result<Execution, TrajectoryError> {
-        let named = |execution: Execution| match self.instructions {
-            Some(set) => execution.instructions(set),
-            None => Ok(execution),
-        };
-        let execution = named(Execution::serial()).and_then(|e| e.threads(self.threads));
-        execution.map_err(|error| match error {
-            EnsembleError::Instructions { asked } => TrajectoryError::Value {
-                name: "simd",
-                value: asked.name().to_owned(),
-                allowed: format!("one that this processor has: {}", available()),
-            },
-            error => TrajectoryError::Ensemble(error),
-        })
+        let execution = Execution::serial().instructions(self.instruction_set()?)?;
+        Ok(execution.threads(self.threads)?)
     }
 }
 

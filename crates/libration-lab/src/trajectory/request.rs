@@ -108,7 +108,7 @@ impl Request {
             let allowed = format!("so small that every start is finite in {}", S::NAME);
             return Err(wrong("spread", format!("{:?}", copies.spread), allowed));
         }
-        copies.execution().map(|_| ())
+        copies.instruction_set().map(|_| ())
     }
 
     fn check_time_step<S: Float>(&self) -> Result<(), TrajectoryError> {

@@ -54,9 +54,9 @@ pub fn forecast_drift<const D: usize>(
         consider(n);
     });
     // Orbits so slow that the search saw but a part of a turn.
-    let stride = steps / DriftForecast::SEARCHED;
+    let stride = steps.div_ceil(DriftForecast::SEARCHED);
     if stride > 1 {
-        let (far, _) = search(model, &step.power(stride), start, searched);
+        let (far, _) = search(model, &step.power(stride), start, steps / stride);
         let mut at = far * stride;
         consider(at);
         let mut reach = stride;

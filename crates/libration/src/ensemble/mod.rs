@@ -40,6 +40,10 @@ use run::Run;
 /// same for every instruction set and number of threads, so that what observers add up is.
 const CHUNK: usize = 4096;
 
+/// Trajectories that are never parted where nobody watches: their coordinates fill cache lines, which
+/// no two threads then write.
+const GRAIN: usize = 64;
+
 /// Steps of trajectories that are worth a thread: to wake one takes as long as 10⁵ of the shortest.
 const WORTH_A_THREAD: u64 = 1 << 18;
 
@@ -71,7 +75,7 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         start: impl Fn(usize) -> State<T, D> + Sync,
     ) -> Result<Self, EnsembleError> {
         let mut planes = Planes::new(len)?;
-        let shares = shares(planes.share(), execution.thread_count());
+        let shares = shares(planes.share(), execution.thread_count(), GRAIN);
         execution.each(shares, |mut share| {
             for n in 0..share.len() {
                 share.set(n, start(share.first + n));
@@ -151,7 +155,7 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         let range = self.step..self.step.saturating_add(steps);
         let instructions = self.execution.instruction_set();
         let count = self.threads_for(steps);
-        let shares = shares(self.planes.share(), count);
+        let shares = shares(self.planes.share(), count, GRAIN);
         self.execution.each(shares, |share| {
             let steps = range.clone();
             let system = PhantomData::<(T, Sys)>;
@@ -187,7 +191,7 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         let range = self.step..self.step.saturating_add(steps);
         let instructions = self.execution.instruction_set();
         let count = self.threads_for(steps);
-        let shares = shares(self.planes.share(), count);
+        let shares = shares(self.planes.share(), count, CHUNK);
         let observers = self.execution.each(shares, |mut share| {
             let mut observers = Vec::new();
             while share.len() > 0 {
@@ -233,9 +237,13 @@ impl<T, const D: usize> Observer<T, D> for Nobody {
     fn observe(&mut self, _: &Lanes<'_, T, D>) {}
 }
 
-/// At most `count` shares of about equal size, each of whole chunks but the last.
-fn shares<T: Copy, const D: usize>(mut all: Share<'_, T, D>, count: usize) -> Vec<Share<'_, T, D>> {
-    let size = all.len().div_ceil(count).next_multiple_of(CHUNK).max(1);
+/// At most `count` shares of about equal size, each of whole grains but the last.
+fn shares<T: Copy, const D: usize>(
+    mut all: Share<'_, T, D>,
+    count: usize,
+    grain: usize,
+) -> Vec<Share<'_, T, D>> {
+    let size = all.len().div_ceil(count).next_multiple_of(grain).max(1);
     let mut shares = Vec::with_capacity(count);
     while all.len() > 0 {
         shares.push(all.split_off(size));
