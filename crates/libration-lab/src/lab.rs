@@ -82,6 +82,22 @@ impl<'a> Lab<'a> {
         results
     }
 
+    /// Does one piece of work that has all of the machine to itself.
+    ///
+    /// # Errors
+    /// Those of the work, or [`StudyError::Interrupted`].
+    pub fn part<R>(
+        &self,
+        what: &str,
+        work: impl FnOnce() -> Result<R, StudyError>,
+    ) -> Result<R, StudyError> {
+        self.check()?;
+        self.progress.begin(what, 1);
+        let result = work();
+        self.progress.end();
+        result
+    }
+
     /// Fails if the run is to stop.
     ///
     /// # Errors

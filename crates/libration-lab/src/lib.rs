@@ -4,6 +4,7 @@
 //! a measurement; the page is rendered from the record and from nothing else.
 
 pub mod analyze;
+pub mod bench;
 pub mod config;
 mod effort;
 pub mod export;

@@ -1,5 +1,6 @@
 //! Where a run took place.
 
+use libration::ensemble::InstructionSet;
 use serde::Serialize;
 
 /// The machine and the build, as far as they bear on results.
@@ -13,6 +14,23 @@ pub struct Machine {
     pub platform: String,
     /// Version of Libration.
     pub version: &'static str,
+    /// The compiler that built it, as in `rustc 1.95.0`.
+    pub compiler: &'static str,
+    /// Instruction sets for which there are kernels and which the processor has.
+    pub instruction_sets: Vec<&'static str>,
+    /// Caches for data of the first core, from the nearest to the last.
+    pub caches: Vec<Cache>,
+    /// Memory in bytes, if the system tells.
+    pub memory: Option<u64>,
+}
+
+/// A cache for data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Cache {
+    /// How far from the core, counted from 1.
+    pub level: u32,
+    /// Bytes that it holds.
+    pub bytes: u64,
 }
 
 impl Machine {
@@ -23,8 +41,40 @@ impl Machine {
             cores: std::thread::available_parallelism().map_or(1, usize::from),
             platform: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
             version: env!("CARGO_PKG_VERSION"),
+            compiler: env!("LIBRATION_COMPILER"),
+            instruction_sets: InstructionSet::available().map(InstructionSet::name).collect(),
+            caches: caches(),
+            memory: memory("MemTotal:"),
         }
     }
+}
+
+/// What Linux tells of the caches of the first core.
+fn caches() -> Vec<Cache> {
+    let folder = |index: u32| format!("/sys/devices/system/cpu/cpu0/cache/index{index}");
+    let mut caches: Vec<Cache> = (0..8).filter_map(|index| cache(&folder(index))).collect();
+    caches.sort_by_key(|cache| cache.level);
+    caches
+}
+
+/// The cache that a folder of the system describes, unless it holds instructions alone.
+fn cache(folder: &str) -> Option<Cache> {
+    let read = |name: &str| std::fs::read_to_string(format!("{folder}/{name}")).ok();
+    if read("type")?.trim() == "Instruction" {
+        return None;
+    }
+    let size = read("size")?;
+    let size = size.trim();
+    let (digits, unit) = size.split_at(size.find(|c: char| !c.is_ascii_digit())?);
+    let unit = match unit {
+        "K" => 1 << 10,
+        "M" => 1 << 20,
+        _ => return None,
+    };
+    Some(Cache {
+        level: read("level")?.trim().parse().ok()?,
+        bytes: digits.parse::<u64>().ok()? * unit,
+    })
 }
 
 /// The `model name` that Linux reports.
@@ -53,16 +103,21 @@ fn gigabytes(bytes: u128) -> f64 {
 /// # Errors
 /// [`NoRoom`] if not.
 pub(crate) fn has_room(needed: u128) -> Result<(), NoRoom> {
-    match available_memory() {
+    match memory("MemAvailable:") {
         Some(available) if needed > u128::from(available) => Err(NoRoom { needed, available }),
         _ => Ok(()),
     }
 }
 
-/// The `MemAvailable` that Linux reports, in bytes.
-fn available_memory() -> Option<u64> {
+/// Bytes that can be had without swapping, if the system tells.
+pub(crate) fn available_memory() -> Option<u64> {
+    memory("MemAvailable:")
+}
+
+/// A line of what Linux tells of the memory, in bytes.
+fn memory(name: &str) -> Option<u64> {
     let info = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = info.lines().find(|line| line.starts_with("MemAvailable:"))?;
+    let line = info.lines().find(|line| line.starts_with(name))?;
     let kibibytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
     Some(kibibytes * 1024)
 }

@@ -49,6 +49,9 @@ pub enum StudyError {
     /// A system could not be built.
     #[error(transparent)]
     System(#[from] libration::CatalogError),
+    /// Trajectories could not be made or run together.
+    #[error(transparent)]
+    Ensemble(#[from] libration::ensemble::EnsembleError),
     /// Exact arithmetic ran out of digits.
     #[error("exact arithmetic overflowed while {0}")]
     Exact(String),

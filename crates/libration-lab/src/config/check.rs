@@ -4,10 +4,11 @@ use std::fmt;
 use std::ops::RangeInclusive;
 
 use libration::catalog::Allowed;
+use libration::ensemble::EnsembleError;
 use libration::{Hamiltonian, State};
 
 use super::limits::{self, within};
-use super::{Config, Spring, Start, names};
+use super::{Config, Spring, Start, Throughput, names};
 use crate::studies;
 
 /// A value of a configuration that is not allowed.
@@ -69,7 +70,8 @@ impl Config {
         coarsest("convergence.coarsest", self.convergence.coarsest.into())?;
         check_systems("nonlinear.systems", &self.nonlinear.systems)?;
         steps_a_turn("nonlinear.steps", self.nonlinear.steps.into())?;
-        turns("nonlinear.turns", self.nonlinear.turns.into()).map(drop)
+        turns("nonlinear.turns", self.nonlinear.turns.into())?;
+        self.throughput.check()
     }
 
     fn check_names(&self) -> Result<(), Fault> {
@@ -134,6 +136,29 @@ impl Start {
              finite and large enough for all digits of an f64"
         );
         Err(Fault::new("start.q", message))
+    }
+}
+
+impl Throughput {
+    fn check(&self) -> Result<(), Fault> {
+        let key = "throughput.implementations";
+        if self.implementations.is_empty() {
+            return Err(Fault::new(key, format!("`{key}` must name at least one")));
+        }
+        for (i, one) in self.implementations.iter().enumerate() {
+            if self.implementations[..i].contains(one) {
+                let message = format!("the implementation `{}` is named twice", one.name());
+                return Err(Fault::at(key, i, message));
+            }
+        }
+        counts("throughput.counts", &self.counts)?;
+        match self.simd {
+            Some(asked) if !asked.is_available() => {
+                let message = EnsembleError::Instructions { asked }.to_string();
+                Err(Fault::new("throughput.simd", message))
+            }
+            _ => Ok(()),
+        }
     }
 }
 

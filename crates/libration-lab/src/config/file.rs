@@ -1,20 +1,22 @@
 //! The configuration as a TOML file.
 
 use libration::Method;
+use libration::ensemble::InstructionSet;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::locate::Document;
 use super::tables::{
     ConvergenceTable, DriftTable, EfficiencyTable, ErrorTable, NonlinearTable, SpectrumTable,
-    SpringTable, StabilityTable, StartTable,
+    SpringTable, StabilityTable, StartTable, ThroughputTable,
 };
 use super::value::{Count, Number};
 use super::{
     Config, ConfigError, Convergence, Drift, Efficiency, Error, Fault, Nonlinear, Spectrum, Spring,
-    Stability, Start, check, names, schema,
+    Stability, Start, Throughput, check, names, schema,
 };
 use crate::Effort;
+use crate::bench::Implementation;
 
 /// The default configuration with comments, ready to edit.
 pub const DEFAULT: &str = include_str!("default.toml");
@@ -51,6 +53,8 @@ pub(super) struct File {
     pub(super) convergence: ConvergenceTable,
     /// The study of nonlinear systems.
     pub(super) nonlinear: NonlinearTable,
+    /// The study of speed.
+    pub(super) throughput: ThroughputTable,
 }
 
 /// Reads a configuration; keys that are not given take their defaults.
@@ -94,7 +98,8 @@ impl Default for File {
         let config = Config::default();
         let Config { studies, effort, integrators, oscillator, start, spectrum, drift, .. } =
             config;
-        let Config { error, stability, efficiency, convergence, nonlinear, .. } = config;
+        let Config { error, stability, efficiency, convergence, nonlinear, throughput, .. } =
+            config;
         let numbers = |list: Vec<f64>| list.into_iter().map(Number).collect();
         let counts = |list: Vec<u64>| list.into_iter().map(|n| Count(n.into())).collect();
         File {
@@ -126,6 +131,11 @@ impl Default for File {
                 steps: Count(nonlinear.steps.into()),
                 turns: Count(nonlinear.turns.into()),
             },
+            throughput: ThroughputTable {
+                implementations: names_of(&throughput.implementations),
+                counts: counts(throughput.counts),
+                simd: names::instruction_set(throughput.simd).into(),
+            },
         }
     }
 }
@@ -135,7 +145,7 @@ impl TryFrom<File> for Config {
 
     fn try_from(file: File) -> Result<Self, Fault> {
         let File { studies, effort, integrators, oscillator, start, spectrum, drift, .. } = file;
-        let File { error, stability, efficiency, convergence, nonlinear, .. } = file;
+        let File { error, stability, efficiency, convergence, nonlinear, throughput, .. } = file;
         let effort = Effort::from_name(&effort).ok_or_else(|| {
             let fault = Fault::new("effort", format!("unknown effort `{effort}`"));
             fault.help(names::suggest("efforts", &effort, Effort::ALL.map(Effort::name)))
@@ -173,6 +183,36 @@ impl TryFrom<File> for Config {
             },
             convergence: Convergence { systems: convergence.systems, coarsest },
             nonlinear: Nonlinear { systems: nonlinear.systems, steps: steps_a_turn, turns },
+            throughput: Throughput {
+                implementations: implementations(&throughput.implementations)?,
+                counts: counts("throughput.counts", throughput.counts)?,
+                simd: simd(&throughput.simd)?,
+            },
         })
     }
+}
+
+fn names_of(implementations: &[Implementation]) -> Vec<String> {
+    implementations.iter().map(|one| one.name().into()).collect()
+}
+
+fn implementations(names: &[String]) -> Result<Vec<Implementation>, Fault> {
+    let key = "throughput.implementations";
+    let one = |(i, name): (usize, &String)| {
+        Implementation::from_name(name).ok_or_else(|| {
+            let fault = Fault::at(key, i, format!("unknown implementation `{name}`"));
+            let known = Implementation::ALL.map(Implementation::name);
+            fault.help(names::suggest("implementations", name, known))
+        })
+    };
+    names.iter().enumerate().map(one).collect()
+}
+
+fn simd(name: &str) -> Result<Option<InstructionSet>, Fault> {
+    let all = || InstructionSet::ALL.map(Some).into_iter().chain([None]);
+    all().find(|set| names::instruction_set(*set) == name).ok_or_else(|| {
+        let fault = Fault::new("throughput.simd", format!("unknown instruction set `{name}`"));
+        let known: Vec<_> = all().map(names::instruction_set).collect();
+        fault.help(names::suggest("instruction sets", name, known))
+    })
 }

@@ -11,10 +11,12 @@ mod tables;
 mod value;
 
 use libration::Method;
+use libration::ensemble::InstructionSet;
 use libration::system::Oscillator;
 use serde::{Serialize, Serializer};
 
 use crate::Effort;
+use crate::bench::Implementation;
 
 pub use check::Fault;
 pub use error::ConfigError;
@@ -49,6 +51,8 @@ pub struct Config {
     pub convergence: Convergence,
     /// Settings of the study `nonlinear`.
     pub nonlinear: Nonlinear,
+    /// Settings of the study `throughput`.
+    pub throughput: Throughput,
 }
 
 /// A mass on a spring.
@@ -144,6 +148,18 @@ pub struct Nonlinear {
     pub turns: u64,
 }
 
+/// Settings of the study `throughput`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Throughput {
+    /// The implementations that are timed, each once.
+    pub implementations: Vec<Implementation>,
+    /// Numbers of trajectories, rising; the effort and the memory bound them.
+    pub counts: Vec<u64>,
+    /// The instruction set; the widest that there is if none.
+    #[serde(serialize_with = "instruction_set_name")]
+    pub simd: Option<InstructionSet>,
+}
+
 impl Default for Config {
     fn default() -> Self {
         Config {
@@ -179,6 +195,11 @@ impl Default for Config {
                 steps: 200,
                 turns: 1000,
             },
+            throughput: Throughput {
+                implementations: Implementation::ALL.to_vec(),
+                counts: (0..=8).map(|power| 10u64.pow(power)).collect(),
+                simd: None,
+            },
         }
     }
 }
@@ -191,10 +212,18 @@ impl Config {
         self.stability.steps.sort_unstable();
         self.efficiency.tolerances.sort_by(f64::total_cmp);
         self.efficiency.periods.sort_unstable();
+        self.throughput.counts.sort_unstable();
         self
     }
 }
 
 fn method_names<S: Serializer>(methods: &[Method], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(methods.iter().map(|m| m.name()))
+}
+
+fn instruction_set_name<S: Serializer>(
+    set: &Option<InstructionSet>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(names::instruction_set(*set))
 }

@@ -1,5 +1,12 @@
 //! Names as people type them.
 
+use libration::ensemble::InstructionSet;
+
+/// What an instruction set is called, or that it is to be the widest that there is.
+pub fn instruction_set(set: Option<InstructionSet>) -> &'static str {
+    set.map_or("widest", InstructionSet::name)
+}
+
 /// How alike two names must be, between 0 and 1, for one to be offered for the other.
 const NEAR: f64 = 0.7;
 

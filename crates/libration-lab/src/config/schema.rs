@@ -4,12 +4,14 @@ use std::ops::RangeInclusive;
 
 use libration::Method;
 use libration::catalog::Allowed;
+use libration::ensemble::InstructionSet;
 use schemars::generate::SchemaSettings;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 
 use super::file::File;
-use super::limits;
+use super::{limits, names};
+use crate::bench::Implementation;
 use crate::{Effort, studies};
 
 /// The JSON schema of a configuration file.
@@ -66,6 +68,17 @@ pub(super) fn steps(_: &mut SchemaGenerator) -> Schema {
 pub(super) fn systems(_: &mut SchemaGenerator) -> Schema {
     let items = one_of(&studies::SYSTEMS);
     json_schema!({ "type": "array", "uniqueItems": true, "minItems": 1, "items": items })
+}
+
+pub(super) fn implementations(_: &mut SchemaGenerator) -> Schema {
+    let items = one_of(&Implementation::ALL.map(Implementation::name));
+    json_schema!({ "type": "array", "uniqueItems": true, "minItems": 1, "items": items })
+}
+
+pub(super) fn simd(_: &mut SchemaGenerator) -> Schema {
+    let sets = InstructionSet::ALL.map(Some).into_iter().chain([None]);
+    let names: Vec<_> = sets.map(names::instruction_set).collect();
+    json_schema!({ "type": "string", "enum": names })
 }
 
 pub(super) fn coarsest(_: &mut SchemaGenerator) -> Schema {

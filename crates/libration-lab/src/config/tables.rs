@@ -115,6 +115,21 @@ pub(super) struct NonlinearTable {
     pub(super) turns: Count,
 }
 
+/// Settings of the study `throughput`.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct ThroughputTable {
+    /// The implementations that are timed, each once.
+    #[schemars(schema_with = "schema::implementations")]
+    pub(super) implementations: Vec<String>,
+    /// Numbers of trajectories, each once; the effort and the memory bound them.
+    #[schemars(schema_with = "schema::horizons")]
+    pub(super) counts: Vec<Count>,
+    /// The instruction set.
+    #[schemars(schema_with = "schema::simd")]
+    pub(super) simd: String,
+}
+
 macro_rules! default_of_table {
     ($($table:ident = $key:ident),*) => {
         $(impl Default for $table {
@@ -134,5 +149,6 @@ default_of_table!(
     StabilityTable = stability,
     EfficiencyTable = efficiency,
     ConvergenceTable = convergence,
-    NonlinearTable = nonlinear
+    NonlinearTable = nonlinear,
+    ThroughputTable = throughput
 );

@@ -14,6 +14,7 @@ mod source;
 mod spectrum;
 mod stability;
 mod subject;
+mod throughput;
 
 use crate::study::Study;
 pub use convergence::Convergence;
@@ -27,6 +28,7 @@ pub use subject::{
     Change, Changes, Errors, Halvings, Horizon, Kind, Law, Orbits, Portrait, Problem, SYSTEMS,
     Subject, Symmetry,
 };
+pub use throughput::Throughput;
 
 /// All studies.
 pub const ALL: &[&dyn Study] = &[
@@ -37,6 +39,7 @@ pub const ALL: &[&dyn Study] = &[
     &Efficiency,
     &Convergence::CONFIGURED,
     &Nonlinear::CONFIGURED,
+    &Throughput,
 ];
 
 /// The study of that name, if there is one.

@@ -5,6 +5,7 @@
 
 mod band;
 mod complex;
+mod data_flow;
 mod eigenvalues;
 mod energy;
 mod error;
@@ -19,10 +20,12 @@ mod slip;
 mod spectrum;
 mod symbolic;
 mod tableau;
+mod traced;
 mod window;
 
 pub use band::EnergyBand;
 pub use complex::Complex;
+pub use data_flow::{DataFlow, Operation};
 pub use eigenvalues::{determinant, eigenvalues};
 pub use energy::{DriftForecast, forecast_drift};
 pub use error::ErrorForecast;

@@ -45,6 +45,24 @@ impl InstructionSet {
         }
     }
 
+    /// Vector registers that it names.
+    pub const fn registers(self) -> usize {
+        match self {
+            InstructionSet::Baseline => Baseline::REGISTERS,
+            InstructionSet::Avx2 => 16,
+            InstructionSet::Avx512 => 32,
+        }
+    }
+
+    /// Bytes in one of them.
+    pub const fn vector_bytes(self) -> usize {
+        match self {
+            InstructionSet::Baseline => Baseline::BYTES,
+            InstructionSet::Avx2 => 32,
+            InstructionSet::Avx512 => 64,
+        }
+    }
+
     /// Those that this processor has, by rising width.
     pub fn available() -> impl Iterator<Item = InstructionSet> {
         InstructionSet::ALL.into_iter().filter(|set| set.is_available())
@@ -53,6 +71,38 @@ impl InstructionSet {
     /// The widest that this processor has.
     pub fn widest() -> InstructionSet {
         InstructionSet::available().last().unwrap_or(InstructionSet::Baseline)
+    }
+}
+
+/// Work that gains from vector instructions, to be compiled for each instruction set.
+///
+/// [`InstructionSet::vectorize`] runs it. It must be `#[inline(always)]`, and all that it calls, or
+/// the compiler may leave it outside the code that has the instructions.
+pub trait Loop {
+    /// What it yields.
+    type Output;
+
+    /// Does the work.
+    fn run(self) -> Self::Output;
+}
+
+/// A [`Loop`], as `pulp` takes it.
+struct Vectorized<L>(L);
+
+impl<L: Loop> WithSimd for Vectorized<L> {
+    type Output = L::Output;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> L::Output {
+        self.0.run()
+    }
+}
+
+impl<L: Loop> Targeted for Vectorized<L> {
+    type Output = L::Output;
+
+    fn on<I: Target>(self, target: I) -> L::Output {
+        target.run(self)
     }
 }
 
@@ -83,8 +133,8 @@ impl Target for Baseline {
 
 #[cfg(target_arch = "x86_64")]
 impl Target for pulp::x86::V3 {
-    const REGISTERS: usize = 16;
-    const BYTES: usize = 32;
+    const REGISTERS: usize = InstructionSet::Avx2.registers();
+    const BYTES: usize = InstructionSet::Avx2.vector_bytes();
 
     #[inline(always)]
     fn run<K: WithSimd>(self, kernel: K) -> K::Output {
@@ -94,8 +144,8 @@ impl Target for pulp::x86::V3 {
 
 #[cfg(target_arch = "x86_64")]
 impl Target for pulp::x86::V4 {
-    const REGISTERS: usize = 32;
-    const BYTES: usize = 64;
+    const REGISTERS: usize = InstructionSet::Avx512.registers();
+    const BYTES: usize = InstructionSet::Avx512.vector_bytes();
 
     #[inline(always)]
     fn run<K: WithSimd>(self, kernel: K) -> K::Output {
@@ -113,6 +163,12 @@ pub(super) trait Targeted {
 }
 
 impl InstructionSet {
+    /// Runs a loop of the caller, compiled for this instruction set, or for the baseline where the
+    /// processor lacks it.
+    pub fn vectorize<L: Loop>(self, work: L) -> L::Output {
+        self.run(Vectorized(work))
+    }
+
     /// Runs `work` on this instruction set, or on the baseline where the processor lacks it.
     pub(super) fn run<K: Targeted>(self, work: K) -> K::Output {
         match self {

@@ -12,6 +12,7 @@
 #[cfg(not(test))]
 mod any;
 mod assign;
+mod buffer;
 mod error;
 mod execution;
 mod instructions;
@@ -19,6 +20,7 @@ mod kernel;
 mod observer;
 mod planes;
 mod run;
+mod stream;
 
 use core::marker::PhantomData;
 
@@ -27,10 +29,12 @@ use bytemuck::Pod;
 #[cfg(not(test))]
 pub use any::{AnyEnsemble, BatchFloat};
 pub use assign::{All, Assign, Each};
+pub use buffer::{Buffer, Pages};
 pub use error::EnsembleError;
 pub use execution::Execution;
-pub use instructions::InstructionSet;
+pub use instructions::{InstructionSet, Loop};
 pub use observer::{Lanes, Observer};
+pub use stream::stream;
 
 use crate::{Float, Integrator, State, System};
 use planes::{Planes, Share};

@@ -4,10 +4,9 @@ use core::array::from_fn;
 use core::mem::take;
 
 use bytemuck::Pod;
-use memmap2::{Advice, MmapMut};
 
 use super::assign::padded;
-use super::{EnsembleError, Lanes};
+use super::{Buffer, EnsembleError, Lanes, Pages};
 use crate::State;
 
 /// Bytes by which each plane begins later than a multiple of a page would: planes that begin at
@@ -17,17 +16,13 @@ const STAGGER: usize = 5 * 64;
 /// A page, and the unit of allocation.
 const PAGE: usize = 4096;
 
-/// From here on huge pages are asked for.
-const HUGE: usize = 4 << 20;
-
 /// `2·D` arrays of equal length in one piece of memory, each aligned to a cache line.
 #[derive(Debug)]
 pub(super) struct Planes<T, const D: usize> {
-    memory: MmapMut,
+    memory: Buffer<T>,
     /// Elements from the beginning of one plane to that of the next.
     stride: usize,
     len: usize,
-    number: core::marker::PhantomData<T>,
 }
 
 impl<T: Pod, const D: usize> Planes<T, D> {
@@ -37,21 +32,10 @@ impl<T: Pod, const D: usize> Planes<T, D> {
     /// If the system refuses the memory.
     pub(super) fn new(len: usize) -> Result<Self, EnsembleError> {
         let refused = || EnsembleError::Memory { len, bytes: Self::bytes(len) };
-        let plane = Self::plane(len).ok_or_else(refused)?;
-        let bytes = Self::bytes(len);
-        let size = usize::try_from(bytes).ok().filter(|&b| b < isize::MAX as usize);
-        let memory = MmapMut::map_anon(size.ok_or_else(refused)?).map_err(|_| refused())?;
-        #[cfg(target_os = "linux")]
-        if memory.len() >= HUGE {
-            // A wish: without huge pages all is the same, but slower.
-            let _ = memory.advise(Advice::HugePage);
-        }
-        Ok(Planes {
-            memory,
-            stride: plane / size_of::<T>(),
-            len,
-            number: core::marker::PhantomData,
-        })
+        let stride = Self::plane(len).ok_or_else(refused)? / size_of::<T>();
+        let all = stride.checked_mul(2 * D).ok_or_else(refused)?;
+        let memory = Buffer::new(all, Pages::Huge).map_err(|_| refused())?;
+        Ok(Planes { memory, stride, len })
     }
 
     /// Bytes in one plane with what follows it.
@@ -71,15 +55,13 @@ impl<T: Pod, const D: usize> Planes<T, D> {
 
     /// Plane `i` of `q₀ … q_{D−1}, v₀ … v_{D−1}`.
     pub(super) fn plane_of(&self, i: usize) -> &[T] {
-        let all: &[T] = bytemuck::cast_slice(&self.memory);
-        &all[i * self.stride..][..self.len]
+        &self.memory[i * self.stride..][..self.len]
     }
 
     /// All planes.
     pub(super) fn share(&mut self) -> Share<'_, T, D> {
         let len = self.len;
-        let all: &mut [T] = bytemuck::cast_slice_mut(&mut self.memory);
-        let mut planes = all.chunks_exact_mut(self.stride).map(|plane| &mut plane[..len]);
+        let mut planes = self.memory.chunks_exact_mut(self.stride).map(|plane| &mut plane[..len]);
         // There are 2·D chunks.
         let mut next = || planes.next().unwrap_or_default();
         let q = from_fn(|_| next());

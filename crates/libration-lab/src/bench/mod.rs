@@ -1,0 +1,25 @@
+//! What it takes to measure speed: a stopwatch, loops that are bound by one thing alone, and the
+//! same simulation written in seven ways.
+
+mod arithmetic;
+mod chain;
+mod float;
+mod implementation;
+mod memory;
+mod passes;
+mod platform;
+mod rung;
+mod stopwatch;
+mod team;
+
+pub(crate) use arithmetic::{Mix, widths};
+pub(crate) use chain::{CHAIN_LINKS, Chain, Link};
+pub(crate) use float::with_float;
+pub use float::{Bench, BenchFloat};
+pub use implementation::Implementation;
+pub(crate) use memory::{Triad, Update};
+pub(crate) use passes::{PASSES, Traffic};
+pub(crate) use platform::PlatformPendulum;
+pub(crate) use rung::{Rung, Task, prepare};
+pub(crate) use stopwatch::{Contestant, Rates, Turns, race};
+pub(crate) use team::together;

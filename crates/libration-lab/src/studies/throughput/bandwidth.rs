@@ -1,0 +1,142 @@
+//! The memory: what the machine moves when it does nothing else.
+
+use std::hint::black_box;
+
+use libration::ensemble::{Buffer, Pages, stream};
+
+use super::desk::Desk;
+use crate::bench::{Contestant, Rates, Triad, Update, together};
+use crate::machine::{Machine, available_memory};
+use crate::record::{Finding, Record, Table};
+use crate::study::StudyError;
+
+/// Numbers that a thread copies past the caches at a time.
+type Number = f32;
+
+/// Arrays far larger than the last cache are this many times as large.
+const FAR: u64 = 3;
+
+/// What the arrays of a measurement take together, in bytes: far larger than the caches, if the effort
+/// and the memory allow.
+pub(super) fn footprint(desk: &Desk<'_>) -> u64 {
+    let last = Machine::detect().caches.last().map_or(32 << 20, |cache| cache.bytes);
+    let most = desk.lab.effort.choose(64 << 20, 1 << 30, 4 << 30);
+    let free = available_memory().unwrap_or(1 << 30);
+    (FAR * last).max(256 << 20).min(most).min(free / 4)
+}
+
+/// A loop over memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kernel {
+    Copy,
+    Stream,
+    Triad,
+    Update,
+}
+
+impl Kernel {
+    const ALL: [Kernel; 4] = [Kernel::Copy, Kernel::Stream, Kernel::Triad, Kernel::Update];
+
+    fn name(self) -> &'static str {
+        match self {
+            Kernel::Copy => "copy",
+            Kernel::Stream => "stream",
+            Kernel::Triad => "triad",
+            Kernel::Update => "update",
+        }
+    }
+
+    fn formula(self) -> &'static str {
+        match self {
+            Kernel::Copy => "b = a",
+            Kernel::Stream => "b = a, past the caches",
+            Kernel::Triad => "a = b + s·c",
+            Kernel::Update => "y += s·x, x += t·y",
+        }
+    }
+
+    /// Arrays that the program reads or writes; what a processor reads before it writes is not counted.
+    fn arrays(self) -> usize {
+        match self {
+            Kernel::Copy | Kernel::Stream => 2,
+            Kernel::Triad => 3,
+            Kernel::Update => 4,
+        }
+    }
+}
+
+/// Measures bandwidths on one core and on all.
+pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
+    let mut table = Table::new(
+        "bandwidth",
+        &["loop", "formula", "arrays of (MiB)", "one core (GB/s)", "all cores (GB/s)"],
+    );
+    let len = usize::try_from(footprint(desk)).unwrap_or(usize::MAX) / 3 / size_of::<Number>();
+    let cores = desk.parallel.thread_count();
+    for kernel in Kernel::ALL {
+        let mut planes = Vec::new();
+        for _ in 0..3 {
+            planes.push(Buffer::<Number>::new(len, Pages::Huge)?);
+        }
+        let mut rates = Vec::new();
+        for threads in if cores > 1 { vec![1, cores] } else { vec![1] } {
+            rates.push(bandwidth(desk, kernel, &mut planes, threads)?);
+        }
+        let gigabytes: Vec<f64> = rates.iter().map(|rate| rate.median() / 1e9).collect();
+        let all = gigabytes.last().copied().unwrap_or(f64::NAN);
+        record.find(Finding::measured(
+            format!("throughput.bandwidth.{}", kernel.name()),
+            format!(
+                "{} on all cores, arrays of {} MiB each: bytes that the program reads and writes",
+                kernel.formula(),
+                mebibytes(len)
+            ),
+            "GB/s",
+            all,
+        ));
+        table.push([
+            kernel.name().into(),
+            kernel.formula().into(),
+            (mebibytes(len) as u64).into(),
+            gigabytes[0].into(),
+            all.into(),
+        ]);
+    }
+    record.tables.push(table);
+    Ok(())
+}
+
+fn mebibytes(len: usize) -> usize {
+    len * size_of::<Number>() >> 20
+}
+
+/// Bytes a second that `kernel` reads and writes on so many threads, each with its part of the planes.
+fn bandwidth(
+    desk: &Desk<'_>,
+    kernel: Kernel,
+    planes: &mut [Buffer<Number>],
+    threads: usize,
+) -> Result<Rates, StudyError> {
+    let set = desk.set();
+    let [a, b, c] = planes else { return Err(StudyError::Exact("there are three planes".into())) };
+    let len = a.len();
+    let part = len.div_ceil(threads).next_multiple_of(64);
+    let work = move |_times: u64| {
+        let planes = a.chunks_mut(part).zip(b.chunks_mut(part)).zip(c.chunks_mut(part));
+        together(planes, |((a, b), c)| match kernel {
+            Kernel::Copy => b.copy_from_slice(a),
+            Kernel::Stream => stream(a, b),
+            Kernel::Triad => set.vectorize(Triad { a, b, c, s: black_box(0.5) }),
+            Kernel::Update => {
+                // Factors that leave zeros as they are, and that the compiler does not know.
+                set.vectorize(Update { x: a, y: b, s: black_box(-0.5), t: black_box(0.5) });
+            }
+        });
+        black_box(&*b);
+    };
+    let bytes = (kernel.arrays() * len * size_of::<Number>()) as f64;
+    let mut work = work;
+    let contestant = Contestant::new(bytes, move |times| (0..times).for_each(|_| work(times)));
+    let rates = desk.look(&mut [contestant])?;
+    rates.into_iter().next().ok_or(StudyError::Exact("a race of one has one rate".into()))
+}

@@ -1,0 +1,96 @@
+//! Where the study times things: the execution, the length of its turns, and how ratios are judged.
+
+use libration::ensemble::{Execution, InstructionSet};
+
+use crate::Lab;
+use crate::bench::{Contestant, Rates, Task, Turns, race};
+use crate::record::{Finding, Record, Relation, Tolerance};
+use crate::study::StudyError;
+
+/// Quartiles further apart than this share of the median say that the machine had other work.
+const NOISY: f64 = 0.1;
+
+/// What all measurements share.
+pub(super) struct Desk<'a> {
+    pub(super) lab: &'a Lab<'a>,
+    /// One thread.
+    pub(super) serial: Execution,
+    /// All cores.
+    pub(super) parallel: Execution,
+    /// For ratios that are judged.
+    careful: Turns,
+    /// For sweeps.
+    brief: Turns,
+}
+
+impl<'a> Desk<'a> {
+    /// A desk on the instruction set that the configuration asks for.
+    pub(super) fn new(lab: &'a Lab<'a>) -> Result<Self, StudyError> {
+        let set = lab.config.throughput.simd.unwrap_or(InstructionSet::widest());
+        let serial = Execution::serial().instructions(set)?;
+        let parallel = serial.clone().threads(0)?;
+        let (rounds, seconds) = lab.effort.choose((5, 2e-3), (15, 10e-3), (31, 20e-3));
+        let careful = Turns { rounds, seconds };
+        let brief = Turns { rounds: lab.effort.choose(3, 3, 7), seconds: seconds / 2.0 };
+        Ok(Desk { lab, serial, parallel, careful, brief })
+    }
+
+    /// The instruction set.
+    pub(super) fn set(&self) -> InstructionSet {
+        self.serial.instruction_set()
+    }
+
+    /// The task of the study with so many trajectories.
+    pub(super) fn task(&self, count: usize) -> Task {
+        // Small enough for every method to stay finite over any number of steps.
+        let oscillator = self.lab.config.oscillator;
+        Task { count, omega2: oscillator.system().omega2, dt: 1e-3 / oscillator.omega() }
+    }
+
+    /// Rates that are to be compared with care.
+    pub(super) fn race(
+        &self,
+        contestants: &mut [Contestant<'_>],
+    ) -> Result<Vec<Rates>, StudyError> {
+        race(self.lab, self.careful, contestants)
+    }
+
+    /// Rates of which there are many.
+    pub(super) fn look(
+        &self,
+        contestants: &mut [Contestant<'_>],
+    ) -> Result<Vec<Rates>, StudyError> {
+        race(self.lab, self.brief, contestants)
+    }
+}
+
+/// A ratio that is to reach a bar, with the noise of its rounds as tolerance; without a verdict where
+/// the machine was too noisy for one, or where there is no bar.
+pub(super) fn judge(
+    record: &mut Record,
+    id: String,
+    text: String,
+    bar: Option<f64>,
+    ratio: &Rates,
+) {
+    let (median, spread) = (ratio.median(), ratio.spread());
+    record.find(match bar {
+        Some(bar) if ratio.noise() <= NOISY => Finding::related(
+            id,
+            text,
+            "1",
+            Relation::AtLeast,
+            bar,
+            median,
+            Tolerance::absolute(spread, "the distance between the quartiles of the rounds"),
+        ),
+        Some(bar) => {
+            let text = format!(
+                "{text}. The machine was too noisy to judge: the quartiles of the rounds lie {spread:.2} \
+                 apart; wanted: {bar}"
+            );
+            Finding::measured(id, text, "1", median)
+        }
+        None => Finding::measured(id, text, "1", median),
+    });
+}

@@ -1,0 +1,97 @@
+//! A lone trajectory, whose every operation waits for the one before.
+
+use std::hint::black_box;
+
+use libration::Method;
+use libration::analysis::{DataFlow, Operation};
+use libration::system::Oscillator;
+use libration::with_method;
+
+use super::desk::{Desk, judge};
+use super::fused::contestant;
+use crate::bench::{Bench, BenchFloat, CHAIN_LINKS, Chain, Contestant, Link, Rates, with_float};
+use crate::record::{Record, Table};
+use crate::study::StudyError;
+
+/// Share of the bound that a lone trajectory is to reach.
+const BAR: f64 = 0.9;
+
+/// Rounds of a chain between two looks at the clock.
+const ROUNDS: u64 = 1000;
+
+/// Races single trajectories against chains of dependent operations.
+pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
+    let mut table = Table::new(
+        "a lone trajectory",
+        &[
+            "integrator",
+            "float",
+            "operations in a row",
+            "time of a step (ns)",
+            "bound (ns)",
+            "share",
+        ],
+    );
+    for &method in &desk.lab.config.integrators {
+        for float in BenchFloat::ALL {
+            let (chain, [time, bound]) = with_float!(float, T => against_chain::<T>(desk, method))?;
+            let share = bound.over(&time);
+            let name = float.name();
+            judge(
+                record,
+                format!("throughput.one.{}.{name}", method.name()),
+                format!(
+                    "{}, {name}, a single trajectory: the time of the longest chain of dependent \
+                     operations of a step over the time of a step",
+                    method.title()
+                ),
+                // The bar was set for the study's first method; others are told.
+                (method == Method::SymplecticEuler).then_some(BAR),
+                &share,
+            );
+            table.push([
+                method.title().into(),
+                name.into(),
+                chain.into(),
+                time.median().into(),
+                bound.median().into(),
+                share.median().into(),
+            ]);
+        }
+    }
+    record.tables.push(table);
+    Ok(())
+}
+
+/// The longest chain of a step, in operations; the time of a step, and the bound on it, in ns.
+fn against_chain<T: Bench>(
+    desk: &Desk<'_>,
+    method: Method,
+) -> Result<(f64, [Rates; 2]), StudyError> {
+    let task = desk.task(1);
+    let system = Oscillator { omega2: task.omega2 };
+    let flow = with_method!(method, |m| DataFlow::of_step::<_, 1>(m, &system, task.dt));
+    let lone = with_method!(method, |m| contestant::<T>(m, task, &desk.serial))?;
+    let rates =
+        desk.race(&mut [lone, chain::<T>(Link::Product), chain::<T>(Link::ProductAndSum)])?;
+    let nanoseconds: Vec<Rates> =
+        rates.iter().map(Rates::inverted).map(|r| r.scaled(1e9)).collect();
+    let [time, product, both] = &nanoseconds[..] else {
+        return Err(StudyError::Exact("a race of three has three rates".into()));
+    };
+    let bound = both.with(product, |both, product| {
+        // A sum takes what it adds to a product: it waits for one in a step as well.
+        flow.recurrence(|operation| match operation {
+            Operation::Addition => both - product,
+            _ => product,
+        })
+    });
+    Ok((flow.recurrence(|_| 1.0), [time.clone(), bound]))
+}
+
+/// Links of a chain, one after another: links a second.
+fn chain<T: Bench>(link: Link) -> Contestant<'static> {
+    Contestant::new((ROUNDS * CHAIN_LINKS) as f64, move |times| {
+        black_box(Chain(link).run::<T>(times * ROUNDS));
+    })
+}

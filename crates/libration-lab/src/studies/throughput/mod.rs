@@ -1,0 +1,68 @@
+//! What this machine can do: how fast many trajectories advance, and what limits them.
+
+mod bandwidth;
+mod claims;
+mod desk;
+mod faults;
+mod fused;
+mod latency;
+mod machine;
+mod one_step;
+mod regime;
+mod render;
+mod roofline;
+mod scaling;
+mod sine;
+mod threads;
+
+use crate::page::Page;
+use crate::record::RecordError;
+use crate::study::{Study, StudyError};
+use crate::{Lab, Record};
+use desk::Desk;
+
+pub(crate) use scaling::{Point, ladder};
+
+/// The study `throughput`.
+#[derive(Clone, Copy, Debug)]
+pub struct Throughput;
+
+impl Study for Throughput {
+    fn name(&self) -> &'static str {
+        "throughput"
+    }
+
+    fn question(&self) -> &'static str {
+        "How fast do many trajectories advance on this machine, and what limits them?"
+    }
+
+    fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
+        let desk = Desk::new(lab)?;
+        let mut record = Record::new(self.name(), self.question());
+        machine::describe(&desk, &mut record);
+        let parts: [(&str, Part); 9] = [
+            ("fused steps against independent arithmetic", fused::measure),
+            ("threads", threads::measure),
+            ("a lone trajectory", latency::measure),
+            ("sines", sine::measure),
+            ("memory", bandwidth::measure),
+            ("one step a pass", one_step::measure),
+            ("page faults", faults::measure),
+            ("steps a pass", roofline::measure),
+            ("implementations", scaling::measure),
+        ];
+        for (what, part) in parts {
+            lab.part(what, || part(&desk, &mut record))?;
+        }
+        regime::detect(&mut record)?;
+        claims::judge(&mut record);
+        Ok(record)
+    }
+
+    fn render(&self, record: &Record, page: &mut Page) -> Result<(), RecordError> {
+        render::render(record, page)
+    }
+}
+
+/// A part of the study.
+type Part = fn(&Desk<'_>, &mut Record) -> Result<(), StudyError>;

@@ -1,0 +1,137 @@
+//! One step a pass, beside a loop that moves the same memory.
+
+use std::hint::black_box;
+
+use libration::ensemble::{All, Buffer, Execution, Pages};
+use libration::integrator::SymplecticEuler;
+use libration::system::Oscillator;
+use libration::{Ensemble, State};
+
+use super::desk::{Desk, judge};
+use crate::bench::{Contestant, Update, together};
+use crate::machine::has_room;
+use crate::record::{Record, Table};
+use crate::study::StudyError;
+
+/// Share of the update loop that one step a pass is to reach.
+const BAR: f64 = 0.9;
+
+/// Races ensembles far larger than the nearer caches against loops of the same traffic.
+pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
+    let counts: &[usize] = desk.lab.effort.choose(
+        &[1_000_000],
+        &[10_000_000, 100_000_000],
+        &[10_000_000, 100_000_000],
+    );
+    let mut table = Table::new(
+        "one step a pass",
+        &[
+            "trajectories",
+            "threads",
+            "step (10⁹ steps/s)",
+            "loop (10⁹ steps/s)",
+            "step (GB/s)",
+            "share",
+        ],
+    );
+    for &count in counts {
+        // The ensemble, and the planes of the loop.
+        let bytes = Ensemble::<f32, 1>::bytes(count);
+        if has_room(2 * bytes).is_err() {
+            continue;
+        }
+        for execution in [&desk.serial, &desk.parallel] {
+            let threads = execution.thread_count();
+            if threads == 1 && !std::ptr::eq(execution, &desk.serial) {
+                continue;
+            }
+            let mut contestants = [step(desk, count, execution)?, update(desk, count, threads)?];
+            let rates = desk.race(&mut contestants)?;
+            let [step, update] = &rates[..] else { continue };
+            let share = step.over(update);
+            let power = (count as f64).log10();
+            let on = if threads == 1 { "one core".into() } else { format!("{threads} threads") };
+            judge(
+                record,
+                format!(
+                    "throughput.one-step.1e{power}{}",
+                    if threads == 1 { "" } else { ".threads" }
+                ),
+                format!(
+                    "symplectic Euler, f32, N = 10^{power}, one step a pass, {on}: steps a second over \
+                     those of a loop that reads and writes the same memory"
+                ),
+                Some(BAR),
+                &share,
+            );
+            table.push([
+                (count as u64).into(),
+                (threads as u64).into(),
+                (step.median() / 1e9).into(),
+                (update.median() / 1e9).into(),
+                (step.median() * BYTES / 1e9).into(),
+                share.median().into(),
+            ]);
+        }
+    }
+    record.tables.push(table);
+    Ok(())
+}
+
+/// Bytes that a step must move: position and velocity, read and written.
+const BYTES: f64 = 4.0 * size_of::<f32>() as f64;
+
+/// One step of an ensemble.
+fn step<'a>(
+    desk: &Desk<'_>,
+    count: usize,
+    execution: &Execution,
+) -> Result<Contestant<'a>, StudyError> {
+    let task = desk.task(count);
+    let start = |_| State { q: [1.0], v: [0.0] };
+    let mut ensemble = Ensemble::<f32, 1>::from_fn(count, execution.clone(), start)?;
+    let system = Oscillator { omega2: task.omega2 as f32 };
+    let dt = task.dt as f32;
+    Ok(Contestant::new(count as f64, move |times| {
+        for _ in 0..times {
+            // One value for all is never too few or too many.
+            let outcome = ensemble.advance(SymplecticEuler, All(system), All(dt), 1);
+            debug_assert_eq!(outcome, Ok(()));
+        }
+        black_box(ensemble.q(0));
+    }))
+}
+
+/// One pass of the update loop over planes of the same size, each thread with its own part.
+pub(super) fn update<'a>(
+    desk: &Desk<'_>,
+    count: usize,
+    threads: usize,
+) -> Result<Contestant<'a>, StudyError> {
+    let set = desk.set();
+    let task = desk.task(count);
+    let (s, t) = (-(task.omega2 * task.dt) as f32, task.dt as f32);
+    let mut x = Buffer::<f32>::new(count, Pages::Huge)?;
+    let mut y = Buffer::<f32>::new(count, Pages::Huge)?;
+    let part = count.div_ceil(threads).next_multiple_of(64);
+    let parts =
+        move |x: &mut [f32], y: &mut [f32], work: &(dyn Fn(&mut [f32], &mut [f32]) + Sync)| {
+            let parts = x.chunks_mut(part).zip(y.chunks_mut(part));
+            match threads {
+                1 => parts.for_each(|(x, y)| work(x, y)),
+                _ => together(parts, |(x, y)| work(x, y)),
+            }
+        };
+    // Each part is first written by the kind of thread that will work on it.
+    parts(&mut x, &mut y, &|x, y| {
+        x.fill(1.0);
+        y.fill(0.0);
+    });
+    Ok(Contestant::new(count as f64, move |times| {
+        for _ in 0..times {
+            let (s, t) = (black_box(s), black_box(t));
+            parts(&mut x, &mut y, &|x, y| set.vectorize(Update { x, y, s, t }));
+        }
+        black_box(&*x);
+    }))
+}

@@ -1,0 +1,118 @@
+//! From memory-bound to arithmetic-bound, by the number of steps a pass.
+
+use std::hint::black_box;
+
+use libration::analysis::DataFlow;
+use libration::ensemble::All;
+use libration::integrator::SymplecticEuler;
+use libration::system::Oscillator;
+use libration::{Ensemble, State};
+
+use super::bandwidth::footprint;
+use super::desk::{Desk, judge};
+use super::fused::peak;
+use super::one_step::update;
+use crate::bench::{Contestant, Rates};
+use crate::record::{Finding, Record, Series};
+use crate::study::StudyError;
+
+/// Bytes that a pass moves for each trajectory: position and velocity, read and written.
+const BYTES: f64 = 4.0 * size_of::<f32>() as f64;
+
+/// Steps of a pass: as many as it takes to leave the memory behind.
+const STEPS: [u64; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
+
+/// Races ensembles that no cache holds, with more and more steps a pass.
+pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
+    let count = usize::try_from(footprint(desk)).unwrap_or(usize::MAX) / (2 * size_of::<f32>());
+    let task = desk.task(count);
+    let system = Oscillator { omega2: task.omega2 as f32 };
+    let flow =
+        DataFlow::of_step::<_, 1>(SymplecticEuler, &Oscillator { omega2: task.omega2 }, task.dt);
+    let arithmetic = peak::<f32>(desk, &flow)?;
+    let operations = arithmetic.operations() as f64;
+    let dt = task.dt as f32;
+    let roofs =
+        desk.look(&mut [arithmetic.contestant::<f32>(desk.set()), update(desk, count, 1)?])?;
+    let [peak, memory] = &roofs[..] else { return Ok(()) };
+    let (peak, memory) = (peak.median(), memory.median());
+    let start = |_| State { q: [1.0], v: [0.0] };
+    let mut ensemble = Ensemble::<f32, 1>::from_fn(count, desk.serial.clone(), start)?;
+    let mut columns: [Vec<f64>; 5] = Default::default();
+    for steps in STEPS {
+        let pass = Contestant::new(count as f64 * steps as f64, |times| {
+            for _ in 0..times {
+                // One value for all is never too few or too many.
+                let outcome = ensemble.advance(SymplecticEuler, All(system), All(dt), steps);
+                debug_assert_eq!(outcome, Ok(()));
+            }
+            black_box(ensemble.q(0));
+        });
+        let rates = desk.look(&mut [pass])?;
+        let rate = rates.first().map_or(f64::NAN, Rates::median);
+        let k = steps as f64;
+        let [one_after_the_other, at_once] = bounds(peak, memory, k);
+        let row = [k * operations / BYTES, rate, one_after_the_other, at_once, k];
+        columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value * 1.0));
+        if steps == 1 || steps == STEPS[STEPS.len() - 1] {
+            continue;
+        }
+        let floor = rates.first().map(|rates| rates.scaled(one_after_the_other.recip()));
+        if let Some(share) = floor.filter(|_| steps == 16) {
+            judge(
+                record,
+                "throughput.roofline".into(),
+                format!(
+                    "symplectic Euler, f32, one core, arrays of {} MiB, {steps} steps a pass: steps a \
+                     second over those if arithmetic and memory waited for each other",
+                    (count * size_of::<f32>()) >> 20
+                ),
+                // They never do worse than that.
+                Some(0.9),
+                &share,
+            );
+        }
+    }
+    let [intensity, rate, low, high, steps] = columns;
+    let flops = |rates: Vec<f64>| rates.iter().map(|rate| rate * operations).collect();
+    record.series.push(
+        Series::new("roofline")
+            .with("steps_per_pass", "1", steps)
+            .with("intensity", "1/B", intensity)
+            .with("attained", "1/s", flops(rate))
+            .with("in_turn", "1/s", flops(low))
+            .with("at_once", "1/s", flops(high)),
+    );
+    for (id, text, value) in [
+        ("peak", "multiplications and additions", peak * operations / 1e9),
+        (
+            "memory",
+            "bytes that a loop over arrays beyond the caches reads and writes",
+            memory * BYTES / 1e9,
+        ),
+    ] {
+        let unit = if id == "peak" { "10⁹/s" } else { "GB/s" };
+        let text = format!("one core, f32: {text}, a second");
+        record.find(Finding::measured(format!("throughput.roof.{id}"), text, unit, value));
+    }
+    Ok(())
+}
+
+/// Steps a second where a pass of `k` steps waits for its memory and then for its arithmetic, and where
+/// one goes on behind the other.
+fn bounds(peak: f64, memory: f64, k: f64) -> [f64; 2] {
+    let (arithmetic, memory) = (k / peak, 1.0 / memory);
+    [k / (arithmetic + memory), k / arithmetic.max(memory)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bounds;
+
+    #[test]
+    fn a_pass_takes_at_least_the_longer_of_two_times_and_at_most_both() {
+        // Ten steps at 10 a second take 1 s, the memory of a pass another second.
+        assert_eq!(bounds(10.0, 1.0, 10.0), [5.0, 10.0]);
+        assert_eq!(bounds(10.0, 1.0, 1.0), [1.0 / 1.1, 1.0]);
+    }
+}
