@@ -56,6 +56,8 @@ const FOUR: &[Method] = &[ExplicitEuler, SymplecticEuler, VelocityVerlet, Rk4];
 
 /// All of them, in the order of their numbers.
 pub const TRIED: &[Tried] = &[
+    tried("C01", "throughput", &[], &["9.7"]),
+    tried("C02", "throughput", &[], &["9.7"]),
     of_its_run("C03", "drift", &[VelocityVerlet, Rk4], &["9.1", "crossover"]),
     // Of the oscillator itself, before any step.
     tried("C04", "spectrum", &[], &[]),
@@ -89,6 +91,18 @@ pub const TRIED: &[Tried] = &[
     tried("C33", "drift", &[ExplicitEuler, Rk4], &["9.1"]),
     tried("C34", "drift", FOUR, &["portraits"]),
     tried("C35", "stability", FOUR, &["9.5"]),
+    tried("C36", "throughput", &[], &["9.7"]),
+    tried("C37", "throughput", &[], &["9.7"]),
+    tried("C39", "throughput", &[], &["9.7"]),
+    tried("C40", "throughput", &[], &["9.7"]),
+    tried("C42", "throughput", &[], &["9.8"]),
+    // Of arrays that are counted.
+    tried("C44", "throughput", &[], &[]),
+    tried("C45", "throughput", &[], &["9.7"]),
+    tried("C46", "throughput", &[], &["9.7"]),
+    tried("C47", "throughput", &[], &["roofline"]),
+    tried("C68", "throughput", &[], &["9.7"]),
+    tried("C69", "throughput", &[], &[]),
     tried("C70", "stability", FOUR, &["9.5"]),
     of_its_run("C73", "drift", &[SymplecticEuler, VelocityVerlet, Rk4], &["9.1"]),
     of_its_run("C74", "error", &[ExplicitEuler], &["9.3"]),
@@ -99,6 +113,7 @@ pub const TRIED: &[Tried] = &[
     of_its_run("C79", "error", FOUR, &["9.3", "error-step"]),
     tried("C80", "stability", FOUR, &["9.5"]),
     tried("C81", "efficiency", FOUR, &["9.6"]),
+    tried("C82", "throughput", &[], &["9.7"]),
 ];
 
 /// The claims that the study `name` tries.
@@ -156,7 +171,7 @@ mod tests {
     #[test]
     fn every_claim_is_accounted_for_once() {
         let wanted: BTreeSet<String> =
-            (1..=35).chain(70..=81).map(|number| format!("C{number:02}")).collect();
+            (1..=47).chain(68..=83).map(|number| format!("C{number:02}")).collect();
         let ids = TRIED.iter().map(|c| c.id).chain(UNTRIED.iter().map(|c| c.id));
         let found: Vec<String> = ids.map(String::from).collect();
         assert_eq!(found.len(), wanted.len());

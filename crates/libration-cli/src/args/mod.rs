@@ -1,7 +1,9 @@
 //! The command line as types: what can be asked, and in which words.
 
 mod analyze;
+mod bench;
 mod number;
+pub(crate) mod simd;
 mod simulate;
 mod system;
 
@@ -10,11 +12,13 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
+use libration::ensemble::InstructionSet;
 use libration_lab::{Effort, studies};
 
 use crate::error::Failure;
 
 pub(crate) use analyze::AnalyzeArgs;
+pub(crate) use bench::BenchArgs;
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use system::{Setting, StepArgs, SystemArgs};
 
@@ -43,6 +47,7 @@ Examples:
                                              a trajectory as CSV
   libration analyze --system oscillator --integrator rk4 --dt 0.01
                                              what theory says of one step
+  libration bench                            what this machine can do
   libration list                             what there is
 
 Exit codes: 0 success, 1 a failed run or a finding that disagrees, 2 wrong input, 130 interrupted";
@@ -55,6 +60,8 @@ pub(crate) enum Command {
     Analyze(AnalyzeArgs),
     /// Simulate one trajectory and write its rows
     Simulate(SimulateArgs),
+    /// Time this machine: how fast trajectories advance, and what limits them
+    Bench(BenchArgs),
     /// List studies, systems and integrators
     List(ListArgs),
     /// Print a completion script for a shell
@@ -77,14 +84,17 @@ pub(crate) struct LabArgs {
     /// How much work the run may take [default: that of the configuration, or standard]
     #[arg(long, value_parser = efforts())]
     pub(crate) effort: Option<Effort>,
+    /// Instruction set of what is timed [default: that of the configuration, or LIBRATION_SIMD]
+    #[arg(long, value_name = "SET", value_parser = simd::instruction_sets())]
+    pub(crate) simd: Option<InstructionSet>,
     /// Show the report in the browser when it is ready
     #[arg(long)]
     pub(crate) open: bool,
     /// Print the default configuration, with comments, and stop
-    #[arg(long, conflicts_with_all = ["schema", "config", "studies", "effort", "open"])]
+    #[arg(long, conflicts_with_all = ["schema", "config", "studies", "effort", "simd", "open"])]
     pub(crate) print_config: bool,
     /// Print a JSON schema of the configuration, for editors, and stop
-    #[arg(long, conflicts_with_all = ["config", "studies", "effort", "open"])]
+    #[arg(long, conflicts_with_all = ["config", "studies", "effort", "simd", "open"])]
     pub(crate) schema: bool,
 }
 

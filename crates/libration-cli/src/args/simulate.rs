@@ -7,8 +7,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use libration::ensemble::InstructionSet;
 use libration_lab::trajectory::{FloatType, Format};
 
-use super::number::{steps, whole_number};
-use super::{StepArgs, SystemArgs};
+use super::number::{count, steps, whole_number};
+use super::{StepArgs, SystemArgs, simd};
 
 /// What `simulate` takes.
 #[derive(Args, Debug)]
@@ -45,8 +45,9 @@ pub(crate) struct SimulateArgs {
         default_value = "0"
     )]
     pub(crate) spread: f64,
-    /// Instruction set of the trajectories [default: the widest of this processor]
-    #[arg(long, value_name = "SET", value_parser = instruction_sets(), requires = "count")]
+    /// Instruction set of the trajectories [default: the widest of this processor, or
+    /// LIBRATION_SIMD]
+    #[arg(long, value_name = "SET", value_parser = simd::instruction_sets(), requires = "count")]
     pub(crate) simd: Option<InstructionSet>,
     /// Threads of the trajectories; 0 for as many as there are cores
     #[arg(long, value_name = "N", requires = "count", default_value = "0")]
@@ -75,17 +76,6 @@ With --count the first column is trajectory; each has the bits that it would hav
 fn every(text: &str) -> Result<u64, String> {
     let stride = whole_number(text).and_then(|n| u64::try_from(n).ok()).filter(|&n| n >= 1);
     stride.ok_or_else(|| "it must be a whole number of at least 1".to_owned())
-}
-
-/// Reads a number of trajectories; also as `1e5`.
-fn count(text: &str) -> Result<usize, String> {
-    let count = whole_number(text).and_then(|n| usize::try_from(n).ok()).filter(|&n| n >= 1);
-    count.ok_or_else(|| "it must be a whole number of at least 1".to_owned())
-}
-
-fn instruction_sets() -> impl TypedValueParser<Value = InstructionSet> {
-    PossibleValuesParser::new(InstructionSet::ALL.map(InstructionSet::name))
-        .try_map(|name| InstructionSet::from_name(&name).ok_or("unknown instruction set"))
 }
 
 fn float_types() -> impl TypedValueParser<Value = FloatType> {

@@ -9,7 +9,7 @@ use libration_lab::results::Results;
 use libration_lab::session::{self, SessionError};
 use libration_lab::{Config, Lab, Study, config, studies};
 
-use crate::args::LabArgs;
+use crate::args::{LabArgs, simd};
 use crate::error::Failure;
 use crate::progress::Reporter;
 use crate::{interrupt, terminal};
@@ -54,6 +54,7 @@ fn configure(args: &LabArgs) -> Result<Config, Failure> {
         config.studies.clone_from(&args.studies);
     }
     config.effort = args.effort.unwrap_or(config.effort);
+    config.throughput.simd = simd::asked(args.simd)?.or(config.throughput.simd);
     config.check().map_err(Failure::usage)?;
     Ok(config)
 }

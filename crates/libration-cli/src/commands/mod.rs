@@ -1,6 +1,7 @@
 //! One module for each subcommand.
 
 mod analyze;
+mod bench;
 mod completions;
 mod lab;
 mod list;
@@ -17,6 +18,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Lab(args) => lab::run(&args, arguments.quiet),
         Command::Analyze(args) => analyze::run(&args),
         Command::Simulate(args) => simulate::run(&args, arguments.quiet),
+        Command::Bench(args) => bench::run(&args, arguments.quiet),
         Command::List(args) => list::run(&args),
         Command::Completions(args) => completions::run(&args),
     }

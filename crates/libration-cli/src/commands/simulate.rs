@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use libration_lab::export::ExportError;
 use libration_lab::trajectory::{self, Copies, Ending, Format, Request, Stopped, TrajectoryError};
 
-use crate::args::{Setting, SimulateArgs};
+use crate::args::{Setting, SimulateArgs, simd};
 use crate::error::Failure;
 use crate::output_file::OutputFile;
 use crate::{interrupt, terminal};
@@ -69,6 +69,7 @@ fn format(args: &SimulateArgs) -> Result<Format, Failure> {
 
 fn request(args: &SimulateArgs) -> Result<Request, Failure> {
     let Setting { system, q, v } = args.system.resolve()?;
+    let instructions = if args.count.is_some() { simd::asked(args.simd)? } else { None };
     Ok(Request {
         system,
         method: args.step.integrator,
@@ -82,7 +83,7 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
             count,
             spread: args.spread,
             threads: args.threads,
-            instructions: args.simd,
+            instructions,
         }),
     })
 }

@@ -1,10 +1,11 @@
 //! The rungs of the ladder: each implementation, ready to run.
 
-use libration::ensemble::{All, EnsembleError, Execution};
+use libration::ensemble::{AnyEnsemble, EnsembleError, Execution};
 use libration::integrator::SymplecticEuler;
 use libration::system::Oscillator;
-use libration::{Ensemble, Float, Integrator, State};
+use libration::{Float, Integrator, Method, State};
 
+use super::oscillators::oscillators;
 use super::passes::Passes;
 use super::{Bench, Implementation};
 
@@ -29,14 +30,11 @@ pub(crate) struct Task {
 }
 
 impl Task {
-    /// Where trajectory `n` starts: each elsewhere, so that none can be left out.
-    fn start<T: Float>(&self, n: usize) -> State<T, 1> {
+    /// Position and velocity from which trajectory `n` starts: each elsewhere, so that none can be
+    /// left out.
+    pub(super) fn start(&self, n: usize) -> [f64; 2] {
         let share = n as f64 / self.count as f64;
-        State { q: [T::from_f64(1.0 + share)], v: [T::from_f64(0.5 - share)] }
-    }
-
-    fn system<T: Float>(&self) -> Oscillator<T> {
-        Oscillator { omega2: T::from_f64(self.omega2) }
+        [1.0 + share, 0.5 - share]
     }
 }
 
@@ -51,31 +49,27 @@ pub(crate) fn prepare<T: Bench>(
     execution: &Execution,
 ) -> Result<Box<dyn Rung>, EnsembleError> {
     let dt = T::from_f64(task.dt);
-    let states = || (0..task.count).map(|n| task.start::<T>(n));
+    let starts = || (0..task.count).map(|n| task.start(n).map(T::from_f64));
+    let states = || starts().map(|[q, v]| State { q: [q], v: [v] }).collect();
+    let system = Oscillator { omega2: T::from_f64(task.omega2) };
+    let blocks = |execution: &Execution, fused| -> Result<Blocks<T>, EnsembleError> {
+        Ok(Blocks { ensemble: oscillators::<T>(task, execution)?, dt, fused })
+    };
     let alone = execution.clone().threads(1)?;
-    let ensemble = |execution| Ensemble::from_fn(task.count, execution, |n| task.start::<T>(n));
-    let system = task.system::<T>();
     Ok(match implementation {
         Implementation::Dynamic => {
             let step = Box::new(move |s| SymplecticEuler.step(&system, s, dt));
-            Box::new(Dynamic { states: states().collect(), step })
+            Box::new(Dynamic { states: states(), step })
         }
-        Implementation::Scalar => Box::new(Scalar { states: states().collect(), system, dt }),
+        Implementation::Scalar => Box::new(Scalar { states: states(), system, dt }),
         Implementation::Temporaries | Implementation::InPlace => {
-            let start = states().map(|s| [s.q[0], s.v[0]]);
             let reuse = implementation == Implementation::InPlace;
             let set = execution.instruction_set();
-            Box::new(Passes::new(start, -system.omega2, dt, set, reuse)?)
+            Box::new(Passes::new(starts(), -system.omega2, dt, set, reuse)?)
         }
-        Implementation::OneStep => {
-            Box::new(Blocks { ensemble: ensemble(alone)?, system, dt, fused: false })
-        }
-        Implementation::Fused => {
-            Box::new(Blocks { ensemble: ensemble(alone)?, system, dt, fused: true })
-        }
-        Implementation::Threads => {
-            Box::new(Blocks { ensemble: ensemble(execution.clone())?, system, dt, fused: true })
-        }
+        Implementation::OneStep => Box::new(blocks(&alone, false)?),
+        Implementation::Fused => Box::new(blocks(&alone, true)?),
+        Implementation::Threads => Box::new(blocks(execution, true)?),
     })
 }
 
@@ -129,8 +123,7 @@ impl<T: Float> Rung for Scalar<T> {
 
 /// [`Implementation::OneStep`], [`Implementation::Fused`] and [`Implementation::Threads`].
 struct Blocks<T: Bench> {
-    ensemble: Ensemble<T, 1>,
-    system: Oscillator<T>,
+    ensemble: Box<dyn AnyEnsemble<T>>,
     dt: T,
     fused: bool,
 }
@@ -139,15 +132,13 @@ impl<T: Bench> Rung for Blocks<T> {
     fn advance(&mut self, steps: u64) {
         let (passes, steps) = if self.fused { (1, steps) } else { (steps, 1) };
         for _ in 0..passes {
-            let (system, dt) = (All(self.system), All(self.dt));
-            // One value for all is never too few or too many.
-            let outcome = self.ensemble.advance(SymplecticEuler, system, dt, steps);
-            debug_assert_eq!(outcome, Ok(()));
+            self.ensemble.advance(Method::SymplecticEuler, self.dt, steps);
         }
     }
 
     fn state(&self, n: usize) -> [f64; 2] {
-        doubles(self.ensemble.q(0)[n], self.ensemble.v(0)[n])
+        let at = |plane: Option<&[T]>| plane.map_or(f64::NAN, |plane| plane[n].to_f64());
+        [at(self.ensemble.q(0)), at(self.ensemble.v(0))]
     }
 }
 

@@ -78,7 +78,7 @@ pub(crate) fn race(
 }
 
 /// Rates of one contestant, round by round; or ratios of rates.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Rates(Vec<f64>);
 
 impl Rates {

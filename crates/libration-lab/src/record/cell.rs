@@ -54,7 +54,7 @@ impl Cell {
     }
 
     /// The entry as the page sets it, with `digits` significant digits if it says no others.
-    pub(crate) fn typeset(&self, digits: usize) -> String {
+    pub fn typeset(&self, digits: usize) -> String {
         match self {
             Cell::Number(Quantity::Real(x, own)) => number(*x, own.unwrap_or(digits)),
             Cell::Number(Quantity::Count(n)) => count(*n),

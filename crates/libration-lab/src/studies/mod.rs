@@ -14,7 +14,7 @@ mod source;
 mod spectrum;
 mod stability;
 mod subject;
-mod throughput;
+pub(crate) mod throughput;
 
 use crate::study::Study;
 pub use convergence::Convergence;

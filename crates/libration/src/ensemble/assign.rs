@@ -11,6 +11,9 @@ pub trait Assign<X>: Copy + Send + Sync {
     /// The value in lane `l`.
     fn lane<const W: usize>(lanes: &Self::Lanes<W>, l: usize) -> X;
 
+    /// The value of trajectory `n`.
+    fn of(self, n: usize) -> X;
+
     /// The number of trajectories for which there is a value, unless there is one for all.
     fn count(self) -> Option<usize>;
 }
@@ -37,6 +40,11 @@ impl<X: Copy + Send + Sync> Assign<X> for All<X> {
     }
 
     #[inline(always)]
+    fn of(self, _: usize) -> X {
+        self.0
+    }
+
+    #[inline(always)]
     fn count(self) -> Option<usize> {
         None
     }
@@ -53,6 +61,11 @@ impl<X: Copy + Send + Sync> Assign<X> for Each<'_, X> {
     #[inline(always)]
     fn lane<const W: usize>(lanes: &[X; W], l: usize) -> X {
         lanes[l]
+    }
+
+    #[inline(always)]
+    fn of(self, n: usize) -> X {
+        self.0[n]
     }
 
     #[inline(always)]

@@ -33,7 +33,7 @@ pub use buffer::{Buffer, Pages};
 pub use error::EnsembleError;
 pub use execution::Execution;
 pub use instructions::{InstructionSet, Loop};
-pub use observer::{Lanes, Observer};
+pub use observer::{Copies, Drift, Lanes, MeanSquareError, Moments, Observer, Summary};
 pub use stream::stream;
 
 use crate::{Float, Integrator, State, System};

@@ -10,6 +10,9 @@ use crate::study::StudyError;
 /// Quartiles further apart than this share of the median say that the machine had other work.
 const NOISY: f64 = 0.1;
 
+/// What is said of a ratio that the machine was too noisy to judge.
+pub(super) const TOO_NOISY: &str = "The machine was too noisy to judge";
+
 /// What all measurements share.
 pub(super) struct Desk<'a> {
     pub(super) lab: &'a Lab<'a>,
@@ -48,7 +51,15 @@ impl<'a> Desk<'a> {
     }
 
     /// Rates that are to be compared with care.
-    pub(super) fn race(
+    pub(super) fn race<const N: usize>(
+        &self,
+        mut contestants: [Contestant<'_>; N],
+    ) -> Result<[Rates; N], StudyError> {
+        self.race_of(&mut contestants).map(exactly)
+    }
+
+    /// Rates that are to be compared with care, of any number of contestants.
+    pub(super) fn race_of(
         &self,
         contestants: &mut [Contestant<'_>],
     ) -> Result<Vec<Rates>, StudyError> {
@@ -56,7 +67,15 @@ impl<'a> Desk<'a> {
     }
 
     /// Rates of which there are many.
-    pub(super) fn look(
+    pub(super) fn look<const N: usize>(
+        &self,
+        mut contestants: [Contestant<'_>; N],
+    ) -> Result<[Rates; N], StudyError> {
+        self.look_at(&mut contestants).map(exactly)
+    }
+
+    /// Rates of which there are many, of any number of contestants.
+    pub(super) fn look_at(
         &self,
         contestants: &mut [Contestant<'_>],
     ) -> Result<Vec<Rates>, StudyError> {
@@ -64,8 +83,14 @@ impl<'a> Desk<'a> {
     }
 }
 
+/// As many rates as there were contestants.
+fn exactly<const N: usize>(rates: Vec<Rates>) -> [Rates; N] {
+    let mut rates = rates.into_iter();
+    std::array::from_fn(|_| rates.next().unwrap_or_default())
+}
+
 /// A ratio that is to reach a bar, with the noise of its rounds as tolerance; without a verdict where
-/// the machine was too noisy for one, or where there is no bar.
+/// the machine was too noisy for one, where there is no bar, and in a build that is not for speed.
 pub(super) fn judge(
     record: &mut Record,
     id: String,
@@ -74,6 +99,7 @@ pub(super) fn judge(
     ratio: &Rates,
 ) {
     let (median, spread) = (ratio.median(), ratio.spread());
+    let bar = bar.filter(|_| !cfg!(debug_assertions));
     record.find(match bar {
         Some(bar) if ratio.noise() <= NOISY => Finding::related(
             id,
@@ -86,7 +112,7 @@ pub(super) fn judge(
         ),
         Some(bar) => {
             let text = format!(
-                "{text}. The machine was too noisy to judge: the quartiles of the rounds lie {spread:.2} \
+                "{text}. {TOO_NOISY}: the quartiles of the rounds lie {spread:.2} \
                  apart; wanted: {bar}"
             );
             Finding::measured(id, text, "1", median)

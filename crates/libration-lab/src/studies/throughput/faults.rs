@@ -44,12 +44,12 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
             black_box(&*warm);
         }
     });
-    let rates = desk.look(&mut [again, fresh(Pages::Ordinary), fresh(Pages::Huge)])?;
-    let [again, ordinary, huge] = &rates[..] else { return Ok(()) };
+    let contestants = [again, fresh(Pages::Ordinary), fresh(Pages::Huge)];
+    let [again, ordinary, huge] = desk.look(contestants)?;
     table.push(["warm".into(), "—".into(), 0.into(), (again.median() / 1e9).into(), 1.0.into()]);
     for (name, pages, rate, size) in [
-        ("fresh", Pages::Ordinary, ordinary, PAGE),
-        ("fresh, huge pages wished for", Pages::Huge, huge, HUGE_PAGE),
+        ("fresh", Pages::Ordinary, &ordinary, PAGE),
+        ("fresh, huge pages wished for", Pages::Huge, &huge, HUGE_PAGE),
     ] {
         let faults = count_faults(|| {
             let mut buffer = Buffer::<f32>::new(LEN, pages)?;
@@ -57,7 +57,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
             black_box(&*buffer);
             Ok(())
         })?;
-        let share = rate.over(again);
+        let share = rate.over(&again);
         table.push([
             name.into(),
             if size == PAGE { "4 KiB".into() } else { "2 MiB".into() },

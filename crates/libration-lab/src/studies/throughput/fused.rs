@@ -3,12 +3,14 @@
 use std::hint::black_box;
 
 use libration::analysis::{DataFlow, Operation};
-use libration::ensemble::{All, EnsembleError, Execution, InstructionSet};
+use libration::ensemble::InstructionSet;
 use libration::system::Oscillator;
-use libration::{Ensemble, Integrator, Method, State, with_method};
+use libration::{Method, with_method};
 
 use super::desk::{Desk, judge};
-use crate::bench::{Bench, BenchFloat, Contestant, Mix, Rates, Task, together, widths, with_float};
+use crate::bench::{
+    Bench, BenchFloat, Contestant, Mix, Rates, stepping, together, widths, with_float,
+};
 use crate::record::{Record, Table};
 use crate::study::StudyError;
 
@@ -16,7 +18,7 @@ use crate::study::StudyError;
 pub(super) const RESIDENT: usize = 49_920;
 
 /// Steps of a pass: enough that loading a block costs nothing.
-const STEPS: u64 = 200;
+pub(super) const STEPS: u64 = 200;
 
 /// Rounds of a loop between two looks at the clock.
 const ROUNDS: u64 = 10_000;
@@ -49,7 +51,7 @@ pub(super) fn peak<T: Bench>(desk: &Desk<'_>, flow: &DataFlow) -> Result<Peak, S
     let peaks = offered.iter().map(|&width| Peak { mix, width, operations: counted.iter().sum() });
     let peaks: Vec<Peak> = peaks.collect();
     let mut contestants: Vec<_> = peaks.iter().map(|peak| peak.contestant::<T>(set)).collect();
-    let rates = desk.look(&mut contestants)?;
+    let rates = desk.look_at(&mut contestants)?;
     let fastest = rates.iter().zip(peaks).max_by(|a, b| a.0.median().total_cmp(&b.0.median()));
     let (_, peak) = fastest.ok_or(StudyError::Exact("no loop fits the registers".into()))?;
     Ok(peak)
@@ -88,26 +90,6 @@ impl Peak {
     }
 }
 
-/// `task` under `integrator`, all steps of a pass fused: steps a second.
-pub(super) fn contestant<'a, T: Bench>(
-    integrator: impl Integrator + 'a,
-    task: Task,
-    execution: &Execution,
-) -> Result<Contestant<'a>, EnsembleError> {
-    let start = |_| State { q: [T::one()], v: [T::zero()] };
-    let mut ensemble = Ensemble::<T, 1>::from_fn(task.count, execution.clone(), start)?;
-    let system = Oscillator { omega2: T::from_f64(task.omega2) };
-    let dt = T::from_f64(task.dt);
-    Ok(Contestant::new(task.count as f64 * STEPS as f64, move |times| {
-        for _ in 0..times {
-            // One value for all is never too few or too many.
-            let outcome = ensemble.advance(integrator, All(system), All(dt), STEPS);
-            debug_assert_eq!(outcome, Ok(()));
-        }
-        black_box(ensemble.q(0));
-    }))
-}
-
 /// Races every method against its peak, and leaves the rates of the peaks in a table.
 pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
     let mut table = Table::new(
@@ -124,8 +106,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     );
     for &method in &desk.lab.config.integrators {
         for float in BenchFloat::ALL {
-            let (peak, rates) =
-                with_float!(float, T => with_method!(method, |m| against_peak::<T>(desk, m)))?;
+            let (peak, rates) = with_float!(float, T => against_peak::<T>(desk, method))?;
             let [fused, arithmetic] = &rates;
             let share = fused.over(arithmetic);
             let name = float.name();
@@ -155,19 +136,20 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     Ok(())
 }
 
+/// The operations of a step of `method` on an oscillator.
+pub(super) fn flow(desk: &Desk<'_>, method: Method) -> DataFlow {
+    let task = desk.task(1);
+    let system = Oscillator { omega2: task.omega2 };
+    with_method!(method, |m| DataFlow::of_step::<_, 1>(m, &system, task.dt))
+}
+
 /// The peak of a method, and its rates: fused steps, and the peak.
 fn against_peak<T: Bench>(
     desk: &Desk<'_>,
-    integrator: impl Integrator,
+    method: Method,
 ) -> Result<(Peak, [Rates; 2]), StudyError> {
-    let task = desk.task(RESIDENT);
-    let system = Oscillator { omega2: task.omega2 };
-    let flow = DataFlow::of_step::<_, 1>(integrator, &system, task.dt);
-    let peak = peak::<T>(desk, &flow)?;
-    let fused = contestant::<T>(integrator, task, &desk.serial)?;
-    let rates = desk.race(&mut [fused, peak.contestant::<T>(desk.set())])?;
-    let [fused, arithmetic] = &rates[..] else {
-        return Err(StudyError::Exact("a race of two has two rates".into()));
-    };
-    Ok((peak, [fused.clone(), arithmetic.clone()]))
+    let peak = peak::<T>(desk, &flow(desk, method))?;
+    let fused = stepping::<T>(method, desk.task(RESIDENT), STEPS, &desk.serial)?;
+    let rates = desk.race([fused, peak.contestant::<T>(desk.set())])?;
+    Ok((peak, rates))
 }

@@ -3,13 +3,13 @@
 use std::hint::black_box;
 
 use libration::Method;
-use libration::analysis::{DataFlow, Operation};
-use libration::system::Oscillator;
-use libration::with_method;
+use libration::analysis::Operation;
 
 use super::desk::{Desk, judge};
-use super::fused::contestant;
-use crate::bench::{Bench, BenchFloat, CHAIN_LINKS, Chain, Contestant, Link, Rates, with_float};
+use super::fused::{STEPS, flow};
+use crate::bench::{
+    Bench, BenchFloat, CHAIN_LINKS, Chain, Contestant, Link, Rates, stepping, with_float,
+};
 use crate::record::{Record, Table};
 use crate::study::StudyError;
 
@@ -68,25 +68,18 @@ fn against_chain<T: Bench>(
     desk: &Desk<'_>,
     method: Method,
 ) -> Result<(f64, [Rates; 2]), StudyError> {
-    let task = desk.task(1);
-    let system = Oscillator { omega2: task.omega2 };
-    let flow = with_method!(method, |m| DataFlow::of_step::<_, 1>(m, &system, task.dt));
-    let lone = with_method!(method, |m| contestant::<T>(m, task, &desk.serial))?;
-    let rates =
-        desk.race(&mut [lone, chain::<T>(Link::Product), chain::<T>(Link::ProductAndSum)])?;
-    let nanoseconds: Vec<Rates> =
-        rates.iter().map(Rates::inverted).map(|r| r.scaled(1e9)).collect();
-    let [time, product, both] = &nanoseconds[..] else {
-        return Err(StudyError::Exact("a race of three has three rates".into()));
-    };
-    let bound = both.with(product, |both, product| {
+    let flow = flow(desk, method);
+    let lone = stepping::<T>(method, desk.task(1), 16 * STEPS, &desk.serial)?;
+    let rates = desk.race([lone, chain::<T>(Link::Product), chain::<T>(Link::ProductAndSum)])?;
+    let [time, product, both] = rates.map(|rates| rates.inverted().scaled(1e9));
+    let bound = both.with(&product, |both, product| {
         // A sum takes what it adds to a product: it waits for one in a step as well.
         flow.recurrence(|operation| match operation {
             Operation::Addition => both - product,
             _ => product,
         })
     });
-    Ok((flow.recurrence(|_| 1.0), [time.clone(), bound]))
+    Ok((flow.recurrence(|_| 1.0), [time, bound]))
 }
 
 /// Links of a chain, one after another: links a second.

@@ -2,8 +2,10 @@
 
 mod bandwidth;
 mod claims;
+mod comparison;
 mod desk;
 mod faults;
+mod figures;
 mod fused;
 mod latency;
 mod machine;
@@ -21,7 +23,7 @@ use crate::study::{Study, StudyError};
 use crate::{Lab, Record};
 use desk::Desk;
 
-pub(crate) use scaling::{Point, ladder};
+pub use scaling::{Rate, Wanted, ladder};
 
 /// The study `throughput`.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +57,7 @@ impl Study for Throughput {
             lab.part(what, || part(&desk, &mut record))?;
         }
         regime::detect(&mut record)?;
+        comparison::compare(&mut record)?;
         claims::judge(&mut record);
         Ok(record)
     }

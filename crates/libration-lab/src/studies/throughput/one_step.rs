@@ -2,13 +2,11 @@
 
 use std::hint::black_box;
 
-use libration::ensemble::{All, Buffer, Execution, Pages};
-use libration::integrator::SymplecticEuler;
-use libration::system::Oscillator;
-use libration::{Ensemble, State};
+use libration::ensemble::{Buffer, Pages};
+use libration::{Ensemble, Method};
 
 use super::desk::{Desk, judge};
-use crate::bench::{Contestant, Update, together};
+use crate::bench::{Contestant, Update, stepping, together};
 use crate::machine::has_room;
 use crate::record::{Record, Table};
 use crate::study::StudyError;
@@ -45,10 +43,9 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
             if threads == 1 && !std::ptr::eq(execution, &desk.serial) {
                 continue;
             }
-            let mut contestants = [step(desk, count, execution)?, update(desk, count, threads)?];
-            let rates = desk.race(&mut contestants)?;
-            let [step, update] = &rates[..] else { continue };
-            let share = step.over(update);
+            let step = stepping::<f32>(Method::SymplecticEuler, desk.task(count), 1, execution)?;
+            let [step, update] = desk.race([step, update(desk, count, threads)?])?;
+            let share = step.over(&update);
             let power = (count as f64).log10();
             let on = if threads == 1 { "one core".into() } else { format!("{threads} threads") };
             judge(
@@ -80,27 +77,6 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
 
 /// Bytes that a step must move: position and velocity, read and written.
 const BYTES: f64 = 4.0 * size_of::<f32>() as f64;
-
-/// One step of an ensemble.
-fn step<'a>(
-    desk: &Desk<'_>,
-    count: usize,
-    execution: &Execution,
-) -> Result<Contestant<'a>, StudyError> {
-    let task = desk.task(count);
-    let start = |_| State { q: [1.0], v: [0.0] };
-    let mut ensemble = Ensemble::<f32, 1>::from_fn(count, execution.clone(), start)?;
-    let system = Oscillator { omega2: task.omega2 as f32 };
-    let dt = task.dt as f32;
-    Ok(Contestant::new(count as f64, move |times| {
-        for _ in 0..times {
-            // One value for all is never too few or too many.
-            let outcome = ensemble.advance(SymplecticEuler, All(system), All(dt), 1);
-            debug_assert_eq!(outcome, Ok(()));
-        }
-        black_box(ensemble.q(0));
-    }))
-}
 
 /// One pass of the update loop over planes of the same size, each thread with its own part.
 pub(super) fn update<'a>(

@@ -2,17 +2,13 @@
 
 use std::hint::black_box;
 
-use libration::analysis::DataFlow;
-use libration::ensemble::All;
-use libration::integrator::SymplecticEuler;
-use libration::system::Oscillator;
-use libration::{Ensemble, State};
+use libration::Method;
 
 use super::bandwidth::footprint;
 use super::desk::{Desk, judge};
-use super::fused::peak;
+use super::fused::{flow, peak};
 use super::one_step::update;
-use crate::bench::{Contestant, Rates};
+use crate::bench::{Contestant, oscillators};
 use crate::record::{Finding, Record, Series};
 use crate::study::StudyError;
 
@@ -22,43 +18,37 @@ const BYTES: f64 = 4.0 * size_of::<f32>() as f64;
 /// Steps of a pass: as many as it takes to leave the memory behind.
 const STEPS: [u64; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
 
+/// The number of steps at which arithmetic and memory both take long.
+const JUDGED: u64 = 16;
+
+/// Share of the rate without any overlap that is to be reached.
+const BAR: f64 = 0.9;
+
 /// Races ensembles that no cache holds, with more and more steps a pass.
 pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
     let count = usize::try_from(footprint(desk)).unwrap_or(usize::MAX) / (2 * size_of::<f32>());
     let task = desk.task(count);
-    let system = Oscillator { omega2: task.omega2 as f32 };
-    let flow =
-        DataFlow::of_step::<_, 1>(SymplecticEuler, &Oscillator { omega2: task.omega2 }, task.dt);
-    let arithmetic = peak::<f32>(desk, &flow)?;
+    let method = Method::SymplecticEuler;
+    let arithmetic = peak::<f32>(desk, &flow(desk, method))?;
     let operations = arithmetic.operations() as f64;
+    let loops = [arithmetic.contestant::<f32>(desk.set()), update(desk, count, 1)?];
+    let [peak, memory] = desk.look(loops)?.map(|rates| rates.median());
+    let mut ensemble = oscillators::<f32>(task, &desk.serial)?;
     let dt = task.dt as f32;
-    let roofs =
-        desk.look(&mut [arithmetic.contestant::<f32>(desk.set()), update(desk, count, 1)?])?;
-    let [peak, memory] = &roofs[..] else { return Ok(()) };
-    let (peak, memory) = (peak.median(), memory.median());
-    let start = |_| State { q: [1.0], v: [0.0] };
-    let mut ensemble = Ensemble::<f32, 1>::from_fn(count, desk.serial.clone(), start)?;
     let mut columns: [Vec<f64>; 5] = Default::default();
     for steps in STEPS {
-        let pass = Contestant::new(count as f64 * steps as f64, |times| {
+        let k = steps as f64;
+        let pass = Contestant::new(count as f64 * k, |times| {
             for _ in 0..times {
-                // One value for all is never too few or too many.
-                let outcome = ensemble.advance(SymplecticEuler, All(system), All(dt), steps);
-                debug_assert_eq!(outcome, Ok(()));
+                ensemble.advance(method, dt, steps);
             }
             black_box(ensemble.q(0));
         });
-        let rates = desk.look(&mut [pass])?;
-        let rate = rates.first().map_or(f64::NAN, Rates::median);
-        let k = steps as f64;
-        let [one_after_the_other, at_once] = bounds(peak, memory, k);
-        let row = [k * operations / BYTES, rate, one_after_the_other, at_once, k];
-        columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value * 1.0));
-        if steps == 1 || steps == STEPS[STEPS.len() - 1] {
-            continue;
-        }
-        let floor = rates.first().map(|rates| rates.scaled(one_after_the_other.recip()));
-        if let Some(share) = floor.filter(|_| steps == 16) {
+        let [rates] = desk.look([pass])?;
+        let [in_turn, at_once] = bounds(peak, memory, k);
+        let row = [k * operations / BYTES, rates.median(), in_turn, at_once, k];
+        columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+        if steps == JUDGED {
             judge(
                 record,
                 "throughput.roofline".into(),
@@ -67,9 +57,9 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
                      second over those if arithmetic and memory waited for each other",
                     (count * size_of::<f32>()) >> 20
                 ),
-                // They never do worse than that.
-                Some(0.9),
-                &share,
+                // Worse than that would be a third thing that limits.
+                Some(BAR),
+                &rates.scaled(in_turn.recip()),
             );
         }
     }

@@ -3,10 +3,9 @@
 use libration::ensemble::Execution;
 
 use super::desk::Desk;
-use crate::bench::{
-    Bench, BenchFloat, Contestant, Implementation, Rates, Task, prepare, with_float,
-};
-use crate::machine::has_room;
+use crate::Lab;
+use crate::bench::{Bench, BenchFloat, Contestant, Implementation, Task, prepare, with_float};
+use crate::machine::{NoRoom, has_room};
 use crate::record::{Record, Series};
 use crate::study::StudyError;
 
@@ -17,16 +16,52 @@ const FUSED: u64 = 200;
 const LONE: u64 = 16;
 
 /// The most trajectories that are taken one by one: their rate does not depend on the number.
-const LONE_COUNT: usize = 1_000_000;
+const LONE_COUNT: usize = 100_000;
 
-/// A rate, and what it is the rate of.
-#[derive(Clone, Debug)]
-pub(crate) struct Point {
-    pub(crate) implementation: Implementation,
-    pub(crate) float: BenchFloat,
-    pub(crate) count: usize,
-    /// Steps a second of all trajectories together.
-    pub(crate) rates: Rates,
+/// An implementation, a float and a number of trajectories, to be timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    /// The implementation.
+    pub implementation: Implementation,
+    /// The float.
+    pub float: BenchFloat,
+    /// Number of trajectories.
+    pub count: usize,
+}
+
+impl Wanted {
+    /// Whether there is memory enough.
+    ///
+    /// # Errors
+    /// [`NoRoom`] if not.
+    pub fn check(self) -> Result<(), NoRoom> {
+        let numbers = arrays(self.implementation) as u128 * self.count as u128;
+        has_room(numbers * self.float.bytes() as u128)
+    }
+}
+
+/// How fast trajectories advance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rate {
+    /// The implementation.
+    pub implementation: Implementation,
+    /// The float.
+    pub float: BenchFloat,
+    /// Number of trajectories.
+    pub count: usize,
+    /// Steps a second of all of them together, the median of the repeats.
+    pub median: f64,
+    /// The distance between the quartiles of the repeats.
+    pub spread: f64,
+}
+
+/// Times what is wanted, one after another, as `lab` is configured.
+///
+/// # Errors
+/// If the run is to stop, or memory, threads or instruction set are not to be had.
+pub fn ladder(lab: &Lab<'_>, wanted: &[Wanted]) -> Result<Vec<Rate>, StudyError> {
+    let desk = Desk::new(lab)?;
+    wanted.iter().map(|&wanted| rate(&desk, wanted)).collect()
 }
 
 /// Measures what the configuration asks for, as far as effort and memory go.
@@ -39,9 +74,10 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         for float in BenchFloat::ALL {
             let mut points = Vec::new();
             for &count in &counts {
-                let room = has_room(bytes_needed(implementation, float, count)).is_ok();
-                if room && !(implementation.is_lone() && count > LONE_COUNT) {
-                    points.push(point(desk, implementation, float, count)?);
+                let wanted = Wanted { implementation, float, count };
+                let too_many = implementation.is_lone() && count > LONE_COUNT;
+                if !too_many && wanted.check().is_ok() {
+                    points.push(rate(desk, wanted)?);
                 }
             }
             if !points.is_empty() {
@@ -50,26 +86,6 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         }
     }
     Ok(())
-}
-
-/// The points that a caller asks for, one after another.
-///
-/// # Errors
-/// If the run is to stop, or memory or instruction set are not to be had.
-pub(crate) fn ladder(
-    desk: &Desk<'_>,
-    wanted: impl IntoIterator<Item = (Implementation, BenchFloat, usize)>,
-) -> Result<Vec<Point>, StudyError> {
-    wanted.into_iter().map(|(one, float, count)| point(desk, one, float, count)).collect()
-}
-
-/// Bytes that an implementation takes, temporaries included.
-pub(crate) fn bytes_needed(
-    implementation: Implementation,
-    float: BenchFloat,
-    count: usize,
-) -> u128 {
-    arrays(implementation) as u128 * count as u128 * float.bytes() as u128
 }
 
 /// Arrays, one number for each trajectory, that an implementation holds at once.
@@ -82,18 +98,13 @@ pub(super) fn arrays(implementation: Implementation) -> usize {
     }
 }
 
-fn point(
-    desk: &Desk<'_>,
-    implementation: Implementation,
-    float: BenchFloat,
-    count: usize,
-) -> Result<Point, StudyError> {
+fn rate(desk: &Desk<'_>, wanted: Wanted) -> Result<Rate, StudyError> {
+    let Wanted { implementation, float, count } = wanted;
     let contestant = with_float!(float, T => {
         contestant::<T>(implementation, desk.task(count), &desk.parallel)
     })?;
-    let mut rates = desk.look(&mut [contestant])?;
-    let rates = rates.pop().ok_or(StudyError::Exact("a race of one has one rate".into()))?;
-    Ok(Point { implementation, float, count, rates })
+    let [rates] = desk.look([contestant])?;
+    Ok(Rate { implementation, float, count, median: rates.median(), spread: rates.spread() })
 }
 
 fn contestant<T: Bench>(
@@ -120,10 +131,10 @@ pub(super) fn series_name(implementation: Implementation, float: BenchFloat) -> 
     format!("scaling-{}-{}", implementation.name(), float.name())
 }
 
-fn series(implementation: Implementation, float: BenchFloat, points: &[Point]) -> Series {
-    let column = |value: fn(&Point) -> f64| points.iter().map(value).collect();
+fn series(implementation: Implementation, float: BenchFloat, rates: &[Rate]) -> Series {
+    let column = |value: fn(&Rate) -> f64| rates.iter().map(value).collect();
     Series::new(series_name(implementation, float))
-        .with("trajectories", "1", column(|p| p.count as f64))
-        .with("steps_per_second", "1/s", column(|p| p.rates.median()))
-        .with("spread", "1/s", column(|p| p.rates.spread()))
+        .with("trajectories", "1", column(|rate| rate.count as f64))
+        .with("steps_per_second", "1/s", column(|rate| rate.median))
+        .with("spread", "1/s", column(|rate| rate.spread))
 }

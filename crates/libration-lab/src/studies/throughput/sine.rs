@@ -24,8 +24,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     let omega2 = desk.task(1).omega2 as f32;
     let own = contestant(desk, Pendulum { omega2 })?;
     let platform = contestant(desk, PlatformPendulum { omega2 })?;
-    let rates = desk.race(&mut [own, platform])?;
-    let [own, platform] = &rates[..] else { return Ok(()) };
+    let [own, platform] = desk.race([own, platform])?;
     judge(
         record,
         "throughput.sine".into(),
@@ -33,7 +32,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
          those of the same loop with the platform’s"
             .into(),
         Some(BAR),
-        &own.over(platform),
+        &own.over(&platform),
     );
     record.find(Finding::measured(
         "throughput.sine.rate",

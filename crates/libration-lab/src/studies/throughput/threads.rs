@@ -1,12 +1,10 @@
 //! All cores against one.
 
-use libration::analysis::DataFlow;
-use libration::integrator::SymplecticEuler;
-use libration::system::Oscillator;
+use libration::Method;
 
 use super::desk::{Desk, judge};
-use super::fused::{RESIDENT, contestant, peak};
-use crate::bench::{Contestant, Rates};
+use super::fused::{RESIDENT, STEPS, flow, peak};
+use crate::bench::{Contestant, Rates, stepping};
 use crate::record::{Finding, Record, Table};
 use crate::study::StudyError;
 
@@ -17,17 +15,16 @@ const BAR: f64 = 0.9;
 pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
     let cores = desk.parallel.thread_count();
     let task = desk.task(RESIDENT * cores);
-    let system = Oscillator { omega2: task.omega2 };
-    let flow = DataFlow::of_step::<_, 1>(SymplecticEuler, &system, task.dt);
-    let peak = peak::<f32>(desk, &flow)?;
+    let method = Method::SymplecticEuler;
+    let peak = peak::<f32>(desk, &flow(desk, method))?;
     let counts = thread_counts(cores);
     let mut contestants: Vec<Contestant<'_>> = Vec::new();
     for &threads in &counts {
         let execution = desk.serial.clone().threads(threads)?;
-        contestants.push(contestant::<f32>(SymplecticEuler, task, &execution)?);
+        contestants.push(stepping::<f32>(method, task, STEPS, &execution)?);
         contestants.push(peak.on_threads::<f32>(desk.set(), threads));
     }
-    let rates = desk.race(&mut contestants)?;
+    let rates = desk.race_of(&mut contestants)?;
     let pairs: Vec<(usize, [&Rates; 2])> = counts
         .iter()
         .zip(rates.chunks_exact(2))

@@ -1,0 +1,149 @@
+//! `libration bench`.
+
+use std::fmt::Write;
+
+use libration_lab::bench::{self, BenchFloat, Rate, Wanted};
+use libration_lab::record::{Record, Table};
+use libration_lab::studies::Throughput;
+use libration_lab::study::StudyError;
+use libration_lab::{Config, Lab, Machine, Study};
+use serde_json::{Value, json};
+
+use crate::args::{BenchArgs, simd};
+use crate::error::Failure;
+use crate::progress::Reporter;
+use crate::{interrupt, terminal};
+
+/// Version of the contract that the JSON keeps.
+const SCHEMA: &str = "libration.bench/1";
+
+/// Numbers of trajectories that are timed where none are named.
+const COUNTS: [usize; 3] = [1_000, 100_000, 10_000_000];
+
+/// Times this machine, and prints what came out.
+pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), Failure> {
+    let mut config = Config { effort: args.effort, ..Config::default() };
+    config.throughput.simd = simd::asked(args.simd)?;
+    let wanted = wanted(args)?;
+    let reporter = Reporter::new(quiet);
+    let stop = interrupt::listen()?;
+    let lab = Lab::new(&config, args.effort, &reporter, stop);
+    let text = if wanted.is_empty() {
+        let record = Throughput.run(&lab);
+        reporter.clear();
+        let record = record.map_err(failure)?;
+        if args.json { report_json(&record) } else { report_text(&record) }
+    } else {
+        let rates = bench::ladder(&lab, &wanted);
+        reporter.clear();
+        let rates = rates.map_err(failure)?;
+        if args.json { rates_json(&rates) } else { rates_text(&rates) }
+    };
+    terminal::print(&text)?;
+    Ok(())
+}
+
+/// What is to be timed by itself, if anything is named.
+fn wanted(args: &BenchArgs) -> Result<Vec<Wanted>, Failure> {
+    let counts = if args.count.is_empty() { &COUNTS[..] } else { &args.count };
+    let floats = if args.float.is_empty() { &BenchFloat::ALL[..] } else { &args.float };
+    let mut wanted = Vec::new();
+    for &implementation in &args.implementation {
+        for &float in floats {
+            for &count in counts {
+                let one = Wanted { implementation, float, count };
+                one.check().map_err(|error| {
+                    Failure::usage(format!("{count} trajectories (--count): {error}"))
+                })?;
+                wanted.push(one);
+            }
+        }
+    }
+    Ok(wanted)
+}
+
+fn failure(error: StudyError) -> Failure {
+    match error {
+        StudyError::Interrupted => Failure::Interrupted("interrupted".to_owned()),
+        error => Failure::run(error),
+    }
+}
+
+fn report_json(record: &Record) -> String {
+    let all = json!({
+        "schema": SCHEMA,
+        "machine": Machine::detect(),
+        "findings": record.findings,
+        "tables": record.tables,
+    });
+    format!("{all:#}\n")
+}
+
+fn report_text(record: &Record) -> String {
+    let mut text = String::new();
+    for table in &record.tables {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{}\n{}\n", table.name, columns(&lines(table)));
+    }
+    text
+}
+
+/// The head and the rows of a table, as the page would set them.
+fn lines(table: &Table) -> Vec<Vec<String>> {
+    let rows = table.rows.iter().map(|row| row.iter().map(|cell| cell.typeset(3)).collect());
+    std::iter::once(table.columns.clone()).chain(rows).collect()
+}
+
+fn rates_json(rates: &[Rate]) -> String {
+    let rate = |rate: &Rate| -> Value {
+        json!({
+            "implementation": rate.implementation.name(),
+            "float": rate.float.name(),
+            "count": rate.count,
+            "steps_per_second": rate.median,
+            "spread": rate.spread,
+        })
+    };
+    let rates: Vec<Value> = rates.iter().map(rate).collect();
+    format!("{:#}\n", json!({ "schema": SCHEMA, "machine": Machine::detect(), "rates": rates }))
+}
+
+fn rates_text(rates: &[Rate]) -> String {
+    let head = ["implementation", "float", "trajectories", "10⁹ steps/s", "spread"];
+    let row = |rate: &Rate| {
+        vec![
+            rate.implementation.name().to_owned(),
+            rate.float.name().to_owned(),
+            rate.count.to_string(),
+            format!("{:.3}", rate.median / 1e9),
+            format!("{:.3}", rate.spread / 1e9),
+        ]
+    };
+    let head = vec![head.map(String::from).to_vec()];
+    columns(&head.into_iter().chain(rates.iter().map(row)).collect::<Vec<_>>())
+}
+
+/// Lines whose entries stand below each other.
+fn columns(lines: &[Vec<String>]) -> String {
+    let count = lines.first().map_or(0, Vec::len);
+    // Columns are counted in characters.
+    let width = |i: usize| lines.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..count).map(width).collect();
+    let mut text = String::new();
+    for line in lines {
+        let padded = line.iter().zip(&widths).map(|(entry, &width)| format!("{entry:width$}"));
+        let _ = writeln!(text, "  {}", padded.collect::<Vec<_>>().join("  ").trim_end());
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_stand_below_each_other() {
+        let lines = [["a", "Δt"], ["long", "1"]].map(|line| line.map(String::from).to_vec());
+        assert_eq!(columns(&lines), "  a     Δt\n  long  1\n");
+    }
+}
