@@ -31,8 +31,10 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     let method = Method::SymplecticEuler;
     let arithmetic = peak::<f32>(desk, &flow(desk, method))?;
     let operations = arithmetic.operations() as f64;
-    let loops = [arithmetic.contestant::<f32>(desk.set()), update(desk, count, 1)?];
-    let [peak, memory] = desk.look(loops)?.map(|rates| rates.median());
+    let loops = || -> Result<_, StudyError> {
+        Ok([arithmetic.contestant::<f32>(desk.set()), update(desk, count, 1)?])
+    };
+    let [peak, memory] = desk.look(loops()?)?.map(|rates| rates.median());
     let mut ensemble = oscillators::<f32>(task, &desk.serial)?;
     let dt = task.dt as f32;
     let mut columns: [Vec<f64>; 5] = Default::default();
@@ -44,11 +46,10 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
             }
             black_box(ensemble.q(0));
         });
-        let [rates] = desk.look([pass])?;
-        let [in_turn, at_once] = bounds(peak, memory, k);
-        let row = [k * operations / BYTES, rates.median(), in_turn, at_once, k];
-        columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
-        if steps == JUDGED {
+        let rates = if steps == JUDGED {
+            let [arithmetic, memory] = loops()?;
+            let [rates, arithmetic, memory] = desk.race([pass, arithmetic, memory])?;
+            let in_turn = arithmetic.with(&memory, |peak, memory| bounds(peak, memory, k)[0]);
             judge(
                 record,
                 "throughput.roofline".into(),
@@ -59,9 +60,16 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
                 ),
                 // Worse than that would be a third thing that limits.
                 Some(BAR),
-                &rates.scaled(in_turn.recip()),
+                &rates.over(&in_turn),
             );
-        }
+            rates
+        } else {
+            let [rates] = desk.look([pass])?;
+            rates
+        };
+        let [in_turn, at_once] = bounds(peak, memory, k);
+        let row = [k * operations / BYTES, rates.median(), in_turn, at_once, k];
+        columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
     }
     let [intensity, rate, low, high, steps] = columns;
     let flops = |rates: Vec<f64>| rates.iter().map(|rate| rate * operations).collect();
