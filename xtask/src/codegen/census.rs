@@ -12,7 +12,8 @@ pub(super) struct Census {
     pub(super) vector: usize,
     /// Arithmetic on one number.
     pub(super) scalar: usize,
-    /// Arithmetic on vectors that are narrower than they could be.
+    /// Anything else on vectors that are narrower than they could be, as numbers are that are taken out
+    /// of a wide one.
     pub(super) narrow: usize,
     /// Calls of other functions.
     pub(super) calls: usize,
@@ -26,10 +27,11 @@ impl Census {
         let mut census = Census::default();
         for body in loops {
             for instruction in *body {
+                let full = instruction.register().is_none_or(|r| r == register);
                 match instruction.arithmetic() {
-                    Some(Arithmetic::Packed(width)) if width == register => census.vector += 1,
-                    Some(Arithmetic::Packed(_)) => census.narrow += 1,
                     Some(Arithmetic::Scalar) => census.scalar += 1,
+                    _ if !full => census.narrow += 1,
+                    Some(Arithmetic::Packed) => census.vector += 1,
                     None => {}
                 }
                 census.calls += usize::from(instruction.is_call());
@@ -90,8 +92,8 @@ mod tests {
 
     #[test]
     fn narrow_vectors_are_counted() {
-        let body = "\tvmulpd\t%ymm1, %ymm2, %ymm3\n";
-        assert_eq!(census(body), Census { narrow: 1, ..Census::default() });
+        let body = "\tvmulpd\t%ymm1, %ymm2, %ymm3\n\tvpextrq\t$1, %xmm3, %rcx\n";
+        assert_eq!(census(body), Census { narrow: 2, ..Census::default() });
     }
 
     #[test]

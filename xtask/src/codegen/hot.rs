@@ -3,7 +3,7 @@
 use super::function::Function;
 use super::instruction::Instruction;
 
-/// The loops of a function that compute with floats, each with all that is in it.
+/// The loops of a function that compute with floats, or call what may, each with all that is in it.
 ///
 /// The outermost ones: what is computed between the loops over lanes is computed at every step, too.
 /// The rest only moves data, in or out, once for all steps.
@@ -26,7 +26,7 @@ pub(super) fn loops<'f, 'a>(function: &'f Function<'a>) -> Vec<&'f [Instruction<
     outermost
         .into_iter()
         .map(|(start, end)| &function.body[start..=end])
-        .filter(|body| body.iter().any(|instruction| instruction.arithmetic().is_some()))
+        .filter(|body| body.iter().any(|it| it.is_call() || it.arithmetic().is_some()))
         .collect()
 }
 
@@ -43,6 +43,7 @@ mod tests {
     #[test]
     fn a_backward_jump_closes_a_loop() {
         assert_eq!(lengths(".L1:\n\taddpd\t%xmm0, %xmm1\n\tdecq\t%rax\n\tjne\t.L1\n"), [3]);
+        assert_eq!(lengths(".L1:\n\tcallq\tstep\n\tjne\t.L1\n"), [2]);
     }
 
     #[test]

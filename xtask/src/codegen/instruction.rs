@@ -7,13 +7,13 @@ pub(super) struct Instruction<'a> {
     operands: &'a str,
 }
 
-/// How wide arithmetic is.
+/// On how many numbers arithmetic is done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Arithmetic {
-    /// One number.
+    /// One.
     Scalar,
-    /// All that fit in a register of this letter: `x`, `y` or `z`.
-    Packed(char),
+    /// All that are in the register.
+    Packed,
 }
 
 /// Floating-point operations without prefix and type.
@@ -26,7 +26,7 @@ impl<'a> Instruction<'a> {
         Instruction { name, operands: operands.trim() }
     }
 
-    /// Whether it computes with floats, and how many at a time.
+    /// Whether it computes with floats, and with how many.
     pub(super) fn arithmetic(self) -> Option<Arithmetic> {
         let name = self.name.strip_prefix('v').unwrap_or(self.name);
         let (operation, kind) = name.split_at_checked(name.len().checked_sub(2)?)?;
@@ -36,14 +36,15 @@ impl<'a> Instruction<'a> {
         }
         match kind {
             "ss" | "sd" => Some(Arithmetic::Scalar),
-            "ps" | "pd" => Some(Arithmetic::Packed(self.widest_register())),
+            "ps" | "pd" => Some(Arithmetic::Packed),
             _ => None,
         }
     }
 
-    fn widest_register(self) -> char {
-        let widest = ['z', 'y'].into_iter().find(|r| self.operands.contains(&format!("%{r}mm")));
-        widest.unwrap_or('x')
+    /// The letter of the widest vector registers that it names: `x`, `y` or `z`.
+    pub(super) fn register(self) -> Option<char> {
+        let registers = [("%zmm", 'z'), ("%ymm", 'y'), ("%xmm", 'x')];
+        registers.into_iter().find(|(name, _)| self.operands.contains(name)).map(|(_, r)| r)
     }
 
     /// Whether it leaves for another function.
@@ -85,17 +86,31 @@ mod tests {
     }
 
     #[test]
-    fn arithmetic_is_told_from_the_rest_with_its_width() {
-        assert_eq!(arithmetic("vmulpd\t%zmm1, %zmm2, %zmm3"), Some(Arithmetic::Packed('z')));
-        assert_eq!(arithmetic("vaddps\t(%rax), %ymm2, %ymm3"), Some(Arithmetic::Packed('y')));
-        assert_eq!(arithmetic("vsqrtpd\t%xmm2, %xmm3"), Some(Arithmetic::Packed('x')));
-        assert_eq!(arithmetic("vfmadd213pd\t%zmm1, %zmm2, %zmm3"), Some(Arithmetic::Packed('z')));
-        assert_eq!(arithmetic("vsubsd\t%xmm1, %xmm2, %xmm3"), Some(Arithmetic::Scalar));
-        assert_eq!(arithmetic("divss\t%xmm1, %xmm2"), Some(Arithmetic::Scalar));
+    fn arithmetic_is_told_from_the_rest() {
+        for packed in [
+            "vmulpd\t%zmm1, %zmm2, %zmm3",
+            "vsqrtps\t(%rax), %ymm3",
+            "vfmadd213pd\t%zmm1, %zmm2, %zmm3",
+            "addpd\t%xmm1, %xmm2",
+        ] {
+            assert_eq!(arithmetic(packed), Some(Arithmetic::Packed), "{packed}");
+        }
+        for scalar in ["vsubsd\t%xmm1, %xmm2, %xmm3", "divss\t%xmm1, %xmm2"] {
+            assert_eq!(arithmetic(scalar), Some(Arithmetic::Scalar), "{scalar}");
+        }
         for other in ["addq\t$8, %rax", "vmovapd\t%zmm1, %zmm2", "vpaddq\t%zmm1, %zmm2, %zmm3"] {
             assert_eq!(arithmetic(other), None, "{other}");
         }
         assert_eq!(arithmetic("retq"), None);
+    }
+
+    #[test]
+    fn the_widest_register_counts() {
+        let register = |line| Instruction::new(line).register();
+        assert_eq!(register("vbroadcastsd\t%xmm1, %zmm2"), Some('z'));
+        assert_eq!(register("vpand\t%ymm1, %ymm2, %ymm3"), Some('y'));
+        assert_eq!(register("vpextrq\t$1, %xmm2, %rax"), Some('x'));
+        assert_eq!(register("addq\t$8, %rax"), None);
     }
 
     #[test]

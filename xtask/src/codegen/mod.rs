@@ -11,7 +11,6 @@ mod function;
 mod hot;
 mod instruction;
 mod kernel;
-mod tolerated;
 mod verdict;
 
 use std::fs;
@@ -32,9 +31,6 @@ pub(crate) fn run() -> Outcome {
     let censuses = censuses(&text);
     print!("{}", census::table(&censuses));
     println!("{} kernels", censuses.len());
-    for tolerated in &tolerated::TOLERATED {
-        println!("not all vectors, as is known: {tolerated}");
-    }
     let mut complaints = expected::complaints(&censuses);
     complaints.extend(verdict::complaints(&censuses));
     if complaints.is_empty() {
@@ -44,11 +40,10 @@ pub(crate) fn run() -> Outcome {
 }
 
 const ADVICE: &str = "\
-A lane loop becomes vectors only if everything in it is inlined and small enough: put
-`#[inline(always)]` on what the step calls, call no closure or function of the platform, branch on no
-data, and unroll what loops within a step. Where a block spills, lower its width in
-crates/libration/src/ensemble/run.rs and measure. What cannot be had is listed with its reason in
-xtask/src/codegen/tolerated.rs.";
+A lane loop becomes vectors only if the whole step is inlined into it and has no loop of its own: put
+`#[inline(always)]` on what the step calls, call no function of the platform, branch on no data, and
+write out what repeats, as crates/libration/src/integrator/composition.rs does. Where registers are
+spilled, the block is too wide: see `width` in crates/libration/src/ensemble/run.rs, and measure.";
 
 /// What is in the kernels of an assembly, by name.
 fn censuses(assembly: &str) -> Vec<(Kernel, Census)> {
