@@ -3,12 +3,12 @@
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
-use crate::{Outcome, command, dependencies, examples, report, test, tidy};
+use crate::{Outcome, codegen, command, dependencies, examples, report, test, tidy};
 
 /// A headline and what stands under it.
 type Step = (&'static str, fn() -> Outcome);
 
-const STEPS: [Step; 8] = [
+const STEPS: [Step; 9] = [
     ("format", || command::run(&mut command::cargo("fmt --all --check"))),
     ("tidy", tidy::run),
     ("dependencies", dependencies::run),
@@ -16,6 +16,7 @@ const STEPS: [Step; 8] = [
         command::run(&mut command::cargo("clippy --workspace --all-targets -- -D warnings"))
     }),
     ("documentation", documentation),
+    ("codegen", codegen::run),
     ("test", || test::run(&[])),
     ("examples", examples::run),
     ("report", report::run),

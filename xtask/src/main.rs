@@ -1,6 +1,7 @@
 //! Everything that continuous integration does, as tasks: `cargo xtask` lists them.
 
 mod ci;
+mod codegen;
 mod command;
 mod dependencies;
 mod examples;
@@ -30,7 +31,7 @@ enum Action {
     With(fn(&[String]) -> Outcome),
 }
 
-const TASKS: [Task; 6] = [
+const TASKS: [Task; 7] = [
     Task {
         name: "ci",
         summary: "all of the below in order, with format, lints and documentation",
@@ -45,6 +46,11 @@ const TASKS: [Task; 6] = [
         name: "dependencies",
         summary: "the engine depends on neither serde nor the laboratory",
         action: Action::Plain(dependencies::run),
+    },
+    Task {
+        name: "codegen",
+        summary: "every batch kernel is made of vectors, read from its assembly",
+        action: Action::Plain(codegen::run),
     },
     Task {
         name: "test",

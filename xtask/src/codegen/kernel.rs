@@ -1,0 +1,144 @@
+//! Which kernel a symbol stands for.
+
+use std::fmt;
+
+use super::expected::{METHODS, SYSTEMS};
+
+/// A kernel of a block, as `ensemble/kernel.rs` makes them.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Kernel {
+    pub(super) instructions: Instructions,
+    /// `f32` or `f64`.
+    pub(super) float: String,
+    /// By its name on the command line, or its type if it has none.
+    pub(super) system: String,
+    /// By its name on the command line, or its type if it has none.
+    pub(super) method: String,
+    /// Lanes.
+    pub(super) width: usize,
+}
+
+/// What it is compiled for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Instructions {
+    Avx2,
+    Avx512,
+}
+
+impl Instructions {
+    pub(super) const ALL: [Instructions; 2] = [Instructions::Avx2, Instructions::Avx512];
+
+    /// The letter of its widest registers.
+    pub(super) fn register(self) -> char {
+        match self {
+            Instructions::Avx2 => 'y',
+            Instructions::Avx512 => 'z',
+        }
+    }
+}
+
+impl fmt::Display for Instructions {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Instructions::Avx2 => "avx2",
+            Instructions::Avx512 => "avx512",
+        })
+    }
+}
+
+impl Kernel {
+    /// The kernel of this symbol, if it is one for AVX2 or AVX-512.
+    pub(super) fn of(symbol: &str) -> Option<Kernel> {
+        let demangled = format!("{:#}", rustc_demangle::try_demangle(symbol).ok()?);
+        let (shim, arguments) = demangled.split_once("::Advance<")?;
+        let instructions = match () {
+            () if shim.contains("::V4") => Instructions::Avx512,
+            () if shim.contains("::V3") => Instructions::Avx2,
+            () => return None,
+        };
+        // The order of the parameters of `Advance`.
+        let [float, method, _, _, system, _, width] = arguments_of(arguments)?.try_into().ok()?;
+        let system = system.split('<').next().unwrap_or_default();
+        Some(Kernel {
+            instructions,
+            float: float.to_owned(),
+            system: called(&without_paths(system), &SYSTEMS),
+            method: called(&without_paths(method), &METHODS),
+            width: width.trim_end_matches("usize").parse().ok()?,
+        })
+    }
+}
+
+/// The generic arguments up to the `>` that closes them.
+fn arguments_of(text: &str) -> Option<Vec<&str>> {
+    let (mut depth, mut start) = (0_usize, 0);
+    let mut arguments = Vec::new();
+    for (at, c) in text.char_indices() {
+        match c {
+            '<' => depth += 1,
+            '>' if depth > 0 => depth -= 1,
+            ',' | '>' if depth == 0 => {
+                arguments.push(text[start..at].trim());
+                start = at + 1;
+                if c == '>' {
+                    return Some(arguments);
+                }
+            }
+            _ => {}
+        }
+    }
+    None
+}
+
+/// A type without the modules that it lies in.
+pub(super) fn without_paths(name: &str) -> String {
+    let is_name = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
+    let mut short = String::new();
+    for piece in name.split_inclusive(|c| !is_name(c)) {
+        short.push_str(piece.rsplit("::").next().unwrap_or_default());
+    }
+    short.replace("usize", "")
+}
+
+/// The name by which the type is called.
+fn called(kind: &str, names: &[(&str, &str)]) -> String {
+    let name = names.iter().find(|(known, _)| *known == kind);
+    name.map_or(kind, |(_, name)| name).to_owned()
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// The symbol of Yoshida's method on an oscillator, with AVX-512 on 64 lanes.
+    pub(in crate::codegen) const SYMBOL: &str = "_RINvNvMs2_NtNtCs9I3Sfxch5Hm_4pulp3x862v4NtB8_2V4\
+        9vectorize12imp_fastcallINtNvXs0_B8_BC_NtBc_4Simd9vectorize4ImplINtNtNtCslgnf09HP9XC_\
+        9libration8ensemble6kernel7AdvancedINtNtNtB1T_10integrator11composition11Composition\
+        NtNtB2L_15velocity_verlet14VelocityVerletKj3_EINtNtB1R_6assign3AllINtNtNtB1T_6system\
+        10oscillator10OscillatordEEIB4e_dEB4x_Kj1_Kj40_EEEB1T_";
+
+    #[test]
+    fn a_symbol_tells_the_kernel() {
+        let kernel = Kernel {
+            instructions: Instructions::Avx512,
+            float: "f64".to_owned(),
+            system: "oscillator".to_owned(),
+            method: "yoshida4".to_owned(),
+            width: 64,
+        };
+        assert_eq!(Kernel::of(SYMBOL), Some(kernel));
+    }
+
+    #[test]
+    fn other_functions_are_no_kernels() {
+        assert_eq!(Kernel::of("_RNvCs1234_7mycrate3foo"), None);
+        assert_eq!(Kernel::of("memcpy"), None);
+    }
+
+    #[test]
+    fn a_type_that_nobody_listed_keeps_its_name() {
+        assert_eq!(called(&without_paths("my::own::Step<other::Inner, 7usize>"), &METHODS), {
+            "Step<Inner, 7>"
+        });
+    }
+}

@@ -1,0 +1,65 @@
+//! `cargo xtask codegen`: the batch kernels are still made of vectors.
+//!
+//! The vectors of an ensemble are the compiler's doing, and nothing complains when it stops: the bits
+//! stay the same and the speed falls by ten. So the engine is compiled to assembly, and the loops of
+//! every kernel are read.
+
+mod assembly;
+mod census;
+mod expected;
+mod function;
+mod hot;
+mod instruction;
+mod kernel;
+mod verdict;
+
+use std::fs;
+
+use crate::Outcome;
+use census::Census;
+use kernel::Kernel;
+
+/// Compiles the engine to assembly and fails if a kernel lost its vectors, or is not there.
+pub(crate) fn run() -> Outcome {
+    if !cfg!(target_arch = "x86_64") {
+        println!("skipped: the kernels for AVX2 and AVX-512 are compiled on x86-64 only");
+        return Ok(());
+    }
+    let path = assembly::build()?;
+    let text = fs::read_to_string(&path)
+        .map_err(|error| format!("{} cannot be read: {error}", path.display()))?;
+    let censuses = censuses(&text);
+    print!("{}", census::table(&censuses));
+    println!("{} kernels", censuses.len());
+    let mut complaints = expected::complaints(&censuses);
+    complaints.extend(verdict::complaints(&censuses));
+    if complaints.is_empty() {
+        return Ok(());
+    }
+    Err(format!("{}\n{ADVICE}", complaints.join("\n")))
+}
+
+const ADVICE: &str = "\
+These are instructions in the loops that take the steps: on single numbers (scalar), on registers that
+are narrower than the widest (narrow), calls, and registers stored and loaded again (spills). A lane
+loop becomes vectors only if the whole step is inlined into it and has no loop of its own: put
+`#[inline(always)]` on what the step calls, call no function of the platform, branch on no data, and
+write out what repeats, as crates/libration/src/integrator/composition.rs does. Where registers are
+spilled, the block is too wide: see `width` in crates/libration/src/ensemble/run.rs, and measure.";
+
+/// What is in the kernels of an assembly, by name.
+fn censuses(assembly: &str) -> Vec<(Kernel, Census)> {
+    let mut found: Vec<(Kernel, Census)> = function::read(assembly)
+        .iter()
+        .filter_map(|function| {
+            let kernel = Kernel::of(function.symbol)?;
+            // A lone leftover is stepped as the scalar that it is.
+            (kernel.width > 1).then(|| {
+                let vector = kernel.instructions.register();
+                (kernel, Census::of(&hot::loops(function), vector))
+            })
+        })
+        .collect();
+    found.sort_by(|(a, _), (b, _)| a.cmp(b));
+    found
+}
