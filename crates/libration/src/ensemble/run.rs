@@ -27,23 +27,45 @@ pub(super) struct Run<'a, T, M, A, C, Sys, O, const D: usize> {
 /// Widths of a block, in lanes.
 const WIDTHS: [usize; 10] = [8, 16, 24, 32, 48, 64, 96, 128, 160, 208];
 
+/// Vectors that are enough to hide the latency of a step in which operations do not all wait for each
+/// other, and to keep the memory busy.
+const FEW: usize = 4;
+
+/// Steps of a pass up to which a block is bound by the memory.
+const SHORT: u64 = 2;
+
 /// The width of the blocks in which a kernel runs fastest, as measured.
 ///
 /// Wide enough that the latency of one lane's arithmetic is hidden behind the others. With 32
-/// registers the planes of a block fill most of them; with 16 they live in the nearest cache.
-const fn width<I: Target, T, const D: usize>(carries: bool) -> usize {
+/// registers the planes of a block fill those that the step leaves, with 16 they live in the nearest
+/// cache.
+const fn width<I: Target, T, const D: usize>(carries: bool, taken: usize) -> usize {
     let (planes, room) = match (carries, I::REGISTERS >= 32) {
-        (false, true) => (2 * D, 26),
-        (true, true) => (3 * D, 26),
+        (false, true) => (2 * D, I::REGISTERS.saturating_sub(taken)),
+        (true, true) => (3 * D, I::REGISTERS.saturating_sub(taken)),
         (false, false) => (2 * D, 48),
         (true, false) => (3 * D, 40),
     };
-    let lanes = room / planes * I::BYTES / size_of::<T>();
+    let vectors = room / planes;
+    let least = FEW.div_ceil(D);
+    widest::<I, T>(if vectors > least { vectors } else { least })
+}
+
+/// The widest blocks of at most so many vectors.
+const fn widest<I: Target, T>(vectors: usize) -> usize {
+    let lanes = vectors * I::BYTES / size_of::<T>();
     let mut i = WIDTHS.len() - 1;
     while i > 0 && WIDTHS[i] > lanes {
         i -= 1;
     }
     WIDTHS[i]
+}
+
+/// The width of the blocks that are better where there are few steps or few trajectories: the same,
+/// unless that is much.
+const fn narrow<I: Target, T>(width: usize) -> usize {
+    let few = widest::<I, T>(FEW);
+    if width >= 2 * few { few } else { width }
 }
 
 impl<T, M, A, C, Sys, O, const D: usize> Targeted for Run<'_, T, M, A, C, Sys, O, D>
@@ -59,17 +81,18 @@ where
 
     fn on<I: Target>(self, target: I) {
         // Of these arms the compiler keeps one.
-        match const { width::<I, T, D>(M::CARRIES && Sys::POSITIONAL) } {
-            8 => self.blocks::<I, 8>(target),
-            16 => self.blocks::<I, 16>(target),
-            24 => self.blocks::<I, 24>(target),
-            32 => self.blocks::<I, 32>(target),
-            48 => self.blocks::<I, 48>(target),
-            64 => self.blocks::<I, 64>(target),
-            96 => self.blocks::<I, 96>(target),
-            128 => self.blocks::<I, 128>(target),
-            160 => self.blocks::<I, 160>(target),
-            _ => self.blocks::<I, 208>(target),
+        match const { width::<I, T, D>(M::CARRIES && Sys::POSITIONAL, M::REGISTERS + Sys::REGISTERS) }
+        {
+            8 => self.wide::<I, 8>(target),
+            16 => self.wide::<I, 16>(target),
+            24 => self.wide::<I, 24>(target),
+            32 => self.wide::<I, 32>(target),
+            48 => self.wide::<I, 48>(target),
+            64 => self.wide::<I, 64>(target),
+            96 => self.wide::<I, 96>(target),
+            128 => self.wide::<I, 128>(target),
+            160 => self.wide::<I, 160>(target),
+            _ => self.wide::<I, 208>(target),
         }
     }
 }
@@ -83,15 +106,36 @@ where
     Sys: System<T, D>,
     O: Observer<T, D>,
 {
-    /// Block after block, each from the first step to the last.
-    fn blocks<I: Target, const W: usize>(mut self, target: I) {
-        while self.share.len() > 1 {
-            let block = self.share.split_off(W);
-            self.block::<I, W>(target, block);
+    fn wide<I: Target, const W: usize>(self, target: I) {
+        // As above.
+        match const { narrow::<I, T>(W) } {
+            8 => self.blocks::<I, W, 8>(target),
+            16 => self.blocks::<I, W, 16>(target),
+            32 => self.blocks::<I, W, 32>(target),
+            64 => self.blocks::<I, W, 64>(target),
+            _ => self.blocks::<I, W, W>(target),
         }
-        if self.share.len() == 1 {
-            let block = self.share.split_off(1);
-            self.block::<I, 1>(target, block);
+    }
+
+    /// Block after block, each from the first step to the last.
+    fn blocks<I: Target, const W: usize, const NARROW: usize>(mut self, target: I) {
+        let short = self.watch.is_none() && self.steps.end - self.steps.start <= SHORT;
+        loop {
+            match self.share.len() {
+                0 => return,
+                1 => {
+                    let block = self.share.split_off(1);
+                    self.block::<I, 1>(target, block);
+                }
+                len if short || len <= NARROW => {
+                    let block = self.share.split_off(NARROW);
+                    self.block::<I, NARROW>(target, block);
+                }
+                _ => {
+                    let block = self.share.split_off(W);
+                    self.block::<I, W>(target, block);
+                }
+            }
         }
     }
 

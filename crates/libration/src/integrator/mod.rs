@@ -30,6 +30,10 @@ pub trait Integrator: Copy + Send + Sync {
     /// [`Integrator::carried`] saves one.
     const CARRIES: bool = false;
 
+    /// Vector registers that a step fills besides those of the state and of a force: an
+    /// [`Ensemble`](crate::Ensemble) makes its blocks narrower by them, and gives the same results.
+    const REGISTERS: usize = 4;
+
     /// Advances `state` by one step of length `dt`.
     fn step<S: Scalar, const D: usize>(
         self,

@@ -10,6 +10,9 @@ use crate::{Scalar, State, System};
 pub struct Rk4;
 
 impl Integrator for Rk4 {
+    // The state and what its four rates sum up to live through all stages.
+    const REGISTERS: usize = 16;
+
     #[inline(always)]
     fn step<S: Scalar, const D: usize>(
         self,

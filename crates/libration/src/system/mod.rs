@@ -27,6 +27,13 @@ pub trait System<S: Scalar, const D: usize> {
     /// An [`Ensemble`](crate::Ensemble) then hands it from the end of a Verlet step to the next.
     const POSITIONAL: bool = false;
 
+    /// Vector registers that an evaluation of the force fills besides the state, with its constants and
+    /// with what lies between.
+    ///
+    /// An [`Ensemble`](crate::Ensemble) makes its blocks narrower by them, and is fastest where this is
+    /// about right; its results do not depend on it.
+    const REGISTERS: usize = 16;
+
     /// The acceleration `a(q, v)`.
     fn acceleration(&self, state: &State<S, D>) -> [S; D];
 

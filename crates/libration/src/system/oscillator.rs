@@ -28,6 +28,7 @@ impl<S: Scalar> Oscillator<S> {
 
 impl<S: Scalar, const D: usize> System<S, D> for Oscillator<S> {
     const POSITIONAL: bool = true;
+    const REGISTERS: usize = 2;
 
     #[inline(always)]
     fn acceleration(&self, state: &State<S, D>) -> [S; D] {
