@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::page::{Page, Point, WIDTHS, visit};
+use super::page::{Page, Point, WIDTHS, visit};
 
 /// The JavaScript for the `index`-th figure of the page.
 fn figure(index: usize) -> String {
