@@ -1,10 +1,10 @@
 //! What the laboratory promises, in one program: every test binary links the laboratory and all that
-//! it stands on, and none can look at a run that another has made.
+//! it stands on, and none can look at a run that another has made. Only the browser has one of its
+//! own, where no study takes the cores from it.
 
 #![allow(clippy::unwrap_used)]
 
 mod analyze;
-mod browser;
 mod config;
 mod config_fuzz;
 mod default_run;

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::page::{Page, Point, WIDTHS, visit};
+use crate::page::{Page, Point, WIDTHS, visit};
 
 /// The JavaScript for the `index`-th figure of the page.
 fn figure(index: usize) -> String {

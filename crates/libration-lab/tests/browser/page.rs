@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::chromium::{self, Chromium};
-use super::devtools::DevTools;
-use crate::default_run;
+use crate::chromium::{self, Chromium};
+use crate::devtools::DevTools;
+use crate::report;
 
 /// A desk and a phone, in CSS pixels.
 pub(crate) const WIDTHS: [u32; 2] = [1440, 390];
@@ -52,7 +52,7 @@ impl Page {
             json!({"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 600}),
         );
         page.prefer("light");
-        let file = format!("file://{}", default_run::file("report.html").display());
+        let file = format!("file://{}", report::file().display());
         let answer = page.devtools.call("Page.navigate", json!({"url": file}));
         assert!(answer["errorText"].is_null(), "{answer}");
         page.devtools.wait("Page.loadEventFired");

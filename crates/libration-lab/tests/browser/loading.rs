@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::page::{WIDTHS, visit};
+use crate::page::{WIDTHS, visit};
 
 /// Seconds of work until the page can be read.
 const READY: f64 = 2.0;

@@ -4,9 +4,12 @@
 //! Without Chromium these tests say so and pass, unless `LIBRATION_REQUIRE_BROWSER` is set, as
 //! `.ci/run` does. `CHROME` names a program that is none of the usual ones.
 
+#![allow(clippy::unwrap_used)]
+
 mod chromium;
 mod devtools;
 mod figures;
 mod loading;
 mod page;
 mod reading;
+mod report;

@@ -6,7 +6,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 
-use super::page::{Page, WIDTHS, visit};
+use crate::page::{Page, WIDTHS, visit};
 
 /// The contrast that body text needs, WCAG 2.2, 1.4.3.
 const CONTRAST: f64 = 4.5;
