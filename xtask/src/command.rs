@@ -60,3 +60,14 @@ fn shown(command: &Command) -> String {
         .get_args()
         .fold(name.into_owned(), |line, argument| format!("{line} {}", argument.to_string_lossy()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{cargo, run, silent};
+
+    #[test]
+    fn a_command_that_succeeds_with_words_is_not_silent() {
+        assert!(run(&mut cargo("--version")).is_ok());
+        assert!(silent(&mut cargo("--version")).is_err());
+    }
+}

@@ -22,8 +22,8 @@ fn subject(config: &Config, name: &str) -> Result<Box<dyn Subject>, CatalogError
         "oscillator" => AnySystem::Oscillator(config.oscillator.system()),
         name => AnySystem::build(name, &[] as &[(&str, f64)])?,
     };
-    // Each in its smallest dimension, where a subject in every dimension of the catalogue would be
-    // half of what the laboratory's code is compiled to.
+    // Each in its smallest dimension: a subject for every dimension of the catalogue would be compiled
+    // and never made.
     match system {
         AnySystem::Oscillator(model) => {
             let start = State { q: [config.start.q], v: [config.start.v] };
