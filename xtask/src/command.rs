@@ -26,6 +26,17 @@ pub(crate) fn run(command: &mut Command) -> Outcome {
     if status.success() { Ok(()) } else { Err(format!("`{}` failed ({status})", shown(command))) }
 }
 
+/// Runs `command` to its end; anything but success without a word is an error.
+pub(crate) fn silent(command: &mut Command) -> Outcome {
+    let output = command.output().map_err(|error| not_started(command, &error))?;
+    let said = [output.stdout, output.stderr].concat();
+    if output.status.success() && said.is_empty() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&said);
+    Err(format!("`{}` ended with {} and said {said:?}", shown(command), output.status))
+}
+
 /// What `command` prints to its standard output.
 pub(crate) fn output(command: &mut Command) -> Result<String, String> {
     let output = command.output().map_err(|error| not_started(command, &error))?;
@@ -48,4 +59,15 @@ fn shown(command: &Command) -> String {
     command
         .get_args()
         .fold(name.into_owned(), |line, argument| format!("{line} {}", argument.to_string_lossy()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{cargo, run, silent};
+
+    #[test]
+    fn a_command_that_succeeds_with_words_is_not_silent() {
+        assert!(run(&mut cargo("--version")).is_ok());
+        assert!(silent(&mut cargo("--version")).is_err());
+    }
 }

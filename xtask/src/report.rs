@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::scratch::Scratch;
 use crate::{Outcome, command, workspace};
 
-/// Runs a quick `lab` and looks at what it wrote.
+/// Runs a quick `lab`, which is to be quiet, and looks at what it wrote.
 ///
 /// With the binary that the tests have built: a release build would take as long as all of them, and
 /// differs in nothing but its speed.
@@ -14,7 +14,7 @@ pub(crate) fn run() -> Outcome {
     command::run(&mut command::cargo("test --workspace --no-run"))?;
     let scratch = Scratch::new("report")?;
     let out = scratch.path().join("out");
-    command::run(
+    command::silent(
         command::program(workspace::built("debug/libration"))
             .args(["lab", "--effort", "quick", "--quiet", "--out"])
             .arg(&out)

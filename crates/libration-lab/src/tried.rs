@@ -177,20 +177,4 @@ mod tests {
         assert_eq!(found.len(), wanted.len());
         assert_eq!(found.into_iter().collect::<BTreeSet<_>>(), wanted);
     }
-
-    #[test]
-    fn a_claim_that_is_not_judged_says_why() {
-        let because = |config: &Config, id: &str, studies: &[&dyn Study]| {
-            let all = unjudged(config, studies, &[]);
-            all.into_iter().find(|claim| claim.id == id).map(|claim| claim.because)
-        };
-        let all = crate::studies::ALL;
-        let leapfrog = Config { integrators: vec![Method::Leapfrog], ..Config::default() };
-        let why = because(&leapfrog, "C16", all).unwrap_or_default();
-        assert!(why.ends_with("left out: velocity Verlet, RK4"), "{why}");
-        let why = because(&Config::default(), "C16", all).unwrap_or_default();
-        assert!(why.contains("the source’s own run"), "{why}");
-        let why = because(&Config::default(), "C16", &[]).unwrap_or_default();
-        assert_eq!(why, "its study, `drift`, was not run");
-    }
 }

@@ -5,7 +5,7 @@ use libration::analysis::{
     UnknownStep,
 };
 use libration::number::Wide;
-use libration::{AnySystem, Elementary, Integrator, Model, Scalar, State};
+use libration::{AnySystem, Elementary, Method, Model, Scalar, State, with_method};
 use serde::Serialize;
 
 use super::Request;
@@ -53,13 +53,13 @@ const LETTERS: usize = 6;
 
 impl OrderOfWord {
     /// None if the method is not a product of kicks and drifts.
-    pub(super) fn of(integrator: impl Integrator) -> Option<Self> {
+    pub(super) fn of(method: Method) -> Option<Self> {
         let shown = |letter: &Letter| match letter {
             Letter::Kick(w) => format!("kick {}", w.to_f64()),
             Letter::Drift(w) => format!("drift {}", w.to_f64()),
         };
-        let word = Tableau::new(integrator)?.word()?;
-        let certificate = OrderCertificate::new(integrator, LETTERS)?;
+        let word = with_method!(method, |m| Tableau::new(m))?.word()?;
+        let certificate = with_method!(method, |m| OrderCertificate::new(m, LETTERS))?;
         Some(OrderOfWord {
             word: word.iter().map(shown).collect(),
             order: certificate.order(),
@@ -70,15 +70,17 @@ impl OrderOfWord {
 
 /// The windows of a linear system, in s.
 pub(super) fn stability_windows(
-    integrator: impl Integrator,
+    method: Method,
     system: AnySystem,
 ) -> Option<Vec<[Option<f64>; 2]>> {
     // In powers of z for an oscillator of any stiffness, and of Δt where there is damping.
     let (step, unit) = match system {
-        AnySystem::Oscillator(model) => (SymbolicStep::new(integrator)?, period(model.omega2)),
+        AnySystem::Oscillator(model) => {
+            (with_method!(method, |m| SymbolicStep::new(m))?, period(model.omega2))
+        }
         AnySystem::DampedOscillator(model) => {
             let system = Model::<1>::on::<UnknownStep>(&model);
-            (SymbolicStep::of(integrator, &system)?, Wide::one())
+            (with_method!(method, |m| SymbolicStep::of(m, &system))?, Wide::one())
         }
         _ => return None,
     };

@@ -95,35 +95,67 @@ pub fn analyze(request: &Request) -> Result<Analysis, AnalyzeError> {
     with_system!(
         request.system,
         dimension,
-        |model, D| with_method!(request.method, |integrator| run::<D>(integrator, model, request)),
+        |model, D| {
+            let start = State {
+                q: std::array::from_fn::<_, D, _>(|i| request.q[i]),
+                v: std::array::from_fn(|i| request.v[i]),
+            };
+            let step = with_method!(request.method, |m| Step::take(m, model, start, request))?;
+            answer(model, &start, step, request)
+        },
         Err(request.system.entry().wrong_dimension(dimension).into())
     )
 }
 
-fn run<const D: usize>(
-    integrator: impl Integrator,
-    model: impl Model<D>,
+/// What must be asked of an integrator on a system; [`answer`] is compiled for each system only.
+struct Step<const D: usize> {
+    linear: Linearisation<D>,
+    evaluations: u64,
+    /// Of a nonlinear system, which can only be simulated.
+    drift: Option<Drift>,
+}
+
+impl<const D: usize> Step<D> {
+    fn take(
+        integrator: impl Integrator,
+        model: impl Model<D>,
+        start: State<f64, D>,
+        request: &Request,
+    ) -> Result<Self, AnalyzeError> {
+        let mut simulator = Simulator::new(model.on::<f64>(), integrator, start, request.dt)?;
+        let linear = Linearisation::new(integrator, model, &start, request.dt);
+        regular(&linear, request)?;
+        let drift = match request.system.is_linear() {
+            true => None,
+            false => simulated_drift(&mut simulator.clone(), model, request.steps),
+        };
+        simulator.run(1, &mut ()).ok();
+        Ok(Step { linear, evaluations: simulator.evaluations(), drift })
+    }
+}
+
+/// Fails if the Jacobian of the step does not exist.
+fn regular<const D: usize>(
+    linear: &Linearisation<D>,
     request: &Request,
-) -> Result<Analysis, AnalyzeError> {
-    let start = State {
-        q: std::array::from_fn(|i| request.q[i]),
-        v: std::array::from_fn(|i| request.v[i]),
-    };
-    let mut simulator = Simulator::new(model.on::<f64>(), integrator, start, request.dt)?;
-    let linear = Linearisation::new(integrator, model, &start, request.dt);
-    let rows = linear.step.rows();
-    if rows.iter().flatten().any(|x| x.is_nan()) {
+) -> Result<(), AnalyzeError> {
+    if linear.step.rows().iter().flatten().any(|x| x.is_nan()) {
         let (q, v) = (request.q.clone(), request.v.clone());
         return Err(AnalyzeError::Singular { allowed: allowed(request.system), q, v });
     }
-    let drift = if request.system.is_linear() {
-        forecast_drift(model, &linear.step, &start, request.steps).map(Drift::from)
-    } else {
-        simulated_drift(&mut simulator.clone(), model, request.steps)
-    };
-    simulator.run(1, &mut ()).ok();
+    Ok(())
+}
+
+fn answer<const D: usize>(
+    model: impl Model<D>,
+    start: &State<f64, D>,
+    step: Step<D>,
+    request: &Request,
+) -> Result<Analysis, AnalyzeError> {
+    let Step { linear, evaluations, drift } = step;
+    let method = request.method;
     let polynomials = matches!(request.system, AnySystem::Oscillator(_))
-        .then(|| SymbolicStep::new(integrator))
+        .then(|| with_method!(method, |m| SymbolicStep::new(m)))
         .flatten();
     let exact = polynomials.as_ref().zip(omega(request.system));
     let modes = Modes::new(
@@ -138,9 +170,13 @@ fn run<const D: usize>(
         rows.iter().map(|row| row.iter().map(ToString::to_string).collect()).collect()
     };
     let linear_system = request.system.is_linear();
+    let drift = match linear_system {
+        true => forecast_drift(model, &linear.step, start, request.steps).map(Drift::from),
+        false => drift,
+    };
     Ok(Analysis {
         about: About::new(request),
-        update_matrix: to_f64(&rows),
+        update_matrix: to_f64(&linear.step.rows()),
         update_matrix_in_z: polynomials.as_ref().map(in_z),
         determinant: modes.determinant.to_f64(),
         determinant_minus_one: modes.determinant_minus_one.to_f64(),
@@ -149,16 +185,16 @@ fn run<const D: usize>(
         spectral_radius: modes.radius.to_f64(),
         spectral_radius_minus_one: modes.radius_minus_one.to_f64(),
         bounded: modes.bounded.filter(|_| linear_system),
-        stability_windows: limits::stability_windows(integrator, request.system),
-        largest_dt: limits::largest_dt(polynomials.as_ref(), &start, request),
+        stability_windows: limits::stability_windows(method, request.system),
+        largest_dt: limits::largest_dt(polynomials.as_ref(), start, request),
         modified_hamiltonian: linear_system
             .then(|| ModifiedHamiltonian::of(&linear.step, modes.determinant_minus_one.is_zero()))
             .flatten(),
-        order_of_word: positional(&model).then(|| OrderOfWord::of(integrator)).flatten(),
+        order_of_word: positional(&model).then(|| OrderOfWord::of(method)).flatten(),
         symplecticity_defect: defect(modes.symplecticity_defect, exact.is_some()),
         reversibility_defect: defect(reversibility, exact.is_some()),
         phase_error_per_step: modes.phase_error.map(Wide::to_f64),
-        force_evaluations_per_step: simulator.evaluations(),
+        force_evaluations_per_step: evaluations,
         drift,
     })
 }

@@ -2,8 +2,10 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use libration::simulation::{SimulationError, Simulator};
-use libration::{Hamiltonian, Integrator, Model, Scalar, State, with_method, with_system};
+use libration::simulation::{Sample, SimulationError, Simulator};
+use libration::{
+    Float, Hamiltonian, Integrator, Model, Scalar, State, System, with_method, with_system,
+};
 
 use super::many::Many;
 use super::{Ending, Request, Stopped, TrajectoryError};
@@ -40,45 +42,68 @@ fn on_model<S: Number, const D: usize, M: Model<D>>(
     let coordinates = |x: &[f64]| core::array::from_fn(|i| x.get(i).map_or(S::zero(), number));
     let start = State { q: coordinates(&request.q), v: coordinates(&request.v) };
     let dt = S::from_f64(request.dt);
-    with_method!(request.method, |integrator| {
-        let simulator = Simulator::new(system, integrator, start, dt)?;
-        advance(simulator, system, request, rows, stop)
-    })
+    let energy = |state: &State<S, D>| system.energy(state);
+    let mut simulation: Box<dyn Simulation<S, D> + '_> =
+        with_method!(request.method, |integrator| {
+            Box::new(Simulator::new(system, integrator, start, dt)?)
+        });
+    advance(&mut *simulation, &energy, request, rows, stop)
 }
 
 fn number<S: Scalar>(x: &f64) -> S {
     S::from_f64(*x)
 }
 
-/// Runs `simulator` to the end, showing `rows` the start, each `every`-th step and the last.
-fn advance<S: Number, const D: usize, Sys: Hamiltonian<S, D> + Copy, I: Integrator>(
-    mut simulator: Simulator<Sys, I, S, D>,
-    system: Sys,
+/// What the loop over rows asks of a simulator: so asked, it is compiled for each float type and
+/// dimension, and not for each of the five hundred simulators of the catalogue.
+trait Simulation<S, const D: usize> {
+    fn run(&mut self, steps: u64) -> Result<(), SimulationError>;
+    fn sample(&self) -> Sample<S, D>;
+}
+
+impl<Sys, I, S, const D: usize> Simulation<S, D> for Simulator<Sys, I, S, D>
+where
+    Sys: System<S, D> + Copy,
+    I: Integrator,
+    S: Float,
+{
+    fn run(&mut self, steps: u64) -> Result<(), SimulationError> {
+        Simulator::run(self, steps, &mut ())
+    }
+
+    fn sample(&self) -> Sample<S, D> {
+        Simulator::sample(self)
+    }
+}
+
+/// Runs `simulation` to the end, showing `rows` the start, each `every`-th step and the last.
+fn advance<S: Number, const D: usize>(
+    simulation: &mut dyn Simulation<S, D>,
+    energy: &dyn Fn(&State<S, D>) -> S,
     request: &Request,
     rows: &mut dyn Rows<S>,
     stop: &AtomicBool,
 ) -> Result<Ending, TrajectoryError> {
     let Request { steps, every, .. } = *request;
     let mut values = Vec::with_capacity(2 * D + 1);
-    let mut show = |simulator: &Simulator<Sys, I, S, D>| {
-        let sample = simulator.sample();
+    let mut show = |sample: Sample<S, D>| {
         values.clear();
         values.extend(sample.state.coordinates());
-        values.push(system.energy(&sample.state));
+        values.push(energy(&sample.state));
         rows.row(&[sample.step], sample.time, &values)
     };
-    show(&simulator)?;
+    show(simulation.sample())?;
     let (mut step, mut shown) = (0, 0);
     while step < steps {
         if stop.load(Ordering::Relaxed) {
             return Err(TrajectoryError::Interrupted);
         }
         let to_next_row = (every - step % every).min(steps - step);
-        let outcome = simulator.run(to_next_row.min(CHUNK), &mut ());
-        step = simulator.sample().step;
+        let outcome = simulation.run(to_next_row.min(CHUNK));
+        step = simulation.sample().step;
         let ended = outcome.is_err() || step == steps;
         if step != shown && (ended || step.is_multiple_of(every)) {
-            show(&simulator)?;
+            show(simulation.sample())?;
             shown = step;
         }
         match outcome {

@@ -1,10 +1,11 @@
 //! The DevTools protocol: commands, their answers, and the events in between.
 
+use std::io::ErrorKind;
 use std::net::TcpStream;
 use std::time::Duration;
 
 use serde_json::{Value, json};
-use tungstenite::{Message, WebSocket};
+use tungstenite::{Error, Message, WebSocket};
 
 /// An answer that takes longer than this will not come.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -55,9 +56,13 @@ impl DevTools {
     }
 
     fn receive(&mut self, awaited: &str) -> Value {
-        match self.socket.read() {
-            Ok(message) => serde_json::from_str(message.to_text().unwrap()).unwrap(),
-            Err(error) => panic!("while waiting for {awaited}: {error}"),
+        loop {
+            match self.socket.read() {
+                Ok(message) => return serde_json::from_str(message.to_text().unwrap()).unwrap(),
+                // A process that was stopped and goes on finds its wait cut short; it waits anew.
+                Err(Error::Io(error)) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => panic!("while waiting for {awaited}: {error}"),
+            }
         }
     }
 }

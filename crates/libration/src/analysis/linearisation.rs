@@ -20,6 +20,13 @@ pub struct Linearisation<const D: usize> {
     pub dt: Wide,
 }
 
+/// The rate of change of a state, or any other map of phase space.
+type Rate<'a, const D: usize> = dyn Fn(State<Dual<Wide>, D>) -> State<Dual<Wide>, D> + 'a;
+
+/// One step from a state, of the given size.
+type Step<'a, const D: usize> =
+    dyn Fn(State<Dual<Wide>, D>, Dual<Wide>) -> State<Dual<Wide>, D> + 'a;
+
 impl<const D: usize> Linearisation<D> {
     /// `integrator` with a step of `dt` seconds on `model`, about the state `at`.
     pub fn new(
@@ -29,14 +36,19 @@ impl<const D: usize> Linearisation<D> {
         dt: f64,
     ) -> Self {
         let system = model.on::<Dual<Wide>>();
-        let at = at.map(wide);
-        let dt = wide(dt);
-        let step = |h: Wide| move |s| integrator.step(&system, s, Dual::constant(h));
-        let end = step(dt)(at.map(Dual::constant)).map(|x| x.re);
+        let rate = |state| system.rate(state);
+        let step = |state, h| integrator.step(&system, state, h);
+        Linearisation::of(&rate, &step, at.map(wide), wide(dt))
+    }
+
+    /// The maps are dynamic, so that the matrices are compiled once for each dimension.
+    fn of(rate: &Rate<'_, D>, step: &Step<'_, D>, at: State<Wide, D>, dt: Wide) -> Self {
+        let by = |h: Wide| move |state| step(state, Dual::constant(h));
+        let end = by(dt)(at.map(Dual::constant)).map(|x| x.re);
         Linearisation {
-            generator: jacobian(|s| system.rate(s), &at),
-            step: jacobian(step(dt), &at),
-            back: jacobian(step(-dt), &end),
+            generator: jacobian(rate, &at),
+            step: jacobian(&by(dt), &at),
+            back: jacobian(&by(-dt), &end),
             dt,
         }
     }
@@ -48,10 +60,7 @@ impl<const D: usize> Linearisation<D> {
 }
 
 /// The Jacobian of `f` at `at`, one direction of phase space at a time.
-fn jacobian<const D: usize>(
-    f: impl Fn(State<Dual<Wide>, D>) -> State<Dual<Wide>, D>,
-    at: &State<Wide, D>,
-) -> UpdateMatrix<Wide, D> {
+fn jacobian<const D: usize>(f: &Rate<'_, D>, at: &State<Wide, D>) -> UpdateMatrix<Wide, D> {
     UpdateMatrix::from_map(|direction| {
         f(State {
             q: core::array::from_fn(|i| Dual { re: at.q[i], du: direction.q[i] }),

@@ -18,6 +18,11 @@ pub struct UpdateMatrix<S, const D: usize> {
 impl<S: Scalar, const D: usize> UpdateMatrix<S, D> {
     /// The linear map `f`, by its values on the unit vectors.
     pub fn from_map(f: impl Fn(State<S, D>) -> State<S, D>) -> Self {
+        UpdateMatrix::from_images(&f)
+    }
+
+    /// With a dynamic map, so that this is compiled once for each number type and dimension.
+    fn from_images(f: &dyn Fn(State<S, D>) -> State<S, D>) -> Self {
         let unit = |set: &dyn Fn(&mut State<S, D>)| {
             let mut e = State::origin();
             set(&mut e);

@@ -65,15 +65,7 @@ where
         start: State<S, D>,
         dt: S,
     ) -> Result<Self, SimulationError> {
-        if !(dt > S::zero() && dt.is_finite()) {
-            return Err(SimulationError::TimeStep { dt: dt.to_f64(), float: S::NAME });
-        }
-        if let Some((coordinate, value)) =
-            start.coordinates().enumerate().find(|(_, x)| !x.is_finite())
-        {
-            let value = value.to_f64();
-            return Err(SimulationError::Start { coordinate, value, float: S::NAME });
-        }
+        check(&start, dt)?;
         Ok(Simulator { system, integrator, dt, step: 0, state: start, evaluations: Cell::new(0) })
     }
 
@@ -119,5 +111,20 @@ where
     #[inline(always)]
     fn time_of(&self, step: u64) -> f64 {
         step as f64 * self.dt.to_f64()
+    }
+}
+
+/// Apart from [`Simulator::new`], since it depends on neither system nor integrator: it is then
+/// compiled once for each number type and dimension, not once for each simulator of the catalogue.
+fn check<S: Float, const D: usize>(start: &State<S, D>, dt: S) -> Result<(), SimulationError> {
+    if !(dt > S::zero() && dt.is_finite()) {
+        return Err(SimulationError::TimeStep { dt: dt.to_f64(), float: S::NAME });
+    }
+    let mut coordinates = start.coordinates().enumerate();
+    match coordinates.find(|(_, x)| !x.is_finite()) {
+        None => Ok(()),
+        Some((coordinate, value)) => {
+            Err(SimulationError::Start { coordinate, value: value.to_f64(), float: S::NAME })
+        }
     }
 }

@@ -1,7 +1,5 @@
 //! Configuration files: what is read, and what is said about what cannot be read.
 
-#![allow(clippy::unwrap_used)]
-
 use libration::Method;
 use libration_lab::config::{ConfigError, DEFAULT, parse, parse_bytes, schema};
 use libration_lab::{Config, Effort};

@@ -1,34 +1,10 @@
 //! Errors, stable steps and costs, beside numbers from elsewhere.
 
-#![allow(clippy::unwrap_used)]
-
 use std::collections::HashSet;
-use std::sync::OnceLock;
-use std::sync::atomic::AtomicBool;
 
-use libration_lab::studies;
 use libration_lab::untried::UNTRIED;
-use libration_lab::{Config, Effort, Lab, Record, Silent};
 
-/// The records of the default configuration, made once.
-fn default() -> &'static [Record] {
-    static RECORDS: OnceLock<Vec<Record>> = OnceLock::new();
-    RECORDS.get_or_init(|| {
-        let (config, stop) = (Config::default(), AtomicBool::new(false));
-        let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
-        studies::ALL.iter().map(|study| study.run(&lab).unwrap()).collect()
-    })
-}
-
-fn measured(id: &str) -> f64 {
-    let found = default().iter().find_map(|record| record.finding(id).ok());
-    found.unwrap_or_else(|| panic!("no finding {id}")).measured
-}
-
-fn predicted(id: &str) -> f64 {
-    let found = default().iter().find_map(|record| record.finding(id).ok());
-    found.and_then(|f| f.predicted).unwrap_or_else(|| panic!("no prediction {id}"))
-}
+use crate::default_run::{measured, predicted, records};
 
 #[test]
 fn the_numbers_of_the_source_are_met_as_it_compared_them_and_as_they_are() {
@@ -70,7 +46,7 @@ fn stable_steps_are_those_of_an_independent_search() {
 
 #[test]
 fn the_cheapest_method_is_the_one_that_a_hand_calculation_finds() {
-    let record = default().iter().find(|r| r.name == "efficiency").unwrap();
+    let record = records().iter().find(|r| r.name == "efficiency").unwrap();
     let rows = &record.table("answers").unwrap().rows;
     let answer = |kind: &str, tolerance: f64, periods: u64| {
         let row = rows
@@ -92,7 +68,7 @@ fn an_oscillator_test_sees_order_four_where_the_word_says_three() {
 
 #[test]
 fn every_claim_of_the_stability_chapters_is_judged_or_accounted_for() {
-    let judged = default().iter().flat_map(|r| &r.claims).map(|c| c.id.as_str());
+    let judged = records().iter().flat_map(|r| &r.claims).map(|c| c.id.as_str());
     let untried = UNTRIED.iter().map(|u| u.id);
     let known: HashSet<&str> = judged.chain(untried).collect();
     let wanted = (1..=35).chain(70..=81).map(|n| format!("C{n:02}"));

@@ -1,7 +1,5 @@
 //! Reports on other configurations than the default: what they cannot show or judge, they say.
 
-#![allow(clippy::unwrap_used)]
-
 use std::collections::HashSet;
 use std::fs;
 use std::path::PathBuf;
@@ -10,6 +8,7 @@ use std::sync::atomic::AtomicBool;
 use libration::Method;
 use libration_lab::config::{Drift, Error, Nonlinear, Spring};
 use libration_lab::output::Output;
+use libration_lab::tried::unjudged;
 use libration_lab::{Config, Effort, Lab, Silent, Study, session, studies};
 use serde_json::Value;
 
@@ -88,4 +87,21 @@ fn a_report_on_one_integrator_shows_no_empty_figure_and_no_empty_answer() {
         let mut ids = figures.flat_map(|study| study["figures"].as_array().unwrap());
         assert!(ids.all(|figure| figure["id"] != "nonlinear-portraits"));
     }
+}
+
+/// Here and not beside `unjudged`: the program of the unit tests would hold every study for it.
+#[test]
+fn a_claim_that_is_not_judged_says_why() {
+    let because = |config: &Config, id: &str, studies: &[&dyn Study]| {
+        let all = unjudged(config, studies, &[]);
+        all.into_iter().find(|claim| claim.id == id).map(|claim| claim.because)
+    };
+    let all = studies::ALL;
+    let leapfrog = Config { integrators: vec![Method::Leapfrog], ..Config::default() };
+    let why = because(&leapfrog, "C16", all).unwrap_or_default();
+    assert!(why.ends_with("left out: velocity Verlet, RK4"), "{why}");
+    let why = because(&Config::default(), "C16", all).unwrap_or_default();
+    assert!(why.contains("the source’s own run"), "{why}");
+    let why = because(&Config::default(), "C16", &[]).unwrap_or_default();
+    assert_eq!(why, "its study, `drift`, was not run");
 }

@@ -1,7 +1,5 @@
 //! The command `simulate` as a user meets it.
 
-#![allow(clippy::unwrap_used)]
-
 use std::env;
 use std::fs;
 use std::io::{BufRead, BufReader};

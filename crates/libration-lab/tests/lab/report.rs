@@ -1,36 +1,19 @@
 //! What a run writes: the contract of `results.json`, and a page that needs nothing but itself.
 
-#![allow(clippy::unwrap_used)]
-
 use std::collections::HashSet;
 use std::fs;
-use std::path::PathBuf;
-use std::sync::OnceLock;
-use std::sync::atomic::AtomicBool;
 
-use libration_lab::output::Output;
-use libration_lab::{Config, Effort, Lab, Silent, session, studies, tried};
+use libration_lab::tried;
 use serde_json::Value;
 
-/// The folder of one quick run, made once.
-fn folder() -> &'static PathBuf {
-    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
-    FOLDER.get_or_init(|| {
-        let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("report");
-        let _ = fs::remove_dir_all(&folder);
-        let (config, stop) = (Config::default(), AtomicBool::new(false));
-        let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
-        session::run(&lab, studies::ALL, &Output::open(&folder).unwrap()).unwrap();
-        folder
-    })
-}
+use crate::default_run::file;
 
 fn results() -> Value {
-    serde_json::from_str(&fs::read_to_string(folder().join("results.json")).unwrap()).unwrap()
+    serde_json::from_str(&fs::read_to_string(file("results.json")).unwrap()).unwrap()
 }
 
 fn page() -> String {
-    fs::read_to_string(folder().join("report.html")).unwrap()
+    fs::read_to_string(file("report.html")).unwrap()
 }
 
 /// The values of an attribute wherever it stands in `html`, scripts left out.
@@ -87,7 +70,7 @@ fn results_keep_their_contract() {
             );
         }
         for figure in study["figures"].as_array().unwrap() {
-            let svg = fs::read_to_string(folder().join(figure["file"].as_str().unwrap())).unwrap();
+            let svg = fs::read_to_string(file(figure["file"].as_str().unwrap())).unwrap();
             roxmltree::Document::parse(&svg).unwrap();
             assert!(
                 markup().contains(&format!("data-figure=\"{}\"", figure["id"].as_str().unwrap()))
@@ -112,7 +95,7 @@ fn keys(value: &Value, found: &mut HashSet<String>) {
 
 #[test]
 fn every_key_of_the_results_is_documented() {
-    let document = include_str!("../../../docs/results.md");
+    let document = include_str!("../../../../docs/results.md");
     let mut found = HashSet::new();
     keys(&results(), &mut found);
     for key in found {
@@ -255,7 +238,7 @@ fn an_entry_of_the_ledger_leads_to_the_figures_that_show_its_evidence() {
 
 #[test]
 fn every_series_is_a_parquet_file() {
-    let files: Vec<_> = fs::read_dir(folder().join("data")).unwrap().map(Result::unwrap).collect();
+    let files: Vec<_> = fs::read_dir(file("data")).unwrap().map(Result::unwrap).collect();
     assert!(files.len() >= 20, "{} files", files.len());
     for file in files {
         let bytes = fs::read(file.path()).unwrap();

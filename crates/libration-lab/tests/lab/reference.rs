@@ -1,7 +1,5 @@
 //! A million steps against the orbits of exact arithmetic.
 
-#![allow(clippy::unwrap_used)]
-
 use libration::{AnySystem, Method};
 use libration_lab::export::Values;
 use libration_lab::trajectory::{FloatType, Request, simulate};

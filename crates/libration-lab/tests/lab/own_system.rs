@@ -1,7 +1,5 @@
 //! A system of the user's own, through the studies that take any.
 
-#![allow(clippy::unwrap_used)]
-
 use std::sync::atomic::AtomicBool;
 
 use libration::system::{DampedOscillator, Duffing};

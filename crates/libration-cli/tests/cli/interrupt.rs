@@ -1,8 +1,5 @@
 //! Ctrl-C: the run ends soon, and what it finished is kept.
 
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
-
 use std::fs;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;

@@ -1,7 +1,5 @@
 //! A run that is stopped keeps the studies that it finished.
 
-#![allow(clippy::unwrap_used)]
-
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 

@@ -1,7 +1,5 @@
 //! Verdicts follow the evidence, at settings far from the default.
 
-#![allow(clippy::unwrap_used)]
-
 use std::sync::atomic::AtomicBool;
 
 use libration_lab::config::{Drift, Stability};

@@ -1,7 +1,5 @@
 //! Trajectories as tables.
 
-#![allow(clippy::unwrap_used)]
-
 use std::sync::atomic::AtomicBool;
 
 use libration::{AnySystem, Method, catalog};

@@ -1,7 +1,5 @@
 //! The analysis of one step, as a user gets it.
 
-#![allow(clippy::unwrap_used)]
-
 use libration::integrator::VelocityVerlet;
 use libration::system::Oscillator;
 use libration::{AnySystem, Hamiltonian, Integrator, Method, State};

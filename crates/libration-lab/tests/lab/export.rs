@@ -1,7 +1,5 @@
 //! What is written reads back as the same bits.
 
-#![allow(clippy::unwrap_used)]
-
 use bytes::Bytes;
 use half::{bf16, f16};
 use libration_lab::export::{

@@ -1,0 +1,9 @@
+//! The program as a user meets it. One binary: each would link all that the program stands on.
+
+#![allow(clippy::unwrap_used)]
+
+mod analyze;
+#[cfg(unix)]
+mod interrupt;
+mod lab;
+mod simulate;

@@ -1,0 +1,21 @@
+//! What the laboratory promises, in one program: every test binary links the laboratory and all that
+//! it stands on, and none can look at a run that another has made. Only the browser has one of its
+//! own, where no study takes the cores from it.
+
+#![allow(clippy::unwrap_used)]
+
+mod analyze;
+mod config;
+mod config_fuzz;
+mod default_run;
+mod export;
+mod interrupted;
+mod numbers;
+mod other_reports;
+mod own_system;
+mod reference;
+mod report;
+mod settings;
+mod studies;
+mod trajectory;
+mod verdicts;
