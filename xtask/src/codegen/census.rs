@@ -22,17 +22,18 @@ pub(super) struct Census {
 }
 
 impl Census {
-    /// Counts, where `register` is the letter of the widest registers.
-    pub(super) fn of(loops: &[&[Instruction<'_>]], register: char) -> Census {
+    /// Counts, where `register` is the letter of the widest registers. Where the loops also `move` blocks
+    /// in and out, only arithmetic can be narrow.
+    pub(super) fn of(loops: &[&[Instruction<'_>]], register: char, moves: bool) -> Census {
         let mut census = Census::default();
         for body in loops {
             for instruction in *body {
                 let full = instruction.register().is_none_or(|r| r == register);
                 match instruction.arithmetic() {
                     Some(Arithmetic::Scalar) => census.scalar += 1,
-                    _ if !full => census.narrow += 1,
-                    Some(Arithmetic::Packed) => census.vector += 1,
-                    None => {}
+                    Some(Arithmetic::Packed) if full => census.vector += 1,
+                    arithmetic if !full && (arithmetic.is_some() || !moves) => census.narrow += 1,
+                    _ => {}
                 }
                 census.calls += usize::from(instruction.is_call());
                 let returns = |place| body.iter().any(|other| other.reloads() == Some(place));
@@ -46,11 +47,22 @@ impl Census {
 /// A line for every kernel.
 pub(super) fn table(censuses: &[(Kernel, Census)]) -> String {
     let mut table = format!(
-        "{:<8}{:<6}{:<20}{:<30}{:>5}{:>8}{:>8}{:>8}{:>7}{:>8}\n",
-        "", "", "system", "method", "width", "vector", "scalar", "narrow", "calls", "spills"
+        "{:<8}{:<6}{:<20}{:<30}{:<9}{:>5}{:>8}{:>8}{:>8}{:>7}{:>8}\n",
+        "",
+        "",
+        "system",
+        "method",
+        "kernel",
+        "width",
+        "vector",
+        "scalar",
+        "narrow",
+        "calls",
+        "spills"
     );
     for (kernel, census) in censuses {
-        let Kernel { instructions, float, system, method, width } = kernel;
+        let Kernel { instructions, float, system, method, width, .. } = kernel;
+        let kind = kernel.kind();
         let Census { vector, scalar, narrow, calls, spills } = census;
         // With 16 registers blocks live in memory, which tells nothing.
         let spills = match instructions {
@@ -60,7 +72,7 @@ pub(super) fn table(censuses: &[(Kernel, Census)]) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(
             table,
-            "{instructions:<8}{float:<6}{system:<20}{method:<30}{width:>5}{vector:>8}{scalar:>8}\
+            "{instructions:<8}{float:<6}{system:<20}{method:<30}{kind:<9}{width:>5}{vector:>8}{scalar:>8}\
              {narrow:>8}{calls:>7}{spills:>8}"
         );
     }
@@ -75,7 +87,7 @@ mod tests {
     /// Of a loop with this body, with the registers of AVX-512.
     fn census(body: &str) -> Census {
         let assembly = format!("_RNvkernel:\n.L1:\n{body}\tdecq\t%rax\n\tjne\t.L1\n\tretq\n");
-        Census::of(&hot::loops(&function::read(&assembly)[0]), 'z')
+        Census::of(&hot::loops(&function::read(&assembly)[0]), 'z', false)
     }
 
     #[test]
@@ -122,7 +134,7 @@ mod tests {
         let cells: Vec<&str> = line.split_whitespace().collect();
         assert_eq!(
             cells,
-            ["avx512", "f64", "oscillator", "yoshida4", "64", "168", "0", "0", "0", "0"]
+            ["avx512", "f64", "oscillator", "yoshida4", "advance", "64", "168", "0", "0", "0", "0"]
         );
     }
 }

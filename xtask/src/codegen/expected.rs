@@ -36,16 +36,18 @@ pub(super) fn complaints(found: &[(Kernel, Census)]) -> Vec<String> {
     for instructions in Instructions::ALL {
         for float in FLOATS {
             for (_, system) in SYSTEMS {
-                for (_, method) in METHODS {
+                for ((_, method), pass) in METHODS.iter().flat_map(|m| [(m, false), (m, true)]) {
                     let is_it = |(kernel, _): &(Kernel, Census)| {
                         let names = (kernel.float.as_str(), kernel.system.as_str());
                         kernel.instructions == instructions
                             && names == (float, system)
-                            && kernel.method == method
+                            && kernel.method == *method
+                            && kernel.pass == pass
                     };
                     if !found.iter().any(is_it) {
+                        let kind = if pass { "pass" } else { "advance" };
                         missing.push(format!(
-                            "{instructions} {float} {system} {method}: not in the assembly. Is it \
+                            "{instructions} {float} {system} {method} ({kind}): not in the assembly. Is it \
                              a function of its own, and is its method and system made in \
                              crates/libration/src/ensemble/any.rs?"
                         ));
@@ -93,7 +95,10 @@ mod tests {
     #[test]
     fn an_assembly_without_kernels_is_refused() {
         let missing = complaints(&[]);
-        assert_eq!(missing.len(), 2 * 2 * SYSTEMS.len() * METHODS.len());
-        assert!(missing[0].starts_with("avx2 f32 oscillator explicit-euler: not in the assembly"));
+        assert_eq!(missing.len(), 2 * 2 * 2 * SYSTEMS.len() * METHODS.len());
+        assert!(
+            missing[0]
+                .starts_with("avx2 f32 oscillator explicit-euler (advance): not in the assembly")
+        );
     }
 }

@@ -14,6 +14,9 @@ pub(super) struct Kernel {
     pub(super) system: String,
     /// By its name on the command line, or its type if it has none.
     pub(super) method: String,
+    /// Whether it goes through many blocks with few steps each (`Pass`), or takes many steps with one
+    /// (`Advance`).
+    pub(super) pass: bool,
     /// Lanes.
     pub(super) width: usize,
 }
@@ -47,16 +50,25 @@ impl fmt::Display for Instructions {
 }
 
 impl Kernel {
+    /// What it is called in the table.
+    pub(super) fn kind(&self) -> &'static str {
+        if self.pass { "pass" } else { "advance" }
+    }
+
     /// The kernel of this symbol, if it is one for AVX2 or AVX-512.
     pub(super) fn of(symbol: &str) -> Option<Kernel> {
         let demangled = format!("{:#}", rustc_demangle::try_demangle(symbol).ok()?);
-        let (shim, arguments) = demangled.split_once("::Advance<")?;
+        let of = |name: &str| demangled.split_once(name);
+        let (pass, (shim, arguments)) = match of("::Advance<") {
+            Some(parts) => (false, parts),
+            None => (true, of("::Pass<")?),
+        };
         let instructions = match () {
             () if shim.contains("::V4") => Instructions::Avx512,
             () if shim.contains("::V3") => Instructions::Avx2,
             () => return None,
         };
-        // The order of the parameters of `Advance`.
+        // The order of the parameters of both.
         let [float, method, _, _, system, _, width] = arguments_of(arguments)?.try_into().ok()?;
         let system = system.split('<').next().unwrap_or_default();
         Some(Kernel {
@@ -64,6 +76,7 @@ impl Kernel {
             float: float.to_owned(),
             system: called(&without_paths(system), &SYSTEMS),
             method: called(&without_paths(method), &METHODS),
+            pass,
             width: width.trim_end_matches("usize").parse().ok()?,
         })
     }
@@ -117,6 +130,13 @@ pub(super) mod tests {
         NtNtB2L_15velocity_verlet14VelocityVerletKj3_EINtNtB1R_6assign3AllINtNtNtB1T_6system\
         10oscillator10OscillatordEEIB4e_dEB4x_Kj1_Kj40_EEEB1T_";
 
+    /// The same in passes of 32 lanes.
+    const PASS: &str = "_RINvNvMs2_NtNtCs9I3Sfxch5Hm_4pulp3x862v4NtB8_2V4\
+        9vectorize3impINtNvXs0_B8_BC_NtBc_4Simd9vectorize4ImplINtNtNtCslgnf09HP9XC_\
+        9libration8ensemble6kernel4PassdINtNtNtB1J_10integrator11composition11Composition\
+        NtNtB2y_15velocity_verlet14VelocityVerletKj3_EINtNtB1H_6assign3AllINtNtNtB1J_6system\
+        10oscillator10OscillatordEEIB41_dEB4k_Kj1_Kj20_EEEB1J_";
+
     #[test]
     fn a_symbol_tells_the_kernel() {
         let kernel = Kernel {
@@ -124,9 +144,11 @@ pub(super) mod tests {
             float: "f64".to_owned(),
             system: "oscillator".to_owned(),
             method: "yoshida4".to_owned(),
+            pass: false,
             width: 64,
         };
-        assert_eq!(Kernel::of(SYMBOL), Some(kernel));
+        assert_eq!(Kernel::of(SYMBOL), Some(kernel.clone()));
+        assert_eq!(Kernel::of(PASS), Some(Kernel { pass: true, width: 32, ..kernel }));
     }
 
     #[test]

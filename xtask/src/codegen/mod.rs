@@ -56,7 +56,8 @@ fn censuses(assembly: &str) -> Vec<(Kernel, Census)> {
             // A lone leftover is stepped as the scalar that it is.
             (kernel.width > 1).then(|| {
                 let vector = kernel.instructions.register();
-                (kernel, Census::of(&hot::loops(function), vector))
+                let moves = kernel.pass;
+                (kernel, Census::of(&hot::loops(function), vector, moves))
             })
         })
         .collect();

@@ -5,16 +5,18 @@ use super::kernel::{Instructions, Kernel};
 
 /// With AVX-512, vector operations for each register that is spilled, at the least.
 ///
-/// Stores and loads run beside arithmetic: so few cost 4 % at most, and narrower blocks without them
-/// up to 8 %, as measured.
-const OPERATIONS_PER_SPILL: usize = 20;
+/// Stores and loads run beside arithmetic: so few cost less than narrower blocks without them. The
+/// pendulum under velocity Verlet in `f64` spills 15 beside 224, and is 1.6 times as fast as in blocks half
+/// as wide.
+const OPERATIONS_PER_SPILL: usize = 14;
 
 /// A sentence for each kernel that is not all vectors.
 pub(super) fn complaints(censuses: &[(Kernel, Census)]) -> Vec<String> {
     let sentence = |(kernel, census): &(Kernel, Census)| {
         let Kernel { instructions, float, system, method, .. } = kernel;
+        let kind = kernel.kind();
         let complaint = complaint(kernel, census)?;
-        Some(format!("{instructions} {float} {system} {method}: {complaint}"))
+        Some(format!("{instructions} {float} {system} {method} ({kind}): {complaint}"))
     };
     censuses.iter().filter_map(sentence).collect()
 }
@@ -36,7 +38,8 @@ fn complaint(kernel: &Kernel, census: &Census) -> Option<String> {
     if calls > 0 {
         wrong.push(format!("calls {calls}"));
     }
-    if kernel.instructions == Instructions::Avx512 && spills > room {
+    // A pass goes through the memory whatever it does.
+    if kernel.instructions == Instructions::Avx512 && !kernel.pass && spills > room {
         wrong.push(format!("spills {spills}, at most {room} among {vector}"));
     }
     (!wrong.is_empty()).then(|| wrong.join(", "))
@@ -72,7 +75,7 @@ mod tests {
             (format!("{VECTOR}\tcallq\tsin@PLT\n"), "calls 1"),
         ];
         for (body, complaint) in cases {
-            let expected = format!("avx512 f64 oscillator yoshida4: {complaint}");
+            let expected = format!("avx512 f64 oscillator yoshida4 (advance): {complaint}");
             assert_eq!(complaints_about(&body), [expected]);
         }
     }
@@ -86,7 +89,7 @@ mod tests {
         assert_eq!(among(OPERATIONS_PER_SPILL), Vec::<String>::new());
         assert_eq!(
             among(OPERATIONS_PER_SPILL - 1),
-            ["avx512 f64 oscillator yoshida4: spills 1, at most 0 among 19"]
+            ["avx512 f64 oscillator yoshida4 (advance): spills 1, at most 0 among 13"]
         );
     }
 }

@@ -79,6 +79,10 @@ impl<X: Copy + Send + Sync> Assign<X> for Each<'_, X> {
 pub(super) fn padded<X: Copy, const W: usize>(values: &[X]) -> [X; W] {
     match values.try_into() {
         Ok(&whole) => whole,
-        Err(_) => core::array::from_fn(|l| values[l.min(values.len() - 1)]),
+        Err(_) => {
+            let mut lanes = [values[values.len() - 1]; W];
+            lanes[..values.len()].copy_from_slice(values);
+            lanes
+        }
     }
 }

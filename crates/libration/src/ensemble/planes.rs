@@ -69,6 +69,9 @@ impl<T: Pod, const D: usize> Planes<T, D> {
     }
 }
 
+/// Blocks of `W` neighbouring trajectories: their positions and their velocities.
+type Blocks<'a, T, const D: usize, const W: usize> = ([&'a mut [[T; W]]; D], [&'a mut [[T; W]]; D]);
+
 /// The states of neighbouring trajectories.
 #[derive(Debug)]
 pub(super) struct Share<'a, T, const D: usize> {
@@ -97,6 +100,14 @@ impl<'a, T: Copy, const D: usize> Share<'a, T, D> {
         let first = self.first;
         self.first += count;
         Share { first, q, v }
+    }
+
+    /// Blocks of `W`, as many as are full: position `i` of block `b` at `.0[i][b]`.
+    #[inline(always)]
+    pub(super) fn full_blocks<const W: usize>(self) -> Blocks<'a, T, D, W> {
+        let count = self.len() / W;
+        let blocks = |plane: &'a mut [T]| &mut plane.as_chunks_mut::<W>().0[..count];
+        (self.q.map(blocks), self.v.map(blocks))
     }
 
     /// All of them in arrays of a fixed size; lanes beyond the last trajectory repeat it.

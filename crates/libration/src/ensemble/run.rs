@@ -6,7 +6,7 @@ use pulp::{Simd, WithSimd};
 
 use super::assign::Assign;
 use super::instructions::{Target, Targeted};
-use super::kernel::Advance;
+use super::kernel::{Advance, Pass};
 use super::planes::Share;
 use super::{Lanes, Observer};
 use crate::{Float, Integrator, System};
@@ -31,7 +31,7 @@ const WIDTHS: [usize; 10] = [8, 16, 24, 32, 48, 64, 96, 128, 160, 208];
 /// other, and to keep the memory busy.
 const FEW: usize = 4;
 
-/// Steps of a pass up to which a block is bound by the memory.
+/// Steps of a pass up to which the memory is the limit.
 const SHORT: u64 = 2;
 
 /// The width of the blocks in which a kernel runs fastest, as measured.
@@ -47,7 +47,8 @@ const fn width<I: Target, T, const D: usize>(carries: bool, taken: usize) -> usi
         (true, false) => (3 * D, 40),
     };
     let vectors = room / planes;
-    let least = FEW.div_ceil(D);
+    // Where there are several dimensions, they are as good as several blocks.
+    let least = (2 * FEW).div_ceil(if D > 2 { D } else { 2 });
     widest::<I, T>(if vectors > least { vectors } else { least })
 }
 
@@ -59,13 +60,6 @@ const fn widest<I: Target, T>(vectors: usize) -> usize {
         i -= 1;
     }
     WIDTHS[i]
-}
-
-/// The width of the blocks that are better where there are few steps or few trajectories: the same,
-/// unless that is much.
-const fn narrow<I: Target, T>(width: usize) -> usize {
-    let few = widest::<I, T>(FEW);
-    if width >= 2 * few { few } else { width }
 }
 
 impl<T, M, A, C, Sys, O, const D: usize> Targeted for Run<'_, T, M, A, C, Sys, O, D>
@@ -108,34 +102,36 @@ where
 {
     fn wide<I: Target, const W: usize>(self, target: I) {
         // As above.
-        match const { narrow::<I, T>(W) } {
+        match const { widest::<I, T>(FEW) } {
             8 => self.blocks::<I, W, 8>(target),
             16 => self.blocks::<I, W, 16>(target),
             32 => self.blocks::<I, W, 32>(target),
-            64 => self.blocks::<I, W, 64>(target),
-            _ => self.blocks::<I, W, W>(target),
+            _ => self.blocks::<I, W, 64>(target),
         }
     }
 
     /// Block after block, each from the first step to the last.
     fn blocks<I: Target, const W: usize, const NARROW: usize>(mut self, target: I) {
-        let short = self.watch.is_none() && self.steps.end - self.steps.start <= SHORT;
-        loop {
-            match self.share.len() {
-                0 => return,
-                1 => {
-                    let block = self.share.split_off(1);
-                    self.block::<I, 1>(target, block);
-                }
-                len if short || len <= NARROW => {
-                    let block = self.share.split_off(NARROW);
-                    self.block::<I, NARROW>(target, block);
-                }
-                _ => {
-                    let block = self.share.split_off(W);
-                    self.block::<I, W>(target, block);
-                }
-            }
+        let steps = self.steps.end - self.steps.start;
+        if self.watch.is_none() && steps <= SHORT {
+            let share = self.share.split_off(self.share.len() / NARROW * NARROW);
+            let (method, systems, dt) = (self.method, self.systems, self.dt);
+            target.run(Pass::<T, M, A, C, Sys, D, NARROW> {
+                share,
+                method,
+                systems,
+                dt,
+                steps,
+                system: core::marker::PhantomData,
+            });
+        }
+        while self.share.len() > 1 {
+            let block = self.share.split_off(W);
+            self.block::<I, W>(target, block);
+        }
+        if self.share.len() == 1 {
+            let block = self.share.split_off(1);
+            self.block::<I, 1>(target, block);
         }
     }
 

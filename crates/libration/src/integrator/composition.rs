@@ -65,6 +65,8 @@ macro_rules! each {
 
 impl<I: Integrator, const N: usize> Integrator for Composition<I, N> {
     const CARRIES: bool = I::CARRIES;
+    // The weights.
+    const REGISTERS: usize = I::REGISTERS + 6;
 
     #[inline(always)]
     fn step<S: Scalar, const D: usize>(

@@ -21,6 +21,8 @@ pub struct DampedOscillator<S> {
 }
 
 impl<S: Scalar> System<S, 1> for DampedOscillator<S> {
+    const REGISTERS: usize = 6;
+
     #[inline(always)]
     fn acceleration(&self, &State { q: [q], v: [v] }: &State<S, 1>) -> [S; 1] {
         [-self.omega2 * q - self.gamma * v]

@@ -20,6 +20,7 @@ pub struct Duffing<S> {
 
 impl<S: Scalar> System<S, 1> for Duffing<S> {
     const POSITIONAL: bool = true;
+    const REGISTERS: usize = 6;
 
     #[inline(always)]
     fn acceleration(&self, &State { q: [q], .. }: &State<S, 1>) -> [S; 1] {
