@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod analyze;
+mod bench;
 #[cfg(unix)]
 mod interrupt;
 mod lab;

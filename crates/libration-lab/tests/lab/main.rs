@@ -17,5 +17,6 @@ mod reference;
 mod report;
 mod settings;
 mod studies;
+mod throughput;
 mod trajectory;
 mod verdicts;

@@ -48,8 +48,9 @@ const CHUNK: usize = 4096;
 /// no two threads then write.
 const GRAIN: usize = 64;
 
-/// Steps of trajectories that are worth a thread: to wake one takes as long as 10⁵ of the shortest.
-const WORTH_A_THREAD: u64 = 1 << 18;
+/// Steps of trajectories that are worth a thread, of the shortest there are: where the study
+/// `throughput` was written, to wake another core took as long as a million and a half of them.
+const WORTH_A_THREAD: u64 = 1 << 21;
 
 /// Trajectories of a `D`-dimensional system, as structure of arrays.
 #[derive(Debug)]
@@ -158,7 +159,7 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         self.check::<Sys>(systems, dt)?;
         let range = self.step..self.step.saturating_add(steps);
         let instructions = self.execution.instruction_set();
-        let count = self.threads_for(steps);
+        let count = self.threads_for::<_, Sys>(method, steps);
         let shares = shares(self.planes.share(), count, GRAIN);
         self.execution.each(shares, |share| {
             let steps = range.clone();
@@ -194,7 +195,7 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         }
         let range = self.step..self.step.saturating_add(steps);
         let instructions = self.execution.instruction_set();
-        let count = self.threads_for(steps);
+        let count = self.threads_for::<_, Sys>(method, steps);
         let shares = shares(self.planes.share(), count, CHUNK);
         let observers = self.execution.each(shares, |mut share| {
             let mut observers = Vec::new();
@@ -213,9 +214,13 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         Ok(observers.into_iter().flatten().collect())
     }
 
-    /// How many threads so many steps are worth.
-    fn threads_for(&self, steps: u64) -> usize {
-        let work = (self.len() as u64).saturating_mul(steps) / WORTH_A_THREAD;
+    /// How many threads so many steps of `M` on `Sys` are worth.
+    fn threads_for<M: Integrator, Sys: System<T, D>>(&self, _: M, steps: u64) -> usize {
+        // What holds more values does more with them: symplectic Euler on an oscillator counts as one,
+        // RK4 on a pendulum as 32 (it takes 60 times as long).
+        let weight = const { (M::REGISTERS.div_ceil(4) * Sys::REGISTERS.div_ceil(2)) as u64 };
+        let steps = (self.len() as u64).saturating_mul(steps).saturating_mul(weight.max(1));
+        let work = steps / WORTH_A_THREAD;
         let worth = usize::try_from(work).unwrap_or(usize::MAX).max(1);
         worth.min(self.execution.thread_count())
     }

@@ -105,7 +105,7 @@ pub(super) fn heat(record: &Record) -> Result<Figure, RecordError> {
         let (own, rates) = &rows[(-row) as usize];
         own.iter().position(|&n| n == count).map_or(f64::NAN, |at| rates[at])
     };
-    let places: Vec<f64> = (0..names.len()).map(|row| -(row as f64)).collect();
+    let places: Vec<f64> = (0..names.len()).rev().map(|row| -(row as f64)).collect();
     let mut panel = Panel::new(Axis::log("trajectories N"), Axis::names("", names));
     // Cells have equal widths on the axis.
     if evenly_spaced(&counts) {

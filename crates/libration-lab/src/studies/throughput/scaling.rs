@@ -9,8 +9,14 @@ use crate::machine::{NoRoom, has_room};
 use crate::record::{Record, Series};
 use crate::study::StudyError;
 
-/// Steps that are taken with a trajectory, or a block of them, before the next.
-const STEPS: u64 = 200;
+/// Steps that are taken with a block of trajectories before the next.
+const FUSED: u64 = 200;
+
+/// Steps that are taken with a lone trajectory before the next.
+const LONE: u64 = 64;
+
+/// The most trajectories that are taken one by one: their rate does not depend on their number.
+const MOST_LONE: usize = 100_000;
 
 /// An implementation, a float and a number of trajectories, to be timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,14 +70,12 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     let counts = desk.lab.config.throughput.counts.iter();
     let counts = counts.map(|&count| usize::try_from(count).unwrap_or(usize::MAX));
     let counts: Vec<usize> = counts.filter(|&count| count <= most).collect();
-    // One by one, their rate does not depend on their number.
-    let most_lone = desk.lab.effort.choose(10_000, 100_000, 100_000);
     for &implementation in &desk.lab.config.throughput.implementations {
         for float in BenchFloat::ALL {
             let mut points = Vec::new();
             for &count in &counts {
                 let wanted = Wanted { implementation, float, count };
-                let too_many = implementation.is_lone() && count > most_lone;
+                let too_many = implementation.is_lone() && count > MOST_LONE;
                 if !too_many && wanted.check().is_ok() {
                     points.push(rate(desk, wanted)?);
                 }
@@ -110,7 +114,8 @@ fn contestant<T: Bench>(
 ) -> Result<Contestant<'static>, StudyError> {
     let mut rung = prepare::<T>(implementation, task, execution)?;
     let steps = match implementation {
-        one if one.is_lone() || one.is_fused() => STEPS,
+        one if one.is_lone() => LONE,
+        one if one.is_fused() => FUSED,
         _ => 1,
     };
     Ok(Contestant::new(task.count as f64 * steps as f64, move |times| {
