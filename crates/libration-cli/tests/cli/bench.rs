@@ -27,7 +27,7 @@ fn named_implementations_are_timed_alone() {
         .collect();
     assert_eq!(timed, [("fused", 1000), ("fused", 10), ("in-place", 1000), ("in-place", 10)]);
     assert!(rates.iter().all(|r| r["steps_per_second"].as_f64().unwrap() > 0.0));
-    let text = libration("--quiet bench --implementation scalar --count 10 --float f64");
+    let mut text = libration("--quiet bench --implementation scalar --count 10 --float f64");
     text.assert().success().stdout(contains("10⁹ steps/s").and(contains("scalar")));
 }
 

@@ -47,7 +47,7 @@ where
         let Advance { block, method, systems, dt, steps } = self;
         let (q, v) = block.load::<W>();
         let (q, v) = advanced::<T, M, A, C, Sys, D, W>(method, &systems, &dt, (q, v), steps);
-        block.store(&q.0, &v.0);
+        block.store(&q, &v);
     }
 }
 
@@ -87,8 +87,8 @@ where
             let (next_q, next_v) =
                 advanced::<T, M, A, C, Sys, D, W>(method, &systems, &dt, block, steps);
             for i in 0..D {
-                q[i][b] = next_q.0[i];
-                v[i][b] = next_v.0[i];
+                q[i][b] = next_q[i];
+                v[i][b] = next_v[i];
             }
         }
     }
@@ -105,7 +105,7 @@ fn advanced<T, M, A, C, Sys, const D: usize, const W: usize>(
     dt: &C::Lanes<W>,
     (q, v): Block<T, D, W>,
     steps: u64,
-) -> (Lines<[[T; W]; D]>, Lines<[[T; W]; D]>)
+) -> Block<T, D, W>
 where
     T: Float,
     M: Integrator,
@@ -138,7 +138,7 @@ where
             put(&mut v.0, l, state.v);
         }
     }
-    (q, v)
+    (q.0, v.0)
 }
 
 /// Planes that begin with a cache line: no vector that is kept in memory lies across two.

@@ -107,7 +107,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
 }
 
 fn mebibytes(len: usize) -> usize {
-    len * size_of::<Number>() >> 20
+    (len * size_of::<Number>()) >> 20
 }
 
 /// Bytes a second that `kernel` reads and writes on so many threads, each with its part of the planes.

@@ -47,9 +47,8 @@ pub(super) fn scaling(record: &Record) -> Result<Figure, RecordError> {
             let rates = series.column("steps_per_second")?;
             let line = Mark::line(counts, rates).ink(ink(implementation));
             panel = panel.mark(line.label(implementation.title()));
-            if let (Some(rate), Some(&last)) =
-                (predicted(record, implementation, float), counts.last())
-            {
+            let last = counts.last().copied().unwrap_or(f64::NAN);
+            if let Some(rate) = predicted(record, implementation, float, last) {
                 panel = panel.mark(Mark::prediction([last], [rate]));
             }
         }
@@ -58,19 +57,25 @@ pub(super) fn scaling(record: &Record) -> Result<Figure, RecordError> {
     Ok(figure)
 }
 
-/// The rate that theory gives an implementation for many trajectories, if it gives one.
-fn predicted(record: &Record, implementation: Implementation, float: BenchFloat) -> Option<f64> {
-    let cell = |table: &str, column: usize| {
+/// The rate that theory gives an implementation for `count` trajectories, if it gives one.
+fn predicted(
+    record: &Record,
+    implementation: Implementation,
+    float: BenchFloat,
+    count: f64,
+) -> Option<f64> {
+    let of_float = |table: &str, column: usize| {
         let rows = &record.table(table).ok()?.rows;
-        let mut of_float = rows.iter().filter(|row| row[1].typeset(3) == float.name());
-        of_float.find(|row| row[0].typeset(3) == "symplectic Euler")?[column].value()
+        let mut rows = rows.iter().filter(|row| row[1] == float.name().into());
+        rows.find(|row| row[0] == "symplectic Euler".into())?[column].value()
     };
     match implementation {
-        Implementation::Scalar => Some(1e9 / cell("a lone trajectory", 4)?),
-        Implementation::Fused => Some(1e9 * cell("fused steps", 4)?),
-        Implementation::OneStep => {
-            let bandwidth = record.finding("throughput.roof.memory").ok()?.measured * 1e9;
-            Some(bandwidth / (4 * float.bytes()) as f64)
+        Implementation::Scalar => Some(1e9 / of_float("a lone trajectory", 4)?),
+        Implementation::Fused => Some(1e9 * of_float("fused steps", 4)?),
+        Implementation::OneStep if float == BenchFloat::F32 => {
+            let rows = &record.table("one step a pass").ok()?.rows;
+            let row = rows.iter().find(|row| row[0].value() == Some(count))?;
+            Some(1e9 * row[3].value()?)
         }
         _ => None,
     }

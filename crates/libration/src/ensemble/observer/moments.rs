@@ -76,7 +76,7 @@ impl<const D: usize> Moments<D> {
     /// What all of `parts` saw, in their order.
     pub fn merged(parts: impl IntoIterator<Item = Moments<D>>) -> Moments<D> {
         let mut parts = parts.into_iter();
-        let mut all = parts.next().unwrap_or_else(Moments::new);
+        let mut all = parts.next().unwrap_or_default();
         for part in parts {
             for (own, other) in all.steps.iter_mut().zip(part.steps) {
                 for i in 0..D {
