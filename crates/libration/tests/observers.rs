@@ -121,13 +121,12 @@ fn the_mean_square_error_is_that_of_lone_trajectories() {
 
 #[test]
 fn moments_are_those_of_all_trajectories_at_each_step() {
-    let moments = everywhere(|mut ensemble, systems| {
+    let summaries = everywhere(|mut ensemble, systems| {
         let watch = |_| Moments::new();
         let parts =
             ensemble.observe(VelocityVerlet, Each(systems), All(DT), STEPS, EVERY, watch).unwrap();
-        Moments::merged(parts)
+        Moments::merged(parts).summaries().collect::<Vec<_>>()
     });
-    let summaries: Vec<_> = moments.summaries().collect();
     assert_eq!(summaries.len(), 9);
     let all: Vec<_> = (0..COUNT).map(alone).collect();
     for (i, summary) in summaries.iter().enumerate() {

@@ -240,6 +240,6 @@ fn the_schema_describes_every_key() {
         }
     }
     let schema = schema();
-    assert_eq!(schema["properties"].as_object().unwrap().len(), 12);
+    assert_eq!(schema["properties"].as_object().unwrap().len(), 13);
     assert_described(&schema);
 }

@@ -6,7 +6,7 @@ use libration::ensemble::{Buffer, Pages};
 
 use super::desk::Desk;
 use crate::bench::{Contestant, Implementation, Task, prepare};
-use crate::record::{Finding, Record, Relation, Table, Tolerance};
+use crate::record::{Cell, Finding, Record, Relation, Table, Tolerance};
 use crate::study::StudyError;
 
 /// Numbers in the buffer that is written.
@@ -46,7 +46,13 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     });
     let contestants = [again, fresh(Pages::Ordinary), fresh(Pages::Huge)];
     let [again, ordinary, huge] = desk.look(contestants)?;
-    table.push(["warm".into(), "—".into(), 0.into(), (again.median() / 1e9).into(), 1.0.into()]);
+    table.push([
+        "warm".into(),
+        Cell::absent("—"),
+        0.into(),
+        (again.median() / 1e9).into(),
+        1.0.into(),
+    ]);
     for (name, pages, rate, size) in [
         ("fresh", Pages::Ordinary, &ordinary, PAGE),
         ("fresh, huge pages wished for", Pages::Huge, &huge, HUGE_PAGE),
@@ -61,7 +67,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         table.push([
             name.into(),
             if size == PAGE { "4 KiB".into() } else { "2 MiB".into() },
-            faults.map_or_else(|| crate::record::Cell::absent("not told"), Into::into),
+            faults.map_or_else(|| Cell::absent("not told"), Into::into),
             (rate.median() / 1e9).into(),
             share.median().into(),
         ]);
@@ -117,10 +123,10 @@ fn temporaries(desk: &Desk<'_>, record: &mut Record, table: &mut Table) -> Resul
         ));
         table.push([
             format!("{}, a step", implementation.title()).into(),
-            "—".into(),
+            Cell::absent("—"),
             each.into(),
-            crate::record::Cell::absent("—"),
-            crate::record::Cell::absent("—"),
+            Cell::absent("—"),
+            Cell::absent("—"),
         ]);
     }
     Ok(())

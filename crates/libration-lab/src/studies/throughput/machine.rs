@@ -14,17 +14,13 @@ pub(super) fn describe(desk: &Desk<'_>, record: &mut Record) {
     row("instruction sets", machine.instruction_sets.join(", ").into());
     row("instruction set in use", desk.set().name().into());
     for cache in machine.caches {
-        let size = match cache.bytes >> 10 {
-            kibibytes if kibibytes < 1 << 10 => format!("{kibibytes} KiB"),
-            kibibytes => format!("{} MiB", kibibytes >> 10),
-        };
-        row(&format!("data cache {}", cache.level), size.into());
+        row(&format!("data cache {} (KiB)", cache.level), (cache.bytes >> 10).into());
     }
     if let Some(memory) = machine.memory {
-        row("memory", format!("{:.1} GiB", memory as f64 / (1u64 << 30) as f64).into());
+        row("memory (GiB)", Cell::rounded(memory as f64 / (1u64 << 30) as f64, 3));
     }
     row("system", machine.platform.into());
     row("compiler", machine.compiler.into());
-    row("version", machine.version.into());
+    row("program", format!("libration {}", machine.version).into());
     record.tables.push(table);
 }

@@ -5,7 +5,7 @@ use crate::{Float, State};
 
 /// Keeps the mean and the variance of every coordinate over the trajectories, at every step that it
 /// sees; those of all observers of an ensemble are [merged](Moments::merged).
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Moments<const D: usize> {
     steps: Vec<(u64, [Running; D], [Running; D])>,
     /// The place among `steps` that the block at hand has reached.
