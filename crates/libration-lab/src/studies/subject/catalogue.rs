@@ -1,6 +1,6 @@
 //! The systems of the catalogue as they are studied.
 
-use libration::{AnySystem, CatalogError, State, with_system};
+use libration::{AnySystem, CatalogError, Model, State};
 
 use super::{Problem, Subject};
 use crate::Config;
@@ -22,29 +22,44 @@ fn subject(config: &Config, name: &str) -> Result<Box<dyn Subject>, CatalogError
         "oscillator" => AnySystem::Oscillator(config.oscillator.system()),
         name => AnySystem::build(name, &[] as &[(&str, f64)])?,
     };
+    // Each in its smallest dimension: a subject for every dimension of the catalogue would be compiled
+    // and never made.
+    match system {
+        AnySystem::Oscillator(model) => {
+            let start = State { q: [config.start.q], v: [config.start.v] };
+            Ok(problem(system, model, start))
+        }
+        AnySystem::Pendulum(model) => catalogued::<1>(system, model),
+        AnySystem::Duffing(model) => catalogued::<1>(system, model),
+        AnySystem::HenonHeiles(model) => catalogued::<2>(system, model),
+        AnySystem::Kepler(model) => catalogued::<2>(system, model),
+        AnySystem::DampedOscillator(_) | AnySystem::DrivenOscillator(_) => {
+            Err(CatalogError::UnknownSystem { name: name.to_owned() })
+        }
+    }
+}
+
+/// With the start of the catalogue.
+fn catalogued<const D: usize>(
+    system: AnySystem,
+    model: impl Model<D> + 'static,
+) -> Result<Box<dyn Subject>, CatalogError> {
     let entry = system.entry();
-    let dimension = *entry.dimensions.start();
+    let start = entry.start::<D>().ok_or_else(|| entry.wrong_dimension(D))?;
+    Ok(problem(system, model, start))
+}
+
+fn problem<const D: usize>(
+    system: AnySystem,
+    model: impl Model<D> + 'static,
+    start: State<f64, D>,
+) -> Box<dyn Subject> {
     let (title, turn) = looks(system);
-    with_system!(
-        system,
-        dimension,
-        |model, D| {
-            let start = match system {
-                AnySystem::Oscillator(_) => {
-                    Some(State { q: [config.start.q; D], v: [config.start.v; D] })
-                }
-                _ => entry.start::<D>(),
-            };
-            let start = start.ok_or_else(|| entry.wrong_dimension(D))?;
-            let problem = Problem::new(name, model, start, turn).titled(title);
-            let subject: Box<dyn Subject> = match rests_at_origin(system) {
-                true => Box::new(problem.about(State::origin())),
-                false => Box::new(problem),
-            };
-            Ok(subject)
-        },
-        Err(entry.wrong_dimension(dimension))
-    )
+    let problem = Problem::new(system.name(), model, start, turn).titled(title);
+    match rests_at_origin(system) {
+        true => Box::new(problem.about(State::origin())),
+        false => Box::new(problem),
+    }
 }
 
 /// Name in running text, and about the time of a turn.
