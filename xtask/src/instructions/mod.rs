@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
     }
     count::require_valgrind()?;
     let program = count::build()?;
-    let compiler = command::output(&mut command::program("rustc").arg("--version"))?;
+    let compiler = command::output(command::program("rustc").arg("--version"))?;
     let mut counted = Recorded { compiler: compiler.trim().to_owned(), counts: Vec::new() };
     let path = workspace::root().join(FILE);
     let recorded = match records {

@@ -143,7 +143,7 @@ mod tests {
 
     use super::*;
 
-    /// Velocity Verlet loses single orbits in gaps of a few 10⁻⁵ s, which a scan in steps of 1 ms and
+    /// Velocity Verlet loses single orbits in gaps of about 10⁻⁵ s, which a scan in steps of 1 ms and
     /// of 0.3 ms does not see: such scans find 0.2046 s and 0.3919 s.
     #[test]
     fn narrow_gaps_are_seen() {

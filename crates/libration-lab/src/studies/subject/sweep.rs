@@ -102,6 +102,8 @@ impl<Sys, const D: usize> Watch<Sys, D> {
 }
 
 impl<Sys: Hamiltonian<f64, D> + Send, const D: usize> Observer<f64, D> for Watch<Sys, D> {
+    // One index for all planes, whose lengths are the same: so the loops become vectors.
+    #[allow(clippy::needless_range_loop)]
     #[inline(always)]
     fn observe(&mut self, lanes: &Lanes<'_, f64, D>) {
         let stays = &mut self.stays[lanes.first - self.first..][..lanes.len()];
