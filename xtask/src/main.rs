@@ -5,6 +5,7 @@ mod codegen;
 mod command;
 mod dependencies;
 mod examples;
+mod instructions;
 mod python;
 mod report;
 mod scratch;
@@ -31,10 +32,10 @@ enum Action {
     With(fn(&[String]) -> Outcome),
 }
 
-const TASKS: [Task; 7] = [
+const TASKS: [Task; 8] = [
     Task {
         name: "ci",
-        summary: "all of the below in order, with format, lints and documentation",
+        summary: "all of the below up to `report`, with format, lints and documentation",
         action: Action::Plain(ci::run),
     },
     Task {
@@ -66,6 +67,11 @@ const TASKS: [Task; 7] = [
         name: "report",
         summary: "a quick `libration lab` and its files checked",
         action: Action::Plain(report::run),
+    },
+    Task {
+        name: "instructions",
+        summary: "instructions of the batch kernels under valgrind; `--record` keeps them",
+        action: Action::With(instructions::run),
     },
 ];
 

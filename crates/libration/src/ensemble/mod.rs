@@ -243,6 +243,8 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
 struct Nobody;
 
 impl<T, const D: usize> Observer<T, D> for Nobody {
+    const WATCHES: bool = false;
+
     fn observe(&mut self, _: &Lanes<'_, T, D>) {}
 }
 

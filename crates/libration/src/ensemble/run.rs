@@ -113,7 +113,8 @@ where
     /// Block after block, each from the first step to the last.
     fn blocks<I: Target, const W: usize, const NARROW: usize>(mut self, target: I) {
         let steps = self.steps.end - self.steps.start;
-        if self.watch.is_none() && steps <= SHORT {
+        // Where somebody watches, no such kernel is made.
+        if const { !O::WATCHES } && steps <= SHORT {
             let share = self.share.split_off(self.share.len() / NARROW * NARROW);
             let (method, systems, dt) = (self.method, self.systems, self.dt);
             target.run(Pass::<T, M, A, C, Sys, D, NARROW> {

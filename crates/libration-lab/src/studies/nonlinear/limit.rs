@@ -26,12 +26,18 @@ pub(super) fn search(
     let found = lab.sweep("largest stable steps", trials, |trial| {
         let linear = largest_stable(trial.method)?;
         let subject = trial.subject;
-        let small = subject.frequency().map(|omega| {
-            (linear / omega, omega, subject.loss(Orbits::Small, trial.method, SMALL_STEPS))
-        });
+        let small = match subject.frequency() {
+            Some(omega) => {
+                let loss = subject.loss(Orbits::Small, trial.method, SMALL_STEPS)?;
+                Some((linear / omega, omega, loss))
+            }
+            None => None,
+        };
         // A method that is never stable loses every orbit, the later the smaller the step.
-        let large =
-            (linear > 0.0).then(|| subject.loss(Orbits::Configured, trial.method, steps)).flatten();
+        let large = match linear > 0.0 {
+            true => subject.loss(Orbits::Configured, trial.method, steps)?,
+            false => None,
+        };
         Ok((small, large))
     })?;
     let columns =

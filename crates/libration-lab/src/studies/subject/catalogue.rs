@@ -42,7 +42,7 @@ fn subject(config: &Config, name: &str) -> Result<Box<dyn Subject>, CatalogError
 /// With the start of the catalogue.
 fn catalogued<const D: usize>(
     system: AnySystem,
-    model: impl Model<D> + 'static,
+    model: impl Model<D, On<f64>: Send + Sync> + 'static,
 ) -> Result<Box<dyn Subject>, CatalogError> {
     let entry = system.entry();
     let start = entry.start::<D>().ok_or_else(|| entry.wrong_dimension(D))?;
@@ -51,7 +51,7 @@ fn catalogued<const D: usize>(
 
 fn problem<const D: usize>(
     system: AnySystem,
-    model: impl Model<D> + 'static,
+    model: impl Model<D, On<f64>: Send + Sync> + 'static,
     start: State<f64, D>,
 ) -> Box<dyn Subject> {
     let (title, turn) = looks(system);

@@ -4,7 +4,7 @@ use libration::number::TwoFloat;
 use libration::simulation::{EnergyDrift, Sample, SimulationError};
 use libration::{Float, Hamiltonian, Method, Model, Scalar, State};
 
-use super::{Fit, Halvings, Problem, Subject};
+use super::{Fit, Halvings, Problem};
 use crate::studies::sampled::sampled_steps;
 use crate::study::StudyError;
 
@@ -159,7 +159,7 @@ pub(super) fn horizon<M: Model<D>, const D: usize>(
 pub(super) fn closes<M: Model<D>, const D: usize>(problem: &Problem<M, D>) -> bool {
     let system = problem.model.on::<TwoFloat>();
     let start = problem.start.map(TwoFloat::from_f64);
-    let turn = TwoFloat::from_f64(problem.turn());
+    let turn = TwoFloat::from_f64(problem.turn);
     let (end, _) = super::flow::flow(&system, start, turn);
     D == 1 || super::flow::distance(&end, &start) < 1e-6 * super::flow::size(&start)
 }

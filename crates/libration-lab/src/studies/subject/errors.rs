@@ -5,7 +5,7 @@ use libration::simulation::SimulationError;
 use libration::{Float, Hamiltonian, Method, Model, Scalar, State};
 
 use super::flow::flow;
-use super::{Fit, Halvings, Problem, Subject};
+use super::{Fit, Halvings, Problem};
 use crate::study::StudyError;
 
 /// Samples of an orbit at which errors are taken: three quarters of a turn, so that no symmetry of
@@ -106,7 +106,7 @@ pub(super) fn measure<M: Model<D>, const D: usize>(
             Err(SimulationError::NotFinite { .. }) => [f64::NAN; 2],
             other => other?,
         };
-        errors.push(problem.step::<f64>(steps), found, problem.turn());
+        errors.push(problem.step::<f64>(steps), found, problem.turn);
         if Fit::is_settled(&errors.dt, &errors.together) {
             break;
         }

@@ -8,6 +8,7 @@ mod flow;
 mod portrait;
 mod problem;
 mod stability;
+mod sweep;
 mod symmetry;
 
 use libration::Method;
@@ -108,7 +109,10 @@ pub trait Subject: Sync {
 
     /// Up to which time step no orbit of `steps` steps is lost; none if nothing is lost however large
     /// the step.
-    fn loss(&self, orbits: Orbits, method: Method, steps: u64) -> Option<Loss>;
+    ///
+    /// # Errors
+    /// If the system refuses the memory for the orbits that are tried together.
+    fn loss(&self, orbits: Orbits, method: Method, steps: u64) -> Result<Option<Loss>, StudyError>;
 
     /// The first `steps` points of the orbit at a time step `dt`.
     ///

@@ -3,7 +3,7 @@
 use libration::simulation::{Sample, SimulationError};
 use libration::{Method, Model};
 
-use super::{Problem, Subject};
+use super::Problem;
 use crate::study::StudyError;
 
 /// Points of an orbit: `q` and `v·turn/2π` in one degree of freedom, `q₀` and `q₁` in more.
@@ -25,7 +25,7 @@ pub(super) fn trace<M: Model<D>, const D: usize>(
     let mut portrait = Portrait::default();
     let mut watch = |s: &Sample<f64, D>| {
         let [x, y] = match D {
-            1 => [s.state.q[0], s.state.v[0] * problem.turn() / std::f64::consts::TAU],
+            1 => [s.state.q[0], s.state.v[0] * problem.turn / std::f64::consts::TAU],
             _ => [s.state.q[0], s.state.q[1 % D]],
         };
         portrait.x.push(x);

@@ -32,7 +32,7 @@ pub struct Problem<M, const D: usize> {
     title: String,
     pub(super) model: M,
     pub(super) start: State<f64, D>,
-    turn: f64,
+    pub(super) turn: f64,
     pub(super) equilibrium: Option<State<f64, D>>,
     orbit: OnceLock<Orbit<D>>,
 }
@@ -83,7 +83,7 @@ impl<M: Model<D>, const D: usize> Problem<M, D> {
 
     /// Runs `method` and gives the last state; `watch` sees every sample.
     ///
-    /// The one place in which a method becomes a type: what watches is dynamic instead.
+    /// But for `sweep` the one place in which a method becomes a type: what watches is dynamic.
     pub(super) fn run<S: Float>(
         &self,
         method: Method,
@@ -101,7 +101,11 @@ impl<M: Model<D>, const D: usize> Problem<M, D> {
     }
 }
 
-impl<M: Model<D>, const D: usize> Subject for Problem<M, D> {
+impl<M: Model<D>, const D: usize> Subject for Problem<M, D>
+where
+    // Threads share it where many orbits are tried at once.
+    M::On<f64>: Send + Sync,
+{
     fn name(&self) -> &str {
         &self.name
     }
@@ -157,7 +161,7 @@ impl<M: Model<D>, const D: usize> Subject for Problem<M, D> {
         stability::frequency(self)
     }
 
-    fn loss(&self, orbits: Orbits, method: Method, steps: u64) -> Option<Loss> {
+    fn loss(&self, orbits: Orbits, method: Method, steps: u64) -> Result<Option<Loss>, StudyError> {
         stability::loss(self, orbits, method, steps)
     }
 

@@ -5,7 +5,7 @@ use libration::number::{TwoFloat, Wide};
 use libration::system::Oscillator;
 use libration::{Elementary, Float, Method, Model, Scalar, State, with_method};
 
-use super::{Problem, Subject};
+use super::Problem;
 
 /// Defects of this size are rounding: 1024 bits carry a step to 2⁻¹⁰²⁰, and their products and
 /// sums to far below 2⁻⁹⁰⁰.
@@ -48,7 +48,7 @@ pub(super) fn measure<M: Model<D>, const D: usize>(
     let dt = problem.step::<f64>(steps);
     let system = problem.model.on::<TwoFloat>();
     let (h, one) = (TwoFloat::from_f64(dt), TwoFloat::one());
-    let omega = std::f64::consts::TAU / problem.turn();
+    let omega = std::f64::consts::TAU / problem.turn;
     // Every third sample is enough: no symmetric point of an orbit recurs so.
     let at: Vec<_> = problem.orbit().states().iter().skip(1).step_by(3).collect();
     let mut sums = [0.0_f64; 3];

@@ -31,6 +31,10 @@ pub struct Lanes<'a, T, const D: usize> {
 
 /// Sees trajectories of an ensemble at chosen steps, while they are in the cache.
 pub trait Observer<T, const D: usize>: Send {
+    /// Whether it looks at all: kernels for those that do not are made for speed alone.
+    #[doc(hidden)]
+    const WATCHES: bool = true;
+
     /// Takes note of neighbouring trajectories at one step.
     ///
     /// It is compiled for the instruction set of the ensemble if it is `#[inline(always)]`.
