@@ -49,7 +49,9 @@ fn alone<T: Float + Elementary>(
 }
 
 fn executions() -> Vec<Execution> {
-    let threads = |n| move |set| Execution::serial().instructions(set).unwrap().threads(n).unwrap();
+    // However little there is to do.
+    let threads =
+        |n| move |set| Execution::serial().instructions(set).unwrap().threads(n).unwrap().worth(1);
     InstructionSet::available().flat_map(|set| [threads(1)(set), threads(3)(set)]).collect()
 }
 
@@ -115,7 +117,7 @@ proptest! {
         set in prop::sample::select(InstructionSet::available().collect::<Vec<_>>()),
     ) {
         let execution =
-            Execution::serial().instructions(set).unwrap().threads(threads).unwrap();
+            Execution::serial().instructions(set).unwrap().threads(threads).unwrap().worth(1);
         let system = AnySystem::build(entry.name, &[] as &[(&str, f64)]).unwrap();
         prop_assert_eq!(differing::<f32>(system, method, len, steps, &execution), Vec::<String>::new());
         prop_assert_eq!(differing::<f64>(system, method, len, steps, &execution), Vec::<String>::new());

@@ -45,7 +45,8 @@ fn everywhere<R: PartialEq + std::fmt::Debug>(
     let systems: Vec<_> = (0..COUNT).map(system).collect();
     let answers = InstructionSet::available().flat_map(|set| [(set, 1), (set, 3)]);
     let answers = answers.map(|(set, threads)| {
-        let execution = Execution::serial().instructions(set).unwrap().threads(threads).unwrap();
+        let execution = Execution::serial().instructions(set).unwrap();
+        let execution = execution.threads(threads).unwrap().worth(1);
         run(Ensemble::from_fn(COUNT, execution, start).unwrap(), &systems)
     });
     answers

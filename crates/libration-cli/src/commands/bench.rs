@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use libration_lab::bench::{self, BenchFloat, Rate, Wanted};
-use libration_lab::record::{Record, Table};
+use libration_lab::record::{Finding, Record, Table, Verdict};
 use libration_lab::studies::Throughput;
 use libration_lab::study::StudyError;
 use libration_lab::{Config, Lab, Machine, Study};
@@ -85,7 +85,27 @@ fn report_text(record: &Record) -> String {
         // Writing to a String cannot fail.
         let _ = write!(text, "{}\n{}\n", table.name, columns(&lines(table)));
     }
+    let _ = write!(text, "ratios\n{}", columns(&ratios(record)));
     text
+}
+
+/// What was judged, or was too noisy for it.
+fn ratios(record: &Record) -> Vec<Vec<String>> {
+    let head = ["finding", "measured", "at least", "verdict"].map(String::from).to_vec();
+    let verdict = |finding: &Finding| match finding.verdict {
+        Verdict::Agrees => Some("reached"),
+        Verdict::Disagrees => Some("missed"),
+        Verdict::Measured => {
+            finding.text.contains("too noisy").then_some("too noisy to judge: run it again")
+        }
+    };
+    let rows = record.findings.iter().filter(|finding| finding.unit == "1").filter_map(|finding| {
+        let wanted = finding.predicted.map_or_else(|| "—".to_owned(), |bar| format!("{bar}"));
+        let told = [finding.id.clone(), format!("{:.3}", finding.measured), wanted];
+        let verdict = verdict(finding)?.to_owned();
+        Some(told.into_iter().chain([verdict]).collect())
+    });
+    std::iter::once(head).chain(rows).collect()
 }
 
 /// The head and the rows of a table, as the page would set them.

@@ -43,11 +43,11 @@ impl Mix {
     }
 }
 
-/// The widths, in lanes, at which a mix fits the registers of an instruction set: with one value
-/// for each lane and each operation of the mix, and a constant for each kind of operation.
+/// The widths, in lanes, at which a mix may be fastest: one value for each lane and each operation of the
+/// mix, from a vector each up to twice as many as there are registers.
 pub(crate) fn widths<T>(set: InstructionSet, mix: Mix) -> impl Iterator<Item = usize> {
     let lanes = set.vector_bytes() / size_of::<T>();
-    let most = (set.registers() - 2) / mix.operations();
+    let most = 2 * set.registers() / mix.operations();
     WIDTHS.into_iter().filter(move |width| width % lanes == 0 && width / lanes <= most)
 }
 

@@ -25,4 +25,4 @@ pub(crate) use passes::{PASSES, Traffic};
 pub(crate) use platform::PlatformPendulum;
 pub(crate) use rung::{Task, prepare};
 pub(crate) use stopwatch::{Contestant, Rates, Turns, race};
-pub(crate) use team::together;
+pub(crate) use team::Team;

@@ -68,45 +68,31 @@ impl<T: Bench> Passes<T> {
     /// # Errors
     /// If the memory is refused.
     pub(super) fn new(
-        start: impl Iterator<Item = [T; 2]>,
+        count: usize,
+        start: impl Fn(usize) -> [T; 2],
         stiffness: T,
         dt: T,
         set: InstructionSet,
         reuse: bool,
     ) -> Result<Self, EnsembleError> {
-        let (x, v): (Vec<T>, Vec<T>) = start.map(|[x, v]| (x, v)).unzip();
-        let kept = |values: &[T]| -> Result<Array<T>, EnsembleError> {
-            let mut buffer = Buffer::new(values.len(), Pages::Huge)?;
-            buffer.copy_from_slice(values);
-            Ok(Array::Kept(buffer))
-        };
-        let scratch = if reuse { Some(kept(&x)?) } else { None };
-        Ok(Passes { x: kept(&x)?, v: kept(&v)?, scratch, stiffness, dt, set })
+        let zeros = || Buffer::<T>::new(count, Pages::Huge);
+        let (mut x, mut v) = (zeros()?, zeros()?);
+        for n in 0..count {
+            [x[n], v[n]] = start(n);
+        }
+        let scratch = if reuse { Some(Array::Kept(zeros()?)) } else { None };
+        Ok(Passes { x: Array::Kept(x), v: Array::Kept(v), scratch, stiffness, dt, set })
     }
 
     /// A step that makes a new array of each result, as `v = v + dt * (-w2 * x)` does.
     fn with_temporaries(&mut self) {
         let set = self.set;
-        let scaled = |s: T, a: &[T]| {
-            let mut out = fresh(a.len());
-            set.vectorize(Scale { s, a, out: &mut out });
-            out
-        };
-        let sum = |a: &[T], b: &[T]| {
-            let mut out = fresh(a.len());
-            set.vectorize(Add { a, b, out: &mut out });
-            Array::Fresh(out)
-        };
+        let scaled = |s: T, a: &[T]| set.vectorize(Scaled { s, a });
+        let sum = |a: &[T], b: &[T]| Array::Fresh(set.vectorize(Sum { a, b }));
         let a = scaled(self.stiffness, self.x.slice());
         self.v = sum(self.v.slice(), &scaled(self.dt, &a));
         self.x = sum(self.x.slice(), &scaled(self.dt, self.v.slice()));
     }
-}
-
-/// Memory for a result, from the allocator. Zeros cost nothing where it is large: they come from the
-/// system as it hands out pages.
-fn fresh<T: Float>(len: usize) -> Vec<T> {
-    vec![T::zero(); len]
 }
 
 /// A step whose results go to `scratch`, or to where they belong.
@@ -172,21 +158,33 @@ impl<T: Float> Loop for Rescale<'_, T> {
     }
 }
 
-/// `out = a + b`.
-struct Add<'a, T> {
+/// `s·a`, in a new array.
+struct Scaled<'a, T> {
+    s: T,
     a: &'a [T],
-    b: &'a [T],
-    out: &'a mut [T],
 }
 
-impl<T: Float> Loop for Add<'_, T> {
-    type Output = ();
+impl<T: Float> Loop for Scaled<'_, T> {
+    type Output = Vec<T>;
 
     #[inline(always)]
-    fn run(self) {
-        for ((out, &a), &b) in self.out.iter_mut().zip(self.a).zip(self.b) {
-            *out = a + b;
-        }
+    fn run(self) -> Vec<T> {
+        self.a.iter().map(|&a| self.s * a).collect()
+    }
+}
+
+/// `a + b`, in a new array.
+struct Sum<'a, T> {
+    a: &'a [T],
+    b: &'a [T],
+}
+
+impl<T: Float> Loop for Sum<'_, T> {
+    type Output = Vec<T>;
+
+    #[inline(always)]
+    fn run(self) -> Vec<T> {
+        self.a.iter().zip(self.b).map(|(&a, &b)| a + b).collect()
     }
 }
 

@@ -49,8 +49,8 @@ pub(crate) fn prepare<T: Bench>(
     execution: &Execution,
 ) -> Result<Box<dyn Rung>, EnsembleError> {
     let dt = T::from_f64(task.dt);
-    let starts = || (0..task.count).map(|n| task.start(n).map(T::from_f64));
-    let states = || starts().map(|[q, v]| State { q: [q], v: [v] }).collect();
+    let start = |n| task.start(n).map(T::from_f64);
+    let states = || (0..task.count).map(start).map(|[q, v]| State { q: [q], v: [v] }).collect();
     let system = Oscillator { omega2: T::from_f64(task.omega2) };
     let blocks = |execution: &Execution, fused| -> Result<Blocks<T>, EnsembleError> {
         Ok(Blocks { ensemble: oscillators::<T>(task, execution)?, dt, fused })
@@ -65,7 +65,7 @@ pub(crate) fn prepare<T: Bench>(
         Implementation::Temporaries | Implementation::InPlace => {
             let reuse = implementation == Implementation::InPlace;
             let set = execution.instruction_set();
-            Box::new(Passes::new(starts(), -system.omega2, dt, set, reuse)?)
+            Box::new(Passes::new(task.count, start, -system.omega2, dt, set, reuse)?)
         }
         Implementation::OneStep => Box::new(blocks(&alone, false)?),
         Implementation::Fused => Box::new(blocks(&alone, true)?),

@@ -32,16 +32,19 @@ impl<'a> Contestant<'a> {
     }
 
     /// How many times fill a turn of so many seconds.
-    fn calibrate(&mut self, seconds: f64) -> u64 {
+    fn calibrate(&mut self, lab: &Lab<'_>, seconds: f64) -> Result<u64, StudyError> {
         // The first turn warms caches and branch predictors up.
         let mut times = 1;
-        let mut took = self.time(times).min(self.time(times));
+        let mut took = self.time(times);
+        lab.check()?;
+        took = took.min(self.time(times));
         while took < seconds / 4.0 && times < 1 << 40 {
+            lab.check()?;
             let missing = (seconds / took.max(1e-9)).clamp(2.0, 64.0);
             times = (times as f64 * missing) as u64;
             took = self.time(times);
         }
-        ((times as f64 * seconds / took) as u64).max(1)
+        Ok(((times as f64 * seconds / took) as u64).max(1))
     }
 }
 
@@ -63,7 +66,10 @@ pub(crate) fn race(
     turns: Turns,
     contestants: &mut [Contestant<'_>],
 ) -> Result<Vec<Rates>, StudyError> {
-    let times: Vec<u64> = contestants.iter_mut().map(|c| c.calibrate(turns.seconds)).collect();
+    let mut times = Vec::with_capacity(contestants.len());
+    for contestant in &mut *contestants {
+        times.push(contestant.calibrate(lab, turns.seconds)?);
+    }
     let mut rates = vec![Vec::with_capacity(turns.rounds); contestants.len()];
     for round in 0..turns.rounds {
         for turn in 0..contestants.len() {
@@ -149,7 +155,9 @@ mod tests {
         let mut slow = Contestant::new(1.0, |times| {
             std::thread::sleep(std::time::Duration::from_micros(200 * times));
         });
-        let times = slow.calibrate(0.01);
+        let (config, stop) = (crate::Config::default(), std::sync::atomic::AtomicBool::new(false));
+        let lab = Lab::new(&config, crate::Effort::Quick, &crate::Silent, &stop);
+        let times = slow.calibrate(&lab, 0.01).expect("nobody stops it");
         // A sleep is never shorter than asked, and seldom twice as long.
         assert!((10..=50).contains(&times), "{times}");
     }

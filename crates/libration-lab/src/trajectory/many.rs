@@ -14,6 +14,9 @@ const CHUNK: u64 = 1 << 26;
 
 /// A float type in which many trajectories may be asked for.
 pub(super) trait Many: Number {
+    /// Whether the copies of a request can be had, before anything is written.
+    fn admits(request: &Request, copies: &Copies) -> Result<(), TrajectoryError>;
+
     /// Simulates the copies of a request that has been checked.
     fn many(
         request: &Request,
@@ -34,6 +37,11 @@ macro_rules! vectors {
             ) -> Result<Ending, TrajectoryError> {
                 run::<$float>(request, copies, rows, stop)
             }
+
+            fn admits(request: &Request, copies: &Copies) -> Result<(), TrajectoryError> {
+                let bytes = <$float>::ensemble_bytes(request.q.len(), copies.count);
+                machine::has_room(bytes).map_err(TrajectoryError::Memory)
+            }
         }
     )*};
 }
@@ -43,10 +51,14 @@ macro_rules! scalar_only {
         impl Many for $float {
             fn many(
                 request: &Request,
-                _: &Copies,
+                copies: &Copies,
                 _: &mut dyn Rows<Self>,
                 _: &AtomicBool,
             ) -> Result<Ending, TrajectoryError> {
+                Self::admits(request, copies).map(|()| Ending::Whole)
+            }
+
+            fn admits(request: &Request, _: &Copies) -> Result<(), TrajectoryError> {
                 Err(TrajectoryError::Value {
                     name: "float",
                     value: request.float.name().to_owned(),
@@ -68,7 +80,6 @@ fn run<S: BatchFloat + Number>(
 ) -> Result<Ending, TrajectoryError> {
     let Request { system, method, dt, steps, every, .. } = *request;
     let (dimension, count) = (request.q.len(), copies.count);
-    machine::has_room(S::ensemble_bytes(dimension, count)).map_err(TrajectoryError::Memory)?;
     let coordinate = |i: usize| match i.checked_sub(dimension) {
         None => request.q.get(i),
         Some(i) => request.v.get(i),

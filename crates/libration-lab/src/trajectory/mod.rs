@@ -120,10 +120,16 @@ pub fn write(
 }
 
 fn keep<S: Many>(request: &Request, stop: &AtomicBool) -> Result<Trajectory, TrajectoryError> {
-    request.check::<S>()?;
+    admit::<S>(request)?;
     let mut columns = Columns::<S>::new(request)?;
     let ending = run::run(request, &mut columns, stop)?;
     Ok(Trajectory { table: columns.into_table(request)?, ending })
+}
+
+/// Checks all that can be checked before the first row.
+fn admit<S: Many>(request: &Request) -> Result<(), TrajectoryError> {
+    request.check::<S>()?;
+    request.copies.map_or(Ok(()), |copies| S::admits(request, &copies))
 }
 
 fn write_as<S: Many>(
@@ -132,7 +138,7 @@ fn write_as<S: Many>(
     out: &mut (dyn Write + Send),
     stop: &AtomicBool,
 ) -> Result<Ending, TrajectoryError> {
-    request.check::<S>()?;
+    admit::<S>(request)?;
     let several = request.copies.is_some();
     let ending = match format {
         Format::Csv => {

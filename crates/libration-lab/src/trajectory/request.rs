@@ -1,6 +1,7 @@
 //! What trajectory is asked for.
 
 use libration::catalog::Allowed;
+use libration::ensemble::MOST_THREADS;
 use libration::{AnySystem, Float, Method};
 
 use super::{Copies, FloatType, TrajectoryError, units};
@@ -101,6 +102,10 @@ impl Request {
         }
         if !copies.spread.is_finite() {
             return Err(wrong("spread", format!("{:?}", copies.spread), Allowed::Finite));
+        }
+        if copies.threads > MOST_THREADS {
+            let allowed = format!("at most {MOST_THREADS}");
+            return Err(wrong("threads", copies.threads, allowed));
         }
         let furthest = 1.0 + copies.spread.abs();
         let all = self.q.iter().chain(&self.v);

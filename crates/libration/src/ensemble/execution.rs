@@ -12,12 +12,22 @@ pub struct Execution {
     instructions: InstructionSet,
     /// None where there is one thread.
     pool: Option<Arc<ThreadPool>>,
+    /// Steps of trajectories that are worth a thread, of the shortest there are.
+    worth: u64,
 }
+
+/// Where the study `throughput` was written, to wake another core took as long as a million and a half of
+/// the shortest steps.
+const WORTH_A_THREAD: u64 = 1 << 21;
+
+/// More threads than this are a slip of the hand: to start them takes longer than any work is worth.
+pub const MOST_THREADS: usize = 1024;
 
 impl Execution {
     /// The widest instruction set of this processor, on the thread that calls.
     pub fn serial() -> Self {
-        Execution { instructions: InstructionSet::widest(), pool: None }
+        let instructions = InstructionSet::widest();
+        Execution { instructions, pool: None, worth: WORTH_A_THREAD }
     }
 
     /// The widest instruction set of this processor, on as many threads as it has cores.
@@ -37,8 +47,24 @@ impl Execution {
             let pool = ThreadPoolBuilder::new().num_threads(threads).build();
             pool.map_err(|error| EnsembleError::Threads { threads, reason: error.to_string() })
         };
+        if threads > MOST_THREADS {
+            let reason = format!("there may be at most {MOST_THREADS}");
+            return Err(EnsembleError::Threads { threads, reason });
+        }
         let pool = if threads == 1 { None } else { Some(Arc::new(build(threads)?)) };
         Ok(Execution { pool, ..self })
+    }
+
+    /// This, with a thread for every so many steps of trajectories; for tests, which take few.
+    #[doc(hidden)]
+    pub fn worth(self, steps: u64) -> Self {
+        Execution { worth: steps.max(1), ..self }
+    }
+
+    /// How many threads so many of the shortest steps are worth.
+    pub(super) fn threads_for(&self, steps: u64) -> usize {
+        let worth = usize::try_from(steps / self.worth).unwrap_or(usize::MAX).max(1);
+        worth.min(self.thread_count())
     }
 
     /// This, on that instruction set.

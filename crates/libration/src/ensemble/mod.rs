@@ -31,7 +31,7 @@ pub use any::{AnyEnsemble, BatchFloat};
 pub use assign::{All, Assign, Each};
 pub use buffer::{Buffer, Pages};
 pub use error::EnsembleError;
-pub use execution::Execution;
+pub use execution::{Execution, MOST_THREADS};
 pub use instructions::{InstructionSet, Loop};
 pub use observer::{Copies, Drift, Lanes, MeanSquareError, Moments, Observer, Summary};
 pub use stream::stream;
@@ -47,10 +47,6 @@ const CHUNK: usize = 4096;
 /// Trajectories that are never parted where nobody watches: their coordinates fill cache lines, which
 /// no two threads then write.
 const GRAIN: usize = 64;
-
-/// Steps of trajectories that are worth a thread, of the shortest there are: where the study
-/// `throughput` was written, to wake another core took as long as a million and a half of them.
-const WORTH_A_THREAD: u64 = 1 << 21;
 
 /// Trajectories of a `D`-dimensional system, as structure of arrays.
 #[derive(Debug)]
@@ -220,9 +216,7 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         // RK4 on a pendulum as 32 (it takes 60 times as long).
         let weight = const { (M::REGISTERS.div_ceil(4) * Sys::REGISTERS.div_ceil(2)) as u64 };
         let steps = (self.len() as u64).saturating_mul(steps).saturating_mul(weight.max(1));
-        let work = steps / WORTH_A_THREAD;
-        let worth = usize::try_from(work).unwrap_or(usize::MAX).max(1);
-        worth.min(self.execution.thread_count())
+        self.execution.threads_for(steps)
     }
 
     fn check<Sys>(

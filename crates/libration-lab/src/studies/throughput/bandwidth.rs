@@ -5,22 +5,22 @@ use std::hint::black_box;
 use libration::ensemble::{Buffer, Pages, stream};
 
 use super::desk::Desk;
-use crate::bench::{Contestant, Rates, Triad, Update, together};
+use crate::bench::{Contestant, Rates, Team, Triad, Update};
 use crate::machine::{Machine, available_memory};
 use crate::record::{Finding, Record, Table};
 use crate::study::StudyError;
 
-/// Numbers that a thread copies past the caches at a time.
+/// What the arrays are made of.
 type Number = f32;
 
-/// Arrays far larger than the last cache are this many times as large.
-const FAR: u64 = 3;
+/// Three arrays together are this many times as large as the last cache.
+const FAR: u64 = 6;
 
-/// What the arrays of a measurement take together, in bytes: far larger than the caches, if the effort
-/// and the memory allow.
+/// What the arrays of a measurement take together, in bytes: larger than the last cache, if the effort and
+/// the memory allow.
 pub(super) fn footprint(desk: &Desk<'_>) -> u64 {
     let last = Machine::detect().caches.last().map_or(32 << 20, |cache| cache.bytes);
-    let most = desk.lab.effort.choose(64 << 20, 1 << 30, 4 << 30);
+    let most = desk.lab.effort.choose(64 << 20, 2 << 30, 8 << 30);
     let free = available_memory().unwrap_or(1 << 30);
     (FAR * last).max(256 << 20).min(most).min(free / 4)
 }
@@ -94,6 +94,16 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
             "GB/s",
             all,
         ));
+        record.find(Finding::measured(
+            format!("throughput.bandwidth.{}.one-core", kernel.name()),
+            format!(
+                "{} on one core, arrays of {} MiB each: bytes that the program reads and writes",
+                kernel.formula(),
+                mebibytes(len)
+            ),
+            "GB/s",
+            gigabytes[0],
+        ));
         table.push([
             kernel.name().into(),
             kernel.formula().into(),
@@ -120,23 +130,27 @@ fn bandwidth(
     let set = desk.set();
     let [a, b, c] = planes else { return Err(StudyError::Exact("there are three planes".into())) };
     let len = a.len();
+    let team = Team::new(threads)?;
     let part = len.div_ceil(threads).next_multiple_of(64);
-    let work = move |_times: u64| {
+    // What was never written is all the same page of zeros, which a cache holds.
+    for plane in [&mut *a, &mut *b, &mut *c] {
+        team.each(plane.chunks_mut(part).collect(), |part: &mut [Number]| part.fill(1.0));
+    }
+    let mut work = || {
         let planes = a.chunks_mut(part).zip(b.chunks_mut(part)).zip(c.chunks_mut(part));
-        together(planes, |((a, b), c)| match kernel {
+        team.each(planes.collect(), |((a, b), c)| match kernel {
             Kernel::Copy => b.copy_from_slice(a),
             Kernel::Stream => stream(a, b),
             Kernel::Triad => set.vectorize(Triad { a, b, c, s: black_box(0.5) }),
             Kernel::Update => {
-                // Factors that leave zeros as they are, and that the compiler does not know.
-                set.vectorize(Update { x: a, y: b, s: black_box(-0.5), t: black_box(0.5) });
+                // Small enough for nothing to overflow, and unknown to the compiler.
+                set.vectorize(Update { x: a, y: b, s: black_box(-1e-3), t: black_box(1e-3) });
             }
         });
         black_box(&*b);
     };
     let bytes = (kernel.arrays() * len * size_of::<Number>()) as f64;
-    let mut work = work;
-    let contestant = Contestant::new(bytes, move |times| (0..times).for_each(|_| work(times)));
+    let contestant = Contestant::new(bytes, |times| (0..times).for_each(|_| work()));
     let [rates] = desk.look([contestant])?;
     Ok(rates)
 }

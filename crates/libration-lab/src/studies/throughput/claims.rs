@@ -52,9 +52,8 @@ fn rates(record: &mut Record) {
         let (passes, lone) = (f[0].measured, f[1].measured);
         let because = format!(
             "from 1 to 100 trajectories the steps a second of all together, which is what §5.1 calls \
-             throughput, grow with the power {} of their number under array passes: a pass costs the \
-             same whatever it holds. It is passes a second that are constant. The lone loop grows with \
-             the power {}",
+             throughput, grow with the power {} of their number under array passes, and with the power {} \
+             in the lone loop. Where the power is near one it is passes a second that are constant",
             show(passes),
             show(lone)
         );
@@ -120,7 +119,7 @@ fn limits(record: &mut Record) {
         let gain = f[0].measured;
         let because = format!(
             "10⁵ trajectories are 0.8 MB in f32, which a cache holds, and on the same memory fused steps \
-             are {} times as fast as array passes. What is bound is the way in which they are written",
+             are {} times as fast as array passes",
             show(gain)
         );
         Judgement::holds_if(gain < SEVERAL, because)
@@ -130,8 +129,7 @@ fn limits(record: &mut Record) {
     record.judge(Ruling { id: "C36", source: "5.1", text, findings: &ids }, |f| {
         let because = format!(
             "the overhead is real: up to N = {} a pass costs more than what it holds. But 10⁵ \
-             trajectories lie in a cache; there fused steps gain a factor of {}, which no memory would \
-             allow",
+             trajectories lie in a cache; there fused steps gain a factor of {}",
             show(f[0].measured),
             show(f[1].measured)
         );
@@ -163,7 +161,7 @@ fn limits(record: &mut Record) {
         let because = format!(
             "the intensity is that of a pass, not of the problem: trajectories do not interact, and a \
              block can take many steps while it is in registers. At N = 10⁶ that is {} times as fast as \
-             a step a pass, and it is bound by arithmetic",
+             a step a pass",
             show(f[0].measured)
         );
         match f[0].measured > SUBSTANTIAL {
@@ -219,8 +217,8 @@ fn bandwidth(record: &mut Record) {
         Judgement::holds_if(over <= 1.0, because)
     });
     let ids = [
-        "throughput.bandwidth.copy",
-        "throughput.bandwidth.update",
+        "throughput.bandwidth.copy.one-core",
+        "throughput.bandwidth.update.one-core",
         "throughput.formula.in-place.f32",
         "throughput.formula.in-place.f64",
     ];
@@ -233,8 +231,8 @@ fn bandwidth(record: &mut Record) {
             let memory = values.clone().take(2).fold(0.0, f64::max);
             let formula = values.skip(2).fold(0.0, f64::max);
             let because = format!(
-                "the source names no machine. Here loops that only move memory reach {} GB/s, and array \
-                 passes at the largest N {} GB/s by its formula, {} of that; {} GB/s by a formula that \
+                "the source names no machine. Here loops that only move memory reach {} GB/s on one core, \
+                 and array passes on it at the largest N {} GB/s by its formula, {} of that; {} GB/s by a formula that \
                  counts a third of the traffic say nothing of a memory",
                 show(memory),
                 show(formula),

@@ -5,7 +5,8 @@ use std::hint::black_box;
 use libration::ensemble::{Buffer, Pages};
 
 use super::desk::Desk;
-use crate::bench::{Contestant, Implementation, Task, prepare};
+use super::scaling::Wanted;
+use crate::bench::{BenchFloat, Contestant, Implementation, Task, prepare};
 use crate::record::{Cell, Finding, Record, Relation, Table, Tolerance};
 use crate::study::StudyError;
 
@@ -53,10 +54,9 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         (again.median() / 1e9).into(),
         1.0.into(),
     ]);
-    for (name, pages, rate, size) in [
-        ("fresh", Pages::Ordinary, &ordinary, PAGE),
-        ("fresh, huge pages wished for", Pages::Huge, &huge, HUGE_PAGE),
-    ] {
+    for (name, pages, rate, size) in
+        [("fresh", Pages::Ordinary, &ordinary, PAGE), ("fresh huge", Pages::Huge, &huge, HUGE_PAGE)]
+    {
         let faults = count_faults(|| {
             let mut buffer = Buffer::<f32>::new(LEN, pages)?;
             buffer.fill(black_box(1.0));
@@ -74,7 +74,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         let id = if size == PAGE { "ordinary" } else { "huge" };
         record.find(Finding::measured(
             format!("throughput.fresh.{id}"),
-            format!("64 MiB of {name} memory, written once, over the same written again"),
+            format!("64 MiB of {name} pages, written once, over warm ones"),
             "1",
             share.median(),
         ));
@@ -100,7 +100,11 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
 
 /// The page faults of a step whose every result is a new array.
 fn temporaries(desk: &Desk<'_>, record: &mut Record, table: &mut Table) -> Result<(), StudyError> {
-    let count = desk.lab.effort.choose(TRAJECTORIES / 10, TRAJECTORIES, TRAJECTORIES);
+    let count = TRAJECTORIES;
+    let float = BenchFloat::F32;
+    if (Wanted { implementation: Implementation::Temporaries, float, count }).check().is_err() {
+        return Ok(());
+    }
     for implementation in [Implementation::Temporaries, Implementation::InPlace] {
         let task = Task { count, ..desk.task(count) };
         let mut rung = prepare::<f32>(implementation, task, &desk.serial)?;

@@ -25,8 +25,8 @@ fn ink(implementation: Implementation) -> Ink {
 pub(super) fn scaling(record: &Record) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("fig-9-7", title(record))
         .caption(
-            "Circles are predicted: a lone trajectory by the latency of its arithmetic, fused steps by \
-             independent arithmetic, one step a pass by a loop that moves the same memory. Upright lines: \
+            "Circles are predicted: the scalar loop by the latency of one trajectory’s arithmetic (it \
+             may begin the next meanwhile), fused steps by independent arithmetic, one step a pass by a loop that moves the same memory. Upright lines: \
              two arrays fill a cache.",
         )
         .description("Log-log: steps a second against the number of trajectories.")
@@ -159,7 +159,7 @@ pub(super) fn roofline(record: &Record) -> Result<Figure, RecordError> {
         format!("With {most} steps a pass the same memory gives {} times the work", number(gain, 2)),
     )
     .caption(
-        "Symplectic Euler in f32 on one core, arrays beyond the caches, 1 to 128 steps a pass. The roof \
+        "Symplectic Euler in f32 on one core, on the largest arrays of this run, 1 to 128 steps a pass. The roof \
          is the lower of measured bandwidth and measured arithmetic; circles: if each waited for the \
          other.",
     )

@@ -8,9 +8,7 @@ use libration::system::Oscillator;
 use libration::{Method, with_method};
 
 use super::desk::{Desk, judge};
-use crate::bench::{
-    Bench, BenchFloat, Contestant, Mix, Rates, stepping, together, widths, with_float,
-};
+use crate::bench::{Bench, BenchFloat, Contestant, Mix, Rates, Team, stepping, widths, with_float};
 use crate::record::{Record, Table};
 use crate::study::StudyError;
 
@@ -70,12 +68,13 @@ impl Peak {
         self,
         set: InstructionSet,
         threads: usize,
-    ) -> Contestant<'static> {
-        Contestant::new(self.work() * threads as f64, move |times| {
-            together(0..threads, |_| {
+    ) -> Result<Contestant<'static>, StudyError> {
+        let team = Team::new(threads)?;
+        Ok(Contestant::new(self.work() * threads as f64, move |times| {
+            team.each((0..threads).collect(), |_| {
                 black_box(self.mix.run::<T>(set, self.width, times * ROUNDS));
             });
-        })
+        }))
     }
 
     /// Steps in `ROUNDS` rounds.

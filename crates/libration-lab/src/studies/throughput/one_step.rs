@@ -6,7 +6,7 @@ use libration::ensemble::{Buffer, Pages};
 use libration::{Ensemble, Method};
 
 use super::desk::{Desk, judge};
-use crate::bench::{Contestant, Update, stepping, together};
+use crate::bench::{Contestant, Team, Update, stepping};
 use crate::machine::has_room;
 use crate::record::{Record, Table};
 use crate::study::StudyError;
@@ -90,23 +90,18 @@ pub(super) fn update<'a>(
     let mut x = Buffer::<f32>::new(count, Pages::Huge)?;
     let mut y = Buffer::<f32>::new(count, Pages::Huge)?;
     let part = count.div_ceil(threads).next_multiple_of(64);
-    let parts =
-        move |x: &mut [f32], y: &mut [f32], work: &(dyn Fn(&mut [f32], &mut [f32]) + Sync)| {
-            let parts = x.chunks_mut(part).zip(y.chunks_mut(part));
-            match threads {
-                1 => parts.for_each(|(x, y)| work(x, y)),
-                _ => together(parts, |(x, y)| work(x, y)),
-            }
-        };
+    let team = Team::new(threads)?;
     // Each part is first written by the kind of thread that will work on it.
-    parts(&mut x, &mut y, &|x, y| {
+    let parts = x.chunks_mut(part).zip(y.chunks_mut(part)).collect();
+    team.each(parts, |(x, y)| {
         x.fill(1.0);
         y.fill(0.0);
     });
     Ok(Contestant::new(count as f64, move |times| {
         for _ in 0..times {
             let (s, t) = (black_box(s), black_box(t));
-            parts(&mut x, &mut y, &|x, y| set.vectorize(Update { x, y, s, t }));
+            let parts = x.chunks_mut(part).zip(y.chunks_mut(part)).collect();
+            team.each(parts, |(x, y)| set.vectorize(Update { x, y, s, t }));
         }
         black_box(&*x);
     }))

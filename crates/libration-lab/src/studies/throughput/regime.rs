@@ -75,16 +75,20 @@ fn level(caches: &[Cache], bytes: f64) -> Option<u32> {
     caches.iter().find(|cache| cache.bytes as f64 >= bytes).map(|cache| cache.level)
 }
 
+/// What a regime is limited by, as far as its rates and its arrays tell.
 fn words(implementation: Implementation, limit: Limit, caches: usize) -> String {
     match limit {
-        Limit::Overhead => "the cost of a pass".into(),
-        Limit::Plateau(_) if implementation.is_lone() => {
-            "the latency of one trajectory’s arithmetic".into()
+        Limit::Overhead if implementation.is_fused() => {
+            "latency: a block takes as long, however few trajectories are in it".into()
         }
-        Limit::Plateau(_) if implementation.is_fused() => "arithmetic".into(),
-        Limit::Plateau(Some(level)) => format!("arithmetic and cache {level}"),
-        Limit::Plateau(None) if caches == 0 => "caches or memory".into(),
-        Limit::Plateau(None) => "the memory".into(),
+        Limit::Overhead => "the cost of a pass".into(),
+        Limit::Plateau(_) if implementation.is_lone() => "one trajectory at a time".into(),
+        Limit::Plateau(_) if implementation.is_fused() => {
+            "arithmetic: no memory is waited for".into()
+        }
+        Limit::Plateau(Some(level)) => format!("its passes over cache {level}"),
+        Limit::Plateau(None) if caches == 0 => "its passes over caches or memory".into(),
+        Limit::Plateau(None) => "its passes over the memory".into(),
     }
 }
 
@@ -97,8 +101,10 @@ fn regimes(counts: &[f64], rates: &[f64], held: impl Fn(f64) -> Option<u32>) -> 
             let (n, r) = (counts.get(j)?, rates.get(j)?);
             Some((rates.get(j + 1)? / r).ln() / (counts.get(j + 1)? / n).ln())
         };
-        // The growth towards the next number; at the last, since the one before.
-        let slope = growth(i).or_else(|| growth(i.checked_sub(1)?)).unwrap_or(0.0);
+        // The growth towards the next number, or from there on: a lone trajectory has a kernel of its own.
+        // At the last number, since the one before.
+        let ahead = growth(i).map(|next| next.max(growth(i + 1).unwrap_or(next)));
+        let slope = ahead.or_else(|| growth(i.checked_sub(1)?)).unwrap_or(0.0);
         let limit = if slope > GROWTH { Limit::Overhead } else { Limit::Plateau(held(count)) };
         match all.last_mut() {
             Some(last) if last.limit == Limit::Overhead && limit == Limit::Overhead => {

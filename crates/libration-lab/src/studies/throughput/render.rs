@@ -64,49 +64,63 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     Ok(())
 }
 
-/// What the fastest implementation reaches, and against what.
+/// What fused steps reach, and against what: numbers of one table each.
 fn answer(record: &Record, page: &mut Page) {
     let value = |id: &str| record.finding(id).ok().map(|f| f.measured);
-    let share = value("throughput.symplectic-euler.f32");
     let mut sentences = Vec::new();
-    if let Some(fused) = value("throughput.best.fused") {
-        let rate = format!("{}·10⁹", number(fused / 1e9, 3));
-        let of = share.map_or(String::new(), |share| {
-            format!(", {} % of what independent arithmetic amounts to", number(100.0 * share, 3))
-        });
+    if let Some([fused, share, spread]) = fused(record) {
+        let rate = format!("{}·10⁹", number(fused, 3));
+        // What is more than all, or noise, is no share.
+        let of = match share <= 1.0 + spread && spread < 0.1 {
+            true => format!(
+                ", {} % of what independent arithmetic amounts to",
+                number(100.0 * share, 3)
+            ),
+            false => String::new(),
+        };
         sentences
             .push(format!("One core takes {rate} steps of symplectic Euler a second in f32{of}."));
         page.highlights
             .push(Highlight { value: rate, text: "steps a second on one core, f32".into() });
     }
-    if let Some(gain) = value("throughput.threads.gain") {
-        sentences.push(format!("All cores take {} times as many.", number(gain, 3)));
-    }
     if let Some(gain) = value("throughput.fused-over-in-place.f32.1e5") {
         sentences.push(format!(
-            "That is {} times what array operations reach for 10⁵ trajectories on the same core: they \
-             are bound by their own traffic, not by the problem.",
+            "For 10⁵ trajectories that is {} times what array operations reach on the same core: they are \
+             bound by their own passes, not by the problem.",
             number(gain, 2)
         ));
+    }
+    if let Some(gain) = value("throughput.threads.gain") {
+        sentences.push(format!("All cores take {} times as many as one.", number(gain, 3)));
     }
     page.answer = sentences.join(" ");
 }
 
-/// Says which ratios could not be judged.
+/// Of symplectic Euler in f32: 10⁹ steps a second, their share of independent arithmetic, and how far
+/// the quartiles of that lie apart.
+fn fused(record: &Record) -> Option<[f64; 3]> {
+    let rows = &record.table("fused steps").ok()?.rows;
+    let row =
+        rows.iter().find(|row| row[0] == "symplectic Euler".into() && row[1] == "f32".into())?;
+    Some([row[3].value()?, row[5].value()?, row[6].value()?])
+}
+
+/// Says what was judged, and what the machine was too noisy for.
 fn noise(record: &Record, page: &mut Page) {
-    let noisy = record
-        .findings
-        .iter()
-        .filter(|f| f.verdict == Verdict::Measured && f.text.contains(super::desk::TOO_NOISY));
-    match noisy.count() {
-        0 => page.paragraph(
-            "Every ratio is the median of ratios of neighbouring turns; its tolerance is the distance \
-             between their quartiles. The machine was quiet enough to judge all of them.",
-        ),
-        count => page.note(format!(
-            "The machine had other work: for {count} of the ratios the quartiles of the rounds lay too \
-             far apart for a verdict. Run the chapter again on a quiet machine."
-        )),
+    let speeds = || record.findings.iter().filter(|f| f.unit == "1" && !f.id.contains("faults"));
+    let judged = speeds().filter(|f| f.verdict != Verdict::Measured).count();
+    let noisy = speeds().filter(|f| f.text.contains(super::desk::TOO_NOISY)).count();
+    page.paragraph(
+        "Ratios that are judged are medians of ratios of neighbouring turns; their tolerance is the \
+         distance between their quartiles. Where an instruction set has few registers, and in a build \
+         with debug assertions, nothing is judged.",
+    );
+    if noisy > 0 {
+        page.note(format!(
+            "The machine had other work: of {} ratios that could be judged, the quartiles of {noisy} lay \
+             too far apart for a verdict. Run the chapter again on a quiet machine.",
+            judged + noisy
+        ));
     }
 }
 

@@ -26,7 +26,9 @@ const BAR: f64 = 0.9;
 
 /// Races ensembles that no cache holds, with more and more steps a pass.
 pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let count = usize::try_from(footprint(desk)).unwrap_or(usize::MAX) / (2 * size_of::<f32>());
+    // Two arrays, as large as those of which bandwidths are told, but not so that it takes minutes.
+    let bytes = (footprint(desk) / 3 * 2).min(1 << 30);
+    let count = usize::try_from(bytes).unwrap_or(usize::MAX) / (2 * size_of::<f32>());
     let task = desk.task(count);
     let method = Method::SymplecticEuler;
     let arithmetic = peak::<f32>(desk, &flow(desk, method))?;
@@ -58,8 +60,9 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
                      second over those if arithmetic and memory waited for each other",
                     (count * size_of::<f32>()) >> 20
                 ),
-                // Worse than that would be a third thing that limits.
-                Some(BAR),
+                // Worse than that would be a third thing that limits. With few registers there is
+                // one: blocks go through a cache.
+                (desk.set().registers() >= 32).then_some(BAR),
                 &rates.over(&in_turn),
             );
             rates
@@ -85,7 +88,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         ("peak", "multiplications and additions", peak * operations / 1e9),
         (
             "memory",
-            "bytes that a loop over arrays beyond the caches reads and writes",
+            "bytes that a loop over the arrays of the roofline reads and writes",
             memory * BYTES / 1e9,
         ),
     ] {

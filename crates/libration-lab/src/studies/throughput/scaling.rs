@@ -114,7 +114,8 @@ fn contestant<T: Bench>(
 ) -> Result<Contestant<'static>, StudyError> {
     let mut rung = prepare::<T>(implementation, task, execution)?;
     let steps = match implementation {
-        one if one.is_lone() => LONE,
+        // Enough for the chain to take the time; of many a turn is long as it is.
+        one if one.is_lone() && task.count <= MOST_LONE => LONE,
         one if one.is_fused() => FUSED,
         _ => 1,
     };
