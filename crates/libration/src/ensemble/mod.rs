@@ -48,6 +48,9 @@ const CHUNK: usize = 4096;
 /// no two threads then write.
 const GRAIN: usize = 64;
 
+/// Steps of the shortest that take as long as a coordinate and its velocity from the memory and back.
+const MOVED: u64 = 5;
+
 /// Trajectories of a `D`-dimensional system, as structure of arrays.
 #[derive(Debug)]
 pub struct Ensemble<T, const D: usize> {
@@ -215,8 +218,8 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         // What holds more values does more with them: symplectic Euler on an oscillator counts as one,
         // RK4 on a pendulum as 32 (it takes 60 times as long).
         let weight = const { (M::REGISTERS.div_ceil(4) * Sys::REGISTERS.div_ceil(2)) as u64 };
-        let steps = (self.len() as u64).saturating_mul(steps).saturating_mul(weight.max(1));
-        self.execution.threads_for(steps)
+        let each = steps.saturating_mul(weight.max(1)).saturating_add(MOVED * D as u64);
+        self.execution.threads_for((self.len() as u64).saturating_mul(each))
     }
 
     fn check<Sys>(

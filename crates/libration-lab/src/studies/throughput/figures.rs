@@ -71,6 +71,8 @@ fn predicted(
     };
     match implementation {
         Implementation::Scalar => Some(1e9 / of_float("a lone trajectory", 4)?),
+        // A loop that is beaten by more than noise is no prediction.
+        Implementation::Fused if of_float("fused steps", 5)? > 1.1 => None,
         Implementation::Fused => Some(1e9 * of_float("fused steps", 4)?),
         Implementation::OneStep if float == BenchFloat::F32 => {
             let rows = &record.table("one step a pass").ok()?.rows;
