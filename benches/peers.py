@@ -90,16 +90,12 @@ if numba:
     PEERS["numba blocked"] = blocked
 
 
-def steps_for(peer, count):
-    """Steps of a run: as many as Libration fuses, and at least some 50 ms."""
-    return FUSED * max(1, round(2e8 / (FUSED * count))) if count < 1_000_000 else FUSED
-
-
 def peer_rate(peer, x, v, seconds):
     """Particle-steps a second, the median over so many seconds of runs."""
     count = x.size
-    # NumPy at ten million particles takes 50 ms a step: its rate does not depend on their number.
-    steps = 8 if count >= 1_000_000 and peer.startswith("numpy") else steps_for(peer, count)
+    # As many as Libration takes in a pass. NumPy at ten million particles takes 50 ms a step, and its rate
+    # does not depend on their number.
+    steps = 8 if count >= 1_000_000 and peer.startswith("numpy") else FUSED
     rates, begun = [], time.perf_counter()
     while len(rates) < 3 or time.perf_counter() - begun < seconds:
         start = time.perf_counter()
