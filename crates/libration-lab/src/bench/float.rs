@@ -5,18 +5,11 @@ use libration::Float;
 use libration::ensemble::BatchFloat;
 
 /// A float that ensembles are made of.
-pub trait Bench: BatchFloat + Pod {
-    /// Which one it is.
-    const FLOAT: BenchFloat;
-}
+pub trait Bench: BatchFloat + Pod {}
 
-impl Bench for f32 {
-    const FLOAT: BenchFloat = BenchFloat::F32;
-}
+impl Bench for f32 {}
 
-impl Bench for f64 {
-    const FLOAT: BenchFloat = BenchFloat::F64;
-}
+impl Bench for f64 {}
 
 /// One of these floats, chosen at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

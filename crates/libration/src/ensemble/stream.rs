@@ -4,9 +4,9 @@ use bytemuck::Pod;
 
 /// Copies `from` to `to` past the caches, where the processor can; its caches keep what they hold.
 ///
-/// A plain store first reads the line that it is about to overwrite. Where the destination is larger
-/// than the last cache, a stream saves that read, a third of the traffic; where it is smaller, plain
-/// stores are faster. What was written is visible to other threads as after any copy.
+/// A plain store first reads the line that it is about to overwrite. A stream saves that read, a third of
+/// the traffic of a copy, but what it wrote is in no cache. It is visible to other threads as after
+/// any copy.
 ///
 /// # Panics
 /// If the lengths differ.
