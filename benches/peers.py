@@ -3,12 +3,13 @@
 
     cargo build --release
     python3 -m venv target/peers && target/peers/bin/pip install numpy numba tbb
-    target/peers/bin/python benches/peers.py
+    target/peers/bin/python benches/peers.py [--json target/peers.json]
 
 Each takes its turn, several times over; ratios are medians of ratios of the same round, with their
 quartiles. NumPy works in place, as a user writes it and with preallocated results. numba runs in parallel
 and keeps a block of particles in the cache for all steps. Exits with 1 if a bar is missed, unless the
-arithmetic of the machine, measured by `libration bench`, does not go as far.
+arithmetic of the machine, measured by `libration bench`, does not go as far. `libration lab` judges the
+ratios of the file if its configuration names it, as `peers` under `[throughput]`.
 """
 
 import argparse
@@ -115,13 +116,13 @@ def own_rates(program, counts, effort):
     }
 
 
-def arithmetic(program):
-    """Steps a second that independent arithmetic amounts to on one core, by float."""
+def machine(program):
+    """The processor, and the steps a second that independent arithmetic amounts to on one core, by float."""
     command = [program, "bench", "--effort", "quick", "--json"]
     answer = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     table = next(table for table in answer["tables"] if table["name"] == "fused steps")
     rows = [dict(zip(table["columns"], row)) for row in table["rows"]]
-    return {
+    return answer["machine"]["cpu"], {
         row["float"]: 1e9 * row["independent arithmetic (10⁹ steps/s)"]
         for row in rows
         if row["integrator"] == "symplectic Euler"
@@ -149,9 +150,10 @@ def main():
     arguments = parser.parse_args()
     check(arguments.libration)
     counts = sorted({bar[2] for bar in BARS})
-    peak = arithmetic(arguments.libration)
-    print(f"NumPy {np.__version__}, numba {numba.__version__ if numba else 'missing'},", end=" ")
-    print(f"threads {numba.get_num_threads() if numba else 1}")
+    cpu, peak = machine(arguments.libration)
+    versions = f"NumPy {np.__version__}, "
+    versions += f"numba {numba.__version__} on {numba.get_num_threads()} threads" if numba else "no numba"
+    print(versions)
     print("Rates in 10⁹ particle-steps a second; ratios with their quartiles.\n")
     ratios, rates = {}, {}
     arrays = {
@@ -198,7 +200,9 @@ def main():
             rows.append(dict(implementation=implementation, peer=peer, float=number, count=count,
                              ratio=median, quartiles=[low, high], wanted=bar, most=most))
     if arguments.json:
-        pathlib.Path(arguments.json).write_text(json.dumps(rows, indent=1) + "\n")
+        answer = dict(schema="libration.peers/1", cpu=cpu, versions=versions, rounds=arguments.rounds,
+                      rows=rows)
+        pathlib.Path(arguments.json).write_text(json.dumps(answer, indent=1) + "\n")
     return 1 if missed else 0
 
 

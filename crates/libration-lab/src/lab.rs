@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use libration::ensemble::{EnsembleError, Execution, InstructionSet};
 use rayon::prelude::*;
 
 use crate::study::StudyError;
@@ -51,6 +52,15 @@ impl<'a> Lab<'a> {
         stop: &'a AtomicBool,
     ) -> Self {
         Lab { config, effort, progress, stop }
+    }
+
+    /// One thread, on the instruction set of the configuration.
+    ///
+    /// # Errors
+    /// If this processor lacks it.
+    pub fn alone(&self) -> Result<Execution, EnsembleError> {
+        let set = self.config.simd.unwrap_or(InstructionSet::widest());
+        Execution::serial().instructions(set)
     }
 
     /// Tells that the study `name` begins, the `number`-th of `of`.

@@ -28,6 +28,6 @@ pub mod untried;
 pub use config::Config;
 pub use effort::Effort;
 pub use lab::{Lab, Progress, Silent};
-pub use machine::{Machine, NoRoom};
+pub use machine::Machine;
 pub use record::Record;
 pub use study::Study;

@@ -1,6 +1,6 @@
 //! Where a run took place.
 
-use libration::ensemble::InstructionSet;
+use libration::ensemble::{InstructionSet, installed_memory};
 use serde::Serialize;
 
 /// The machine and the build, as far as they bear on results.
@@ -44,7 +44,7 @@ impl Machine {
             compiler: env!("LIBRATION_COMPILER"),
             instruction_sets: InstructionSet::available().map(InstructionSet::name).collect(),
             caches: caches(),
-            memory: memory("MemTotal:"),
+            memory: installed_memory(),
         }
     }
 }
@@ -82,42 +82,4 @@ fn cpu_name() -> Option<String> {
     let info = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = info.lines().find(|line| line.starts_with("model name"))?;
     Some(line.split_once(':')?.1.trim().to_owned())
-}
-
-/// There is not memory enough.
-#[derive(Clone, Copy, Debug, thiserror::Error)]
-#[error("{:.1} GB of memory are needed, of which {:.1} GB are available", gigabytes(*needed), gigabytes(u128::from(*available)))]
-pub struct NoRoom {
-    /// Bytes that are needed.
-    pub needed: u128,
-    /// Bytes that can be had without swapping.
-    pub available: u64,
-}
-
-fn gigabytes(bytes: u128) -> f64 {
-    bytes as f64 / 1e9
-}
-
-/// Whether so many bytes can be had without swapping; also where the system does not tell.
-///
-/// # Errors
-/// [`NoRoom`] if not.
-pub(crate) fn has_room(needed: u128) -> Result<(), NoRoom> {
-    match memory("MemAvailable:") {
-        Some(available) if needed > u128::from(available) => Err(NoRoom { needed, available }),
-        _ => Ok(()),
-    }
-}
-
-/// Bytes that can be had without swapping, if the system tells.
-pub(crate) fn available_memory() -> Option<u64> {
-    memory("MemAvailable:")
-}
-
-/// A line of what Linux tells of the memory, in bytes.
-fn memory(name: &str) -> Option<u64> {
-    let info = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = info.lines().find(|line| line.starts_with(name))?;
-    let kibibytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kibibytes * 1024)
 }

@@ -23,7 +23,7 @@ const COUNTS: [usize; 3] = [1_000, 100_000, 10_000_000];
 /// Times this machine, and prints what came out.
 pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), Failure> {
     let mut config = Config { effort: args.effort, ..Config::default() };
-    config.throughput.simd = simd::asked(args.simd)?;
+    config.simd = simd::asked(args.simd)?;
     let wanted = wanted(args)?;
     let reporter = Reporter::new(quiet);
     let stop = interrupt::listen()?;
@@ -55,7 +55,9 @@ fn wanted(args: &BenchArgs) -> Result<Vec<Wanted>, Failure> {
                 one.check().map_err(|error| {
                     Failure::usage(format!("{count} trajectories (--count): {error}"))
                 })?;
-                wanted.push(one);
+                if !wanted.contains(&one) {
+                    wanted.push(one);
+                }
             }
         }
     }
@@ -96,7 +98,7 @@ fn ratios(record: &Record) -> Vec<Vec<String>> {
         Verdict::Agrees => Some("reached"),
         Verdict::Disagrees => Some("missed"),
         Verdict::Measured => {
-            finding.text.contains("too noisy").then_some("too noisy to judge: run it again")
+            finding.undecided.is_some().then_some("too noisy to judge: run it again")
         }
     };
     let rows = record.findings.iter().filter(|finding| finding.unit == "1").filter_map(|finding| {

@@ -54,7 +54,7 @@ fn configure(args: &LabArgs) -> Result<Config, Failure> {
         config.studies.clone_from(&args.studies);
     }
     config.effort = args.effort.unwrap_or(config.effort);
-    config.throughput.simd = simd::asked(args.simd)?.or(config.throughput.simd);
+    config.simd = simd::asked(args.simd)?.or(config.simd);
     config.check().map_err(Failure::usage)?;
     Ok(config)
 }

@@ -36,8 +36,9 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
         Ending::NotFinite { count, first } => {
             let named: Vec<String> = first.iter().map(usize::to_string).collect();
             let more = if count > first.len() { ", …" } else { "" };
+            let are = if count == 1 { "trajectory is" } else { "trajectories are" };
             terminal::say(&format!(
-                "note: {count} trajectories are not finite in the end: {}{more}",
+                "note: {count} {are} not finite in the end: {}{more}",
                 named.join(", ")
             ));
         }

@@ -14,8 +14,9 @@ fn libration(words: &str) -> Command {
 }
 
 #[test]
-fn named_implementations_are_timed_alone() {
-    let words = "--quiet bench --implementation fused,in-place --count 1e3,10 --float f32 --json";
+fn named_implementations_are_timed_alone_and_each_once() {
+    let words =
+        "--quiet bench --implementation fused,in-place --count 1e3,10,1000 --float f32,f32 --json";
     let run = libration(words).assert().success().stderr(is_empty());
     let answer: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
     assert_eq!(answer["schema"], "libration.bench/1");

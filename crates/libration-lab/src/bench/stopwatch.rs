@@ -98,9 +98,9 @@ impl Rates {
         self.quantile(0.75) - self.quantile(0.25)
     }
 
-    /// [`Rates::spread`] over [`Rates::median`].
-    pub(crate) fn noise(&self) -> f64 {
-        self.spread() / self.median()
+    /// How many there are.
+    pub(crate) fn rounds(&self) -> usize {
+        self.0.len()
     }
 
     /// What `combine` makes of these and others, round by round.
@@ -140,14 +140,14 @@ mod tests {
     #[test]
     fn the_median_is_in_the_middle_and_the_spread_between_the_quartiles() {
         let rates = Rates(vec![4.0, 1.0, 100.0, 2.0, 3.0]);
-        assert_eq!([rates.median(), rates.spread(), rates.noise()], [3.0, 2.0, 2.0 / 3.0]);
+        assert_eq!([rates.median(), rates.spread()], [3.0, 2.0]);
         assert_eq!(Rates(vec![1.0, 2.0]).median(), 1.5);
     }
 
     #[test]
     fn ratios_are_taken_round_by_round_so_that_common_noise_cancels() {
         let noisy = Rates(vec![10.0, 5.0, 20.0]);
-        assert_eq!(noisy.over(&Rates(vec![5.0, 2.5, 10.0])).noise(), 0.0);
+        assert_eq!(noisy.over(&Rates(vec![5.0, 2.5, 10.0])).spread(), 0.0);
     }
 
     #[test]

@@ -9,6 +9,7 @@ use libration::{Hamiltonian, State};
 
 use super::limits::{self, within};
 use super::{Config, Spring, Start, Throughput, names};
+use crate::bench::Peers;
 use crate::studies;
 
 /// A value of a configuration that is not allowed.
@@ -71,6 +72,10 @@ impl Config {
         check_systems("nonlinear.systems", &self.nonlinear.systems)?;
         steps_a_turn("nonlinear.steps", self.nonlinear.steps.into())?;
         turns("nonlinear.turns", self.nonlinear.turns.into())?;
+        if let Some(asked) = self.simd.filter(|set| !set.is_available()) {
+            let message = EnsembleError::Instructions { asked }.to_string();
+            return Err(Fault::new("simd", message));
+        }
         self.throughput.check()
     }
 
@@ -152,11 +157,8 @@ impl Throughput {
             }
         }
         counts("throughput.counts", &self.counts)?;
-        match self.simd {
-            Some(asked) if !asked.is_available() => {
-                let message = EnsembleError::Instructions { asked }.to_string();
-                Err(Fault::new("throughput.simd", message))
-            }
+        match self.peers.as_deref().map(Peers::read) {
+            Some(Err(message)) => Err(Fault::new("throughput.peers", message)),
             _ => Ok(()),
         }
     }

@@ -1,5 +1,7 @@
 //! The configuration as a TOML file.
 
+use std::path::PathBuf;
+
 use libration::Method;
 use libration::ensemble::InstructionSet;
 use schemars::JsonSchema;
@@ -32,6 +34,9 @@ pub(super) struct File {
     /// How much work a run may take.
     #[schemars(schema_with = "schema::effort")]
     pub(super) effort: String,
+    /// The instruction set of ensembles.
+    #[schemars(schema_with = "schema::simd")]
+    pub(super) simd: String,
     /// The integrators under study, each once.
     #[schemars(schema_with = "schema::integrators")]
     pub(super) integrators: Vec<String>,
@@ -96,8 +101,9 @@ pub fn parse_bytes(bytes: &[u8], file_name: &str) -> Result<Config, ConfigError>
 impl Default for File {
     fn default() -> Self {
         let config = Config::default();
-        let Config { studies, effort, integrators, oscillator, start, spectrum, drift, .. } =
-            config;
+        let Config {
+            studies, effort, simd, integrators, oscillator, start, spectrum, drift, ..
+        } = config;
         let Config { error, stability, efficiency, convergence, nonlinear, throughput, .. } =
             config;
         let numbers = |list: Vec<f64>| list.into_iter().map(Number).collect();
@@ -105,6 +111,7 @@ impl Default for File {
         File {
             studies,
             effort: effort.name().into(),
+            simd: names::instruction_set(simd).into(),
             integrators: integrators.into_iter().map(|m| m.name().into()).collect(),
             oscillator: SpringTable { m: Number(oscillator.m), k: Number(oscillator.k) },
             start: StartTable { q: Number(start.q), v: Number(start.v) },
@@ -134,7 +141,7 @@ impl Default for File {
             throughput: ThroughputTable {
                 implementations: names_of(&throughput.implementations),
                 counts: counts(throughput.counts),
-                simd: names::instruction_set(throughput.simd).into(),
+                peers: throughput.peers.map_or_else(String::new, |path| path.display().to_string()),
             },
         }
     }
@@ -144,7 +151,17 @@ impl TryFrom<File> for Config {
     type Error = Fault;
 
     fn try_from(file: File) -> Result<Self, Fault> {
-        let File { studies, effort, integrators, oscillator, start, spectrum, drift, .. } = file;
+        let File {
+            studies,
+            effort,
+            simd: set,
+            integrators,
+            oscillator,
+            start,
+            spectrum,
+            drift,
+            ..
+        } = file;
         let File { error, stability, efficiency, convergence, nonlinear, throughput, .. } = file;
         let effort = Effort::from_name(&effort).ok_or_else(|| {
             let fault = Fault::new("effort", format!("unknown effort `{effort}`"));
@@ -167,6 +184,7 @@ impl TryFrom<File> for Config {
         Ok(Config {
             studies,
             effort,
+            simd: simd(&set)?,
             integrators: integrators.iter().enumerate().map(method).collect::<Result<_, _>>()?,
             oscillator: Spring { m: oscillator.m.0, k: oscillator.k.0 },
             start: Start { q: start.q.0, v: start.v.0 },
@@ -186,7 +204,7 @@ impl TryFrom<File> for Config {
             throughput: Throughput {
                 implementations: implementations(&throughput.implementations)?,
                 counts: counts("throughput.counts", throughput.counts)?,
-                simd: simd(&throughput.simd)?,
+                peers: Some(throughput.peers).filter(|path| !path.is_empty()).map(PathBuf::from),
             },
         })
     }
@@ -211,7 +229,7 @@ fn implementations(names: &[String]) -> Result<Vec<Implementation>, Fault> {
 fn simd(name: &str) -> Result<Option<InstructionSet>, Fault> {
     let all = || InstructionSet::ALL.map(Some).into_iter().chain([None]);
     all().find(|set| names::instruction_set(*set) == name).ok_or_else(|| {
-        let fault = Fault::new("throughput.simd", format!("unknown instruction set `{name}`"));
+        let fault = Fault::new("simd", format!("unknown instruction set `{name}`"));
         let known: Vec<_> = all().map(names::instruction_set).collect();
         fault.help(names::suggest("instruction sets", name, known))
     })

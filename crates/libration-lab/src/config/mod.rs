@@ -10,6 +10,8 @@ mod schema;
 mod tables;
 mod value;
 
+use std::path::PathBuf;
+
 use libration::Method;
 use libration::ensemble::InstructionSet;
 use libration::system::Oscillator;
@@ -30,6 +32,9 @@ pub struct Config {
     pub studies: Vec<String>,
     /// How much work a run may take.
     pub effort: Effort,
+    /// The instruction set of ensembles; the widest that there is if none.
+    #[serde(serialize_with = "instruction_set_name")]
+    pub simd: Option<InstructionSet>,
     /// The integrators under study, each once.
     #[serde(serialize_with = "method_names")]
     pub integrators: Vec<Method>,
@@ -155,9 +160,8 @@ pub struct Throughput {
     pub implementations: Vec<Implementation>,
     /// Numbers of trajectories, rising; the effort and the memory bound them.
     pub counts: Vec<u64>,
-    /// The instruction set; the widest that there is if none.
-    #[serde(serialize_with = "instruction_set_name")]
-    pub simd: Option<InstructionSet>,
+    /// What `benches/peers.py` wrote on this machine, if its ratios are to be judged.
+    pub peers: Option<PathBuf>,
 }
 
 impl Default for Config {
@@ -165,6 +169,7 @@ impl Default for Config {
         Config {
             studies: Vec::new(),
             effort: Effort::Standard,
+            simd: None,
             integrators: vec![
                 Method::ExplicitEuler,
                 Method::SymplecticEuler,
@@ -198,7 +203,7 @@ impl Default for Config {
             throughput: Throughput {
                 implementations: Implementation::ALL.to_vec(),
                 counts: (0..=8).map(|power| 10u64.pow(power)).collect(),
-                simd: None,
+                peers: None,
             },
         }
     }

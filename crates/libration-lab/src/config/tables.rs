@@ -125,9 +125,8 @@ pub(super) struct ThroughputTable {
     /// Numbers of trajectories, each once; the effort and the memory bound them.
     #[schemars(schema_with = "schema::horizons")]
     pub(super) counts: Vec<Count>,
-    /// The instruction set.
-    #[schemars(schema_with = "schema::simd")]
-    pub(super) simd: String,
+    /// A file that `benches/peers.py` wrote on this machine; none if empty.
+    pub(super) peers: String,
 }
 
 macro_rules! default_of_table {

@@ -22,6 +22,8 @@ pub struct Finding {
     pub tolerance: Tolerance,
     /// Whether they agree.
     pub verdict: Verdict,
+    /// Why a measurement that was to be judged could not be.
+    pub undecided: Option<String>,
 }
 
 /// How a measurement should stand to its prediction.
@@ -119,6 +121,7 @@ impl Finding {
             relation,
             tolerance,
             verdict: if agrees { Verdict::Agrees } else { Verdict::Disagrees },
+            undecided: None,
         }
     }
 
@@ -142,7 +145,14 @@ impl Finding {
                 relative: false,
             },
             verdict: Verdict::Measured,
+            undecided: None,
         }
+    }
+
+    /// This, which was to be judged, but could not be because of `reason`.
+    #[must_use]
+    pub fn undecided(self, reason: impl Into<String>) -> Self {
+        Finding { undecided: Some(reason.into()), ..self }
     }
 
     /// Whether the measurement is what theory says.

@@ -88,20 +88,23 @@ fn finding(finding: &Finding) -> String {
     let (class, verdict) = match finding.verdict {
         Verdict::Agrees => ("ok", "agrees"),
         Verdict::Disagrees => ("bad", "disagrees"),
+        Verdict::Measured if finding.undecided.is_some() => ("open", "undecided"),
         Verdict::Measured => ("plain", "measured"),
     };
+    let undecided = finding.undecided.as_deref().map(|why| format!(" (undecided: {})", prose(why)));
     let unit = match finding.unit.as_str() {
         "1" => String::new(),
         unit => format!(" {}", escape(unit)),
     };
     let value = |x: Option<f64>| x.map_or_else(|| "—".into(), |x| prose(&number(x, 8)) + &unit);
     format!(
-        "<tr id=\"{id}\"><td>{text}<br><span class=\"id\">{id}</span></td>\
+        "<tr id=\"{id}\"><td>{text}{undecided}<br><span class=\"id\">{id}</span></td>\
          <td class=\"num\">{predicted}</td><td class=\"num\">{measured}</td>\
          <td class=\"num\" title=\"{reason}\">{tolerance}</td>\
          <td><span class=\"v {class}\">{verdict}</span></td></tr>",
         id = escape(&finding.id),
         text = prose(&finding.text),
+        undecided = undecided.unwrap_or_default(),
         predicted = value(finding.predicted),
         measured = value(Some(finding.measured)),
         reason = escape(&finding.tolerance.tolerance_reason),

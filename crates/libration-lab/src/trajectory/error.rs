@@ -1,12 +1,11 @@
 //! What can be wrong with a request, and what can go wrong with a trajectory.
 
 use libration::CatalogError;
-use libration::ensemble::EnsembleError;
+use libration::ensemble::{EnsembleError, NoRoom};
 use libration::simulation::SimulationError;
 use thiserror::Error;
 
 use crate::export::ExportError;
-use crate::machine::NoRoom;
 
 /// Why there is no trajectory.
 #[derive(Debug, Error)]
@@ -45,7 +44,7 @@ pub enum TrajectoryError {
     #[error(transparent)]
     Ensemble(#[from] EnsembleError),
     /// There is not memory enough.
-    #[error("{0}; fewer trajectories (--count) or a narrower float (--float f32) need less")]
+    #[error("{0} (--count, --float)")]
     Memory(NoRoom),
     /// The result could not be written or kept.
     #[error(transparent)]

@@ -3,11 +3,10 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use half::{bf16, f16};
-use libration::ensemble::BatchFloat;
+use libration::ensemble::{BatchFloat, NoRoom};
 
 use super::{Copies, Ending, Request, TrajectoryError};
 use crate::export::{Number, Rows};
-use crate::machine;
 
 /// Trajectory steps between two looks at whether to stop: a second of the slowest kernel.
 const CHUNK: u64 = 1 << 26;
@@ -40,7 +39,7 @@ macro_rules! vectors {
 
             fn admits(request: &Request, copies: &Copies) -> Result<(), TrajectoryError> {
                 let bytes = <$float>::ensemble_bytes(request.q.len(), copies.count);
-                machine::has_room(bytes).map_err(TrajectoryError::Memory)
+                NoRoom::check(bytes).map_err(TrajectoryError::Memory)
             }
         }
     )*};

@@ -5,6 +5,8 @@
 
 use core::f32::consts::{FRAC_2_PI, FRAC_PI_2};
 
+use crate::Scalar;
+
 /// The largest magnitude of an argument: 2¹⁶·π/2.
 ///
 /// Up to here `k` fits in 16 bits, or is 2¹⁶ itself, and the products of the reduction are exact.
@@ -50,9 +52,8 @@ pub fn cos(x: f32) -> f32 {
 /// `±sin(a + quarters·π/2)` for `a ≥ 0`, negated if `sign` is the sign bit.
 #[inline(always)]
 fn turn(a: f32, quarters: u32, sign: u32) -> f32 {
-    let (k, r, tail) = reduce(a);
-    let k = k.wrapping_add(quarters);
-    let (sine, cosine) = kernels(r, tail);
+    let (shifted, [sine, cosine]) = arithmetic(a);
+    let k = shifted.to_bits().wrapping_add(quarters);
 
     let odd = (k & 1).wrapping_neg();
     let magnitude = (sine.to_bits() & !odd) | (cosine.to_bits() & odd);
@@ -60,41 +61,57 @@ fn turn(a: f32, quarters: u32, sign: u32) -> f32 {
     if a <= RANGE { value } else { f32::NAN }
 }
 
-/// The integer `k` nearest to `a / (π/2)` (its low bits only) and `a − k·π/2` as an unevaluated sum.
+/// The arithmetic of both functions: a number whose low bits are those of the integer `k` nearest to
+/// `a / (π/2)`, and sine and cosine of `a − k·π/2`. Generic, so that it can be counted.
 #[inline(always)]
-fn reduce(a: f32) -> (u32, f32, f32) {
-    let shifted = a * FRAC_2_PI + ROUNDER;
-    let k = shifted - ROUNDER;
+pub(crate) fn arithmetic<T: Scalar>(a: T) -> (T, [T; 2]) {
+    let (shifted, r, tail) = reduce(a);
+    (shifted, kernels(r, tail))
+}
+
+/// A constant.
+#[inline(always)]
+fn number<T: Scalar>(c: f32) -> T {
+    T::from_f64(f64::from(c))
+}
+
+/// As [`arithmetic`] has it, but with `a − k·π/2` as an unevaluated sum.
+#[inline(always)]
+fn reduce<T: Scalar>(a: T) -> (T, T, T) {
+    let shifted = a * number(FRAC_2_PI) + number(ROUNDER);
+    let k = shifted - number(ROUNDER);
+    let part = |i: usize| k * number(PI_2[i]);
 
     // Exact: unless k is 0, both sides are multiples of 2⁻²⁴, and the difference is below 1.
-    let r = ((a - k * PI_2[0]) - k * PI_2[1]) - k * PI_2[2];
+    let r = ((a - part(0)) - part(1)) - part(2);
     // Dekker's fast sum is valid though |r| may be the smaller: r is a multiple of the product's ulp.
-    let (r, fourth) = difference(r, k * PI_2[3]);
-    let (r, fifth) = difference(r, k * PI_2[4]);
-    (shifted.to_bits(), r, (fourth + fifth) - k * PI_2[5])
+    let (r, fourth) = difference(r, part(3));
+    let (r, fifth) = difference(r, part(4));
+    (shifted, r, (fourth + fifth) - part(5))
 }
 
 /// `a − b` rounded, and what the rounding lost.
 #[inline(always)]
-fn difference(a: f32, b: f32) -> (f32, f32) {
+fn difference<T: Scalar>(a: T, b: T) -> (T, T) {
     let rounded = a - b;
     (rounded, (a - rounded) - b)
 }
 
 /// Sine and cosine of `r + tail` for `|r| ≤ π/4`, where `tail` is at most an ulp of `r` or both are tiny.
 #[inline(always)]
-fn kernels(r: f32, tail: f32) -> (f32, f32) {
+fn kernels<T: Scalar>(r: T, tail: T) -> [T; 2] {
+    let one: T = number(1.0);
     let z = r * r;
-    let half = 0.5 * z;
+    let half = number::<T>(0.5) * z;
     // 1 − z/2 rounds; what it lost is recovered exactly below.
-    let base = 1.0 - half;
+    let base = one - half;
 
     let sine = r + (z * r * horner(z, SIN) + tail * base);
-    let cosine = base + (((1.0 - base) - half) + (z * z * horner(z, COS) - r * tail));
-    (sine, cosine)
+    let cosine = base + (((one - base) - half) + (z * z * horner(z, COS) - r * tail));
+    [sine, cosine]
 }
 
 #[inline(always)]
-fn horner(z: f32, [c0, c1, c2]: [f32; 3]) -> f32 {
-    c0 + z * (c1 + z * c2)
+fn horner<T: Scalar>(z: T, [c0, c1, c2]: [f32; 3]) -> T {
+    number::<T>(c0) + z * (number::<T>(c1) + z * number(c2))
 }

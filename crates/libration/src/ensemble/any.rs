@@ -4,7 +4,7 @@ use core::fmt::Debug;
 
 use bytemuck::Pod;
 
-use super::{All, Ensemble, EnsembleError, Execution};
+use super::{All, Ensemble, EnsembleError, Execution, NoRoom};
 use crate::system::Oscillator;
 use crate::{AnySystem, Float, Hamiltonian, Method, Model, State, System, with_method};
 
@@ -101,9 +101,9 @@ macro_rules! batch_float {
                             let (i, n) = (number / len, number % len);
                             State { q: [start(n, i)], v: [start(n, dimension + i)] }
                         };
-                        let bytes = Self::ensemble_bytes(dimension, len);
+                        let needed = Self::ensemble_bytes(dimension, len);
                         let all = len.checked_mul(dimension);
-                        let all = all.ok_or(EnsembleError::Memory { len, bytes })?;
+                        let all = all.ok_or(NoRoom { needed, available: None })?;
                         let coordinates = Ensemble::from_fn(all, execution, coordinate)?;
                         let system = Model::<1>::on::<$float>(&model);
                         Box::new(Isotropic { system, dimension, coordinates })

@@ -6,10 +6,14 @@ use core::ops::{Deref, DerefMut};
 use bytemuck::Pod;
 use memmap2::MmapMut;
 
-use super::EnsembleError;
+use super::{EnsembleError, NoRoom};
 
 /// From so many bytes on huge pages are asked for: below, the last one would be half empty.
 const HUGE: usize = 4 << 20;
+
+/// From so many bytes on it is asked first whether there is room: what is never touched would be given
+/// without a question, and what is touched then kills the process.
+const ASKED: u128 = 64 << 20;
 
 /// The pages that memory is to be made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,10 +42,13 @@ impl<T: Pod> Buffer<T> {
     /// `len` zeros.
     ///
     /// # Errors
-    /// [`EnsembleError::Memory`] if the system refuses the memory.
+    /// [`EnsembleError::Memory`] if there is not so much, or the system refuses it.
     pub fn new(len: usize, pages: Pages) -> Result<Self, EnsembleError> {
         let bytes = len as u128 * size_of::<T>() as u128;
-        let refused = || EnsembleError::Memory { len, bytes };
+        if bytes >= ASKED {
+            NoRoom::check(bytes)?;
+        }
+        let refused = || NoRoom { needed: bytes, available: None };
         let size = usize::try_from(bytes).ok().filter(|&size| size < isize::MAX as usize);
         let memory = MmapMut::map_anon(size.ok_or_else(refused)?).map_err(|_| refused())?;
         #[cfg(target_os = "linux")]
@@ -87,7 +94,10 @@ mod tests {
     #[test]
     fn more_than_there_is_is_refused_and_says_how_much() {
         let refused = Buffer::<f64>::new(usize::MAX / 2, Pages::Ordinary).map(drop);
-        let bytes = (usize::MAX / 2) as u128 * 8;
-        assert_eq!(refused, Err(EnsembleError::Memory { len: usize::MAX / 2, bytes }));
+        let needed = (usize::MAX / 2) as u128 * 8;
+        assert!(
+            matches!(refused, Err(EnsembleError::Memory(no)) if no.needed == needed),
+            "{refused:?}"
+        );
     }
 }

@@ -1,19 +1,14 @@
 //! What can be wrong with an ensemble.
 
-use super::InstructionSet;
+use super::{InstructionSet, NoRoom};
 use crate::CatalogError;
 
 /// Why an ensemble cannot be made or run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EnsembleError {
-    /// The system refused the memory.
-    #[error("{len} trajectories need {bytes} bytes, which the system does not give")]
-    Memory {
-        /// How many trajectories there were to be.
-        len: usize,
-        /// The bytes that they take.
-        bytes: u128,
-    },
+    /// There is not memory enough.
+    #[error(transparent)]
+    Memory(#[from] NoRoom),
     /// The processor lacks the instruction set.
     #[error("this processor has no {}, only {}", asked.name(), available())]
     Instructions {

@@ -10,7 +10,7 @@ use super::{EnsembleError, InstructionSet};
 #[derive(Clone, Debug)]
 pub struct Execution {
     instructions: InstructionSet,
-    /// None where there is one thread.
+    /// All threads but the one that calls; none where that is alone.
     pool: Option<Arc<ThreadPool>>,
     /// Steps of trajectories that are worth a thread, of the shortest there are.
     worth: u64,
@@ -43,15 +43,16 @@ impl Execution {
     /// # Errors
     /// [`EnsembleError::Threads`] if the system does not give them.
     pub fn threads(self, threads: usize) -> Result<Self, EnsembleError> {
-        let build = |threads| {
-            let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        let threads = if threads == 0 { cores() } else { threads };
+        let build = |others| {
+            let pool = ThreadPoolBuilder::new().num_threads(others).build();
             pool.map_err(|error| EnsembleError::Threads { threads, reason: error.to_string() })
         };
         if threads > MOST_THREADS {
             let reason = format!("there may be at most {MOST_THREADS}");
             return Err(EnsembleError::Threads { threads, reason });
         }
-        let pool = if threads == 1 { None } else { Some(Arc::new(build(threads)?)) };
+        let pool = if threads == 1 { None } else { Some(Arc::new(build(threads - 1)?)) };
         Ok(Execution { pool, ..self })
     }
 
@@ -85,26 +86,46 @@ impl Execution {
 
     /// The number of threads.
     pub fn thread_count(&self) -> usize {
-        self.pool.as_ref().map_or(1, |pool| pool.current_num_threads())
+        self.pool.as_ref().map_or(1, |pool| 1 + pool.current_num_threads())
     }
 
-    /// Gives each share to a thread of its own, the same one each time; at most one per thread.
-    pub(super) fn each<P: Send, R: Send>(
-        &self,
-        parts: Vec<P>,
-        work: impl Fn(P) -> R + Sync,
-    ) -> Vec<R> {
-        match &self.pool {
-            Some(pool) if parts.len() > 1 => {
-                let parts: Vec<_> = parts.into_iter().map(|part| Mutex::new(Some(part))).collect();
-                let take =
-                    |i: usize| parts.get(i)?.lock().unwrap_or_else(PoisonError::into_inner).take();
-                let results = pool.broadcast(|thread| take(thread.index()).map(&work));
-                results.into_iter().flatten().collect()
+    /// Does `work` on every part, each on a thread of its own as far as there are threads, and gives what comes
+    /// out in the order of the parts.
+    ///
+    /// The thread that calls does the first one: where there is little to do, to wait for another to
+    /// wake would take longer. With a part for every thread each has the same one every time, whose memory is
+    /// near to it.
+    pub fn each<P: Send, R: Send>(&self, parts: Vec<P>, work: impl Fn(P) -> R + Sync) -> Vec<R> {
+        let Some(pool) = self.pool.as_ref().filter(|_| parts.len() > 1) else {
+            return parts.into_iter().map(work).collect();
+        };
+        let work = &work;
+        let all = parts.len() == self.thread_count();
+        let mut results: Vec<Option<R>> = parts.iter().map(|_| None).collect();
+        let mut pairs = parts.into_iter().zip(&mut results);
+        let own = pairs.next();
+        let others: Vec<_> = pairs.map(|pair| Mutex::new(Some(pair))).collect();
+        let take = |i: usize| others.get(i)?.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let run = |(part, result): (P, &mut Option<R>)| *result = Some(work(part));
+        pool.in_place_scope(|scope| {
+            if all {
+                scope.spawn_broadcast(|_, thread| take(thread.index()).into_iter().for_each(run));
+            } else {
+                for i in 0..others.len() {
+                    let take = &take;
+                    scope.spawn(move |_| take(i).into_iter().for_each(run));
+                }
             }
-            _ => parts.into_iter().map(work).collect(),
-        }
+            own.into_iter().for_each(run);
+        });
+        drop(others);
+        results.into_iter().flatten().collect()
     }
+}
+
+/// The cores that this process may use.
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 impl Default for Execution {

@@ -17,6 +17,7 @@ mod error;
 mod execution;
 mod instructions;
 mod kernel;
+mod memory;
 mod observer;
 mod planes;
 mod run;
@@ -33,6 +34,7 @@ pub use buffer::{Buffer, Pages};
 pub use error::EnsembleError;
 pub use execution::{Execution, MOST_THREADS};
 pub use instructions::{InstructionSet, Loop};
+pub use memory::{NoRoom, available_memory, installed_memory};
 pub use observer::{Copies, Drift, Lanes, MeanSquareError, Moments, Observer, Summary};
 pub use stream::stream;
 
@@ -40,9 +42,12 @@ use crate::{Float, Integrator, State, System};
 use planes::{Planes, Share};
 use run::Run;
 
-/// Trajectories that an observer sees from the first step to the last before the next ones: the
-/// same for every instruction set and number of threads, so that what observers add up is.
-const CHUNK: usize = 4096;
+/// The most trajectories, and the fewest but for the last ones, that an observer sees from the first step to the
+/// last before the next ones.
+const CHUNK: [usize; 2] = [512, 4096];
+
+/// Observers among which few trajectories are divided, so that several threads have work.
+const OBSERVERS: usize = 16;
 
 /// Trajectories that are never parted where nobody watches: their coordinates fill cache lines, which
 /// no two threads then write.
@@ -195,11 +200,12 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         let range = self.step..self.step.saturating_add(steps);
         let instructions = self.execution.instruction_set();
         let count = self.threads_for::<_, Sys>(method, steps);
-        let shares = shares(self.planes.share(), count, CHUNK);
+        let chunk = chunk(self.len());
+        let shares = shares(self.planes.share(), count, chunk);
         let observers = self.execution.each(shares, |mut share| {
             let mut observers = Vec::new();
             while share.len() > 0 {
-                let share = share.split_off(CHUNK);
+                let share = share.split_off(chunk);
                 let mut sees = observer(share.first..share.first + share.len());
                 let steps = range.clone();
                 let system = PhantomData::<(T, Sys)>;
@@ -234,6 +240,13 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         }
         Ok(())
     }
+}
+
+/// Trajectories of an observer: the same for every instruction set and number of threads, so that what
+/// observers add up is.
+fn chunk(len: usize) -> usize {
+    let [least, most] = CHUNK;
+    (len / OBSERVERS).next_multiple_of(GRAIN).clamp(least, most)
 }
 
 /// The observer where there is none.

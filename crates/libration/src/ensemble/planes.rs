@@ -6,7 +6,7 @@ use core::mem::take;
 use bytemuck::Pod;
 
 use super::assign::padded;
-use super::{Buffer, EnsembleError, Lanes, Pages};
+use super::{Buffer, EnsembleError, Lanes, NoRoom, Pages};
 use crate::State;
 
 /// Bytes by which each plane begins later than a multiple of a page would: planes that begin at
@@ -29,12 +29,12 @@ impl<T: Pod, const D: usize> Planes<T, D> {
     /// Zeros, in memory that nobody has touched: pages come to be where they are first written.
     ///
     /// # Errors
-    /// If the system refuses the memory.
+    /// If there is not so much memory.
     pub(super) fn new(len: usize) -> Result<Self, EnsembleError> {
-        let refused = || EnsembleError::Memory { len, bytes: Self::bytes(len) };
+        let refused = || NoRoom { needed: Self::bytes(len), available: None };
         let stride = Self::plane(len).ok_or_else(refused)? / size_of::<T>();
         let all = stride.checked_mul(2 * D).ok_or_else(refused)?;
-        let memory = Buffer::new(all, Pages::Huge).map_err(|_| refused())?;
+        let memory = Buffer::new(all, Pages::Huge)?;
         Ok(Planes { memory, stride, len })
     }
 

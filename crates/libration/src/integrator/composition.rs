@@ -62,6 +62,7 @@ macro_rules! each {
         })*
     };
 }
+pub(super) use each;
 
 impl<I: Integrator, const N: usize> Integrator for Composition<I, N> {
     const CARRIES: bool = I::CARRIES;

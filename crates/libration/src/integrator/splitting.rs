@@ -1,6 +1,7 @@
 //! Methods given as a word of kicks and drifts.
 
 use super::Integrator;
+use super::composition::each;
 use crate::{Scalar, State, System};
 
 /// A splitting method: in each of `N` stages a kick, then a drift, each for its fraction of `dt`.
@@ -15,6 +16,9 @@ pub struct Splitting<const N: usize> {
 }
 
 impl<const N: usize> Integrator for Splitting<N> {
+    // A step of symplectic Euler, and the weights.
+    const REGISTERS: usize = 10;
+
     #[inline(always)]
     fn step<S: Scalar, const D: usize>(
         self,
@@ -22,8 +26,12 @@ impl<const N: usize> Integrator for Splitting<N> {
         state: State<S, D>,
         dt: S,
     ) -> State<S, D> {
-        self.kicks.iter().zip(&self.drifts).fold(state, |state, (&kick, &drift)| {
-            state.kick(system, dt * S::from_f64(kick)).drift(dt * S::from_f64(drift))
-        })
+        let stages: [_; N] = core::array::from_fn(|i| [self.kicks[i], self.drifts[i]]);
+        let mut state = state;
+        each!(stages, |stage| {
+            let [kick, drift] = stage.map(|weight| dt * S::from_f64(weight));
+            state = state.kick(system, kick).drift(drift);
+        });
+        state
     }
 }

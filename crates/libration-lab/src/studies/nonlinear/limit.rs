@@ -23,19 +23,20 @@ pub(super) fn search(
     record: &mut Record,
 ) -> Result<(), StudyError> {
     let steps = lab.effort.choose(400, 1_000, 10_000);
+    let execution = lab.alone()?;
     let found = lab.sweep("largest stable steps", trials, |trial| {
         let linear = largest_stable(trial.method)?;
         let subject = trial.subject;
         let small = match subject.frequency() {
             Some(omega) => {
-                let loss = subject.loss(Orbits::Small, trial.method, SMALL_STEPS)?;
+                let loss = subject.loss(&execution, Orbits::Small, trial.method, SMALL_STEPS)?;
                 Some((linear / omega, omega, loss))
             }
             None => None,
         };
         // A method that is never stable loses every orbit, the later the smaller the step.
         let large = match linear > 0.0 {
-            true => subject.loss(Orbits::Configured, trial.method, steps)?,
+            true => subject.loss(&execution, Orbits::Configured, trial.method, steps)?,
             false => None,
         };
         Ok((small, large))

@@ -12,6 +12,7 @@ mod sweep;
 mod symmetry;
 
 use libration::Method;
+use libration::ensemble::Execution;
 
 pub use self::catalogue::SYSTEMS;
 pub(crate) use self::catalogue::configured;
@@ -112,7 +113,13 @@ pub trait Subject: Sync {
     ///
     /// # Errors
     /// If the system refuses the memory for the orbits that are tried together.
-    fn loss(&self, orbits: Orbits, method: Method, steps: u64) -> Result<Option<Loss>, StudyError>;
+    fn loss(
+        &self,
+        execution: &Execution,
+        orbits: Orbits,
+        method: Method,
+        steps: u64,
+    ) -> Result<Option<Loss>, StudyError>;
 
     /// The first `steps` points of the orbit at a time step `dt`.
     ///

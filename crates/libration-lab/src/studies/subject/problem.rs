@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use libration::analysis::Linearisation;
+use libration::ensemble::Execution;
 use libration::number::TwoFloat;
 use libration::simulation::{Sample, SimulationError, Simulator};
 use libration::{Float, Method, Model, Scalar, State, integrator, with_method};
@@ -161,8 +162,14 @@ where
         stability::frequency(self)
     }
 
-    fn loss(&self, orbits: Orbits, method: Method, steps: u64) -> Result<Option<Loss>, StudyError> {
-        stability::loss(self, orbits, method, steps)
+    fn loss(
+        &self,
+        execution: &Execution,
+        orbits: Orbits,
+        method: Method,
+        steps: u64,
+    ) -> Result<Option<Loss>, StudyError> {
+        stability::loss(self, execution, orbits, method, steps)
     }
 
     fn portrait(&self, method: Method, dt: f64, steps: u64) -> Result<Portrait, StudyError> {

@@ -1,6 +1,7 @@
 //! The time step at which a method loses an orbit, searched for by simulation.
 
 use libration::analysis::{Complex, Eigenvalues, Linearisation, Spectrum, eigenvalues};
+use libration::ensemble::Execution;
 use libration::{Method, Model, State, integrator};
 
 use super::Problem;
@@ -67,6 +68,7 @@ const PARTS: u32 = 64;
 /// down; bisection alone would find some end of some gap.
 pub(super) fn loss<M: Model<D>, const D: usize>(
     problem: &Problem<M, D>,
+    execution: &Execution,
     orbits: Orbits,
     method: Method,
     steps: u64,
@@ -79,7 +81,7 @@ where
     let scan = |from: f64, width: f64, count: u32, steps: u64| {
         let z = |i: u32| from + width * f64::from(i);
         let dts: Vec<f64> = (1..=count).map(|i| z(i) / omega).collect();
-        let lost = first_lost(problem, orbits, &start, method, &dts, steps)?;
+        let lost = first_lost(execution, problem, orbits, &start, method, &dts, steps)?;
         Ok::<_, StudyError>(lost.map(|i| z(i as u32 + 1)))
     };
     let mut width = 0.05;
@@ -150,13 +152,13 @@ mod tests {
         let (orbits, method) = (Orbits::Configured, Method::VelocityVerlet);
         let start = State { q: [0.4, 0.0], v: [0.0, 2.0] };
         let kepler = Problem::new("kepler", Kepler { mu: 1.0 }, start, std::f64::consts::TAU);
-        let found = loss(&kepler, orbits, method, 1_000).unwrap().unwrap();
+        let found = loss(&kepler, &Execution::serial(), orbits, method, 1_000).unwrap().unwrap();
         assert!(found.dt < 0.2010 && found.apart < 4e-5, "{found:?}");
 
         let start = State { q: [2.0], v: [0.0] };
         let turn = std::f64::consts::TAU / 9.81_f64.sqrt();
         let pendulum = Problem::new("pendulum", Pendulum { omega2: 9.81 }, start, turn);
-        let found = loss(&pendulum, orbits, method, 1_000).unwrap().unwrap();
+        let found = loss(&pendulum, &Execution::serial(), orbits, method, 1_000).unwrap().unwrap();
         assert!(found.dt < 0.3903 && found.apart < 1e-4, "{found:?}");
     }
 }

@@ -14,11 +14,12 @@ const GROWN: f64 = 1e3;
 /// many; enough that blocks are full, whatever the system.
 const TOGETHER: usize = 416;
 
-/// The first of the time steps `dts` at which `steps` steps of `method` from `start` lose the orbit.
+/// The first of the time steps `dts` at which `steps` steps of `method` from `start` lose the orbit, as `execution` runs it.
 ///
 /// It is looked at after every step. A lane holds the bits of the lone trajectory, so it makes no
 /// difference how many are tried together.
 pub(super) fn first_lost<M: Model<D>, const D: usize>(
+    execution: &Execution,
     problem: &Problem<M, D>,
     orbits: Orbits,
     start: &State<f64, D>,
@@ -33,7 +34,7 @@ where
     let bound = Bound::new(problem, &system, orbits, start);
     for (i, dts) in dts.chunks(TOGETHER).enumerate() {
         let watch = |range| Watch::new(range, system, bound);
-        let mut ensemble = Ensemble::from_fn(dts.len(), Execution::serial(), |_| *start)?;
+        let mut ensemble = Ensemble::from_fn(dts.len(), execution.clone(), |_| *start)?;
         // The one place in which a method becomes a type for many trajectories.
         let watched = with_method!(method, |m| {
             ensemble.observe(m, All(system), Each(dts), steps, 1, watch)
@@ -195,10 +196,12 @@ mod tests {
             let alone: Vec<bool> =
                 dts.iter().map(|&dt| is_lost_alone(problem, orbits, start, method, dt)).collect();
             for (dt, &alone) in dts.iter().zip(&alone) {
-                let lost = first_lost(problem, orbits, start, method, &[*dt], STEPS);
+                let lost =
+                    first_lost(&Execution::serial(), problem, orbits, start, method, &[*dt], STEPS);
                 assert_eq!(lost, Ok(alone.then_some(0)), "{method:?}, {dt} s");
             }
-            let first = first_lost(problem, orbits, start, method, &dts, STEPS);
+            let first =
+                first_lost(&Execution::serial(), problem, orbits, start, method, &dts, STEPS);
             assert_eq!(first, Ok(alone.iter().position(|&lost| lost)), "{method:?}");
             count += alone.iter().filter(|&&lost| lost).count();
         }
@@ -228,7 +231,15 @@ mod tests {
         dts[2 * TOGETHER + 7] = 0.5;
         dts[2 * TOGETHER + 9] = 0.5;
         let method = Method::VelocityVerlet;
-        let lost = first_lost(&kepler, Orbits::Configured, &kepler.start, method, &dts, STEPS);
+        let lost = first_lost(
+            &Execution::serial(),
+            &kepler,
+            Orbits::Configured,
+            &kepler.start,
+            method,
+            &dts,
+            STEPS,
+        );
         assert_eq!(lost, Ok(Some(2 * TOGETHER + 7)));
     }
 
@@ -236,7 +247,15 @@ mod tests {
     fn a_start_that_is_not_finite_is_lost() {
         let kepler = kepler();
         let start = State { q: [f64::INFINITY, 0.0], v: [0.0, 1.0] };
-        let lost = first_lost(&kepler, Orbits::Configured, &start, Method::Rk4, &[0.01], 1);
+        let lost = first_lost(
+            &Execution::serial(),
+            &kepler,
+            Orbits::Configured,
+            &start,
+            Method::Rk4,
+            &[0.01],
+            1,
+        );
         assert_eq!(lost, Ok(Some(0)));
     }
 }

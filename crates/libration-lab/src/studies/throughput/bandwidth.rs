@@ -2,11 +2,11 @@
 
 use std::hint::black_box;
 
-use libration::ensemble::{Buffer, Pages, stream};
+use libration::ensemble::{Buffer, Execution, Pages, available_memory, stream};
 
 use super::desk::Desk;
-use crate::bench::{Contestant, Rates, Team, Triad, Update};
-use crate::machine::{Machine, available_memory};
+use crate::bench::{Contestant, Rates, Triad, Update};
+use crate::machine::Machine;
 use crate::record::{Finding, Record, Table};
 use crate::study::StudyError;
 
@@ -79,8 +79,8 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
             planes.push(Buffer::<Number>::new(len, Pages::Huge)?);
         }
         let mut rates = Vec::new();
-        for threads in if cores > 1 { vec![1, cores] } else { vec![1] } {
-            rates.push(bandwidth(desk, kernel, &mut planes, threads)?);
+        for execution in [&desk.serial, &desk.parallel].into_iter().take(cores.min(2)) {
+            rates.push(bandwidth(desk, kernel, &mut planes, execution)?);
         }
         let gigabytes: Vec<f64> = rates.iter().map(|rate| rate.median() / 1e9).collect();
         let all = gigabytes.last().copied().unwrap_or(f64::NAN);
@@ -120,25 +120,24 @@ fn mebibytes(len: usize) -> usize {
     (len * size_of::<Number>()) >> 20
 }
 
-/// Bytes a second that `kernel` reads and writes on so many threads, each with its part of the planes.
+/// Bytes a second that `kernel` reads and writes on the threads of `execution`, each with its part of the planes.
 fn bandwidth(
     desk: &Desk<'_>,
     kernel: Kernel,
     planes: &mut [Buffer<Number>],
-    threads: usize,
+    execution: &Execution,
 ) -> Result<Rates, StudyError> {
     let set = desk.set();
     let [a, b, c] = planes else { return Err(StudyError::Exact("there are three planes".into())) };
     let len = a.len();
-    let team = Team::new(threads)?;
-    let part = len.div_ceil(threads).next_multiple_of(64);
+    let part = len.div_ceil(execution.thread_count()).next_multiple_of(64);
     // What was never written is all the same page of zeros, which a cache holds.
     for plane in [&mut *a, &mut *b, &mut *c] {
-        team.each(plane.chunks_mut(part).collect(), |part: &mut [Number]| part.fill(1.0));
+        execution.each(plane.chunks_mut(part).collect(), |part: &mut [Number]| part.fill(1.0));
     }
     let mut work = || {
         let planes = a.chunks_mut(part).zip(b.chunks_mut(part)).zip(c.chunks_mut(part));
-        team.each(planes.collect(), |((a, b), c)| match kernel {
+        execution.each(planes.collect(), |((a, b), c)| match kernel {
             Kernel::Copy => b.copy_from_slice(a),
             Kernel::Stream => stream(a, b),
             Kernel::Triad => set.vectorize(Triad { a, b, c, s: black_box(0.5) }),

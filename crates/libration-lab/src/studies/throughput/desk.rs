@@ -1,5 +1,7 @@
 //! Where the study times things: the execution, the length of its turns, and how ratios are judged.
 
+use std::f64::consts::FRAC_PI_2;
+
 use libration::ensemble::{Execution, InstructionSet};
 
 use crate::Lab;
@@ -9,9 +11,6 @@ use crate::study::StudyError;
 
 /// Quartiles further apart than this share of the median say that the machine had other work.
 const NOISY: f64 = 0.1;
-
-/// What is said of a ratio that the machine was too noisy to judge.
-pub(super) const TOO_NOISY: &str = "The machine was too noisy to judge";
 
 /// What all measurements share.
 pub(super) struct Desk<'a> {
@@ -29,8 +28,7 @@ pub(super) struct Desk<'a> {
 impl<'a> Desk<'a> {
     /// A desk on the instruction set that the configuration asks for.
     pub(super) fn new(lab: &'a Lab<'a>) -> Result<Self, StudyError> {
-        let set = lab.config.throughput.simd.unwrap_or(InstructionSet::widest());
-        let serial = Execution::serial().instructions(set)?;
+        let serial = lab.alone()?;
         let parallel = serial.clone().threads(0)?;
         let (rounds, seconds) = lab.effort.choose((5, 2e-3), (15, 10e-3), (31, 20e-3));
         let careful = Turns { rounds, seconds };
@@ -89,34 +87,65 @@ fn exactly<const N: usize>(rates: Vec<Rates>) -> [Rates; N] {
     std::array::from_fn(|_| rates.next().unwrap_or_default())
 }
 
-/// A ratio that is to reach a bar, with the noise of its rounds as tolerance; without a verdict where
-/// the machine was too noisy for one, where there is no bar, and in a build that is not for speed.
+/// A ratio of rates, and how sure it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Ratio {
+    median: f64,
+    /// The distance between the quartiles of the rounds.
+    spread: f64,
+    /// The standard error of the median.
+    error: f64,
+}
+
+impl Ratio {
+    /// The median of so many rounds, whose quartiles lie `spread` apart.
+    pub(super) fn new(median: f64, spread: f64, rounds: usize) -> Self {
+        // Quartiles of a normal distribution lie 1.349 standard deviations apart, and its median varies √(π/2)
+        // times as much as its mean.
+        let deviation = spread / 1.349;
+        let error = (FRAC_PI_2 / rounds.max(1) as f64).sqrt() * deviation;
+        Ratio { median, spread, error }
+    }
+}
+
+impl From<&Rates> for Ratio {
+    fn from(ratios: &Rates) -> Self {
+        Ratio::new(ratios.median(), ratios.spread(), ratios.rounds())
+    }
+}
+
+/// A ratio that is to reach a bar, but for twice the error of its median; without a verdict where the machine was
+/// too noisy for one, where there is no bar, and in a build that is not for speed.
 pub(super) fn judge(
     record: &mut Record,
     id: String,
     text: String,
     bar: Option<f64>,
-    ratio: &Rates,
+    ratio: impl Into<Ratio>,
 ) {
-    let (median, spread) = (ratio.median(), ratio.spread());
+    let Ratio { median, spread, error } = ratio.into();
     let bar = bar.filter(|_| !cfg!(debug_assertions));
     record.find(match bar {
-        Some(bar) if ratio.noise() <= NOISY => Finding::related(
-            id,
-            text,
-            "1",
-            Relation::AtLeast,
-            bar,
-            median,
-            Tolerance::absolute(spread, "the distance between the quartiles of the rounds"),
-        ),
-        Some(bar) => {
-            let text = format!(
-                "{text}. {TOO_NOISY}: the quartiles of the rounds lie {spread:.2} \
-                 apart; wanted: {bar}"
-            );
-            Finding::measured(id, text, "1", median)
+        Some(bar) if spread <= NOISY * median => {
+            let reason = "twice the standard error of the median of the rounds, by their quartiles";
+            let tolerance = Tolerance::absolute(2.0 * error, reason);
+            Finding::related(id, text, "1", Relation::AtLeast, bar, median, tolerance)
         }
+        Some(bar) => Finding::measured(id, text, "1", median).undecided(format!(
+            "the machine was too noisy: the quartiles of the rounds lie {spread:.2} apart; wanted: {bar}"
+        )),
         None => Finding::measured(id, text, "1", median),
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_of_four_times_as_many_rounds_is_twice_as_sure() {
+        let [few, many] = [5, 20].map(|rounds| Ratio::new(1.0, 1.349, rounds).error);
+        assert!((few / many - 2.0).abs() < 1e-12, "{few} {many}");
+        assert!((few * few - FRAC_PI_2 / 5.0).abs() < 1e-12, "{few}");
+    }
 }

@@ -113,13 +113,18 @@ pub(super) fn heat(record: &Record) -> Result<Figure, RecordError> {
         own.iter().position(|&n| n == count).map_or(f64::NAN, |at| rates[at])
     };
     let places: Vec<f64> = (0..names.len()).rev().map(|row| -(row as f64)).collect();
-    let mut panel = Panel::new(Axis::log("trajectories N"), Axis::names("", names));
-    // Cells have equal widths on the axis.
-    if evenly_spaced(&counts) {
-        let grid = Grid::sample(counts, places, rate);
-        let colors = Colors::new("steps a second").log().unit("1/s");
-        panel = panel.mark(Mark::raster(grid, colors));
-    }
+    // Cells have equal widths: where numbers are not evenly spaced, the axis names them.
+    let (axis, grid) = if evenly_spaced(&counts) {
+        (Axis::log("trajectories N"), Grid::sample(counts, places, rate))
+    } else {
+        let last = counts.len().saturating_sub(1);
+        let named = counts.iter().rev().map(|&count| number(count, 3));
+        let axis = Axis::names("trajectories N", named);
+        let across: Vec<f64> = (0..counts.len()).map(|i| i as f64 - last as f64).collect();
+        (axis, Grid::sample(across, places, |x, row| rate(counts[(x + last as f64) as usize], row)))
+    };
+    let colors = Colors::new("steps a second").log().unit("1/s");
+    let panel = Panel::new(axis, Axis::names("", names)).mark(Mark::raster(grid, colors));
     Ok(Figure::new("fig-9-8", "Every implementation at every number of trajectories")
         .caption("Blank where there was no memory, or where a lone loop would tell nothing new.")
         .description("Heat map: steps a second by implementation and number of trajectories.")

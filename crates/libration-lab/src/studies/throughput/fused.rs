@@ -3,12 +3,12 @@
 use std::hint::black_box;
 
 use libration::analysis::{DataFlow, Operation};
-use libration::ensemble::InstructionSet;
+use libration::ensemble::{Execution, InstructionSet};
 use libration::system::Oscillator;
 use libration::{Method, with_method};
 
 use super::desk::{Desk, judge};
-use crate::bench::{Bench, BenchFloat, Contestant, Mix, Rates, Team, stepping, widths, with_float};
+use crate::bench::{Bench, BenchFloat, Contestant, Mix, Rates, stepping, widths, with_float};
 use crate::record::{Record, Table};
 use crate::study::StudyError;
 
@@ -44,9 +44,9 @@ pub(super) struct Peak {
 /// The peak for steps of `flow` on floats of type `T`: the fastest of all widths.
 pub(super) fn peak<T: Bench>(desk: &Desk<'_>, flow: &DataFlow) -> Result<Peak, StudyError> {
     let (set, mix) = (desk.set(), Mix::of(flow));
-    let counted = [Operation::Multiplication, Operation::Addition].map(|op| flow.count(op));
-    let offered: Vec<usize> = widths::<T>(set, mix).collect();
-    let peaks = offered.iter().map(|&width| Peak { mix, width, operations: counted.iter().sum() });
+    let operations = arithmetic(flow);
+    let offered: Vec<usize> = widths::<T>(set).collect();
+    let peaks = offered.iter().map(|&width| Peak { mix, width, operations });
     let peaks: Vec<Peak> = peaks.collect();
     let mut contestants: Vec<_> = peaks.iter().map(|peak| peak.contestant::<T>(set)).collect();
     let rates = desk.look_at(&mut contestants)?;
@@ -56,6 +56,11 @@ pub(super) fn peak<T: Bench>(desk: &Desk<'_>, flow: &DataFlow) -> Result<Peak, S
 }
 
 impl Peak {
+    /// The same for steps of so many operations more.
+    pub(super) fn with(self, operations: usize) -> Self {
+        Peak { operations: self.operations + operations, ..self }
+    }
+
     /// Steps a second that this arithmetic amounts to.
     pub(super) fn contestant<T: Bench>(self, set: InstructionSet) -> Contestant<'static> {
         Contestant::new(self.work(), move |times| {
@@ -63,18 +68,15 @@ impl Peak {
         })
     }
 
-    /// The same on several threads at once.
-    pub(super) fn on_threads<T: Bench>(
-        self,
-        set: InstructionSet,
-        threads: usize,
-    ) -> Result<Contestant<'static>, StudyError> {
-        let team = Team::new(threads)?;
-        Ok(Contestant::new(self.work() * threads as f64, move |times| {
-            team.each((0..threads).collect(), |_| {
+    /// The same on all threads of `execution` at once.
+    pub(super) fn on_threads<T: Bench>(self, execution: &Execution) -> Contestant<'static> {
+        let execution = execution.clone();
+        let (set, threads) = (execution.instruction_set(), execution.thread_count());
+        Contestant::new(self.work() * threads as f64, move |times| {
+            execution.each(vec![(); threads], |()| {
                 black_box(self.mix.run::<T>(set, self.width, times * ROUNDS));
             });
-        }))
+        })
     }
 
     /// Steps in `ROUNDS` rounds.
@@ -133,6 +135,11 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     }
     record.tables.push(table);
     Ok(())
+}
+
+/// Multiplications and additions.
+pub(super) fn arithmetic(flow: &DataFlow) -> usize {
+    [Operation::Multiplication, Operation::Addition].map(|op| flow.count(op)).iter().sum()
 }
 
 /// The operations of a step of `method` on an oscillator.

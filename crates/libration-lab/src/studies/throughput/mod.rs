@@ -10,6 +10,7 @@ mod fused;
 mod latency;
 mod machine;
 mod one_step;
+mod peers;
 mod regime;
 mod render;
 mod roofline;
@@ -41,8 +42,7 @@ impl Study for Throughput {
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
         let desk = Desk::new(lab)?;
         let mut record = Record::new(self.name(), self.question());
-        machine::describe(&desk, &mut record);
-        let parts: [(&str, Part); 9] = [
+        let parts: [(&str, Part); 10] = [
             ("fused steps against independent arithmetic", fused::measure),
             ("threads", threads::measure),
             ("a lone trajectory", latency::measure),
@@ -52,6 +52,7 @@ impl Study for Throughput {
             ("page faults", faults::measure),
             ("steps a pass", roofline::measure),
             ("implementations", scaling::measure),
+            ("peers", peers::measure),
         ];
         for (what, part) in parts {
             lab.part(what, || part(&desk, &mut record))?;
@@ -59,6 +60,7 @@ impl Study for Throughput {
         regime::detect(&mut record)?;
         comparison::compare(&mut record)?;
         claims::judge(&mut record);
+        machine::describe(&desk, &mut record)?;
         Ok(record)
     }
 

@@ -2,12 +2,11 @@
 
 use std::hint::black_box;
 
-use libration::ensemble::{Buffer, Pages};
+use libration::ensemble::{Buffer, Execution, NoRoom, Pages};
 use libration::{Ensemble, Method};
 
 use super::desk::{Desk, judge};
-use crate::bench::{Contestant, Team, Update, stepping};
-use crate::machine::has_room;
+use crate::bench::{Contestant, Update, stepping};
 use crate::record::{Record, Table};
 use crate::study::StudyError;
 
@@ -35,7 +34,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     for &count in counts {
         // The ensemble, and the planes of the loop.
         let bytes = Ensemble::<f32, 1>::bytes(count);
-        if has_room(2 * bytes).is_err() {
+        if NoRoom::check(2 * bytes).is_err() {
             continue;
         }
         for execution in [&desk.serial, &desk.parallel] {
@@ -44,7 +43,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
                 continue;
             }
             let step = stepping::<f32>(Method::SymplecticEuler, desk.task(count), 1, execution)?;
-            let [step, update] = desk.race([step, update(desk, count, threads)?])?;
+            let [step, update] = desk.race([step, update(desk, count, execution)?])?;
             let share = step.over(&update);
             let power = (count as f64).log10();
             let on = if threads == 1 { "one core".into() } else { format!("{threads} threads") };
@@ -82,18 +81,18 @@ const BYTES: f64 = 4.0 * size_of::<f32>() as f64;
 pub(super) fn update<'a>(
     desk: &Desk<'_>,
     count: usize,
-    threads: usize,
+    execution: &Execution,
 ) -> Result<Contestant<'a>, StudyError> {
     let set = desk.set();
     let task = desk.task(count);
     let (s, t) = (-(task.omega2 * task.dt) as f32, task.dt as f32);
     let mut x = Buffer::<f32>::new(count, Pages::Huge)?;
     let mut y = Buffer::<f32>::new(count, Pages::Huge)?;
-    let part = count.div_ceil(threads).next_multiple_of(64);
-    let team = Team::new(threads)?;
-    // Each part is first written by the kind of thread that will work on it.
+    let part = count.div_ceil(execution.thread_count()).next_multiple_of(64);
+    // Each part is first written by the thread that will work on it.
+    let execution = execution.clone();
     let parts = x.chunks_mut(part).zip(y.chunks_mut(part)).collect();
-    team.each(parts, |(x, y)| {
+    execution.each(parts, |(x, y): (&mut [f32], &mut [f32])| {
         x.fill(1.0);
         y.fill(0.0);
     });
@@ -101,7 +100,7 @@ pub(super) fn update<'a>(
         for _ in 0..times {
             let (s, t) = (black_box(s), black_box(t));
             let parts = x.chunks_mut(part).zip(y.chunks_mut(part)).collect();
-            team.each(parts, |(x, y)| set.vectorize(Update { x, y, s, t }));
+            execution.each(parts, |(x, y)| set.vectorize(Update { x, y, s, t }));
         }
         black_box(&*x);
     }))

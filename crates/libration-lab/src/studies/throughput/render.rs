@@ -17,6 +17,21 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     );
     page.figure(figures::scaling(record)?.number("9.7"));
     page.figure(figures::heat(record)?.number("9.8"));
+    let missing = record.table("not timed")?;
+    if !missing.rows.is_empty() {
+        page.paragraph("What was asked for and not timed:");
+        page.table(missing, 3);
+    }
+    if let Ok(peers) = record.table("peers") {
+        page.heading("Peers");
+        page.paragraph(
+            "The same oscillators, float and number of steps in NumPy, in place on one core as NumPy is, and \
+             in numba, in parallel and with a block of particles in the cache for all steps; by \
+             `benches/peers.py`, each in turn. The last column is what the arithmetic of this machine would \
+             reach.",
+        );
+        page.table(peers, 3);
+    }
     page.heading("What limits a step");
     page.paragraph(
         "A step of a lone trajectory takes as long as its longest chain of operations that wait for each \
@@ -28,8 +43,7 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
         "Where a block of trajectories is in registers, one lane’s waiting is the work of another, and \
          the limit is how many operations the processor starts in a cycle. Beside the fused steps \
          stands a loop of independent multiplications and additions in the proportion of the method, \
-         the fastest of several widths. With 16 registers the compiler keeps much of that loop in \
-         memory: what beats it shows that it is no peak there.",
+         the fastest of several widths.",
     );
     page.table(record.table("fused steps")?, 3);
     page.table(record.table("threads")?, 3);
@@ -110,10 +124,10 @@ fn fused(record: &Record) -> Option<[f64; 3]> {
 fn noise(record: &Record, page: &mut Page) {
     let speeds = || record.findings.iter().filter(|f| f.unit == "1" && !f.id.contains("faults"));
     let judged = speeds().filter(|f| f.verdict != Verdict::Measured).count();
-    let noisy = speeds().filter(|f| f.text.contains(super::desk::TOO_NOISY)).count();
+    let noisy = speeds().filter(|f| f.undecided.is_some()).count();
     page.paragraph(
-        "Ratios that are judged are medians of ratios of neighbouring turns; their tolerance is the \
-         distance between their quartiles. Where an instruction set has few registers, and in a build \
+        "Ratios that are judged are medians of ratios of neighbouring turns; their tolerance is \
+         twice the standard error of that median. Where an instruction set has few registers, and in a build \
          with debug assertions, nothing is judged.",
     );
     if noisy > 0 {

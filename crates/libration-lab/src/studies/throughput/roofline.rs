@@ -34,7 +34,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     let arithmetic = peak::<f32>(desk, &flow(desk, method))?;
     let operations = arithmetic.operations() as f64;
     let loops = || -> Result<_, StudyError> {
-        Ok([arithmetic.contestant::<f32>(desk.set()), update(desk, count, 1)?])
+        Ok([arithmetic.contestant::<f32>(desk.set()), update(desk, count, &desk.serial)?])
     };
     let [peak, memory] = desk.look(loops()?)?.map(|rates| rates.median());
     let mut ensemble = oscillators::<f32>(task, &desk.serial)?;

@@ -1,12 +1,11 @@
 //! Every implementation at every number of trajectories.
 
-use libration::ensemble::Execution;
+use libration::ensemble::{Execution, NoRoom};
 
 use super::desk::Desk;
 use crate::Lab;
 use crate::bench::{Bench, BenchFloat, Contestant, Implementation, Task, prepare, with_float};
-use crate::machine::{NoRoom, has_room};
-use crate::record::{Record, Series};
+use crate::record::{Record, Series, Table};
 use crate::study::StudyError;
 
 /// Steps that are taken with a block of trajectories before the next.
@@ -36,7 +35,7 @@ impl Wanted {
     /// [`NoRoom`] if not.
     pub fn check(self) -> Result<(), NoRoom> {
         let numbers = arrays(self.implementation) as u128 * self.count as u128;
-        has_room(numbers * self.float.bytes() as u128)
+        NoRoom::check(numbers * self.float.bytes() as u128)
     }
 }
 
@@ -69,15 +68,29 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     let most = desk.lab.effort.choose(1_000_000, 10_000_000, usize::MAX);
     let counts = desk.lab.config.throughput.counts.iter();
     let counts = counts.map(|&count| usize::try_from(count).unwrap_or(usize::MAX));
-    let counts: Vec<usize> = counts.filter(|&count| count <= most).collect();
+    let (counts, beyond): (Vec<usize>, Vec<usize>) = counts.partition(|&count| count <= most);
+    let mut missing =
+        Table::new("not timed", &["implementation", "float", "trajectories", "because"]);
+    for &count in &beyond {
+        let because = format!("a run of this effort goes to {most}");
+        missing.push(["all".into(), "both".into(), (count as u64).into(), because.into()]);
+    }
     for &implementation in &desk.lab.config.throughput.implementations {
         for float in BenchFloat::ALL {
             let mut points = Vec::new();
             for &count in &counts {
                 let wanted = Wanted { implementation, float, count };
-                let too_many = implementation.is_lone() && count > MOST_LONE;
-                if !too_many && wanted.check().is_ok() {
-                    points.push(rate(desk, wanted)?);
+                if implementation.is_lone() && count > MOST_LONE {
+                    continue;
+                }
+                match wanted.check() {
+                    Ok(()) => points.push(rate(desk, wanted)?),
+                    Err(no_room) => missing.push([
+                        implementation.title().into(),
+                        float.name().into(),
+                        (count as u64).into(),
+                        no_room.to_string().into(),
+                    ]),
                 }
             }
             if !points.is_empty() {
@@ -85,6 +98,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
             }
         }
     }
+    record.tables.push(missing);
     Ok(())
 }
 

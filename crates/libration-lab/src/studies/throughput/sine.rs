@@ -2,36 +2,56 @@
 
 use std::hint::black_box;
 
+use libration::analysis::DataFlow;
 use libration::ensemble::All;
 use libration::integrator::SymplecticEuler;
 use libration::system::Pendulum;
 use libration::{Ensemble, State, System};
 
 use super::desk::{Desk, judge};
-use super::fused::RESIDENT;
+use super::fused::{RESIDENT, arithmetic, peak};
 use crate::bench::{Contestant, PlatformPendulum};
+use crate::notation::number;
 use crate::record::{Finding, Record};
 use crate::study::StudyError;
 
 /// Steps of a pass.
 const STEPS: u64 = 16;
 
-/// Races the two.
+/// How many times as fast as with the platform's sine the loop is to be.
+const BAR: f64 = 8.0;
+
+/// Races the two, and the independent arithmetic that the step and its sine amount to.
 pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let omega2 = desk.task(1).omega2 as f32;
-    let own = contestant(desk, Pendulum { omega2 })?;
-    let platform = contestant(desk, PlatformPendulum { omega2 })?;
-    let [own, platform] = desk.race([own, platform])?;
-    judge(
-        record,
-        "throughput.sine".into(),
-        "pendulum, symplectic Euler, f32, one core: steps a second with the sine of this program over \
-         those of the same loop with the platform’s"
-            .into(),
-        // How fast the platform's sine is no theory tells.
-        None,
-        &own.over(&platform),
-    );
+    let task = desk.task(1);
+    let omega2 = task.omega2 as f32;
+    let flow =
+        DataFlow::of_step::<_, 1>(SymplecticEuler, &Pendulum { omega2: task.omega2 }, task.dt);
+    let limit = peak::<f32>(desk, &flow)?.with(arithmetic(&DataFlow::of_sine32()));
+    let [own, platform, limit] = desk.race([
+        contestant(desk, Pendulum { omega2 })?,
+        contestant(desk, PlatformPendulum { omega2 })?,
+        limit.contestant::<f32>(desk.set()),
+    ])?;
+    let (ratio, most) = (own.over(&platform), limit.over(&platform).median());
+    let id = "throughput.sine".to_owned();
+    let text = "pendulum, symplectic Euler, f32, one core: steps a second with the sine of this program over \
+                those of the same loop with the platform’s";
+    if most < BAR {
+        record.find(Finding::measured(id, text, "1", ratio.median()).undecided(format!(
+            "beyond this machine, whose arithmetic goes to {} times; wanted: {BAR}",
+            number(most, 3)
+        )));
+    } else {
+        judge(record, id, text.into(), Some(BAR), &ratio);
+    }
+    record.find(Finding::measured(
+        "throughput.sine.share",
+        "pendulum, symplectic Euler, f32, one core: steps a second over those that independent multiplications \
+         and additions amount to, without what the sine does with bits",
+        "1",
+        own.over(&limit).median(),
+    ));
     record.find(Finding::measured(
         "throughput.sine.rate",
         "pendulum, symplectic Euler, f32, one core: steps a second with the sine of this program",

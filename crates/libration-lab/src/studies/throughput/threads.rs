@@ -22,7 +22,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     for &threads in &counts {
         let execution = desk.serial.clone().threads(threads)?;
         contestants.push(stepping::<f32>(method, task, STEPS, &execution)?);
-        contestants.push(peak.on_threads::<f32>(desk.set(), threads)?);
+        contestants.push(peak.on_threads::<f32>(&execution));
     }
     let rates = desk.race_of(&mut contestants)?;
     let pairs: Vec<(usize, [&Rates; 2])> = counts

@@ -1,0 +1,87 @@
+//! How much memory there is.
+
+use std::fs::read_to_string;
+
+/// There is not memory enough.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{} GB of memory are needed, {}: take fewer at a time, or a shorter float", gigabytes(*needed), self.there_is())]
+pub struct NoRoom {
+    /// Bytes that are needed.
+    pub needed: u128,
+    /// Bytes that can be had without swapping, if the system tells.
+    pub available: Option<u64>,
+}
+
+impl NoRoom {
+    /// Whether so many bytes can be had without swapping; also where the system does not tell.
+    ///
+    /// # Errors
+    /// If not.
+    pub fn check(needed: u128) -> Result<(), NoRoom> {
+        match available_memory() {
+            Some(available) if needed > u128::from(available) => {
+                Err(NoRoom { needed, available: Some(available) })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn there_is(&self) -> String {
+        match self.available {
+            Some(bytes) => format!("of which {} GB are available", gigabytes(u128::from(bytes))),
+            None => "which the system does not give".to_owned(),
+        }
+    }
+}
+
+/// With as many digits as it takes to see what is little.
+fn gigabytes(bytes: u128) -> String {
+    let gigabytes = bytes as f64 / 1e9;
+    if gigabytes < 1.0 { format!("{gigabytes:.3}") } else { format!("{gigabytes:.1}") }
+}
+
+/// Bytes that this process can have without swapping, if the system tells: what the machine has, and no more than
+/// the limit of the container that the process runs in.
+pub fn available_memory() -> Option<u64> {
+    let machine = value(&read_to_string("/proc/meminfo").ok()?, "MemAvailable:")? * 1024;
+    Some(machine.min(left_in_container().unwrap_or(u64::MAX)))
+}
+
+/// Bytes of memory in this machine, if the system tells.
+pub fn installed_memory() -> Option<u64> {
+    Some(value(&read_to_string("/proc/meminfo").ok()?, "MemTotal:")? * 1024)
+}
+
+/// What a control group (version 2) leaves; files that it keeps in memory can be dropped.
+fn left_in_container() -> Option<u64> {
+    let read = |name: &str| read_to_string(format!("/sys/fs/cgroup/memory.{name}")).ok();
+    let number = |name| read(name)?.trim().parse::<u64>().ok();
+    let (most, taken) = (number("max")?, number("current")?);
+    let files = value(&read("stat")?, "inactive_file").unwrap_or(0);
+    Some(most.saturating_sub(taken.saturating_sub(files)))
+}
+
+/// The number after `name` at the beginning of a line.
+fn value(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find(|line| line.split_whitespace().next() == Some(name))?;
+    line.split_whitespace().nth(1)?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_fit_is_refused_with_both_figures_and_a_way_out() {
+        let Some(available) = available_memory() else { return };
+        assert_eq!(NoRoom::check(0), Ok(()));
+        let refused = NoRoom::check(1 << 60).expect_err("nobody has an exbibyte");
+        assert!(refused.available.is_some_and(|there_is| there_is >= available / 2));
+        let text = NoRoom { needed: 8_000_000_000, available: Some(250_000_000) }.to_string();
+        assert_eq!(
+            text,
+            "8.0 GB of memory are needed, of which 0.250 GB are available: take fewer at a time, or a \
+             shorter float"
+        );
+    }
+}
