@@ -10,7 +10,7 @@ mod schema;
 mod tables;
 mod value;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use libration::Method;
 use libration::ensemble::InstructionSet;
@@ -161,6 +161,7 @@ pub struct Throughput {
     /// Numbers of trajectories, rising; the effort and the memory bound them.
     pub counts: Vec<u64>,
     /// What `benches/peers.py` wrote on this machine, if its ratios are to be judged.
+    #[serde(serialize_with = "path")]
     pub peers: Option<PathBuf>,
 }
 
@@ -224,6 +225,10 @@ impl Config {
 
 fn method_names<S: Serializer>(methods: &[Method], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(methods.iter().map(|m| m.name()))
+}
+
+fn path<S: Serializer>(path: &Option<PathBuf>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.as_deref().unwrap_or(Path::new("")).display())
 }
 
 fn instruction_set_name<S: Serializer>(

@@ -121,7 +121,7 @@ fn unknown_keys_are_named_with_the_nearest() {
         ("[ocillator]\nm = 1", "ocillator", "did you mean `oscillator`?"),
         ("[drift]\nstep = 1", "step", "did you mean `steps`? the keys are `dt`, `steps`"),
         ("drift.DT = [1]", "DT", "did you mean `dt`?"),
-        ("zzz = 1", "zzz", "the keys are `studies`, `effort`, `integrators`, `oscillator`"),
+        ("zzz = 1", "zzz", "the keys are `studies`, `effort`, `simd`, `integrators`, `oscillator`"),
     ];
     for (text, place, help) in cases {
         let error = error(text);
@@ -129,6 +129,23 @@ fn unknown_keys_are_named_with_the_nearest() {
         assert_eq!(error.message(), format!("unknown key `{place}`"));
         assert!(error.help().unwrap().starts_with(help), "{error}");
     }
+}
+
+#[test]
+fn a_file_of_peers_is_read_before_any_work() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("peers.json");
+    let told = || error(&format!("throughput.peers = '{}'", file.display())).message().to_owned();
+    assert!(told().contains("peers.json` cannot be read"), "{}", told());
+    std::fs::write(&file, "[]").unwrap();
+    assert!(told().contains("is not what benches/peers.py writes"), "{}", told());
+    let other = json!({
+        "schema": "libration.peers/1", "cpu": "abacus", "versions": "", "rounds": 1, "rows": [],
+    });
+    std::fs::write(&file, other.to_string()).unwrap();
+    assert!(told().contains("was measured on `abacus`; this is `"), "{}", told());
+    std::fs::write(&file, other.to_string().replace("peers/1", "peers/9")).unwrap();
+    assert!(told().contains("it must be `libration.peers/1`"), "{}", told());
 }
 
 #[test]
@@ -240,6 +257,6 @@ fn the_schema_describes_every_key() {
         }
     }
     let schema = schema();
-    assert_eq!(schema["properties"].as_object().unwrap().len(), 13);
+    assert_eq!(schema["properties"].as_object().unwrap().len(), 14);
     assert_described(&schema);
 }

@@ -62,3 +62,47 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     record.tables.push(table);
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicBool;
+
+    use serde_json::json;
+
+    use super::*;
+    use crate::{Config, Effort, Lab, Machine, Silent};
+
+    #[test]
+    fn a_ratio_that_the_arithmetic_of_the_machine_does_not_allow_is_said_to_be_beyond_it() {
+        let row = |count: u64, ratio: f64, most: f64| {
+            json!({
+                "implementation": "fused", "peer": "numpy in place", "float": "f32", "count": count,
+                "ratio": ratio, "quartiles": [ratio, ratio], "wanted": 80.0, "most": most,
+            })
+        };
+        let file = json!({
+            "schema": "libration.peers/1", "cpu": Machine::detect().cpu, "versions": "NumPy 2",
+            "rounds": 5, "rows": [row(1_000, 54.0, 59.0), row(100_000, 54.0, 90.0)],
+        });
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("peers.json");
+        std::fs::write(&path, file.to_string()).expect("a file");
+        let mut config = Config::default();
+        config.throughput.peers = Some(path);
+        let stop = AtomicBool::new(false);
+        let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
+        let desk = Desk::new(&lab).expect("this machine has its instruction set");
+        let mut record = Record::new("throughput", "");
+        measure(&desk, &mut record).expect("the file is there");
+        let found = |count| {
+            let id = format!("throughput.fused-over-numpy-in-place.f32.1e{count}");
+            record.finding(&id).expect("a finding for each row").clone()
+        };
+        let reason = found(3).undecided.expect("59 is less than 80");
+        assert!(reason.contains("goes to 59 times; wanted: 80"), "{reason}");
+        // In a build for speed it is missed.
+        let bar = (!cfg!(debug_assertions)).then_some(80.0);
+        assert_eq!((found(5).predicted, found(5).undecided), (bar, None));
+        assert_eq!(record.table("peers").expect("its table").rows.len(), 2);
+    }
+}
