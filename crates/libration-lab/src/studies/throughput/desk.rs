@@ -125,8 +125,10 @@ pub(super) fn judge(
 ) {
     let Ratio { median, spread, error } = ratio.into();
     let bar = bar.filter(|_| !cfg!(debug_assertions));
+    // Where rounds lie far apart, the bar must lie further off to be told from their median.
+    let is_clear = |bar: f64| spread <= NOISY * median || (median - bar).abs() > spread;
     record.find(match bar {
-        Some(bar) if spread <= NOISY * median => {
+        Some(bar) if is_clear(bar) => {
             let reason = "twice the standard error of the median of the rounds, by their quartiles";
             let tolerance = Tolerance::absolute(2.0 * error, reason);
             Finding::related(id, text, "1", Relation::AtLeast, bar, median, tolerance)
