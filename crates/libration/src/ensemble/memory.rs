@@ -1,6 +1,6 @@
 //! How much memory there is.
 
-use std::fs::read_to_string;
+use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
 /// There is not memory enough.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -43,28 +43,24 @@ fn gigabytes(bytes: u128) -> String {
 /// Bytes that this process can have without swapping, if the system tells: what the machine has, and no more than
 /// the limit of the container that the process runs in.
 pub fn available_memory() -> Option<u64> {
-    let machine = value(&read_to_string("/proc/meminfo").ok()?, "MemAvailable:")? * 1024;
-    Some(machine.min(left_in_container().unwrap_or(u64::MAX)))
+    let system = system()?;
+    // Files that the container keeps in memory can be dropped.
+    let left = system.cgroup_limits().map(|limits| limits.total_memory.saturating_sub(limits.rss));
+    known(system.available_memory()).map(|bytes| bytes.min(left.unwrap_or(bytes)))
 }
 
 /// Bytes of memory in this machine, if the system tells.
 pub fn installed_memory() -> Option<u64> {
-    Some(value(&read_to_string("/proc/meminfo").ok()?, "MemTotal:")? * 1024)
+    known(system()?.total_memory())
 }
 
-/// What a control group (version 2) leaves; files that it keeps in memory can be dropped.
-fn left_in_container() -> Option<u64> {
-    let read = |name: &str| read_to_string(format!("/sys/fs/cgroup/memory.{name}")).ok();
-    let number = |name| read(name)?.trim().parse::<u64>().ok();
-    let (most, taken) = (number("max")?, number("current")?);
-    let files = value(&read("stat")?, "inactive_file").unwrap_or(0);
-    Some(most.saturating_sub(taken.saturating_sub(files)))
+fn known(bytes: u64) -> Option<u64> {
+    (bytes > 0).then_some(bytes)
 }
 
-/// The number after `name` at the beginning of a line.
-fn value(text: &str, name: &str) -> Option<u64> {
-    let line = text.lines().find(|line| line.split_whitespace().next() == Some(name))?;
-    line.split_whitespace().nth(1)?.parse().ok()
+fn system() -> Option<System> {
+    let memory = MemoryRefreshKind::nothing().with_ram();
+    System::new_with_specifics(RefreshKind::nothing().with_memory(memory)).ok()
 }
 
 #[cfg(test)]
