@@ -23,13 +23,12 @@ import sys
 import time
 
 # numba loads TBB by name; pip puts it where the loader does not look.
-if "NUMBA_THREADING_LAYER" not in os.environ:
-    libraries = glob.glob(os.path.join(sys.prefix, "lib*", "libtbb.so*"))
-    os.environ["NUMBA_THREADING_LAYER"] = "tbb" if libraries else "omp"
-    if libraries:
-        folder = os.path.dirname(libraries[0])
-        os.environ["LD_LIBRARY_PATH"] = folder + ":" + os.environ.get("LD_LIBRARY_PATH", "")
-        os.execv(sys.executable, [sys.executable, *sys.argv])
+libraries = glob.glob(os.path.join(sys.prefix, "lib*", "libtbb.so*"))
+os.environ.setdefault("NUMBA_THREADING_LAYER", "tbb" if libraries else "omp")
+if libraries and os.path.dirname(libraries[0]) not in os.environ.get("LD_LIBRARY_PATH", ""):
+    folder = os.path.dirname(libraries[0])
+    os.environ["LD_LIBRARY_PATH"] = folder + ":" + os.environ.get("LD_LIBRARY_PATH", "")
+    os.execv(sys.executable, [sys.executable, *sys.argv])
 
 import numpy as np
 
@@ -148,6 +147,8 @@ def main():
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--json", help="file for all ratios")
     arguments = parser.parse_args()
+    if arguments.rounds < 1:
+        parser.error(f"--rounds is {arguments.rounds}; it must be at least 1")
     check(arguments.libration)
     counts = sorted({bar[2] for bar in BARS})
     cpu, peak = machine(arguments.libration)

@@ -156,7 +156,7 @@ impl Tried {
                 .into();
         }
         "without evidence at this setting: drifts within rounding, steps beyond the limits of \
-         stability, or horizons and systems that were not tried"
+         stability, or horizons, systems, implementations and numbers of trajectories that were not tried"
             .into()
     }
 }

@@ -68,9 +68,10 @@ fn differing<T: BatchFloat>(
     let dt = T::from_f64(0.01);
     let begin = |n, i| start(entry, dimension, n, i);
     let mut all = T::ensemble(system, dimension, len, execution.clone(), &begin).unwrap();
-    // In two parts, so that a start in the middle is seen.
-    all.advance(method, dt, steps / 3);
-    all.advance(method, dt, steps - steps / 3);
+    // In two parts, so that a start in the middle is seen; so few steps have kernels of their own.
+    let few = steps.min(2);
+    all.advance(method, dt, few);
+    all.advance(method, dt, steps - few);
     assert_eq!((all.len(), all.step(), all.dimension()), (len, steps, dimension));
     let bits = |x: T| x.to_f64().to_bits();
     let differs = |n: &usize| {
@@ -107,8 +108,10 @@ proptest! {
     fn no_number_of_trajectories_threads_or_steps_is_awkward(
         len in prop_oneof![
             0..4usize,
-            Just(95), Just(96), Just(97), Just(207), Just(208), Just(209), Just(4095), Just(4097),
-            Just(8209), 0..9000usize,
+            // Blocks of every width, and one more or less.
+            (prop::sample::select(vec![8, 16, 24, 32, 48, 64, 96, 128, 160, 208usize]), 0..3usize)
+                .prop_map(|(width, off)| width + off - 1),
+            Just(4095), Just(4097), Just(8209), 0..9000usize,
         ],
         steps in 0..12u64,
         threads in 1..4usize,
@@ -143,7 +146,7 @@ fn a_step_and_a_system_of_its_own_for_each_trajectory_are_taken_as_they_are() {
 }
 
 #[test]
-fn sixteen_dimensions_and_verlet_with_velocity_dependent_forces_run_as_the_scalar_step() {
+fn sixteen_dimensions_run_as_the_scalar_step() {
     let states: Vec<State<f64, 16>> = (0..101)
         .map(|n| State {
             q: core::array::from_fn(|i| (n + i) as f64),
@@ -159,6 +162,37 @@ fn sixteen_dimensions_and_verlet_with_velocity_dependent_forces_run_as_the_scala
             assert_eq!(all.state(n), Some(lone));
         }
     }
+}
+
+#[test]
+fn verlet_with_forces_that_depend_on_velocities_carries_no_acceleration() {
+    let system = DampedOscillator { omega2: 3.0, gamma: 0.4 };
+    let start = |n: usize| State { q: [1.0 + n as f32], v: [-0.5] };
+    for execution in executions() {
+        let mut all = Ensemble::from_fn(211, execution, start).unwrap();
+        all.advance(VelocityVerlet, All(system), All(0.05), 30).unwrap();
+        for n in 0..211 {
+            let lone = (0..30).fold(start(n), |s, _| VelocityVerlet.step(&system, s, 0.05));
+            assert_eq!(all.state(n), Some(lone), "{n}");
+        }
+    }
+}
+
+#[test]
+fn parts_beyond_the_threads_are_done_by_whoever_is_free() {
+    let execution = Execution::serial().threads(2).unwrap();
+    // The first part waits for all others: whoever does it cannot do them.
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let all = execution.each((0..20).collect(), |i: usize| {
+        if i > 0 {
+            done.fetch_add(1, std::sync::atomic::Ordering::SeqCst);
+        }
+        while i == 0 && done.load(std::sync::atomic::Ordering::SeqCst) < 19 {
+            std::thread::yield_now();
+        }
+        std::thread::current().id()
+    });
+    assert!(all[1..].iter().all(|&other| other != all[0]));
 }
 
 #[test]

@@ -91,5 +91,5 @@ pub(super) fn whole_number(text: &str) -> Option<i128> {
 /// Reads a number of trajectories; also as `1e5`.
 pub(super) fn count(text: &str) -> Result<usize, String> {
     let count = whole_number(text).and_then(|n| usize::try_from(n).ok()).filter(|&n| n >= 1);
-    count.ok_or_else(|| "it must be a whole number of at least 1".to_owned())
+    count.ok_or_else(|| "it must be a whole number of at least 1, and below 2⁶⁴".to_owned())
 }

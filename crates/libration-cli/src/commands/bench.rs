@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use libration_lab::bench::{self, BenchFloat, Rate, Wanted};
-use libration_lab::record::{Finding, Record, Table, Verdict};
+use libration_lab::record::{Finding, Record, Relation, Table, Undecided, Verdict};
 use libration_lab::studies::Throughput;
 use libration_lab::study::StudyError;
 use libration_lab::{Config, Lab, Machine, Study};
@@ -97,11 +97,13 @@ fn ratios(record: &Record) -> Vec<Vec<String>> {
     let verdict = |finding: &Finding| match finding.verdict {
         Verdict::Agrees => Some("reached"),
         Verdict::Disagrees => Some("missed"),
-        Verdict::Measured => {
-            finding.undecided.is_some().then_some("too noisy to judge: run it again")
-        }
+        Verdict::Measured => match finding.undecided.as_ref()? {
+            Undecided::Noisy(_) => Some("too noisy to judge: run it again"),
+            Undecided::Beyond(_) => Some("not reached"),
+        },
     };
-    let rows = record.findings.iter().filter(|finding| finding.unit == "1").filter_map(|finding| {
+    let ratios = record.findings.iter().filter(|f| f.unit == "1" && f.relation != Relation::AtMost);
+    let rows = ratios.filter_map(|finding| {
         let wanted = finding.predicted.map_or_else(|| "—".to_owned(), |bar| format!("{bar}"));
         let told = [finding.id.clone(), format!("{:.3}", finding.measured), wanted];
         let verdict = verdict(finding)?.to_owned();

@@ -9,6 +9,8 @@ use libration::Float;
 pub(crate) enum Link {
     /// A multiplication.
     Product,
+    /// An addition.
+    Sum,
     /// A multiplication and an addition.
     ProductAndSum,
 }
@@ -29,6 +31,7 @@ impl Chain {
             for _ in 0..CHAIN_LINKS {
                 x = match self.0 {
                     Link::Product => x * factor,
+                    Link::Sum => x + term,
                     Link::ProductAndSum => x * factor + term,
                 };
             }

@@ -108,6 +108,17 @@ impl Rates {
         Rates(self.0.iter().zip(&other.0).map(|(&own, &other)| combine(own, other)).collect())
     }
 
+    /// What `combine` makes of these and two others, round by round.
+    pub(crate) fn with_two(
+        &self,
+        [one, two]: [&Rates; 2],
+        combine: impl Fn(f64, f64, f64) -> f64,
+    ) -> Rates {
+        let others = one.0.iter().zip(&two.0);
+        let all = self.0.iter().zip(others);
+        Rates(all.map(|(&own, (&one, &two))| combine(own, one, two)).collect())
+    }
+
     /// The times of a unit of work, or the inverse ratios.
     pub(crate) fn inverted(&self) -> Rates {
         Rates(self.0.iter().map(|rate| rate.recip()).collect())

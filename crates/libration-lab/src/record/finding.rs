@@ -1,5 +1,7 @@
 //! A prediction beside a measurement.
 
+use std::fmt;
+
 use serde::Serialize;
 
 /// One number that was measured, beside what theory says it must be.
@@ -22,8 +24,25 @@ pub struct Finding {
     pub tolerance: Tolerance,
     /// Whether they agree.
     pub verdict: Verdict,
-    /// Why a measurement that was to be judged could not be.
-    pub undecided: Option<String>,
+    /// Why a measurement that was to be judged is not.
+    pub undecided: Option<Undecided>,
+}
+
+/// Why a measurement that was to be judged is not; its words.
+#[derive(Clone, Debug, Serialize, PartialEq, Eq)]
+#[serde(untagged)]
+pub enum Undecided {
+    /// It was too noisy, and may be judged another time.
+    Noisy(String),
+    /// What was wanted was not reached, nor would the machine reach it by what else is known of it.
+    Beyond(String),
+}
+
+impl fmt::Display for Undecided {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Undecided::Noisy(reason) | Undecided::Beyond(reason)) = self;
+        f.write_str(reason)
+    }
 }
 
 /// How a measurement should stand to its prediction.
@@ -151,8 +170,8 @@ impl Finding {
 
     /// This, which was to be judged, but could not be because of `reason`.
     #[must_use]
-    pub fn undecided(self, reason: impl Into<String>) -> Self {
-        Finding { undecided: Some(reason.into()), ..self }
+    pub fn undecided(self, reason: Undecided) -> Self {
+        Finding { undecided: Some(reason), ..self }
     }
 
     /// Whether the measurement is what theory says.

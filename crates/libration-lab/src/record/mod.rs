@@ -11,7 +11,7 @@ use thiserror::Error;
 
 pub use cell::{Cell, Quantity};
 pub use claim::{Claim, ClaimVerdict, Judgement, Ruling};
-pub use finding::{Finding, Relation, Tolerance, Verdict};
+pub use finding::{Finding, Relation, Tolerance, Undecided, Verdict};
 pub use series::{Column, Series};
 pub use table::Table;
 

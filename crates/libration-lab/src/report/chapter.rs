@@ -88,10 +88,11 @@ fn finding(finding: &Finding) -> String {
     let (class, verdict) = match finding.verdict {
         Verdict::Agrees => ("ok", "agrees"),
         Verdict::Disagrees => ("bad", "disagrees"),
-        Verdict::Measured if finding.undecided.is_some() => ("open", "undecided"),
+        Verdict::Measured if finding.undecided.is_some() => ("open", "not judged"),
         Verdict::Measured => ("plain", "measured"),
     };
-    let undecided = finding.undecided.as_deref().map(|why| format!(" (undecided: {})", prose(why)));
+    let undecided =
+        finding.undecided.as_ref().map(|why| format!(" (not judged: {})", prose(&why.to_string())));
     let unit = match finding.unit.as_str() {
         "1" => String::new(),
         unit => format!(" {}", escape(unit)),

@@ -15,6 +15,14 @@ pub(super) struct Columns<S> {
 }
 
 impl<S: Number> Columns<S> {
+    /// Bytes that all rows of what is asked take.
+    pub(super) fn bytes(request: &Request) -> u128 {
+        let whole = 2 + usize::from(request.copies.is_some());
+        let numbers = 1 + 2 * request.q.len();
+        let row = whole * size_of::<u64>() + numbers * size_of::<S>();
+        u128::from(request.rows()) * row as u128
+    }
+
     /// Empty columns with room for what is asked.
     pub(super) fn new(request: &Request) -> Result<Self, ExportError> {
         let rows = request.rows();

@@ -44,7 +44,7 @@ pub enum TrajectoryError {
     #[error(transparent)]
     Ensemble(#[from] EnsembleError),
     /// There is not memory enough.
-    #[error("{0} (--count, --float)")]
+    #[error("{0} (--count, --every, --float)")]
     Memory(NoRoom),
     /// The result could not be written or kept.
     #[error(transparent)]

@@ -17,6 +17,7 @@ mod units;
 use std::io::Write;
 use std::sync::atomic::AtomicBool;
 
+use libration::ensemble::NoRoom;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -121,6 +122,7 @@ pub fn write(
 
 fn keep<S: Many>(request: &Request, stop: &AtomicBool) -> Result<Trajectory, TrajectoryError> {
     admit::<S>(request)?;
+    NoRoom::check(Columns::<S>::bytes(request)).map_err(TrajectoryError::Memory)?;
     let mut columns = Columns::<S>::new(request)?;
     let ending = run::run(request, &mut columns, stop)?;
     Ok(Trajectory { table: columns.into_table(request)?, ending })

@@ -19,6 +19,8 @@ fn every_row_of_the_table_of_bars_is_a_finding() {
         "symplectic-euler.f32",
         "symplectic-euler.f64",
         "velocity-verlet.f32",
+        "velocity-verlet.f64",
+        "rk4.f32",
         "rk4.f64",
         "one.symplectic-euler.f32",
         "one-step.1e6",

@@ -40,6 +40,15 @@ pub(super) enum Node {
     Result(Operation, Vec<usize>),
 }
 
+impl Node {
+    fn operation(&self) -> Option<Operation> {
+        match self {
+            Node::Input => None,
+            Node::Result(operation, _) => Some(*operation),
+        }
+    }
+}
+
 impl DataFlow {
     /// The operations of one step of `dt` seconds on `model`, after another and before the next.
     ///
@@ -82,11 +91,12 @@ impl DataFlow {
     /// The time between two steps of a lone trajectory on a processor that has units to spare: the
     /// longest chain of operations from a state to the next, on the average over many steps.
     ///
-    /// `latency` is the time from the operands of an operation to its result, in any unit.
+    /// `latency(before, operation)` is the time that `operation` takes from an operand that `before` made to
+    /// its result, in any unit: processors hand some results on faster than others.
     ///
     /// It is the largest mean of a cycle in the graph from coordinates to coordinates (R. M. Karp,
     /// *A characterization of the minimum cycle mean in a digraph*, Discrete Mathematics 23, 1978).
-    pub fn recurrence(&self, latency: impl Fn(Operation) -> f64) -> f64 {
+    pub fn recurrence(&self, latency: impl Fn(Operation, Operation) -> f64) -> f64 {
         let size = self.outputs.len();
         let chains: Vec<Vec<f64>> = (0..size).map(|input| self.chains(input, &latency)).collect();
         // longest[k][j] is the longest walk of k steps that ends in coordinate j.
@@ -108,20 +118,29 @@ impl DataFlow {
     }
 
     /// The longest chains from one coordinate to each of them a step later; −∞ where there is none.
-    fn chains(&self, from: usize, latency: &impl Fn(Operation) -> f64) -> Vec<f64> {
+    fn chains(&self, from: usize, latency: &impl Fn(Operation, Operation) -> f64) -> Vec<f64> {
         let mut inputs = 0;
-        let mut ready = Vec::with_capacity(self.nodes.len());
+        let mut ready: Vec<f64> = Vec::with_capacity(self.nodes.len());
+        // What made each value; a coordinate was made by the step before.
+        let mut made: Vec<Option<Operation>> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
-            ready.push(match node {
+            let (operation, at) = match node {
                 Node::Input => {
                     inputs += 1;
-                    if inputs - 1 == from { 0.0 } else { f64::NEG_INFINITY }
+                    let before = self.outputs.get(inputs - 1).copied().flatten();
+                    let before = before.and_then(|output| self.nodes[output].operation());
+                    (before, if inputs - 1 == from { 0.0 } else { f64::NEG_INFINITY })
                 }
                 Node::Result(operation, operands) => {
-                    let last = operands.iter().map(|&operand| ready[operand]);
-                    last.fold(f64::NEG_INFINITY, f64::max) + latency(*operation)
+                    let through = |&operand: &usize| {
+                        ready[operand] + latency(made[operand].unwrap_or(*operation), *operation)
+                    };
+                    let last = operands.iter().map(through).fold(f64::NEG_INFINITY, f64::max);
+                    (Some(*operation), last)
                 }
-            });
+            };
+            ready.push(at);
+            made.push(operation);
         }
         self.outputs.iter().map(|o| o.map_or(f64::NEG_INFINITY, |output| ready[output])).collect()
     }
@@ -157,7 +176,7 @@ mod tests {
     }
 
     fn recurrence(integrator: impl Integrator) -> f64 {
-        DataFlow::of_step::<_, 1>(integrator, &OSCILLATOR, 1e-3).recurrence(|_| 1.0)
+        DataFlow::of_step::<_, 1>(integrator, &OSCILLATOR, 1e-3).recurrence(|_, _| 1.0)
     }
 
     #[test]
@@ -183,7 +202,20 @@ mod tests {
     fn in_several_dimensions_there_is_as_much_for_each() {
         let flow = DataFlow::of_step::<_, 3>(SymplecticEuler, &OSCILLATOR, 1e-3);
         assert_eq!(flow.count(Operation::Multiplication), 9);
-        assert_eq!(flow.recurrence(|_| 1.0), 5.0);
+        assert_eq!(flow.recurrence(|_, _| 1.0), 5.0);
+    }
+
+    #[test]
+    fn a_chain_takes_as_long_as_its_pairs_of_operations() {
+        use Operation::{Addition, Multiplication};
+        let flow = DataFlow::of_step::<_, 1>(VelocityVerlet, &OSCILLATOR, 1e-3);
+        let time = |before, operation| match (before, operation) {
+            (Addition, Addition) => 10.0,
+            (Multiplication, Multiplication) => 100.0,
+            _ => 1.0,
+        };
+        // q → −ω²q → ½Δt·a → + v → + (second kick) … → Δt·v → + q: one sum upon a sum, one product upon a product.
+        assert_eq!(flow.recurrence(time), 114.0);
     }
 
     #[test]

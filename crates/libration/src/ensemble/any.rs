@@ -44,11 +44,10 @@ pub trait AnyEnsemble<T>: Debug + Send {
 }
 
 /// A float type whose ensembles are compiled here: `f32` and `f64`.
-pub trait BatchFloat: Float {
+pub trait BatchFloat: Float + Pod {
     /// Bytes that `len` trajectories in `dimension` degrees of freedom take.
     fn ensemble_bytes(dimension: usize, len: usize) -> u128 {
-        let planes = 2 * dimension as u128;
-        planes * (len as u128 * size_of::<Self>() as u128)
+        dimension as u128 * Ensemble::<Self, 1>::bytes(len)
     }
 
     /// `len` trajectories of `system`; the start of trajectory `n` is what `start(n, i)` says of its

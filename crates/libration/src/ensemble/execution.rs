@@ -1,5 +1,6 @@
 //! Where an ensemble runs.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -89,36 +90,47 @@ impl Execution {
         self.pool.as_ref().map_or(1, |pool| 1 + pool.current_num_threads())
     }
 
-    /// Does `work` on every part, each on a thread of its own as far as there are threads, and gives what comes
-    /// out in the order of the parts.
+    /// Does `work` on every part and gives what comes out in the order of the parts.
     ///
-    /// The thread that calls does the first one: where there is little to do, to wait for another to
-    /// wake would take longer. With a part for every thread each has the same one every time, whose memory is
-    /// near to it.
+    /// The thread that calls works too: where there is little to do, to wait for another to wake would take
+    /// longer. With as many parts as threads each has the same one every time, whose memory is near to it;
+    /// otherwise whoever is free takes the next.
     pub fn each<P: Send, R: Send>(&self, parts: Vec<P>, work: impl Fn(P) -> R + Sync) -> Vec<R> {
         let Some(pool) = self.pool.as_ref().filter(|_| parts.len() > 1) else {
             return parts.into_iter().map(work).collect();
         };
-        let work = &work;
-        let all = parts.len() == self.thread_count();
+        let (count, threads) = (parts.len(), self.thread_count());
         let mut results: Vec<Option<R>> = parts.iter().map(|_| None).collect();
-        let mut pairs = parts.into_iter().zip(&mut results);
-        let own = pairs.next();
-        let others: Vec<_> = pairs.map(|pair| Mutex::new(Some(pair))).collect();
-        let take = |i: usize| others.get(i)?.lock().unwrap_or_else(PoisonError::into_inner).take();
-        let run = |(part, result): (P, &mut Option<R>)| *result = Some(work(part));
-        pool.in_place_scope(|scope| {
-            if all {
-                scope.spawn_broadcast(|_, thread| take(thread.index()).into_iter().for_each(run));
-            } else {
-                for i in 0..others.len() {
-                    let take = &take;
-                    scope.spawn(move |_| take(i).into_iter().for_each(run));
-                }
+        let pairs = parts.into_iter().zip(&mut results);
+        let pairs: Vec<_> = pairs.map(|pair| Mutex::new(Some(pair))).collect();
+        let run = |i: usize| {
+            let Some(pair) = pairs.get(i) else { return };
+            if let Some((part, result)) = pair.lock().unwrap_or_else(PoisonError::into_inner).take()
+            {
+                *result = Some(work(part));
             }
-            own.into_iter().for_each(run);
+        };
+        let next = AtomicUsize::new(0);
+        let drain = || {
+            // Each number is taken by one thread.
+            while let i = next.fetch_add(1, Ordering::Relaxed)
+                && i < count
+            {
+                run(i);
+            }
+        };
+        pool.in_place_scope(|scope| {
+            if count == threads {
+                scope.spawn_broadcast(|_, thread| run(1 + thread.index()));
+                run(0);
+            } else {
+                for _ in 1..count.min(threads) {
+                    scope.spawn(|_| drain());
+                }
+                drain();
+            }
         });
-        drop(others);
+        drop(pairs);
         results.into_iter().flatten().collect()
     }
 }

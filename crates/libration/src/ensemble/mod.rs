@@ -84,7 +84,8 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         start: impl Fn(usize) -> State<T, D> + Sync,
     ) -> Result<Self, EnsembleError> {
         let mut planes = Planes::new(len)?;
-        let shares = shares(planes.share(), execution.thread_count(), GRAIN);
+        let count = execution.threads_for(MOVED * D as u64 * len as u64);
+        let shares = shares(planes.share(), count, GRAIN);
         execution.each(shares, |mut share| {
             for n in 0..share.len() {
                 share.set(n, start(share.first + n));

@@ -168,7 +168,7 @@ fn traffic(record: &mut Record) -> Result<(), RecordError> {
 }
 
 /// Arrays that a step reads or writes.
-fn arrays_of_a_step(implementation: Implementation) -> f64 {
+pub(super) fn arrays_of_a_step(implementation: Implementation) -> f64 {
     match implementation {
         Implementation::Temporaries | Implementation::InPlace => {
             PASSES.map(Traffic::arrays).iter().sum::<usize>() as f64

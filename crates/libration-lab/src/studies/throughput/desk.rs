@@ -6,7 +6,7 @@ use libration::ensemble::{Execution, InstructionSet};
 
 use crate::Lab;
 use crate::bench::{Contestant, Rates, Task, Turns, race};
-use crate::record::{Finding, Record, Relation, Tolerance};
+use crate::record::{Finding, Record, Relation, Tolerance, Undecided};
 use crate::study::StudyError;
 
 /// Quartiles further apart than this share of the median say that the machine had other work.
@@ -133,9 +133,9 @@ pub(super) fn judge(
             let tolerance = Tolerance::absolute(2.0 * error, reason);
             Finding::related(id, text, "1", Relation::AtLeast, bar, median, tolerance)
         }
-        Some(bar) => Finding::measured(id, text, "1", median).undecided(format!(
+        Some(bar) => Finding::measured(id, text, "1", median).undecided(Undecided::Noisy(format!(
             "the machine was too noisy: the quartiles of the rounds lie {spread:.2} apart; wanted: {bar}"
-        )),
+        ))),
         None => Finding::measured(id, text, "1", median),
     });
 }

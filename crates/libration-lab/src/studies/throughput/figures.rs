@@ -113,23 +113,29 @@ pub(super) fn heat(record: &Record) -> Result<Figure, RecordError> {
         own.iter().position(|&n| n == count).map_or(f64::NAN, |at| rates[at])
     };
     let places: Vec<f64> = (0..names.len()).rev().map(|row| -(row as f64)).collect();
-    // Cells have equal widths: where numbers are not evenly spaced, the axis names them.
-    let (axis, grid) = if evenly_spaced(&counts) {
-        (Axis::log("trajectories N"), Grid::sample(counts, places, rate))
-    } else {
-        let last = counts.len().saturating_sub(1);
-        let named = counts.iter().rev().map(|&count| number(count, 3));
-        let axis = Axis::names("trajectories N", named);
-        let across: Vec<f64> = (0..counts.len()).map(|i| i as f64 - last as f64).collect();
-        (axis, Grid::sample(across, places, |x, row| rate(counts[(x + last as f64) as usize], row)))
+    // Cells have equal widths: where numbers are not evenly spaced, each stands for those that are nearest.
+    let across = if evenly_spaced(&counts) { counts.clone() } else { between(&counts) };
+    let nearest = |x: f64| {
+        let off = |count: &&f64| (*count / x).ln().abs();
+        counts.iter().min_by(|a, b| off(a).total_cmp(&off(b))).copied().unwrap_or(x)
     };
+    let grid = Grid::sample(across, places, |x, row| rate(nearest(x), row));
     let colors = Colors::new("steps a second").log().unit("1/s");
+    let axis = Axis::log("trajectories N");
     let panel = Panel::new(axis, Axis::names("", names)).mark(Mark::raster(grid, colors));
     Ok(Figure::new("fig-9-8", "Every implementation at every number of trajectories")
         .caption("Blank where there was no memory, or where a lone loop would tell nothing new.")
         .description("Heat map: steps a second by implementation and number of trajectories.")
         .aspect(1.6)
         .panel(panel))
+}
+
+/// Many numbers, evenly spaced on a logarithmic axis from the first of these to the last.
+fn between(counts: &[f64]) -> Vec<f64> {
+    const COLUMNS: i32 = 240;
+    let [first, last] = [counts.first(), counts.last()].map(|x| x.copied().unwrap_or(1.0).ln());
+    let step = (last - first) / f64::from(COLUMNS);
+    (0..=COLUMNS).map(|i| (first + step * f64::from(i)).exp()).collect()
 }
 
 /// Whether each number is the same multiple of the one before, but for rounding.
@@ -176,12 +182,14 @@ pub(super) fn roofline(record: &Record) -> Result<Figure, RecordError> {
 
 #[cfg(test)]
 mod tests {
-    use super::evenly_spaced;
+    use super::{between, evenly_spaced};
 
     #[test]
     fn powers_are_evenly_spaced_and_other_numbers_are_not() {
         assert!(evenly_spaced(&[1.0, 10.0, 100.0]));
         assert!(evenly_spaced(&[]));
         assert!(!evenly_spaced(&[1.0, 10.0, 50.0]));
+        let filled = between(&[1.0, 10.0, 50.0]);
+        assert!(evenly_spaced(&filled) && (filled[filled.len() - 1] - 50.0).abs() < 1e-9);
     }
 }

@@ -70,16 +70,24 @@ fn against_chain<T: Bench>(
 ) -> Result<(f64, [Rates; 2]), StudyError> {
     let flow = flow(desk, method);
     let lone = stepping::<T>(method, desk.task(1), 16 * STEPS, &desk.serial)?;
-    let rates = desk.race([lone, chain::<T>(Link::Product), chain::<T>(Link::ProductAndSum)])?;
-    let [time, product, both] = rates.map(|rates| rates.inverted().scaled(1e9));
-    let bound = both.with(&product, |both, product| {
-        // A sum takes what it adds to a product: it waits for one in a step as well.
-        flow.recurrence(|operation| match operation {
-            Operation::Addition => both - product,
+    let [time, product, sum, both] = desk
+        .race([
+            lone,
+            chain::<T>(Link::Product),
+            chain::<T>(Link::Sum),
+            chain::<T>(Link::ProductAndSum),
+        ])?
+        .map(|rates| rates.inverted().scaled(1e9));
+    // In a cycle there are as many sums after products as products after sums: half of both for each.
+    let change = both.scaled(0.5);
+    let bound = product.with_two([&sum, &change], |product, sum, change| {
+        flow.recurrence(|before, operation| match [before, operation] {
+            [Operation::Addition, Operation::Addition] => sum,
+            [Operation::Addition, _] | [_, Operation::Addition] => change,
             _ => product,
         })
     });
-    Ok((flow.recurrence(|_| 1.0), [time, bound]))
+    Ok((flow.recurrence(|_, _| 1.0), [time, bound]))
 }
 
 /// Links of a chain, one after another: links a second.

@@ -3,7 +3,7 @@
 use super::desk::{Desk, Ratio, judge};
 use crate::bench::Peers;
 use crate::notation::number;
-use crate::record::{Finding, Record, Table};
+use crate::record::{Finding, Record, Table, Undecided};
 use crate::study::StudyError;
 
 /// Judges the ratios of the file that the configuration names, if it names one.
@@ -41,9 +41,11 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         );
         if row.ratio < row.wanted && row.most < row.wanted {
             let most = number(row.most, 3);
-            record.find(Finding::measured(id, text, "1", row.ratio).undecided(format!(
-                "beyond this machine, whose arithmetic goes to {most} times; wanted: {}",
-                row.wanted
+            record.find(Finding::measured(id, text, "1", row.ratio).undecided(Undecided::Beyond(
+                format!(
+                    "beyond this machine, whose arithmetic goes to {most} times; wanted: {}",
+                    row.wanted
+                ),
             )));
         } else {
             let ratio = Ratio::new(row.ratio, high - low, peers.rounds as usize);
@@ -98,7 +100,7 @@ mod tests {
             let id = format!("throughput.fused-over-numpy-in-place.f32.1e{count}");
             record.finding(&id).expect("a finding for each row").clone()
         };
-        let reason = found(3).undecided.expect("59 is less than 80");
+        let reason = found(3).undecided.expect("59 is less than 80").to_string();
         assert!(reason.contains("goes to 59 times; wanted: 80"), "{reason}");
         // In a build for speed it is missed.
         let bar = (!cfg!(debug_assertions)).then_some(80.0);

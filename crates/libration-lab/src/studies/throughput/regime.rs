@@ -1,12 +1,16 @@
 //! What limits an implementation at a number of trajectories, read off its rates.
 
+use super::comparison::arrays_of_a_step;
 use super::scaling::{arrays, series_name};
 use crate::bench::{BenchFloat, Implementation};
 use crate::machine::{Cache, Machine};
 use crate::record::{Finding, Record, RecordError, Table};
 
-/// A rate that grows faster than this power of the number of trajectories is that of an overhead.
-const GROWTH: f64 = 0.5;
+/// A rate that more trajectories reach so many times over is that of an overhead.
+const OVERHEAD: f64 = 2.0;
+
+/// A pass that moves no more than so many times the bytes of the loops over memory is bound by it.
+const MEMORY: f64 = 1.2;
 
 /// Rates within this factor of each other belong to one plateau.
 const PLATEAU: f64 = 1.3;
@@ -33,6 +37,7 @@ enum Limit {
 /// Divides every curve of the record into regimes.
 pub(super) fn detect(record: &mut Record) -> Result<(), RecordError> {
     let caches = Machine::detect().caches;
+    let memory = 1e9 * record.finding("throughput.bandwidth.update.one-core")?.measured;
     let mut table = Table::new(
         "regimes",
         &["implementation", "float", "from N", "to N", "limited by", "best rate (10⁹ steps/s)"],
@@ -43,7 +48,11 @@ pub(super) fn detect(record: &mut Record) -> Result<(), RecordError> {
             let (counts, rates) =
                 (series.column("trajectories")?, series.column("steps_per_second")?);
             let bytes = arrays(implementation) * float.bytes();
-            let held = |count: f64| level(&caches, count * bytes as f64);
+            let moved = traffic(implementation, float);
+            let held = |count: f64, rate: f64| match rate * moved <= MEMORY * memory {
+                true => None,
+                false => level(&caches, count * bytes as f64),
+            };
             let all = regimes(counts, rates, held);
             for regime in &all {
                 table.push([
@@ -92,20 +101,21 @@ fn words(implementation: Implementation, limit: Limit, caches: usize) -> String 
     }
 }
 
-/// Divides one curve: first where the rate grows with the number, then into plateaus, and where two
+/// Bytes that a step moves.
+fn traffic(implementation: Implementation, float: BenchFloat) -> f64 {
+    arrays_of_a_step(implementation) * float.bytes() as f64
+}
+
+/// Divides one curve: first where many more trajectories have a higher rate, then into plateaus, and where two
 /// neighbours lie in different caches and their rates apart.
-fn regimes(counts: &[f64], rates: &[f64], held: impl Fn(f64) -> Option<u32>) -> Vec<Regime> {
+fn regimes(counts: &[f64], rates: &[f64], held: impl Fn(f64, f64) -> Option<u32>) -> Vec<Regime> {
     let mut all: Vec<Regime> = Vec::new();
     for (i, (&count, &rate)) in counts.iter().zip(rates).enumerate() {
-        let growth = |j: usize| {
-            let (n, r) = (counts.get(j)?, rates.get(j)?);
-            Some((rates.get(j + 1)? / r).ln() / (counts.get(j + 1)? / n).ln())
+        let best = rates[i..].iter().copied().fold(0.0, f64::max);
+        let limit = match best >= OVERHEAD * rate {
+            true => Limit::Overhead,
+            false => Limit::Plateau(held(count, rate)),
         };
-        // The growth towards the next number, or from there on: a lone trajectory has a kernel of its own.
-        // At the last number, since the one before.
-        let ahead = growth(i).map(|next| next.max(growth(i + 1).unwrap_or(next)));
-        let slope = ahead.or_else(|| growth(i.checked_sub(1)?)).unwrap_or(0.0);
-        let limit = if slope > GROWTH { Limit::Overhead } else { Limit::Plateau(held(count)) };
         match all.last_mut() {
             Some(last) if last.limit == Limit::Overhead && limit == Limit::Overhead => {
                 last.to = count;
@@ -135,7 +145,7 @@ mod tests {
     fn a_curve_is_cut_where_it_stops_growing_and_where_it_falls() {
         let counts = [1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6];
         let rates = [1.0, 10.0, 90.0, 500.0, 480.0, 510.0, 100.0];
-        let held = |count: f64| (count < 3e5).then_some(if count < 5e3 { 1 } else { 2 });
+        let held = |count: f64, _| (count < 3e5).then_some(if count < 5e3 { 1 } else { 2 });
         let regime = |from, to, limit, rate| Regime { from, to, limit, rate };
         assert_eq!(
             regimes(&counts, &rates, held),
@@ -148,8 +158,16 @@ mod tests {
     }
 
     #[test]
+    fn numbers_that_lie_close_or_far_apart_are_told_by_their_rates() {
+        let all = regimes(&[1e3, 1.001e3, 1e6], &[5.0, 7.0, 6.0], |_, _| None);
+        assert!(all.iter().all(|regime| regime.limit == Limit::Plateau(None)), "{all:?}");
+        let all = regimes(&[3.0, 4.0, 1e6], &[0.2, 0.3, 9.0], |_, _| None);
+        assert_eq!((all[0].to, all[0].limit), (4.0, Limit::Overhead), "{all:?}");
+    }
+
+    #[test]
     fn a_flat_curve_is_one_plateau() {
-        let all = regimes(&[1.0, 10.0, 100.0], &[5.0, 5.1, 4.9], |_| Some(1));
+        let all = regimes(&[1.0, 10.0, 100.0], &[5.0, 5.1, 4.9], |_, _| Some(1));
         assert_eq!(all.len(), 1);
         assert_eq!((all[0].from, all[0].to), (1.0, 100.0));
     }

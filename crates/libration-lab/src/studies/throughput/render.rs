@@ -4,7 +4,7 @@ use super::figures;
 use crate::bench::Implementation;
 use crate::notation::number;
 use crate::page::{Highlight, Page};
-use crate::record::{Record, RecordError, Verdict};
+use crate::record::{Finding, Record, RecordError, Undecided, Verdict};
 
 /// Writes the chapter.
 pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
@@ -51,7 +51,8 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.figure(figures::roofline(record)?);
     page.paragraph(
         "Bandwidths count the bytes that the program reads and writes. A plain store also makes the \
-         processor read the line that it overwrites, which a stream past the caches does not.",
+         processor read the line that it overwrites, which a stream past the caches does not; whether \
+         that is faster differs between processors.",
     );
     page.table(record.table("bandwidth")?, 3);
     page.table(record.table("one step a pass")?, 3);
@@ -68,9 +69,10 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.table(record.table("page faults")?, 3);
     page.heading("Regimes");
     page.paragraph(
-        "Read off the curves: where steps a second grow faster than √N, a pass costs the same whatever \
-         it holds; beyond, rates within a factor of 1.3 make one plateau, which is named by the smallest \
-         cache that holds its arrays.",
+        "Read off the curves: where more trajectories reach twice the rate, a pass costs about the same \
+         whatever it holds; beyond, rates within a factor of 1.3 make one plateau. Passes that move no more \
+         than 1.2 times the bytes of the loops over memory are bound by it; others are named by the \
+         smallest cache that holds their arrays.",
     );
     page.table(record.table("regimes")?, 3);
     page.heading("The machine");
@@ -124,7 +126,8 @@ fn fused(record: &Record) -> Option<[f64; 3]> {
 fn noise(record: &Record, page: &mut Page) {
     let speeds = || record.findings.iter().filter(|f| f.unit == "1" && !f.id.contains("faults"));
     let judged = speeds().filter(|f| f.verdict != Verdict::Measured).count();
-    let noisy = speeds().filter(|f| f.undecided.is_some()).count();
+    let noisy = |f: &&Finding| matches!(f.undecided, Some(Undecided::Noisy(_)));
+    let noisy = speeds().filter(noisy).count();
     page.paragraph(
         "Ratios that are judged are medians of ratios of neighbouring turns; their tolerance is \
          twice the standard error of that median. Where an instruction set has few registers, and in a build \

@@ -76,6 +76,11 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         missing.push(["all".into(), "both".into(), (count as u64).into(), because.into()]);
     }
     for &implementation in &desk.lab.config.throughput.implementations {
+        for &count in counts.iter().filter(|&&n| implementation.is_lone() && n > MOST_LONE) {
+            let because = format!("one by one, more than {MOST_LONE} take as long each");
+            let name = implementation.title().into();
+            missing.push([name, "both".into(), (count as u64).into(), because.into()]);
+        }
         for float in BenchFloat::ALL {
             let mut points = Vec::new();
             for &count in &counts {

@@ -11,6 +11,9 @@ use crate::study::StudyError;
 /// What fused steps are to gain from all cores, of what independent arithmetic gains.
 const BAR: f64 = 0.9;
 
+/// Steps of a pass: threads meet at the end of the whole horizon.
+const HORIZON: u64 = 5 * STEPS;
+
 /// Races fused steps and independent arithmetic, each on one thread, on two and so on.
 pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
     let cores = desk.parallel.thread_count();
@@ -21,7 +24,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     let mut contestants: Vec<Contestant<'_>> = Vec::new();
     for &threads in &counts {
         let execution = desk.serial.clone().threads(threads)?;
-        contestants.push(stepping::<f32>(method, task, STEPS, &execution)?);
+        contestants.push(stepping::<f32>(method, task, HORIZON, &execution)?);
         contestants.push(peak.on_threads::<f32>(&execution));
     }
     let rates = desk.race_of(&mut contestants)?;
