@@ -8,11 +8,13 @@
 
 pub mod analysis;
 pub mod catalog;
+pub mod control;
 pub mod elementary;
 pub mod ensemble;
 pub mod integrator;
 mod method;
 pub mod number;
+pub mod random;
 mod scalar;
 pub mod simulation;
 mod state;

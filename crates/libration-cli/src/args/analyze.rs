@@ -2,8 +2,11 @@
 
 use clap::Args;
 
-use super::number::{criterion, forecast_steps};
-use super::{StepArgs, SystemArgs};
+use libration_lab::analyze::Stepping;
+
+use super::SystemArgs;
+use super::number::{criterion, forecast_steps, time_step};
+use super::timing::{TimingArgs, stepping};
 
 /// What theory says of one step.
 #[derive(Args, Debug)]
@@ -11,8 +14,14 @@ use super::{StepArgs, SystemArgs};
 pub(crate) struct AnalyzeArgs {
     #[command(flatten)]
     pub(crate) system: SystemArgs,
+    /// The integrator, or `exact`; `libration list` shows them
+    #[arg(long, value_name = "NAME", value_parser = stepping, allow_hyphen_values = true)]
+    pub(crate) integrator: Stepping,
+    /// Time step in s
+    #[arg(long, value_name = "SECONDS", value_parser = time_step, allow_hyphen_values = true)]
+    pub(crate) dt: f64,
     #[command(flatten)]
-    pub(crate) step: StepArgs,
+    pub(crate) timing: TimingArgs,
     /// Number of steps over which the largest energy drift is taken; of a linear system up to 1e15
     #[arg(
         long,
@@ -43,6 +52,8 @@ const EXAMPLES: &str = "\
 Examples:
   libration analyze --system oscillator --set omega2=10 --integrator rk4 --dt 0.01
   libration analyze --system oscillator --integrator velocity-verlet --dt 0.01 --max-drift 1e-3
+  libration analyze --system oscillator --set omega2=10 --integrator exact --dt 0.01 \
+                    --feedback 10,2 --latency 0.015 --jitter gaussian:0.1
   libration analyze --system pendulum --q 2.5 --integrator velocity-verlet --dt 0.05 --json
 
 Of a nonlinear system, matrix and eigenvalues are those of one step linearised about --q, --v.";

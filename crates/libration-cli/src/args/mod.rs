@@ -6,6 +6,7 @@ mod number;
 pub(crate) mod simd;
 mod simulate;
 mod system;
+mod timing;
 
 use std::ffi::OsString;
 use std::path::PathBuf;

@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 
-use libration_lab::analyze::{self, Analysis, Criteria, ModifiedHamiltonian, Request};
+use libration_lab::analyze::{
+    self, Analysis, Criteria, ModifiedHamiltonian, Request, Stepping, TimingAnswer,
+};
 use libration_lab::config::limits;
 
 use crate::args::{AnalyzeArgs, Setting};
@@ -12,7 +14,7 @@ use crate::error::Failure;
 /// Analyses one step and prints what theory says of it.
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     let Setting { system, q, v } = args.system.resolve()?;
-    let (method, dt) = (args.step.integrator, args.step.dt);
+    let (stepping, dt, timing) = (args.integrator, args.dt, args.timing.timing());
     if !system.is_linear() {
         // What cannot be forecast is simulated.
         limits::steps("--steps", args.steps.into()).map_err(Failure::usage)?;
@@ -22,7 +24,7 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         max_amplitude: args.max_amplitude,
         max_error: args.max_error,
     };
-    let request = Request { system, method, dt, q, v, steps: args.steps, criteria };
+    let request = Request { system, stepping, dt, q, v, steps: args.steps, criteria, timing };
     let analysis = analyze::analyze(&request).map_err(Failure::usage)?;
     let text = match args.json {
         true => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
@@ -86,7 +88,8 @@ fn describe(analysis: &Analysis, criteria: &Criteria) -> String {
         line("stable for dt in s", shown);
     }
     let one_mode = matches!(about.system, "oscillator" | "damped-oscillator");
-    if analysis.stability_windows.is_none() && one_mode {
+    let derived = about.integrator != Stepping::EXACT;
+    if analysis.stability_windows.is_none() && one_mode && derived {
         line("stable for dt in s", UNKNOWN.into());
     }
     let mut largest = |what: &str, asked: Option<f64>, dt: Option<Option<f64>>| {
@@ -136,10 +139,48 @@ fn describe(analysis: &Analysis, criteria: &Criteria) -> String {
             None => "undefined: the energy at the start is zero".into(),
         },
     );
+    if let Some(timing) = &analysis.timing {
+        describe_timing(timing, &mut text);
+    }
     if let Some(note) = &about.note {
         let _ = writeln!(text, "note: {note}");
     }
     text
+}
+
+/// What timing does to the loop.
+fn describe_timing(timing: &TimingAnswer, text: &mut String) {
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<22} {value}");
+    };
+    let number = |x: Option<f64>, unit: &str| {
+        x.map_or_else(|| "none".to_owned(), |x| format!("{x:?} {unit}"))
+    };
+    if let (Some([kp, kd]), Some(steps)) = (timing.feedback, timing.latency_steps) {
+        line("command", format!("-{kp:?} q - {kd:?} v, {steps:?} steps late"));
+    }
+    if let Some(critical) = &timing.critical {
+        line("critical latency", number(critical.critical_latency_steps, "steps"));
+        line("", number(critical.critical_latency_seconds, "s"));
+        let end = |x: Option<f64>| x.map_or("∞".into(), |x| format!("{x:?}"));
+        let shown: Vec<String> = critical
+            .latency_windows
+            .iter()
+            .map(|&(from, to)| format!("{from:?} to {}", end(to)))
+            .collect();
+        let shown = if shown.is_empty() { "none".into() } else { shown.join(", ") };
+        line("stable, steps late", shown);
+        line("continuous margin", number(critical.delay_margin_seconds, "s"));
+    }
+    if let (Some(radius), Some(growth)) = (timing.mean_square_radius, timing.mean_square_growth) {
+        line("second moments grow by", format!("{radius:?} a step  (1 {growth:+e})"));
+    }
+    if let Some(exponent) = timing.lyapunov_exponent {
+        line("a typical run grows", number(exponent, "a step"));
+    }
+    if let Some(steps) = timing.dephasing_steps {
+        line("mean falls to 1/e in", number(steps, "steps"));
+    }
 }
 
 /// What stands for a number that is not derived.

@@ -8,3 +8,4 @@ mod bench;
 mod interrupt;
 mod lab;
 mod simulate;
+mod timing;

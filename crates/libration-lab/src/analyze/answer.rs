@@ -9,7 +9,7 @@ use libration::simulation::{EnergyDrift, SimulationError};
 use serde::{Serialize, Serializer};
 use serde_json::value::RawValue;
 
-use super::{LargestDt, OrderOfWord, Request};
+use super::{LargestDt, OrderOfWord, Request, TimingAnswer};
 
 /// What theory says of one step; the fields are the keys of `analyze --json`.
 #[derive(Debug, Serialize)]
@@ -30,7 +30,7 @@ pub struct Analysis {
     pub trace: f64,
     /// The eigenvalues as pairs `[re, im]`.
     pub eigenvalues: Vec<[f64; 2]>,
-    /// The largest absolute value of an eigenvalue.
+    /// The largest absolute value of an eigenvalue; with feedback of the loop and its waiting commands.
     pub spectral_radius: f64,
     /// The spectral radius minus one, without cancellation.
     pub spectral_radius_minus_one: f64,
@@ -62,6 +62,9 @@ pub struct Analysis {
     /// The energy drift; none where the initial energy is zero.
     #[serde(flatten, serialize_with = "drift_or_nulls")]
     pub drift: Option<Drift>,
+    /// What timing does to the loop, if it was asked. With feedback `spectral_radius` is that of the loop.
+    #[serde(flatten)]
+    pub timing: Option<TimingAnswer>,
 }
 
 /// The keys of a drift are there also where there is none.
@@ -103,7 +106,7 @@ impl About {
         About {
             system: request.system.name(),
             parameters: request.system.parameters().into_iter().collect(),
-            integrator: request.method.name(),
+            integrator: request.stepping.name(),
             dt: request.dt,
             q: request.q.clone(),
             v: request.v.clone(),

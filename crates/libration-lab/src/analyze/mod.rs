@@ -2,81 +2,26 @@
 
 mod answer;
 mod criteria;
+mod error;
 mod limits;
 mod modes;
+mod request;
+mod timing;
 
 use libration::analysis::{Linearisation, Spectrum, SymbolicStep, forecast_drift};
 use libration::number::Wide;
-use libration::simulation::{EnergyDrift, SimulationError, Simulator};
+use libration::simulation::{EnergyDrift, Simulator};
 use libration::{
-    AnySystem, CatalogError, Elementary, Integrator, Method, Model, Scalar, State, System,
-    with_method, with_system,
+    AnySystem, Elementary, Integrator, Model, Scalar, State, System, with_method, with_system,
 };
-use thiserror::Error;
 
 pub use answer::{About, Analysis, Drift, ModifiedHamiltonian};
 pub use criteria::Criteria;
+pub use error::AnalyzeError;
 pub use limits::{LargestDt, OrderOfWord};
 use modes::Modes;
-
-/// What is to be analysed.
-#[derive(Clone, Debug)]
-pub struct Request {
-    /// The system.
-    pub system: AnySystem,
-    /// The integrator.
-    pub method: Method,
-    /// The time step, in s.
-    pub dt: f64,
-    /// Positions at the start.
-    pub q: Vec<f64>,
-    /// Velocities at the start.
-    pub v: Vec<f64>,
-    /// Number of steps over which the energy drift is taken.
-    pub steps: u64,
-    /// What the largest time step is asked for.
-    pub criteria: Criteria,
-}
-
-/// Why there is no analysis.
-#[derive(Debug, Error)]
-pub enum AnalyzeError {
-    /// The system does not exist in as many dimensions as there are coordinates.
-    #[error(transparent)]
-    Dimension(#[from] CatalogError),
-    /// Positions and velocities differ in number.
-    #[error("{q} positions but {v} velocities: expected as many of the one as of the other")]
-    Coordinates {
-        /// Number of positions.
-        q: usize,
-        /// Number of velocities.
-        v: usize,
-    },
-    /// The time step or the start is not usable.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
-    /// A criterion was given for a system whose largest time step is not known in closed form.
-    #[error("--{flag} is answered for the system `oscillator`, not for `{system}`")]
-    Criterion {
-        /// The flag.
-        flag: &'static str,
-        /// The system.
-        system: &'static str,
-    },
-    /// The Jacobian does not exist at this state.
-    #[error(
-        "the step cannot be linearised about q = {q:?} (--q), v = {v:?} (--v): the force or its \
-         derivative does not exist there or after a step from there; {allowed}"
-    )]
-    Singular {
-        /// What a start must be.
-        allowed: &'static str,
-        /// Positions.
-        q: Vec<f64>,
-        /// Velocities.
-        v: Vec<f64>,
-    },
-}
+pub use request::{Request, Stepping};
+pub use timing::{Critical, Late, Timing, TimingAnswer};
 
 /// Analyses one step.
 ///
@@ -92,6 +37,7 @@ pub fn analyze(request: &Request) -> Result<Analysis, AnalyzeError> {
         return Err(AnalyzeError::Criterion { flag, system: request.system.name() });
     }
     let dimension = request.q.len();
+    let timing = timing::answer(request)?;
     with_system!(
         request.system,
         dimension,
@@ -100,8 +46,13 @@ pub fn analyze(request: &Request) -> Result<Analysis, AnalyzeError> {
                 q: std::array::from_fn::<_, D, _>(|i| request.q[i]),
                 v: std::array::from_fn(|i| request.v[i]),
             };
-            let step = with_method!(request.method, |m| Step::take(m, model, start, request))?;
-            answer(model, &start, step, request)
+            let step = match request.stepping {
+                Stepping::Method(method) => {
+                    with_method!(method, |m| Step::take(m, model, start, request))?
+                }
+                Stepping::Exact => Step::exact(model, start, request)?,
+            };
+            answer(model, &start, step, timing, request)
         },
         Err(request.system.entry().wrong_dimension(dimension).into())
     )
@@ -134,6 +85,23 @@ impl<const D: usize> Step<D> {
     }
 }
 
+impl<const D: usize> Step<D> {
+    /// Exact steps, for which no force is evaluated.
+    fn exact(
+        model: impl Model<D>,
+        start: State<f64, D>,
+        request: &Request,
+    ) -> Result<Self, AnalyzeError> {
+        let flag = request.criteria.first();
+        if flag.is_some() || !request.system.is_linear() {
+            let (flag, system) = (flag.unwrap_or("max-drift"), request.system.name());
+            return Err(AnalyzeError::Exact { flag, system });
+        }
+        let linear = Linearisation::exact(model, &start, request.dt);
+        Ok(Step { linear, evaluations: 0, drift: None })
+    }
+}
+
 /// Fails if the Jacobian of the step does not exist.
 fn regular<const D: usize>(
     linear: &Linearisation<D>,
@@ -150,13 +118,14 @@ fn answer<const D: usize>(
     model: impl Model<D>,
     start: &State<f64, D>,
     step: Step<D>,
+    timing: Option<TimingAnswer>,
     request: &Request,
 ) -> Result<Analysis, AnalyzeError> {
     let Step { linear, evaluations, drift } = step;
-    let method = request.method;
-    let polynomials = matches!(request.system, AnySystem::Oscillator(_))
-        .then(|| with_method!(method, |m| SymbolicStep::new(m)))
-        .flatten();
+    let method = request.stepping.method();
+    let polynomials = method
+        .filter(|_| matches!(request.system, AnySystem::Oscillator(_)))
+        .and_then(|method| with_method!(method, |m| SymbolicStep::new(m)));
     let exact = polynomials.as_ref().zip(omega(request.system));
     let modes = Modes::new(
         &linear,
@@ -174,6 +143,11 @@ fn answer<const D: usize>(
         true => forecast_drift(model, &linear.step, start, request.steps).map(Drift::from),
         false => drift,
     };
+    let radius = timing
+        .as_ref()
+        .and_then(|timing| timing.radius)
+        .map(|radius| (radius, radius - Wide::one()));
+    let (radius, radius_minus_one) = radius.unwrap_or((modes.radius, modes.radius_minus_one));
     Ok(Analysis {
         about: About::new(request),
         update_matrix: to_f64(&linear.step.rows()),
@@ -182,20 +156,21 @@ fn answer<const D: usize>(
         determinant_minus_one: modes.determinant_minus_one.to_f64(),
         trace: linear.step.trace().to_f64(),
         eigenvalues: modes.eigenvalues(),
-        spectral_radius: modes.radius.to_f64(),
-        spectral_radius_minus_one: modes.radius_minus_one.to_f64(),
+        spectral_radius: radius.to_f64(),
+        spectral_radius_minus_one: radius_minus_one.to_f64(),
         bounded: modes.bounded.filter(|_| linear_system),
-        stability_windows: limits::stability_windows(method, request.system),
-        largest_dt: limits::largest_dt(polynomials.as_ref(), start, request),
+        stability_windows: method.and_then(|m| limits::stability_windows(m, request.system)),
+        largest_dt: method.and_then(|_| limits::largest_dt(polynomials.as_ref(), start, request)),
         modified_hamiltonian: linear_system
             .then(|| ModifiedHamiltonian::of(&linear.step, modes.determinant_minus_one.is_zero()))
             .flatten(),
-        order_of_word: positional(&model).then(|| OrderOfWord::of(method)).flatten(),
+        order_of_word: method.filter(|_| positional(&model)).and_then(OrderOfWord::of),
         symplecticity_defect: defect(modes.symplecticity_defect, exact.is_some()),
         reversibility_defect: defect(reversibility, exact.is_some()),
         phase_error_per_step: modes.phase_error.map(Wide::to_f64),
         force_evaluations_per_step: evaluations,
         drift,
+        timing,
     })
 }
 

@@ -3,12 +3,13 @@
 use libration::integrator::VelocityVerlet;
 use libration::system::Oscillator;
 use libration::{AnySystem, Hamiltonian, Integrator, Method, State};
-use libration_lab::analyze::{Analysis, AnalyzeError, Criteria, Request, analyze};
+use libration_lab::analyze::{Analysis, AnalyzeError, Criteria, Request, Timing, analyze};
 
 fn request(system: &str, method: Method, dt: f64, q: &[f64], v: &[f64]) -> Request {
     let system = AnySystem::build(system, &[] as &[(&str, f64)]).unwrap();
     let criteria = Criteria::default();
-    Request { system, method, dt, q: q.into(), v: v.into(), steps: 1000, criteria }
+    let (stepping, timing) = (method.into(), Timing::default());
+    Request { system, stepping, dt, q: q.into(), v: v.into(), steps: 1000, criteria, timing }
 }
 
 fn json(analysis: &Analysis) -> serde_json::Value {

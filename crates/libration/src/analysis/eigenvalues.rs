@@ -27,6 +27,12 @@ pub fn determinant<const D: usize>(matrix: &UpdateMatrix<Wide, D>) -> Wide {
     characteristic_polynomial(matrix)[0]
 }
 
+/// The largest absolute value among the roots of the monic polynomial with these lower coefficients.
+pub(super) fn largest_root(coefficients: &[Wide]) -> Wide {
+    let sizes = roots(coefficients).into_iter().map(Complex::abs);
+    sizes.fold(Wide::ZERO, |a, b| if a > b { a } else { b })
+}
+
 /// The coefficients of `det(λ − A)` from the constant term up; the leading 1 is left out.
 fn characteristic_polynomial<const D: usize>(a: &UpdateMatrix<Wide, D>) -> Vec<Wide> {
     let n = 2 * D;

@@ -1,6 +1,7 @@
 //! One step as a matrix, in 1024 bits.
 
 use super::UpdateMatrix;
+use super::exponential::exponential;
 use crate::number::{Dual, Wide};
 use crate::{Integrator, Model, State, System};
 
@@ -39,6 +40,28 @@ impl<const D: usize> Linearisation<D> {
         let rate = |state| system.rate(state);
         let step = |state, h| integrator.step(&system, state, h);
         Linearisation::of(&rate, &step, at.map(wide), wide(dt))
+    }
+
+    /// Exact steps of `dt` seconds, by the exponential of the generator.
+    pub fn exact(model: impl Model<D>, at: &State<f64, D>, dt: f64) -> Self {
+        let generator = Linearisation::generator_of(model, at);
+        let dt = wide(dt);
+        let flow = |t: Wide| {
+            let rows = exponential(&generator.rows(), t);
+            UpdateMatrix::from_map(|e: State<Wide, D>| {
+                let e: Vec<Wide> = e.coordinates().collect();
+                let image =
+                    |i: usize| rows[i].iter().zip(&e).fold(Wide::ZERO, |sum, (&x, &y)| sum + x * y);
+                State { q: core::array::from_fn(image), v: core::array::from_fn(|i| image(D + i)) }
+            })
+        };
+        Linearisation { generator, step: flow(dt), back: flow(-dt), dt }
+    }
+
+    /// The Jacobian of the rate of change at `at`.
+    pub(super) fn generator_of(model: impl Model<D>, at: &State<f64, D>) -> UpdateMatrix<Wide, D> {
+        let system = model.on::<Dual<Wide>>();
+        jacobian(&|state| system.rate(state), &at.map(wide))
     }
 
     /// The maps are dynamic, so that the matrices are compiled once for each dimension.

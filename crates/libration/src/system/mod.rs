@@ -3,6 +3,7 @@
 mod damped;
 mod driven;
 mod duffing;
+mod held;
 mod henon_heiles;
 mod kepler;
 mod oscillator;
@@ -13,6 +14,7 @@ use crate::{Elementary, Scalar, State};
 pub use damped::DampedOscillator;
 pub use driven::DrivenOscillator;
 pub use duffing::Duffing;
+pub use held::Held;
 pub use henon_heiles::HenonHeiles;
 pub use kepler::Kepler;
 pub use oscillator::Oscillator;

@@ -154,9 +154,9 @@ mod tests {
         // (x − 1)²(x − 2)(x + 3)x
         assert_eq!(roots(&[0, -6, 13, -7, -1, 1]), [1.0, 2.0]);
         assert_eq!(roots(&[-2, 0, 1]), [2.0_f64.sqrt()]);
-        assert_eq!(roots(&[1, 0, 1]), []);
-        assert_eq!(roots(&[5]), []);
-        assert_eq!(roots(&[]), []);
+        assert!(roots(&[1, 0, 1]).is_empty());
+        assert!(roots(&[5]).is_empty());
+        assert!(roots(&[]).is_empty());
     }
 
     #[test]

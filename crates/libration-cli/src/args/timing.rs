@@ -1,0 +1,78 @@
+//! What is asked of the timing of a loop.
+
+use clap::Args;
+use libration::Method;
+use libration::analysis::{Feedback, Jitter};
+use libration_lab::analyze::{Late, Stepping, Timing};
+
+/// The loop, and what happens to its clock and its commands.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct TimingArgs {
+    /// Close the loop: the command is −KP·q − KD·v
+    #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
+    pub(crate) feedback: Option<Feedback>,
+    /// How late the command arrives, as 0.015 (in s) or 1.5steps
+    #[arg(
+        long,
+        value_name = "TIME",
+        value_parser = latency,
+        requires = "feedback",
+        allow_hyphen_values = true
+    )]
+    pub(crate) latency: Option<Late>,
+    /// The law of step times, each drawn by itself, with its relative rms: gaussian:0.1 or uniform:0.1
+    #[arg(long, value_name = "LAW:RMS", value_parser = law, allow_hyphen_values = true)]
+    pub(crate) jitter: Option<Jitter>,
+    /// The law of clock rates over an ensemble, with its relative rms: gaussian:0.01 or uniform:0.01
+    #[arg(long, value_name = "LAW:RMS", value_parser = law, allow_hyphen_values = true)]
+    pub(crate) skew: Option<Jitter>,
+}
+
+impl TimingArgs {
+    /// As the laboratory takes it.
+    pub(crate) fn timing(self) -> Timing {
+        let TimingArgs { feedback, latency, jitter, skew } = self;
+        Timing { feedback, latency, jitter, skew }
+    }
+}
+
+/// An integrator, or exact steps.
+pub(super) fn stepping(name: &str) -> Result<Stepping, String> {
+    if name == Stepping::EXACT {
+        return Ok(Stepping::Exact);
+    }
+    Method::from_name(name).map(Stepping::Method).ok_or_else(|| {
+        let known = Method::ALL.map(Method::name).join(", ");
+        format!("it must be one of {known}, {}", Stepping::EXACT)
+    })
+}
+
+fn finite(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|x: &f64| x.is_finite())
+}
+
+fn feedback(text: &str) -> Result<Feedback, String> {
+    let gains = text.split_once(',').and_then(|(kp, kd)| Some((finite(kp)?, finite(kd)?)));
+    let (position, velocity) = gains.ok_or("it must be two numbers, as 10,2")?;
+    Ok(Feedback { position, velocity })
+}
+
+fn latency(text: &str) -> Result<Late, String> {
+    let (number, make): (&str, fn(f64) -> Late) = match text.trim().strip_suffix("steps") {
+        Some(steps) => (steps, Late::Steps),
+        None => (text, Late::Seconds),
+    };
+    let number = finite(number).filter(|&x| x >= 0.0);
+    number.map(make).ok_or_else(|| "it must be at least 0, as 0.015 (in s) or 1.5steps".to_owned())
+}
+
+fn law(text: &str) -> Result<Jitter, String> {
+    let rule = "it must be a law and its rms of at least 0, as gaussian:0.1 or uniform:0.1";
+    let (name, rms) = text.split_once(':').ok_or(rule)?;
+    let rms = finite(rms).filter(|&x| x >= 0.0).ok_or(rule)?;
+    match name {
+        "gaussian" => Ok(Jitter::Gaussian(rms)),
+        "uniform" => Ok(Jitter::Uniform(rms)),
+        _ => Err(rule.to_owned()),
+    }
+}

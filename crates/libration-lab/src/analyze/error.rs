@@ -1,0 +1,75 @@
+//! Why there is no analysis.
+
+use libration::CatalogError;
+use libration::analysis::Latency;
+use libration::simulation::SimulationError;
+use thiserror::Error;
+
+/// Why there is no analysis.
+#[derive(Debug, Error)]
+pub enum AnalyzeError {
+    /// The system does not exist in as many dimensions as there are coordinates.
+    #[error(transparent)]
+    Dimension(#[from] CatalogError),
+    /// Positions and velocities differ in number.
+    #[error("{q} positions but {v} velocities: expected as many of the one as of the other")]
+    Coordinates {
+        /// Number of positions.
+        q: usize,
+        /// Number of velocities.
+        v: usize,
+    },
+    /// The time step or the start is not usable.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// A criterion was given for a system whose largest time step is not known in closed form.
+    #[error("--{flag} is answered for the system `oscillator`, not for `{system}`")]
+    Criterion {
+        /// The flag.
+        flag: &'static str,
+        /// The system.
+        system: &'static str,
+    },
+    /// A criterion was given for exact steps, or exact steps of a system that is not linear.
+    #[error(
+        "`exact` steps are those of a linear system, and have no largest: --integrator exact takes no \
+             --{flag}, and no system like `{system}`"
+    )]
+    Exact {
+        /// The criterion, if any.
+        flag: &'static str,
+        /// The system.
+        system: &'static str,
+    },
+    /// Timing was asked of a system with several degrees of freedom.
+    #[error(
+        "--{flag} is answered for systems with one degree of freedom, not for `{system}` with {dimension}"
+    )]
+    Loop {
+        /// The flag.
+        flag: &'static str,
+        /// The system.
+        system: &'static str,
+        /// Its degrees of freedom here.
+        dimension: usize,
+    },
+    /// There is no such latency.
+    #[error("--latency is {steps} steps, but must be a number from 0 to {}", Latency::MOST_STEPS)]
+    Latency {
+        /// In steps.
+        steps: f64,
+    },
+    /// The Jacobian does not exist at this state.
+    #[error(
+        "the step cannot be linearised about q = {q:?} (--q), v = {v:?} (--v): the force or its \
+         derivative does not exist there or after a step from there; {allowed}"
+    )]
+    Singular {
+        /// What a start must be.
+        allowed: &'static str,
+        /// Positions.
+        q: Vec<f64>,
+        /// Velocities.
+        v: Vec<f64>,
+    },
+}

@@ -1,0 +1,152 @@
+//! What timing does to the loop that a request describes.
+
+use libration::analysis::{Feedback, Jitter, Latency, Plant};
+use libration::number::Wide;
+use libration::{AnySystem, Model, Scalar, State, with_method};
+use serde::Serialize;
+
+use super::{AnalyzeError, Request, Stepping};
+
+/// What is asked of timing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timing {
+    /// The feedback that closes the loop.
+    pub feedback: Option<Feedback>,
+    /// How late its command arrives; at once if nothing is said.
+    pub latency: Option<Late>,
+    /// The law of step times.
+    pub jitter: Option<Jitter>,
+    /// The law of clock rates over an ensemble.
+    pub skew: Option<Jitter>,
+}
+
+/// A latency as it is given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Late {
+    /// In seconds.
+    Seconds(f64),
+    /// In steps.
+    Steps(f64),
+}
+
+impl Timing {
+    /// The first flag that is given.
+    fn first(&self) -> Option<&'static str> {
+        let given = [
+            (self.feedback.is_some(), "feedback"),
+            (self.latency.is_some(), "latency"),
+            (self.jitter.is_some(), "jitter"),
+            (self.skew.is_some(), "skew"),
+        ];
+        given.into_iter().find_map(|(given, name)| given.then_some(name))
+    }
+
+    /// The latency in steps of `dt` seconds.
+    ///
+    /// # Errors
+    /// If it is negative, not finite or too long.
+    fn latency(&self, dt: f64) -> Result<Latency, AnalyzeError> {
+        let steps = match self.latency {
+            None => 0.0,
+            Some(Late::Steps(steps)) => steps,
+            Some(Late::Seconds(seconds)) => seconds / dt,
+        };
+        Latency::of_steps(steps).ok_or(AnalyzeError::Latency { steps })
+    }
+}
+
+/// What timing does to a loop; the fields are keys of `analyze --json`.
+#[derive(Debug, Default, Serialize)]
+pub struct TimingAnswer {
+    /// The gains `[K_p, K_d]` in s⁻² and s⁻¹.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub feedback: Option<[f64; 2]>,
+    /// The latency in steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub latency_steps: Option<f64>,
+    /// What the feedback makes of the loop, whatever the latency.
+    #[serde(flatten)]
+    pub critical: Option<Critical>,
+    /// `ρ(E[M ⊗ M])`: the factor by which second moments grow in a step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mean_square_radius: Option<f64>,
+    /// The same minus one, without cancellation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mean_square_growth: Option<f64>,
+    /// The top Lyapunov exponent in a step; none where the mean step does not turn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lyapunov_exponent: Option<Option<f64>>,
+    /// Steps after which the mean of an ensemble of clocks has fallen to 1/e; none where nothing turns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dephasing_steps: Option<Option<f64>>,
+    /// The spectral radius of the loop with its latency.
+    #[serde(skip)]
+    pub(super) radius: Option<Wide>,
+}
+
+/// At which latencies a loop is stable.
+#[derive(Debug, Serialize)]
+pub struct Critical {
+    /// The end of the stable latencies that begin with none, in steps; none if there is none.
+    pub critical_latency_steps: Option<f64>,
+    /// The same in s.
+    pub critical_latency_seconds: Option<f64>,
+    /// The intervals of latency, in steps, within which the loop is stable; an end that does not exist is
+    /// `null`.
+    pub latency_windows: Vec<(f64, Option<f64>)>,
+    /// The delay margin of the continuous loop, in s; none if it has none.
+    pub delay_margin_seconds: Option<f64>,
+}
+
+/// Answers what `request` asks of timing; none if it asks nothing.
+///
+/// # Errors
+/// If the system has more than one degree of freedom, or the latency cannot be.
+pub(super) fn answer(request: &Request) -> Result<Option<TimingAnswer>, AnalyzeError> {
+    let Some(flag) = request.timing.first() else { return Ok(None) };
+    let latency = request.timing.latency(request.dt)?;
+    let answer = match request.system {
+        AnySystem::Oscillator(model) if request.q.len() == 1 => of_model(model, latency, request),
+        AnySystem::DampedOscillator(model) => of_model(model, latency, request),
+        AnySystem::Pendulum(model) => of_model(model, latency, request),
+        AnySystem::Duffing(model) => of_model(model, latency, request),
+        _ => {
+            let (system, dimension) = (request.system.name(), request.q.len());
+            return Err(AnalyzeError::Loop { flag, system, dimension });
+        }
+    };
+    Ok(Some(answer))
+}
+
+fn of_model(model: impl Model<1>, latency: Latency, request: &Request) -> TimingAnswer {
+    let timing = &request.timing;
+    let at = State { q: [request.q[0]], v: [request.v[0]] };
+    let plant = match request.stepping {
+        Stepping::Method(method) => {
+            with_method!(method, |m| Plant::new(m, model, at, request.dt))
+        }
+        Stepping::Exact => Plant::exact(model, at, request.dt),
+    };
+    let feedback = timing.feedback.unwrap_or_default();
+    let mean_square = timing.jitter.map(|law| plant.mean_square(feedback, law).radius);
+    let critical = || {
+        let windows = plant.latency_windows(feedback);
+        let steps = windows.critical();
+        Critical {
+            critical_latency_steps: steps,
+            critical_latency_seconds: steps.map(|steps| steps * request.dt),
+            latency_windows: windows.stable,
+            delay_margin_seconds: plant.delay_margin(feedback).map(Wide::to_f64),
+        }
+    };
+    TimingAnswer {
+        feedback: timing.feedback.map(|f| [f.position, f.velocity]),
+        latency_steps: timing.feedback.map(|_| latency.steps()),
+        critical: timing.feedback.map(|_| critical()),
+        mean_square_radius: mean_square.map(Wide::to_f64),
+        mean_square_growth: mean_square.map(|radius| (radius - Wide::one()).to_f64()),
+        lyapunov_exponent: timing.jitter.map(|law| plant.lyapunov_exponent(feedback, law)),
+        dephasing_steps: timing.skew.map(|law| plant.dephasing_steps(law).map(Wide::to_f64)),
+        radius: timing.feedback.map(|_| plant.spectral_radius(feedback, latency)),
+    }
+}

@@ -1,0 +1,131 @@
+//! How fast a typical run grows where steps are of random length.
+
+use core::f64::consts::{PI, TAU};
+
+use num_complex::Complex;
+
+use super::{Feedback, Jitter, Plant};
+use crate::Scalar;
+use crate::analysis::QuadraticForm;
+use crate::number::Wide;
+
+/// Harmonics of the density of directions that are kept.
+const HARMONICS: usize = 32;
+
+/// Directions at which integrals over the circle are taken: four for each wave of the highest harmonic.
+const DIRECTIONS: usize = 256;
+
+/// A matrix of two rows in floats.
+type Matrix = [[f64; 2]; 2];
+
+impl Plant<'_> {
+    /// The top Lyapunov exponent of the loop that `feedback` closes, with steps after `jitter`: the mean growth of
+    /// `ln |y|` in a step. None where the step of mean length does not turn the state.
+    ///
+    /// It is the mean of the growth over directions in their invariant density, which the transfer operator on the
+    /// projective circle leaves as it is (H. Furstenberg, *Noncommuting random products*, Transactions of the
+    /// American Mathematical Society 108, 1963); density and operator are taken as Fourier series, in coordinates in
+    /// which the mean step is a turn.
+    pub fn lyapunov_exponent(&self, feedback: Feedback, jitter: Jitter) -> Option<f64> {
+        let at = |epsilon: f64| {
+            let step = self.closed(feedback, self.dt * (Wide::one() + Wide::from_f64(epsilon)));
+            [0, 1].map(|i| [0, 1].map(|j| step.entry(i, j).to_f64()))
+        };
+        let mean = self.closed(feedback, self.dt);
+        let half = mean.trace().scaled(-1);
+        let determinant = mean.determinant();
+        if (determinant - half * half).to_f64() <= 0.0 {
+            return None;
+        }
+        // The form that the mean step carries along is a circle in these coordinates.
+        let form = QuadraticForm::carried_by(&mean);
+        let [qq, qv, vv] = [form.qq, form.qv, form.vv].map(|x| (x / form.vv).to_f64());
+        // q²·qq + 2·q·v·qv + v² = (s·q)² + (v + qv·q)².
+        let s = (qq - qv * qv / vv).sqrt();
+        let turned = |[[a, b], [c, d]]: Matrix| {
+            // With x = s·q and y = v + qv·q.
+            let column = |q: f64, v: f64| {
+                let (next_q, next_v) = (a * q + b * v, c * q + d * v);
+                [s * next_q, next_v + qv * next_q]
+            };
+            let (first, second) = (column(1.0 / s, -qv / s), column(0.0, 1.0));
+            [[first[0], second[0]], [first[1], second[1]]]
+        };
+        let steps: Vec<(f64, Matrix)> = jitter
+            .nodes()
+            .into_iter()
+            .map(|(weight, epsilon)| (weight, turned(at(epsilon))))
+            .collect();
+        Some(mean_growth(&steps))
+    }
+}
+
+/// The mean of `ln |Mu|` over directions in their invariant density, of a matrix for each weight.
+fn mean_growth(steps: &[(f64, Matrix)]) -> f64 {
+    // For each harmonic k of the doubled angle x: the mean of e^{ikx} after a step from each direction.
+    let waves = 2 * HARMONICS + 1;
+    let mut after = vec![vec![Complex::ZERO; DIRECTIONS]; HARMONICS + 1];
+    let mut growth = vec![Complex::ZERO; DIRECTIONS];
+    for (n, growth) in growth.iter_mut().enumerate() {
+        let (sine, cosine) = (PI * n as f64 / DIRECTIONS as f64).sin_cos();
+        for &(weight, [[a, b], [c, d]]) in steps {
+            let (x, y) = (a * cosine + b * sine, c * cosine + d * sine);
+            let square = x * x + y * y;
+            *growth += weight * 0.5 * square.ln();
+            // e^{ix} with the doubled angle.
+            let turn = Complex::new(x * x - y * y, 2.0 * x * y) / square;
+            let mut power = Complex::from(weight);
+            for harmonic in &mut after {
+                harmonic[n] += power;
+                power *= turn;
+            }
+        }
+    }
+    // Coefficients of a function of direction: Σ cₘ e^{imx}.
+    let coefficient = |values: &[Complex<f64>], m: isize| {
+        let phase =
+            |n: usize| Complex::from_polar(1.0, -TAU * (m * n as isize) as f64 / DIRECTIONS as f64);
+        values.iter().enumerate().map(|(n, value)| value * phase(n)).sum::<Complex<f64>>()
+            / DIRECTIONS as f64
+    };
+    let order = |i: usize| i as isize - HARMONICS as isize;
+    // Unknown: fₘ, the mean of e^{imx} in the invariant density. It is what it is after a step.
+    let mut rows = vec![vec![Complex::ZERO; waves + 1]; waves];
+    for (i, row) in rows.iter_mut().enumerate() {
+        let k = order(i);
+        if k == 0 {
+            row[i] = Complex::ONE;
+            row[waves] = Complex::ONE;
+            continue;
+        }
+        for (j, entry) in row[..waves].iter_mut().enumerate() {
+            // After −k as after k, conjugate.
+            let sign = k.signum();
+            let value = coefficient(&after[k.unsigned_abs()], sign * order(j));
+            *entry = if sign < 0 { value.conj() } else { value };
+        }
+        row[i] -= Complex::ONE;
+    }
+    let means = solved(rows);
+    means.iter().enumerate().map(|(j, f)| (coefficient(&growth, order(j)) * f).re).sum()
+}
+
+/// The solution of linear equations, by elimination with the largest pivot; the right side is the last column.
+fn solved(mut rows: Vec<Vec<Complex<f64>>>) -> Vec<Complex<f64>> {
+    let n = rows.len();
+    for k in 0..n {
+        let largest = (k..n).max_by(|&a, &b| rows[a][k].norm().total_cmp(&rows[b][k].norm()));
+        rows.swap(k, largest.unwrap_or(k));
+        let pivot = rows[k].clone();
+        for row in &mut rows[k + 1..] {
+            let factor = row[k] / pivot[k];
+            row.iter_mut().zip(&pivot).skip(k).for_each(|(x, p)| *x -= factor * p);
+        }
+    }
+    let mut solution = vec![Complex::ZERO; n];
+    for k in (0..n).rev() {
+        let known: Complex<f64> = (k + 1..n).map(|j| rows[k][j] * solution[j]).sum();
+        solution[k] = (rows[k][n] - known) / rows[k][k];
+    }
+    solution
+}

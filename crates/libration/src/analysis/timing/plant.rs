@@ -1,0 +1,59 @@
+//! A plant, how its steps are taken, and the feedback that closes the loop.
+
+use super::HeldStep;
+use crate::analysis::{Linearisation, UpdateMatrix};
+use crate::number::Wide;
+use crate::{Integrator, Model, Scalar, State};
+
+/// State feedback `u = −K_p·q − K_d·v`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Feedback {
+    /// `K_p`, in s⁻².
+    pub position: f64,
+    /// `K_d`, in s⁻¹.
+    pub velocity: f64,
+}
+
+impl Feedback {
+    /// `K·y`: minus the command.
+    pub(super) fn of(self, y: &State<Wide, 1>) -> Wide {
+        Wide::from_f64(self.position) * y.q[0] + Wide::from_f64(self.velocity) * y.v[0]
+    }
+}
+
+/// A plant with one degree of freedom, linear or linearised, with the step that is taken on it.
+pub struct Plant<'a> {
+    /// A step of any size.
+    pub(super) step: Box<dyn Fn(Wide) -> HeldStep + 'a>,
+    /// The Jacobian of the rate of change.
+    pub(super) generator: UpdateMatrix<Wide, 1>,
+    /// The time step in seconds.
+    pub(super) dt: Wide,
+}
+
+impl<'a> Plant<'a> {
+    /// `model` about the state `at`, in steps of `dt` seconds by `integrator`.
+    pub fn new(
+        integrator: impl Integrator + 'a,
+        model: impl Model<1> + 'a,
+        at: State<f64, 1>,
+        dt: f64,
+    ) -> Self {
+        let generator = Linearisation::generator_of(model, &at);
+        let step = Box::new(move |h| HeldStep::of(integrator, model, &at, h));
+        Plant { step, generator, dt: Wide::from_f64(dt) }
+    }
+
+    /// The same without an integrator: each step is exact.
+    pub fn exact(model: impl Model<1> + 'a, at: State<f64, 1>, dt: f64) -> Self {
+        let generator = Linearisation::generator_of(model, &at);
+        let step = Box::new(move |h| HeldStep::exact(model, &at, h));
+        Plant { step, generator, dt: Wide::from_f64(dt) }
+    }
+
+    /// A step of the loop that `feedback` closes at once, of `dt` seconds.
+    pub(super) fn closed(&self, feedback: Feedback, dt: Wide) -> UpdateMatrix<Wide, 1> {
+        let HeldStep { phi, gamma } = (self.step)(dt);
+        UpdateMatrix::from_map(|e| phi.apply(&e).plus(-feedback.of(&e), gamma))
+    }
+}

@@ -1,0 +1,141 @@
+//! Characteristic polynomials of loops with a delay: long, but with few terms.
+
+use crate::Scalar;
+use crate::analysis::Complex;
+use crate::number::Wide;
+
+/// `λᵐ·a(λ) + b(λ)` with `a = λ² + a₁λ + a₀`, held as `[a₀, a₁]`, and `b = b₂λ² + b₁λ + b₀`, as
+/// `[b₀, b₁, b₂]`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quasi {
+    pub(super) m: u64,
+    pub(super) a: [Wide; 2],
+    pub(super) b: [Wide; 3],
+}
+
+/// A complex `f64`.
+type C = num_complex::Complex<f64>;
+
+/// Sweeps of the iteration in floats; it takes some ten.
+const SWEEPS: usize = 200;
+
+/// Steps of Newton's iteration afterwards: from 30 good bits each doubles them, up to 1024.
+const NEWTON: usize = 8;
+
+/// Roots of about the largest size that are made exact.
+const CANDIDATES: usize = 6;
+
+impl Quasi {
+    /// The largest absolute value of a root.
+    pub(super) fn radius(&self) -> Wide {
+        let mut roots = self.rough_roots();
+        roots.sort_by(|x, y| y.norm().total_cmp(&x.norm()));
+        let exact = roots.iter().take(CANDIDATES).map(|&root| self.polished(root).abs());
+        exact.fold(Wide::ZERO, |largest, size| if size > largest { size } else { largest })
+    }
+
+    /// All roots, to the precision of floats where they are simple: Aberth's simultaneous iteration
+    /// (O. Aberth, *Iteration methods for finding all zeros of a polynomial simultaneously*, Mathematics of
+    /// Computation 27, 1973).
+    fn rough_roots(&self) -> Vec<C> {
+        let degree = self.m as usize + 2;
+        // Most roots are about as large as λᵐ⁺² = −b₀ has them. No root is to begin on an axis of symmetry.
+        let size = self.b.iter().map(|x| x.abs().to_f64()).fold(1e-300, f64::max);
+        let radius = size.powf(1.0 / degree as f64).max(1e-3);
+        let angle = |k: usize| (k as f64 + 0.37) * core::f64::consts::TAU / degree as f64;
+        let mut roots: Vec<C> = (0..degree).map(|k| C::from_polar(radius, angle(k))).collect();
+        for _ in 0..SWEEPS {
+            let mut largest = 0.0_f64;
+            for i in 0..degree {
+                let newton = self.correction(roots[i]);
+                let repulsion: C =
+                    (0..degree).filter(|&j| j != i).map(|j| (roots[i] - roots[j]).inv()).sum();
+                let change = newton / (C::new(1.0, 0.0) - newton * repulsion);
+                if change.is_finite() {
+                    roots[i] -= change;
+                    largest = largest.max(change.norm() / roots[i].norm().max(1e-12));
+                }
+            }
+            if largest < 1e-13 {
+                break;
+            }
+        }
+        roots
+    }
+
+    /// `p/p'` at `x`, without overflow.
+    fn correction(&self, x: C) -> C {
+        let [a0, a1] = self.a.map(Wide::to_f64).map(C::from);
+        let [b0, b1, b2] = self.b.map(Wide::to_f64).map(C::from);
+        let (a, da) = (x * x + a1 * x + a0, x * 2.0 + a1);
+        let (b, db) = ((b2 * x + b1) * x + b0, b2 * x * 2.0 + b1);
+        let m = self.m as f64;
+        let turns = C::from_polar(1.0, m * x.arg());
+        if x.norm() <= 1.0 {
+            let power = turns * x.norm().powf(m);
+            let value = a * power + b;
+            // m·λᵐ⁻¹·a, which is 0 for m = 0.
+            let from_power = if self.m == 0 { C::from(0.0) } else { power / x * m * a };
+            value / (da * power + from_power + db)
+        } else {
+            let power = turns.conj() * x.norm().powf(-m);
+            (a + b * power) / (da + a * m / x + db * power)
+        }
+    }
+
+    /// A root from nearby, by Newton's iteration in 1024 bits.
+    fn polished(&self, from: C) -> Complex {
+        let ([a0, a1], [b0, b1, b2]) = (self.a, self.b);
+        let real = Complex::real;
+        let horner = |x: Complex, coefficients: [Wide; 3]| {
+            let [low, middle, high] = coefficients.map(real);
+            high.times(x).plus(middle).times(x).plus(low)
+        };
+        let two = |x: Wide| x.scaled(1);
+        let mut x = Complex { re: Wide::from_f64(from.re), im: Wide::from_f64(from.im) };
+        for _ in 0..NEWTON {
+            let a = horner(x, [a0, a1, Wide::one()]);
+            let da = horner(x, [a1, two(Wide::one()), Wide::ZERO]);
+            let (b, db) = (horner(x, [b0, b1, b2]), horner(x, [b1, two(b2), Wide::ZERO]));
+            // λᵐ, and mλᵐ⁻¹.
+            let power = x.powi(self.m);
+            let slope = match self.m.checked_sub(1) {
+                Some(less) => x.powi(less).times(real(Wide::from_f64(self.m as f64))),
+                None => real(Wide::ZERO),
+            };
+            let value = power.times(a).plus(b);
+            let derivative = power.times(da).plus(slope.times(a)).plus(db);
+            if derivative.abs().is_zero() {
+                break;
+            }
+            x = x.minus(value.over(derivative));
+        }
+        x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wide<const N: usize>(numbers: [f64; N]) -> [Wide; N] {
+        numbers.map(Wide::from_f64)
+    }
+
+    #[test]
+    fn without_delay_and_feedback_the_radius_is_that_of_a_quadratic() {
+        // (λ − ½)(λ − 2), and b = 0.
+        let quasi = Quasi { m: 0, a: wide([1.0, -2.5]), b: [Wide::ZERO; 3] };
+        assert_eq!(quasi.radius().to_f64(), 2.0);
+    }
+
+    #[test]
+    fn a_pure_delay_has_all_roots_on_a_circle() {
+        // λⁿ = c.
+        for m in [1_u64, 7, 300] {
+            let quasi = Quasi { m, a: [Wide::ZERO; 2], b: wide([-0.25, 0.0, 0.0]) };
+            let wanted = 0.25_f64.powf(1.0 / (m as f64 + 2.0));
+            assert!((quasi.radius().to_f64() - wanted).abs() < 1e-15, "{m}");
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Clocks of different rates: how an ensemble falls out of step.
+
+use super::{Jitter, Plant};
+use crate::number::Wide;
+use crate::{Elementary, Scalar};
+
+impl Plant<'_> {
+    /// After how many steps the mean over an ensemble, whose time steps are `Δt(1 + δ)` with one `δ` after `law` for
+    /// each trajectory, has fallen to 1/e. None where nothing oscillates, or where all steps are alike.
+    ///
+    /// A trajectory is ahead by the angle `n·θ'·δ` after `n` steps, where `θ' = Δt·dθ/dΔt` with the angle `θ` of a step;
+    /// the mean is the characteristic function of the law at `n·θ'`.
+    pub fn dephasing_steps(&self, law: Jitter) -> Option<Wide> {
+        // A difference over 2⁻³⁰⁰ of a step has 300 good bits and more.
+        let off = Wide::one().scaled(-300);
+        let later = self.angle(self.dt * (Wide::one() + off))?;
+        let slope = ((later - self.angle(self.dt)?) / off).abs();
+        let (rms, at) = match law {
+            Jitter::Gaussian(rms) => (rms, Wide::from_f64(2.0).sqrt()),
+            Jitter::Uniform(rms) => (rms, sinc_root() / Wide::from_f64(3.0).sqrt()),
+        };
+        let speed = slope * Wide::from_f64(rms);
+        (!speed.is_zero()).then(|| at / speed)
+    }
+
+    /// The angle by which a step of `dt` seconds turns, if it turns.
+    fn angle(&self, dt: Wide) -> Option<Wide> {
+        let phi = (self.step)(dt).phi;
+        let half = phi.trace().scaled(-1);
+        let rest = phi.determinant() - half * half;
+        (!rest.is_negative() && !rest.is_zero()).then(|| rest.sqrt().atan2(half))
+    }
+}
+
+/// The first `x` with `sin x = x/e`.
+fn sinc_root() -> Wide {
+    let share = exponential_of_minus_one();
+    let mut x = Wide::from_f64(2.199);
+    // Newton's iteration, from eleven good bits on.
+    for _ in 0..8 {
+        let (sine, cosine) = x.sin_cos();
+        x = x - (sine - share * x) / (cosine - share);
+    }
+    x
+}
+
+/// `1/e`.
+fn exponential_of_minus_one() -> Wide {
+    let terms = (1..200).scan(Wide::one(), |term, k| {
+        *term = term.ratio(-1, k);
+        Some(*term)
+    });
+    terms.fold(Wide::one(), |sum, term| sum + term)
+}

@@ -1,0 +1,146 @@
+//! All latencies at which a loop is stable.
+
+use super::{Feedback, Latency, Plant};
+use crate::number::Wide;
+use crate::{Elementary, Scalar};
+
+/// The intervals of latency, in steps, within which a loop is stable.
+///
+/// Between whole steps they follow the characteristic polynomial with `λᵈ` for any real `d`, as one finds it in
+/// textbooks: whole latencies in an interval are stable, others are not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Windows {
+    /// From and to; no end where the loop is stable at every larger latency.
+    pub stable: Vec<(f64, Option<f64>)>,
+}
+
+/// A pair of eigenvalues on the unit circle, at every latency of a series.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    /// The first latency, in steps.
+    first: f64,
+    /// From one to the next.
+    apart: f64,
+    /// Whether it leaves the circle as the latency grows.
+    outward: bool,
+}
+
+/// So many crossings are followed at most.
+const MOST: usize = 100_000;
+
+impl Windows {
+    /// The end of the interval that begins without latency: the critical latency in steps. None if the loop is
+    /// not stable without latency, or whatever the latency is.
+    pub fn critical(&self) -> Option<f64> {
+        self.stable.first().filter(|(from, _)| *from == 0.0).and_then(|(_, to)| *to)
+    }
+}
+
+impl Plant<'_> {
+    /// The latencies at which the loop that `feedback` closes is stable.
+    pub fn latency_windows(&self, feedback: Feedback) -> Windows {
+        let none = Latency::of_steps(0.0).map(|none| self.characteristic(feedback, none));
+        let Some(quasi) = none else { return Windows { stable: Vec::new() } };
+        let ([a0, a1], [b0, b1, _]) = (quasi.a, quasi.b);
+        let mut unstable = outside([a0 + b0, a1 + b1]);
+        let crossings = crossings([a0, a1], [b0, b1]);
+        let mut stable = Vec::new();
+        let mut from = (unstable == 0).then_some(0.0);
+        for (d, outward) in events(&crossings) {
+            unstable = if outward { unstable + 2 } else { unstable.saturating_sub(2) };
+            match (unstable, from) {
+                (0, None) => from = Some(d),
+                (1.., Some(begin)) => {
+                    stable.push((begin, Some(d)));
+                    from = None;
+                }
+                _ => {}
+            }
+        }
+        stable.extend(from.map(|begin| (begin, None)));
+        Windows { stable }
+    }
+}
+
+/// How many roots of `λ² + c₁λ + c₀` are not inside the unit circle, by Jury's conditions.
+fn outside([c0, c1]: [Wide; 2]) -> usize {
+    let one = Wide::one();
+    let positive = |x: Wide| !x.is_negative() && !x.is_zero();
+    let [at_one, at_minus_one] = [one + c1 + c0, one - c1 + c0];
+    match (positive(at_one), positive(at_minus_one), positive(one - c0)) {
+        (true, true, true) => 0,
+        (true, true, false) => 2,
+        // A real root on either side, or both outside with opposite signs.
+        _ if positive(one + c0) && positive(one - c0) => 1,
+        _ => {
+            if positive(at_one) != positive(at_minus_one) {
+                1
+            } else {
+                2
+            }
+        }
+    }
+}
+
+/// Where `λᵈ·a(λ) + b(λ)` with `a = λ² + a₁λ + a₀`, `b = b₁λ + b₀` has roots `e^{±iθ}`: there `|a| = |b|`, which is a
+/// quadratic in `cos θ`, and the angle between the two says at which latencies.
+fn crossings([a0, a1]: [Wide; 2], [b0, b1]: [Wide; 2]) -> Vec<Crossing> {
+    let one = Wide::one();
+    let two = |x: Wide| x.scaled(1);
+    // F(c) = |a|² − |b|² = f₂c² + f₁c + f₀.
+    let f2 = two(two(a0));
+    let f1 = two(a1 * (one + a0) - b0 * b1);
+    let f0 = one + a1 * a1 + a0 * a0 - two(a0) - b1 * b1 - b0 * b0;
+    let roots: Vec<Wide> = if f2.is_zero() {
+        vec![-f0 / f1]
+    } else {
+        let discriminant = f1 * f1 - two(two(f2 * f0));
+        let half = discriminant.sqrt();
+        [half, -half].map(|half| (half - f1) / two(f2)).to_vec()
+    };
+    let inside = |c: &Wide| !c.is_nan() && c.abs() < one;
+    let crossing = |c: Wide| {
+        let s = (one - c * c).sqrt();
+        // λ = c + is, λ² = 2c² − 1 + 2ics.
+        let a = [two(c * c) - one + a1 * c + a0, two(c * s) + a1 * s];
+        let b = [b1 * c + b0, b1 * s];
+        // −b/a, but for a positive factor.
+        let angle = (b[0] * a[1] - b[1] * a[0]).atan2(-(b[0] * a[0] + b[1] * a[1]));
+        let theta = s.atan2(c);
+        let turn = two(Wide::pi());
+        let positive = if angle.is_negative() { angle + turn } else { angle };
+        // |λ| grows with the latency where |a|² − |b|² grows with θ, that is where F falls with c.
+        let slope = two(f2 * c) + f1;
+        Crossing {
+            first: (positive / theta).to_f64(),
+            apart: (turn / theta).to_f64(),
+            outward: slope.is_negative(),
+        }
+    };
+    roots.into_iter().filter(inside).map(crossing).collect()
+}
+
+/// All crossings by rising latency, as far as the loop can become stable again.
+fn events(crossings: &[Crossing]) -> Vec<(f64, bool)> {
+    let of = |outward: bool| crossings.iter().find(move |crossing| crossing.outward == outward);
+    // Each pair that leaves the circle needs one that comes back; those that leave come oftener.
+    let last = match (of(true), of(false)) {
+        (Some(out), Some(back)) if out.apart < back.apart => {
+            let gap = 1.0 / out.apart - 1.0 / back.apart;
+            (2.0 + out.first / out.apart - back.first / back.apart) / gap + out.apart + back.apart
+        }
+        (Some(out), None) => out.first + out.apart,
+        _ => crossings
+            .iter()
+            .map(|crossing| crossing.first + 4.0 * crossing.apart)
+            .fold(0.0, f64::max),
+    };
+    let mut events: Vec<(f64, bool)> = Vec::new();
+    for crossing in crossings {
+        let series = core::iter::successors(Some(crossing.first), |d| Some(d + crossing.apart));
+        let series = series.take_while(|&d| d <= last).take(MOST);
+        events.extend(series.map(|d| (d, crossing.outward)));
+    }
+    events.sort_by(|a, b| a.0.total_cmp(&b.0));
+    events
+}

@@ -1,0 +1,11 @@
+//! Random numbers by address: what is drawn depends on where it is needed, and on nothing else.
+//!
+//! A draw is a function of a seed, a trajectory, a step and a purpose. So the noise of a trajectory depends on neither
+//! the number of threads nor the size of the ensemble nor the order in which anything is asked, and a run
+//! can begin anywhere.
+
+mod address;
+mod philox;
+
+pub use address::{Address, Purpose};
+pub use philox::philox4x32;

@@ -1,0 +1,156 @@
+//! What timing does to a loop, beside values computed elsewhere with 30 digits.
+
+#![allow(clippy::unwrap_used)]
+
+use libration::State;
+use libration::analysis::{Feedback, Jitter, Latency, Plant};
+use libration::integrator::{ExplicitEuler, Rk4, SymplecticEuler, VelocityVerlet};
+use libration::system::Oscillator;
+use serde_json::Value;
+
+const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
+
+fn reference(table: &str) -> Vec<(Vec<String>, Value)> {
+    let all: Value = serde_json::from_str(include_str!("reference/timing.json")).unwrap();
+    let table = all[table].as_object().unwrap();
+    let key = |key: &str| key.split('|').map(str::to_owned).collect();
+    table.iter().map(|(name, value)| (key(name), value.clone())).collect()
+}
+
+/// A number after `=`, or of the reference, which quotes some.
+fn number(value: &Value) -> f64 {
+    value.as_f64().or_else(|| value.as_str()?.parse().ok()).unwrap()
+}
+
+fn after(text: &str) -> f64 {
+    text.split_once('=').unwrap().1.parse().unwrap()
+}
+
+fn feedback(text: &str) -> Feedback {
+    let (kp, kd) = text.trim_start_matches("K=").split_once(',').unwrap();
+    Feedback { position: kp.parse().unwrap(), velocity: kd.parse().unwrap() }
+}
+
+fn plant(method: &str, dt: f64) -> Plant<'static> {
+    let model = Oscillator { omega2: 10.0 };
+    match method {
+        "explicit_euler" => Plant::new(ExplicitEuler, model, ORIGIN, dt),
+        "semi_implicit" => Plant::new(SymplecticEuler, model, ORIGIN, dt),
+        "velocity_verlet" => Plant::new(VelocityVerlet, model, ORIGIN, dt),
+        "rk4" => Plant::new(Rk4, model, ORIGIN, dt),
+        "exact_zoh" => Plant::exact(model, ORIGIN, dt),
+        other => panic!("{other}"),
+    }
+}
+
+/// The reference has so many digits that ten of them are ours to meet, and mostly thirteen are met.
+fn close(found: f64, wanted: f64, what: &dyn std::fmt::Debug) {
+    assert!((found / wanted - 1.0).abs() < 1e-11, "{what:?}: {found:e}, {wanted:e}");
+}
+
+#[test]
+fn the_delay_margin_is_that_of_the_continuous_loop() {
+    for (key, value) in reference("tau_c_continuous") {
+        let margin = plant("rk4", 0.01).delay_margin(feedback(&key[0])).unwrap();
+        close(libration::number::Wide::to_f64(margin), number(&value), &key);
+    }
+}
+
+#[test]
+fn critical_latencies_are_the_closed_forms() {
+    for (key, value) in reference("critical_steps") {
+        let windows = plant(&key[2], after(&key[0])).latency_windows(feedback(&key[1]));
+        match windows.critical() {
+            Some(critical) => close(critical, number(&value), &key),
+            None => assert!(value.is_null(), "{key:?}: {value}"),
+        }
+    }
+}
+
+#[test]
+fn spectral_radii_are_those_of_the_augmented_matrices() {
+    for (key, values) in reference("rho") {
+        let (plant, feedback) = (plant(&key[2], after(&key[0])), feedback(&key[1]));
+        for (steps, value) in values.as_object().unwrap() {
+            let latency = Latency::of_steps(steps.parse().unwrap()).unwrap();
+            let radius = plant.spectral_radius(feedback, latency).to_f64();
+            close(radius, number(value), &(&key, steps));
+        }
+    }
+}
+
+#[test]
+fn second_moments_grow_as_exact_moments_of_the_law_say() {
+    for (key, value) in reference("rho_meansquare_minus_1") {
+        let rms = after(&key[1]);
+        let law = if key[2] == "gauss" { Jitter::Gaussian(rms) } else { Jitter::Uniform(rms) };
+        let moments = plant(&key[3], after(&key[0])).mean_square(Feedback::default(), law);
+        let one: libration::number::Wide = libration::Scalar::one();
+        let growth = moments.radius - one;
+        close(growth.to_f64(), number(&value), &key);
+    }
+}
+
+#[test]
+fn a_loop_becomes_stable_again_at_a_larger_latency() {
+    let feedback = Feedback { position: 0.0, velocity: 1.0 };
+    let plant = plant("exact_zoh", 0.01);
+    let windows = plant.latency_windows(feedback);
+    let whole: Vec<_> = windows
+        .stable
+        .iter()
+        .map(|&(from, to)| (from.ceil() as u64, to.unwrap().floor() as u64))
+        .collect();
+    assert_eq!(whole[..2], [(0, 41), (174, 211)]);
+    // Beside the radius at each of these latencies.
+    for steps in [0.0, 41.0, 42.0, 173.0, 174.0, 211.0, 212.0] {
+        let radius = plant.spectral_radius(feedback, Latency::of_steps(steps).unwrap()).to_f64();
+        let inside = whole.iter().any(|&(from, to)| (from..=to).contains(&(steps as u64)));
+        assert_eq!(radius < 1.0, inside, "{steps}: {radius}");
+    }
+}
+
+#[test]
+fn a_part_of_a_step_splits_it_where_the_command_arrives() {
+    // The critical latency of the exact sampled loop, between whole steps.
+    let feedback = Feedback { position: 10.0, velocity: 2.0 };
+    let plant = plant("exact_zoh", 0.01);
+    let excess = |steps: f64| {
+        plant.spectral_radius(feedback, Latency::of_steps(steps).unwrap()).to_f64() - 1.0
+    };
+    let (mut low, mut high) = (15.0, 16.0);
+    while high - low > 1e-11 {
+        let middle = 0.5 * (low + high);
+        if excess(middle) < 0.0 { low = middle } else { high = middle }
+    }
+    assert!((low - 15.323_426_710_9).abs() < 1e-9, "{low}");
+}
+
+#[test]
+fn an_ensemble_of_clocks_falls_out_of_step_as_its_law_says() {
+    let plant = plant("velocity_verlet", 0.01);
+    // Computed with 30 digits from θ' = z/√(1 − z²/4): √2/(θ's) and 2.19912307/(√3·θ's).
+    for (law, wanted) in [(Jitter::Gaussian(0.01), 4471.577), (Jitter::Uniform(0.01), 4014.529)] {
+        let steps = plant.dephasing_steps(law).unwrap().to_f64();
+        assert!((steps - wanted).abs() < 6e-4, "{law:?}: {steps}");
+    }
+    assert!(plant.dephasing_steps(Jitter::Gaussian(0.0)).is_none());
+}
+
+#[test]
+fn a_typical_run_grows_at_the_exponent_of_the_transfer_operator() {
+    // To the seven digits of the reference; and for weak noise z⁴σ²/8/(1 − z²/4).
+    let exponent = |method, rms| {
+        let (feedback, law) = (Feedback::default(), Jitter::Gaussian(rms));
+        plant(method, 0.1).lyapunov_exponent(feedback, law).unwrap()
+    };
+    for (method, wanted) in [("semi_implicit", 1.284_107_9e-5), ("velocity_verlet", 3.355_775e-7)] {
+        let found = exponent(method, 0.1);
+        assert!((found / wanted - 1.0).abs() < 2e-7, "{method}: {found:e}");
+    }
+    let z2 = 10.0 * 0.1 * 0.1;
+    let weak = z2 * z2 * 1e-4 / 8.0 / (1.0 - z2 / 4.0);
+    assert!((exponent("semi_implicit", 0.01) / weak - 1.0).abs() < 1e-3);
+    // An exact step of any length only turns.
+    assert!(exponent("exact_zoh", 0.1).abs() < 1e-15);
+}
