@@ -3,9 +3,10 @@
 #![allow(clippy::unwrap_used)]
 
 use libration::State;
-use libration::analysis::{Feedback, Jitter, Latency, Plant};
+use libration::analysis::{Feedback, Jitter, Latency, Plant, RandomLatency};
 use libration::integrator::{ExplicitEuler, Rk4, SymplecticEuler, VelocityVerlet};
-use libration::system::Oscillator;
+use libration::system::{DampedOscillator, Oscillator};
+use proptest::prelude::*;
 use serde_json::Value;
 
 const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
@@ -153,4 +154,59 @@ fn a_typical_run_grows_at_the_exponent_of_the_transfer_operator() {
     assert!((exponent("semi_implicit", 0.01) / weak - 1.0).abs() < 1e-3);
     // An exact step of any length only turns.
     assert!(exponent("exact_zoh", 0.1).abs() < 1e-15);
+}
+
+#[test]
+fn the_same_latencies_in_another_order_give_another_verdict() {
+    // 0 or 2 steps with probability ½: drawn anew every step, or kept with probability ½. The values are eigenvalues of
+    // the matrix (Pᵀ ⊗ 1)·diag(Mᵢ ⊗ Mᵢ) in floats, by another program.
+    let feedback = Feedback { position: 10.0, velocity: 2.0 };
+    let plant = plant("exact_zoh", 0.1);
+    for (hold, wanted) in [(0.0, 0.995_086_647_407), (0.5, 1.015_545_489_573)] {
+        let table = RandomLatency::new(vec![(0, 0.5), (2, 0.5)], hold).unwrap();
+        let found = plant.mean_square_late(feedback, &table);
+        assert!((found - wanted).abs() < 1e-12, "{hold}: {found}");
+    }
+    // A latency that is certain is no random one.
+    for steps in [0_u32, 1, 3] {
+        let table = RandomLatency::new(vec![(steps as usize, 1.0)], 0.3).unwrap();
+        let latency = Latency::of_steps(f64::from(steps)).unwrap();
+        let certain = plant.spectral_radius(feedback, latency).to_f64();
+        close(plant.mean_square_late(feedback, &table).sqrt(), certain, &steps);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn whole_latencies_are_stable_where_the_windows_say_so(
+        omega2 in 0.0..30.0_f64,
+        gamma in prop_oneof![Just(0.0), -0.5..1.5_f64],
+        dt in 0.002..0.25_f64,
+        position in -3.0..25.0_f64,
+        velocity in -1.0..6.0_f64,
+        which in 0..5_usize,
+    ) {
+        let model = DampedOscillator { omega2, gamma };
+        let plant = match which {
+            0 => Plant::new(ExplicitEuler, model, ORIGIN, dt),
+            1 => Plant::new(SymplecticEuler, model, ORIGIN, dt),
+            2 => Plant::new(VelocityVerlet, model, ORIGIN, dt),
+            3 => Plant::new(Rk4, model, ORIGIN, dt),
+            _ => Plant::exact(model, ORIGIN, dt),
+        };
+        let feedback = Feedback { position, velocity };
+        let windows = plant.latency_windows(feedback).stable;
+        for steps in [0_u32, 1, 2, 3, 4, 5, 7, 10, 15, 23, 40] {
+            let d = f64::from(steps);
+            let radius = plant.spectral_radius(feedback, Latency::of_steps(d).unwrap()).to_f64();
+            let inside =
+                windows.iter().any(|&(from, to)| from <= d && to.is_none_or(|to| d <= to));
+            prop_assert!(
+                (radius - 1.0).abs() < 1e-9 || (radius < 1.0) == inside,
+                "{} steps: {} {:?}", steps, radius, windows
+            );
+        }
+    }
 }

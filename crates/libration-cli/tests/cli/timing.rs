@@ -37,7 +37,7 @@ fn latency_moves_the_radius_and_has_its_critical_values() {
     close(&verlet["latency_steps"], 5.0);
     // Explicit Euler at ten times the step is not stable at any latency.
     let none = json(
-        "analyze --system oscillator --set omega2=10 --dt 0.1 --feedback 10,2 \
+        "analyze --system oscillator --set omega2=10 --dt 0.1 --steps 10 --feedback 10,2 \
                      --integrator explicit-euler",
     );
     assert!(none["critical_latency_steps"].is_null());

@@ -41,5 +41,8 @@ pub use slip::Slip;
 pub use spectrum::{Eigenvalues, Spectrum};
 pub use symbolic::{SymbolicStep, UnknownStep};
 pub use tableau::{Letter, Tableau};
-pub use timing::{Feedback, HeldStep, Jitter, Latency, MeanSquare, Plant, Windows};
+pub use timing::{
+    Feedback, HeldStep, Jitter, Latency, LatencyTableError, MeanSquare, Plant, RandomLatency,
+    Windows,
+};
 pub use window::StabilityWindow;

@@ -10,6 +10,7 @@ mod lyapunov;
 mod margin;
 mod plant;
 mod quasi;
+mod random_latency;
 mod skew;
 mod windows;
 
@@ -17,4 +18,5 @@ pub use held_step::HeldStep;
 pub use jitter::{Jitter, MeanSquare};
 pub use latency::Latency;
 pub use plant::{Feedback, Plant};
+pub use random_latency::{LatencyTableError, RandomLatency};
 pub use windows::Windows;

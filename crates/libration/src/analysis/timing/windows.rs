@@ -7,7 +7,9 @@ use crate::{Elementary, Scalar};
 /// The intervals of latency, in steps, within which a loop is stable.
 ///
 /// Between whole steps they follow the characteristic polynomial with `λᵈ` for any real `d`, as one finds it in
-/// textbooks: whole latencies in an interval are stable, others are not.
+/// textbooks: whole latencies in an interval are stable, others are not. Where an eigenvalue can pass through −1, which
+/// it does at whole latencies of one parity, that has no meaning: then the intervals begin and end with
+/// whole latencies, and those up to 64 are tried.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Windows {
     /// From and to; no end where the loop is stable at every larger latency.
@@ -24,6 +26,9 @@ struct Crossing {
     /// Whether it leaves the circle as the latency grows.
     outward: bool,
 }
+
+/// Whole latencies that are tried one by one.
+const TRIED: u32 = 64;
 
 /// So many crossings are followed at most.
 const MOST: usize = 100_000;
@@ -42,7 +47,16 @@ impl Plant<'_> {
         let none = Latency::of_steps(0.0).map(|none| self.characteristic(feedback, none));
         let Some(quasi) = none else { return Windows { stable: Vec::new() } };
         let ([a0, a1], [b0, b1, _]) = (quasi.a, quasi.b);
-        let mut unstable = outside([a0 + b0, a1 + b1]);
+        let one = Wide::one();
+        // At λ = 1 the delay does not matter: an eigenvalue beyond stays there.
+        if !positive(one + a1 + a0 + b1 + b0) {
+            return Windows { stable: Vec::new() };
+        }
+        if !positive(one - a1 + a0 - (b0 - b1).abs()) {
+            return self.whole_windows(feedback);
+        }
+        // By Jury's conditions, of which two are met: both eigenvalues are inside, or none.
+        let mut unstable: u32 = if positive(one - a0 - b0) { 0 } else { 2 };
         let crossings = crossings([a0, a1], [b0, b1]);
         let mut stable = Vec::new();
         let mut from = (unstable == 0).then_some(0.0);
@@ -60,26 +74,26 @@ impl Plant<'_> {
         stable.extend(from.map(|begin| (begin, None)));
         Windows { stable }
     }
-}
 
-/// How many roots of `λ² + c₁λ + c₀` are not inside the unit circle, by Jury's conditions.
-fn outside([c0, c1]: [Wide; 2]) -> usize {
-    let one = Wide::one();
-    let positive = |x: Wide| !x.is_negative() && !x.is_zero();
-    let [at_one, at_minus_one] = [one + c1 + c0, one - c1 + c0];
-    match (positive(at_one), positive(at_minus_one), positive(one - c0)) {
-        (true, true, true) => 0,
-        (true, true, false) => 2,
-        // A real root on either side, or both outside with opposite signs.
-        _ if positive(one + c0) && positive(one - c0) => 1,
-        _ => {
-            if positive(at_one) != positive(at_minus_one) {
-                1
-            } else {
-                2
+    /// Runs of whole latencies at which the loop is stable, each tried.
+    fn whole_windows(&self, feedback: Feedback) -> Windows {
+        let is_stable = |steps: &u32| {
+            let latency = Latency::of_steps(f64::from(*steps));
+            latency.is_some_and(|d| positive(Wide::one() - self.spectral_radius(feedback, d)))
+        };
+        let mut stable: Vec<(f64, Option<f64>)> = Vec::new();
+        for d in (0..=TRIED).filter(is_stable).map(f64::from) {
+            match stable.last_mut() {
+                Some((_, to)) if *to == Some(d - 1.0) => *to = Some(d),
+                _ => stable.push((d, Some(d))),
             }
         }
+        Windows { stable }
     }
+}
+
+fn positive(x: Wide) -> bool {
+    !x.is_negative() && !x.is_zero()
 }
 
 /// Where `λᵈ·a(λ) + b(λ)` with `a = λ² + a₁λ + a₀`, `b = b₁λ + b₀` has roots `e^{±iθ}`: there `|a| = |b|`, which is a
