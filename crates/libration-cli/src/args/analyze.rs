@@ -14,7 +14,7 @@ use super::timing::{TimingArgs, stepping};
 pub(crate) struct AnalyzeArgs {
     #[command(flatten)]
     pub(crate) system: SystemArgs,
-    /// The integrator, or `exact`; `libration list` shows them
+    /// The integrator (`libration list` shows them), or `exact`: steps of a linear system without error
     #[arg(long, value_name = "NAME", value_parser = stepping, allow_hyphen_values = true)]
     pub(crate) integrator: Stepping,
     /// Time step in s

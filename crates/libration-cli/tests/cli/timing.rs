@@ -35,6 +35,9 @@ fn latency_moves_the_radius_and_has_its_critical_values() {
     let verlet = json(&format!("{LOOP} --integrator velocity-verlet --latency 0.05"));
     close(&verlet["spectral_radius"], 0.992_338_434_173_543);
     close(&verlet["latency_steps"], 5.0);
+    // The quotient of 0.07 and 0.01 is no whole number of floats.
+    let seven = json(&format!("{LOOP} --integrator rk4 --latency 0.07"));
+    assert_eq!(seven["latency_steps"], 7.0);
     // Explicit Euler at ten times the step is not stable at any latency.
     let none = json(
         "analyze --system oscillator --set omega2=10 --dt 0.1 --steps 10 --feedback 10,2 \

@@ -49,10 +49,16 @@ impl Timing {
         let steps = match self.latency {
             None => 0.0,
             Some(Late::Steps(steps)) => steps,
-            Some(Late::Seconds(seconds)) => seconds / dt,
+            Some(Late::Seconds(seconds)) => whole(seconds / dt),
         };
         Latency::of_steps(steps).ok_or(AnalyzeError::Latency { steps })
     }
+}
+
+/// A whole number where the quotient of two decimals misses one by rounding: 0.07 s are seven steps of 0.01 s.
+fn whole(quotient: f64) -> f64 {
+    let nearest = quotient.round();
+    if (quotient - nearest).abs() <= 4.0 * f64::EPSILON * nearest { nearest } else { quotient }
 }
 
 /// What timing does to a loop; the fields are keys of `analyze --json`.

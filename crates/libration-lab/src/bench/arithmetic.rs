@@ -47,8 +47,7 @@ impl Mix {
 /// and no more than the registers hold beside what is multiplied by and added.
 pub(crate) fn widths<T>(set: InstructionSet) -> impl Iterator<Item = usize> {
     let lanes = set.vector_bytes() / size_of::<T>();
-    let vectors: &[usize] = if set.registers() >= 32 { &[8, 12, 14, 28] } else { &[8, 12, 14] };
-    vectors.iter().map(move |vectors| vectors * lanes)
+    [12, 14].into_iter().map(move |vectors| vectors * lanes)
 }
 
 /// One value for each of `L·V` lanes, which is multiplied `M` times and added to `A` times in every round. The operands
@@ -103,9 +102,8 @@ fn on_width<T: Float, const M: usize, const A: usize>(
         };
     }
     // One operand for all lanes becomes a vector by itself, but not where two lanes are one.
-    widths!(16 = 2 x 8  24 = 2 x 12  28 = 2 x 14
-        32 = 1 x 32  48 = 1 x 48  56 = 1 x 56  64 = 1 x 64  96 = 1 x 96  112 = 1 x 112  128 = 1 x 128
-        192 = 1 x 192  224 = 1 x 224  448 = 1 x 448)
+    widths!(24 = 2 x 12  28 = 2 x 14  48 = 1 x 48  56 = 1 x 56
+        96 = 1 x 96  112 = 1 x 112  192 = 1 x 192  224 = 1 x 224)
 }
 
 #[cfg(test)]

@@ -4,12 +4,14 @@ mod bits;
 mod dual;
 mod float;
 mod half;
+mod mantissa;
 mod poly;
 mod ratio;
 mod twofloat;
 mod wide;
 
 pub use dual::Dual;
+pub use mantissa::Mantissa;
 pub use poly::Poly;
 pub use ratio::Ratio;
 pub use twofloat::TwoFloat;

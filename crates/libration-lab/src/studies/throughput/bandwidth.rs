@@ -20,7 +20,7 @@ const FAR: u64 = 6;
 /// the memory allow.
 pub(super) fn footprint(desk: &Desk<'_>) -> u64 {
     let last = Machine::detect().caches.last().map_or(32 << 20, |cache| cache.bytes);
-    let most = desk.lab.effort.choose(1 << 30, 2 << 30, 8 << 30);
+    let most = desk.lab.effort.choose(768 << 20, 2 << 30, 8 << 30);
     let free = available_memory().unwrap_or(1 << 30);
     (FAR * last).max(256 << 20).min(most).min(free / 4)
 }
@@ -73,11 +73,11 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     );
     let len = usize::try_from(footprint(desk)).unwrap_or(usize::MAX) / 3 / size_of::<Number>();
     let cores = desk.parallel.thread_count();
+    let mut planes = Vec::new();
+    for _ in 0..3 {
+        planes.push(Buffer::<Number>::new(len, Pages::Huge)?);
+    }
     for kernel in Kernel::ALL {
-        let mut planes = Vec::new();
-        for _ in 0..3 {
-            planes.push(Buffer::<Number>::new(len, Pages::Huge)?);
-        }
         let mut rates = Vec::new();
         for execution in [&desk.serial, &desk.parallel].into_iter().take(cores.min(2)) {
             rates.push(bandwidth(desk, kernel, &mut planes, execution)?);
