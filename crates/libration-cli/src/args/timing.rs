@@ -20,7 +20,8 @@ pub(crate) struct TimingArgs {
         allow_hyphen_values = true
     )]
     pub(crate) latency: Option<Late>,
-    /// The law of step times, each drawn by itself, with its relative rms: gaussian:0.1 or uniform:0.1
+    /// The law of step times, each drawn by itself, with its relative rms: gaussian:0.1 or uniform:0.1; what it
+    /// does is said of the loop without latency
     #[arg(long, value_name = "LAW:RMS", value_parser = law, allow_hyphen_values = true)]
     pub(crate) jitter: Option<Jitter>,
     /// The law of clock rates over an ensemble, with its relative rms: gaussian:0.01 or uniform:0.01

@@ -173,7 +173,9 @@ fn describe_timing(timing: &TimingAnswer, text: &mut String) {
         line("continuous margin", number(critical.delay_margin_seconds, "s"));
     }
     if let (Some(radius), Some(growth)) = (timing.mean_square_radius, timing.mean_square_growth) {
-        line("second moments grow by", format!("{radius:?} a step  (1 {growth:+e})"));
+        let late = timing.latency_steps.is_some_and(|steps| steps > 0.0);
+        let of = if late { ", without latency" } else { "" };
+        line("second moments grow by", format!("{radius:?} a step  (1 {growth:+e}){of}"));
     }
     if let Some(exponent) = timing.lyapunov_exponent {
         line("a typical run grows", number(exponent, "a step"));

@@ -73,13 +73,13 @@ pub struct TimingAnswer {
     /// What the feedback makes of the loop, whatever the latency.
     #[serde(flatten)]
     pub critical: Option<Critical>,
-    /// `ρ(E[M ⊗ M])`: the factor by which second moments grow in a step.
+    /// `ρ(E[M ⊗ M])`: the factor by which second moments grow in a step, of the loop without latency.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_square_radius: Option<f64>,
     /// The same minus one, without cancellation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_square_growth: Option<f64>,
-    /// The top Lyapunov exponent in a step; none where the mean step does not turn.
+    /// The top Lyapunov exponent in a step, of the loop without latency; none where the mean step does not turn.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lyapunov_exponent: Option<Option<f64>>,
     /// Steps after which the mean of an ensemble of clocks has fallen to 1/e; none where nothing turns.
