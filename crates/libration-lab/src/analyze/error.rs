@@ -30,14 +30,15 @@ pub enum AnalyzeError {
         /// The system.
         system: &'static str,
     },
-    /// A criterion was given for exact steps, or exact steps of a system that is not linear.
-    #[error(
-        "`exact` steps are those of a linear system, and have no largest: --integrator exact takes no \
-             --{flag}, and no system like `{system}`"
-    )]
-    Exact {
-        /// The criterion, if any.
+    /// A criterion was given for exact steps.
+    #[error("--{flag} asks for the largest step, which `exact` steps (--integrator) do not have")]
+    NoLargest {
+        /// The criterion.
         flag: &'static str,
+    },
+    /// Exact steps were asked of a system that is not linear.
+    #[error("`exact` steps (--integrator) exist of linear systems, not of `{system}`")]
+    NotLinear {
         /// The system.
         system: &'static str,
     },

@@ -36,6 +36,9 @@ pub fn analyze(request: &Request) -> Result<Analysis, AnalyzeError> {
     {
         return Err(AnalyzeError::Criterion { flag, system: request.system.name() });
     }
+    if request.stepping == Stepping::Exact {
+        exact(request)?;
+    }
     let dimension = request.q.len();
     let timing = timing::answer(request)?;
     with_system!(
@@ -50,7 +53,10 @@ pub fn analyze(request: &Request) -> Result<Analysis, AnalyzeError> {
                 Stepping::Method(method) => {
                     with_method!(method, |m| Step::take(m, model, start, request))?
                 }
-                Stepping::Exact => Step::exact(model, start, request)?,
+                Stepping::Exact => {
+                    let linear = Linearisation::exact(model, &start, request.dt);
+                    Step { linear, evaluations: 0, drift: None }
+                }
             };
             answer(model, &start, step, timing, request)
         },
@@ -85,20 +91,14 @@ impl<const D: usize> Step<D> {
     }
 }
 
-impl<const D: usize> Step<D> {
-    /// Exact steps, for which no force is evaluated.
-    fn exact(
-        model: impl Model<D>,
-        start: State<f64, D>,
-        request: &Request,
-    ) -> Result<Self, AnalyzeError> {
-        let flag = request.criteria.first();
-        if flag.is_some() || !request.system.is_linear() {
-            let (flag, system) = (flag.unwrap_or("max-drift"), request.system.name());
-            return Err(AnalyzeError::Exact { flag, system });
+/// Fails if exact steps are asked for what they are not.
+fn exact(request: &Request) -> Result<(), AnalyzeError> {
+    match request.criteria.first() {
+        Some(flag) => Err(AnalyzeError::NoLargest { flag }),
+        None if !request.system.is_linear() => {
+            Err(AnalyzeError::NotLinear { system: request.system.name() })
         }
-        let linear = Linearisation::exact(model, &start, request.dt);
-        Ok(Step { linear, evaluations: 0, drift: None })
+        None => Ok(()),
     }
 }
 

@@ -98,7 +98,7 @@ pub struct Critical {
     /// The same in s.
     pub critical_latency_seconds: Option<f64>,
     /// The intervals of latency, in steps, within which the loop is stable; an end that does not exist is
-    /// `null`.
+    /// `null`. Where an eigenvalue can pass through −1, runs of whole latencies up to 64 steps.
     pub latency_windows: Vec<(f64, Option<f64>)>,
     /// The delay margin of the continuous loop, in s; none if it has none.
     pub delay_margin_seconds: Option<f64>,
