@@ -8,6 +8,7 @@ mod jitter;
 mod latency;
 mod lyapunov;
 mod margin;
+mod mean_square;
 mod plant;
 mod quasi;
 mod random_latency;
@@ -15,8 +16,9 @@ mod skew;
 mod windows;
 
 pub use held_step::HeldStep;
-pub use jitter::{Jitter, MeanSquare};
+pub use jitter::Jitter;
 pub use latency::Latency;
+pub use mean_square::MeanSquare;
 pub use plant::{Feedback, Plant};
 pub use random_latency::{LatencyTableError, RandomLatency};
 pub use windows::Windows;
