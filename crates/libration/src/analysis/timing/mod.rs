@@ -6,18 +6,23 @@
 mod held_step;
 mod jitter;
 mod latency;
+mod lqr;
 mod lyapunov;
 mod margin;
 mod mean_square;
 mod plant;
 mod quasi;
 mod random_latency;
+mod riccati;
+#[cfg(test)]
+mod sample;
 mod skew;
 mod windows;
 
 pub use held_step::HeldStep;
 pub use jitter::Jitter;
 pub use latency::Latency;
+pub use lqr::{LqrError, LqrWeights, Regulator};
 pub use mean_square::MeanSquare;
 pub use plant::{Feedback, Plant};
 pub use random_latency::{LatencyTableError, RandomLatency};
