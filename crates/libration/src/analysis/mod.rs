@@ -42,7 +42,7 @@ pub use spectrum::{Eigenvalues, Spectrum};
 pub use symbolic::{SymbolicStep, UnknownStep};
 pub use tableau::{Letter, Tableau};
 pub use timing::{
-    Feedback, HeldStep, Jitter, Latency, LatencyTableError, LqrError, LqrWeights, MeanSquare, Plant,
-    RandomLatency, Regulator, Windows,
+    Feedback, HeldStep, HiddenLatency, Jitter, Latency, LatencyTableError, LqrError, LqrWeights,
+    MeanSquare, Plant, RandomLatency, Regulator, Windows,
 };
 pub use window::StabilityWindow;

@@ -4,6 +4,7 @@
 //! beginning of a step, arrives later, and is held until the next one arrives.
 
 mod held_step;
+mod hidden_latency;
 mod jitter;
 mod latency;
 mod lqr;
@@ -20,6 +21,7 @@ mod skew;
 mod windows;
 
 pub use held_step::HeldStep;
+pub use hidden_latency::HiddenLatency;
 pub use jitter::Jitter;
 pub use latency::Latency;
 pub use lqr::{LqrError, LqrWeights, Regulator};
