@@ -11,6 +11,7 @@ mod lqr;
 mod lyapunov;
 mod margin;
 mod mean_square;
+mod periodic;
 mod plant;
 mod quasi;
 mod random_latency;
