@@ -43,6 +43,6 @@ pub use symbolic::{SymbolicStep, UnknownStep};
 pub use tableau::{Letter, Tableau};
 pub use timing::{
     Feedback, HeldStep, HiddenLatency, Jitter, Latency, LatencyTableError, LqrError, LqrWeights,
-    MeanSquare, Plant, RandomLatency, Regulator, Windows,
+    MeanSquare, Plant, RandomLatency, Regulator, Resonance, StepNoise, Windows,
 };
 pub use window::StabilityWindow;

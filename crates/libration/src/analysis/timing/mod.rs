@@ -15,6 +15,7 @@ mod periodic;
 mod plant;
 mod quasi;
 mod random_latency;
+mod resonance;
 mod riccati;
 #[cfg(test)]
 mod sample;
@@ -29,4 +30,5 @@ pub use lqr::{LqrError, LqrWeights, Regulator};
 pub use mean_square::MeanSquare;
 pub use plant::{Feedback, Plant};
 pub use random_latency::{LatencyTableError, RandomLatency};
+pub use resonance::{Resonance, StepNoise};
 pub use windows::Windows;
