@@ -43,6 +43,7 @@ pub use symbolic::{SymbolicStep, UnknownStep};
 pub use tableau::{Letter, Tableau};
 pub use timing::{
     Feedback, HeldStep, HiddenLatency, Jitter, Latency, LatencyTableError, LqrError, LqrWeights,
-    MeanSquare, Plant, RandomLatency, Regulator, Resonance, StepNoise, Windows,
+    MeanSquare, Plant, RandomLatency, Regulator, Resonance, StepNoise, Switching, SwitchingError,
+    Windows,
 };
 pub use window::StabilityWindow;

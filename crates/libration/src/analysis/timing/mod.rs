@@ -3,6 +3,7 @@
 //! The plant has one degree of freedom. A command `u = −K_p q − K_d v` is computed from the state at the
 //! beginning of a step, arrives later, and is held until the next one arrives.
 
+mod circle;
 mod held_step;
 mod hidden_latency;
 mod jitter;
@@ -20,6 +21,7 @@ mod riccati;
 #[cfg(test)]
 mod sample;
 mod skew;
+mod switching;
 mod windows;
 
 pub use held_step::HeldStep;
@@ -31,4 +33,5 @@ pub use mean_square::MeanSquare;
 pub use plant::{Feedback, Plant};
 pub use random_latency::{LatencyTableError, RandomLatency};
 pub use resonance::{Resonance, StepNoise};
+pub use switching::{Switching, SwitchingError};
 pub use windows::Windows;
