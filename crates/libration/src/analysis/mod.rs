@@ -42,8 +42,8 @@ pub use spectrum::{Eigenvalues, Spectrum};
 pub use symbolic::{SymbolicStep, UnknownStep};
 pub use tableau::{Letter, Tableau};
 pub use timing::{
-    Feedback, HeldStep, HiddenLatency, Jitter, Latency, LatencyTableError, LqrError, LqrWeights,
-    MeanSquare, Plant, RandomLatency, Regulator, Resonance, StepNoise, Switching, SwitchingError,
-    Windows,
+    Feedback, HeldStep, HiddenLatency, Jitter, JitterMargin, Latency, LatencyTableError, LqrError,
+    LqrWeights, MeanSquare, Plant, RandomLatency, Regulator, Resonance, StepNoise, Switching,
+    SwitchingError, Windows,
 };
 pub use window::StabilityWindow;
