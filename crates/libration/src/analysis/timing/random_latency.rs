@@ -69,7 +69,18 @@ impl RandomLatency {
         Ok(RandomLatency { table, hold })
     }
 
-    fn longest(&self) -> usize {
+    /// The latencies in steps, each with its probability.
+    pub fn table(&self) -> &[(usize, f64)] {
+        &self.table
+    }
+
+    /// The probability that a latency stays for another step.
+    pub fn hold(&self) -> f64 {
+        self.hold
+    }
+
+    /// The longest latency, in steps.
+    pub fn longest(&self) -> usize {
         self.table.iter().map(|&(steps, _)| steps).max().unwrap_or(0)
     }
 
