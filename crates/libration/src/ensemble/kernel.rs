@@ -147,7 +147,10 @@ pub(super) struct Lines<P>(pub(super) P);
 
 /// Lane `l` of each plane.
 #[inline(always)]
-pub(super) fn at<T: Copy, const D: usize, const W: usize>(planes: &[[T; W]; D], l: usize) -> [T; D] {
+pub(super) fn at<T: Copy, const D: usize, const W: usize>(
+    planes: &[[T; W]; D],
+    l: usize,
+) -> [T; D] {
     from_fn(|i| planes[i][l])
 }
 

@@ -1,11 +1,12 @@
 //! What the bits of a trajectory depend on, and what not.
 
-use libration::analysis::{Feedback, Latency, RandomLatency};
+use libration::analysis::{Feedback, Jitter, Latency, RandomLatency};
 use libration::control::clock::{
-    Correlated, Dropped, Gaussian, Jittered, Late, Rates, Skewed, Uniform, Wandering, Waving,
+    Correlated, Drifting, Dropped, Gaussian, Jittered, Late, Rates, Skewed, Uniform, Wandering,
+    Waving,
 };
 use libration::control::controller::{Force, Pid, PidGains, Saturated, StateFeedback};
-use libration::control::delay::{Latencies, Order, Packets, Random, Schedule};
+use libration::control::delay::{Latencies, Order, Packets, Random, RecordedLatencies, Schedule};
 use libration::control::{Clock, Controller, Delay};
 use libration::ensemble::{All, Assign, Each, Execution, InstructionSet, Loops, Setup};
 use libration::integrator::{ExplicitEuler, Rk4, SymplecticEuler, VelocityVerlet};
@@ -13,7 +14,7 @@ use libration::system::{Oscillator, Pendulum};
 use libration::{Integrator, State, System};
 use proptest::prelude::*;
 
-use crate::one::One;
+use super::one::One;
 
 const GAINS: Feedback = Feedback { position: 3.0, velocity: 0.5 };
 
@@ -95,25 +96,29 @@ fn oscillator<M>(method: M) -> Setup<All<Oscillator<f32>>, M> {
     Setup::new(All(Oscillator { omega2: 4.0 }), method)
 }
 
-#[test]
-fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_with_every_clock() {
-    same_bits_of(oscillator(SymplecticEuler).clock(Jittered(Uniform(0.1))));
-    same_bits_of(oscillator(VelocityVerlet).clock(Jittered(Gaussian(0.1))));
-    same_bits_of(oscillator(Rk4).clock(Skewed(libration::analysis::Jitter::Gaussian(0.1))));
-    same_bits_of(oscillator(SymplecticEuler).clock(Correlated { rms: 0.1, correlation: 0.9 }));
-    same_bits_of(oscillator(SymplecticEuler).clock(Wandering { rms: 0.01 }));
-    same_bits_of(oscillator(SymplecticEuler).clock(Waving { rms: 0.1, rate: 0.3, phase: 1.0 }));
-    same_bits_of(oscillator(SymplecticEuler).clock(Dropped { probability: 0.2 }));
-    same_bits_of(oscillator(SymplecticEuler).clock(Late { probability: 0.2, by: 0.5 }));
-    let both = (Skewed(libration::analysis::Jitter::Uniform(0.1)), Jittered(Gaussian(0.1)));
-    same_bits_of(Setup::new(All(Pendulum { omega2: 4.0 }), VelocityVerlet).clock(both));
+/// Five clocks in one.
+fn shaken() -> impl Clock<f32> {
+    let jitter = (Jittered(Uniform(0.1)), Correlated { rms: 0.1, correlation: 0.9 });
+    let waves = (Waving { rms: 0.1, rate: 0.3, phase: 1.0 }, Dropped { probability: 0.2 });
+    ((jitter, waves), Skewed(Jitter::Gaussian(0.1)))
+}
+
+/// The others.
+fn stirred() -> impl Clock<f32> {
+    let noise = (Jittered(Gaussian(0.1)), Wandering { rms: 0.01 });
+    ((noise, Late { probability: 0.2, by: 0.5 }), Drifting(Jitter::Uniform(1e-4)))
 }
 
 #[test]
-fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_with_every_delay() {
-    let base = oscillator(SymplecticEuler)
-        .controller(StateFeedback::to_origin(GAINS))
-        .clock(Jittered(Gaussian(0.1)));
+fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_whatever_the_clock() {
+    same_bits_of(oscillator(SymplecticEuler).clock(shaken()));
+    same_bits_of(Setup::new(All(Pendulum { omega2: 4.0 }), VelocityVerlet).clock(stirred()));
+}
+
+#[test]
+fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_whatever_the_delay() {
+    let base =
+        oscillator(SymplecticEuler).controller(StateFeedback::to_origin(GAINS)).clock(shaken());
     for schedule in [[1.0, 0.0, 0.0], [1.0, 1.0, 2.0], [1.0, 0.25, 1.5], [2.5, 0.0, 0.75]] {
         let [period, observation, action] = schedule;
         same_bits_of(base.delay(Schedule::new(period, observation, action).unwrap()));
@@ -123,26 +128,12 @@ fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_with_every_delay(
     for order in [Order::NewestActs, Order::LastActs] {
         same_bits_of(base.delay(Packets::new(&[0.3, 0.3, 0.2], order).unwrap()));
     }
-    let latencies: Vec<Latency> =
-        (0..333).map(|n| Latency::of_steps(f64::from(n % 40) / 10.0).unwrap()).collect();
-    same_bits(base.delay(Latencies(&latencies)), |count| {
-        base.delay(Latencies(&latencies[..count]))
-    });
-    // Everything at once, with a plant for each.
-    let systems: Vec<Oscillator<f32>> =
-        (0..333).map(|n| Oscillator { omega2: 1.0 + n as f32 / 100.0 }).collect();
-    let rates: Vec<f64> = (0..333).map(|n| 1.0 + f64::from(n) * 1e-4).collect();
-    let all = |count: usize| {
-        Setup::new(Each(&systems[..count]), Rk4)
-            .controller(Saturated { controller: StateFeedback::to_origin(GAINS), most: 1.0 })
-            .clock((Rates(&rates[..count]), Dropped { probability: 0.1 }))
-            .delay(Latencies(&latencies[..count]))
-    };
-    same_bits(all(333), all);
+    let record: Vec<f64> = (0..300).map(|n| f64::from(n % 7) / 2.0).collect();
+    same_bits_of(base.delay(RecordedLatencies::new(&record).unwrap()));
 }
 
 #[test]
-fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_with_every_controller() {
+fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_whatever_the_controller() {
     let late = Schedule::late(Latency::of_steps(2.0).unwrap());
     let pid = Pid::new(PidGains {
         proportional: 4.0,
@@ -154,7 +145,21 @@ fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_with_every_contro
         target: [0.25],
     });
     same_bits_of(oscillator(VelocityVerlet).controller(pid.unwrap()).delay(late));
-    same_bits_of(oscillator(VelocityVerlet).controller(Force(Pendulum { omega2: 1.0 })).delay(late));
+    let pendulum = Force(Pendulum { omega2: 1.0 });
+    same_bits_of(oscillator(VelocityVerlet).controller(pendulum).delay(late));
+    // A plant, a rate and a latency for each.
+    let latencies: Vec<Latency> =
+        (0..333).map(|n| Latency::of_steps(f64::from(n % 40) / 10.0).unwrap()).collect();
+    let systems: Vec<Oscillator<f32>> =
+        (0..333).map(|n| Oscillator { omega2: 1.0 + n as f32 / 100.0 }).collect();
+    let rates: Vec<f64> = (0..333).map(|n| 1.0 + f64::from(n) * 1e-4).collect();
+    let all = |count: usize| {
+        Setup::new(Each(&systems[..count]), Rk4)
+            .controller(Saturated { controller: StateFeedback::to_origin(GAINS), most: 1.0 })
+            .clock((Rates(&rates[..count]), Dropped { probability: 0.1 }))
+            .delay(Latencies(&latencies[..count]))
+    };
+    same_bits(all(333), all);
 }
 
 proptest! {
@@ -173,8 +178,10 @@ proptest! {
         let feedback = Feedback { position, velocity };
         let latency = Latency::of_steps(f64::from(whole) + part).unwrap();
         let start = State { q: [1.0], v: [0.25] };
-        let mut one = One::new(omega2, VelocityVerlet, feedback, latency, start);
-        (0..steps).for_each(|_| one.step(dt));
+        let one = || One::new(omega2, VelocityVerlet, feedback, latency, start);
+        let (mut eager, mut patient) = (one(), one().whole_at_first());
+        (0..steps).for_each(|_| eager.step(dt));
+        (0..steps).for_each(|_| patient.step(dt));
         let setup = Setup::new(All(Oscillator { omega2 }), VelocityVerlet)
             .controller(StateFeedback::to_origin(feedback));
         let (states, latencies) = (vec![start; 70], vec![latency; 70]);
@@ -186,8 +193,8 @@ proptest! {
         let mut each = Loops::new(own, dt, 0, [0.0], &states, serial()).unwrap();
         each.advance(steps).unwrap();
         for n in [0, 1, 63, 69] {
-            prop_assert_eq!(shared.state(n), Some(one.state), "shared, {}", n);
-            prop_assert_eq!(each.state(n), Some(one.state), "each its own, {}", n);
+            prop_assert_eq!(shared.state(n), Some(patient.state), "shared, {}", n);
+            prop_assert_eq!(each.state(n), Some(eager.state), "each its own, {}", n);
         }
     }
 }

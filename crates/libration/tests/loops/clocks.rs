@@ -31,9 +31,9 @@ fn ratios<C: Clock<f64>>(clock: C, trajectories: usize, steps: usize) -> Vec<Vec
 
 /// The mean of the products of `ε` with itself `lag` steps later, over all trajectories.
 fn correlation(steps: &[Vec<f64>], lag: usize) -> f64 {
-    let products = steps.iter().flat_map(|one| {
-        one.iter().zip(&one[lag..]).map(|(a, b)| (a - 1.0) * (b - 1.0))
-    });
+    let products = steps
+        .iter()
+        .flat_map(|one| one.iter().zip(&one[lag..]).map(|(a, b)| (a - 1.0) * (b - 1.0)));
     let (count, sum) = products.fold((0.0, 0.0), |(count, sum), x| (count + 1.0, sum + x));
     sum / count
 }

@@ -4,9 +4,7 @@ use libration::State;
 use libration::analysis::{Feedback, Latency, RandomLatency};
 use libration::control::Delay;
 use libration::control::controller::StateFeedback;
-use libration::control::delay::{
-    Latencies, Order, Packets, Random, RecordedLatencies, Schedule,
-};
+use libration::control::delay::{Latencies, Order, Packets, Random, RecordedLatencies, Schedule};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::VelocityVerlet;
 use libration::system::Oscillator;
@@ -83,7 +81,7 @@ fn a_latency_of_any_part_splits_the_step_where_the_command_arrives() {
     let mut second = Loops::new(each, 1.0, 0, [0.0], &start, Execution::serial()).unwrap();
     first.advance(1).unwrap();
     second.advance(1).unwrap();
-    for state in [first.state(0).unwrap(), second.state(0).unwrap()] {
+    for state in [first.state(0), second.state(0)].map(Option::<State<f64, 1>>::unwrap) {
         // A few roundings of numbers below one.
         assert!((state.v[0] - 0.7).abs() < 1e-15 && (state.q[0] - 0.245).abs() < 1e-15);
     }

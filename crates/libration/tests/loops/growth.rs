@@ -4,40 +4,38 @@ use libration::analysis::{Feedback, Latency, Plant};
 use libration::control::controller::StateFeedback;
 use libration::control::delay::Schedule;
 use libration::ensemble::{All, Execution, Loops, Setup};
-use libration::system::Oscillator;
 use libration::integrator::{Rk4, VelocityVerlet};
+use libration::system::Oscillator;
 use libration::{Method, State, with_method};
 use proptest::prelude::*;
 
-use crate::one::One;
+use super::one::One;
 
 const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
 
 /// By how much `ln |y|` of a simulated loop changes a step, from two long windows; ±1 if it leaves the floats.
-fn growth(method: Method, omega2: f64, dt: f64, feedback: Feedback, latency: Latency) -> f64 {
+fn growth(omega2: f64, dt: f64, feedback: Feedback, latency: Latency) -> f64 {
     const STEPS: u32 = 20_000;
     let state = State { q: [1.0], v: [0.3] };
-    with_method!(method, |m| {
-        let setup = Setup::new(All(Oscillator { omega2 }), m)
-            .controller(StateFeedback::to_origin(feedback))
-            .delay(Schedule::late(latency));
-        let mut all = Loops::new(setup, dt, 0, [0.0], &[state], Execution::serial()).unwrap();
-        // Phases matter less than 1/STEPS.
-        let mut sizes = [0.0_f64; 2];
-        for size in &mut sizes {
-            for _ in 0..STEPS / 2 {
-                all.advance(1).unwrap();
-                let State { q: [q], v: [v] } = all.state(0).unwrap();
-                let now = (omega2 * q * q + v * v).ln() / 2.0;
-                if !now.is_finite() || now.abs() > 600.0 {
-                    return now.signum() * if now.is_nan() { -1.0 } else { 1.0 };
-                }
-                *size += now;
+    let setup = Setup::new(All(Oscillator { omega2 }), VelocityVerlet)
+        .controller(StateFeedback::to_origin(feedback))
+        .delay(Schedule::late(latency));
+    let mut all = Loops::new(setup, dt, 0, [0.0], &[state], Execution::serial()).unwrap();
+    // Phases matter less than 1/STEPS.
+    let mut sizes = [0.0_f64; 2];
+    for size in &mut sizes {
+        for _ in 0..STEPS / 2 {
+            all.advance(1).unwrap();
+            let State { q: [q], v: [v] } = all.state(0).unwrap();
+            let now = (omega2 * q * q + v * v).ln() / 2.0;
+            if !now.is_finite() || now.abs() > 600.0 {
+                return now.signum() * if now.is_nan() { -1.0 } else { 1.0 };
             }
+            *size += now;
         }
-        // The windows lie STEPS/2 apart.
-        (sizes[1] - sizes[0]) / f64::from(STEPS / 2) / f64::from(STEPS / 2)
-    })
+    }
+    // The windows lie STEPS/2 apart.
+    (sizes[1] - sizes[0]) / f64::from(STEPS / 2) / f64::from(STEPS / 2)
 }
 
 /// The rate at which a loop grows in the long run, by its own steps: from what a step makes of a unit of everything
@@ -55,7 +53,8 @@ fn rate(method: Method, omega2: f64, dt: f64, feedback: Feedback, latency: Laten
             })
         })
         .collect();
-    let mut power = DMatrix((0..size).map(|i| (0..size).map(|j| columns[j][i]).collect()).collect());
+    let mut power =
+        DMatrix((0..size).map(|i| (0..size).map(|j| columns[j][i]).collect()).collect());
     let (mut log, mut steps) = (0.0, 1.0);
     for _ in 0..45 {
         let norm = power.norm();
@@ -120,7 +119,7 @@ fn a_simulated_loop_grows_at_the_rate_of_its_spectral_radius() {
         let latency = Latency::of_steps(steps).unwrap();
         let plant = Plant::new(VelocityVerlet, Oscillator { omega2: 10.0 }, ORIGIN, 0.01);
         let rate = plant.spectral_radius(feedback, latency).to_f64().ln();
-        let found = growth(Method::VelocityVerlet, 10.0, 0.01, feedback, latency);
+        let found = growth(10.0, 0.01, feedback, latency);
         let out_of_range = found.abs() == 1.0;
         // The waves of ln |y| are below one: 1e-4 over ten thousand steps.
         assert!(

@@ -89,7 +89,10 @@ fn numbers_that_are_no_delay_or_controller_are_named() {
     };
     let pid = |gains| Pid::<1>::new(gains).unwrap_err().to_string();
     assert_eq!(pid(gains), "integral is NaN; it must be a number");
-    assert_eq!(pid(PidGains { integral: 0.0, most: 0.0, ..gains }), "most is 0; it must be above 0");
+    assert_eq!(
+        pid(PidGains { integral: 0.0, most: 0.0, ..gains }),
+        "most is 0; it must be above 0"
+    );
     let filter = PidGains { integral: 0.0, filter: -1.0, ..gains };
     assert_eq!(pid(filter), "filter is -1; it must be at least 0 s");
 }

@@ -64,8 +64,9 @@ mod tests {
     use super::super::sample::{ORIGIN, textbook};
     use super::*;
     use crate::State;
-    use crate::analysis::Latency;
-    use crate::control::{Clock, ControlLoop, Jittered};
+    use crate::control::clock::Jittered;
+    use crate::control::controller::StateFeedback;
+    use crate::ensemble::{All, Execution, Loops, Setup};
     use crate::integrator::VelocityVerlet;
     use crate::system::Oscillator;
 
@@ -114,32 +115,30 @@ mod tests {
 
     #[test]
     fn simulated_second_moments_grow_above_the_margin_and_fall_below() {
-        const COUNT: u64 = 20_000;
+        const COUNT: usize = 20_000;
         let (plant, feedback) = verlet();
         let JitterMargin::Rms(margin) = plant.jitter_margin(feedback, Jitter::Uniform) else {
             panic!("there is a margin");
         };
-        let now = Latency::of_steps(0.0).unwrap();
         let start = State { q: [1.0], v: [0.5] };
         for share in [0.7, 1.5] {
             let law = Jitter::Uniform(share * margin);
-            let clock = Jittered { dt: 0.3, law, seed: 7 };
-            let mut sums = [[0.0_f64; 2]; 2];
-            for n in 0..COUNT {
-                let mut one = ControlLoop::new(MODEL, VelocityVerlet, feedback, now, start, [0.0]);
-                for (i, sum) in sums.iter_mut().enumerate() {
-                    for step in 0..40 {
-                        one.advance(clock.dt(n, 40 * i as u64 + step));
-                    }
-                    let square = one.state().v[0] * one.state().v[0];
-                    *sum = [sum[0] + square, sum[1] + square * square];
-                }
-            }
+            let setup = Setup::new(All(MODEL), VelocityVerlet)
+                .controller(StateFeedback::to_origin(feedback))
+                .clock(Jittered(law));
+            let starts = vec![start; COUNT];
+            let mut all = Loops::new(setup, 0.3, 7, [0.0], &starts, Execution::serial()).unwrap();
+            let sums = [40, 80].map(|_| {
+                all.advance(40).unwrap();
+                let squares = all.trajectories().v(0).iter().map(|v| v * v);
+                squares.fold([0.0; 2], |[sum, fourth], v2| [sum + v2, fourth + v2 * v2])
+            });
             let theory = plant.mean_square(feedback, law);
             let mut means = [0.0; 2];
             for (i, [sum, squares]) in sums.into_iter().enumerate() {
-                let mean = sum / COUNT as f64;
-                let error = ((squares / COUNT as f64 - mean * mean) / COUNT as f64).sqrt();
+                let count = COUNT as f64;
+                let mean = sum / count;
+                let error = ((squares / count - mean * mean) / count).sqrt();
                 let [.., wanted] = theory.moments(&start, 40 * (i as u64 + 1));
                 assert!((mean - wanted).abs() < 3.0 * error, "{share}: {mean} ± {error}, {wanted}");
                 means[i] = mean;

@@ -171,8 +171,9 @@ mod tests {
     use super::super::sample::{ORIGIN, all};
     use super::*;
     use crate::State;
-    use crate::analysis::Latency;
-    use crate::control::ControlLoop;
+    use crate::control::clock::Recorded;
+    use crate::control::controller::StateFeedback;
+    use crate::ensemble::{All, Execution, Loops, Setup};
     use crate::integrator::Rk4;
     use crate::system::{DampedOscillator, Oscillator};
     use proptest::prelude::*;
@@ -190,13 +191,16 @@ mod tests {
         let Switching { lower, upper, word } = plant.switching(feedback, &ratios, 12).unwrap();
         assert_eq!(word, [0, 1, 1]);
         assert!(1.29 < lower && lower < upper && upper < 1.294, "{lower} {upper}");
-        let latency = Latency::of_steps(0.0).unwrap();
+        let steps: Vec<f64> = word.iter().map(|&i| ratios[i]).collect();
+        let setup = Setup::new(All(MODEL), Rk4)
+            .controller(StateFeedback::to_origin(feedback))
+            .clock(Recorded::repeated(&steps));
         let start = State { q: [1.0], v: [0.0] };
-        let mut simulated = ControlLoop::new(MODEL, Rk4, feedback, latency, start, [0.0]);
+        let mut simulated = Loops::new(setup, dt, 0, [0.0], &[start], Execution::serial()).unwrap();
         let mut sizes = Vec::new();
         for _ in 0..400 {
-            word.iter().for_each(|&i| simulated.advance(dt * ratios[i]));
-            sizes.push(simulated.state().q[0].abs().ln());
+            simulated.advance(word.len() as u64).unwrap();
+            sizes.push(simulated.state(0).unwrap().q[0].abs().ln());
         }
         // One real eigenvalue is the largest: behind the start the growth is even, to rounding over 600 steps.
         let rate = (sizes[399] - sizes[199]) / 600.0;

@@ -29,12 +29,7 @@ pub trait Controller<T: Float, const D: usize>: Copy + Send + Sync {
 
     /// The command that follows from what is observed, `period` seconds after the last sample. It branches on
     /// nothing but what `self` holds, and is `#[inline(always)]`, or its loops are no vectors.
-    fn command(
-        &self,
-        memory: &mut Self::Memory,
-        observed: &State<T, D>,
-        period: T,
-    ) -> [T; D];
+    fn command(&self, memory: &mut Self::Memory, observed: &State<T, D>, period: T) -> [T; D];
 }
 
 /// `x`, but not beyond `±most`.

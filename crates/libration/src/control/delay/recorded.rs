@@ -13,7 +13,10 @@ pub struct RecordedLatencies<'a>(&'a [f64]);
 
 /// Why numbers are no record of latencies.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[error("latency {index} is {value} steps; it must be at least 0 and at most {}", Latency::MOST_STEPS)]
+#[error(
+    "latency {index} is {value} steps; it must be at least 0 and at most {}",
+    Latency::MOST_STEPS
+)]
 pub struct RecordedLatenciesError {
     /// Which, from 0 on.
     pub index: usize,

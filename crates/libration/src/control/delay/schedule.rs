@@ -26,7 +26,10 @@ pub struct Schedule {
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum ScheduleError {
     /// A latency is none.
-    #[error("the {name} is {value} steps; it must be at least 0 and at most {}", Latency::MOST_STEPS)]
+    #[error(
+        "the {name} is {value} steps; it must be at least 0 and at most {}",
+        Latency::MOST_STEPS
+    )]
     Latency {
         /// Which of them.
         name: &'static str,
@@ -34,7 +37,10 @@ pub enum ScheduleError {
         value: f64,
     },
     /// A sample time is none.
-    #[error("the sample time is {value} steps; it must be at least 1/64 and at most {}", Latency::MOST_STEPS)]
+    #[error(
+        "the sample time is {value} steps; it must be at least 1/64 and at most {}",
+        Latency::MOST_STEPS
+    )]
     Period {
         /// In steps.
         value: f64,
@@ -52,8 +58,7 @@ pub enum Event {
 
 impl Schedule {
     /// A look at the beginning of every step, and a command that acts at once.
-    pub const EVERY_STEP: Schedule =
-        Schedule { period: 1 << FRACTION, observation: 0, action: 0 };
+    pub const EVERY_STEP: Schedule = Schedule { period: 1 << FRACTION, observation: 0, action: 0 };
 
     /// A sample every `period` steps, with both latencies in steps.
     ///
@@ -64,7 +69,8 @@ impl Schedule {
         if !(1.0 / 64.0..=most).contains(&period) {
             return Err(ScheduleError::Period { value: period });
         }
-        let latencies = [("latency of the observation", observation), ("latency of the command", action)];
+        let latencies =
+            [("latency of the observation", observation), ("latency of the command", action)];
         if let Some(&(name, value)) = latencies.iter().find(|(_, x)| !(0.0..=most).contains(x)) {
             return Err(ScheduleError::Latency { name, value });
         }
@@ -102,7 +108,8 @@ impl Schedule {
         let Schedule { period, observation, action } = *self;
         // Commands whose look, or effect, lies in [begin, end).
         let mut look = (begin + observation).div_ceil(period);
-        let mut act = begin.saturating_sub(action).div_ceil(period).max(observation.div_ceil(period));
+        let mut act =
+            begin.saturating_sub(action).div_ceil(period).max(observation.div_ceil(period));
         core::iter::from_fn(move || {
             let (seen, done) = (look * period - observation, act * period + action);
             let part = |time: Time| (time - begin) as f64 / (1_u128 << FRACTION) as f64;
@@ -179,6 +186,9 @@ mod tests {
             assert!(matches!(Schedule::new(bad, 0.0, 0.0), Err(ScheduleError::Period { .. })));
         }
         let error = Schedule::new(1.0, 0.0, -1.0).unwrap_err().to_string();
-        assert_eq!(error, "the latency of the command is -1 steps; it must be at least 0 and at most 4096");
+        assert_eq!(
+            error,
+            "the latency of the command is -1 steps; it must be at least 0 and at most 4096"
+        );
     }
 }

@@ -105,7 +105,8 @@ where
         while begin < steps.end {
             let end = steps.end.min((begin / EPOCH + 1).saturating_mul(EPOCH));
             let mut times = Streams::resumed(seed, first, begin, Purpose::StepTime, words[0]);
-            let mut latencies = Streams::<W>::resumed(seed, first, begin, Purpose::Latency, words[1]);
+            let mut latencies =
+                Streams::<W>::resumed(seed, first, begin, Purpose::Latency, words[1]);
             if const { !K::ACTS } {
                 for step in begin..end {
                     let beat = clock.beat(step);

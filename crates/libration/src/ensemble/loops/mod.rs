@@ -14,9 +14,7 @@ use bytemuck::Pod;
 pub use setup::Setup;
 pub use snapshot::Snapshot;
 
-use super::{
-    Assign, Ensemble, EnsembleError, Execution, GRAIN, Nobody, Observer, chunk, shares,
-};
+use super::{Assign, Ensemble, EnsembleError, Execution, GRAIN, Nobody, Observer, chunk, shares};
 use crate::control::{Clock, Controller, Delay, Memory};
 use crate::{Float, Integrator, State, System};
 use kernel::Common;
@@ -81,8 +79,7 @@ where
         let trajectories = Ensemble::new(states, execution)?;
         let memories = Memories::new(len, layout.rows)?;
         let system = PhantomData;
-        let mut loops =
-            Loops { setup, layout, dt, seed, before, trajectories, memories, system };
+        let mut loops = Loops { setup, layout, dt, seed, before, trajectories, memories, system };
         (0..len).for_each(|n| loops.forget(n));
         Ok(loops)
     }
@@ -175,7 +172,8 @@ where
                 let mut sees = observer(share.first..share.first + share.len());
                 let watch = sees.as_mut().map(|(every, observer)| (*every, observer));
                 let steps = range.clone();
-                let run = Run { common: &common, share, rows, steps, watch, system: PhantomData::<Sys> };
+                let run =
+                    Run { common: &common, share, rows, steps, watch, system: PhantomData::<Sys> };
                 execution.instruction_set().run(run);
                 observers.extend(sees.map(|(_, observer)| observer));
             }

@@ -8,7 +8,7 @@ use bytemuck::Pod;
 use super::kernel::{Common, Steps};
 use super::rows::Rows;
 use crate::control::{Clock, Controller, Delay, Memory};
-use crate::ensemble::instructions::{Target, Targeted};
+use crate::ensemble::instructions::{Baseline, Target, Targeted};
 use crate::ensemble::planes::Share;
 use crate::ensemble::run::{Observe, widest};
 use crate::ensemble::{Assign, Observer};
@@ -31,8 +31,7 @@ const fn vectors<I: Target>(rows: usize) -> usize {
     if fit < 2 { 2 } else { fit }
 }
 
-impl<T, A, M, K, C, L, Sys, O, const D: usize> Targeted
-    for Run<'_, '_, T, A, M, K, C, L, Sys, O, D>
+impl<T, A, M, K, C, L, Sys, O, const D: usize> Targeted for Run<'_, '_, T, A, M, K, C, L, Sys, O, D>
 where
     T: Float + Pod,
     A: Assign<Sys>,
@@ -47,17 +46,7 @@ where
 
     fn on<I: Target>(self, target: I) {
         // Divisors of the pieces that the memory comes in; of these arms the compiler keeps one.
-        let rows = const {
-            let held = if K::ACTS { D } else { 0 };
-            let streams = if C::DRAWS { 2 } else { 0 };
-            2 * D + held + streams + C::Memory::LEN + K::Memory::LEN + L::Memory::LEN
-        };
-        let _ = rows;
-        match const { widest::<I, T>(vectors::<I>({
-            let held = if K::ACTS { D } else { 0 };
-            let streams = if C::DRAWS { 2 } else { 0 };
-            2 * D + held + streams + C::Memory::LEN + K::Memory::LEN + L::Memory::LEN
-        })) } {
+        match const { widest::<I, T>(vectors::<I>(Self::ROWS)) } {
             ..16 => self.blocks::<I, 8>(target),
             16..32 => self.blocks::<I, 16>(target),
             32..64 => self.blocks::<I, 32>(target),
@@ -79,6 +68,13 @@ where
     Sys: System<T, D>,
     O: Observer<T, D>,
 {
+    /// Rows of a block that change in every step.
+    const ROWS: usize = {
+        let held = if K::ACTS { D } else { 0 };
+        let streams = if C::DRAWS { 2 } else { 0 };
+        2 * D + held + streams + C::Memory::LEN + K::Memory::LEN + L::Memory::LEN
+    };
+
     /// Block after block, each from the first step to the last.
     fn blocks<I: Target, const W: usize>(mut self, target: I) {
         let first = self.share.first;
@@ -87,12 +83,18 @@ where
             self.block::<I, W>(target, first, block);
         }
         if self.share.len() == 1 {
+            // A lone one has no vectors: one kernel serves all instruction sets.
             let block = self.share.split_off(1);
-            self.block::<I, 1>(target, first, block);
+            self.block::<Baseline, 1>(Baseline, first, block);
         }
     }
 
-    fn block<I: Target, const W: usize>(&mut self, target: I, first: usize, block: Share<'a, T, D>) {
+    fn block<I: Target, const W: usize>(
+        &mut self,
+        target: I,
+        first: usize,
+        block: Share<'a, T, D>,
+    ) {
         let mut block = block;
         let systems = self.common.setup.systems.lanes::<W>(block.first, block.len());
         let mut step = self.steps.start;

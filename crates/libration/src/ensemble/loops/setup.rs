@@ -1,9 +1,9 @@
 //! What loops are made of.
 
+use crate::Float;
 use crate::control::clock::Fixed;
 use crate::control::controller::Open;
 use crate::control::{Clock, Controller, Delay, Memory, Schedule};
-use crate::Float;
 
 /// A plant with its integrator, and what drives and disturbs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
