@@ -2,7 +2,7 @@
 
 use libration::analysis::{Feedback, Jitter, Latency, Plant};
 use libration::number::Wide;
-use libration::{AnySystem, Model, Scalar, State, with_method};
+use libration::{AnySystem, Model, Scalar, State};
 use serde::Serialize;
 
 use super::{AnalyzeError, Request, Stepping};
@@ -128,9 +128,7 @@ fn of_model(model: impl Model<1>, latency: Latency, request: &Request) -> Timing
     let timing = &request.timing;
     let at = State { q: [request.q[0]], v: [request.v[0]] };
     let plant = match request.stepping {
-        Stepping::Method(method) => {
-            with_method!(method, |m| Plant::new(m, model, at, request.dt))
-        }
+        Stepping::Method(method) => Plant::new(method, model, at, request.dt),
         Stepping::Exact => Plant::exact(model, at, request.dt),
     };
     let feedback = timing.feedback.unwrap_or_default();

@@ -13,6 +13,9 @@ const CHUNK: u64 = 1 << 26;
 
 /// A float type in which many trajectories may be asked for.
 pub(super) trait Many: Number {
+    /// Whether the processor computes in it.
+    const WIDE: bool;
+
     /// Whether the copies of a request can be had, before anything is written.
     fn admits(request: &Request, copies: &Copies) -> Result<(), TrajectoryError>;
 
@@ -28,6 +31,8 @@ pub(super) trait Many: Number {
 macro_rules! vectors {
     ($($float:ident)*) => {$(
         impl Many for $float {
+            const WIDE: bool = true;
+
             fn many(
                 request: &Request,
                 copies: &Copies,
@@ -48,6 +53,8 @@ macro_rules! vectors {
 macro_rules! scalar_only {
     ($($float:ident)*) => {$(
         impl Many for $float {
+            const WIDE: bool = false;
+
             fn many(
                 request: &Request,
                 copies: &Copies,

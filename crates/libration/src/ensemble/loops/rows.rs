@@ -102,11 +102,4 @@ impl<T: Copy, const W: usize> Block<'_, T, W> {
             }
         }
     }
-
-    /// One number, or `fill` beyond the last piece.
-    #[inline(always)]
-    pub(super) fn at(&self, row: usize, l: usize, fill: T) -> T {
-        let place = (l / GRAIN * self.rows + row) * GRAIN + self.lane + l % GRAIN;
-        self.pieces.get(place).copied().unwrap_or(fill)
-    }
 }
