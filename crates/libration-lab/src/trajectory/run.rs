@@ -20,6 +20,9 @@ pub(super) fn run<S: Many>(
     rows: &mut dyn Rows<S>,
     stop: &AtomicBool,
 ) -> Result<Ending, TrajectoryError> {
+    if request.timing.first().is_some() {
+        return S::loops(request, rows, stop);
+    }
     if let Some(copies) = &request.copies {
         return S::many(request, copies, rows, stop);
     }

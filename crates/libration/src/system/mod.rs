@@ -1,5 +1,6 @@
 //! Physical systems `q̈ = a(q, v)`, each written once for every number type.
 
+mod chosen;
 mod damped;
 mod driven;
 mod duffing;
@@ -11,6 +12,7 @@ mod pendulum;
 
 use crate::{Elementary, Scalar, State};
 
+pub use chosen::Chosen;
 pub use damped::DampedOscillator;
 pub use driven::DrivenOscillator;
 pub use duffing::Duffing;
