@@ -3,6 +3,7 @@
 mod damped;
 mod driven;
 mod duffing;
+mod force_in;
 mod held;
 mod henon_heiles;
 mod kepler;
@@ -14,6 +15,7 @@ use crate::{Elementary, Scalar, State};
 pub use damped::DampedOscillator;
 pub use driven::DrivenOscillator;
 pub use duffing::Duffing;
+pub use force_in::ForceIn;
 pub use held::Held;
 pub use henon_heiles::HenonHeiles;
 pub use kepler::Kepler;
