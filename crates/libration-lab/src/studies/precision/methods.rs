@@ -1,0 +1,232 @@
+//! Every method in single precision beside exact arithmetic and beside `f64`: energy, phase and state.
+
+use std::f64::consts::TAU;
+
+use libration::analysis::{Slip, Spectrum, SymbolicStep, forecast_drift};
+use libration::{Float, Integrator, Method, State, with_method};
+
+use super::in_float::InFloat;
+use super::parts::nearest_turn;
+use super::tag;
+use super::trial::INDEPENDENT;
+use super::types::ERRORS;
+use crate::notation::{count, seconds};
+use crate::record::{Cell, Finding, Table, Tolerance};
+use crate::studies::rounding::slip_of_run;
+use crate::study::StudyError;
+use crate::{Lab, Record};
+
+/// Every method at every time step.
+pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
+    let config = lab.config;
+    let settings: Vec<(Method, f64)> = config
+        .precision
+        .dt
+        .iter()
+        .flat_map(|&dt| config.integrators.iter().map(move |&m| (m, dt)))
+        .collect();
+    let columns = [
+        "Δt (s)",
+        "integrator",
+        "drift, exact",
+        "in f64",
+        "in f32",
+        "phase error in f64 (rad)",
+        "f32 ahead of f64 (rad)",
+        "states apart",
+    ];
+    let mut table = Table::new("single and double precision", &columns);
+    let found = lab.sweep("single and double precision", &settings, |&(method, dt)| {
+        Ok(with_method!(method, |m| Compared::new(lab, method, m, dt)))
+    })?;
+    for compared in found.iter().flatten() {
+        compared.findings().into_iter().flatten().for_each(|finding| record.find(finding));
+        table.push(compared.row());
+    }
+    record.tables.push(table);
+    Ok(())
+}
+
+/// A run in one precision.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    /// Largest relative drift of the energy.
+    largest: f64,
+    /// The last state, as `(ωq, v)`.
+    end: (f64, f64),
+    /// Angle in rad by which the orbit has turned.
+    turned: f64,
+}
+
+/// The angle from one point to another, clockwise.
+fn between((x, y): (f64, f64), (to_x, to_y): (f64, f64)) -> f64 {
+    f64::atan2(y * to_x - x * to_y, x * to_x + y * to_y)
+}
+
+/// The run; none if it leaves the range of the float.
+fn run<I: Integrator, F: Float>(one: &InFloat<I, F>, steps: u64) -> Option<Run> {
+    let omega = one.model.omega2.sqrt();
+    let point = |state: &State<F, 1>| (omega * state.q[0].to_f64(), state.v[0].to_f64());
+    let energy = |(x, y): (f64, f64)| x * x + y * y;
+    // Eight looks a turn tell how far it has gone.
+    let stride = (TAU / (8.0 * one.z2().sqrt())).max(1.0) as u64;
+    let (mut state, mut looked) = (one.start, point(&one.start));
+    let initial = energy(looked);
+    let (mut largest, mut turned) = (0.0_f64, 0.0);
+    for n in 1..=steps {
+        state = one.step(state);
+        let here = point(&state);
+        largest = largest.max((energy(here) / initial - 1.0).abs());
+        if n % stride == 0 || n == steps {
+            turned += between(looked, here);
+            looked = here;
+            if !energy(here).is_finite() {
+                return None;
+            }
+        }
+    }
+    Some(Run { largest, end: looked, turned })
+}
+
+/// A method in both precisions.
+struct Compared {
+    method: Method,
+    dt: f64,
+    omega: f64,
+    steps: u64,
+    single: Option<Run>,
+    double: Option<Run>,
+    /// The largest drift of the `f32` step in exact arithmetic.
+    exact: f64,
+    /// What rounding may leave in an `f32` energy, relative to it; none where roundings are alike.
+    rounding: Option<f64>,
+    /// Angle in rad by which the `f32` run is ahead, by its rounded parameters.
+    ahead: f64,
+    /// Phase error of the `f64` run, and how far it may be off: none where the step does not turn.
+    slip: Option<(f64, f64)>,
+}
+
+impl Compared {
+    fn new<I: Integrator>(lab: &Lab<'_>, method: Method, i: I, dt: f64) -> Option<Self> {
+        let (config, steps) = (lab.config, lab.config.precision.steps);
+        let (single, double) =
+            (InFloat::<_, f32>::new(i, config, dt)?, InFloat::<_, f64>::new(i, config, dt)?);
+        let start = single.start.map(f64::from);
+        let exact = forecast_drift(single.model, &single.matrix, &start, steps)?.drift.to_f64();
+        let n = steps as f64;
+        let independent = single.z2() >= INDEPENDENT * f32::UNIT_ROUNDOFF;
+        let local = single.rounding::<f64>(lab.effort.choose(200_000, 1_000_000, 4_000_000));
+        let rounding = local.filter(|_| independent).map(|local| {
+            ERRORS * (local.spread * n).sqrt() + (local.mean.abs() + ERRORS * local.mean_error) * n
+        });
+        let omega = double.model.omega2.sqrt();
+        let slip = SymbolicStep::new(i).and_then(|step| Slip::new(&step, omega * dt)).map(|slip| {
+            // Along an ellipse of axes κ : 1 the angle runs ahead of the phase by up to asin(tanh ln κ).
+            let wobble = 2.0 * slip.ellipse.abs().tanh().asin();
+            (n * slip.phase, wobble + slip_of_run(method, omega, dt, steps))
+        });
+        let turn = |one: &Spectrum| one.angle().to_f64();
+        let ahead =
+            n * (turn(&Spectrum::new(&single.matrix)) - turn(&Spectrum::new(&double.matrix)));
+        Some(Compared {
+            method,
+            dt,
+            omega,
+            steps,
+            single: run(&single, steps),
+            double: run(&double, steps),
+            exact,
+            rounding,
+            ahead,
+            slip,
+        })
+    }
+
+    /// Angle by which the `f32` run is ahead, and the distance of the two states relative to the amplitude.
+    fn apart(&self) -> Option<(f64, f64)> {
+        let (single, double) = (self.single?, self.double?);
+        let ahead = nearest_turn(between(double.end, single.end), self.ahead);
+        let (x, y) = double.end;
+        let distance = (single.end.0 - x).hypot(single.end.1 - y);
+        Some((ahead, distance / x.hypot(y)))
+    }
+
+    /// The phase error of the `f64` run.
+    fn slipped(&self) -> Option<f64> {
+        self.double.map(|run| run.turned - self.z() * self.steps as f64)
+    }
+
+    fn z(&self) -> f64 {
+        self.dt * self.omega
+    }
+
+    fn findings(&self) -> [Option<Finding>; 3] {
+        let id = |what: &str| format!("precision.{}.{}.{what}", self.method.name(), tag(self.dt));
+        let text = |what: &str| {
+            let (title, dt) = (self.method.title(), seconds(self.dt, 3));
+            format!("{title} at Δt = {dt}, {} steps: {what}", count(self.steps))
+        };
+        let energy = self.single.map(|run| {
+            let what = text("largest energy drift in f32, beside that of exact arithmetic");
+            match self.rounding {
+                Some(rounding) => Finding::predicted(
+                    id("f32"),
+                    what,
+                    "1",
+                    self.exact,
+                    run.largest,
+                    Tolerance::absolute(
+                        (1.0 + self.exact) * rounding,
+                        "what the roundings of single steps leave: four times √n of their scatter, \
+                         n times their mean, and four times the error of that",
+                    ),
+                ),
+                None => Finding::measured(id("f32"), what, "1", run.largest),
+            }
+        });
+        let slip = self.slip.zip(self.slipped()).map(|((predicted, error), measured)| {
+            Finding::predicted(
+                id("phase"),
+                text("phase error in f64"),
+                "rad",
+                predicted,
+                measured,
+                Tolerance::absolute(
+                    error,
+                    "the angle along an ellipse is ahead of the phase or behind; and rounding, as \
+                     for the energy, with 8 roundings of ωt",
+                ),
+            )
+        });
+        let ahead = self.apart().zip(self.rounding).map(|((measured, _), rounding)| {
+            Finding::predicted(
+                id("ahead"),
+                text("angle by which the run in f32 is ahead of that in f64: by its rounded step"),
+                "rad",
+                self.ahead,
+                measured,
+                Tolerance::absolute(
+                    rounding + 0.1 * self.z() * f32::UNIT_ROUNDOFF * self.steps as f64,
+                    "what rounding may leave in the energy, and a tenth of z·u a step for roundings \
+                     along the orbit that are alike",
+                ),
+            )
+        });
+        [energy, slip, ahead]
+    }
+
+    fn row(&self) -> Vec<Cell> {
+        let left = || Cell::absent("overflows");
+        let drift = |run: Option<Run>| run.map_or_else(left, |run| Cell::rounded(run.largest, 4));
+        vec![
+            self.dt.into(),
+            self.method.title().into(),
+            Cell::rounded(self.exact, 4),
+            drift(self.double),
+            drift(self.single),
+            self.slipped().map_or_else(left, |slip| Cell::rounded(slip, 3)),
+            self.apart().map_or_else(left, |(ahead, _)| Cell::rounded(ahead, 3)),
+            self.apart().map_or_else(left, |(_, distance)| Cell::rounded(distance, 3)),
+        ]
+    }
+}
