@@ -1,8 +1,8 @@
 //! Clocks that add up their steps.
 
 use half::{bf16, f16};
-use libration::analysis::float_clock;
 use libration::Float;
+use libration::analysis::float_clock;
 
 use super::tag;
 use crate::notation::{count, seconds};

@@ -12,7 +12,7 @@ use super::trial::INDEPENDENT;
 use super::types::ERRORS;
 use crate::notation::{count, seconds};
 use crate::record::{Cell, Finding, Table, Tolerance};
-use crate::studies::rounding::slip_of_run;
+use crate::studies::rounding::{rounding_of_run, slip_of_run};
 use crate::study::StudyError;
 use crate::{Lab, Record};
 
@@ -88,6 +88,12 @@ fn run<I: Integrator, F: Float>(one: &InFloat<I, F>, steps: u64) -> Option<Run> 
     Some(Run { largest, end: looked, turned })
 }
 
+/// The largest drift in exact arithmetic.
+fn forecast<I: Integrator, F: Float>(one: &InFloat<I, F>, steps: u64) -> Option<f64> {
+    let start = one.start.map(F::to_f64);
+    Some(forecast_drift(one.model, &one.matrix, &start, steps)?.drift.to_f64())
+}
+
 /// A method in both precisions.
 struct Compared {
     method: Method,
@@ -96,8 +102,10 @@ struct Compared {
     steps: u64,
     single: Option<Run>,
     double: Option<Run>,
-    /// The largest drift of the `f32` step in exact arithmetic.
-    exact: f64,
+    /// The largest drift in exact arithmetic, of the `f32` step and of the `f64` step.
+    exact: [f64; 2],
+    /// How far these orbits stay off the edge of their bands.
+    gap: [f64; 2],
     /// What rounding may leave in an `f32` energy, relative to it; none where roundings are alike.
     rounding: Option<f64>,
     /// Angle in rad by which the `f32` run is ahead, by its rounded parameters.
@@ -111,8 +119,9 @@ impl Compared {
         let (config, steps) = (lab.config, lab.config.precision.steps);
         let (single, double) =
             (InFloat::<_, f32>::new(i, config, dt)?, InFloat::<_, f64>::new(i, config, dt)?);
-        let start = single.start.map(f64::from);
-        let exact = forecast_drift(single.model, &single.matrix, &start, steps)?.drift.to_f64();
+        let exact = [forecast(&single, steps)?, forecast(&double, steps)?];
+        let edges = [single.truncation(), double.truncation()];
+        let gap = [0, 1].map(|i| (edges[i] - exact[i]).max(0.0));
         let n = steps as f64;
         let independent = single.z2() >= INDEPENDENT * f32::UNIT_ROUNDOFF;
         let local = single.rounding::<f64>(lab.effort.choose(200_000, 1_000_000, 4_000_000));
@@ -136,6 +145,7 @@ impl Compared {
             single: run(&single, steps),
             double: run(&double, steps),
             exact,
+            gap,
             rounding,
             ahead,
             slip,
@@ -160,7 +170,7 @@ impl Compared {
         self.dt * self.omega
     }
 
-    fn findings(&self) -> [Option<Finding>; 3] {
+    fn findings(&self) -> [Option<Finding>; 4] {
         let id = |what: &str| format!("precision.{}.{}.{what}", self.method.name(), tag(self.dt));
         let text = |what: &str| {
             let (title, dt) = (self.method.title(), seconds(self.dt, 3));
@@ -173,16 +183,33 @@ impl Compared {
                     id("f32"),
                     what,
                     "1",
-                    self.exact,
+                    self.exact[0],
                     run.largest,
                     Tolerance::absolute(
-                        (1.0 + self.exact) * rounding,
+                        (1.0 + self.exact[0]) * rounding + self.gap[0],
                         "what the roundings of single steps leave: four times √n of their scatter, \
-                         n times their mean, and four times the error of that",
+                         n times their mean, and four times the error of that; and how far the orbit \
+                         stays off the edge of its band",
                     ),
                 ),
                 None => Finding::measured(id("f32"), what, "1", run.largest),
             }
+        });
+        let double = self.double.map(|run| {
+            let rounding = rounding_of_run(self.method, self.omega, self.dt, self.steps);
+            Finding::predicted(
+                id("f64"),
+                text("largest energy drift in f64, beside that of exact arithmetic"),
+                "1",
+                self.exact[1],
+                run.largest,
+                Tolerance::absolute(
+                    (1.0 + self.exact[1]) * rounding + self.gap[1],
+                    "eᶻ(12√n + s·n) roundings, with s = z/10 for products of shears and z² for \
+                     others, as in the study of drift; and how far the orbit stays off the edge of \
+                     its band",
+                ),
+            )
         });
         let slip = self.slip.zip(self.slipped()).map(|((predicted, error), measured)| {
             Finding::predicted(
@@ -212,7 +239,7 @@ impl Compared {
                 ),
             )
         });
-        [energy, slip, ahead]
+        [energy, double, slip, ahead]
     }
 
     fn row(&self) -> Vec<Cell> {
@@ -221,7 +248,7 @@ impl Compared {
         vec![
             self.dt.into(),
             self.method.title().into(),
-            Cell::rounded(self.exact, 4),
+            Cell::rounded(self.exact[1], 4),
             drift(self.double),
             drift(self.single),
             self.slipped().map_or_else(left, |slip| Cell::rounded(slip, 3)),
