@@ -90,12 +90,12 @@ impl<I: Integrator, F: Float> InFloat<I, F> {
         (at(to) - before).to_f64() / before.to_f64()
     }
 
-    /// How far round its orbit a state is, in rad.
-    pub(super) fn phase(&self, state: &State<F, 1>) -> f64 {
+    /// A state in coordinates in which the unrounded step turns clockwise, along circles.
+    pub(super) fn normal(&self, state: &State<F, 1>) -> (f64, f64) {
         let QuadraticForm { qq, qv, vv } = self.form.map(|x| x.to_f64());
         let State { q: [q], v: [v] } = state.map(F::to_f64);
         // vv·Q = (vv·v + qv·q)² + (qq·vv − qv²)·q²
-        f64::atan2(-(vv * v + qv * q), (qq * vv - qv * qv).sqrt() * q)
+        ((qq * vv - qv * qv).sqrt() * q, vv.signum() * (vv * v + qv * q))
     }
 
     /// `count` starts round the orbit of the configured one, and up to a thousandth within it: their roundings have

@@ -10,6 +10,7 @@ use libration::{Float, Integrator, Model, State};
 
 use super::in_float::InFloat;
 use super::orbits::follow;
+use super::trial::INDEPENDENT;
 use super::types::ERRORS;
 use crate::notation::count;
 use crate::record::{Cell, Finding, Table, Tolerance};
@@ -79,8 +80,8 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
             found.phase[1],
             Tolerance::absolute(
                 found.phase_error,
-                "what roundings across the orbit leave, four times over, and a tenth of z·u a step \
-                 for those that are alike",
+                "what roundings across the orbit leave, four times over; a tenth of z·u a step for those \
+                 that are alike; and four roundings of the whole angle",
             ),
         ));
         for (clock, behind) in [("counted", 0.0), ("f32 sum", late(found.dt, steps))] {
@@ -111,12 +112,15 @@ fn of<S: Float, G: Float, W: Float>(lab: &Lab<'_>) -> Option<Found> {
     let &dt = config.precision.dt.last()?;
     let one = InFloat::<_, S>::with_force_in::<G>(VelocityVerlet, config, dt)?;
     let exact = InFloat::<_, f64>::new(VelocityVerlet, config, dt)?;
+    if one.z2() < INDEPENDENT * S::UNIT_ROUNDOFF.max(G::UNIT_ROUNDOFF) {
+        return None;
+    }
     let force = ForceIn::<_, G>::new(Model::<1>::on::<G>(&one.model));
     let step = |state| VelocityVerlet.step(&force, state, one.dt);
     let (wide, wide_dt) = (Model::<1>::on::<W>(&one.model), W::from_f64(one.dt.to_f64()));
     let unrounded = |state| VelocityVerlet.step(&wide, state, wide_dt);
     let local = one.rounding_of(lab.effort.choose(100_000, 200_000, 1_000_000), step, unrounded)?;
-    let orbits = lab.effort.choose(16, 32, 128);
+    let orbits = lab.effort.choose(16, 64, 256);
     let change = |from: &State<S, 1>, to: &State<S, 1>| one.change(from, to);
     let followed = follow(&one.starts(orbits), &[steps], step, change);
     let drifts: Vec<f64> = followed.iter().map(|orbit| orbit.seen[0]).collect();
@@ -126,15 +130,22 @@ fn of<S: Float, G: Float, W: Float>(lab: &Lab<'_>) -> Option<Found> {
     let walk = (local.spread * n).sqrt();
     let end = (0..steps).fold(one.start, |state, _| step(state));
     let slip = n * (one.angle - exact.angle);
-    let turned = one.phase(&end) - one.phase(&one.start) - n * exact.angle;
+    let turned = between(one.normal(&one.start), one.normal(&end)) - n * exact.angle;
+    // The angle of all steps is rounded, too.
+    let angle = 4.0 * f64::UNIT_ROUNDOFF * n * exact.angle;
     Some(Found {
         scatter: [walk, (squares / (orbits as f64 - 1.0)).sqrt()],
         orbits,
         phase: [slip, nearest_turn(turned, slip)],
-        phase_error: ERRORS * walk + 0.1 * one.z2().sqrt() * S::UNIT_ROUNDOFF * n,
+        phase_error: ERRORS * walk + 0.1 * one.z2().sqrt() * S::UNIT_ROUNDOFF * n + angle,
         angle: exact.angle,
         dt,
     })
+}
+
+/// The angle from one point to another, clockwise, in rad.
+pub(super) fn between((x, y): (f64, f64), (to_x, to_y): (f64, f64)) -> f64 {
+    f64::atan2(y * to_x - x * to_y, x * to_x + y * to_y)
 }
 
 /// `angle`, which is known up to whole turns, near `guess`.

@@ -1,12 +1,12 @@
 //! The textbook's form of Verlet in single precision: rounding with a bias.
 
 use libration::integrator::{TextbookVerlet, VelocityVerlet};
-use libration::{Integrator, State};
+use libration::{Float, Integrator, State};
 
 use super::in_float::InFloat;
 use super::orbits::follow;
 use super::tag;
-use super::trial::closes;
+use super::trial::{INDEPENDENT, closes};
 use super::types::{self, ERRORS};
 use crate::notation::{count, seconds};
 use crate::record::{Finding, Series, Table, Tolerance};
@@ -19,7 +19,7 @@ const PER_DECADE: f64 = 8.0;
 
 /// How much of a bias may change along an orbit, as its energy does: a coordinate that passes a power of two rounds on
 /// another grid from there on. Measured over starts within a thousandth: less than a fifth.
-const CHANGE: f64 = 0.25;
+pub(super) const CHANGE: f64 = 0.25;
 
 /// Both forms at every time step in `f32`, and the cycle of the textbook's at the largest.
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
@@ -39,11 +39,11 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         table.push([
             dt.into(),
             title.into(),
-            (form.bias / f64::from(f32::EPSILON / 2.0)).into(),
+            (form.bias / f32::UNIT_ROUNDOFF).into(),
             form.predicted.into(),
             form.rms.into(),
         ]);
-        record.find(form.finding);
+        form.finding.into_iter().for_each(|finding| record.find(finding));
         record.series.push(form.series);
     }
     record.tables.push(table);
@@ -60,7 +60,8 @@ struct Form {
     bias: f64,
     predicted: f64,
     rms: f64,
-    finding: Finding,
+    /// None where neighbouring steps round alike.
+    finding: Option<Finding>,
     series: Series,
 }
 
@@ -69,7 +70,7 @@ fn of<I: Integrator>(lab: &Lab<'_>, name: &'static str, method: I, dt: f64) -> O
     let one = InFloat::<_, f32>::new(method, config, dt)?;
     let local = one.rounding::<f64>(lab.effort.choose(1_000_000, 4_000_000, 16_000_000))?;
     let sampled = sampled_steps(steps, PER_DECADE);
-    let orbits = lab.effort.choose(8, 16, 64);
+    let orbits = lab.effort.choose(8, 32, 128);
     let change = |from: &State<f32, 1>, to: &State<f32, 1>| one.change(from, to);
     let followed = follow(&one.starts(orbits), &sampled, |s| one.step(s), change);
     let at = |i: usize| followed.iter().map(move |orbit| orbit.seen[i]);
@@ -105,5 +106,7 @@ fn of<I: Integrator>(lab: &Lab<'_>, name: &'static str, method: I, dt: f64) -> O
             sampled.iter().map(|&n| local.drift_after(n as f64)).collect(),
         );
     let predicted = local.drift_after(n);
+    let independent = one.z2() >= INDEPENDENT * f32::UNIT_ROUNDOFF;
+    let finding = independent.then_some(finding);
     Some(Form { name, bias: local.bias(), predicted, rms: rms(last), finding, series })
 }

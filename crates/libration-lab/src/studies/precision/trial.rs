@@ -46,7 +46,7 @@ pub(super) const INDEPENDENT: f64 = 16.0;
 
 /// Steps of an orbit that is not yet near its end in a cycle, in units of `1/u`. Orbits were found to close after
 /// `1/u` steps or a few of them, and to feel it from a tenth of that on.
-const OPEN: f64 = 1.0 / 32.0;
+const OPEN: f64 = 1.0 / 16.0;
 
 /// Follows orbits in the float `F`, beside the wide number `W`.
 pub(super) fn run<F: Float, W: Float>(lab: &Lab<'_>, kind: &Kind) -> Option<Trial> {
@@ -54,14 +54,14 @@ pub(super) fn run<F: Float, W: Float>(lab: &Lab<'_>, kind: &Kind) -> Option<Tria
     let (&dt, steps) = (config.precision.dt.last()?, config.precision.steps);
     let one = InFloat::<_, F>::new(VelocityVerlet, config, dt)?;
     let sampled = sampled_steps(steps, PER_DECADE);
-    let starts = one.starts(lab.effort.choose(8, 32, 128));
+    let starts = one.starts(lab.effort.choose(16, 64, 256));
     let orbits = follow(&starts, &sampled, |s| one.step(s), |from, to| one.change(from, to));
     let u = F::UNIT_ROUNDOFF;
     // What a type that keeps its roundings can resolve is the square of that.
     let resolution = if kind.compensated { u * u } else { u };
     let open = sampled.iter().copied().filter(|&n| n as f64 <= OPEN / resolution).next_back();
     // Types with more digits than an f64 has to spare are compared in a slower number.
-    let samples = lab.effort.choose(200_000, 1_000_000, 4_000_000);
+    let samples = lab.effort.choose(400_000, 2_000_000, 8_000_000);
     let slow = if W::UNIT_ROUNDOFF < f64::UNIT_ROUNDOFF { 8 } else { 1 };
     Some(Trial {
         name: kind.name,
