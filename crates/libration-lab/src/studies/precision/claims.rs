@@ -18,7 +18,9 @@ const VISIBLE: f64 = 0.1;
 pub(super) fn judge(config: &Config, record: &mut Record) {
     drifts(config, record);
     sufficient(config, record);
-    if source::is_its_orbit(config) && config.precision.steps == source::STEPS {
+    let own_run =
+        config.precision.steps == source::STEPS && config.precision.dt.contains(&source::DT);
+    if source::is_its_orbit(config) && own_run {
         long_horizon(config, record);
     }
     rounded_step(config, record);
@@ -28,7 +30,7 @@ fn id(method: Method, dt: f64, what: &str) -> String {
     format!("precision.{}.{}.{what}", method.name(), tag(dt))
 }
 
-/// The findings `what` of these methods at all time steps, as far as the record holds them, each with its setting.
+/// The findings `what` of these methods at all time steps, as far as the record holds predictions of them, each with its setting.
 fn found(
     config: &Config,
     record: &Record,
@@ -37,7 +39,7 @@ fn found(
 ) -> Vec<(Method, f64, String)> {
     let all = config.precision.dt.iter().flat_map(|&dt| methods.iter().map(move |&m| (m, dt)));
     let ids = all.map(|(m, dt)| (m, dt, id(m, dt, what)));
-    ids.filter(|(_, _, id)| record.finding(id).is_ok()).collect()
+    ids.filter(|(_, _, id)| record.finding(id).is_ok_and(|f| f.predicted.is_some())).collect()
 }
 
 /// [`Record::judge`] with identifiers that were made at run time; nothing without findings.
@@ -94,8 +96,8 @@ fn drifts(config: &Config, record: &mut Record) {
             f,
             format!(
                 "the ratios are {}. No run diverges: the largest drift of all is {}. The source’s own \
-                 number, δE ≈ 0.005, is what symplectic Euler swings by at z = 0.01: the one method \
-                 that cannot show a difference",
+                 number, δE ≈ 0.005, is what symplectic Euler swings by at z = 0.01: of its \
+                 methods the one that shows least of its rounding",
                 told(f),
                 number(largest, 2)
             ),
@@ -131,7 +133,7 @@ fn sufficient(config: &Config, record: &mut Record) {
         Judgement::not_reproducible(format!(
             "nothing was learned in either precision, so there is nothing to compare. What can be \
              said: after the whole run of symplectic Euler f32 and f64 are apart by {} rad, which is \
-             far below the error of the method",
+             below the error of the method itself",
             list(&sizes)
         ))
     });

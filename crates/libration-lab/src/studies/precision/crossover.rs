@@ -6,7 +6,6 @@ use libration::{Float, State};
 use super::in_float::InFloat;
 use super::orbits::follow;
 use super::tag;
-use super::trial::INDEPENDENT;
 use super::types::ERRORS;
 use crate::notation::{count, seconds};
 use crate::record::{Cell, Finding, Table, Tolerance};
@@ -59,8 +58,8 @@ fn at(lab: &Lab<'_>, dt: f64) -> Option<(f64, f64, Option<f64>)> {
     let predicted = local.steps_to(truncation);
     // Four times as far, and no more work than a million steps of four orbits.
     let reach = 4.0 * predicted;
-    let alike = one.z2() < INDEPENDENT * f32::UNIT_ROUNDOFF;
-    if alike || !(8.0..4e6 / ORBITS as f64).contains(&reach) {
+    let random = one.rounds_at_random(f32::UNIT_ROUNDOFF);
+    if !random || !(8.0..4e6 / ORBITS as f64).contains(&reach) {
         return Some((truncation, predicted, None));
     }
     let sampled = sampled_steps(reach as u64, PER_DECADE);

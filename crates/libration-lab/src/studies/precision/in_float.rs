@@ -72,9 +72,17 @@ impl<I: Integrator, F: Float> InFloat<I, F> {
         self.method.step(&self.system, state, self.dt)
     }
 
-    /// `z²`.
-    pub(super) fn z2(&self) -> f64 {
-        self.model.omega2 * self.dt.to_f64() * self.dt.to_f64()
+    /// `z = ωΔt`.
+    pub(super) fn z(&self) -> f64 {
+        self.model.omega2.sqrt() * self.dt.to_f64()
+    }
+
+    /// Whether the roundings of a run have little to do with each other, in units in the last place of `2u`.
+    ///
+    /// Increments of neighbouring steps must differ by eight units, or they round alike: `z² ≥ 16u`. And a turn must
+    /// have a dozen steps at least: an orbit that closes after a few rounds alike every time.
+    pub(super) fn rounds_at_random(&self, u: f64) -> bool {
+        (4.0 * u.sqrt()..=0.5).contains(&self.z())
     }
 
     /// The largest drift that the error of the method makes of the configured start.

@@ -10,7 +10,6 @@ use libration::{Float, Integrator, Model, State};
 
 use super::in_float::InFloat;
 use super::orbits::follow;
-use super::trial::INDEPENDENT;
 use super::types::ERRORS;
 use crate::notation::count;
 use crate::record::{Cell, Finding, Table, Tolerance};
@@ -112,7 +111,8 @@ fn of<S: Float, G: Float, W: Float>(lab: &Lab<'_>) -> Option<Found> {
     let &dt = config.precision.dt.last()?;
     let one = InFloat::<_, S>::with_force_in::<G>(VelocityVerlet, config, dt)?;
     let exact = InFloat::<_, f64>::new(VelocityVerlet, config, dt)?;
-    if one.z2() < INDEPENDENT * S::UNIT_ROUNDOFF.max(G::UNIT_ROUNDOFF) {
+    let coarser = S::UNIT_ROUNDOFF.max(G::UNIT_ROUNDOFF);
+    if !one.rounds_at_random(coarser) {
         return None;
     }
     let force = ForceIn::<_, G>::new(Model::<1>::on::<G>(&one.model));
@@ -137,7 +137,7 @@ fn of<S: Float, G: Float, W: Float>(lab: &Lab<'_>) -> Option<Found> {
         scatter: [walk, (squares / (orbits as f64 - 1.0)).sqrt()],
         orbits,
         phase: [slip, nearest_turn(turned, slip)],
-        phase_error: ERRORS * walk + 0.1 * one.z2().sqrt() * S::UNIT_ROUNDOFF * n + angle,
+        phase_error: ERRORS * walk + 0.1 * one.z() * coarser * n + angle,
         angle: exact.angle,
         dt,
     })

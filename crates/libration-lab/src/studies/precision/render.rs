@@ -22,7 +22,8 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
         "A float type has finitely many states, so every orbit ends in a cycle, and from there on \
          nothing drifts any more. The fewer bits, the sooner: after about as many steps as the \
          significand has values. `u` is the unit roundoff; where a prediction says `closes`, orbits \
-         close within the run, or neighbouring steps round alike (z² < 16u), and √n is not expected.",
+         close within the run, or steps do not round at random: neighbours alike where z² < 16u, whole turns \
+         where a turn has few steps.",
     );
     page.table(record.table("float types")?, 3);
     page.heading("A bias");

@@ -6,7 +6,7 @@ use libration::{Float, Integrator, State};
 use super::in_float::InFloat;
 use super::orbits::follow;
 use super::tag;
-use super::trial::{INDEPENDENT, closes};
+use super::trial::closes;
 use super::types::{self, ERRORS};
 use crate::notation::{count, seconds};
 use crate::record::{Finding, Series, Table, Tolerance};
@@ -19,7 +19,7 @@ const PER_DECADE: f64 = 8.0;
 
 /// How much of a bias may change along an orbit, as its energy does: a coordinate that passes a power of two rounds on
 /// another grid from there on. Measured over starts within a thousandth: less than a fifth.
-pub(super) const CHANGE: f64 = 0.25;
+const CHANGE: f64 = 0.25;
 
 /// Both forms at every time step in `f32`, and the cycle of the textbook's at the largest.
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
@@ -60,7 +60,7 @@ struct Form {
     bias: f64,
     predicted: f64,
     rms: f64,
-    /// None where neighbouring steps round alike.
+    /// None where steps do not round at random.
     finding: Option<Finding>,
     series: Series,
 }
@@ -106,7 +106,6 @@ fn of<I: Integrator>(lab: &Lab<'_>, name: &'static str, method: I, dt: f64) -> O
             sampled.iter().map(|&n| local.drift_after(n as f64)).collect(),
         );
     let predicted = local.drift_after(n);
-    let independent = one.z2() >= INDEPENDENT * f32::UNIT_ROUNDOFF;
-    let finding = independent.then_some(finding);
+    let finding = one.rounds_at_random(f32::UNIT_ROUNDOFF).then_some(finding);
     Some(Form { name, bias: local.bias(), predicted, rms: rms(last), finding, series })
 }

@@ -40,10 +40,6 @@ pub(super) struct Closed {
     pub(super) last: [f64; 2],
 }
 
-/// `z²` in units of `u` from which on neighbouring steps round independently: their increments then differ by eight
-/// units in the last place.
-pub(super) const INDEPENDENT: f64 = 16.0;
-
 /// Steps of an orbit that is not yet near its end in a cycle, in units of `1/u`. Orbits were found to close after
 /// `1/u` steps or a few of them, and to feel it from a tenth of that on.
 const OPEN: f64 = 1.0 / 16.0;
@@ -67,7 +63,7 @@ pub(super) fn run<F: Float, W: Float>(lab: &Lab<'_>, kind: &Kind) -> Option<Tria
         name: kind.name,
         bits: kind.bits,
         unit_roundoff: u,
-        comparable: open.filter(|_| one.z2() >= INDEPENDENT * resolution),
+        comparable: open.filter(|_| one.rounds_at_random(resolution)),
         local: one.rounding::<W>(samples / slow),
         sampled,
         orbits,
