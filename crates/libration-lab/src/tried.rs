@@ -103,7 +103,7 @@ pub const TRIED: &[Tried] = &[
     tried("C46", "throughput", &[], &["9.7"]),
     tried("C47", "throughput", &[], &["roofline"]),
     tried("C53", "precision", &[SymplecticEuler, VelocityVerlet, Rk4], &["precision-types"]),
-    // Of runs that the source did not make.
+    // Of angles, which stand in a table.
     tried("C58a", "precision", &[SymplecticEuler], &[]),
     of_its_run("C59", "precision", &[SymplecticEuler, VelocityVerlet], &[]),
     of_its_run("C59a", "precision", &[VelocityVerlet], &[]),

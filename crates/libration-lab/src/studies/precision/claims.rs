@@ -30,7 +30,8 @@ fn id(method: Method, dt: f64, what: &str) -> String {
     format!("precision.{}.{}.{what}", method.name(), tag(dt))
 }
 
-/// The findings `what` of these methods at all time steps, as far as the record holds predictions of them, each with its setting.
+/// The findings `what` of these methods at all time steps, each with its setting, as far as the record holds
+/// predictions of them.
 fn found(
     config: &Config,
     record: &Record,

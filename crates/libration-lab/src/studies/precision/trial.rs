@@ -55,7 +55,7 @@ pub(super) fn run<F: Float, W: Float>(lab: &Lab<'_>, kind: &Kind) -> Option<Tria
     let u = F::UNIT_ROUNDOFF;
     // What a type that keeps its roundings can resolve is the square of that.
     let resolution = if kind.compensated { u * u } else { u };
-    let open = sampled.iter().copied().filter(|&n| n as f64 <= OPEN / resolution).next_back();
+    let open = sampled.iter().copied().rfind(|&n| n as f64 <= OPEN / resolution);
     // Types with more digits than an f64 has to spare are compared in a slower number.
     let samples = lab.effort.choose(400_000, 2_000_000, 8_000_000);
     let slow = if W::UNIT_ROUNDOFF < f64::UNIT_ROUNDOFF { 8 } else { 1 };
