@@ -22,7 +22,7 @@ const fn plain(name: &'static str, bits: u32, run: fn(&Lab<'_>, &Kind) -> Option
     Kind { name, bits, compensated: false, run }
 }
 
-/// All of them, by rising precision. Half of the digits are spare where an `f64` is the wide number.
+/// All of them, by rising precision. An `f64` is much wider than up to 36 bits.
 pub(super) const KINDS: &[Kind] = &[
     plain("bf16", 8, trial::run::<bf16, f64>),
     plain("f16", 11, trial::run::<f16, f64>),

@@ -58,7 +58,6 @@ fn brouwer(trial: &Trial, record: &mut Record) {
     let Some(i) = trial.sampled.iter().position(|&sampled| sampled == n) else { return };
     let (mean, scatter) = trial.moments(i);
     let (walk, orbits) = (independent(trial, n), trial.count() as f64);
-    // The scatter of a sample has the relative error 1/√(2(m − 1)), and that of fewer still is not known to a half.
     let relative = ERRORS / (2.0 * (orbits - 1.0)).sqrt();
     let after = format!("after {} steps over {} orbits", count(n), trial.count());
     record.find(Finding::predicted(
