@@ -125,7 +125,7 @@ impl Compared {
         // The bias of the textbook's form changes along the orbit; it has a section of its own.
         let random =
             single.rounds_at_random(f32::UNIT_ROUNDOFF) && method != Method::TextbookVerlet;
-        let local = single.rounding::<f64>(lab.effort.choose(1_000_000, 2_000_000, 8_000_000));
+        let local = single.rounding::<f64>(lab.effort.choose(1_000_000, 1_000_000, 8_000_000));
         let rounding = local.filter(|_| random).map(|local| {
             ERRORS * (local.spread * n).sqrt()
                 + (local.bias().abs() + ERRORS * local.mean_error) * n

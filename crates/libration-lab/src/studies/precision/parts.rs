@@ -120,7 +120,7 @@ fn of<S: Float, G: Float, W: Float>(lab: &Lab<'_>) -> Option<Found> {
     let (wide, wide_dt) = (Model::<1>::on::<W>(&one.model), W::from_f64(one.dt.to_f64()));
     let unrounded = |state| VelocityVerlet.step(&wide, state, wide_dt);
     let local = one.rounding_of(lab.effort.choose(100_000, 200_000, 1_000_000), step, unrounded)?;
-    let orbits = lab.effort.choose(16, 64, 256);
+    let orbits = lab.effort.choose(16, 24, 128);
     let change = |from: &State<S, 1>, to: &State<S, 1>| one.change(from, to);
     let followed = follow(&one.starts(orbits), &[steps], step, change);
     let drifts: Vec<f64> = followed.iter().map(|orbit| orbit.seen[0]).collect();

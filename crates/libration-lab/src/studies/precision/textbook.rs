@@ -70,7 +70,7 @@ fn of<I: Integrator>(lab: &Lab<'_>, name: &'static str, method: I, dt: f64) -> O
     let one = InFloat::<_, f32>::new(method, config, dt)?;
     let local = one.rounding::<f64>(lab.effort.choose(1_000_000, 4_000_000, 16_000_000))?;
     let sampled = sampled_steps(steps, PER_DECADE);
-    let orbits = lab.effort.choose(8, 32, 128);
+    let orbits = lab.effort.choose(8, 16, 64);
     let change = |from: &State<f32, 1>, to: &State<f32, 1>| one.change(from, to);
     let followed = follow(&one.starts(orbits), &sampled, |s| one.step(s), change);
     let at = |i: usize| followed.iter().map(move |orbit| orbit.seen[i]);

@@ -50,14 +50,14 @@ pub(super) fn run<F: Float, W: Float>(lab: &Lab<'_>, kind: &Kind) -> Option<Tria
     let (&dt, steps) = (config.precision.dt.last()?, config.precision.steps);
     let one = InFloat::<_, F>::new(VelocityVerlet, config, dt)?;
     let sampled = sampled_steps(steps, PER_DECADE);
-    let starts = one.starts(lab.effort.choose(16, 64, 256));
+    let starts = one.starts(lab.effort.choose(16, 24, 128));
     let orbits = follow(&starts, &sampled, |s| one.step(s), |from, to| one.change(from, to));
     let u = F::UNIT_ROUNDOFF;
     // What a type that keeps its roundings can resolve is the square of that.
     let resolution = if kind.compensated { u * u } else { u };
     let open = sampled.iter().copied().rfind(|&n| n as f64 <= OPEN / resolution);
     // Types with more digits than an f64 has to spare are compared in a slower number.
-    let samples = lab.effort.choose(400_000, 2_000_000, 8_000_000);
+    let samples = lab.effort.choose(400_000, 1_000_000, 8_000_000);
     let slow = if W::UNIT_ROUNDOFF < f64::UNIT_ROUNDOFF { 8 } else { 1 };
     Some(Trial {
         name: kind.name,
