@@ -59,12 +59,6 @@ pub const UNTRIED: &[Untried] = &[
         because: PYTHON,
     },
     Untried {
-        id: "C43",
-        source: "5.5",
-        text: "In single precision differences of energy drift are negligible.",
-        because: "about precision, which no study of this report varies",
-    },
-    Untried {
         id: "C71",
         source: "8.4",
         text: "Jitter and asynchrony destroy reproducibility.",

@@ -8,6 +8,7 @@ mod error;
 mod growth;
 mod ink;
 mod nonlinear;
+mod precision;
 mod rounding;
 mod sampled;
 mod source;
@@ -22,6 +23,7 @@ pub use drift::Drift;
 pub use efficiency::Efficiency;
 pub use error::Error;
 pub use nonlinear::Nonlinear;
+pub use precision::Precision;
 pub use spectrum::Spectrum;
 pub use stability::Stability;
 pub use subject::{
@@ -39,6 +41,7 @@ pub const ALL: &[&dyn Study] = &[
     &Efficiency,
     &Convergence::CONFIGURED,
     &Nonlinear::CONFIGURED,
+    &Precision,
     &Throughput,
 ];
 

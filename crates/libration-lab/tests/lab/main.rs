@@ -13,6 +13,7 @@ mod interrupted;
 mod numbers;
 mod other_reports;
 mod own_system;
+mod precision;
 mod reference;
 mod report;
 mod settings;

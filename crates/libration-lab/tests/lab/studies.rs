@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::sync::atomic::AtomicBool;
 
 use libration::Method;
-use libration_lab::config::{Drift, Spring, Start};
+use libration_lab::config::{Drift, Precision, Spring, Start};
 use libration_lab::record::ClaimVerdict::{self, Conditional, Confirmed, NotReproducible, Refuted};
 use libration_lab::record::Verdict;
 use libration_lab::studies;
@@ -123,8 +123,16 @@ fn verdicts_on_the_source_are_these() {
         ("C33", Conditional),
         ("C34", Confirmed),
         ("C35", Conditional),
+        ("C43", Conditional),
         ("C44", Refuted),
         ("C45", NotReproducible),
+        ("C53", Conditional),
+        ("C58a", NotReproducible),
+        ("C59", Confirmed),
+        ("C59a", Conditional),
+        ("C59b", Confirmed),
+        ("C59c", Conditional),
+        ("C67a", Conditional),
         ("C68", NotReproducible),
         ("C69", Conditional),
         ("C70", Conditional),
@@ -157,7 +165,9 @@ fn a_conditional_verdict_says_its_condition_and_no_other_has_one() {
 
 #[test]
 fn findings_agree_for_other_springs_starts_methods_and_steps() {
-    let base = Config::default();
+    let defaults = Config::default();
+    let precision = Precision { steps: 50_000, ..defaults.precision.clone() };
+    let base = Config { precision, ..defaults };
     let drift = |dt: &[f64], steps| Drift { dt: dt.to_vec(), steps };
     let all = Method::ALL.to_vec();
     let configs = [
