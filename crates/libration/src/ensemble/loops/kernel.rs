@@ -133,8 +133,8 @@ where
                 for step in begin..end {
                     let beat = clock.beat(step);
                     let mut length = [zero; W];
-                    for l in 0..W {
-                        length[l] = dt * ratio::<T, C, W>(&clock, &mut clocks, beat, &mut times, l);
+                    for (l, length) in length.iter_mut().enumerate() {
+                        *length = dt * ratio::<T, C, W>(&clock, &mut clocks, beat, &mut times, l);
                     }
                     // Seconds of the step that are gone.
                     let (mut part, mut gone) = (0.0, [zero; W]);
@@ -187,8 +187,8 @@ where
                             }
                         }
                     }
-                    for l in 0..W {
-                        under_command!(l, rest[l]);
+                    for (l, &rest) in rest.iter().enumerate() {
+                        under_command!(l, rest);
                     }
                 }
             }
