@@ -109,10 +109,13 @@ pub const TRIED: &[Tried] = &[
     of_its_run("C59a", "precision", &[VelocityVerlet], &[]),
     tried("C59b", "precision", &[VelocityVerlet], &[]),
     of_its_run("C59c", "precision", &[], &[]),
+    // Of bits, which are counted in a table.
+    tried("C66", "determinism", &[], &[]),
     tried("C67a", "precision", &[SymplecticEuler, VelocityVerlet, Rk4], &["precision-types"]),
     tried("C68", "throughput", &[], &["9.7"]),
     tried("C69", "throughput", &[], &[]),
     tried("C70", "stability", FOUR, &["9.5"]),
+    tried("C71", "determinism", &[], &[]),
     of_its_run("C73", "drift", &[SymplecticEuler, VelocityVerlet, Rk4], &["9.1"]),
     of_its_run("C74", "error", &[ExplicitEuler], &["9.3"]),
     of_its_run("C75", "error", &[SymplecticEuler], &["9.3"]),
@@ -181,8 +184,10 @@ mod tests {
     fn every_claim_is_accounted_for_once() {
         let mut wanted: BTreeSet<String> =
             (1..=47).chain(68..=83).map(|number| format!("C{number:02}")).collect();
-        // Of chapters 6 and 7, what is about precision and phase.
-        wanted.extend(["C53", "C58a", "C59", "C59a", "C59b", "C59c", "C67a"].map(String::from));
+        // Of chapters 6 and 7, what is about precision, phase and reproducibility.
+        wanted.extend(
+            ["C53", "C58a", "C59", "C59a", "C59b", "C59c", "C66", "C67a"].map(String::from),
+        );
         let ids = TRIED.iter().map(|c| c.id).chain(UNTRIED.iter().map(|c| c.id));
         let found: Vec<String> = ids.map(String::from).collect();
         assert_eq!(found.len(), wanted.len());

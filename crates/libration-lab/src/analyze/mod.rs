@@ -121,7 +121,7 @@ fn answer<const D: usize>(
     let method = request.stepping.method();
     let polynomials = method
         .filter(|_| matches!(request.system, AnySystem::Oscillator(_)))
-        .and_then(|method| SymbolicStep::new(method));
+        .and_then(SymbolicStep::new);
     let exact = polynomials.as_ref().zip(omega(request.system));
     let modes = Modes::new(
         &linear,

@@ -2,6 +2,7 @@
 
 mod convergence;
 mod coverage;
+mod determinism;
 mod drift;
 mod efficiency;
 mod error;
@@ -19,6 +20,7 @@ pub(crate) mod throughput;
 
 use crate::study::Study;
 pub use convergence::Convergence;
+pub use determinism::Determinism;
 pub use drift::Drift;
 pub use efficiency::Efficiency;
 pub use error::Error;
@@ -42,6 +44,7 @@ pub const ALL: &[&dyn Study] = &[
     &Convergence::CONFIGURED,
     &Nonlinear::CONFIGURED,
     &Precision,
+    &Determinism,
     &Throughput,
 ];
 

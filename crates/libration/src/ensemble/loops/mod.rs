@@ -26,6 +26,33 @@ use setup::Layout;
 ///
 /// The bits of a trajectory follow from its own number, its start, the setup and the seed: not from the number of
 /// trajectories or threads, nor from how many steps are taken at a time.
+///
+/// ```
+/// use libration::State;
+/// use libration::analysis::{Feedback, Latency};
+/// use libration::control::Schedule;
+/// use libration::control::clock::{Gaussian, Jittered};
+/// use libration::control::controller::StateFeedback;
+/// use libration::ensemble::{All, Execution, Loops, Setup};
+/// use libration::integrator::VelocityVerlet;
+/// use libration::system::Oscillator;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let gains = Feedback { position: 10.0, velocity: 2.0 };
+/// let latency = Latency::of_steps(1.5).ok_or("no latency")?;
+/// let setup = Setup::new(All(Oscillator { omega2: 10.0 }), VelocityVerlet)
+///     .controller(StateFeedback::to_origin(gains))
+///     .clock(Jittered(Gaussian(0.1)))
+///     .delay(Schedule::late(latency));
+/// let starts = [State { q: [1.0], v: [0.0] }; 100];
+/// let (dt, seed, before) = (0.01, 7, [0.0]);
+/// let mut loops = Loops::new(setup, dt, seed, before, &starts, Execution::serial())?;
+/// loops.advance(1000)?;
+/// // Ten seconds of a loop that is damped.
+/// assert!(loops.trajectories().q(0).iter().all(|q| q.abs() < 0.01));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 pub struct Loops<T, Sys, A, M, K, C, L, const D: usize> {
     setup: Setup<A, M, K, C, L>,
