@@ -7,6 +7,7 @@ mod drift;
 mod efficiency;
 mod error;
 mod growth;
+mod hierarchy;
 mod ink;
 mod nonlinear;
 mod precision;
@@ -24,6 +25,7 @@ pub use determinism::Determinism;
 pub use drift::Drift;
 pub use efficiency::Efficiency;
 pub use error::Error;
+pub use hierarchy::Hierarchy;
 pub use nonlinear::Nonlinear;
 pub use precision::Precision;
 pub use spectrum::Spectrum;
@@ -45,6 +47,7 @@ pub const ALL: &[&dyn Study] = &[
     &Nonlinear::CONFIGURED,
     &Precision,
     &Determinism,
+    &Hierarchy,
     &Throughput,
 ];
 

@@ -133,6 +133,7 @@ fn verdicts_on_the_source_are_these() {
         ("C59b", Confirmed),
         ("C59c", Conditional),
         ("C66", Conditional),
+        ("C67", Conditional),
         ("C67a", Conditional),
         ("C68", NotReproducible),
         ("C69", Conditional),

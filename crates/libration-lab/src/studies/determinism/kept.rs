@@ -6,7 +6,7 @@ use libration::ensemble::{All, InstructionSet, Moments};
 use libration::integrator::SymplecticEuler;
 use libration::system::Oscillator;
 
-use super::runs::{COUNT, DT, differing, plain, shaken, start, steps, tell};
+use super::runs::{COUNT, DT, SPRING, differing, plain, shaken, start, steps, tell};
 use crate::Lab;
 use crate::record::{Finding, Record, Tolerance};
 use crate::study::StudyError;
@@ -79,10 +79,10 @@ fn same(record: &mut Record, id: &str, changed: &str, compared: usize, differ: u
 /// Mean position and velocity over all trajectories in the end, and their standard deviations, as bits.
 fn mean(lab: &Lab<'_>, threads: usize) -> Result<Vec<u64>, StudyError> {
     let state = |n| {
-        let [q, v] = start(lab, n);
+        let [q, v] = start(n);
         State { q: [q], v: [v] }
     };
-    let system = Oscillator { omega2: lab.config.oscillator.system().omega2 as f32 };
+    let system = Oscillator { omega2: SPRING.omega2 as f32 };
     let execution = lab.alone()?.threads(threads)?.worth(1);
     let mut all = Ensemble::<f32, 1>::from_fn(COUNT, execution, state)?;
     let count = steps(lab);

@@ -15,7 +15,7 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     );
     page.paragraph(
         "Each row changes one thing and compares the bits of all results. Trajectories are those of the \
-         configured oscillator under symplectic Euler in f32 from thousands of starts; where a row says \
+         source’s oscillator under symplectic Euler in f32 from thousands of starts; where a row says \
          so, their steps jitter, each clock has a rate of its own, and a feedback is one and a half \
          steps late.",
     );
