@@ -98,6 +98,7 @@ fn a_simulated_loop_falls_below_its_critical_latency_and_grows_above() {
                  --every 20000 --q 1 --v 0 --feedback 10,2";
     let size = |latency: &str| {
         let last = rows(&format!("{words} --latency {latency}")).pop().unwrap();
+        assert_eq!(last[1], 200.0);
         10.0 * last[2] * last[2] + last[3] * last[3]
     };
     // 15.323 steps is where `analyze` sees the edge; 0.25 steps beyond, the rate is 3·10⁻⁴ a step.

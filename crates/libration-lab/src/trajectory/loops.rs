@@ -73,6 +73,7 @@ fn simulated<S: Float + Pod + Number, const D: usize>(
     let (count, execution) = (copies.count, copies.execution()?);
     let dt = S::from_f64(*dt);
     let none = Jitter::Uniform(0.0);
+    let uneven = timing.jitter.is_some() || timing.skew.is_some();
     let clocks: Clocks =
         (Skewed(timing.skew.unwrap_or(none)), Jittered(timing.jitter.unwrap_or(none)));
     let latency = timing.latency_of(dt.to_f64()).map_err(|steps| late(request, steps))?;
@@ -95,10 +96,12 @@ fn simulated<S: Float + Pod + Number, const D: usize>(
                 if stop.load(Ordering::Relaxed) {
                     return Err(TrajectoryError::Interrupted);
                 }
-                let (Some(state), Some(&t)) = (all.state(n), time.trajectories().q(0).get(n))
+                let (Some(state), Some(&shown)) = (all.state(n), time.trajectories().q(0).get(n))
                 else {
                     continue;
                 };
+                // What adds up steps that are all alike only rounds.
+                let t = if uneven { shown } else { step as f64 * dt.to_f64() };
                 values.clear();
                 values.extend(state.coordinates());
                 values.push(energy(&state));
