@@ -228,8 +228,8 @@ fn a_run_writes_results_says_where_and_gives_each_study_a_plain_line_without_a_t
     let folder = folder();
     // `cargo xtask report` runs them all.
     let studies = ["spectrum", "error", "determinism"];
-    let run = libration(&folder).args(["lab", "--effort", "quick", "--out", "here"]).args(studies);
-    let run = { run }.assert().success();
+    let words = ["lab", "--effort", "quick", "--out", "here"];
+    let run = libration(&folder).args(words).args(studies).assert().success();
     let text = stdout(&run);
     assert!(text.ends_with("\nreport: here/report.html\n"), "{text}");
     for study in studies {
