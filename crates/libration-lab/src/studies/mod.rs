@@ -7,6 +7,7 @@ mod efficiency;
 mod error;
 mod growth;
 mod ink;
+mod latency;
 mod nonlinear;
 mod rounding;
 mod sampled;
@@ -21,6 +22,7 @@ pub use convergence::Convergence;
 pub use drift::Drift;
 pub use efficiency::Efficiency;
 pub use error::Error;
+pub use latency::Latency;
 pub use nonlinear::Nonlinear;
 pub use spectrum::Spectrum;
 pub use stability::Stability;
@@ -39,6 +41,7 @@ pub const ALL: &[&dyn Study] = &[
     &Efficiency,
     &Convergence::CONFIGURED,
     &Nonlinear::CONFIGURED,
+    &Latency,
     &Throughput,
 ];
 

@@ -1,0 +1,135 @@
+//! Latencies that are drawn for every step.
+
+use libration::Method;
+use libration::analysis::{Plant, RandomLatency};
+use libration::control::controller::StateFeedback;
+use libration::control::delay::Random;
+use libration::ensemble::{All, Loops, Setup};
+
+use super::onset::GAINS;
+use super::simulated::{ORIGIN, SPRING, START};
+use crate::notation::{count, number, seconds};
+use crate::record::{Finding, Relation, Table, Tolerance};
+use crate::study::StudyError;
+use crate::{Lab, Record};
+
+/// The time step, in s.
+const DT: f64 = 0.1;
+
+/// Probabilities that a latency stays for another step.
+pub(super) const HOLDS: [f64; 2] = [0.0, 0.5];
+
+/// Steps after which moments are compared.
+const AFTER: [u64; 3] = [10, 25, 50];
+
+/// Where growth is measured from, and where to.
+const SLOPE: [u64; 2] = [20, 50];
+
+/// Parts of the loops of which each gives a growth of its own.
+const PARTS: usize = 32;
+
+/// Two latencies, equally probable, that are drawn independently or stay for a while.
+pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
+    let mut table = Table::new(
+        "random latency",
+        &["a latency stays with probability", "ρ of the second moments, predicted", "measured", "standard error"],
+    );
+    let found = lab.sweep("random latencies", &HOLDS, |&hold| one(lab, hold))?;
+    for (hold, (findings, row)) in HOLDS.into_iter().zip(found) {
+        findings.into_iter().for_each(|finding| record.find(finding));
+        table.push([hold.into(), row[0].into(), row[1].into(), row[2].into()]);
+    }
+    record.tables.push(table);
+    Ok(())
+}
+
+/// The findings for a hold probability; growth as predicted and measured, and its standard error.
+fn one(lab: &Lab<'_>, hold: f64) -> Result<(Vec<Finding>, [f64; 3]), StudyError> {
+    // Of valid probabilities.
+    let Ok(latency) = RandomLatency::new(vec![(0, 0.5), (2, 0.5)], hold) else {
+        return Ok((Vec::new(), [f64::NAN; 3]));
+    };
+    let loops = PARTS * lab.effort.choose(250, 1500, 10_000);
+    let plant = Plant::new(Method::VelocityVerlet, SPRING, ORIGIN, DT);
+    let setup = Setup::new(All(SPRING), Method::VelocityVerlet)
+        .controller(StateFeedback::to_origin(GAINS))
+        .delay(Random(&latency));
+    let starts = vec![START; loops];
+    let mut all = Loops::new(setup, DT, 7, [0.0], &starts, lab.alone()?)?;
+    let title = format!(
+        "velocity Verlet, Δt = {}, K = (10, 2), 0 or 2 steps late, held with probability {}",
+        seconds(DT, 3),
+        number(hold, 2)
+    );
+    let mut findings = Vec::new();
+    let mut sizes: Vec<Vec<f64>> = Vec::new();
+    for step in 1..=AFTER[AFTER.len() - 1] {
+        all.advance(1)?;
+        let trajectories = all.trajectories();
+        let squares: Vec<f64> = trajectories.q(0).iter().map(|q| q * q).collect();
+        if AFTER.contains(&step) {
+            let [wanted, ..] = plant.moments_late(GAINS, &latency, &START, step);
+            let [mean, error] = mean(&squares);
+            findings.push(Finding::predicted(
+                format!("latency.random.hold-{hold}.after-{step}"),
+                format!("{title}: mean of q² over {} loops after {step} steps", count(loops as u64)),
+                "m²",
+                wanted,
+                mean,
+                Tolerance::absolute(3.0 * error, "three standard errors of the mean, from the loops themselves"),
+            ));
+        }
+        if SLOPE.contains(&step) {
+            // Without the swing that q² alone has.
+            let v = trajectories.v(0).iter();
+            let energy = |(q, v): (&f64, &f64)| SPRING.omega2 * q + v * v;
+            sizes.push(squares.iter().zip(v).map(energy).collect());
+        }
+    }
+    let predicted = plant.mean_square_late(GAINS, &latency);
+    let energy = |step| {
+        let [qq, _, vv] = plant.moments_late(GAINS, &latency, &START, step);
+        SPRING.omega2 * qq + vv
+    };
+    let span = (SLOPE[1] - SLOPE[0]) as f64;
+    let over_the_same_steps = (energy(SLOPE[1]) / energy(SLOPE[0])).powf(1.0 / span);
+    let slopes: Vec<f64> = match sizes.as_slice() {
+        [early, late] => {
+            let part = loops / PARTS;
+            let pairs = early.chunks(part).zip(late.chunks(part));
+            pairs.map(|(a, b)| (b.iter().sum::<f64>() / a.iter().sum::<f64>()).powf(1.0 / span)).collect()
+        }
+        _ => Vec::new(),
+    };
+    let [measured, error] = mean(&slopes);
+    findings.push(Finding::predicted(
+        format!("latency.random.hold-{hold}.radius"),
+        format!("{title}: factor of the second moments a step, from step {} to {}", SLOPE[0], SLOPE[1]),
+        "1",
+        predicted,
+        measured,
+        Tolerance::absolute(
+            3.0 * error + (predicted - over_the_same_steps).abs(),
+            "three standard errors, and what theory says that moments still swing over the same steps",
+        ),
+    ));
+    let bound = if predicted < 1.0 { Relation::AtMost } else { Relation::AtLeast };
+    findings.push(Finding::related(
+        format!("latency.random.hold-{hold}.verdict"),
+        format!("{title}: whether the second moments grow, by their factor a step"),
+        "1",
+        bound,
+        1.0,
+        measured,
+        Tolerance::exact("the factor that theory gives lies on this side of 1"),
+    ));
+    Ok((findings, [predicted, measured, error]))
+}
+
+/// The mean of some numbers, and its standard error.
+fn mean(numbers: &[f64]) -> [f64; 2] {
+    let count = numbers.len() as f64;
+    let mean = numbers.iter().sum::<f64>() / count;
+    let variance = numbers.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (count - 1.0);
+    [mean, (variance / count).sqrt()]
+}
