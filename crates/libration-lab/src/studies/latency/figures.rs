@@ -24,7 +24,12 @@ pub(super) fn short(record: &Record) -> Result<Figure, RecordError> {
         Axis::linear("latency of the force (steps)"),
         Axis::linear("amplitude after 1000 steps").unit("m"),
     )
-    .mark(Mark::line(x.clone(), y).ink(Ink::SymplecticEuler).dash(Dash::Solid).label("symplectic Euler"))
+    .mark(
+        Mark::line(x.clone(), y)
+            .ink(Ink::SymplecticEuler)
+            .dash(Dash::Solid)
+            .label("symplectic Euler"),
+    )
     .mark(Mark::prediction(x, forecast).label("predicted"));
     Ok(Figure::new("fig-9-14", "A force that is late adds to the amplitude, step by step")
         .number("9.14")
@@ -40,14 +45,17 @@ pub(super) fn short(record: &Record) -> Result<Figure, RecordError> {
 
 /// The amplitude over the long run, a line for each latency.
 pub(super) fn long(record: &Record) -> Result<Figure, RecordError> {
-    let mut panel =
-        Panel::new(Axis::linear("steps"), Axis::log("amplitude").unit("m"));
+    let mut panel = Panel::new(Axis::linear("steps"), Axis::log("amplitude").unit("m"));
     for (i, late) in LATE.into_iter().enumerate() {
         let series = record.series(&format!("force-{late}"))?;
         let steps = series.column("step")?;
         let label = if late == 0 { "in time".to_owned() } else { format!("{late} late") };
         panel = panel
-            .mark(Mark::line(steps, series.column("amplitude")?).ink(Ink::Accent(i as u8)).label(label))
+            .mark(
+                Mark::line(steps, series.column("amplitude")?)
+                    .ink(Ink::Accent(i as u8))
+                    .label(label),
+            )
             .mark(Mark::prediction(steps, series.column("predicted")?));
     }
     Ok(Figure::new("fig-9-15", "Over a million steps every latency of the force is an explosion")
@@ -69,7 +77,12 @@ pub(super) fn windows(record: &Record) -> Result<Figure, RecordError> {
         Axis::linear("ln ρ, growth a step"),
     )
     .mark(Mark::horizontal(0.0).ink(Ink::Neutral).width(0.8))
-    .mark(Mark::line(x, series.column("measured")?).ink(Ink::VelocityVerlet).dash(Dash::Solid).label("measured"))
+    .mark(
+        Mark::line(x, series.column("measured")?)
+            .ink(Ink::VelocityVerlet)
+            .dash(Dash::Solid)
+            .label("measured"),
+    )
     .mark(Mark::prediction(x, series.column("predicted")?).label("predicted"));
     Ok(Figure::new("latency-windows", "A loop that is unstable may be stable again if its command comes later still")
         .caption(
@@ -84,8 +97,12 @@ pub(super) fn windows(record: &Record) -> Result<Figure, RecordError> {
 /// A map for each method, with the edges of theory.
 pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
     let (id, title, aspect) = match kind {
-        Kind::Gain => ("latency-map-gain", "Where a late command leaves the loop stable, by gain", 1.35),
-        Kind::Step => ("latency-map-step", "Where a late command leaves the loop stable, by time step", 1.35),
+        Kind::Gain => {
+            ("latency-map-gain", "Where a late command leaves the loop stable, by gain", 1.35)
+        }
+        Kind::Step => {
+            ("latency-map-step", "Where a late command leaves the loop stable, by time step", 1.35)
+        }
     };
     let caption = match kind {
         Kind::Gain => "Colour: growth a step of simulated loops, a run for each whole latency and gain; blue \
@@ -103,7 +120,9 @@ pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
     };
     let mut figure = Figure::new(id, title)
         .caption(caption)
-        .description("Heat maps of the growth of a loop, with the boundary of stability drawn over them.")
+        .description(
+            "Heat maps of the growth of a loop, with the boundary of stability drawn over them.",
+        )
         .columns(2)
         .aspect(aspect);
     for method in METHODS {
@@ -143,11 +162,7 @@ pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
 }
 
 /// The edges of a map.
-fn edges(
-    record: &Record,
-    kind: Kind,
-    method: libration::Method,
-) -> Result<Vec<Mark>, RecordError> {
+fn edges(record: &Record, kind: Kind, method: libration::Method) -> Result<Vec<Mark>, RecordError> {
     let series = record.series(&format!("edge-{}-{}", kind.name(), method.name()))?;
     let (line, x, y) =
         (series.column("line")?, series.column("latency")?, series.column(kind.name())?);

@@ -44,8 +44,12 @@ struct Orbit {
 /// Orbits of the source's oscillator with late forces, and explicit Euler, which is one of them.
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
     let orbits = lab.sweep("forces that are late", &LATE, |&late| orbit(lab, late))?;
-    let columns =
-        ["force late by (steps)", "growth a step, predicted", "after 1000 steps", "after 10⁶ steps"];
+    let columns = [
+        "force late by (steps)",
+        "growth a step, predicted",
+        "after 1000 steps",
+        "after 10⁶ steps",
+    ];
     let mut table = Table::new("late forces", &columns);
     for orbit in &orbits {
         findings(orbit, record);

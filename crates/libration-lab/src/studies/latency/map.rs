@@ -55,9 +55,7 @@ impl Kind {
 
     fn case(self, method: Method, y: f64) -> Loop {
         match self {
-            Kind::Gain => {
-                Loop { method, dt: 0.02, gains: Feedback { position: 0.0, velocity: y } }
-            }
+            Kind::Gain => Loop { method, dt: 0.02, gains: Feedback { position: 0.0, velocity: y } },
             Kind::Step => Loop { method, dt: y, gains: GAINS },
         }
     }
@@ -76,13 +74,8 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     Ok(())
 }
 
-fn draw(
-    lab: &Lab<'_>,
-    record: &mut Record,
-    kind: Kind,
-    method: Method,
-) -> Result<(), StudyError> {
-    let (rows, steps) = lab.effort.choose((24, 1500), (48, 4000), (96, 10_000));
+fn draw(lab: &Lab<'_>, record: &mut Record, kind: Kind, method: Method) -> Result<(), StudyError> {
+    let (rows, steps) = lab.effort.choose((16, 1400), (48, 4000), (96, 12_000));
     let ys = kind.rows(rows);
     let what = format!("map of {} and latency, {}", kind.name(), method.title());
     let map = lab.sweep(&what, &ys, |&y| {

@@ -115,14 +115,16 @@ fn find(record: &mut Record, name: &str, title: &str, onset: &Onset) {
 fn at_any_part(name: &str, title: &str, onset: &Onset) -> Finding {
     Finding::predicted(
         format!("latency.onset.{name}"),
-        format!("{title}: latency at which the loop begins to grow, with steps that split where the command arrives"),
+        format!(
+            "{title}: latency at which the loop begins to grow, with steps that split where the command arrives"
+        ),
         "steps",
         onset.predicted,
         onset.measured,
         Tolerance::absolute(
             10.0 * WIDTH,
             "both are bisected to 10⁻⁹ steps; a rate of growth is measured to some 10⁻¹³ a step, and \
-             changes by more than 10⁻⁴ a step of latency",
+             changes by 10⁻³ with a step of latency",
         ),
     )
 }
@@ -134,7 +136,9 @@ fn lost(method: Method, title: &str, measured: f64, predicted: f64) -> Finding {
     let square = half + (half * half - rest).sqrt();
     Finding::predicted(
         format!("latency.onset.{}.lost", method.name()),
-        format!("{title}: what the simulated loop lacks of the delay margin, beside what integrator and hold hide"),
+        format!(
+            "{title}: what the simulated loop lacks of the delay margin, beside what integrator and hold hide"
+        ),
         "steps",
         predicted,
         measured,
@@ -190,7 +194,7 @@ fn damping(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
             "1",
             case.predicted(late),
             case.measured(lab, late, STEPS)?,
-            Tolerance::absolute(1e-12, "rounding of areas of a hundredth of a square, as measured"),
+            Tolerance::absolute(1e-11, "what a mean over the run leaves of the swing of the orbit"),
         ));
     }
     Ok(())
@@ -199,10 +203,8 @@ fn damping(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
 /// Larger and smaller gains.
 fn gains(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
     let loops = FACTORS.map(|factor| {
-        let gains = Feedback {
-            position: factor * GAINS.position,
-            velocity: factor * GAINS.velocity,
-        };
+        let gains =
+            Feedback { position: factor * GAINS.position, velocity: factor * GAINS.velocity };
         Loop { method: Method::VelocityVerlet, dt: DT, gains }
     });
     let onsets = lab.sweep("critical latencies by gain", &loops, |case| onset(lab, case))?;
