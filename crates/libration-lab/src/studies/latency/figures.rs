@@ -107,7 +107,7 @@ pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
     let caption = match kind {
         Kind::Gain => "Colour: growth a step of simulated loops, a run for each whole latency and gain; blue \
                        decays. Lines: ρ = 1, from the shipped step. Feedback of the velocity alone, K = (0, K_d), \
-                       ω² = 10 s⁻², Δt = 20 ms. The lobes are latencies of about whole periods: the \
+                       ω² = 10 s⁻², Δt = 40 ms. The lobes are latencies of about whole periods: the \
                        command of the last swing damps as well as that of this one, if it is weak."
             .to_owned(),
         Kind::Step => format!(
@@ -130,7 +130,7 @@ pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
         let columns = kind.longest() as usize + 1;
         let x = series.column("latency")?[..columns].to_vec();
         let y: Vec<f64> = series.column(kind.name())?.iter().step_by(columns).copied().collect();
-        let (reach, digits) = if kind == Kind::Gain { (0.02, 1e4) } else { (0.1, 1e3) };
+        let (reach, digits) = if kind == Kind::Gain { (0.04, 1e4) } else { (0.1, 1e3) };
         // No more digits than can be seen.
         let seen = |rate: &f64| (rate.clamp(-reach, reach) * digits).round() / digits;
         let z = series.column("growth")?.iter().map(seen).collect();

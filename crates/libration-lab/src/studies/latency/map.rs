@@ -18,7 +18,7 @@ pub(super) const METHODS: [Method; 2] = [Method::VelocityVerlet, Method::Symplec
 /// What changes from row to row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kind {
-    /// The feedback of the velocity, at a time step of 20 ms.
+    /// The feedback of the velocity, at a time step of 40 ms.
     Gain,
     /// The time step in s, under the gains of the study.
     Step,
@@ -37,8 +37,8 @@ impl Kind {
     /// The longest latency, in steps.
     pub(super) fn longest(self) -> u32 {
         match self {
-            Kind::Gain => 120,
-            Kind::Step => 40,
+            Kind::Gain => 110,
+            Kind::Step => 30,
         }
     }
 
@@ -47,15 +47,15 @@ impl Kind {
         let place = |i: u32| (f64::from(i) + 0.5) / f64::from(count);
         (0..count)
             .map(|i| match self {
-                Kind::Gain => 4.0 * place(i),
-                Kind::Step => 0.004 * 100_f64.powf(place(i)),
+                Kind::Gain => 3.0 * place(i),
+                Kind::Step => 0.005 * 60_f64.powf(place(i)),
             })
             .collect()
     }
 
     fn case(self, method: Method, y: f64) -> Loop {
         match self {
-            Kind::Gain => Loop { method, dt: 0.02, gains: Feedback { position: 0.0, velocity: y } },
+            Kind::Gain => Loop { method, dt: 0.04, gains: Feedback { position: 0.0, velocity: y } },
             Kind::Step => Loop { method, dt: y, gains: GAINS },
         }
     }
