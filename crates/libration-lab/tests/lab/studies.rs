@@ -198,7 +198,7 @@ fn findings_agree_for_other_springs_starts_methods_and_steps() {
     for (what, config) in &configs {
         let lab = Lab::new(config, Effort::Quick, &Silent, &stop);
         // What concerns other systems does not depend on these.
-        let others = ["convergence", "nonlinear", "throughput"];
+        let others = ["convergence", "latency", "nonlinear", "throughput"];
         let own = studies::ALL.iter().filter(|s| !others.contains(&s.name()));
         let records: Vec<Record> = own.map(|study| study.run(&lab).unwrap()).collect();
         all_agree(&records, what);

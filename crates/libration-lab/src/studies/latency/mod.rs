@@ -17,7 +17,7 @@ use crate::record::RecordError;
 use crate::study::{Study, StudyError};
 use crate::{Lab, Record};
 
-/// The study `latency`.
+/// The study `latency`. Its loops are its own, on the spring of the source; nothing of it is configured.
 #[derive(Clone, Copy, Debug)]
 pub struct Latency;
 
