@@ -75,7 +75,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
 }
 
 fn draw(lab: &Lab<'_>, record: &mut Record, kind: Kind, method: Method) -> Result<(), StudyError> {
-    let (rows, steps) = lab.effort.choose((16, 1400), (48, 4000), (96, 12_000));
+    let (rows, steps) = lab.effort.choose((12, 1400), (40, 3500), (96, 12_000));
     let ys = kind.rows(rows);
     let what = format!("map of {} and latency, {}", kind.name(), method.title());
     let map = lab.sweep(&what, &ys, |&y| {

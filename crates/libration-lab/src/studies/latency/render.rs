@@ -39,6 +39,7 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          take a part of it: the hidden latency.",
     );
     page.table(record.table("critical latencies")?, 8);
+    page.table(record.table("hidden latency")?, 6);
     page.heading("Stable again");
     page.figure(figures::windows(record)?);
     page.table(record.table("latency windows")?, 7);

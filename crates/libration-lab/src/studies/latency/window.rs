@@ -23,7 +23,7 @@ const PREDICTED: usize = 10;
 /// Tries every whole latency.
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
     let windows = CASE.windows();
-    let (last, steps) = lab.effort.choose((220, 8000), (450, 20_000), (600, 60_000));
+    let (last, steps) = lab.effort.choose((220, 6000), (450, 12_000), (600, 60_000));
     let latencies: Vec<u32> = (0..=last).collect();
     let rates =
         lab.sweep("stable latencies", &latencies, |&late| CASE.measured(lab, late.into(), steps))?;
