@@ -58,7 +58,7 @@ fn damping(record: &mut Record) {
         let because = format!(
             "half as late as it may be, the loop loses {} of its amplitude a step in place of {}; the \
              latency at which it begins to grow is, in steps, {}. Without damping there is no latency that it \
-             bears: at any gain it grows, by {} a step of 1 ms",
+             bears: it grows by ½z²d a step, whatever the gain, and was seen to grow by {} at one of 1 ms",
             number(-late, 3),
             number(-in_time, 3),
             told.join(", "),

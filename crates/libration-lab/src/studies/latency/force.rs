@@ -2,6 +2,7 @@
 
 use libration::analysis::{Feedback, Latency, Plant};
 use libration::control::Schedule;
+use libration::control::clock::Fixed;
 use libration::control::controller::Force;
 use libration::ensemble::{All, Loops, Setup};
 use libration::integrator::ExplicitEuler;
@@ -154,23 +155,20 @@ fn findings(orbit: &Orbit, record: &mut Record) {
     }
 }
 
+/// A spring whose force is a command.
+type Late = Loops<
+    f64,
+    Oscillator<f64>,
+    All<Oscillator<f64>>,
+    Method,
+    Force<Oscillator<f64>>,
+    Fixed,
+    Schedule,
+    1,
+>;
+
 /// Symplectic Euler without a force of its own, under one that is late.
-fn late_force(
-    lab: &Lab<'_>,
-    latency: Latency,
-) -> Result<
-    Loops<
-        f64,
-        Oscillator<f64>,
-        All<Oscillator<f64>>,
-        Method,
-        Force<Oscillator<f64>>,
-        libration::control::clock::Fixed,
-        Schedule,
-        1,
-    >,
-    StudyError,
-> {
+fn late_force(lab: &Lab<'_>, latency: Latency) -> Result<Late, StudyError> {
     let setup = Setup::new(All(FREE), Method::SymplecticEuler)
         .controller(Force(SPRING))
         .delay(Schedule::late(latency));
