@@ -1,6 +1,7 @@
 //! The figures of the chapter.
 
 use super::map::{self, Kind, METHODS};
+use super::onset::MARGIN;
 use crate::figure::{Axis, ColorMap, Colors, Dash, Figure, Grid, Ink, Mark, Panel};
 use crate::notation::number;
 use crate::record::{Record, RecordError};
@@ -96,12 +97,11 @@ pub(super) fn windows(record: &Record) -> Result<Figure, RecordError> {
 
 /// A map for each method, with the edges of theory.
 pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
-    let (id, title, aspect) = match kind {
-        Kind::Gain => {
-            ("latency-map-gain", "Where a late command leaves the loop stable, by gain", 1.35)
-        }
+    let margin = margin(record)?;
+    let (id, title) = match kind {
+        Kind::Gain => ("latency-map-gain", "Where a late command leaves the loop stable, by gain"),
         Kind::Step => {
-            ("latency-map-step", "Where a late command leaves the loop stable, by time step", 1.35)
+            ("latency-map-step", "Where a late command leaves the loop stable, by time step")
         }
     };
     let caption = match kind {
@@ -114,7 +114,7 @@ pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
             "Colour: growth a step of simulated loops; blue decays. Solid: ρ = 1, from the shipped step. Dashed: the \
              delay margin of the continuous loop, {} s. What lies between is the latency that integrator and hold \
              hide. {}, ω² = 10 s⁻².",
-            number(map::margin(), 5),
+            number(margin, 5),
             map::gains()
         ),
     };
@@ -124,13 +124,13 @@ pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
             "Heat maps of the growth of a loop, with the boundary of stability drawn over them.",
         )
         .columns(2)
-        .aspect(aspect);
+        .aspect(1.35);
     for method in METHODS {
         let series = record.series(&format!("map-{}-{}", kind.name(), method.name()))?;
         let columns = kind.longest() as usize + 1;
         let x = series.column("latency")?[..columns].to_vec();
         let y: Vec<f64> = series.column(kind.name())?.iter().step_by(columns).copied().collect();
-        let (reach, digits) = if kind == Kind::Gain { (0.04, 1e4) } else { (0.1, 1e3) };
+        let (reach, digits) = if kind == Kind::Gain { (0.02, 1e4) } else { (0.1, 1e3) };
         // No more digits than can be seen.
         let seen = |rate: &f64| (rate.clamp(-reach, reach) * digits).round() / digits;
         let z = series.column("growth")?.iter().map(seen).collect();
@@ -145,12 +145,12 @@ pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
         let across = across.range(-0.5, f64::from(kind.longest()) + 0.5);
         let mut panel = Panel::new(across, vertical.range(low, high))
             .title(method.title())
-            .mark(Mark::raster(Grid { x, y: y.clone(), z }, colors));
+            .mark(Mark::raster(Grid { x, y, z }, colors));
         panel = panel.marks(edges(record, kind, method)?);
         if kind == Kind::Step {
-            let (x, y): (Vec<f64>, Vec<f64>) = y
-                .iter()
-                .map(|&dt| (map::margin() / dt, dt))
+            let at = |i: u32| low * (high / low).powf(f64::from(i) / 200.0);
+            let (x, y): (Vec<f64>, Vec<f64>) = (0..=200)
+                .map(|i| (margin / at(i), at(i)))
                 .filter(|(d, _)| *d <= f64::from(kind.longest()))
                 .unzip();
             let line = Mark::line(x, y).ink(Ink::Neutral).dash(Dash::Dashed).width(1.4);
@@ -159,6 +159,13 @@ pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
         figure = figure.panel(panel);
     }
     Ok(figure)
+}
+
+/// The delay margin of the continuous loop, in s.
+fn margin(record: &Record) -> Result<f64, RecordError> {
+    let table = record.table("critical latencies")?;
+    let row = table.rows.first().and_then(|row| row.get(MARGIN)?.value());
+    Ok(row.unwrap_or(f64::NAN))
 }
 
 /// The edges of a map.

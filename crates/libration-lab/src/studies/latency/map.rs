@@ -2,7 +2,6 @@
 
 use libration::Method;
 use libration::analysis::{Feedback, Windows};
-use libration::number::Wide;
 
 use super::edge::{is_stable, lines};
 use super::onset::GAINS;
@@ -152,12 +151,6 @@ fn boundary(record: &mut Record, kind: Kind, method: Method) {
             .with("latency", "steps", x)
             .with(kind.name(), if kind == Kind::Gain { "s⁻¹" } else { "s" }, y),
     );
-}
-
-/// The delay margin of the continuous loop in s, as the map of time steps has it.
-pub(super) fn margin() -> f64 {
-    let case = Kind::Step.case(METHODS[0], 0.01);
-    case.plant().delay_margin(GAINS).map_or(f64::NAN, Wide::to_f64)
 }
 
 /// The gains of the map of time steps, in words.

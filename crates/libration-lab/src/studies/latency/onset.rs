@@ -78,6 +78,9 @@ fn hidden(plant: &Plant<'_>) -> [f64; 2] {
     plant.hidden_latency().map_or([f64::NAN; 2], |h| [h.position, h.velocity].map(number))
 }
 
+/// The column of the delay margin.
+pub(super) const MARGIN: usize = 5;
+
 fn table() -> Table {
     let columns = [
         "integrator",
