@@ -32,3 +32,18 @@ pub(super) fn lines(rows: &[(f64, Windows)], longest: f64) -> Vec<(Vec<f64>, Vec
     };
     (0..most).map(line).filter(|(x, _)| x.len() > 1).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_lie_between_stable_and_unstable_latencies_and_join_from_row_to_row() {
+        let windows = Windows { stable: vec![(0.0, Some(4.5)), (10.25, Some(12.0)), (20.0, None)] };
+        assert_eq!(edges(&windows), [4.5, 10.25, 12.5, 19.5]);
+        assert_eq!([4.0, 5.0, 99.0].map(|d| is_stable(&windows, d)), [true, false, true]);
+        let above = Windows { stable: vec![(0.0, Some(4.25))] };
+        let lines = lines(&[(1.0, windows), (2.0, above)], 11.0);
+        assert_eq!(lines, [(vec![4.5, 4.25], vec![1.0, 2.0])]);
+    }
+}

@@ -110,7 +110,8 @@ mod tests {
             -0.003 * n + (1.5 + (0.37 * n).sin() + 4.0 * (-0.05 * n).exp()).ln()
         };
         let logarithms: Vec<f64> = (0..2000).map(of).collect();
-        // What is left are the roundings of numbers of size 6.
-        assert!((growth(&logarithms) + 0.003).abs() < 1e-15, "{}", growth(&logarithms) + 0.003);
+        // A plain mean of as many would be off by a thousandth, from the transient alone.
+        let error = growth(&logarithms) + 0.003;
+        assert!(error.abs() < 1e-8, "{error}");
     }
 }
