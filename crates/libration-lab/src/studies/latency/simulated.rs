@@ -110,7 +110,7 @@ mod tests {
             -0.003 * n + (1.5 + (0.37 * n).sin() + 4.0 * (-0.05 * n).exp()).ln()
         };
         let logarithms: Vec<f64> = (0..2000).map(of).collect();
-        // A plain mean of as many would be off by a thousandth, from the transient alone.
+        // A plain mean of as many would be off by some 10⁻⁴, from the transient alone.
         let error = growth(&logarithms) + 0.003;
         assert!(error.abs() < 1e-8, "{error}");
     }
