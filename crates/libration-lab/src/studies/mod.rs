@@ -9,6 +9,7 @@ mod error;
 mod growth;
 mod hierarchy;
 mod ink;
+mod latency;
 mod nonlinear;
 mod precision;
 mod rounding;
@@ -26,6 +27,7 @@ pub use drift::Drift;
 pub use efficiency::Efficiency;
 pub use error::Error;
 pub use hierarchy::Hierarchy;
+pub use latency::Latency;
 pub use nonlinear::Nonlinear;
 pub use precision::Precision;
 pub use spectrum::Spectrum;
@@ -48,6 +50,7 @@ pub const ALL: &[&dyn Study] = &[
     &Precision,
     &Determinism,
     &Hierarchy,
+    &Latency,
     &Throughput,
 ];
 

@@ -10,6 +10,7 @@ mod config_fuzz;
 mod default_run;
 mod export;
 mod interrupted;
+mod latency;
 mod numbers;
 mod other_reports;
 mod own_system;
