@@ -1,5 +1,6 @@
 //! The studies, in the order in which they are told.
 
+mod asynchrony;
 mod convergence;
 mod coverage;
 mod drift;
@@ -7,20 +8,25 @@ mod efficiency;
 mod error;
 mod growth;
 mod ink;
+mod jitter;
 mod nonlinear;
 mod rounding;
+mod sample;
 mod sampled;
 mod source;
 mod spectrum;
 mod stability;
 mod subject;
+mod swarm;
 pub(crate) mod throughput;
 
 use crate::study::Study;
+pub use asynchrony::Asynchrony;
 pub use convergence::Convergence;
 pub use drift::Drift;
 pub use efficiency::Efficiency;
 pub use error::Error;
+pub use jitter::Jitter;
 pub use nonlinear::Nonlinear;
 pub use spectrum::Spectrum;
 pub use stability::Stability;
@@ -39,6 +45,8 @@ pub const ALL: &[&dyn Study] = &[
     &Efficiency,
     &Convergence::CONFIGURED,
     &Nonlinear::CONFIGURED,
+    &Jitter,
+    &Asynchrony,
     &Throughput,
 ];
 
