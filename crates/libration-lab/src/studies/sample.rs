@@ -34,12 +34,6 @@ impl Sample {
     }
 }
 
-/// The middle of some values.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -50,6 +44,5 @@ mod tests {
         assert_eq!((sample.mean, sample.deviation), (3.0, (14.0_f64 / 3.0).sqrt()));
         assert_eq!(sample.error(), sample.deviation / 2.0);
         assert_eq!(sample.error_of_deviation(), 6.0_f64.sqrt().recip());
-        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
     }
 }

@@ -125,9 +125,14 @@ fn verdicts_on_the_source_are_these() {
         ("C35", Conditional),
         ("C44", Refuted),
         ("C45", NotReproducible),
+        ("C60", Conditional),
+        ("C64", Refuted),
+        ("C65", Conditional),
+        ("C65a", Conditional),
         ("C68", NotReproducible),
         ("C69", Conditional),
         ("C70", Conditional),
+        ("C71", Conditional),
         ("C73", Refuted),
         ("C74", Confirmed),
         ("C75", Conditional),
@@ -136,6 +141,7 @@ fn verdicts_on_the_source_are_these() {
         ("C78", Refuted),
         ("C79", Refuted),
         ("C80", Conditional),
+        ("C93", Conditional),
     ];
     let mut judged: Vec<_> = records()
         .iter()

@@ -81,7 +81,6 @@ macro_rules! with_jittered {
         }
     };
 }
-use with_jittered;
 
 /// Runs free trajectories of a setting under Gaussian jitter.
 fn free(
