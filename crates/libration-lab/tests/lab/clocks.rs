@@ -13,17 +13,17 @@ fn close(found: f64, wanted: f64, tolerance: f64) {
     assert!((found / wanted - 1.0).abs() < tolerance, "{found:e}, not {wanted:e}");
 }
 
-fn column(study: &str, table: &str, row: [&str; 2], column: usize) -> f64 {
-    let record = records().iter().find(|record| record.name == study).unwrap();
-    let table = record.table(table).unwrap();
-    let row = table.rows.iter().find(|r| r[0] == row[0].into() && r[1] == row[1].parse::<f64>().unwrap().into());
-    row.unwrap()[column].value().unwrap()
+/// What stands in the `column` of the row of a method and a time step, of a table of the study `jitter`.
+fn entry(table: &str, method: &str, dt: f64, column: usize) -> f64 {
+    let record = records().iter().find(|record| record.name == "jitter").unwrap();
+    let rows = &record.table(table).unwrap().rows;
+    rows.iter().find(|r| r[0] == method.into() && r[1] == dt.into()).unwrap()[column].value().unwrap()
 }
 
 #[test]
 fn second_moments_grow_as_an_independent_calculation_says() {
     // Gaussian jitter of 10 % at Δt = 0.1 s.
-    let excess = column("jitter", "second moments", ["symplectic Euler", "0.1"], 3);
+    let excess = entry("second moments", Method::SymplecticEuler.title(), 0.1, 3);
     close(excess, 5.136578180582e-5, 1e-9);
 }
 

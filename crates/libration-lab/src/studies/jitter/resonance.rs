@@ -56,8 +56,8 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         let ratio = rate(*turns) / (2.0 * theory.resonance.angle.to_f64());
         let tolerance = match predicted * half as f64 > SETTLED {
             true => Tolerance::absolute(
-                f64::EPSILON * 64.0 + 2.0 * (-2.0 * SETTLED).exp() / half as f64,
-                "rounding; all but the fastest direction is e⁻²⁰ of the state",
+                f64::EPSILON * (turns * half) as f64,
+                "rounding of the phase of the swing; all but the fastest direction is e⁻²⁰ of the state",
             ),
             false => Tolerance::absolute(
                 5.0 / half as f64,
