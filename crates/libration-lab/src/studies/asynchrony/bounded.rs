@@ -8,8 +8,8 @@ use super::{Clocks, SEED, run, start};
 use crate::Lab;
 use crate::notation::count;
 use crate::record::{Finding, Record, Relation, Series, Tolerance};
-use crate::study::StudyError;
 use crate::studies::sampled::sampled_steps;
+use crate::study::StudyError;
 
 /// `ωΔt`, and the deviation of the rates.
 const Z: f64 = 0.3;
@@ -19,7 +19,7 @@ const RMS: f64 = 0.05;
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
     let model = lab.config.oscillator.system();
     let dt = Z / lab.config.oscillator.omega();
-    let steps = lab.effort.choose(20_000, 1_000_000, 1_000_000);
+    let steps = lab.effort.choose(10_000, 1_000_000, 1_000_000);
     let at = sampled_steps(steps, 12.0);
     let begin = start(lab);
     let clocks = Clocks::skewed(Jitter::Uniform(RMS));

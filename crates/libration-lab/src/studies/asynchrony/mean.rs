@@ -2,18 +2,18 @@
 
 use std::f64::consts::{E, SQRT_2};
 
+use libration::State;
 use libration::analysis::{Jitter, Linearisation, QuadraticForm};
 use libration::integrator::VelocityVerlet;
-use libration::State;
 use libration::number::Wide;
 
 use super::{Clocks, DT, SEED, plant, run, start};
 use crate::Lab;
 use crate::notation::count;
 use crate::record::{Finding, Record, Series, Table, Tolerance};
-use crate::study::StudyError;
 use crate::studies::sample::Sample;
 use crate::studies::swarm::Seen;
+use crate::study::StudyError;
 
 /// The standard deviation of the rates.
 const RMS: f64 = 0.01;
@@ -91,7 +91,7 @@ fn ensembles(lab: &Lab<'_>) -> Vec<Ensemble> {
 /// Follows all ensembles.
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
     let all = ensembles(lab);
-    let trajectories = lab.effort.choose(4096, 4096, 16_384);
+    let trajectories = lab.effort.choose(1024, 4096, 16_384);
     let starts = vec![start(lab); trajectories];
     let found = lab.sweep("ensembles that fall apart", &all, |ensemble| {
         let regular = (1..=SAMPLES * 3 / 2).map(|i| ensemble.steps * i as f64 / SAMPLES as f64);

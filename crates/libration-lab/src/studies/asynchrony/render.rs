@@ -19,7 +19,8 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
             number(gaussian, 4),
             number(uniform, 4)
         );
-        page.headline = "Clocks that differ pull an ensemble apart and leave each trajectory alone.".into();
+        page.headline =
+            "Clocks that differ pull an ensemble apart and leave each trajectory alone.".into();
         page.highlights.push(Highlight {
             value: number(gaussian, 4),
             text: "steps to dephase, with Gaussian rates of 1 % at Δt = 10 ms".into(),
@@ -54,7 +55,11 @@ fn dephasing(record: &Record) -> Result<Figure, RecordError> {
         .aspect(1.2);
     let panels = [
         ("Δt = 10 ms, rates of 1 %", [("gaussian", "Gaussian"), ("uniform", "uniform")], false),
-        ("ωΔt = 0.3, 5 %", [("rates", "rates that differ"), ("jitter", "independent jitter")], true),
+        (
+            "ωΔt = 0.3, 5 %",
+            [("rates", "rates that differ"), ("jitter", "independent jitter")],
+            true,
+        ),
     ];
     for (title, ensembles, log) in panels {
         let steps = if log { Axis::log("steps") } else { Axis::linear("steps") };
@@ -64,8 +69,12 @@ fn dephasing(record: &Record) -> Result<Figure, RecordError> {
             let Ok(series) = record.series(&format!("mean-{name}")) else { continue };
             let steps = series.column("steps")?;
             panel = panel
-                .mark(Mark::line(steps, series.column("measured")?).ink(Ink::Accent(i as u8)).label(words))
-                .mark(Mark::prediction(steps, series.column("predicted")?).radius(2.4));
+                .mark(
+                    Mark::line(steps, series.column("measured")?)
+                        .ink(Ink::Accent(i as u8))
+                        .label(words),
+                )
+                .mark(Mark::prediction(sparse(steps), sparse(series.column("predicted")?)));
             any = true;
         }
         if any {
@@ -74,6 +83,11 @@ fn dephasing(record: &Record) -> Result<Figure, RecordError> {
         }
     }
     Ok(figure)
+}
+
+/// A few of many points, that one can see what they lie on.
+fn sparse(values: &[f64]) -> Vec<f64> {
+    values.iter().copied().step_by(5).collect()
 }
 
 /// Energies of all trajectories, and which are stable.
@@ -90,10 +104,13 @@ fn alone(record: &Record) -> Result<Figure, RecordError> {
         let bound = series.column("bound")?.first().copied().unwrap_or(f64::NAN);
         let line = Mark::line(series.column("steps")?, series.column("largest")?);
         figure = figure.panel(
-            Panel::new(Axis::log("steps"), Axis::linear("largest |E/E₀ − 1|").range(0.0, 1.3 * bound))
-                .title("Energy at ωΔt = 0.3, rates of 5 %")
-                .mark(line.ink(Ink::VelocityVerlet).label("measured"))
-                .mark(Mark::horizontal(bound).ink(Ink::Theory).label("band of the fastest clock")),
+            Panel::new(
+                Axis::log("steps"),
+                Axis::linear("largest |E/E₀ − 1|").range(0.0, 1.3 * bound),
+            )
+            .title("Energy at ωΔt = 0.3, rates of 5 %")
+            .mark(line.ink(Ink::VelocityVerlet).label("measured"))
+            .mark(Mark::horizontal(bound).ink(Ink::Theory).label("band of the fastest clock")),
         );
     }
     if let Ok(series) = record.series("stable") {

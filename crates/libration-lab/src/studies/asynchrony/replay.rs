@@ -16,7 +16,9 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         let model = lab.config.oscillator.system();
         let seen = run(lab, model, clocks, (DT, seed), &vec![start(lab); count], &[STEPS])?;
         let states = seen.iter().flat_map(|s| s.directions().iter().take(8));
-        Ok::<_, StudyError>(states.map(|s| [s.q[0].to_bits(), s.v[0].to_bits()]).collect::<Vec<_>>())
+        Ok::<_, StudyError>(
+            states.map(|s| [s.q[0].to_bits(), s.v[0].to_bits()]).collect::<Vec<_>>(),
+        )
     };
     let (first, again, other) = (states(SEED, 8)?, states(SEED, 100)?, states(SEED + 1, 8)?);
     let differ =

@@ -26,7 +26,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     let dt = Z / lab.config.oscillator.omega();
     let model = lab.config.oscillator.system();
     let clocks = Clocks::skewed(Jitter::Uniform(RMS));
-    let count = lab.effort.choose(512, 1024, 4096);
+    let count = lab.effort.choose(256, 1024, 4096);
     // What moves freely goes as far in a step as the step is long.
     let still = vec![State { q: [0.0], v: [1.0] }; count];
     let lengths = run(lab, Oscillator { omega2: 0.0 }, clocks, (dt, SEED), &still, &[1])?;
@@ -51,9 +51,10 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         growth.iter().filter(|g| **g > LEFT).count() as f64,
         Tolerance::absolute(near, "clocks so close to z(1 + δ) = 2 that the run is too short to tell"),
     ));
-    let crossed = z.iter().zip(&growth).filter(|(z, growth)| {
-        (**z > 2.0) != (**growth > LEFT) && (**z - 2.0).abs() >= NEAR
-    });
+    let crossed = z
+        .iter()
+        .zip(&growth)
+        .filter(|(z, growth)| (**z > 2.0) != (**growth > LEFT) && (**z - 2.0).abs() >= NEAR);
     record.find(Finding::predicted(
         "asynchrony.stable.others",
         "of these, clocks that are stable though z(1 + δ) is above 2, or not though it is below",
@@ -62,12 +63,10 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         crossed.count() as f64,
         Tolerance::exact("each trajectory has a step of its own, and no other’s"),
     ));
-    record.series.push(
-        Series::new("stable").with("z", "1", z).with(
-            "growth",
-            "1",
-            growth.iter().map(|g| g / 2.0 / STEPS as f64).collect(),
-        ),
-    );
+    record.series.push(Series::new("stable").with("z", "1", z).with(
+        "growth",
+        "1",
+        growth.iter().map(|g| g / 2.0 / STEPS as f64).collect(),
+    ));
     Ok(())
 }

@@ -11,11 +11,10 @@ const STILL: [&str; 2] = [
     "jitter.symplectic-euler.dt-0.001.rms-0.1.bounded",
     "jitter.velocity-verlet.dt-0.001.rms-0.1.bounded",
 ];
-const GROWN: [&str; 2] = [
-    "jitter.symplectic-euler.dt-0.3.rms-0.1.mean",
-    "jitter.velocity-verlet.dt-0.3.rms-0.1.mean",
-];
-const COMMUTES: &str = "jitter.rk4.dt-0.3.rms-0.1.mean";
+const GROWN: [&str; 2] =
+    ["jitter.symplectic-euler.dt-0.3.rms-0.1.mean", "jitter.velocity-verlet.dt-0.3.rms-0.1.mean"];
+const COMMUTES: [&str; 2] =
+    ["jitter.rk4.dt-0.1.rms-0.1.deviation", "jitter.symplectic-euler.dt-0.1.rms-0.1.deviation"];
 const PHASES: [&str; 4] = [
     "jitter.velocity-verlet.dt-0.001.rms-0.1.phase-nominal",
     "jitter.velocity-verlet.dt-0.01.rms-0.01.phase-nominal",
@@ -64,14 +63,16 @@ fn energy(record: &mut Record) {
     if !explodes(record) {
         return;
     }
-    let findings = [&STILL[..], &GROWN[..], &[COMMUTES]].concat();
+    let findings = [&STILL[..], &GROWN[..], &COMMUTES[..]].concat();
     let text = "Under jitter energy remains bounded with symplectic methods.";
     record.judge(Ruling { id: "C60", source: "7.4", text, findings: &findings }, |f| {
         Judgement::conditional(format!(
             "{}. Steps of different lengths keep different ellipses, and to change between them pumps; steps of \
-             RK4 are functions of one matrix, commute, and change ln E by {} only, which is their damping",
+             RK4 are functions of one matrix and commute: at Δt = 0.1 s and σ = 10 % ln E spreads by {} with RK4, and by \
+             {} with symplectic Euler",
             told(f),
-            number(f[4].measured, 3)
+            number(f[4].measured, 2),
+            number(f[5].measured, 2)
         ))
         .only(SHORT)
     });

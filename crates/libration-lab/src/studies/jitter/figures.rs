@@ -26,9 +26,8 @@ pub(super) fn phases(record: &Record) -> Result<Figure, RecordError> {
         let line = |name: &str, words: &str, ink| {
             Ok::<_, RecordError>(Mark::line(steps, series.column(name)?).ink(ink).label(words))
         };
-        let circles = |name: &str| {
-            Ok::<_, RecordError>(Mark::prediction(steps, series.column(name)?))
-        };
+        let circles =
+            |name: &str| Ok::<_, RecordError>(Mark::prediction(steps, series.column(name)?));
         figure = figure.panel(
             Panel::new(Axis::log("steps n"), Axis::log("deviation of the phase").unit("rad"))
                 .title(format!("{method}, Δt = {dt}, σ = {rms} %"))
@@ -47,7 +46,8 @@ pub(super) fn energies(record: &Record) -> Result<Figure, RecordError> {
         .number("9.13")
         .caption(
             "Root mean square of ln E/E₀ under Gaussian jitter of 5 %, along the ellipse of a steady step. Circles: \
-             predicted, 2√(γn) and from n = 1/γ on 2γn; above 1 the energy is no longer bounded.",
+             predicted, 2√(γn) and from n = 1/γ on 2γn; above 1 the energy is no longer bounded. In the first quarter of \
+             a turn the walk depends on the start.",
         )
         .description("Log-log: lines of slope one half that bend to slope one.")
         .columns(2)
@@ -86,7 +86,8 @@ pub(super) fn memory(record: &Record) -> Result<Figure, RecordError> {
         let Ok(curve) = record.series(&format!("memory-{z}-predicted")) else { continue };
         let ink = Ink::Accent(2 * i as u8);
         let line = Mark::line(curve.column("correlation")?, curve.column("growth")?).ink(ink);
-        panel = panel.mark(line.label(format!("predicted, ωΔt = {z}")).dash(Dash::Solid).width(1.2));
+        panel =
+            panel.mark(line.label(format!("predicted, ωΔt = {z}")).dash(Dash::Solid).width(1.2));
         let found = record.series(&format!("memory-{z}"))?;
         let points = Mark::points(found.column("correlation")?, found.column("growth")?).ink(ink);
         let marker = [Marker::Circle, Marker::Square][i];
@@ -116,12 +117,21 @@ pub(super) fn resonance(record: &Record) -> Result<Figure, RecordError> {
     .mark(Mark::horizontal(white).ink(Ink::Accent(1)).label("white jitter of the same σ"))
     .mark(Mark::vertical(middle).ink(Ink::Neutral).label("2θ"))
     .mark(weak.dash(Dash::Solid).width(1.2).label("weak jitter: √((aσ)²/2 − δ²/4)"))
-    .mark(measured.label("measured"))
-    .mark(Mark::prediction(rate, series.column("predicted")?).radius(5.0).label("predicted: product of a period"));
-    Ok(Figure::new("jitter-resonance", "A clock that swings at twice the angle of a step is a resonance")
-        .caption("Symplectic Euler at ωΔt = 0.95, step times that swing as a sine with σ = 5 %.")
-        .description("Growth against frequency: an arch above twice the angle of a step, zero elsewhere.")
-        .panel(panel))
+    .mark(
+        Mark::prediction(rate, series.column("predicted")?)
+            .radius(5.0)
+            .label("predicted: product of a period"),
+    )
+    .mark(measured.radius(2.4).label("measured"));
+    Ok(Figure::new(
+        "jitter-resonance",
+        "A clock that swings at twice the angle of a step is a resonance",
+    )
+    .caption("Symplectic Euler at ωΔt = 0.95, step times that swing as a sine with σ = 5 %.")
+    .description(
+        "Growth against frequency: an arch above twice the angle of a step, zero elsewhere.",
+    )
+    .panel(panel))
 }
 
 /// Sizes under steps that alternate.

@@ -8,13 +8,13 @@ use libration::integrator::VelocityVerlet;
 use libration::{Method, State};
 
 use super::margin::{margin, plant};
-use super::setting::Setting;
+use super::setting::{FREE, Setting};
 use super::{SEED, free, start};
 use crate::Lab;
 use crate::record::{Finding, Record, Relation, Series, Tolerance};
-use crate::study::StudyError;
 use crate::studies::sample::Sample;
 use crate::studies::swarm::{Seen, follow};
+use crate::study::StudyError;
 
 /// The ends of the map: `ωΔt`, and the standard deviation of a step.
 const Z: [f64; 2] = [0.2, 1.95];
@@ -25,6 +25,10 @@ pub(super) const BOUNDED: f64 = 0.5e-6;
 
 /// Part of the cells that may lie on the other side of a boundary: those which it cuts.
 const CUT: f64 = 0.06;
+
+/// Where the boundary of the damped loop is looked for, as `ωΔt`, and how often that is halved.
+const BRACKET: [f64; 2] = [1.0, 1.95];
+const BISECTIONS: u32 = 4;
 
 /// `K_d` of the damper in units of `ω`.
 const DAMPING: f64 = 0.06;
@@ -52,14 +56,14 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     if !lab.config.integrators.contains(&Method::VelocityVerlet) {
         return Ok(());
     }
-    let [columns, rows] = lab.effort.choose([14, 10], [36, 24], [72, 48]);
+    let [columns, rows] = lab.effort.choose([12, 8], [36, 24], [72, 48]);
     let omega = lab.config.oscillator.omega();
     let dt: Vec<f64> = spread(Z, columns, false).iter().map(|z| z / omega).collect();
     let rms = spread(RMS, rows, true);
     let cells: Vec<(f64, f64)> =
         rms.iter().flat_map(|&rms| dt.iter().map(move |&dt| (dt, rms))).collect();
     let starts = vec![start(lab); 64];
-    let steps = lab.effort.choose(500, 4000, 10_000);
+    let steps = lab.effort.choose(400, 2000, 10_000);
     let found = lab.sweep("maps of growth", &cells, |&(dt, rms)| {
         let setting = Setting::new(lab.config, Method::VelocityVerlet, dt, rms);
         let size = |y: &State<f64, 1>| setting.model.omega2 * y.q[0] * y.q[0] + y.v[0] * y.v[0];
@@ -79,8 +83,10 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         let cells = Series::new(name).with("dt", "s", column(0)).with("rms", "1", column(1));
         cells.with("growth", "1", growth)
     };
-    let lines = lines(lab, &rms)?;
-    record.find(sides(&cells, &damped, &lines));
+    let lines = lines(lab)?;
+    if let Some(finding) = sides(&cells, &damped, &lines[1]) {
+        record.find(finding);
+    }
     record.series.push(with("map-free", free));
     record.series.push(with("map-damped", damped));
     record.series.extend(lines);
@@ -109,66 +115,79 @@ fn rate(seen: &[Seen], size: impl Fn(&State<f64, 1>) -> f64, steps: u64) -> f64 
     (end - middle) / steps as f64
 }
 
-/// Boundaries in theory, as the jitter at each time step: where a free run of a million steps is no longer bounded, where
-/// the typical run of the damped loop begins to grow, and where its mean square does.
-fn lines(lab: &Lab<'_>, rms: &[f64]) -> Result<[Series; 3], StudyError> {
+/// Boundaries in theory: where a free run of a million steps is no longer bounded, where the typical run of the damped loop
+/// begins to grow, and where its mean square does.
+fn lines(lab: &Lab<'_>) -> Result<[Series; 3], StudyError> {
     let omega = lab.config.oscillator.omega();
-    let count = lab.effort.choose(12, 30, 60);
-    let dt: Vec<f64> = spread(Z, count, false).iter().map(|z| z / omega).collect();
+    let dt: Vec<f64> =
+        spread(Z, lab.effort.choose(8, 16, 60), false).iter().map(|z| z / omega).collect();
     let found = lab.sweep("boundaries", &dt, |&dt| {
         let unit = Setting::new(lab.config, Method::VelocityVerlet, dt, 1.0);
-        let resonance = unit.plant().resonance(super::setting::FREE);
+        let resonance = unit.plant().resonance(FREE);
         let growth = resonance.map_or(f64::NAN, |r| r.weak_growth(StepNoise::white(1.0)));
-        let few = (BOUNDED / growth).sqrt();
-        Ok([few, typical(lab, dt, rms).unwrap_or(f64::NAN), margin(lab, dt).unwrap_or(f64::NAN)])
+        Ok([(BOUNDED / growth).sqrt(), margin(lab, dt).unwrap_or(f64::NAN)])
     })?;
-    let names = ["boundary-free", "boundary-typical", "boundary-mean-square"];
-    Ok([0, 1, 2].map(|i| {
-        Series::new(names[i])
-            .with("dt", "s", dt.clone())
-            .with("rms", "1", found.iter().map(|f| f[i]).collect())
-    }))
+    let rms = spread(RMS, lab.effort.choose(4, 7, 24), true);
+    let typical = lab.sweep("where typical runs grow", &rms, |&rms| Ok(typical(lab, rms)))?;
+    let line = |name: &str, dt: Vec<f64>, rms: Vec<f64>| {
+        Series::new(name).with("dt", "s", dt).with("rms", "1", rms)
+    };
+    let of = |i: usize| found.iter().map(|f| f[i]).collect();
+    Ok([
+        line("boundary-free", dt.clone(), of(0)),
+        line("boundary-typical", typical, rms),
+        line("boundary-mean-square", dt, of(1)),
+    ])
 }
 
-/// The jitter at which the typical run of the damped loop begins to grow, by bisection of the Lyapunov exponent.
-fn typical(lab: &Lab<'_>, dt: f64, rms: &[f64]) -> Option<f64> {
-    let plant = plant(lab, dt);
-    let grows =
-        |rms: f64| Some(plant.lyapunov_exponent(damping(lab), Jitter::Gaussian(rms))? > 0.0);
-    let (mut low, mut high) = (*rms.first()?, *rms.last()?);
-    if grows(low)? || !grows(high)? {
-        return None;
+/// The time step at which the typical run of the damped loop begins to grow, where its Lyapunov exponent vanishes.
+fn typical(lab: &Lab<'_>, rms: f64) -> f64 {
+    // A step that no longer turns the state is beyond.
+    let exponent = |dt: f64| {
+        plant(lab, dt)
+            .lyapunov_exponent(damping(lab), Jitter::Gaussian(rms))
+            .unwrap_or(f64::INFINITY)
+    };
+    let [mut low, mut high] = BRACKET.map(|z| z / lab.config.oscillator.omega());
+    let (mut falls, mut grows) = (exponent(low), exponent(high));
+    if falls > 0.0 || grows <= 0.0 {
+        return f64::NAN;
     }
-    // To a part of 2⁻⁷ of the map.
-    for _ in 0..7 {
-        let middle = (low * high).sqrt();
-        if grows(middle)? { high = middle } else { low = middle }
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        match exponent(middle) {
+            x if x > 0.0 => (high, grows) = (middle, x),
+            x => (low, falls) = (middle, x),
+        }
     }
-    Some((low * high).sqrt())
+    // The rest is nearly straight.
+    if grows.is_finite() { low - falls * (high - low) / (grows - falls) } else { high }
 }
 
 /// How many cells of the map of the damped loop lie on the wrong side of its boundary.
-fn sides(cells: &[(f64, f64)], growth: &[f64], lines: &[Series; 3]) -> Finding {
-    let line = lines[1].column("dt").ok().zip(lines[1].column("rms").ok());
-    let boundary = |dt: f64| {
-        let (x, y) = line?;
-        let i = x.windows(2).position(|pair| pair[0] <= dt && dt <= pair[1])?;
-        let share = (dt - x[i]) / (x[i + 1] - x[i]);
-        let rms = y[i] + share * (y[i + 1] - y[i]);
-        rms.is_finite().then_some(rms)
+fn sides(cells: &[(f64, f64)], growth: &[f64], line: &Series) -> Option<Finding> {
+    let (x, y) = (line.column("dt").ok()?, line.column("rms").ok()?);
+    let boundary = |rms: f64| {
+        let i = y.windows(2).position(|pair| pair[0] <= rms && rms <= pair[1])?;
+        let share = (rms / y[i]).ln() / (y[i + 1] / y[i]).ln();
+        Some(x[i] + share * (x[i + 1] - x[i])).filter(|dt| dt.is_finite())
     };
-    let sided = cells.iter().zip(growth).filter_map(|(&(dt, rms), growth)| {
-        Some((rms > boundary(dt)?) != (*growth > 0.0))
-    });
+    let sided = cells
+        .iter()
+        .zip(growth)
+        .filter_map(|(&(dt, rms), growth)| Some((dt > boundary(rms)?) != (*growth > 0.0)));
     let wrong: Vec<bool> = sided.collect();
     let part = wrong.iter().filter(|&&wrong| wrong).count() as f64 / wrong.len().max(1) as f64;
-    Finding::related(
+    Some(Finding::related(
         "jitter.map.sides",
         "velocity Verlet with a damper: part of the cells of the map on the wrong side of the predicted boundary",
         "1",
         Relation::AtMost,
         0.0,
         part,
-        Tolerance::absolute(CUT, "cells that the boundary cuts, where growth is smaller than it is known"),
-    )
+        Tolerance::absolute(
+            CUT,
+            "cells that the boundary cuts, where growth is smaller than it is known",
+        ),
+    ))
 }

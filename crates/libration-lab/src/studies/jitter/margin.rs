@@ -9,8 +9,8 @@ use super::start;
 use crate::Lab;
 use crate::notation::number;
 use crate::record::{Finding, Record, Tolerance};
-use crate::study::StudyError;
 use crate::studies::sample::Sample;
+use crate::study::StudyError;
 
 /// `ωΔt` at which the margin is tried.
 const Z: f64 = 1.7;
@@ -18,7 +18,7 @@ const Z: f64 = 1.7;
 /// Parts of the margin that are tried: below it and above.
 const SHARES: [f64; 2] = [0.7, 1.3];
 
-const STEPS: [u64; 2] = [40, 80];
+const STEPS: [u64; 2] = [20, 40];
 
 /// The margin of the damped loop in steps of `dt` seconds, as a standard deviation.
 pub(super) fn margin(lab: &Lab<'_>, dt: f64) -> Option<f64> {
@@ -41,11 +41,13 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     else {
         return Ok(());
     };
-    let text = format!("velocity Verlet with a damper, ωΔt = {Z}: largest σ at which the mean square stays bounded");
+    let text = format!(
+        "velocity Verlet with a damper, ωΔt = {Z}: largest σ at which the mean square stays bounded"
+    );
     record.find(Finding::measured("jitter.margin.rms", text, "1", margin));
     let Feedback { velocity, .. } = damping(lab);
     let begin = start(lab);
-    let starts = vec![begin; lab.effort.choose(4096, 16_384, 131_072)];
+    let starts = vec![begin; lab.effort.choose(4096, 32_768, 262_144)];
     let omega2 = lab.config.oscillator.system().omega2;
     for share in SHARES {
         let rms = share * margin;

@@ -7,8 +7,8 @@ use super::{free, start};
 use crate::Lab;
 use crate::notation::count;
 use crate::record::{Finding, Record, Table, Tolerance};
-use crate::study::StudyError;
 use crate::studies::sample::Sample;
+use crate::study::StudyError;
 
 /// Where they are compared, and after how many steps: before they hang on a few trajectories that have grown most.
 const SETTINGS: [(Method, f64, f64, u64); 6] = [
@@ -35,9 +35,9 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         let first = energy(square.moments(&begin, 0));
         let wanted = energy(square.moments(&begin, *steps)) / first;
         let seen = free(lab, setting, setting.model, &starts, &[*steps])?;
-        let energies = seen.iter().flat_map(|s| {
-            s.logarithms(|y| (omega2 * y.q[0] * y.q[0] + y.v[0] * y.v[0]) / first)
-        });
+        let energies = seen
+            .iter()
+            .flat_map(|s| s.logarithms(|y| (omega2 * y.q[0] * y.q[0] + y.v[0] * y.v[0]) / first));
         let found = Sample::of(&energies.map(f64::exp).collect::<Vec<_>>());
         let excess = (square.radius - libration::Scalar::one()).to_f64();
         Ok(Some((wanted, found, excess, theory.rate)))

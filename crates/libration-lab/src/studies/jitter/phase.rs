@@ -11,9 +11,9 @@ use super::{free, start};
 use crate::Lab;
 use crate::notation::count;
 use crate::record::{Finding, Record, Series, Table, Tolerance};
-use crate::study::StudyError;
 use crate::studies::sample::{ERRORS, Sample};
 use crate::studies::sampled::sampled_steps;
+use crate::study::StudyError;
 
 /// Where phases are followed.
 const SETTINGS: [(Method, f64, f64); 4] = [
@@ -67,9 +67,9 @@ fn run(lab: &Lab<'_>, setting: &Setting) -> Result<Option<Run>, StudyError> {
     let Some(speed) = unit.map(|n| SQRT_2 / n.to_f64()) else { return Ok(None) };
     let walk = speed * setting.rms;
     let most = (WIDE_ENOUGH / walk).powi(2) as u64;
-    let last = most.min(lab.effort.choose(20_000, 1_000_000, 1_000_000)).max(1);
+    let last = most.min(lab.effort.choose(10_000, 1_000_000, 1_000_000)).max(1);
     let at = sampled_steps(last, 4.0);
-    let count = lab.effort.choose(128, 128, 1024);
+    let count = lab.effort.choose(64, 64, 512);
     let seen = free(lab, setting, setting.model, &vec![start(lab); count], &at)?;
     // What moves freely goes as far as time does; the seed is the same, and so are its steps.
     let still = vec![State { q: [0.0], v: [1.0] }; count];

@@ -66,10 +66,12 @@ fn summary(record: &Record, page: &mut Page) {
             number(grown, 3),
             number(still, 2)
         );
-        page.headline = "Jitter pumps energy into symplectic methods, slowly at small steps.".into();
+        page.headline =
+            "Jitter pumps energy into symplectic methods, slowly at small steps.".into();
         page.highlights.push(Highlight {
             value: format!("e^{{{}}}", number(grown, 3)),
-            text: "growth of the energy of velocity Verlet under jitter of 10 % at Δt = 0.3 s".into(),
+            text: "growth of the energy of velocity Verlet under jitter of 10 % at Δt = 0.3 s"
+                .into(),
         });
     }
     if let Some(times) = found("jitter.resonance.beside-white") {
@@ -81,7 +83,9 @@ fn summary(record: &Record, page: &mut Page) {
     if let Some(worst) = found("jitter.switching.worst") {
         page.highlights.push(Highlight {
             value: format!("{} %", number(100.0 * worst.exp_m1(), 3)),
-            text: "growth a step of a damped loop that misses ticks, though stable with and without".into(),
+            text:
+                "growth a step of a damped loop that misses ticks, though stable with and without"
+                    .into(),
         });
     }
 }

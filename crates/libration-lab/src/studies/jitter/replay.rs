@@ -7,15 +7,15 @@ use libration::integrator::VelocityVerlet;
 use super::{SEED, start};
 use crate::Lab;
 use crate::record::{Finding, Record, Tolerance};
-use crate::study::StudyError;
 use crate::studies::swarm::follow;
+use crate::study::StudyError;
 
 const STEPS: u64 = 10_000;
 
 /// Counts the bits that two runs of one seed differ in, and those of another seed.
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let setup =
-        Setup::new(All(lab.config.oscillator.system()), VelocityVerlet).clock(Jittered(Gaussian(0.05)));
+    let setup = Setup::new(All(lab.config.oscillator.system()), VelocityVerlet)
+        .clock(Jittered(Gaussian(0.05)));
     let dt = 0.1 / lab.config.oscillator.omega();
     let run = |seed: u64, count: usize| {
         let seen = follow(lab, setup, (dt, seed), &vec![start(lab); count], &[STEPS])?;

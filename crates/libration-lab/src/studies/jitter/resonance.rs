@@ -12,8 +12,8 @@ use super::SEED;
 use super::setting::{FREE, Setting, Theory};
 use crate::Lab;
 use crate::record::{Finding, Record, Series, Tolerance};
-use crate::study::StudyError;
 use crate::studies::swarm::follow;
+use crate::study::StudyError;
 
 /// `ωΔt`.
 const Z: f64 = 0.95;
@@ -21,10 +21,13 @@ const Z: f64 = 0.95;
 const RMS: f64 = 0.05;
 
 /// Steps to a period of the swings that are tried, or to a whole number of them.
-const PERIOD: u64 = 512;
+const PERIOD: u64 = 1024;
 
 /// Periods of [`PERIOD`] steps on either side of the resonance.
-const ASIDE: u64 = 12;
+const ASIDE: u64 = 10;
+
+/// Of these a finding is made of the resonance, of those so far from it, and of the outermost.
+const INSIDE: u64 = 2;
 
 /// Beyond this logarithm of a size only the fastest direction is left.
 const SETTLED: f64 = 20.0;
@@ -40,7 +43,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     let resonant = 2.0 * theory.resonance.angle.to_f64() / TAU * PERIOD as f64;
     let nearest = resonant.round() as u64;
     let turns: Vec<u64> = (nearest - ASIDE..=nearest + ASIDE).collect();
-    let half = PERIOD * lab.effort.choose(8, 16, 64);
+    let half = PERIOD * lab.effort.choose(4, 8, 32);
     let found = lab.sweep("parametric resonance", &turns, |&turns| {
         let wave = |n: u64| (TAU * (turns * n % PERIOD) as f64 / PERIOD as f64).sin();
         let ratios: Vec<f64> = (0..PERIOD).map(|n| 1.0 + SQRT_2 * RMS * wave(n)).collect();
@@ -49,10 +52,14 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     })?;
     let mid = theory.resonance.resonance_growth(RMS);
     for (turns, (predicted, measured)) in turns.iter().zip(&found) {
-        let aside = (*turns as i64 - nearest as i64).unsigned_abs();
-        if ![0, ASIDE / 6, ASIDE].contains(&aside) {
-            continue;
-        }
+        let name = match (turns.abs_diff(nearest), *turns < nearest) {
+            (0, _) => "at",
+            (INSIDE, true) => "just-below",
+            (INSIDE, false) => "just-above",
+            (ASIDE, true) => "below",
+            (ASIDE, false) => "above",
+            _ => continue,
+        };
         let ratio = rate(*turns) / (2.0 * theory.resonance.angle.to_f64());
         let tolerance = match predicted * half as f64 > SETTLED {
             true => Tolerance::absolute(
@@ -65,7 +72,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
             ),
         };
         record.find(Finding::predicted(
-            format!("jitter.resonance.turns-{turns}"),
+            format!("jitter.resonance.{name}"),
             format!(
                 "symplectic Euler, ωΔt = {Z}, σ = 5 %, a sine of {ratio:.3} times twice the angle of a step: growth of \
                  ln |y| in a step"
@@ -85,7 +92,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
             *peak,
             Tolerance::relative(
                 2.0 * RMS + (rate(1) / 4.0 / mid).powi(2),
-                "the next term of the jitter, and the square of what is left to the nearest of 512 frequencies",
+                "the next term of the jitter, and the square of what is left to the nearest of 1024 frequencies",
             ),
         ));
         let white = theory.rate;
@@ -127,8 +134,10 @@ fn growth(
 
 fn series(turns: &[u64], found: &[(f64, f64)], theory: &Theory) -> [Series; 2] {
     let middle = 2.0 * theory.resonance.angle.to_f64();
-    let (peak, white) =
-        (theory.resonance.resonance_growth(RMS), theory.resonance.weak_growth(StepNoise::white(RMS)));
+    let (peak, white) = (
+        theory.resonance.resonance_growth(RMS),
+        theory.resonance.weak_growth(StepNoise::white(RMS)),
+    );
     let at: Vec<f64> = turns.iter().map(|&t| rate(t)).collect();
     // The averaged equation of the resonance: the size grows by √(g² − δ²) where half the detuning is δ.
     let reach = (rate(ASIDE) * 1.05).max(4.0 * peak);

@@ -1,6 +1,8 @@
 //! A method on the configured oscillator, a time step and the jitter of it.
 
-use libration::analysis::{Feedback, Jitter, Linearisation, Plant, QuadraticForm, Resonance, StepNoise};
+use libration::analysis::{
+    Feedback, Jitter, Linearisation, Plant, QuadraticForm, Resonance, StepNoise,
+};
 use libration::number::Wide;
 use libration::system::Oscillator;
 use libration::{Method, State};
@@ -34,6 +36,8 @@ pub(super) struct Theory {
     pub(super) weak: f64,
     /// What the steady step carries along: an ellipse.
     pub(super) form: QuadraticForm<f64>,
+    /// By how much a longer step changes `ln det M`, for each part of its length.
+    damping: f64,
 }
 
 impl Setting {
@@ -73,7 +77,19 @@ impl Setting {
             true => weak,
             false => plant.lyapunov_exponent(FREE, self.law())?,
         };
-        Some(Theory { resonance, rate, weak, form: self.form()? })
+        let (form, damping) = (self.form()?, self.damping());
+        Some(Theory { resonance, rate, weak, form, damping })
+    }
+
+    /// The derivative of `ln det M` by the part by which a step is longer.
+    fn damping(&self) -> f64 {
+        // What is left out is the square of this.
+        let off = 1.0 / 1024.0;
+        let at = |part: f64| {
+            let dt = self.dt * (1.0 + part);
+            Linearisation::new(self.method, self.model, &State::origin(), dt).step.determinant()
+        };
+        (at(off) / at(-off)).ln().to_f64() / (2.0 * off)
     }
 
     /// The ellipse that a steady step carries along, if it does.
@@ -90,6 +106,12 @@ impl Theory {
     pub(super) fn variance(&self, noise: StepNoise) -> f64 {
         let [coupling, angle] = [self.resonance.coupling, self.resonance.angle].map(Wide::to_f64);
         0.5 * coupling * coupling * noise.spectrum(2.0 * angle)
+    }
+
+    /// The standard deviation that white jitter leaves in `ln E` after a step; it grows with the root of their number.
+    pub(super) fn deviation(&self, rms: f64) -> f64 {
+        let walk = 4.0 * self.variance(StepNoise::white(rms));
+        (walk + (self.damping * rms).powi(2)).sqrt()
     }
 
     /// By which part weak-noise theory is off.

@@ -10,9 +10,9 @@ use super::setting::{Setting, Theory};
 use super::{SEED, start};
 use crate::Lab;
 use crate::record::{Finding, Record, Series, Tolerance};
-use crate::study::StudyError;
 use crate::studies::sample::{ERRORS, Sample};
 use crate::studies::swarm::follow;
+use crate::study::StudyError;
 
 /// Steps `ωΔt`, which turn by half a radian and by one.
 const Z: [f64; 2] = [0.3, 0.95];
@@ -28,7 +28,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         return Ok(());
     }
     let trials = Z.map(|z| CORRELATIONS.map(|correlation| (z, correlation))).concat();
-    let starts = vec![start(lab); lab.effort.choose(256, 1024, 4096)];
+    let starts = vec![start(lab); lab.effort.choose(128, 1024, 4096)];
     let steps = lab.effort.choose(2000, 10_000, 20_000);
     let found = lab.sweep("jitter with memory", &trials, |&(z, correlation)| {
         let setting = setting(lab, z);

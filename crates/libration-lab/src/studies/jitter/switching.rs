@@ -10,8 +10,8 @@ use libration::integrator::VelocityVerlet;
 use super::{SEED, start};
 use crate::Lab;
 use crate::record::{Finding, Record, Relation, Series, Tolerance};
-use crate::study::StudyError;
 use crate::studies::swarm::follow;
+use crate::study::StudyError;
 
 /// `ωΔt` of a step on time.
 const Z: f64 = 0.9;
@@ -57,9 +57,13 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         record.find(Finding::predicted(
             format!("jitter.switching.{name}"),
             match *name {
-                "short" => "a damped oscillator in equal steps on time: growth of ln |y| in a step".into(),
+                "short" => {
+                    "a damped oscillator in equal steps on time: growth of ln |y| in a step".into()
+                }
                 "long" => "the same in equal steps twice as long".into(),
-                _ => format!("the same in steps that alternate in the worst order, {told} over and over"),
+                _ => format!(
+                    "the same in steps that alternate in the worst order, {told} over and over"
+                ),
             },
             "1",
             radius.ln(),
