@@ -21,15 +21,18 @@ pub(super) struct Seen {
 }
 
 /// Steps between two looks at whether a state leaves the range of floats.
-const LEG: u64 = 512;
+const LEG: u64 = 128;
+
+/// Growth of the logarithm of a state in a step that leaves it in range between two looks.
+pub(super) const FASTEST: f64 = 1.0;
 
 /// The logarithm of a size that is scaled back; its square is still in range.
 const LARGE: f64 = 200.0;
 
 /// Runs loops in steps of `dt` seconds from `starts` and looks at them after each of the steps `at`, which rise.
 ///
-/// States that become large are divided by their size and begin anew: clocks that remember are not for loops that
-/// grow by e²⁰⁰.
+/// States that become large are divided by their size and begin anew, as long as they grow by no more than [`FASTEST`]:
+/// clocks that remember are not for loops that grow by e²⁰⁰.
 pub(super) fn follow<M: Integrator, K: Controller<f64, 1>, C: Clock<f64>>(
     lab: &Lab<'_>,
     setup: Loop<M, K, C>,

@@ -1,8 +1,9 @@
 //! How the energy walks under jitter.
 
-use libration::Method;
+use libration::analysis::{Jitter, Plant};
+use libration::{Method, State};
 
-use super::setting::{Setting, Theory};
+use super::setting::{FREE, Setting, Theory};
 use super::{METHODS, free, start};
 use crate::Lab;
 use crate::notation::count;
@@ -64,7 +65,24 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         record.series.push(run.series());
     }
     record.tables.push(table);
+    exact(lab, record);
     Ok(())
+}
+
+/// Exact steps of any length only turn.
+fn exact(lab: &Lab<'_>, record: &mut Record) {
+    let [dt, rms] = [DT[3], RMS[2]];
+    let plant = Plant::exact(lab.config.oscillator.system(), State::origin(), dt);
+    let Some(rate) = plant.lyapunov_exponent(FREE, Jitter::Gaussian(rms)) else { return };
+    let why = "rounding of sums over 256 directions and 41 lengths";
+    record.find(Finding::predicted(
+        "jitter.exact.exponent",
+        "exact steps, Δt = 0.3 s, σ = 10 %: growth of ln |y| in a step, by the transfer operator",
+        "1",
+        0.0,
+        rate,
+        Tolerance::absolute(1e-13, why),
+    ));
 }
 
 /// A setting that was run.
@@ -84,7 +102,7 @@ impl Run {
     fn new(setting: &Setting, theory: Theory, lab: &Lab<'_>, seen: &[Seen]) -> Self {
         let omega2 = setting.model.omega2;
         let begin = start(lab);
-        let energy = |s: &libration::State<f64, 1>| omega2 * s.q[0] * s.q[0] + s.v[0] * s.v[0];
+        let energy = |s: &State<f64, 1>| omega2 * s.q[0] * s.q[0] + s.v[0] * s.v[0];
         let (form, first) = (theory.form, theory.form.at(&begin).ln());
         let walk = |s: &Seen| {
             let changes = s.logarithms(|y| form.at(y));

@@ -58,13 +58,26 @@ struct Run {
     elapsed: Vec<Sample>,
     /// After one step, in theory: each grows with the root of the number of steps.
     predicted: [f64; 2],
+    /// What the second derivative of the angle adds to that, as a deviation.
+    bend: f64,
+}
+
+/// The part of a step over which differences of angles are taken; what is left out is the square of it.
+const OFF: f64 = 1.0 / 1024.0;
+
+/// How fast the angle follows the length of a step that is `ratio` times as long: a Gaussian ensemble falls to 1/e where its
+/// phases are √2 rad wide.
+fn speed(setting: &Setting, ratio: f64) -> Option<f64> {
+    let setting = Setting { dt: setting.dt * ratio, ..*setting };
+    let steps = setting.plant().dephasing_steps(Jitter::Gaussian(1.0))?;
+    Some(SQRT_2 / steps.to_f64())
 }
 
 fn run(lab: &Lab<'_>, setting: &Setting) -> Result<Option<Run>, StudyError> {
     let Some(theory) = setting.theory() else { return Ok(None) };
-    // A Gaussian ensemble falls to 1/e where its phases are √2 rad wide: that is how fast an angle follows a step.
-    let unit = setting.plant().dephasing_steps(Jitter::Gaussian(1.0));
-    let Some(speed) = unit.map(|n| SQRT_2 / n.to_f64()) else { return Ok(None) };
+    let speeds = [0.0, -OFF, OFF].map(|part| speed(setting, 1.0 + part));
+    let [Some(speed), Some(below), Some(above)] = speeds else { return Ok(None) };
+    let bend = ((above - below) / (2.0 * OFF) - speed).abs();
     let walk = speed * setting.rms;
     let most = (WIDE_ENOUGH / walk).powi(2) as u64;
     let last = most.min(lab.effort.choose(10_000, 1_000_000, 1_000_000)).max(1);
@@ -82,6 +95,8 @@ fn run(lab: &Lab<'_>, setting: &Setting) -> Result<Option<Run>, StudyError> {
         nominal: Vec::new(),
         elapsed: Vec::new(),
         predicted: [walk, blur(&theory, setting.rms)],
+        // The deviation of a square is √2 times its mean.
+        bend: bend * setting.rms * setting.rms / SQRT_2,
     };
     for (seen, clocks) in seen.iter().zip(&clocks) {
         let steps = seen.step as f64;
@@ -109,7 +124,7 @@ fn wrapped(angle: f64) -> f64 {
 
 impl Run {
     fn find(self, record: &mut Record, table: &mut Table) {
-        let Run { setting, steps, nominal, elapsed, predicted } = self;
+        let Run { setting, steps, nominal, elapsed, predicted, bend } = self;
         let (Some(&n), Some(ahead), Some(left)) = (steps.last(), nominal.last(), elapsed.last())
         else {
             return;
@@ -123,15 +138,15 @@ impl Run {
         let text = setting.text(&text);
         let (id, found) = (setting.id("phase-nominal"), ahead.deviation);
         record.find(Finding::predicted(id, text, "rad", walk, found, tolerance));
-        // Turns must come round for the cosines to be independent; the bend of the angle adds the square of jitter.
+        // Turns must come round for the cosines to be independent.
         let turns = n * setting.model.omega2.sqrt() * setting.dt / PI;
-        let bend = setting.rms * walk;
         let text =
             format!("standard deviation of the phase against the time that has passed {after}");
         let text = setting.text(&text);
-        let why = "four standard errors of a deviation, the part of a turn that is left over, and the \
-                   jitter’s share of the walk against nominal time, by which angles bend with the step";
-        let tolerance = Tolerance::absolute(blur * (part + 1.0 / turns) + bend, why);
+        let why = "four standard errors of a deviation, the part of a turn that is left over, the \
+                   square of the jitter, and what the bend of the angle over the step adds";
+        let part = part + 1.0 / turns + 2.0 * setting.rms;
+        let tolerance = Tolerance::absolute(blur * part + bend * n.sqrt(), why);
         let (id, found) = (setting.id("phase-elapsed"), left.deviation);
         record.find(Finding::predicted(id, text, "rad", blur, found, tolerance));
         table.push([

@@ -9,6 +9,7 @@ use libration::{Method, State};
 
 use crate::Config;
 use crate::notation::{number, seconds};
+use crate::studies::swarm::FASTEST;
 
 /// Nobody commands.
 pub(super) const FREE: Feedback = Feedback { position: 0.0, velocity: 0.0 };
@@ -68,7 +69,7 @@ impl Setting {
         Plant::new(self.method, self.model, State::origin(), self.dt)
     }
 
-    /// None where the step of mean length does not turn the state.
+    /// None where the step of mean length does not turn the state, or where that grows too fast to be followed.
     pub(super) fn theory(&self) -> Option<Theory> {
         let plant = self.plant();
         let resonance = plant.resonance(FREE)?;
@@ -78,7 +79,7 @@ impl Setting {
             false => plant.lyapunov_exponent(FREE, self.law())?,
         };
         let (form, damping) = (self.form()?, self.damping());
-        Some(Theory { resonance, rate, weak, form, damping })
+        (rate.abs() < FASTEST).then_some(Theory { resonance, rate, weak, form, damping })
     }
 
     /// The derivative of `ln det M` by the part by which a step is longer.
