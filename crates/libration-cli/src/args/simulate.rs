@@ -56,7 +56,7 @@ pub(crate) struct SimulateArgs {
     #[command(flatten)]
     pub(crate) timing: TimingArgs,
     /// Seed of all that is random: --jitter and --skew
-    #[arg(long, value_name = "N", default_value = "0")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "0")]
     pub(crate) seed: u64,
     /// Format of the rows [default: that of the extension of --output, or csv]
     #[arg(long, value_parser = formats())]

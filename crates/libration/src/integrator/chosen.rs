@@ -9,13 +9,25 @@ impl Integrator for Method {
     // Of the one that fills the most.
     const REGISTERS: usize = 16;
 
-    #[inline]
+    #[inline(always)]
     fn step<S: Scalar, const D: usize>(
         self,
         system: &impl System<S, D>,
         state: State<S, D>,
         dt: S,
     ) -> State<S, D> {
-        with_method!(self, |method| method.step(system, state, dt))
+        with_method!(self, |method| apart(method, system, state, dt))
     }
+}
+
+/// A step that is a function of its own: nine of them in every caller would take long to compile, and a stack that holds
+/// the exact numbers of all.
+#[inline(never)]
+fn apart<S: Scalar, const D: usize>(
+    method: impl Integrator,
+    system: &impl System<S, D>,
+    state: State<S, D>,
+    dt: S,
+) -> State<S, D> {
+    method.step(system, state, dt)
 }
