@@ -1,6 +1,5 @@
 //! The studies, in the order in which they are told.
 
-mod asynchrony;
 mod convergence;
 mod coverage;
 mod determinism;
@@ -10,29 +9,24 @@ mod error;
 mod growth;
 mod hierarchy;
 mod ink;
-mod jitter;
 mod latency;
 mod nonlinear;
 mod precision;
 mod rounding;
-mod sample;
 mod sampled;
 mod source;
 mod spectrum;
 mod stability;
 mod subject;
-mod swarm;
 pub(crate) mod throughput;
 
 use crate::study::Study;
-pub use asynchrony::Asynchrony;
 pub use convergence::Convergence;
 pub use determinism::Determinism;
 pub use drift::Drift;
 pub use efficiency::Efficiency;
 pub use error::Error;
 pub use hierarchy::Hierarchy;
-pub use jitter::Jitter;
 pub use latency::Latency;
 pub use nonlinear::Nonlinear;
 pub use precision::Precision;
@@ -54,11 +48,9 @@ pub const ALL: &[&dyn Study] = &[
     &Convergence::CONFIGURED,
     &Nonlinear::CONFIGURED,
     &Precision,
-    &Latency,
-    &Jitter,
-    &Asynchrony,
-    &Hierarchy,
     &Determinism,
+    &Hierarchy,
+    &Latency,
     &Throughput,
 ];
 

@@ -5,7 +5,6 @@
 #![allow(clippy::unwrap_used)]
 
 mod analyze;
-mod clocks;
 mod config;
 mod config_fuzz;
 mod default_run;
