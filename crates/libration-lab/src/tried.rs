@@ -119,6 +119,7 @@ pub const TRIED: &[Tried] = &[
     tried("C68", "throughput", &[], &["9.7"]),
     tried("C69", "throughput", &[], &[]),
     tried("C70", "stability", FOUR, &["9.5"]),
+    tried("C71", "determinism", &[], &[]),
     of_its_run("C73", "drift", &[SymplecticEuler, VelocityVerlet, Rk4], &["9.1"]),
     of_its_run("C74", "error", &[ExplicitEuler], &["9.3"]),
     of_its_run("C75", "error", &[SymplecticEuler], &["9.3"]),
