@@ -109,13 +109,13 @@ pub const TRIED: &[Tried] = &[
     of_its_run("C59a", "precision", &[VelocityVerlet], &[]),
     tried("C59b", "precision", &[VelocityVerlet], &[]),
     of_its_run("C59c", "precision", &[], &[]),
+    tried("C61", "latency", &[], &["9.14", "9.15"]),
+    tried("C62", "latency", &[], &["latency-map-gain", "latency-map-step"]),
+    tried("C63", "latency", &[], &["9.14", "9.15"]),
     // Of bits, which are counted in a table.
     tried("C66", "determinism", &[], &[]),
     tried("C67", "hierarchy", &[], &["9.16", "9.17"]),
     tried("C67a", "precision", &[SymplecticEuler, VelocityVerlet, Rk4], &["precision-types"]),
-    tried("C61", "latency", &[], &["9.14", "9.15"]),
-    tried("C62", "latency", &[], &["latency-map-gain", "latency-map-step"]),
-    tried("C63", "latency", &[], &["9.14", "9.15"]),
     tried("C68", "throughput", &[], &["9.7"]),
     tried("C69", "throughput", &[], &[]),
     tried("C70", "stability", FOUR, &["9.5"]),
@@ -190,7 +190,11 @@ mod tests {
             (1..=47).chain(68..=83).map(|number| format!("C{number:02}")).collect();
         // Of chapters 6 and 7, what is about precision, phase and reproducibility.
         wanted.extend(
-            ["C53", "C58a", "C59", "C59a", "C59b", "C59c", "C61", "C62", "C63", "C66", "C67", "C67a"].map(String::from),
+            [
+                "C53", "C58a", "C59", "C59a", "C59b", "C59c", "C61", "C62", "C63", "C66", "C67",
+                "C67a",
+            ]
+            .map(String::from),
         );
         let ids = TRIED.iter().map(|c| c.id).chain(UNTRIED.iter().map(|c| c.id));
         let found: Vec<String> = ids.map(String::from).collect();

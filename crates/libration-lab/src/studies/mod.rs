@@ -48,9 +48,9 @@ pub const ALL: &[&dyn Study] = &[
     &Convergence::CONFIGURED,
     &Nonlinear::CONFIGURED,
     &Precision,
-    &Determinism,
-    &Hierarchy,
     &Latency,
+    &Hierarchy,
+    &Determinism,
     &Throughput,
 ];
 
