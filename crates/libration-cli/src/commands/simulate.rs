@@ -86,8 +86,6 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
             threads: args.threads,
             instructions,
         }),
-        timing: args.timing.timing(),
-        seed: args.seed,
     })
 }
 

@@ -2,13 +2,13 @@
 
 use libration::analysis::{Feedback, Jitter, Latency, Plant};
 use libration::number::Wide;
-use libration::{AnySystem, Model, Scalar, State};
+use libration::{AnySystem, Model, Scalar, State, with_method};
 use serde::Serialize;
 
 use super::{AnalyzeError, Request, Stepping};
 
 /// What is asked of timing.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Timing {
     /// The feedback that closes the loop.
     pub feedback: Option<Feedback>,
@@ -31,7 +31,7 @@ pub enum Late {
 
 impl Timing {
     /// The first flag that is given.
-    pub(crate) fn first(&self) -> Option<&'static str> {
+    fn first(&self) -> Option<&'static str> {
         let given = [
             (self.feedback.is_some(), "feedback"),
             (self.latency.is_some(), "latency"),
@@ -44,14 +44,14 @@ impl Timing {
     /// The latency in steps of `dt` seconds.
     ///
     /// # Errors
-    /// The number of steps, if it is negative, not finite or too large.
-    pub(crate) fn latency_of(&self, dt: f64) -> Result<Latency, f64> {
+    /// If it is negative, not finite or too long.
+    fn latency(&self, dt: f64) -> Result<Latency, AnalyzeError> {
         let steps = match self.latency {
             None => 0.0,
             Some(Late::Steps(steps)) => steps,
             Some(Late::Seconds(seconds)) => whole(seconds / dt),
         };
-        Latency::of_steps(steps).ok_or(steps)
+        Latency::of_steps(steps).ok_or(AnalyzeError::Latency { steps })
     }
 }
 
@@ -110,8 +110,7 @@ pub struct Critical {
 /// If the system has more than one degree of freedom, or the latency cannot be.
 pub(super) fn answer(request: &Request) -> Result<Option<TimingAnswer>, AnalyzeError> {
     let Some(flag) = request.timing.first() else { return Ok(None) };
-    let latency = request.timing.latency_of(request.dt);
-    let latency = latency.map_err(|steps| AnalyzeError::Latency { steps })?;
+    let latency = request.timing.latency(request.dt)?;
     let answer = match request.system {
         AnySystem::Oscillator(model) if request.q.len() == 1 => of_model(model, latency, request),
         AnySystem::DampedOscillator(model) => of_model(model, latency, request),
@@ -129,7 +128,9 @@ fn of_model(model: impl Model<1>, latency: Latency, request: &Request) -> Timing
     let timing = &request.timing;
     let at = State { q: [request.q[0]], v: [request.v[0]] };
     let plant = match request.stepping {
-        Stepping::Method(method) => Plant::new(method, model, at, request.dt),
+        Stepping::Method(method) => {
+            with_method!(method, |m| Plant::new(m, model, at, request.dt))
+        }
         Stepping::Exact => Plant::exact(model, at, request.dt),
     };
     let feedback = timing.feedback.unwrap_or_default();

@@ -1,14 +1,7 @@
-//! Loops that are not ideal: clocks that are not exact, commands that arrive late, and what commands.
-//!
-//! A [`Clock`] tells how long steps are, a [`Delay`] when commands arrive, a [`Controller`] computes them.
-//! [`Loops`](crate::ensemble::Loops) runs them.
+//! Systems under control: clocks that are not exact, and commands that arrive late.
 
-pub mod clock;
-pub mod controller;
-pub mod delay;
-mod memory;
+mod clock;
+mod control_loop;
 
-pub use clock::Clock;
-pub use controller::Controller;
-pub use delay::{Delay, Schedule};
-pub use memory::Memory;
+pub use clock::{Clock, Fixed, Jittered, Skewed};
+pub use control_loop::{ControlLoop, Waiting};

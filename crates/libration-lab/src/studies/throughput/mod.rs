@@ -11,7 +11,6 @@ mod latency;
 mod machine;
 mod one_step;
 mod peers;
-mod perturbed;
 mod regime;
 mod render;
 mod roofline;
@@ -43,12 +42,11 @@ impl Study for Throughput {
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
         let desk = Desk::new(lab)?;
         let mut record = Record::new(self.name(), self.question());
-        let parts: [(&str, Part); 11] = [
+        let parts: [(&str, Part); 10] = [
             ("fused steps against independent arithmetic", fused::measure),
             ("threads", threads::measure),
             ("a lone trajectory", latency::measure),
             ("sines", sine::measure),
-            ("clocks and delays", perturbed::measure),
             ("memory", bandwidth::measure),
             ("one step a pass", one_step::measure),
             ("page faults", faults::measure),
