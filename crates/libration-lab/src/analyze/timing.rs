@@ -58,6 +58,7 @@ impl Timing {
 /// A whole number where the quotient of two decimals misses one by rounding: 0.07 s are seven steps of 0.01 s.
 fn whole(quotient: f64) -> f64 {
     let nearest = quotient.round();
+    // Three roundings, of both decimals and of their quotient, are less than 2 ε.
     if (quotient - nearest).abs() <= 4.0 * f64::EPSILON * nearest { nearest } else { quotient }
 }
 
