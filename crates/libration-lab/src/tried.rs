@@ -96,14 +96,30 @@ pub const TRIED: &[Tried] = &[
     tried("C39", "throughput", &[], &["9.7"]),
     tried("C40", "throughput", &[], &["9.7"]),
     tried("C42", "throughput", &[], &["9.8"]),
+    tried("C43", "precision", &[SymplecticEuler, VelocityVerlet, Rk4], &["precision-types"]),
     // Of arrays that are counted.
     tried("C44", "throughput", &[], &[]),
     tried("C45", "throughput", &[], &["9.7"]),
     tried("C46", "throughput", &[], &["9.7"]),
     tried("C47", "throughput", &[], &["roofline"]),
+    tried("C53", "precision", &[SymplecticEuler, VelocityVerlet, Rk4], &["precision-types"]),
+    // Of angles, which stand in a table.
+    tried("C58a", "precision", &[SymplecticEuler], &[]),
+    of_its_run("C59", "precision", &[SymplecticEuler, VelocityVerlet], &[]),
+    of_its_run("C59a", "precision", &[VelocityVerlet], &[]),
+    tried("C59b", "precision", &[VelocityVerlet], &[]),
+    of_its_run("C59c", "precision", &[], &[]),
+    tried("C61", "latency", &[], &["9.14", "9.15"]),
+    tried("C62", "latency", &[], &["latency-map-gain", "latency-map-step"]),
+    tried("C63", "latency", &[], &["9.14", "9.15"]),
+    // Of bits, which are counted in a table.
+    tried("C66", "determinism", &[], &[]),
+    tried("C67", "hierarchy", &[], &["9.16", "9.17"]),
+    tried("C67a", "precision", &[SymplecticEuler, VelocityVerlet, Rk4], &["precision-types"]),
     tried("C68", "throughput", &[], &["9.7"]),
     tried("C69", "throughput", &[], &[]),
     tried("C70", "stability", FOUR, &["9.5"]),
+    tried("C71", "determinism", &[], &[]),
     of_its_run("C73", "drift", &[SymplecticEuler, VelocityVerlet, Rk4], &["9.1"]),
     of_its_run("C74", "error", &[ExplicitEuler], &["9.3"]),
     of_its_run("C75", "error", &[SymplecticEuler], &["9.3"]),
@@ -170,8 +186,16 @@ mod tests {
 
     #[test]
     fn every_claim_is_accounted_for_once() {
-        let wanted: BTreeSet<String> =
+        let mut wanted: BTreeSet<String> =
             (1..=47).chain(68..=83).map(|number| format!("C{number:02}")).collect();
+        // Of chapters 6 and 7, what is about precision, phase and reproducibility.
+        wanted.extend(
+            [
+                "C53", "C58a", "C59", "C59a", "C59b", "C59c", "C61", "C62", "C63", "C66", "C67",
+                "C67a",
+            ]
+            .map(String::from),
+        );
         let ids = TRIED.iter().map(|c| c.id).chain(UNTRIED.iter().map(|c| c.id));
         let found: Vec<String> = ids.map(String::from).collect();
         assert_eq!(found.len(), wanted.len());

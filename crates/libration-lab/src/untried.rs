@@ -16,7 +16,6 @@ pub struct Untried {
 }
 
 const PYTHON: &str = "about Python’s own machinery, of which there is none here";
-const TIMING: &str = "about timing errors, which no study of this report simulates";
 
 /// All of them, of chapters 1 to 5 and 8 to 9.4.
 pub const UNTRIED: &[Untried] = &[
@@ -57,18 +56,6 @@ pub const UNTRIED: &[Untried] = &[
         source: "5.4, 8.1",
         text: "Temporary arrays make the garbage collector work.",
         because: PYTHON,
-    },
-    Untried {
-        id: "C43",
-        source: "5.5",
-        text: "In single precision differences of energy drift are negligible.",
-        because: "about precision, which no study of this report varies",
-    },
-    Untried {
-        id: "C71",
-        source: "8.4",
-        text: "Jitter and asynchrony destroy reproducibility.",
-        because: TIMING,
     },
     Untried {
         id: "C72",

@@ -8,6 +8,7 @@ use libration::ensemble::InstructionSet;
 use libration_lab::trajectory::{FloatType, Format};
 
 use super::number::{count, steps, whole_number};
+use super::timing::TimingArgs;
 use super::{StepArgs, SystemArgs, simd};
 
 /// What `simulate` takes.
@@ -52,6 +53,11 @@ pub(crate) struct SimulateArgs {
     /// Threads of the trajectories; 0 for as many as there are cores
     #[arg(long, value_name = "N", requires = "count", default_value = "0")]
     pub(crate) threads: usize,
+    #[command(flatten)]
+    pub(crate) timing: TimingArgs,
+    /// Seed of all that is random: --jitter and --skew
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "0")]
+    pub(crate) seed: u64,
     /// Format of the rows [default: that of the extension of --output, or csv]
     #[arg(long, value_parser = formats())]
     pub(crate) format: Option<Format>,
@@ -67,8 +73,11 @@ Examples:
       --steps 1e6 --every 1e3 --output orbit.parquet
   libration simulate --system pendulum --integrator velocity-verlet --dt 0.01 --steps 1e4 \\
       --every 1e4 --count 1e5 --spread 0.5 --float f32 --output swings.npy
+  libration simulate --system oscillator --integrator velocity-verlet --dt 0.01 --steps 2e3 \\
+      --feedback 10,2 --latency 0.015 --jitter gaussian:0.1 --count 100 --seed 7 --output loop.csv
 
 The columns are step, t, q0, …, v0, …, energy. A state that overflows ends the rows with a note.
+With --jitter or --skew, t is the time by a perfect clock. Before the first command arrives none acts.
 With --count the first column is trajectory; each has the bits that it would have alone, whatever
 --simd and --threads.";
 

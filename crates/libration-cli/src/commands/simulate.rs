@@ -86,6 +86,8 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
             threads: args.threads,
             instructions,
         }),
+        timing: args.timing.timing(),
+        seed: args.seed,
     })
 }
 

@@ -84,3 +84,57 @@ fn what_cannot_be_asked_of_timing_is_refused_in_words() {
     let pendulum = "analyze --system pendulum --integrator exact --dt 0.01";
     libration(pendulum).assert().code(2).stderr(contains("linear"));
 }
+
+/// The rows of a table of `simulate`, as numbers.
+fn rows(words: &str) -> Vec<Vec<f64>> {
+    let run = libration(&format!("simulate {words}")).assert().success();
+    let text = String::from_utf8(run.get_output().stdout.clone()).unwrap();
+    text.lines().skip(1).map(|row| row.split(',').map(|x| x.parse().unwrap()).collect()).collect()
+}
+
+#[test]
+fn a_simulated_loop_falls_below_its_critical_latency_and_grows_above() {
+    let words = "--system oscillator --set omega2=10 --integrator velocity-verlet --dt 0.01 --steps 20000 \
+                 --every 20000 --q 1 --v 0 --feedback 10,2";
+    let size = |latency: &str| {
+        let last = rows(&format!("{words} --latency {latency}")).pop().unwrap();
+        assert_eq!(last[1], 200.0);
+        10.0 * last[2] * last[2] + last[3] * last[3]
+    };
+    // 15.323 steps is where `analyze` sees the edge; 0.25 steps beyond, the rate is 3·10⁻⁴ a step.
+    assert!(size("15steps") < 10.0 * 1e-3 && size("0.1575") > 10.0 * 1e3);
+}
+
+#[test]
+fn simulated_noise_follows_from_its_seed_and_time_is_that_of_a_perfect_clock() {
+    let words = "--system pendulum --integrator leapfrog --dt 0.01 --steps 1000 --every 500 \
+                 --jitter gaussian:0.1 --skew uniform:0.01 --float f32";
+    let first = rows(&format!("{words} --count 3 --seed 7"));
+    assert_eq!(first, rows(&format!("{words} --count 3 --seed 7 --threads 2")));
+    // The same trajectory in a larger ensemble, and without a number when it is alone.
+    let more = rows(&format!("{words} --count 100 --seed 7"));
+    assert_eq!(first[..3], more[..3]);
+    let alone = rows(&format!("{words} --seed 7"));
+    assert_eq!(alone[2][1..], first.iter().rfind(|row| row[0] == 0.0).unwrap()[2..]);
+    let other = rows(&format!("{words} --count 3 --seed 8"));
+    assert_ne!(first[8], other[8]);
+    // A clock of its own for each: 10 s, but for 1 % of skew (no more than √3 times that) and 0.3 % of jitter.
+    let times: Vec<f64> = first[6..].iter().map(|row| row[2]).collect();
+    assert!(times.iter().all(|t| (t / 10.0 - 1.0).abs() < 0.03), "{times:?}");
+    assert!(times[0] != times[1] && times[1] != times[2]);
+}
+
+#[test]
+fn what_cannot_be_simulated_of_a_loop_is_refused_in_words() {
+    let words = "simulate --integrator rk4 --dt 0.01 --steps 10";
+    for (more, told) in [
+        ("--system oscillator --feedback 1,1 --latency 1e9steps", "at most 4096 steps"),
+        ("--system oscillator --latency 1steps", "--feedback"),
+        ("--system oscillator --jitter gaussian:0.1 --float f16", "f64 or f32"),
+        ("--system oscillator --q 1,0,0 --v 0,0,0 --skew uniform:0.1", "at most 2"),
+        ("--system driven-oscillator --feedback 1,1", "no coordinate is the time"),
+        ("--system oscillator --seed -1", "--seed"),
+    ] {
+        libration(&format!("{words} {more}")).assert().code(2).stderr(contains(told));
+    }
+}

@@ -5,7 +5,7 @@ use libration::analysis::{
     UnknownStep,
 };
 use libration::number::Wide;
-use libration::{AnySystem, Elementary, Method, Model, Scalar, State, with_method};
+use libration::{AnySystem, Elementary, Method, Model, Scalar, State};
 use serde::Serialize;
 
 use super::Request;
@@ -58,8 +58,8 @@ impl OrderOfWord {
             Letter::Kick(w) => format!("kick {}", w.to_f64()),
             Letter::Drift(w) => format!("drift {}", w.to_f64()),
         };
-        let word = with_method!(method, |m| Tableau::new(m))?.word()?;
-        let certificate = with_method!(method, |m| OrderCertificate::new(m, LETTERS))?;
+        let word = Tableau::new(method)?.word()?;
+        let certificate = OrderCertificate::new(method, LETTERS)?;
         Some(OrderOfWord {
             word: word.iter().map(shown).collect(),
             order: certificate.order(),
@@ -75,12 +75,10 @@ pub(super) fn stability_windows(
 ) -> Option<Vec<[Option<f64>; 2]>> {
     // In powers of z for an oscillator of any stiffness, and of Δt where there is damping.
     let (step, unit) = match system {
-        AnySystem::Oscillator(model) => {
-            (with_method!(method, |m| SymbolicStep::new(m))?, period(model.omega2))
-        }
+        AnySystem::Oscillator(model) => (SymbolicStep::new(method)?, period(model.omega2)),
         AnySystem::DampedOscillator(model) => {
             let system = Model::<1>::on::<UnknownStep>(&model);
-            (with_method!(method, |m| SymbolicStep::of(m, &system))?, Wide::one())
+            (SymbolicStep::of(method, &system)?, Wide::one())
         }
         _ => return None,
     };

@@ -11,9 +11,7 @@ mod timing;
 use libration::analysis::{Linearisation, Spectrum, SymbolicStep, forecast_drift};
 use libration::number::Wide;
 use libration::simulation::{EnergyDrift, Simulator};
-use libration::{
-    AnySystem, Elementary, Integrator, Model, Scalar, State, System, with_method, with_system,
-};
+use libration::{AnySystem, Elementary, Integrator, Model, Scalar, State, System, with_system};
 
 pub use answer::{About, Analysis, Drift, ModifiedHamiltonian};
 pub use criteria::Criteria;
@@ -50,9 +48,7 @@ pub fn analyze(request: &Request) -> Result<Analysis, AnalyzeError> {
                 v: std::array::from_fn(|i| request.v[i]),
             };
             let step = match request.stepping {
-                Stepping::Method(method) => {
-                    with_method!(method, |m| Step::take(m, model, start, request))?
-                }
+                Stepping::Method(method) => Step::take(method, model, start, request)?,
                 Stepping::Exact => {
                     let linear = Linearisation::exact(model, &start, request.dt);
                     Step { linear, evaluations: 0, drift: None }
@@ -125,7 +121,7 @@ fn answer<const D: usize>(
     let method = request.stepping.method();
     let polynomials = method
         .filter(|_| matches!(request.system, AnySystem::Oscillator(_)))
-        .and_then(|method| with_method!(method, |m| SymbolicStep::new(m)));
+        .and_then(SymbolicStep::new);
     let exact = polynomials.as_ref().zip(omega(request.system));
     let modes = Modes::new(
         &linear,

@@ -2,13 +2,13 @@
 
 use libration::analysis::{Feedback, Jitter, Latency, Plant};
 use libration::number::Wide;
-use libration::{AnySystem, Model, Scalar, State, with_method};
+use libration::{AnySystem, Model, Scalar, State};
 use serde::Serialize;
 
 use super::{AnalyzeError, Request, Stepping};
 
 /// What is asked of timing.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timing {
     /// The feedback that closes the loop.
     pub feedback: Option<Feedback>,
@@ -31,7 +31,7 @@ pub enum Late {
 
 impl Timing {
     /// The first flag that is given.
-    fn first(&self) -> Option<&'static str> {
+    pub(crate) fn first(&self) -> Option<&'static str> {
         let given = [
             (self.feedback.is_some(), "feedback"),
             (self.latency.is_some(), "latency"),
@@ -44,14 +44,14 @@ impl Timing {
     /// The latency in steps of `dt` seconds.
     ///
     /// # Errors
-    /// If it is negative, not finite or too long.
-    fn latency(&self, dt: f64) -> Result<Latency, AnalyzeError> {
+    /// The number of steps, if it is negative, not finite or too large.
+    pub(crate) fn latency_of(&self, dt: f64) -> Result<Latency, f64> {
         let steps = match self.latency {
             None => 0.0,
             Some(Late::Steps(steps)) => steps,
             Some(Late::Seconds(seconds)) => whole(seconds / dt),
         };
-        Latency::of_steps(steps).ok_or(AnalyzeError::Latency { steps })
+        Latency::of_steps(steps).ok_or(steps)
     }
 }
 
@@ -111,7 +111,8 @@ pub struct Critical {
 /// If the system has more than one degree of freedom, or the latency cannot be.
 pub(super) fn answer(request: &Request) -> Result<Option<TimingAnswer>, AnalyzeError> {
     let Some(flag) = request.timing.first() else { return Ok(None) };
-    let latency = request.timing.latency(request.dt)?;
+    let latency = request.timing.latency_of(request.dt);
+    let latency = latency.map_err(|steps| AnalyzeError::Latency { steps })?;
     let answer = match request.system {
         AnySystem::Oscillator(model) if request.q.len() == 1 => of_model(model, latency, request),
         AnySystem::DampedOscillator(model) => of_model(model, latency, request),
@@ -129,9 +130,7 @@ fn of_model(model: impl Model<1>, latency: Latency, request: &Request) -> Timing
     let timing = &request.timing;
     let at = State { q: [request.q[0]], v: [request.v[0]] };
     let plant = match request.stepping {
-        Stepping::Method(method) => {
-            with_method!(method, |m| Plant::new(m, model, at, request.dt))
-        }
+        Stepping::Method(method) => Plant::new(method, model, at, request.dt),
         Stepping::Exact => Plant::exact(model, at, request.dt),
     };
     let feedback = timing.feedback.unwrap_or_default();

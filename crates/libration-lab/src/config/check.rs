@@ -72,6 +72,8 @@ impl Config {
         check_systems("nonlinear.systems", &self.nonlinear.systems)?;
         steps_a_turn("nonlinear.steps", self.nonlinear.steps.into())?;
         turns("nonlinear.turns", self.nonlinear.turns.into())?;
+        list("precision.dt", "time step", limits::TIME_STEP, &self.precision.dt)?;
+        steps("precision.steps", self.precision.steps.into())?;
         if let Some(asked) = self.simd.filter(|set| !set.is_available()) {
             let message = EnsembleError::Instructions { asked }.to_string();
             return Err(Fault::new("simd", message));

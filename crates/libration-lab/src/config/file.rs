@@ -9,13 +9,13 @@ use serde::{Deserialize, Serialize};
 
 use super::locate::Document;
 use super::tables::{
-    ConvergenceTable, DriftTable, EfficiencyTable, ErrorTable, NonlinearTable, SpectrumTable,
-    SpringTable, StabilityTable, StartTable, ThroughputTable,
+    ConvergenceTable, DriftTable, EfficiencyTable, ErrorTable, NonlinearTable, PrecisionTable,
+    SpectrumTable, SpringTable, StabilityTable, StartTable, ThroughputTable,
 };
 use super::value::{Count, Number};
 use super::{
-    Config, ConfigError, Convergence, Drift, Efficiency, Error, Fault, Nonlinear, Spectrum, Spring,
-    Stability, Start, Throughput, check, names, schema,
+    Config, ConfigError, Convergence, Drift, Efficiency, Error, Fault, Nonlinear, Precision,
+    Spectrum, Spring, Stability, Start, Throughput, check, names, schema,
 };
 use crate::Effort;
 use crate::bench::Implementation;
@@ -58,6 +58,8 @@ pub(super) struct File {
     pub(super) convergence: ConvergenceTable,
     /// The study of nonlinear systems.
     pub(super) nonlinear: NonlinearTable,
+    /// The study of float types.
+    pub(super) precision: PrecisionTable,
     /// The study of speed.
     pub(super) throughput: ThroughputTable,
 }
@@ -104,8 +106,16 @@ impl Default for File {
         let Config {
             studies, effort, simd, integrators, oscillator, start, spectrum, drift, ..
         } = config;
-        let Config { error, stability, efficiency, convergence, nonlinear, throughput, .. } =
-            config;
+        let Config {
+            error,
+            stability,
+            efficiency,
+            convergence,
+            nonlinear,
+            precision,
+            throughput,
+            ..
+        } = config;
         let numbers = |list: Vec<f64>| list.into_iter().map(Number).collect();
         let counts = |list: Vec<u64>| list.into_iter().map(|n| Count(n.into())).collect();
         File {
@@ -138,6 +148,10 @@ impl Default for File {
                 steps: Count(nonlinear.steps.into()),
                 turns: Count(nonlinear.turns.into()),
             },
+            precision: PrecisionTable {
+                dt: numbers(precision.dt),
+                steps: Count(precision.steps.into()),
+            },
             throughput: ThroughputTable {
                 implementations: names_of(&throughput.implementations),
                 counts: counts(throughput.counts),
@@ -162,7 +176,16 @@ impl TryFrom<File> for Config {
             drift,
             ..
         } = file;
-        let File { error, stability, efficiency, convergence, nonlinear, throughput, .. } = file;
+        let File {
+            error,
+            stability,
+            efficiency,
+            convergence,
+            nonlinear,
+            precision,
+            throughput,
+            ..
+        } = file;
         let effort = Effort::from_name(&effort).ok_or_else(|| {
             let fault = Fault::new("effort", format!("unknown effort `{effort}`"));
             fault.help(names::suggest("efforts", &effort, Effort::ALL.map(Effort::name)))
@@ -201,6 +224,10 @@ impl TryFrom<File> for Config {
             },
             convergence: Convergence { systems: convergence.systems, coarsest },
             nonlinear: Nonlinear { systems: nonlinear.systems, steps: steps_a_turn, turns },
+            precision: Precision {
+                dt: numbers(precision.dt),
+                steps: check::steps("precision.steps", precision.steps.0)?,
+            },
             throughput: Throughput {
                 implementations: implementations(&throughput.implementations)?,
                 counts: counts("throughput.counts", throughput.counts)?,

@@ -56,6 +56,8 @@ pub struct Config {
     pub convergence: Convergence,
     /// Settings of the study `nonlinear`.
     pub nonlinear: Nonlinear,
+    /// Settings of the study `precision`.
+    pub precision: Precision,
     /// Settings of the study `throughput`.
     pub throughput: Throughput,
 }
@@ -153,6 +155,15 @@ pub struct Nonlinear {
     pub turns: u64,
 }
 
+/// Settings of the study `precision`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Precision {
+    /// The time steps under study, in s, rising.
+    pub dt: Vec<f64>,
+    /// Number of steps.
+    pub steps: u64,
+}
+
 /// Settings of the study `throughput`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Throughput {
@@ -201,6 +212,7 @@ impl Default for Config {
                 steps: 200,
                 turns: 1000,
             },
+            precision: Precision { dt: vec![1e-3, 1e-2], steps: 1_000_000 },
             throughput: Throughput {
                 implementations: Implementation::ALL.to_vec(),
                 counts: (0..=8).map(|power| 10u64.pow(power)).collect(),
@@ -218,6 +230,7 @@ impl Config {
         self.stability.steps.sort_unstable();
         self.efficiency.tolerances.sort_by(f64::total_cmp);
         self.efficiency.periods.sort_unstable();
+        self.precision.dt.sort_by(f64::total_cmp);
         self.throughput.counts.sort_unstable();
         self
     }

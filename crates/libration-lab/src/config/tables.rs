@@ -115,6 +115,18 @@ pub(super) struct NonlinearTable {
     pub(super) turns: Count,
 }
 
+/// Settings of the study `precision`.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct PrecisionTable {
+    /// Time steps in s, each once.
+    #[schemars(schema_with = "schema::time_steps")]
+    pub(super) dt: Vec<Number>,
+    /// Number of steps.
+    #[schemars(schema_with = "schema::steps")]
+    pub(super) steps: Count,
+}
+
 /// Settings of the study `throughput`.
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
@@ -149,5 +161,6 @@ default_of_table!(
     EfficiencyTable = efficiency,
     ConvergenceTable = convergence,
     NonlinearTable = nonlinear,
+    PrecisionTable = precision,
     ThroughputTable = throughput
 );

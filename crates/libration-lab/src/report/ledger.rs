@@ -69,8 +69,9 @@ pub(super) fn render(results: &Results, chapters: &[Chapter]) -> String {
         return String::new();
     }
     let mut claims: Vec<(&Chapter, &Claim)> = claims(chapters).collect();
-    // C9 stands before C10.
-    claims.sort_by_key(|(_, claim)| (claim.id.len(), &claim.id));
+    // C9 stands before C10, and C59a behind C59.
+    let digits = |id: &str| id.chars().filter_map(|c| c.to_digit(10)).fold(0, |n, d| 10 * n + d);
+    claims.sort_by_key(|(_, claim)| (digits(&claim.id), &claim.id));
     let row = |(chapter, claim)| row(chapter, claim, &figures(chapters, claim));
     let rows: String = claims.into_iter().map(row).collect();
     format!(

@@ -2,14 +2,14 @@
 
 use libration::analysis::{EnergyBand, Linearisation, forecast_drift};
 use libration::system::Oscillator;
-use libration::{Method, State, with_method};
+use libration::{Method, State};
 
 /// `d ln D/d ln z` of the largest drift `D` on the curve: how much closer in `z` a search comes than
 /// it is in `D`. The methods drift with a power of `z`, but from some starts it is flat in places.
 pub(super) fn exponent(method: Method, start: &State<f64, 1>, steps: u64, z: f64) -> f64 {
     let unit = Oscillator { omega2: 1.0 };
     let ln_drift = |z: f64| {
-        let step = with_method!(method, |m| Linearisation::new(m, unit, start, z)).step;
+        let step = Linearisation::new(method, unit, start, z).step;
         let (low, high) = EnergyBand::new(unit, &step)?.drift_after(start, steps);
         Some(low.abs().max(high.abs()).ln())
     };
@@ -36,7 +36,7 @@ pub(super) fn slack(
     let unit = Oscillator { omega2: 1.0 };
     let beyond = |i: u32| FURTHEST * (f64::from(i) / f64::from(LOOKS)).powi(2);
     let keeps = |z: f64| {
-        let step = with_method!(method, |m| Linearisation::new(m, unit, start, z)).step;
+        let step = Linearisation::new(method, unit, start, z).step;
         forecast_drift(unit, &step, start, steps.min(ENOUGH))
             .is_some_and(|forecast| forecast.drift.to_f64() <= tolerance)
     };
@@ -54,7 +54,7 @@ pub(super) fn slack(
 /// step merely repeats or stretches, and no extreme of any curve comes by.
 pub(super) fn turns(method: Method, start: &State<f64, 1>, z: f64) -> bool {
     let unit = Oscillator { omega2: 1.0 };
-    let step = with_method!(method, |m| Linearisation::new(m, unit, start, z)).step;
+    let step = Linearisation::new(method, unit, start, z).step;
     EnergyBand::new(unit, &step).is_some()
 }
 
@@ -64,7 +64,7 @@ pub(super) fn turns(method: Method, start: &State<f64, 1>, z: f64) -> bool {
 /// is in units in which `ω = 1`.
 pub(super) fn lacking(method: Method, start: &State<f64, 1>, steps: u64, z: f64) -> f64 {
     let unit = Oscillator { omega2: 1.0 };
-    let step = |z: f64| with_method!(method, |m| Linearisation::new(m, unit, start, z)).step;
+    let step = |z: f64| Linearisation::new(method, unit, start, z).step;
     // Where the energy changes by the determinant alone all phases are alike.
     if EnergyBand::new(unit, &step(z)).is_none_or(|band| band.worst_start().is_none()) {
         return 0.0;

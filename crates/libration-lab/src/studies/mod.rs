@@ -2,12 +2,16 @@
 
 mod convergence;
 mod coverage;
+mod determinism;
 mod drift;
 mod efficiency;
 mod error;
 mod growth;
+mod hierarchy;
 mod ink;
+mod latency;
 mod nonlinear;
+mod precision;
 mod rounding;
 mod sampled;
 mod source;
@@ -18,10 +22,14 @@ pub(crate) mod throughput;
 
 use crate::study::Study;
 pub use convergence::Convergence;
+pub use determinism::Determinism;
 pub use drift::Drift;
 pub use efficiency::Efficiency;
 pub use error::Error;
+pub use hierarchy::Hierarchy;
+pub use latency::Latency;
 pub use nonlinear::Nonlinear;
+pub use precision::Precision;
 pub use spectrum::Spectrum;
 pub use stability::Stability;
 pub use subject::{
@@ -39,6 +47,10 @@ pub const ALL: &[&dyn Study] = &[
     &Efficiency,
     &Convergence::CONFIGURED,
     &Nonlinear::CONFIGURED,
+    &Precision,
+    &Latency,
+    &Hierarchy,
+    &Determinism,
     &Throughput,
 ];
 

@@ -4,7 +4,7 @@ use libration::analysis::{Linearisation, UpdateMatrix};
 use libration::integrator::{SUZUKI4, YOSHIDA4};
 use libration::number::Wide;
 use libration::system::Oscillator;
-use libration::{Elementary, Float, Method, State, with_method};
+use libration::{Elementary, Float, Method, State};
 
 /// The sum of the sizes of the substeps of a step of length one: more than one where a composition
 /// steps back. Terms of a step at `z` are bounded by `e^(z · path)`.
@@ -79,7 +79,7 @@ pub(super) fn slip_of_run(method: Method, omega: f64, dt: f64, steps: u64) -> f6
 pub(super) fn condition(method: Method, z: f64, steps: u64) -> f64 {
     let anywhere = State { q: [1.0], v: [0.0] };
     let unit = Oscillator { omega2: 1.0 };
-    let step = with_method!(method, |m| Linearisation::new(m, unit, &anywhere, z)).step;
+    let step = Linearisation::new(method, unit, &anywhere, z).step;
     let (departure, gap) = schur(&step);
     if departure == 0.0 {
         return 1.0;

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use half::{bf16, f16};
 use libration::ensemble::{BatchFloat, NoRoom};
 
-use super::{Copies, Ending, Request, TrajectoryError};
+use super::{Copies, Ending, Request, TrajectoryError, loops};
 use crate::export::{Number, Rows};
 
 /// Trajectory steps between two looks at whether to stop: a second of the slowest kernel.
@@ -13,6 +13,9 @@ const CHUNK: u64 = 1 << 26;
 
 /// A float type in which many trajectories may be asked for.
 pub(super) trait Many: Number {
+    /// Whether the processor computes in it.
+    const WIDE: bool;
+
     /// Whether the copies of a request can be had, before anything is written.
     fn admits(request: &Request, copies: &Copies) -> Result<(), TrajectoryError>;
 
@@ -23,11 +26,20 @@ pub(super) trait Many: Number {
         rows: &mut dyn Rows<Self>,
         stop: &AtomicBool,
     ) -> Result<Ending, TrajectoryError>;
+
+    /// Simulates the loops of a request that has been checked.
+    fn loops(
+        request: &Request,
+        rows: &mut dyn Rows<Self>,
+        stop: &AtomicBool,
+    ) -> Result<Ending, TrajectoryError>;
 }
 
 macro_rules! vectors {
     ($($float:ident)*) => {$(
         impl Many for $float {
+            const WIDE: bool = true;
+
             fn many(
                 request: &Request,
                 copies: &Copies,
@@ -35,6 +47,14 @@ macro_rules! vectors {
                 stop: &AtomicBool,
             ) -> Result<Ending, TrajectoryError> {
                 run::<$float>(request, copies, rows, stop)
+            }
+
+            fn loops(
+                request: &Request,
+                rows: &mut dyn Rows<Self>,
+                stop: &AtomicBool,
+            ) -> Result<Ending, TrajectoryError> {
+                loops::run::<$float>(request, rows, stop)
             }
 
             fn admits(request: &Request, copies: &Copies) -> Result<(), TrajectoryError> {
@@ -48,6 +68,8 @@ macro_rules! vectors {
 macro_rules! scalar_only {
     ($($float:ident)*) => {$(
         impl Many for $float {
+            const WIDE: bool = false;
+
             fn many(
                 request: &Request,
                 copies: &Copies,
@@ -57,12 +79,16 @@ macro_rules! scalar_only {
                 Self::admits(request, copies).map(|()| Ending::Whole)
             }
 
+            fn loops(
+                request: &Request,
+                _: &mut dyn Rows<Self>,
+                _: &AtomicBool,
+            ) -> Result<Ending, TrajectoryError> {
+                Err(no_vectors(request))
+            }
+
             fn admits(request: &Request, _: &Copies) -> Result<(), TrajectoryError> {
-                Err(TrajectoryError::Value {
-                    name: "float",
-                    value: request.float.name().to_owned(),
-                    allowed: "f64 or f32 where there are many trajectories".to_owned(),
-                })
+                Err(no_vectors(request))
             }
         }
     )*};
@@ -70,6 +96,15 @@ macro_rules! scalar_only {
 
 vectors!(f64 f32);
 scalar_only!(f16 bf16);
+
+/// That there are ensembles of the processor's floats only.
+fn no_vectors(request: &Request) -> TrajectoryError {
+    TrajectoryError::Value {
+        name: "float",
+        value: request.float.name().to_owned(),
+        allowed: "f64 or f32 where there are many trajectories, or loops".to_owned(),
+    }
+}
 
 fn run<S: BatchFloat + Number>(
     request: &Request,

@@ -9,6 +9,7 @@ mod copies;
 mod error;
 mod float_type;
 mod format;
+mod loops;
 mod many;
 mod request;
 mod run;
@@ -17,10 +18,12 @@ mod units;
 use std::io::Write;
 use std::sync::atomic::AtomicBool;
 
+use libration::analysis::{Feedback, Jitter, Latency};
 use libration::ensemble::NoRoom;
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use crate::analyze::Timing;
 use crate::export::{Csv, Json, Table, write_npy, write_parquet};
 use columns::Columns;
 use many::Many;
@@ -131,7 +134,9 @@ fn keep<S: Many>(request: &Request, stop: &AtomicBool) -> Result<Trajectory, Tra
 /// Checks all that can be checked before the first row.
 fn admit<S: Many>(request: &Request) -> Result<(), TrajectoryError> {
     request.check::<S>()?;
-    request.copies.map_or(Ok(()), |copies| S::admits(request, &copies))
+    let one = Copies { count: 1, spread: 0.0, threads: 1, instructions: None };
+    let looped = request.timing.first().map(|_| one);
+    request.copies.or(looped).map_or(Ok(()), |copies| S::admits(request, &copies))
 }
 
 fn write_as<S: Many>(
@@ -175,6 +180,14 @@ fn write_as<S: Many>(
     Ok(ending)
 }
 
+/// A law as it is asked for.
+fn law_named(law: Jitter) -> String {
+    match law {
+        Jitter::Gaussian(rms) => format!("gaussian:{rms:?}"),
+        Jitter::Uniform(rms) => format!("uniform:{rms:?}"),
+    }
+}
+
 /// What was asked, as it stands at the head of a JSON file.
 fn head(request: &Request) -> Vec<(&'static str, Value)> {
     let parameters: serde_json::Map<_, _> =
@@ -191,6 +204,20 @@ fn head(request: &Request) -> Vec<(&'static str, Value)> {
         ("columns", request.column_names().into()),
         ("units", request.column_units().into()),
     ];
+    let Timing { feedback, jitter, skew, .. } = request.timing;
+    if request.timing.first().is_some() {
+        head.push(("seed", request.seed.into()));
+    }
+    if let Some(Feedback { position, velocity }) = feedback {
+        let late = request.timing.latency_of(request.dt).map_or(f64::NAN, Latency::steps);
+        head.push(("feedback", json!([position, velocity])));
+        head.push(("latency_steps", late.into()));
+    }
+    for (name, law) in [("jitter", jitter), ("skew", skew)] {
+        if let Some(law) = law {
+            head.push((name, law_named(law).into()));
+        }
+    }
     if let Some(copies) = request.copies {
         head.push(("count", copies.count.into()));
         head.push(("spread", copies.spread.into()));

@@ -4,7 +4,8 @@ use libration::catalog::Allowed;
 use libration::ensemble::MOST_THREADS;
 use libration::{AnySystem, Float, Method};
 
-use super::{Copies, FloatType, TrajectoryError, units};
+use super::{Copies, FloatType, TrajectoryError, loops, units};
+use crate::analyze::Timing;
 
 /// Largest number of values in a table: 8 GB of them, 2·10⁸ rows in one dimension.
 const MOST_VALUES: u64 = 1_000_000_000;
@@ -30,6 +31,10 @@ pub struct Request {
     pub every: u64,
     /// Several trajectories in place of one.
     pub copies: Option<Copies>,
+    /// The loop that is closed, and clocks and commands that are not ideal.
+    pub timing: Timing,
+    /// Of all that is random.
+    pub seed: u64,
 }
 
 impl Request {
@@ -74,6 +79,9 @@ impl Request {
         if let Some(copies) = &self.copies {
             self.check_copies::<S>(copies)?;
         }
+        if let Some(flag) = self.timing.first() {
+            self.check_timing(flag)?;
+        }
         self.check_rows()
     }
 
@@ -114,6 +122,25 @@ impl Request {
             return Err(wrong("spread", format!("{:?}", copies.spread), allowed));
         }
         copies.instruction_set().map(|_| ())
+    }
+
+    fn check_timing(&self, flag: &'static str) -> Result<(), TrajectoryError> {
+        let (system, dimension) = (self.system.name(), self.q.len());
+        if dimension > loops::MOST_DIMENSIONS {
+            let value = format!("given for {system} in {dimension} dimensions");
+            return Err(wrong(flag, value, format!("for at most {}", loops::MOST_DIMENSIONS)));
+        }
+        // A command would push it.
+        if self.timing.feedback.is_some() && matches!(self.system, AnySystem::DrivenOscillator(_)) {
+            let value = format!("given for {system}");
+            return Err(wrong(
+                "feedback",
+                value,
+                "for a system of which no coordinate is the time",
+            ));
+        }
+        let latency = self.timing.latency_of(self.dt);
+        latency.map(|_| ()).map_err(|steps| loops::late(self, steps))
     }
 
     fn check_time_step<S: Float>(&self) -> Result<(), TrajectoryError> {

@@ -20,6 +20,9 @@ pub(super) fn run<S: Many>(
     rows: &mut dyn Rows<S>,
     stop: &AtomicBool,
 ) -> Result<Ending, TrajectoryError> {
+    if request.timing.first().is_some() {
+        return S::loops(request, rows, stop);
+    }
     if let Some(copies) = &request.copies {
         return S::many(request, copies, rows, stop);
     }
@@ -32,7 +35,7 @@ pub(super) fn run<S: Many>(
     )
 }
 
-fn on_model<S: Number, const D: usize, M: Model<D>>(
+fn on_model<S: Many, const D: usize, M: Model<D>>(
     model: &M,
     request: &Request,
     rows: &mut dyn Rows<S>,
@@ -43,10 +46,14 @@ fn on_model<S: Number, const D: usize, M: Model<D>>(
     let start = State { q: coordinates(&request.q), v: coordinates(&request.v) };
     let dt = S::from_f64(request.dt);
     let energy = |state: &State<S, D>| system.energy(state);
-    let mut simulation: Box<dyn Simulation<S, D> + '_> =
+    // A loop of its own for each method, where it is worth its compilation.
+    let mut simulation: Box<dyn Simulation<S, D> + '_> = if const { S::WIDE && D <= 2 } {
         with_method!(request.method, |integrator| {
             Box::new(Simulator::new(system, integrator, start, dt)?)
-        });
+        })
+    } else {
+        Box::new(Simulator::new(system, request.method, start, dt)?)
+    };
     advance(&mut *simulation, &energy, request, rows, stop)
 }
 
@@ -55,7 +62,7 @@ fn number<S: Scalar>(x: &f64) -> S {
 }
 
 /// What the loop over rows asks of a simulator: so asked, it is compiled for each float type and
-/// dimension, and not for each of the five hundred simulators of the catalogue.
+/// dimension, and not for each simulator of the catalogue.
 trait Simulation<S, const D: usize> {
     fn run(&mut self, steps: u64) -> Result<(), SimulationError>;
     fn sample(&self) -> Sample<S, D>;

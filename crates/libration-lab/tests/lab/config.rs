@@ -82,6 +82,8 @@ fn bad_values_are_named_with_what_is_allowed() {
         ),
         ("[nonlinear]\nsteps = 3", "3", "`nonlinear.steps` is 3, but it must be 16 to 10000"),
         ("[nonlinear]\nturns = 10", "10", "`nonlinear.turns` is 10, but it must be 100 to"),
+        ("[precision]\ndt = [0.01, 0]", "0", "`precision.dt` is 0.0, but it must be finite"),
+        ("[precision]\nsteps = 0", "0", "`precision.steps` is 0, but it must be 1 to"),
         ("integrators = []", "[]", "`integrators` must name at least one"),
         ("integrators = ['rk4', \"rk4\"]", "\"rk4\"", "the integrator `rk4` is named twice"),
         ("integrators = ['rk5']", "'rk5'", "unknown integrator `rk5`"),
@@ -237,6 +239,7 @@ fn the_schema_admits_the_default_and_refuses_what_the_parser_refuses() {
         ("/nonlinear/systems", json!(["keppler"])),
         ("/nonlinear/steps", json!(15)),
         ("/nonlinear/turns", json!(99)),
+        ("/precision/dt", json!([0])),
         ("/integrators", json!(["rk5"])),
         ("/effort", json!("quik")),
         ("/start", json!({ "x": 1 })),
@@ -257,6 +260,6 @@ fn the_schema_describes_every_key() {
         }
     }
     let schema = schema();
-    assert_eq!(schema["properties"].as_object().unwrap().len(), 14);
+    assert_eq!(schema["properties"].as_object().unwrap().len(), 15);
     assert_described(&schema);
 }

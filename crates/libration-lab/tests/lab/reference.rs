@@ -54,8 +54,19 @@ fn a_million_steps_stay_within_the_rounding_bound() {
         let (start, rest) = (vec![1.0], vec![0.0]);
         let every = STEPS;
         let steps = STEPS;
-        let request =
-            Request { system, method, float, dt, steps, q: start, v: rest, every, copies: None };
+        let request = Request {
+            system,
+            method,
+            float,
+            dt,
+            steps,
+            q: start,
+            v: rest,
+            every,
+            copies: None,
+            timing: Default::default(),
+            seed: 0,
+        };
         let table = simulate(&request).unwrap().table;
         let last = |name| match table.column(name) {
             Some(Values::F64(x)) => x[x.len() - 1],

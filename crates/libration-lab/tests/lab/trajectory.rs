@@ -12,7 +12,19 @@ fn request(system: &str, method: Method, dt: f64, steps: u64) -> Request {
     let system = AnySystem::build(system, &[] as &[(&str, f64)]).unwrap();
     let float = FloatType::F64;
     let (q, v) = (vec![1.0], vec![0.0]);
-    Request { system, method, float, dt, steps, q, v, every: 1, copies: None }
+    Request {
+        system,
+        method,
+        float,
+        dt,
+        steps,
+        q,
+        v,
+        every: 1,
+        copies: None,
+        timing: Default::default(),
+        seed: 0,
+    }
 }
 
 fn steps(trajectory: &Trajectory) -> Vec<u64> {

@@ -70,6 +70,14 @@ impl<S: Scalar, const D: usize> UpdateMatrix<S, D> {
         }
     }
 
+    /// `self + r·other`.
+    pub fn plus(&self, r: S, other: &Self) -> Self {
+        UpdateMatrix {
+            dq: from_fn(|j| self.dq[j].plus(r, other.dq[j])),
+            dv: from_fn(|j| self.dv[j].plus(r, other.dv[j])),
+        }
+    }
+
     /// This map `n` times over, by repeated squaring.
     pub fn power(&self, n: u64) -> Self {
         let (mut result, mut square) = (UpdateMatrix::identity(), *self);
@@ -144,6 +152,24 @@ impl<S: Scalar> UpdateMatrix<S, 1> {
     /// The determinant.
     pub fn determinant(&self) -> S {
         symplectic_form(&self.dq[0], &self.dv[0])
+    }
+
+    /// Rows and columns exchanged.
+    pub fn transposed(&self) -> Self {
+        let row = |i: usize| State { q: [self.entry(i, 0)], v: [self.entry(i, 1)] };
+        UpdateMatrix { dq: [row(0)], dv: [row(1)] }
+    }
+
+    /// The map that undoes this one; without a value where none does.
+    pub fn inverse(&self) -> Self
+    where
+        S: Elementary,
+    {
+        let (trace, scale) = (self.trace(), self.determinant().recip());
+        // The adjugate is trace − M.
+        let adjugate =
+            |e: State<S, 1>| State::origin().plus(trace, e).plus(-S::one(), self.apply(&e));
+        UpdateMatrix::from_map(|e| State::origin().plus(scale, adjugate(e)))
     }
 }
 

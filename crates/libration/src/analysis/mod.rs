@@ -16,6 +16,7 @@ mod linearisation;
 mod matrix;
 mod orbit_start;
 mod order;
+mod precision;
 mod roots;
 mod slip;
 mod spectrum;
@@ -37,12 +38,14 @@ pub use linearisation::Linearisation;
 pub use matrix::UpdateMatrix;
 pub use orbit_start::OrbitStart;
 pub use order::OrderCertificate;
+pub use precision::{Cycle, LocalRounding, float_clock};
 pub use slip::Slip;
 pub use spectrum::{Eigenvalues, Spectrum};
 pub use symbolic::{SymbolicStep, UnknownStep};
 pub use tableau::{Letter, Tableau};
 pub use timing::{
-    Feedback, HeldStep, Jitter, Latency, LatencyTableError, MeanSquare, Plant, RandomLatency,
-    Windows,
+    Feedback, HeldStep, HiddenLatency, Jitter, JitterMargin, Latency, LatencyTableError, LqrError,
+    LqrWeights, MeanSquare, Plant, RandomLatency, Regulator, Resonance, StepNoise, Switching,
+    SwitchingError, Windows,
 };
 pub use window::StabilityWindow;

@@ -164,7 +164,7 @@ impl Spectrum {
 }
 
 /// Whether `x` is nothing but rounding beside `scale`.
-fn negligible(x: Wide, scale: Wide) -> bool {
+pub(super) fn negligible(x: Wide, scale: Wide) -> bool {
     match (x.exponent(), scale.exponent()) {
         (None, _) => true,
         (Some(x), Some(scale)) => x < scale - ROUNDING_BITS,

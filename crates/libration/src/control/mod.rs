@@ -1,7 +1,14 @@
-//! Systems under control: clocks that are not exact, and commands that arrive late.
+//! Loops that are not ideal: clocks that are not exact, commands that arrive late, and what commands.
+//!
+//! A [`Clock`] tells how long steps are, a [`Delay`] when commands arrive, a [`Controller`] computes them.
+//! [`Loops`](crate::ensemble::Loops) runs them.
 
-mod clock;
-mod control_loop;
+pub mod clock;
+pub mod controller;
+pub mod delay;
+mod memory;
 
-pub use clock::{Clock, Fixed, Jittered, Skewed};
-pub use control_loop::{ControlLoop, Waiting};
+pub use clock::Clock;
+pub use controller::Controller;
+pub use delay::{Delay, Schedule};
+pub use memory::Memory;

@@ -35,6 +35,30 @@ pub enum EnsembleError {
         /// How many trajectories there are.
         len: usize,
     },
+    /// A step must take time.
+    #[error("the time step is {dt} s; it must be above 0")]
+    TimeStep {
+        /// What it is, in seconds.
+        dt: f64,
+    },
+    /// What was recorded is not made longer.
+    #[error("the record of a clock or a delay has {known} steps; {asked} are asked for")]
+    Record {
+        /// Steps that there are.
+        known: u64,
+        /// Steps that are asked for.
+        asked: u64,
+    },
+    /// A snapshot of something else.
+    #[error(
+        "the snapshot is of other loops: {found} trajectories, where {len} are, or with another memory"
+    )]
+    Snapshot {
+        /// Trajectories there are.
+        len: usize,
+        /// Trajectories of the snapshot.
+        found: usize,
+    },
     /// The system does not exist so.
     #[error(transparent)]
     System(CatalogError),

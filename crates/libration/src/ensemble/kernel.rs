@@ -143,17 +143,20 @@ where
 
 /// Planes that begin with a cache line: no vector that is kept in memory lies across two.
 #[repr(align(64))]
-struct Lines<P>(P);
+pub(super) struct Lines<P>(pub(super) P);
 
 /// Lane `l` of each plane.
 #[inline(always)]
-fn at<T: Copy, const D: usize, const W: usize>(planes: &[[T; W]; D], l: usize) -> [T; D] {
+pub(super) fn at<T: Copy, const D: usize, const W: usize>(
+    planes: &[[T; W]; D],
+    l: usize,
+) -> [T; D] {
     from_fn(|i| planes[i][l])
 }
 
 /// Sets lane `l` of each plane.
 #[inline(always)]
-fn put<T: Copy, const D: usize, const W: usize>(
+pub(super) fn put<T: Copy, const D: usize, const W: usize>(
     planes: &mut [[T; W]; D],
     l: usize,
     values: [T; D],

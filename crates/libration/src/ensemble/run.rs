@@ -53,7 +53,7 @@ const fn width<I: Target, T, const D: usize>(carries: bool, taken: usize) -> usi
 }
 
 /// The widest blocks of at most so many vectors.
-const fn widest<I: Target, T>(vectors: usize) -> usize {
+pub(super) const fn widest<I: Target, T>(vectors: usize) -> usize {
     let lanes = vectors * I::BYTES / size_of::<T>();
     let mut i = WIDTHS.len() - 1;
     while i > 0 && WIDTHS[i] > lanes {
@@ -170,9 +170,9 @@ where
 }
 
 /// A look at a block, compiled for the instruction set.
-struct Observe<'o, 'l, T, O, const D: usize> {
-    observer: &'o mut O,
-    lanes: Lanes<'l, T, D>,
+pub(super) struct Observe<'o, 'l, T, O, const D: usize> {
+    pub(super) observer: &'o mut O,
+    pub(super) lanes: Lanes<'l, T, D>,
 }
 
 impl<T, O: Observer<T, D>, const D: usize> WithSimd for Observe<'_, '_, T, O, D> {

@@ -4,6 +4,7 @@
 //! Runge–Kutta method is a sum of rates. Nothing here knows whether a number is one particle, a
 //! derivative or a polynomial.
 
+mod chosen;
 mod composition;
 mod euler;
 mod leapfrog;

@@ -1,6 +1,7 @@
 //! Number types: swap the number, and a step becomes another instrument.
 
 mod bits;
+mod compensated;
 mod dual;
 mod float;
 mod half;
@@ -10,6 +11,7 @@ mod ratio;
 mod twofloat;
 mod wide;
 
+pub use compensated::Compensated;
 pub use dual::Dual;
 pub use mantissa::Mantissa;
 pub use poly::Poly;

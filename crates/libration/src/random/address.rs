@@ -12,8 +12,14 @@ pub enum Purpose {
     StepTime,
     /// The rate of a clock.
     ClockRate,
+    /// How the rate of a clock changes.
+    ClockDrift,
+    /// What a clock remembers before its first step.
+    ClockStart,
     /// The latency of a command.
     Latency,
+    /// The latency before the first step.
+    LatencyStart,
     /// The start of a trajectory.
     Start,
 }

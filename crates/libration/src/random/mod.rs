@@ -5,7 +5,11 @@
 //! can begin anywhere.
 
 mod address;
+mod deviate;
 mod philox;
+mod streams;
 
 pub use address::{Address, Purpose};
+pub use deviate::{UNIT, normal, odd, uniform};
 pub use philox::philox4x32;
+pub use streams::{EPOCH, Streams};

@@ -9,12 +9,13 @@
 /// SC 2011, section 3.3 and table 2.
 #[inline(always)]
 pub fn philox4x32(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
-    let (mut counter, mut key) = (counter, key);
+    // Words of which the low half counts: 64 bits are what a product fills, also in vectors.
+    let (mut counter, mut key) = (counter.map(u64::from), key);
     for _ in 0..ROUNDS {
         counter = round(counter, key);
         key = [key[0].wrapping_add(WEYL[0]), key[1].wrapping_add(WEYL[1])];
     }
-    counter
+    counter.map(|word| word as u32)
 }
 
 const ROUNDS: usize = 10;
@@ -26,14 +27,11 @@ const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];
 const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
 
 #[inline(always)]
-fn round([a, b, c, d]: [u32; 4], key: [u32; 2]) -> [u32; 4] {
-    let product = |x: u32, multiplier: u32| {
-        let wide = u64::from(x) * u64::from(multiplier);
-        [(wide >> 32) as u32, wide as u32]
-    };
-    let [high, low] = product(a, MULTIPLIERS[0]);
-    let [other_high, other_low] = product(c, MULTIPLIERS[1]);
-    [other_high ^ b ^ key[0], other_low, high ^ d ^ key[1], low]
+fn round([a, b, c, d]: [u64; 4], key: [u32; 2]) -> [u64; 4] {
+    let product = |x: u64, multiplier: u32| (x & u64::from(u32::MAX)) * u64::from(multiplier);
+    let (near, far) = (product(a, MULTIPLIERS[0]), product(c, MULTIPLIERS[1]));
+    let [first, second] = key.map(u64::from);
+    [(far >> 32) ^ b ^ first, far, (near >> 32) ^ d ^ second, near]
 }
 
 #[cfg(test)]

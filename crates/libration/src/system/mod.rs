@@ -1,8 +1,10 @@
 //! Physical systems `q̈ = a(q, v)`, each written once for every number type.
 
+mod chosen;
 mod damped;
 mod driven;
 mod duffing;
+mod force_in;
 mod held;
 mod henon_heiles;
 mod kepler;
@@ -11,9 +13,11 @@ mod pendulum;
 
 use crate::{Elementary, Scalar, State};
 
+pub use chosen::Chosen;
 pub use damped::DampedOscillator;
 pub use driven::DrivenOscillator;
 pub use duffing::Duffing;
+pub use force_in::ForceIn;
 pub use held::Held;
 pub use henon_heiles::HenonHeiles;
 pub use kepler::Kepler;

@@ -5,7 +5,7 @@ use libration::integrator::Splitting;
 use libration::number::TwoFloat;
 use libration::simulation::Simulator;
 use libration::system::{Oscillator, Pendulum};
-use libration::{Elementary, Float, Integrator, Model, Scalar, State, with_method};
+use libration::{Elementary, Float, Integrator, Model, Scalar, State};
 
 use super::super::subject::Fit;
 use crate::record::{Finding, Table, Tolerance};
@@ -38,7 +38,7 @@ pub(super) fn certify(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         table.push(cells);
     };
     for &method in &lab.config.integrators {
-        let Some(certificate) = with_method!(method, |m| OrderCertificate::new(m, LETTERS)) else {
+        let Some(certificate) = OrderCertificate::new(method, LETTERS) else {
             continue;
         };
         row(method.title(), &certificate);

@@ -30,7 +30,7 @@ pub(super) fn trace(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError
         with_method!(method, |m| {
             Simulator::new(system, m, start, dt)?.run(steps, &mut watch).ok();
         });
-        let linear = with_method!(method, |m| Linearisation::new(m, oscillator, &start, dt));
+        let linear = Linearisation::new(method, oscillator, &start, dt);
         let curve = EnergyBand::new(oscillator, &linear.step)
             .map(|band| band.curve(&start, 180))
             .unwrap_or_default();

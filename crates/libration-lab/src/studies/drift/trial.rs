@@ -1,7 +1,7 @@
 //! One integrator at one time step, for the whole horizon.
 
+use libration::State;
 use libration::analysis::{EnergyBand, Linearisation, Spectrum, forecast_drift};
-use libration::{State, with_method};
 
 use super::invariant::Invariant;
 use super::overflow::Overflow;
@@ -51,7 +51,7 @@ pub(super) struct Worst {
 impl Trial {
     pub(super) fn run(setting: &Setting) -> Result<Self, StudyError> {
         let Setting { method, dt, steps, oscillator, start } = *setting;
-        let linear = with_method!(method, |m| Linearisation::new(m, oscillator, &start, dt));
+        let linear = Linearisation::new(method, oscillator, &start, dt);
         let band = EnergyBand::new(oscillator, &linear.step);
         let spectrum = Spectrum::new(&linear.step);
         let angle = spectrum.angle().to_f64();

@@ -35,7 +35,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<Vec<Cost>, S
         let (evaluations, times) = with_method!(method, |m| time(lab, m, steps))?;
         let nanoseconds = times[REPEATS / 2];
         let (name, title) = (method.name(), method.title());
-        if let Some(tableau) = with_method!(method, |m| Tableau::new(m)) {
+        if let Some(tableau) = Tableau::new(method) {
             record.find(Finding::predicted(
                 format!("efficiency.{name}.evaluations"),
                 format!("{title}: force evaluations a step, counted, beside its tableau"),

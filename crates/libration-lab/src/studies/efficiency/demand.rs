@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use libration::analysis::{Criterion, LargestStep, OrbitStart, Slip, SymbolicStep};
 use libration::number::Wide;
-use libration::{Method, Scalar, State, with_method};
+use libration::{Method, Scalar, State};
 
 /// What must stay below a tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ pub(super) fn steps_for(periods: u64, z: f64) -> u64 {
 impl Demand {
     /// The largest `z = ωΔt` at which `method` meets the demand; none if it was not found to meet it.
     pub(super) fn largest_z(&self, method: Method) -> Option<f64> {
-        let step = with_method!(method, |m| SymbolicStep::new(m))?;
+        let step = SymbolicStep::new(method)?;
         match self.kind {
             Kind::Energy if step.is_symplectic() => {
                 // The band does not depend on the horizon.

@@ -112,8 +112,8 @@ fn series(
 /// What the errors cannot exceed, whatever phases the orbit visits.
 fn bounds(method: Method, start: &State<f64, 1>, z: f64, steps: u64) -> Option<Errors> {
     let unit = Oscillator { omega2: 1.0 };
-    let step = with_method!(method, |m| Linearisation::new(m, unit, start, z)).step;
-    let slip = Slip::new(&with_method!(method, |m| SymbolicStep::new(m))?, z)?;
+    let step = Linearisation::new(method, unit, start, z).step;
+    let slip = Slip::new(&SymbolicStep::new(method)?, z)?;
     let (low, high) = EnergyBand::new(unit, &step)?.drift_after(start, steps);
     // Along an ellipse of axes κ : 1 the angle runs ahead of the phase by up to asin(tanh ln κ), and
     // may begin as far behind.

@@ -54,7 +54,7 @@ impl Setting {
     /// The forecast of the shipped step.
     pub(super) fn forecast(&self) -> Option<ErrorForecast> {
         let Setting { method, oscillator, start, dt, .. } = *self;
-        let step = with_method!(method, |m| Linearisation::new(m, oscillator, &start, dt)).step;
+        let step = Linearisation::new(method, oscillator, &start, dt).step;
         ErrorForecast::new(oscillator, &step, dt, &start)
     }
 

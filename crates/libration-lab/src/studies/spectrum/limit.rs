@@ -50,7 +50,7 @@ impl Limit {
     pub(super) fn real(method: Method) -> Self {
         let measured = first_loss(|x| radius_at(method, -x, 0.0) <= 1.0 + 1e-9);
         let polynomial = matches!(method, Method::ExplicitEuler | Method::Rk4)
-            .then(|| with_method!(method, |m| SymbolicStep::new(m)))
+            .then(|| SymbolicStep::new(method))
             .flatten();
         let predicted = polynomial.map(|step| {
             // On eigenvalues ±i the matrix is [[c, s], [−s, c]](h) and R(z) = c(−iz) + i·s(−iz):
@@ -87,7 +87,7 @@ impl Limit {
 /// The first `z = ωΔt` at which `method` is unstable on the undamped oscillator: the end of its first
 /// window of stability, if that begins at zero.
 pub(in crate::studies) fn largest_stable(method: Method) -> Result<f64, StudyError> {
-    let symbolic = with_method!(method, |m| SymbolicStep::new(m))
+    let symbolic = SymbolicStep::new(method)
         .ok_or_else(|| StudyError::Exact(format!("deriving {}", method.title())))?;
     let first = symbolic.stability_windows().into_iter().find(|window| window.from.is_zero());
     Ok(first.map_or(0.0, |window| window.to.map_or(HIGHEST, Wide::to_f64)))

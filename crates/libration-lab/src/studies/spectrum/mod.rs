@@ -7,9 +7,9 @@ mod region;
 mod render;
 mod step;
 
+use libration::Method;
 use libration::analysis::SymbolicStep;
 use libration::system::Oscillator;
-use libration::{Method, with_method};
 
 use self::limit::Limit;
 pub(super) use self::limit::largest_stable;
@@ -55,7 +55,7 @@ fn matrices(methods: &[Method]) -> Result<Table, StudyError> {
     let columns = ["integrator", "x → x", "v/ω → x", "x → v/ω", "v/ω → v/ω", "determinant"];
     let mut table = Table::new("update matrices", &columns);
     for &method in methods {
-        let step = with_method!(method, |m| SymbolicStep::new(m))
+        let step = SymbolicStep::new(method)
             .ok_or_else(|| StudyError::Exact(format!("deriving {}", method.title())))?;
         let entries = step.matrix.rows().concat().into_iter().map(|p| p.to_string().into());
         table.push(

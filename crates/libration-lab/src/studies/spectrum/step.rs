@@ -30,7 +30,7 @@ impl Theory {
     pub(super) fn of(method: Method, oscillator: Oscillator<f64>, dt: f64) -> Self {
         // The step of a linear system is the same about every state.
         let anywhere = State { q: [1.0], v: [0.0] };
-        let linear = with_method!(method, |m| Linearisation::new(m, oscillator, &anywhere, dt));
+        let linear = Linearisation::new(method, oscillator, &anywhere, dt);
         let spectrum = Spectrum::new(&linear.step);
         let exact = match Spectrum::new(&linear.generator).eigenvalues {
             Eigenvalues::Complex { im, .. } => im * linear.dt,

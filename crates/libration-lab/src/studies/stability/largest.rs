@@ -80,7 +80,7 @@ pub(super) fn start(config: &Config) -> State<f64, 1> {
 
 /// The largest step for a case as a root, in units in which `ω = 1`; none where it has no such form.
 pub(super) fn root(config: &Config, case: &Case) -> Option<LargestStep> {
-    let step = with_method!(case.method, |m| SymbolicStep::new(m))?;
+    let step = SymbolicStep::new(case.method)?;
     let (steps, start) = (case.steps, OrbitStart::new(&start(config)));
     step.largest_step(&match case.limit {
         Limit::Amplitude(limit) => Criterion::Amplitude { limit, steps, start },
@@ -210,7 +210,7 @@ fn allowed(config: &Config, case: &Case, z: f64, ended: f64) -> (Tolerance, Rela
 /// largest `|x|` of its curve: of a growing one, which is largest in its last half turn, `π/(zn)`;
 /// of another, what it lacks.
 fn short_of(config: &Config, case: &Case, z: f64, limit: f64) -> f64 {
-    let Some(step) = with_method!(case.method, |m| SymbolicStep::new(m)) else { return 0.0 };
+    let Some(step) = SymbolicStep::new(case.method) else { return 0.0 };
     if !step.is_symplectic() {
         return 0.5 * std::f64::consts::PI / (z * case.steps as f64);
     }

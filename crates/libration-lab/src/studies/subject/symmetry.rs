@@ -30,7 +30,7 @@ impl Symmetry {
     pub(crate) fn of_method(method: Method) -> (bool, bool) {
         let oscillator = Oscillator { omega2: 1.0 };
         let anywhere = State { q: [1.0], v: [0.0] };
-        let linear = with_method!(method, |m| Linearisation::new(m, oscillator, &anywhere, 0.3));
+        let linear = Linearisation::new(method, oscillator, &anywhere, 0.3);
         let vanishes = |defect: f64| defect < ROUNDING;
         (
             vanishes(linear.step.symplecticity_defect().to_f64()),

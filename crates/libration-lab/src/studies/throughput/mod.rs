@@ -11,6 +11,7 @@ mod latency;
 mod machine;
 mod one_step;
 mod peers;
+mod perturbed;
 mod regime;
 mod render;
 mod roofline;
@@ -42,11 +43,12 @@ impl Study for Throughput {
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
         let desk = Desk::new(lab)?;
         let mut record = Record::new(self.name(), self.question());
-        let parts: [(&str, Part); 10] = [
+        let parts: [(&str, Part); 11] = [
             ("fused steps against independent arithmetic", fused::measure),
             ("threads", threads::measure),
             ("a lone trajectory", latency::measure),
             ("sines", sine::measure),
+            ("clocks and delays", perturbed::measure),
             ("memory", bandwidth::measure),
             ("one step a pass", one_step::measure),
             ("page faults", faults::measure),

@@ -47,6 +47,12 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     );
     page.table(record.table("fused steps")?, 3);
     page.table(record.table("threads")?, 3);
+    page.paragraph(
+        "Clocks, delays and controllers run in the same lanes. Random numbers are drawn by address once for 256 \
+         steps and follow from each other in between, so that a trajectory’s noise depends on its number, \
+         the step and the seed alone. How many times as long a step takes as one with a fixed clock:",
+    );
+    page.table(record.table("clocks and delays")?, 3);
     page.heading("Memory");
     page.figure(figures::roofline(record)?);
     page.paragraph(

@@ -4,6 +4,7 @@ use core::f64::consts::{PI, TAU};
 
 use num_complex::Complex;
 
+use super::circle::{Circle, Matrix};
 use super::{Feedback, Jitter, Plant};
 use crate::Scalar;
 use crate::analysis::QuadraticForm;
@@ -14,9 +15,6 @@ const HARMONICS: usize = 32;
 
 /// Directions at which integrals over the circle are taken: four for each wave of the highest harmonic.
 const DIRECTIONS: usize = 256;
-
-/// A matrix of two rows in floats.
-type Matrix = [[f64; 2]; 2];
 
 impl Plant<'_> {
     /// The top Lyapunov exponent of the loop that `feedback` closes, with steps after `jitter`: the mean growth of
@@ -39,22 +37,11 @@ impl Plant<'_> {
         }
         // The form that the mean step carries along is a circle in these coordinates.
         let form = QuadraticForm::carried_by(&mean);
-        let [qq, qv, vv] = [form.qq, form.qv, form.vv].map(|x| (x / form.vv).to_f64());
-        // q²·qq + 2·q·v·qv + v² = (s·q)² + (v + qv·q)².
-        let s = (qq - qv * qv / vv).sqrt();
-        let turned = |[[a, b], [c, d]]: Matrix| {
-            // With x = s·q and y = v + qv·q.
-            let column = |q: f64, v: f64| {
-                let (next_q, next_v) = (a * q + b * v, c * q + d * v);
-                [s * next_q, next_v + qv * next_q]
-            };
-            let (first, second) = (column(1.0 / s, -qv / s), column(0.0, 1.0));
-            [[first[0], second[0]], [first[1], second[1]]]
-        };
+        let circle = Circle::of(&form.map(|x| (x / form.vv).to_f64()));
         let steps: Vec<(f64, Matrix)> = jitter
             .nodes()
             .into_iter()
-            .map(|(weight, epsilon)| (weight, turned(at(epsilon))))
+            .map(|(weight, epsilon)| (weight, circle.turned(at(epsilon))))
             .collect();
         Some(mean_growth(&steps))
     }

@@ -3,20 +3,37 @@
 //! The plant has one degree of freedom. A command `u = −K_p q − K_d v` is computed from the state at the
 //! beginning of a step, arrives later, and is held until the next one arrives.
 
+mod circle;
 mod held_step;
+mod hidden_latency;
 mod jitter;
+mod jitter_margin;
 mod latency;
+mod lqr;
 mod lyapunov;
 mod margin;
+mod mean_square;
+mod periodic;
 mod plant;
 mod quasi;
 mod random_latency;
+mod resonance;
+mod riccati;
+#[cfg(test)]
+mod sample;
 mod skew;
+mod switching;
 mod windows;
 
 pub use held_step::HeldStep;
-pub use jitter::{Jitter, MeanSquare};
+pub use hidden_latency::HiddenLatency;
+pub use jitter::Jitter;
+pub use jitter_margin::JitterMargin;
 pub use latency::Latency;
+pub use lqr::{LqrError, LqrWeights, Regulator};
+pub use mean_square::MeanSquare;
 pub use plant::{Feedback, Plant};
 pub use random_latency::{LatencyTableError, RandomLatency};
+pub use resonance::{Resonance, StepNoise};
+pub use switching::{Switching, SwitchingError};
 pub use windows::Windows;

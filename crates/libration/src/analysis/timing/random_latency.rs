@@ -1,6 +1,7 @@
 //! Commands whose latency is random.
 
 use super::{Feedback, HeldStep, Plant};
+use crate::State;
 use crate::number::Wide;
 
 /// Latencies of whole steps, each with its probability, drawn for every step: with the hold probability the last
@@ -69,7 +70,18 @@ impl RandomLatency {
         Ok(RandomLatency { table, hold })
     }
 
-    fn longest(&self) -> usize {
+    /// The latencies in steps, each with its probability.
+    pub fn table(&self) -> &[(usize, f64)] {
+        &self.table
+    }
+
+    /// The probability that a latency stays for another step.
+    pub fn hold(&self) -> f64 {
+        self.hold
+    }
+
+    /// The longest latency, in steps.
+    pub fn longest(&self) -> usize {
         self.table.iter().map(|&(steps, _)| steps).max().unwrap_or(0)
     }
 
@@ -91,10 +103,7 @@ impl Plant<'_> {
     /// state and waiting commands (O. L. V. Costa, M. D. Fragoso, R. P. Marques, *Discrete-Time Markov Jump Linear
     /// Systems*, 2005, chapter 3).
     pub fn mean_square_late(&self, feedback: Feedback, latency: &RandomLatency) -> f64 {
-        let longest = latency.longest();
-        let held = (self.step)(self.dt);
-        let steps: Vec<Matrix> =
-            latency.table.iter().map(|&(d, _)| augmented(&held, feedback, d, longest)).collect();
+        let steps = self.steps_late(feedback, latency);
         let squares: Vec<Matrix> = steps.iter().map(symmetric_square).collect();
         let (m, size) = (steps.len(), squares[0].len());
         let entry = |row: usize, column: usize| {
@@ -103,6 +112,49 @@ impl Plant<'_> {
         };
         radius((0..m * size).map(|r| (0..m * size).map(|c| entry(r, c)).collect()).collect())
     }
+
+    /// `E[q²]`, `E[qv]` and `E[v²]` after so many steps of that loop from `state`, where nothing acts before the first
+    /// command arrives.
+    pub fn moments_late(
+        &self,
+        feedback: Feedback,
+        latency: &RandomLatency,
+        state: &State<f64, 1>,
+        steps: u64,
+    ) -> [f64; 3] {
+        let maps = self.steps_late(feedback, latency);
+        let n = maps[0].len();
+        let start: Vec<f64> =
+            (0..n).map(|i| [state.q[0], state.v[0]].get(i).copied().unwrap_or(0.0)).collect();
+        // E[yyᵀ; the latency is the i-th].
+        let of = |p: f64| start.iter().map(|a| start.iter().map(|b| p * a * b).collect()).collect();
+        let mut moments: Vec<Matrix> = latency.table.iter().map(|&(_, p)| of(p)).collect();
+        for _ in 0..steps {
+            let moved: Vec<Matrix> = maps
+                .iter()
+                .zip(&moments)
+                .map(|(map, moment)| transposed(&product(map, &transposed(&product(map, moment)))))
+                .collect();
+            let entry = |j: usize, r: usize, c: usize| -> f64 {
+                moved.iter().enumerate().map(|(i, m)| latency.follows(i, j) * m[r][c]).sum()
+            };
+            moments = (0..maps.len())
+                .map(|j| (0..n).map(|r| (0..n).map(|c| entry(j, r, c)).collect()).collect())
+                .collect();
+        }
+        [(0, 0), (0, 1), (1, 1)].map(|(r, c)| moments.iter().map(|moment| moment[r][c]).sum())
+    }
+
+    /// The step with each latency of the table.
+    fn steps_late(&self, feedback: Feedback, latency: &RandomLatency) -> Vec<Matrix> {
+        let held = (self.step)(self.dt);
+        let of = |&(d, _): &(usize, f64)| augmented(&held, feedback, d, latency.longest());
+        latency.table.iter().map(of).collect()
+    }
+}
+
+fn transposed(m: &Matrix) -> Matrix {
+    (0..m.len()).map(|i| m.iter().map(|row| row[i]).collect()).collect()
 }
 
 /// The spectral radius: the growth of the norm of higher and higher powers (I. Gelfand, 1941), each the square of the

@@ -2,7 +2,7 @@
 
 use super::{Jitter, Plant};
 use crate::number::Wide;
-use crate::{Elementary, Scalar};
+use crate::{Elementary, Scalar, State};
 
 impl Plant<'_> {
     /// After how many steps the mean over an ensemble, whose time steps are `Δt(1 + δ)` with one `δ` after `law` for
@@ -21,6 +21,30 @@ impl Plant<'_> {
         };
         let speed = slope * Wide::from_f64(rms);
         (!speed.is_zero()).then(|| at / speed)
+    }
+
+    /// The mean over such an ensemble, all of it from `state`, after so many steps.
+    pub fn asynchronous_mean(
+        &self,
+        state: &State<f64, 1>,
+        law: Jitter,
+        steps: u64,
+    ) -> State<f64, 1> {
+        let start = state.map(Wide::from_f64);
+        let sum = law.nodes().into_iter().fold(State::origin(), |sum, (weight, delta)| {
+            let dt = self.dt * (Wide::one() + Wide::from_f64(delta));
+            let mut moved = start;
+            let (mut power, mut left) = ((self.step)(dt).phi, steps);
+            while left > 0 {
+                if left % 2 == 1 {
+                    moved = power.apply(&moved);
+                }
+                power = power.after(&power);
+                left /= 2;
+            }
+            sum.plus(Wide::from_f64(weight), moved)
+        });
+        sum.map(Wide::to_f64)
     }
 
     /// The angle by which a step of `dt` seconds turns, if it turns.

@@ -1,0 +1,145 @@
+//! The rows of loops: trajectories under feedback, with clocks and commands that are not ideal.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use bytemuck::Pod;
+use libration::analysis::{Jitter, Latency};
+use libration::control::Schedule;
+use libration::control::clock::{Jittered, Skewed};
+use libration::control::controller::StateFeedback;
+use libration::ensemble::{All, Loops, Setup};
+use libration::integrator::SymplecticEuler;
+use libration::system::{Chosen, Oscillator};
+use libration::{Float, Hamiltonian, Model, State, System, with_system};
+
+use super::{Copies, Ending, Request, TrajectoryError};
+use crate::export::{Number, Rows};
+
+/// Steps of trajectories between two looks at whether to stop: about a second.
+const CHUNK: u64 = 1 << 24;
+
+/// Every clock that can be asked for is a clock with a rate of its own whose steps jitter.
+type Clocks = (Skewed, Jittered<Jitter>);
+
+/// Most degrees of freedom: kernels for more would take long to compile.
+pub(super) const MOST_DIMENSIONS: usize = 2;
+
+/// Simulates what is asked, which has been checked.
+pub(super) fn run<S: Float + Pod + Number>(
+    request: &Request,
+    rows: &mut dyn Rows<S>,
+    stop: &AtomicBool,
+) -> Result<Ending, TrajectoryError> {
+    let dimension = request.q.len();
+    let wrong = || Err(request.system.entry().wrong_dimension(dimension).into());
+    with_system!(
+        request.system,
+        dimension,
+        |model, D| {
+            if const { D <= MOST_DIMENSIONS } {
+                on_model::<S, D, _>(&model, request, rows, stop)
+            } else {
+                wrong()
+            }
+        },
+        wrong()
+    )
+}
+
+fn on_model<S: Float + Pod + Number, const D: usize, M: Model<D>>(
+    model: &M,
+    request: &Request,
+    rows: &mut dyn Rows<S>,
+    stop: &AtomicBool,
+) -> Result<Ending, TrajectoryError> {
+    let system = model.on::<S>();
+    let energy = |state: &State<S, D>| system.energy(state);
+    // The model, which threads can share, says it anew for every step.
+    let acceleration = |state: &State<S, D>| model.on::<S>().acceleration(state);
+    simulated(Chosen(&acceleration), &energy, request, rows, stop)
+}
+
+/// The loops, and beside them what only moves with time: their clocks.
+fn simulated<S: Float + Pod + Number, const D: usize>(
+    system: Chosen<'_, S, D>,
+    energy: &dyn Fn(&State<S, D>) -> S,
+    request: &Request,
+    rows: &mut dyn Rows<S>,
+    stop: &AtomicBool,
+) -> Result<Ending, TrajectoryError> {
+    let Request { method, dt, steps, every, timing, seed, .. } = request;
+    let one = Copies { count: 1, spread: 0.0, threads: 1, instructions: None };
+    let copies = request.copies.unwrap_or(one);
+    let (count, execution) = (copies.count, copies.execution()?);
+    let dt = S::from_f64(*dt);
+    let none = Jitter::Uniform(0.0);
+    let uneven = timing.jitter.is_some() || timing.skew.is_some();
+    let clocks: Clocks =
+        (Skewed(timing.skew.unwrap_or(none)), Jittered(timing.jitter.unwrap_or(none)));
+    let latency = timing.latency_of(dt.to_f64()).map_err(|steps| late(request, steps))?;
+    let setup = Setup::new(All(system), *method)
+        .controller(StateFeedback::<D>::to_origin(timing.feedback.unwrap_or_default()))
+        .clock(clocks)
+        .delay(Schedule::late(latency));
+    let starts: Vec<State<S, D>> = (0..count).map(|n| start(request, copies.scale(n))).collect();
+    let mut all = Loops::new(setup, dt, *seed, [S::zero(); D], &starts, execution.clone())?;
+    let time = Setup::new(All(Oscillator { omega2: 0.0 }), SymplecticEuler).clock(clocks);
+    let zero = vec![State { q: [0.0], v: [1.0] }; count];
+    let mut time = Loops::new(time, dt.to_f64(), *seed, [0.0], &zero, execution)?;
+
+    let mut values = Vec::with_capacity(2 * D + 1);
+    let at_once = (CHUNK / (count as u64).max(1)).max(1);
+    loop {
+        let step = all.step();
+        if step.is_multiple_of(*every) || step == *steps {
+            for n in 0..count {
+                if stop.load(Ordering::Relaxed) {
+                    return Err(TrajectoryError::Interrupted);
+                }
+                let (Some(state), Some(&shown)) = (all.state(n), time.trajectories().q(0).get(n))
+                else {
+                    continue;
+                };
+                // What adds up steps that are all alike only rounds.
+                let t = if uneven { shown } else { step as f64 * dt.to_f64() };
+                values.clear();
+                values.extend(state.coordinates());
+                values.push(energy(&state));
+                let index = [n as u64, step];
+                let whole = if request.copies.is_some() { &index[..] } else { &index[1..] };
+                rows.row(whole, t, &values)?;
+            }
+        }
+        if step == *steps {
+            let lost: Vec<usize> = all.trajectories().not_finite().collect();
+            return Ok(match lost.len() {
+                0 => Ending::Whole,
+                count => Ending::NotFinite { count, first: lost.into_iter().take(10).collect() },
+            });
+        }
+        if stop.load(Ordering::Relaxed) {
+            return Err(TrajectoryError::Interrupted);
+        }
+        let to_next_row = (every - step % every).min(steps - step).min(at_once);
+        all.advance(to_next_row)?;
+        time.advance(to_next_row)?;
+    }
+}
+
+/// The start, so many times as far out.
+fn start<S: Float, const D: usize>(request: &Request, scale: f64) -> State<S, D> {
+    let coordinate = |x: &[f64], i: usize| x.get(i).map_or(S::zero(), |x| S::from_f64(scale * x));
+    State {
+        q: core::array::from_fn(|i| coordinate(&request.q, i)),
+        v: core::array::from_fn(|i| coordinate(&request.v, i)),
+    }
+}
+
+/// What is wrong with a latency.
+pub(super) fn late(request: &Request, steps: f64) -> TrajectoryError {
+    TrajectoryError::Value {
+        name: "latency",
+        value: format!("{steps} steps of {:?} s", request.dt),
+        allowed: format!("at least 0 and at most {} steps", Latency::MOST_STEPS),
+    }
+}

@@ -1,0 +1,33 @@
+//! Steps of random length.
+
+use super::{Clock, Noise, forward};
+use crate::Float;
+
+/// Steps of `1 + ε`, with another `ε` for every step, independent of all others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jittered<N>(
+    /// The law of `ε`.
+    pub N,
+);
+
+impl<T: Float, N: Noise> Clock<T> for Jittered<N> {
+    type Memory = [T; 0];
+    type Beat = ();
+
+    const DRAWS: bool = true;
+
+    fn start(&self, _: u64, _: u64) -> [T; 0] {
+        []
+    }
+
+    fn beat(&self, _: u64) {}
+
+    fn words(&self) -> usize {
+        self.0.words()
+    }
+
+    #[inline(always)]
+    fn ratio(&self, _: &mut [T; 0], (): (), word: &mut impl FnMut() -> u32) -> T {
+        forward(self.0.draw(word))
+    }
+}

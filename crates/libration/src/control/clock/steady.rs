@@ -1,0 +1,104 @@
+//! Clocks of which every step is known from the start of a trajectory.
+
+use super::noise::once;
+use super::{Clock, forward};
+use crate::Float;
+use crate::analysis::Jitter;
+use crate::random::Purpose;
+
+/// Every step is as long as the others.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fixed;
+
+impl<T: Float> Clock<T> for Fixed {
+    type Memory = [T; 0];
+    type Beat = ();
+
+    fn start(&self, _: u64, _: u64) -> [T; 0] {
+        []
+    }
+
+    fn beat(&self, _: u64) {}
+
+    #[inline(always)]
+    fn ratio(&self, _: &mut [T; 0], (): (), _: &mut impl FnMut() -> u32) -> T {
+        T::one()
+    }
+}
+
+/// Asynchronous clocks: steps of `1 + δ`, with another `δ` for every trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Skewed(
+    /// The law of `δ`.
+    pub Jitter,
+);
+
+impl<T: Float> Clock<T> for Skewed {
+    type Memory = [T; 1];
+    type Beat = ();
+
+    fn start(&self, seed: u64, trajectory: u64) -> [T; 1] {
+        [forward(T::from_f64(once(self.0, Purpose::ClockRate, seed, trajectory)))]
+    }
+
+    fn beat(&self, _: u64) {}
+
+    #[inline(always)]
+    fn ratio(&self, [ratio]: &mut [T; 1], (): (), _: &mut impl FnMut() -> u32) -> T {
+        *ratio
+    }
+}
+
+/// Asynchronous clocks whose steps are listed, one for each trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rates<'a>(
+    /// How many `Δt` a step of each trajectory is long; at least 0.
+    pub &'a [f64],
+);
+
+impl<T: Float> Clock<T> for Rates<'_> {
+    type Memory = [T; 1];
+    type Beat = ();
+
+    fn start(&self, _: u64, trajectory: u64) -> [T; 1] {
+        // Beyond the last are those that only fill a block.
+        let rate = self.0.get(trajectory as usize).copied().unwrap_or(1.0);
+        [forward(T::from_f64(rate) - T::one())]
+    }
+
+    fn beat(&self, _: u64) {}
+
+    fn trajectories(&self) -> Option<usize> {
+        Some(self.0.len())
+    }
+
+    #[inline(always)]
+    fn ratio(&self, [ratio]: &mut [T; 1], (): (), _: &mut impl FnMut() -> u32) -> T {
+        *ratio
+    }
+}
+
+/// Drifting clocks: step `n` is `1 + n·δ` long, with another `δ` for every trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drifting(
+    /// The law of `δ`, the change in a step.
+    pub Jitter,
+);
+
+impl<T: Float> Clock<T> for Drifting {
+    type Memory = [T; 1];
+    type Beat = T;
+
+    fn start(&self, seed: u64, trajectory: u64) -> [T; 1] {
+        [T::from_f64(once(self.0, Purpose::ClockDrift, seed, trajectory))]
+    }
+
+    fn beat(&self, step: u64) -> T {
+        T::from_f64(step as f64)
+    }
+
+    #[inline(always)]
+    fn ratio(&self, [rate]: &mut [T; 1], beat: T, _: &mut impl FnMut() -> u32) -> T {
+        forward(*rate * beat)
+    }
+}

@@ -1,0 +1,117 @@
+//! Three terms.
+
+use core::array::from_fn;
+
+use thiserror::Error;
+
+use super::{Controller, within};
+use crate::{Float, State};
+
+/// A discrete PID controller of the position, which is all that it observes: with a filter for its derivative, a
+/// limit, and an integral that does not wind up at it.
+///
+/// K. J. Åström, R. M. Murray, *Feedback Systems*, 2nd ed., sections 11.4 and 11.5: the derivative acts on the position
+/// alone and is filtered by a first-order lag (backward differences), the integral is corrected by what the limit takes
+/// (back-calculation).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pid<const D: usize> {
+    gains: PidGains<D>,
+}
+
+/// What a [`Pid`] is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PidGains<const D: usize> {
+    /// `K_p`, in s⁻².
+    pub proportional: f64,
+    /// `K_i`, in s⁻³.
+    pub integral: f64,
+    /// `K_d`, in s⁻¹.
+    pub derivative: f64,
+    /// The time of the filter of the derivative, in seconds; 0 for none.
+    pub filter: f64,
+    /// The largest command in each degree of freedom; infinite for none.
+    pub most: f64,
+    /// In how many seconds the integral follows what the limit takes.
+    pub tracking: f64,
+    /// Where it is to be.
+    pub target: [f64; D],
+}
+
+/// A number that is none for a PID controller.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[error("{name} is {value}; it must be {allowed}")]
+pub struct PidError {
+    /// Which of them.
+    pub name: &'static str,
+    /// What it is.
+    pub value: f64,
+    /// What it may be.
+    pub allowed: &'static str,
+}
+
+impl<const D: usize> Pid<D> {
+    /// A controller with these gains.
+    ///
+    /// # Errors
+    /// [`PidError`] if a gain or the target is not finite, the filter is negative, or limit or tracking time are not above
+    /// zero.
+    pub fn new(gains: PidGains<D>) -> Result<Self, PidError> {
+        let finite = [
+            ("proportional", gains.proportional),
+            ("integral", gains.integral),
+            ("derivative", gains.derivative),
+        ];
+        let targets = gains.target.map(|x| ("target", x));
+        for (name, value) in finite.into_iter().chain(targets) {
+            if !value.is_finite() {
+                return Err(PidError { name, value, allowed: "a number" });
+            }
+        }
+        if !(gains.filter >= 0.0 && gains.filter.is_finite()) {
+            let (name, value) = ("filter", gains.filter);
+            return Err(PidError { name, value, allowed: "at least 0 s" });
+        }
+        for (name, value) in [("most", gains.most), ("tracking", gains.tracking)] {
+            if value.is_nan() || value <= 0.0 {
+                return Err(PidError { name, value, allowed: "above 0" });
+            }
+        }
+        Ok(Pid { gains })
+    }
+}
+
+impl<T: Float, const D: usize> Controller<T, D> for Pid<D> {
+    /// The integral term, the last position, the filtered derivative term.
+    type Memory = ([T; D], ([T; D], [T; D]));
+
+    fn start(&self, state: &State<T, D>) -> Self::Memory {
+        ([T::zero(); D], (state.q, [T::zero(); D]))
+    }
+
+    #[inline(always)]
+    fn command(
+        &self,
+        (sum, (last, slope)): &mut Self::Memory,
+        observed: &State<T, D>,
+        period: T,
+    ) -> [T; D] {
+        let PidGains { proportional, integral, derivative, filter, most, tracking, target } =
+            self.gains;
+        let [kp, ki, kd, filter] = [proportional, integral, derivative, filter].map(T::from_f64);
+        let whole = (filter + period).recip();
+        let follows = period * T::from_f64(1.0 / tracking);
+        let wanted: [T; D] = from_fn(|i| {
+            let error = T::from_f64(target[i]) - observed.q[i];
+            // (filter·D + K_d·(y' − y))/(filter + h), with the sign of a derivative of the position.
+            slope[i] = (filter * slope[i] - kd * (observed.q[i] - last[i])) * whole;
+            last[i] = observed.q[i];
+            kp * error + sum[i] + slope[i]
+        });
+        from_fn(|i| {
+            let error = T::from_f64(target[i]) - observed.q[i];
+            let command = within(wanted[i], T::from_f64(most));
+            sum[i] = sum[i] + ki * period * error + follows * (command - wanted[i]);
+            command
+        })
+    }
+}

@@ -1,0 +1,27 @@
+//! Actuators that can only do so much.
+
+use super::{Controller, within};
+use crate::{Float, State};
+
+/// A controller whose command goes no further than `±most` in each degree of freedom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Saturated<C> {
+    /// Who commands.
+    pub controller: C,
+    /// The largest command, in units of the acceleration.
+    pub most: f64,
+}
+
+impl<T: Float, C: Controller<T, D>, const D: usize> Controller<T, D> for Saturated<C> {
+    type Memory = C::Memory;
+
+    fn start(&self, state: &State<T, D>) -> C::Memory {
+        self.controller.start(state)
+    }
+
+    #[inline(always)]
+    fn command(&self, memory: &mut C::Memory, observed: &State<T, D>, period: T) -> [T; D] {
+        let most = T::from_f64(self.most);
+        self.controller.command(memory, observed, period).map(|u| within(u, most))
+    }
+}

@@ -1,0 +1,116 @@
+//! When a command arrives.
+
+mod latencies;
+mod packets;
+mod random;
+mod recorded;
+mod schedule;
+
+pub use latencies::Latencies;
+pub use packets::{Order, Packets, PacketsError};
+pub use random::Random;
+pub use recorded::{RecordedLatencies, RecordedLatenciesError};
+pub use schedule::{Event, Schedule, ScheduleError};
+
+use super::Memory;
+use crate::Float;
+
+/// Tells which command acts.
+///
+/// Either all trajectories share a [`Schedule`], or in each step at most one command arrives, in each trajectory its own.
+pub trait Delay<T: Float>: Copy + Send + Sync {
+    /// Whether there is one schedule for all.
+    const SHARED: bool = false;
+    /// Whether a command can arrive within a step, which then splits.
+    const SPLITS: bool;
+
+    /// What it keeps of a trajectory.
+    type Memory: Memory<T>;
+    /// What is the same for all trajectories at a step.
+    type Beat: Copy;
+
+    /// The times of samples and commands that all trajectories share. Where they do not, commands are computed at the
+    /// beginning of every step.
+    fn schedule(&self) -> Schedule {
+        Schedule::EVERY_STEP
+    }
+
+    /// How many commands back the oldest is that may yet arrive.
+    fn longest(&self) -> usize;
+
+    /// The memory before the first step of `trajectory`, in the run of this seed.
+    fn start(&self, seed: u64, trajectory: u64) -> Self::Memory;
+
+    /// What is the same for all trajectories at `step`.
+    fn beat(&self, step: u64) -> Self::Beat;
+
+    /// How many random words a step takes: the same number for every step and trajectory.
+    fn words(&self) -> usize {
+        0
+    }
+
+    /// The number of steps of which it knows, if it does not know of all.
+    fn steps(&self) -> Option<u64> {
+        None
+    }
+
+    /// The number of trajectories of which it knows, if it does not know of all.
+    fn trajectories(&self) -> Option<usize> {
+        None
+    }
+
+    /// What arrives in a step, where there is no schedule for all.
+    fn arrival(
+        &self,
+        memory: &mut Self::Memory,
+        beat: Self::Beat,
+        word: &mut impl FnMut() -> u32,
+    ) -> Arrival<T>;
+}
+
+/// What arrives in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival<T> {
+    /// Whether anything does; if not, the command that acted goes on.
+    pub fresh: bool,
+    /// How many steps ago it was computed; what is older than the longest latency never arrives.
+    pub age: u32,
+    /// After which part of the step it arrives; at least 0 and below 1.
+    pub part: T,
+}
+
+impl<T: Float> Arrival<T> {
+    /// A command of `age` steps ago that arrives with the beginning of the step.
+    #[inline(always)]
+    fn of_age(age: u32) -> Self {
+        Arrival { fresh: true, age, part: T::zero() }
+    }
+}
+
+/// A schedule is a delay: the same for all trajectories.
+impl<T: Float> Delay<T> for Schedule {
+    const SHARED: bool = true;
+    const SPLITS: bool = true;
+
+    type Memory = [T; 0];
+    type Beat = ();
+
+    fn schedule(&self) -> Schedule {
+        *self
+    }
+
+    fn longest(&self) -> usize {
+        self.commands_on_their_way()
+    }
+
+    fn start(&self, _: u64, _: u64) -> [T; 0] {
+        []
+    }
+
+    fn beat(&self, _: u64) {}
+
+    #[inline(always)]
+    fn arrival(&self, _: &mut [T; 0], (): (), _: &mut impl FnMut() -> u32) -> Arrival<T> {
+        Arrival::of_age(0)
+    }
+}

@@ -1,0 +1,236 @@
+//! The steps of a block of loops: one scalar step in a loop over lanes.
+
+use core::array::from_fn;
+use core::ops::Range;
+
+use bytemuck::Pod;
+use pulp::{Simd, WithSimd};
+
+use super::rows::Block;
+use super::setup::{Layout, Setup};
+use crate::control::delay::{Arrival, Event};
+use crate::control::{Clock, Controller, Delay, Memory};
+use crate::ensemble::Assign;
+use crate::ensemble::kernel::{Lines, at, put};
+use crate::ensemble::planes::Share;
+use crate::random::{EPOCH, Purpose, Streams};
+use crate::system::Held;
+use crate::{Float, Integrator, State, System};
+
+/// What is the same for all blocks.
+pub(super) struct Common<'s, T, A, M, K, C, L> {
+    pub(super) setup: &'s Setup<A, M, K, C, L>,
+    pub(super) layout: Layout,
+    pub(super) dt: T,
+    pub(super) seed: u64,
+}
+
+/// The age of no command.
+const NONE: u32 = u32::MAX;
+
+/// Takes the steps of a range with all trajectories of a block.
+pub(super) struct Steps<'b, 'a, T, A, M, K, C, L, Sys, const D: usize, const W: usize>
+where
+    A: Assign<Sys>,
+{
+    pub(super) common: &'b Common<'b, T, A, M, K, C, L>,
+    pub(super) block: &'b mut Share<'a, T, D>,
+    pub(super) memory: Block<'b, T, W>,
+    pub(super) systems: A::Lanes<W>,
+    pub(super) steps: Range<u64>,
+}
+
+impl<T, A, M, K, C, L, Sys, const D: usize, const W: usize> WithSimd
+    for Steps<'_, '_, T, A, M, K, C, L, Sys, D, W>
+where
+    T: Float + Pod,
+    A: Assign<Sys>,
+    M: Integrator,
+    K: Controller<T, D>,
+    C: Clock<T>,
+    L: Delay<T>,
+    Sys: System<T, D>,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Steps { common, block, mut memory, systems, steps } = self;
+        let Common { setup, layout, dt, seed } = *common;
+        let Setup { method, clock, controller, delay, .. } = *setup;
+        let schedule = delay.schedule();
+        let (first, zero) = (block.first as u64, T::zero());
+        let period = dt * T::from_f64(schedule.period());
+        let words = [clock.words(), delay.words()];
+
+        // Locals, each by itself: what the compiler can keep in registers.
+        let (q, v) = block.load::<W>();
+        let (mut q, mut v) = (Lines(q), Lines(v));
+        let mut held = Lines([[zero; W]; D]);
+        if K::ACTS {
+            held = Lines(from_fn(|i| memory.get(layout.held + i, zero)));
+        }
+        let mut clocks = C::Memory::load(&|i| memory.get(layout.clock + i, zero));
+        let mut delays = L::Memory::load(&|i| memory.get(layout.delay + i, zero));
+        let mut controllers = K::Memory::load(&|i| memory.get(layout.controller + i, zero));
+
+        // Closures would do, but the compiler may leave one outside the vector code.
+        macro_rules! look {
+            ($place:expr) => {{
+                let place = layout.ring + $place * D;
+                let mut commands = [[zero; W]; D];
+                for l in 0..W {
+                    let state = State { q: at(&q.0, l), v: at(&v.0, l) };
+                    let mut own = K::Memory::lane(&controllers, l);
+                    put(&mut commands, l, controller.command(&mut own, &state, period));
+                    K::Memory::set_lane(&mut controllers, l, own);
+                }
+                (0..D).for_each(|i| memory.set(place + i, &commands[i]));
+            }};
+        }
+        macro_rules! act {
+            ($place:expr) => {{
+                let place = layout.ring + $place * D;
+                held.0 = from_fn(|i| memory.get(place + i, zero));
+            }};
+        }
+        macro_rules! under_command {
+            ($l:expr, $dt:expr) => {{
+                let system = Held { system: A::lane(&systems, $l), command: at(&held.0, $l) };
+                stepped(method, &system, &mut q, &mut v, $l, $dt);
+            }};
+        }
+
+        let mut begin = steps.start;
+        while begin < steps.end {
+            let end = steps.end.min((begin / EPOCH + 1).saturating_mul(EPOCH));
+            let mut times = Streams::resumed(seed, first, begin, Purpose::StepTime, words[0]);
+            let mut latencies =
+                Streams::<W>::resumed(seed, first, begin, Purpose::Latency, words[1]);
+            if const { !K::ACTS } {
+                for step in begin..end {
+                    let beat = clock.beat(step);
+                    for l in 0..W {
+                        let h = dt * ratio::<T, C, W>(&clock, &mut clocks, beat, &mut times, l);
+                        stepped(method, &A::lane(&systems, l), &mut q, &mut v, l, h);
+                    }
+                }
+            } else if const { L::SHARED } && schedule.whole_steps().is_some() {
+                let mut slot = (begin % layout.places as u64) as usize;
+                for step in begin..end {
+                    // The oldest command lies where the next will.
+                    let next = if slot + 1 == layout.places { 0 } else { slot + 1 };
+                    look!(slot);
+                    act!(next);
+                    slot = next;
+                    let beat = clock.beat(step);
+                    for l in 0..W {
+                        let h = dt * ratio::<T, C, W>(&clock, &mut clocks, beat, &mut times, l);
+                        under_command!(l, h);
+                    }
+                }
+            } else if const { L::SHARED } {
+                for step in begin..end {
+                    let beat = clock.beat(step);
+                    let mut length = [zero; W];
+                    for (l, length) in length.iter_mut().enumerate() {
+                        *length = dt * ratio::<T, C, W>(&clock, &mut clocks, beat, &mut times, l);
+                    }
+                    // Seconds of the step that are gone.
+                    let (mut part, mut gone) = (0.0, [zero; W]);
+                    for (until, event) in schedule.events(step) {
+                        if until > part {
+                            part = until;
+                            for l in 0..W {
+                                let then = T::from_f64(until) * length[l];
+                                under_command!(l, then - gone[l]);
+                                gone[l] = then;
+                            }
+                        }
+                        match event {
+                            Event::Look(k) => look!((k % layout.places as u64) as usize),
+                            Event::Act(k) => act!((k % layout.places as u64) as usize),
+                        }
+                    }
+                    for l in 0..W {
+                        under_command!(l, length[l] - gone[l]);
+                    }
+                }
+            } else {
+                for step in begin..end {
+                    let slot = (step % layout.places as u64) as usize;
+                    look!(slot);
+                    let (beat, late) = (clock.beat(step), delay.beat(step));
+                    let (mut ages, mut rest) = ([NONE; W], [zero; W]);
+                    for l in 0..W {
+                        let h = dt * ratio::<T, C, W>(&clock, &mut clocks, beat, &mut times, l);
+                        let mut own = L::Memory::lane(&delays, l);
+                        let Arrival { fresh, age, part } =
+                            delay.arrival(&mut own, late, &mut || latencies.next(l));
+                        L::Memory::set_lane(&mut delays, l, own);
+                        ages[l] = if fresh { age } else { NONE };
+                        rest[l] = h;
+                        if const { L::SPLITS } {
+                            let before = part * h;
+                            under_command!(l, before);
+                            rest[l] = h - before;
+                        }
+                    }
+                    // Row by row, which is vectors, and not lane by lane.
+                    for age in 0..layout.places {
+                        let place = (slot + layout.places - age) % layout.places;
+                        for i in 0..D {
+                            let row = memory.get(layout.ring + place * D + i, zero);
+                            for l in 0..W {
+                                let arrives = ages[l] == age as u32;
+                                held.0[i][l] = if arrives { row[l] } else { held.0[i][l] };
+                            }
+                        }
+                    }
+                    for (l, &rest) in rest.iter().enumerate() {
+                        under_command!(l, rest);
+                    }
+                }
+            }
+            begin = end;
+        }
+
+        block.store(&q.0, &v.0);
+        C::Memory::store(&clocks, &mut |i, row| memory.set(layout.clock + i, row));
+        L::Memory::store(&delays, &mut |i, row| memory.set(layout.delay + i, row));
+        K::Memory::store(&controllers, &mut |i, row| memory.set(layout.controller + i, row));
+        if K::ACTS {
+            (0..D).for_each(|i| memory.set(layout.held + i, &held.0[i]));
+        }
+    }
+}
+
+/// How many `dt` a step is long in lane `l`.
+#[inline(always)]
+fn ratio<T: Float, C: Clock<T>, const W: usize>(
+    clock: &C,
+    clocks: &mut <C::Memory as Memory<T>>::Lanes<W>,
+    beat: C::Beat,
+    times: &mut Streams<W>,
+    l: usize,
+) -> T {
+    let mut memory = C::Memory::lane(clocks, l);
+    let ratio = clock.ratio(&mut memory, beat, &mut || times.next(l));
+    C::Memory::set_lane(clocks, l, memory);
+    ratio
+}
+
+/// A step of lane `l`.
+#[inline(always)]
+fn stepped<T: Float, Sys: System<T, D>, const D: usize, const W: usize>(
+    method: impl Integrator,
+    system: &Sys,
+    q: &mut Lines<[[T; W]; D]>,
+    v: &mut Lines<[[T; W]; D]>,
+    l: usize,
+    dt: T,
+) {
+    let state = method.step(system, State { q: at(&q.0, l), v: at(&v.0, l) }, dt);
+    put(&mut q.0, l, state.q);
+    put(&mut v.0, l, state.v);
+}

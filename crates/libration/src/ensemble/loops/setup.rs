@@ -1,0 +1,84 @@
+//! What loops are made of.
+
+use crate::Float;
+use crate::control::clock::Fixed;
+use crate::control::controller::Open;
+use crate::control::{Clock, Controller, Delay, Memory, Schedule};
+
+/// A plant with its integrator, and what drives and disturbs it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setup<A, M, K = Open, C = Fixed, L = Schedule> {
+    /// The plant of every trajectory: [`All`](super::super::All) or [`Each`](super::super::Each).
+    pub systems: A,
+    /// The integrator.
+    pub method: M,
+    /// What commands.
+    pub controller: K,
+    /// How long steps are.
+    pub clock: C,
+    /// When commands arrive.
+    pub delay: L,
+}
+
+impl<A, M> Setup<A, M> {
+    /// A plant that nothing drives or disturbs.
+    pub fn new(systems: A, method: M) -> Self {
+        let (controller, clock, delay) = (Open, Fixed, Schedule::EVERY_STEP);
+        Setup { systems, method, controller, clock, delay }
+    }
+}
+
+impl<A, M, K, C, L> Setup<A, M, K, C, L> {
+    /// This, under a controller.
+    pub fn controller<Other>(self, controller: Other) -> Setup<A, M, Other, C, L> {
+        let Setup { systems, method, clock, delay, .. } = self;
+        Setup { systems, method, controller, clock, delay }
+    }
+
+    /// This, with steps of another clock.
+    pub fn clock<Other>(self, clock: Other) -> Setup<A, M, K, Other, L> {
+        let Setup { systems, method, controller, delay, .. } = self;
+        Setup { systems, method, controller, clock, delay }
+    }
+
+    /// This, with commands that arrive so.
+    pub fn delay<Other>(self, delay: Other) -> Setup<A, M, K, C, Other> {
+        let Setup { systems, method, controller, clock, .. } = self;
+        Setup { systems, method, controller, clock, delay }
+    }
+}
+
+/// Where the rows of the memory of loops begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Layout {
+    pub(super) clock: usize,
+    pub(super) delay: usize,
+    pub(super) controller: usize,
+    /// The command that acts.
+    pub(super) held: usize,
+    /// The commands that were computed, `D` rows each.
+    pub(super) ring: usize,
+    /// How many of them there are.
+    pub(super) places: usize,
+    /// All rows.
+    pub(super) rows: usize,
+}
+
+impl Layout {
+    pub(super) fn of<T, A, M, K, C, L, const D: usize>(setup: &Setup<A, M, K, C, L>) -> Self
+    where
+        T: Float,
+        K: Controller<T, D>,
+        C: Clock<T>,
+        L: Delay<T>,
+    {
+        let places = if K::ACTS { setup.delay.longest() + 1 } else { 0 };
+        let clock = 0;
+        let delay = clock + C::Memory::LEN;
+        let controller = delay + L::Memory::LEN;
+        let held = controller + K::Memory::LEN;
+        let ring = held + if K::ACTS { D } else { 0 };
+        let rows = ring + places * D;
+        Layout { clock, delay, controller, held, ring, places, rows }
+    }
+}

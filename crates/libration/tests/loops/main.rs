@@ -1,0 +1,12 @@
+//! Loops that are simulated, beside what theory says of them, and beside a plain loop of one trajectory.
+
+#![allow(clippy::unwrap_used)]
+
+mod bits;
+mod clocks;
+mod controllers;
+mod delays;
+mod growth;
+mod moments;
+mod one;
+mod refused;

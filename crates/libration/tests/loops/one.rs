@@ -1,0 +1,75 @@
+//! A loop of one trajectory, written as plainly as can be: what the kernels are compared with.
+
+use std::collections::VecDeque;
+
+use libration::analysis::{Feedback, Latency};
+use libration::system::{Held, Oscillator};
+use libration::{Integrator, State};
+
+/// An oscillator under feedback of its state with a constant latency.
+pub(crate) struct One<M> {
+    pub(crate) system: Oscillator<f64>,
+    pub(crate) method: M,
+    pub(crate) feedback: Feedback,
+    part: f64,
+    pub(crate) state: State<f64, 1>,
+    waiting: VecDeque<f64>,
+    held: f64,
+    /// Steps before which no command arrives, where those do not split.
+    whole_until: usize,
+    steps: usize,
+}
+
+impl<M: Integrator> One<M> {
+    pub(crate) fn new(
+        omega2: f64,
+        method: M,
+        feedback: Feedback,
+        latency: Latency,
+        state: State<f64, 1>,
+    ) -> Self {
+        let (whole, part) = (latency.steps().trunc() as usize, latency.steps().fract());
+        let waiting = std::iter::repeat_n(0.0, whole).collect();
+        let system = Oscillator { omega2 };
+        One { system, method, feedback, part, state, waiting, held: 0.0, whole_until: 0, steps: 0 }
+    }
+
+    /// This, where steps do not split before a first command arrives.
+    pub(crate) fn whole_at_first(self) -> Self {
+        One { whole_until: self.waiting.len(), ..self }
+    }
+
+    /// Takes a step of `dt` seconds, which splits where a command arrives within it.
+    pub(crate) fn step(&mut self, dt: f64) {
+        let State { q: [q], v: [v] } = self.state;
+        let Feedback { position, velocity } = self.feedback;
+        self.waiting.push_back(-(position * q) - velocity * v);
+        let arrives = self.waiting.pop_front().unwrap();
+        let splits = self.part > 0.0 && self.steps >= self.whole_until;
+        let before = if splits { self.part * dt } else { 0.0 };
+        self.steps += 1;
+        if splits {
+            self.under_command(before);
+        }
+        self.held = arrives;
+        self.under_command(dt - before);
+    }
+
+    /// All that it knows: the state, the command that acts, those on their way.
+    pub(crate) fn known(&self) -> Vec<f64> {
+        let State { q: [q], v: [v] } = self.state;
+        [q, v, self.held].into_iter().chain(self.waiting.iter().copied()).collect()
+    }
+
+    /// Sets all that it knows.
+    pub(crate) fn set(&mut self, known: Vec<f64>) {
+        self.state = State { q: [known[0]], v: [known[1]] };
+        self.held = known[2];
+        self.waiting = known[3..].iter().copied().collect();
+    }
+
+    fn under_command(&mut self, dt: f64) {
+        let held = Held { system: self.system, command: [self.held] };
+        self.state = self.method.step(&held, self.state, dt);
+    }
+}
