@@ -19,24 +19,27 @@ use crate::Outcome;
 use census::Census;
 use kernel::Kernel;
 
-/// Compiles the engine to assembly and fails if a kernel lost its vectors, or is not there.
+/// Prints what is in the kernels, or what is wrong with them.
 pub(crate) fn run() -> Outcome {
+    report().map(|said| print!("{said}"))
+}
+
+/// Compiles the engine to assembly and fails if a kernel lost its vectors, or is not there; else a table.
+pub(crate) fn report() -> Result<String, String> {
     if !cfg!(target_arch = "x86_64") {
-        println!("skipped: the kernels for AVX2 and AVX-512 are compiled on x86-64 only");
-        return Ok(());
+        return Ok("skipped: the kernels for AVX2 and AVX-512 are compiled on x86-64 only\n".into());
     }
     let path = assembly::build()?;
     let text = fs::read_to_string(&path)
         .map_err(|error| format!("{} cannot be read: {error}", path.display()))?;
     let censuses = censuses(&text);
-    print!("{}", census::table(&censuses));
-    println!("{} kernels", censuses.len());
+    let table = format!("{}{} kernels\n", census::table(&censuses), censuses.len());
     let mut complaints = expected::complaints(&censuses);
     complaints.extend(verdict::complaints(&censuses));
     if complaints.is_empty() {
-        return Ok(());
+        return Ok(table);
     }
-    Err(format!("{}\n{ADVICE}", complaints.join("\n")))
+    Err(format!("{table}{}\n{ADVICE}", complaints.join("\n")))
 }
 
 const ADVICE: &str = "\

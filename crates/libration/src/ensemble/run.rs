@@ -49,17 +49,17 @@ const fn width<I: Target, T, const D: usize>(carries: bool, taken: usize) -> usi
     let vectors = room / planes;
     // Where there are several dimensions, they are as good as several blocks.
     let least = (2 * FEW).div_ceil(if D > 2 { D } else { 2 });
-    widest::<I, T>(if vectors > least { vectors } else { least })
+    widest::<I, T>(if vectors > least { vectors } else { least }, &WIDTHS)
 }
 
-/// The widest blocks of at most so many vectors.
-pub(super) const fn widest<I: Target, T>(vectors: usize) -> usize {
+/// The widest of some blocks that has at most so many vectors.
+pub(super) const fn widest<I: Target, T>(vectors: usize, widths: &[usize]) -> usize {
     let lanes = vectors * I::BYTES / size_of::<T>();
-    let mut i = WIDTHS.len() - 1;
-    while i > 0 && WIDTHS[i] > lanes {
+    let mut i = widths.len() - 1;
+    while i > 0 && widths[i] > lanes {
         i -= 1;
     }
-    WIDTHS[i]
+    widths[i]
 }
 
 impl<T, M, A, C, Sys, O, const D: usize> Targeted for Run<'_, T, M, A, C, Sys, O, D>
@@ -102,7 +102,7 @@ where
 {
     fn wide<I: Target, const W: usize>(self, target: I) {
         // As above.
-        match const { widest::<I, T>(FEW) } {
+        match const { widest::<I, T>(FEW, &WIDTHS) } {
             8 => self.blocks::<I, W, 8>(target),
             16 => self.blocks::<I, W, 16>(target),
             32 => self.blocks::<I, W, 32>(target),

@@ -31,9 +31,10 @@ pub(super) fn types(record: &Record) -> Result<Figure, RecordError> {
             .zip(comparable)
             .map(|(&drift, &comparable)| if comparable > 0.0 { drift } else { f64::NAN })
             .collect();
-        panel = panel
-            .mark(Mark::line(step, drift).ink(ink(i)).label(kind.name))
-            .mark(Mark::prediction(every(step), every(&predicted)));
+        panel = panel.mark(Mark::line(step, drift).ink(ink(i)).label(kind.name));
+        if predicted.iter().any(|d| !d.is_nan()) {
+            panel = panel.mark(Mark::prediction(every(step), every(&predicted)));
+        }
     }
     Ok(Figure::new("precision-types", "What rounding leaves, in eleven float types")
         .caption(

@@ -25,10 +25,13 @@ pub(super) struct Run<'a, 's, T, A, M, K, C, L, Sys, O, const D: usize> {
     pub(super) system: PhantomData<Sys>,
 }
 
-/// Vectors of each row of a block that has so many rows: what fits in the registers, but enough to hide latencies.
-const fn vectors<I: Target>(rows: usize) -> usize {
+/// Widths of a block, in lanes: divisors of the pieces that the memory comes in.
+const WIDTHS: [usize; 6] = [8, 16, 32, 64, 128, 192];
+
+/// Lanes of a block that has so many rows: what fits in the registers, but enough to hide latencies.
+const fn width<I: Target, T>(rows: usize) -> usize {
     let fit = (if I::REGISTERS >= 32 { 26 } else { 24 }) / rows;
-    if fit < 2 { 2 } else { fit }
+    widest::<I, T>(if fit < 2 { 2 } else { fit }, &WIDTHS)
 }
 
 impl<T, A, M, K, C, L, Sys, O, const D: usize> Targeted for Run<'_, '_, T, A, M, K, C, L, Sys, O, D>
@@ -45,13 +48,13 @@ where
     type Output = ();
 
     fn on<I: Target>(self, target: I) {
-        // Divisors of the pieces that the memory comes in; of these arms the compiler keeps one.
-        match const { widest::<I, T>(vectors::<I>(Self::ROWS)) } {
-            ..16 => self.blocks::<I, 8>(target),
-            16..32 => self.blocks::<I, 16>(target),
-            32..64 => self.blocks::<I, 32>(target),
-            64..128 => self.blocks::<I, 64>(target),
-            128..192 => self.blocks::<I, 128>(target),
+        // Of these arms the compiler keeps one; of ranges it would keep all.
+        match const { width::<I, T>(Self::ROWS) } {
+            8 => self.blocks::<I, 8>(target),
+            16 => self.blocks::<I, 16>(target),
+            32 => self.blocks::<I, 32>(target),
+            64 => self.blocks::<I, 64>(target),
+            128 => self.blocks::<I, 128>(target),
             _ => self.blocks::<I, 192>(target),
         }
     }
