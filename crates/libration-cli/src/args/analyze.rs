@@ -2,11 +2,9 @@
 
 use clap::Args;
 
-use libration_lab::analyze::Stepping;
-
-use super::SystemArgs;
-use super::number::{criterion, forecast_steps, time_step};
-use super::timing::{TimingArgs, stepping};
+use super::number::{criterion, forecast_steps};
+use super::timing::TimingArgs;
+use super::{StepArgs, SystemArgs};
 
 /// What theory says of one step.
 #[derive(Args, Debug)]
@@ -14,12 +12,8 @@ use super::timing::{TimingArgs, stepping};
 pub(crate) struct AnalyzeArgs {
     #[command(flatten)]
     pub(crate) system: SystemArgs,
-    /// The integrator (`libration list` shows them), or `exact`: steps of a linear system without error
-    #[arg(long, value_name = "NAME", value_parser = stepping, allow_hyphen_values = true)]
-    pub(crate) integrator: Stepping,
-    /// Time step in s
-    #[arg(long, value_name = "SECONDS", value_parser = time_step, allow_hyphen_values = true)]
-    pub(crate) dt: f64,
+    #[command(flatten)]
+    pub(crate) step: StepArgs,
     #[command(flatten)]
     pub(crate) timing: TimingArgs,
     /// Number of steps over which the largest energy drift is taken; of a linear system up to 1e15

@@ -3,7 +3,9 @@
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use libration::catalog::{ENTRIES, Entry};
+use libration::integrator::Exact;
 use libration::{AnySystem, CatalogError, Method, State, with_system};
+use libration_lab::analyze::Stepping;
 use libration_lab::config::names;
 
 use super::number::{Coordinates, assignment, coordinates, time_step};
@@ -29,9 +31,9 @@ pub(crate) struct SystemArgs {
 /// Which integrator, with which time step.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct StepArgs {
-    /// The integrator; `libration list` shows them
+    /// The integrator (`libration list` shows them), or `exact`: steps of a linear system without error
     #[arg(long, value_name = "NAME", value_parser = integrators(), hide_possible_values = true)]
-    pub(crate) integrator: Method,
+    pub(crate) integrator: Stepping,
     /// Time step in s
     #[arg(long, value_name = "SECONDS", value_parser = time_step, allow_hyphen_values = true)]
     pub(crate) dt: f64,
@@ -131,10 +133,11 @@ fn system_names() -> PossibleValuesParser {
     PossibleValuesParser::new(ENTRIES.map(value))
 }
 
-fn integrators() -> impl TypedValueParser<Value = Method> {
+fn integrators() -> impl TypedValueParser<Value = Stepping> {
     let value = |method: Method| PossibleValue::new(method.name()).help(method.summary());
-    PossibleValuesParser::new(Method::ALL.map(value))
-        .try_map(|name| Method::from_name(&name).ok_or("unknown integrator"))
+    let exact = PossibleValue::new(Stepping::EXACT).help(Exact::SUMMARY);
+    PossibleValuesParser::new(Method::ALL.map(value).into_iter().chain([exact]))
+        .try_map(|name| Stepping::from_name(&name).ok_or("unknown integrator"))
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! What is asked of the timing of a loop.
 
 use clap::Args;
-use libration::Method;
 use libration::analysis::{Feedback, Jitter};
-use libration_lab::analyze::{Late, Stepping, Timing};
+use libration_lab::analyze::{Late, Timing};
 
 /// The loop, and what happens to its clock and its commands.
 #[derive(Args, Clone, Copy, Debug)]
@@ -35,17 +34,6 @@ impl TimingArgs {
         let TimingArgs { feedback, latency, jitter, skew } = self;
         Timing { feedback, latency, jitter, skew }
     }
-}
-
-/// An integrator, or exact steps.
-pub(super) fn stepping(name: &str) -> Result<Stepping, String> {
-    if name == Stepping::EXACT {
-        return Ok(Stepping::Exact);
-    }
-    Method::from_name(name).map(Stepping::Method).ok_or_else(|| {
-        let known = Method::ALL.map(Method::name).join(", ");
-        format!("it must be one of {known}, {}", Stepping::EXACT)
-    })
 }
 
 fn finite(text: &str) -> Option<f64> {

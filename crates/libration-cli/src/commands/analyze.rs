@@ -14,7 +14,7 @@ use crate::error::Failure;
 /// Analyses one step and prints what theory says of it.
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     let Setting { system, q, v } = args.system.resolve()?;
-    let (stepping, dt, timing) = (args.integrator, args.dt, args.timing.timing());
+    let (stepping, dt, timing) = (args.step.integrator, args.step.dt, args.timing.timing());
     if !system.is_linear() {
         // What cannot be forecast is simulated.
         limits::steps("--steps", args.steps.into()).map_err(Failure::usage)?;

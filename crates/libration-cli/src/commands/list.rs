@@ -2,6 +2,7 @@
 
 use libration::Method;
 use libration::catalog::{ENTRIES, Entry};
+use libration::integrator::Exact;
 use libration_lab::{Study, studies};
 use serde_json::{Value, json};
 
@@ -19,10 +20,12 @@ pub(crate) fn run(args: &ListArgs) -> Result<(), Failure> {
 fn as_json() -> Value {
     let study = |study: &&dyn Study| json!({ "name": study.name(), "question": study.question() });
     let integrator = |method: Method| json!({ "name": method.name(), "order": method.order(), "summary": method.summary() });
+    // Its error is that of no order.
+    let exact = json!({ "name": Exact::NAME, "order": null, "summary": Exact::SUMMARY });
     json!({
         "studies": studies::ALL.iter().map(study).collect::<Vec<_>>(),
         "systems": ENTRIES.map(system_json),
-        "integrators": Method::ALL.map(integrator),
+        "integrators": Method::ALL.into_iter().map(integrator).chain([exact]).collect::<Vec<_>>(),
     })
 }
 
@@ -48,7 +51,8 @@ fn system_json(entry: &Entry) -> Value {
 
 fn as_text() -> String {
     let studies: Vec<_> = studies::ALL.iter().map(|s| (s.name(), s.question())).collect();
-    let integrators = Method::ALL.map(|m| (m.name(), m.summary()));
+    let integrators = Method::ALL.into_iter().map(|m| (m.name(), m.summary()));
+    let integrators: Vec<_> = integrators.chain([(Exact::NAME, Exact::SUMMARY)]).collect();
     let systems: String = ENTRIES.iter().map(|entry| system_text(entry)).collect();
     let (studies, integrators) = (lines(&studies), lines(&integrators));
     format!("Studies\n{studies}\nSystems\n{systems}\nIntegrators\n{integrators}")

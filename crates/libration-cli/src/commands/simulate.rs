@@ -73,7 +73,7 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
     let instructions = if args.count.is_some() { simd::asked(args.simd)? } else { None };
     Ok(Request {
         system,
-        method: args.step.integrator,
+        stepping: args.step.integrator,
         float: args.float,
         dt: args.step.dt,
         steps: args.steps,

@@ -36,13 +36,21 @@ pub enum Stepping {
 
 impl Stepping {
     /// The name of exact steps on the command line.
-    pub const EXACT: &'static str = "exact";
+    pub const EXACT: &'static str = libration::integrator::Exact::NAME;
 
     /// Name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Stepping::Method(method) => method.name(),
             Stepping::Exact => Stepping::EXACT,
+        }
+    }
+
+    /// What has this name.
+    pub fn from_name(name: &str) -> Option<Stepping> {
+        match name {
+            Stepping::EXACT => Some(Stepping::Exact),
+            name => Method::from_name(name).map(Stepping::Method),
         }
     }
 

@@ -1,5 +1,6 @@
 //! The studies, in the order in which they are told.
 
+mod asynchrony;
 mod convergence;
 mod coverage;
 mod determinism;
@@ -9,24 +10,29 @@ mod error;
 mod growth;
 mod hierarchy;
 mod ink;
+mod jitter;
 mod latency;
 mod nonlinear;
 mod precision;
 mod rounding;
+mod sample;
 mod sampled;
 mod source;
 mod spectrum;
 mod stability;
 mod subject;
+mod swarm;
 pub(crate) mod throughput;
 
 use crate::study::Study;
+pub use asynchrony::Asynchrony;
 pub use convergence::Convergence;
 pub use determinism::Determinism;
 pub use drift::Drift;
 pub use efficiency::Efficiency;
 pub use error::Error;
 pub use hierarchy::Hierarchy;
+pub use jitter::Jitter;
 pub use latency::Latency;
 pub use nonlinear::Nonlinear;
 pub use precision::Precision;
@@ -49,6 +55,8 @@ pub const ALL: &[&dyn Study] = &[
     &Nonlinear::CONFIGURED,
     &Precision,
     &Latency,
+    &Jitter,
+    &Asynchrony,
     &Hierarchy,
     &Determinism,
     &Throughput,

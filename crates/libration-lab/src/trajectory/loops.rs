@@ -10,9 +10,11 @@ use libration::control::controller::StateFeedback;
 use libration::ensemble::{All, Loops, Setup};
 use libration::integrator::SymplecticEuler;
 use libration::system::{Chosen, Oscillator};
-use libration::{Float, Hamiltonian, Model, State, System, with_system};
+use libration::{Float, Hamiltonian, Integrator, Model, State, System, with_system};
 
+use super::run::exact;
 use super::{Copies, Ending, Request, TrajectoryError};
+use crate::analyze::Stepping;
 use crate::export::{Number, Rows};
 
 /// Steps of trajectories between two looks at whether to stop: about a second.
@@ -56,18 +58,23 @@ fn on_model<S: Float + Pod + Number, const D: usize, M: Model<D>>(
     let energy = |state: &State<S, D>| system.energy(state);
     // The model, which threads can share, says it anew for every step.
     let acceleration = |state: &State<S, D>| model.on::<S>().acceleration(state);
-    simulated(Chosen(&acceleration), &energy, request, rows, stop)
+    let chosen = Chosen(&acceleration);
+    match request.stepping {
+        Stepping::Method(method) => simulated(chosen, method, &energy, request, rows, stop),
+        Stepping::Exact => simulated(chosen, exact(model, request)?, &energy, request, rows, stop),
+    }
 }
 
 /// The loops, and beside them what only moves with time: their clocks.
 fn simulated<S: Float + Pod + Number, const D: usize>(
     system: Chosen<'_, S, D>,
+    integrator: impl Integrator,
     energy: &dyn Fn(&State<S, D>) -> S,
     request: &Request,
     rows: &mut dyn Rows<S>,
     stop: &AtomicBool,
 ) -> Result<Ending, TrajectoryError> {
-    let Request { method, dt, steps, every, timing, seed, .. } = request;
+    let Request { dt, steps, every, timing, seed, .. } = request;
     let one = Copies { count: 1, spread: 0.0, threads: 1, instructions: None };
     let copies = request.copies.unwrap_or(one);
     let (count, execution) = (copies.count, copies.execution()?);
@@ -77,7 +84,7 @@ fn simulated<S: Float + Pod + Number, const D: usize>(
     let clocks: Clocks =
         (Skewed(timing.skew.unwrap_or(none)), Jittered(timing.jitter.unwrap_or(none)));
     let latency = timing.latency_of(dt.to_f64()).map_err(|steps| late(request, steps))?;
-    let setup = Setup::new(All(system), *method)
+    let setup = Setup::new(All(system), integrator)
         .controller(StateFeedback::<D>::to_origin(timing.feedback.unwrap_or_default()))
         .clock(clocks)
         .delay(Schedule::late(latency));

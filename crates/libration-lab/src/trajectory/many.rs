@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use half::{bf16, f16};
+use libration::Method;
 use libration::ensemble::{BatchFloat, NoRoom};
 
 use super::{Copies, Ending, Request, TrajectoryError, loops};
@@ -22,6 +23,7 @@ pub(super) trait Many: Number {
     /// Simulates the copies of a request that has been checked.
     fn many(
         request: &Request,
+        method: Method,
         copies: &Copies,
         rows: &mut dyn Rows<Self>,
         stop: &AtomicBool,
@@ -42,11 +44,12 @@ macro_rules! vectors {
 
             fn many(
                 request: &Request,
+                method: Method,
                 copies: &Copies,
                 rows: &mut dyn Rows<Self>,
                 stop: &AtomicBool,
             ) -> Result<Ending, TrajectoryError> {
-                run::<$float>(request, copies, rows, stop)
+                run::<$float>(request, method, copies, rows, stop)
             }
 
             fn loops(
@@ -72,6 +75,7 @@ macro_rules! scalar_only {
 
             fn many(
                 request: &Request,
+                _: Method,
                 copies: &Copies,
                 _: &mut dyn Rows<Self>,
                 _: &AtomicBool,
@@ -108,11 +112,12 @@ fn no_vectors(request: &Request) -> TrajectoryError {
 
 fn run<S: BatchFloat + Number>(
     request: &Request,
+    method: Method,
     copies: &Copies,
     rows: &mut dyn Rows<S>,
     stop: &AtomicBool,
 ) -> Result<Ending, TrajectoryError> {
-    let Request { system, method, dt, steps, every, .. } = *request;
+    let Request { system, dt, steps, every, .. } = *request;
     let (dimension, count) = (request.q.len(), copies.count);
     let coordinate = |i: usize| match i.checked_sub(dimension) {
         None => request.q.get(i),

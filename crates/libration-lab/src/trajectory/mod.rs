@@ -196,7 +196,7 @@ fn head(request: &Request) -> Vec<(&'static str, Value)> {
         ("schema", SCHEMA.into()),
         ("system", request.system.name().into()),
         ("parameters", parameters.into()),
-        ("integrator", request.method.name().into()),
+        ("integrator", request.stepping.name().into()),
         ("float", request.float.name().into()),
         ("dt", request.dt.into()),
         ("steps", request.steps.into()),

@@ -2,10 +2,10 @@
 
 use libration::catalog::Allowed;
 use libration::ensemble::MOST_THREADS;
-use libration::{AnySystem, Float, Method};
+use libration::{AnySystem, Float};
 
 use super::{Copies, FloatType, TrajectoryError, loops, units};
-use crate::analyze::Timing;
+use crate::analyze::{Stepping, Timing};
 
 /// Largest number of values in a table: 8 GB of them, 2·10⁸ rows in one dimension.
 const MOST_VALUES: u64 = 1_000_000_000;
@@ -15,8 +15,8 @@ const MOST_VALUES: u64 = 1_000_000_000;
 pub struct Request {
     /// The system.
     pub system: AnySystem,
-    /// The integrator.
-    pub method: Method,
+    /// How steps are taken.
+    pub stepping: Stepping,
     /// The float type in which everything but the time is computed.
     pub float: FloatType,
     /// The time step in seconds.
@@ -70,6 +70,7 @@ impl Request {
     pub(super) fn check<S: Float>(&self) -> Result<(), TrajectoryError> {
         self.check_start::<S>()?;
         self.check_time_step::<S>()?;
+        self.check_stepping()?;
         self.check_parameters::<S>()?;
         for (name, count) in [("steps", self.steps), ("every", self.every)] {
             if count == 0 {
@@ -152,6 +153,15 @@ impl Request {
         if !Allowed::Positive.admits(rounded) {
             let allowed = format!("{} in {}, where it is {rounded}", Allowed::Positive, S::NAME);
             return Err(wrong("dt", dt, allowed));
+        }
+        Ok(())
+    }
+
+    fn check_stepping(&self) -> Result<(), TrajectoryError> {
+        let exact = self.stepping == Stepping::Exact;
+        if exact && !self.system.is_linear() {
+            let value = format!("{} for {}", self.stepping.name(), self.system.name());
+            return Err(wrong("integrator", value, "that for a linear system"));
         }
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use libration::integrator::Exact;
 use libration::simulation::{Sample, SimulationError, Simulator};
 use libration::{
     Float, Hamiltonian, Integrator, Model, Scalar, State, System, with_method, with_system,
@@ -9,6 +10,7 @@ use libration::{
 
 use super::many::Many;
 use super::{Ending, Request, Stopped, TrajectoryError};
+use crate::analyze::Stepping;
 use crate::export::{Number, Rows};
 
 /// Steps between two looks at whether to stop.
@@ -23,8 +25,12 @@ pub(super) fn run<S: Many>(
     if request.timing.first().is_some() {
         return S::loops(request, rows, stop);
     }
-    if let Some(copies) = &request.copies {
-        return S::many(request, copies, rows, stop);
+    match (request.copies, request.stepping) {
+        (None, _) => {}
+        (Some(copies), Stepping::Method(method)) => {
+            return S::many(request, method, &copies, rows, stop);
+        }
+        (Some(_), Stepping::Exact) => return S::loops(request, rows, stop),
     }
     let dimension = request.q.len();
     with_system!(
@@ -47,14 +53,31 @@ fn on_model<S: Many, const D: usize, M: Model<D>>(
     let dt = S::from_f64(request.dt);
     let energy = |state: &State<S, D>| system.energy(state);
     // A loop of its own for each method, where it is worth its compilation.
-    let mut simulation: Box<dyn Simulation<S, D> + '_> = if const { S::WIDE && D <= 2 } {
-        with_method!(request.method, |integrator| {
-            Box::new(Simulator::new(system, integrator, start, dt)?)
-        })
-    } else {
-        Box::new(Simulator::new(system, request.method, start, dt)?)
+    let mut simulation: Box<dyn Simulation<S, D> + '_> = match request.stepping {
+        Stepping::Method(method) if const { S::WIDE && D <= 2 } => {
+            with_method!(method, |integrator| {
+                Box::new(Simulator::new(system, integrator, start, dt)?)
+            })
+        }
+        Stepping::Method(method) => Box::new(Simulator::new(system, method, start, dt)?),
+        Stepping::Exact => Box::new(Simulator::new(system, exact(model, request)?, start, dt)?),
     };
     advance(&mut *simulation, &energy, request, rows, stop)
+}
+
+/// Exact steps of a request.
+pub(super) fn exact<const D: usize>(
+    model: &impl Model<D>,
+    request: &Request,
+) -> Result<Exact, TrajectoryError> {
+    Exact::new(*model, request.dt).ok_or_else(|| TrajectoryError::Value {
+        name: "dt",
+        value: format!("{:?}", request.dt),
+        allowed: format!(
+            "so short that an exact step turns by at most {} radians",
+            Exact::MOST_ANGLE
+        ),
+    })
 }
 
 fn number<S: Scalar>(x: &f64) -> S {

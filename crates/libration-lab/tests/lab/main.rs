@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod analyze;
+mod clocks;
 mod config;
 mod config_fuzz;
 mod default_run;

@@ -56,7 +56,7 @@ fn a_million_steps_stay_within_the_rounding_bound() {
         let steps = STEPS;
         let request = Request {
             system,
-            method,
+            stepping: method.into(),
             float,
             dt,
             steps,

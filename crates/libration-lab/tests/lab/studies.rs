@@ -132,9 +132,13 @@ fn verdicts_on_the_source_are_these() {
         ("C59a", Conditional),
         ("C59b", Confirmed),
         ("C59c", Conditional),
+        ("C60", Conditional),
         ("C61", Confirmed),
         ("C62", Conditional),
         ("C63", Confirmed),
+        ("C64", Refuted),
+        ("C65", Conditional),
+        ("C65a", Conditional),
         ("C66", Conditional),
         ("C67", Conditional),
         ("C67a", Conditional),
@@ -150,6 +154,7 @@ fn verdicts_on_the_source_are_these() {
         ("C78", Refuted),
         ("C79", Refuted),
         ("C80", Conditional),
+        ("C93", Conditional),
     ];
     let mut judged: Vec<_> = records()
         .iter()

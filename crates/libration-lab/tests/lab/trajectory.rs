@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use libration::{AnySystem, Method, catalog};
+use libration_lab::analyze::Stepping;
 use libration_lab::export::Values;
 use libration_lab::trajectory::{
     Copies, Ending, FloatType, Format, Request, Trajectory, TrajectoryError, simulate, write,
@@ -14,7 +15,7 @@ fn request(system: &str, method: Method, dt: f64, steps: u64) -> Request {
     let (q, v) = (vec![1.0], vec![0.0]);
     Request {
         system,
-        method,
+        stepping: method.into(),
         float,
         dt,
         steps,
@@ -72,6 +73,27 @@ fn time_is_the_step_times_dt_to_the_bit() {
             assert_eq!(t, step as f64 * dt);
         }
     }
+}
+
+#[test]
+fn exact_steps_go_where_the_solution_is_alone_and_in_numbers() {
+    let stepping = Stepping::Exact;
+    let one = Request { stepping, ..request("oscillator", Method::Rk4, 0.3, 1000) };
+    let copies = Some(Copies { count: 3, spread: 0.0, threads: 1, instructions: None });
+    for request in [one.clone(), Request { copies, ..one.clone() }] {
+        let trajectory = simulate(&request).unwrap();
+        let omega = request.system.parameters()[0].1.sqrt();
+        for (q, t) in f64s(&trajectory, "q0").into_iter().zip(f64s(&trajectory, "t")) {
+            // A few units of rounding a step, all to one side at worst, and those of the angle.
+            let bound = (8.0 * t / 0.3 + 2.0 * omega * t + 1.0) * f64::EPSILON;
+            assert!((q - (omega * t).cos()).abs() <= bound, "{t}: {q}");
+        }
+    }
+    let pendulum = Request { stepping, ..request("pendulum", Method::Rk4, 0.3, 10) };
+    let refused = simulate(&pendulum).unwrap_err().to_string();
+    assert!(refused.contains("exact for pendulum") && refused.contains("linear"), "{refused}");
+    let refused = simulate(&Request { dt: 1e6, ..one }).unwrap_err().to_string();
+    assert!(refused.contains("dt") && refused.contains("32768"), "{refused}");
 }
 
 #[test]

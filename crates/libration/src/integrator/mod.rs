@@ -7,6 +7,7 @@
 mod chosen;
 mod composition;
 mod euler;
+mod exact;
 mod leapfrog;
 mod runge_kutta;
 mod splitting;
@@ -17,6 +18,7 @@ use crate::{Scalar, State, System};
 
 pub use composition::{Composition, SUZUKI4, Suzuki4, YOSHIDA4, Yoshida4};
 pub use euler::{ExplicitEuler, SymplecticEuler, SymplecticEulerDriftFirst};
+pub use exact::Exact;
 pub use leapfrog::Leapfrog;
 pub use runge_kutta::Rk4;
 pub use splitting::Splitting;

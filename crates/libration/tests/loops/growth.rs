@@ -4,9 +4,9 @@ use libration::analysis::{Feedback, Latency, Plant};
 use libration::control::controller::StateFeedback;
 use libration::control::delay::Schedule;
 use libration::ensemble::{All, Execution, Loops, Setup};
-use libration::integrator::{Rk4, VelocityVerlet};
+use libration::integrator::{Exact, Rk4, VelocityVerlet};
 use libration::system::Oscillator;
-use libration::{Method, State, with_method};
+use libration::{Integrator, Method, State, with_method};
 use proptest::prelude::*;
 
 use super::one::One;
@@ -14,10 +14,16 @@ use super::one::One;
 const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
 
 /// By how much `ln |y|` of a simulated loop changes a step, from two long windows; ±1 if it leaves the floats.
-fn growth(omega2: f64, dt: f64, feedback: Feedback, latency: Latency) -> f64 {
+fn growth(
+    method: impl Integrator,
+    omega2: f64,
+    dt: f64,
+    feedback: Feedback,
+    latency: Latency,
+) -> f64 {
     const STEPS: u32 = 20_000;
     let state = State { q: [1.0], v: [0.3] };
-    let setup = Setup::new(All(Oscillator { omega2 }), VelocityVerlet)
+    let setup = Setup::new(All(Oscillator { omega2 }), method)
         .controller(StateFeedback::to_origin(feedback))
         .delay(Schedule::late(latency));
     let mut all = Loops::new(setup, dt, 0, [0.0], &[state], Execution::serial()).unwrap();
@@ -111,20 +117,34 @@ proptest! {
     }
 }
 
+#[track_caller]
+fn grows_as_its_plant(method: impl Integrator, plant: &Plant<'_>, steps: f64) {
+    let feedback = Feedback { position: 0.0, velocity: 1.0 };
+    let latency = Latency::of_steps(steps).unwrap();
+    let rate = plant.spectral_radius(feedback, latency).to_f64().ln();
+    let found = growth(method, 10.0, 0.01, feedback, latency);
+    let out_of_range = found.abs() == 1.0;
+    // The waves of ln |y| are below one: 1e-4 over ten thousand steps.
+    assert!(
+        out_of_range && found == rate.signum() || (found - rate).abs() < 1e-4,
+        "{steps}: {found} {rate}"
+    );
+}
+
 #[test]
 fn a_simulated_loop_grows_at_the_rate_of_its_spectral_radius() {
     // An analytical test of a delay of whole steps, and of one with a part.
-    let feedback = Feedback { position: 0.0, velocity: 1.0 };
+    let plant = Plant::new(VelocityVerlet, Oscillator { omega2: 10.0 }, ORIGIN, 0.01);
     for steps in [0.0, 1.0, 42.0, 100.0, 100.25, 173.5] {
-        let latency = Latency::of_steps(steps).unwrap();
-        let plant = Plant::new(VelocityVerlet, Oscillator { omega2: 10.0 }, ORIGIN, 0.01);
-        let rate = plant.spectral_radius(feedback, latency).to_f64().ln();
-        let found = growth(10.0, 0.01, feedback, latency);
-        let out_of_range = found.abs() == 1.0;
-        // The waves of ln |y| are below one: 1e-4 over ten thousand steps.
-        assert!(
-            out_of_range && found == rate.signum() || (found - rate).abs() < 1e-4,
-            "{steps}: {found} {rate}"
-        );
+        grows_as_its_plant(VelocityVerlet, &plant, steps);
+    }
+}
+
+#[test]
+fn a_loop_in_exact_steps_grows_as_the_sampled_system_does() {
+    let model = Oscillator { omega2: 10.0 };
+    let exact = Exact::new::<1>(model, 0.01).unwrap();
+    for steps in [0.0, 0.5, 42.25] {
+        grows_as_its_plant(exact, &Plant::exact(model, ORIGIN, 0.01), steps);
     }
 }

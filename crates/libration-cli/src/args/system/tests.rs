@@ -50,7 +50,10 @@ fn the_other_flags_are_read() {
     let (probe, setting) =
         probe("oscillator", "--set k=4 --set m=2 --steps 1e6 --float bf16").unwrap();
     assert_eq!(setting.system.parameters(), [("omega2", 2.0)]);
-    assert_eq!((probe.args.step.integrator, probe.args.step.dt), (Method::Rk4, 0.01));
+    assert_eq!(
+        (probe.args.step.integrator, probe.args.step.dt),
+        (Stepping::Method(Method::Rk4), 0.01)
+    );
     assert_eq!((probe.args.steps, probe.args.float), (1_000_000, FloatType::Bf16));
 }
 

@@ -27,23 +27,4 @@ pub(super) fn judge(record: &mut Record) {
         ))
         .only("of sums over trajectories whose order is not fixed")
     });
-    let ruling = Ruling {
-        id: "C71",
-        source: "8.4",
-        text: "Jitter and asynchronous clocks destroy reproducibility.",
-        findings: &[
-            "determinism.kept.threads-shaken",
-            "determinism.kept.count-shaken",
-            "determinism.broken.seed",
-        ],
-    };
-    record.judge(ruling, |f| {
-        Judgement::conditional(format!(
-            "noise that is drawn by address (seed, trajectory, step) is the same on any number of threads and in \
-             an ensemble of any size, to the bit; with another seed {} trajectories of {} differ",
-            times(f[2]),
-            count(super::runs::COUNT as u64)
-        ))
-        .only("if noise has no seed, or depends on the order of drawing")
-    });
 }

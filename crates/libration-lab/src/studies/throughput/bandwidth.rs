@@ -20,7 +20,7 @@ const FAR: u64 = 6;
 /// the memory allow.
 pub(super) fn footprint(desk: &Desk<'_>) -> u64 {
     let last = Machine::detect().caches.last().map_or(32 << 20, |cache| cache.bytes);
-    let most = desk.lab.effort.choose(768 << 20, 2 << 30, 8 << 30);
+    let most = desk.lab.effort.choose(256 << 20, 2 << 30, 8 << 30);
     let free = available_memory().unwrap_or(1 << 30);
     (FAR * last).max(256 << 20).min(most).min(free / 4)
 }
