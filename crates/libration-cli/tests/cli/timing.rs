@@ -106,6 +106,27 @@ fn a_simulated_loop_falls_below_its_critical_latency_and_grows_above() {
 }
 
 #[test]
+fn exact_steps_are_simulated_by_name_and_only_of_linear_systems() {
+    let exact = "--integrator exact --steps 100 --every 100";
+    let free = rows(&format!("--system oscillator --set omega2=10 --dt 0.3 {exact}"));
+    let turned = (10.0_f64.sqrt() * 30.0).cos();
+    assert!((free[1][2] - turned).abs() < 1e-13, "{} {turned}", free[1][2]);
+    // At 15.3248 steps the loop of the reference becomes unstable.
+    let late = |steps: f64| {
+        rows(&format!(
+            "--system oscillator --set omega2=10 --dt 0.01 --feedback 10,2 --integrator exact \
+             --latency {steps}steps --steps 40000 --every 39990"
+        ))
+    };
+    let size = |row: &[f64]| 10.0 * row[2] * row[2] + row[3] * row[3];
+    assert!(size(&late(15.0)[1]) < 1e-3 && size(&late(15.65)[1]) > 1e5);
+    libration("simulate --system pendulum --dt 0.1 --integrator exact --steps 10")
+        .assert()
+        .code(2)
+        .stderr(contains("integrator").and(contains("exact for pendulum")).and(contains("linear")));
+}
+
+#[test]
 fn simulated_noise_follows_from_its_seed_and_time_is_that_of_a_perfect_clock() {
     let words = "--system pendulum --integrator leapfrog --dt 0.01 --steps 1000 --every 500 \
                  --jitter gaussian:0.1 --skew uniform:0.01 --float f32";

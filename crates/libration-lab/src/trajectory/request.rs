@@ -161,7 +161,8 @@ impl Request {
         let exact = self.stepping == Stepping::Exact;
         if exact && !self.system.is_linear() {
             let value = format!("{} for {}", self.stepping.name(), self.system.name());
-            return Err(wrong("integrator", value, "that for a linear system"));
+            let allowed = "another integrator: exact steps are known of linear systems only";
+            return Err(wrong("integrator", value, allowed));
         }
         Ok(())
     }

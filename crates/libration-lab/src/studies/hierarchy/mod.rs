@@ -4,6 +4,7 @@ mod claims;
 mod figures;
 mod imperfection;
 mod predicted;
+mod profile;
 mod render;
 mod trial;
 
@@ -34,17 +35,21 @@ impl Study for Hierarchy {
             "divergence",
             &["sizes", "imperfection", "size", "after (steps)", "predicted", "measured"],
         );
+        let mut whole = profile::table(horizon(lab));
+        let margins = Kind::ALL.map(predicted::critical);
         let steps = checkpoints(horizon(lab));
         for profile in PROFILES {
-            let curves = lab.sweep(profile.title, &Kind::ALL, |&kind| {
-                trial::divergence(lab, kind, profile, &steps)
-            })?;
+            let effects = lab
+                .sweep(profile.title, &Kind::ALL, |&kind| trial::run(lab, kind, profile, &steps))?;
             let mut series = Series::new(format!("profile-{}", profile.tag)).with(
                 "step",
                 "1",
                 steps.iter().map(|&n| n as f64).collect(),
             );
-            for (kind, measured) in Kind::ALL.into_iter().zip(curves) {
+            for ((kind, margin), effect) in Kind::ALL.into_iter().zip(margins).zip(effects) {
+                let found = profile::find(&mut record, kind, profile, &steps, &effect);
+                whole.push(profile::row(kind, profile, found, margin));
+                let measured = effect.distance;
                 let expected: Vec<f64> = steps
                     .iter()
                     .map(|&n| predicted::divergence(kind, profile, n).unwrap_or(f64::NAN))
@@ -69,6 +74,7 @@ impl Study for Hierarchy {
             }
             record.series.push(series);
         }
+        record.tables.push(whole);
         record.tables.push(table);
         claims::judge(&mut record, horizon(lab));
         Ok(record)

@@ -1,7 +1,7 @@
 //! How far trajectories must come apart.
 
 use libration::State;
-use libration::analysis::{Feedback, Jitter, Latency, Plant};
+use libration::analysis::{Feedback, Jitter, JitterMargin, Latency, Plant, StepNoise};
 use libration::integrator::SymplecticEuler;
 use libration::system::Oscillator;
 
@@ -9,6 +9,12 @@ use super::imperfection::{Kind, Profile};
 use super::trial::{COUNT, DT, SPRING};
 
 const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
+
+/// Nobody commands.
+const FREE: Feedback = Feedback { position: 0.0, velocity: 0.0 };
+
+/// The gains of the loop whose margins are told.
+pub(super) const GAINS: Feedback = Feedback { position: 10.0, velocity: 2.0 };
 
 /// The rms distance from the undisturbed orbits in units of their size, after `n` steps; none where rounding decides.
 pub(super) fn divergence(kind: Kind, profile: &Profile, n: u64) -> Option<f64> {
@@ -20,6 +26,98 @@ pub(super) fn divergence(kind: Kind, profile: &Profile, n: u64) -> Option<f64> {
         Kind::Asynchrony => Some(apart((n * turned(profile.asynchrony)?).powi(2))),
         Kind::Precision => None,
     }
+}
+
+/// The rms of `ln E/E₀` after `n` steps; none where rounding decides.
+pub(super) fn energy(kind: Kind, profile: &Profile, n: u64) -> Option<f64> {
+    let n = n as f64;
+    match kind {
+        Kind::Latency => Some(2.0 * n * growth(profile.latency)?),
+        Kind::Jitter => {
+            let plant = Plant::new(SymplecticEuler, SPRING, ORIGIN, DT);
+            let noise = StepNoise::white(profile.jitter);
+            let rate = n * plant.resonance(FREE)?.weak_growth(noise);
+            Some((2.0 * rate).hypot(2.0 * rate.sqrt()))
+        }
+        Kind::Asynchrony => Some(0.0),
+        Kind::Precision => None,
+    }
+}
+
+/// How far that may be off, and why.
+pub(super) fn energy_tolerance(kind: Kind, profile: &Profile, energy: f64) -> (f64, &'static str) {
+    let z = SPRING.omega2.sqrt() * DT;
+    match kind {
+        Kind::Latency => (
+            2.0 * z * (1.0 + profile.latency) * (1.0 + energy),
+            "the angle of the latency, by which an orbit that begins without a past is off",
+        ),
+        Kind::Asynchrony => (
+            4.0 * z * profile.asynchrony,
+            "the ellipse that a clock keeps differs by the angle of a step times the error of its rate, of which no \
+             one has four deviations",
+        ),
+        _ => (tolerance(kind, profile).0 * energy, tolerance(kind, profile).1),
+    }
+}
+
+/// The number of steps after which trajectories are this far apart, if they are after `most`.
+pub(super) fn horizon(kind: Kind, profile: &Profile, far: f64, most: u64) -> Option<f64> {
+    let (mut near, mut beyond) = (0, most);
+    if divergence(kind, profile, most)? < far {
+        return None;
+    }
+    while beyond - near > 1 {
+        let middle = near + (beyond - near) / 2;
+        match divergence(kind, profile, middle)? < far {
+            true => near = middle,
+            false => beyond = middle,
+        }
+    }
+    Some(beyond as f64)
+}
+
+/// The size at which a loop that a PD controller closes is no longer stable; none where no size is known.
+///
+/// Of the latency in steps, of jitter as the relative rms of Gaussian steps (in the mean square), of asynchrony as the
+/// part by which a clock may be slow.
+pub(super) fn critical(kind: Kind) -> Option<f64> {
+    let plant = |dt: f64| Plant::new(SymplecticEuler, SPRING, ORIGIN, dt);
+    match kind {
+        Kind::Latency => {
+            // That of latencies which whole steps make up; between them steps are split.
+            let whole = plant(DT).latency_windows(GAINS).critical()?.floor();
+            let stable = |late: f64| {
+                let late = Latency::of_steps(late);
+                late.is_some_and(|late| plant(DT).spectral_radius(GAINS, late).to_f64() <= 1.0)
+            };
+            Some(largest(whole, whole + 1.0, stable))
+        }
+        Kind::Jitter => match plant(DT).jitter_margin(GAINS, Jitter::Gaussian) {
+            JitterMargin::Rms(rms) => Some(rms),
+            JitterMargin::Beyond(_) | JitterMargin::Unstable => None,
+        },
+        Kind::Asynchrony => {
+            let none = Latency::of_steps(0.0)?;
+            let stable =
+                |part: f64| plant(DT * (1.0 + part)).spectral_radius(GAINS, none).to_f64() <= 1.0;
+            let (mut low, mut high) = (0.0, 1.0);
+            while stable(high) {
+                (low, high) = (high, 2.0 * high);
+            }
+            Some(largest(low, high, stable))
+        }
+        Kind::Precision => None,
+    }
+}
+
+/// The end of what holds from `low` on and not at `high`, by bisection.
+fn largest(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        if holds(middle) { low = middle } else { high = middle }
+    }
+    low
 }
 
 /// How far the two may lie apart, as a part of the prediction, and why.

@@ -1,12 +1,12 @@
 //! Disturbed trajectories beside undisturbed ones.
 
-use libration::analysis::{Jitter, Latency};
+use libration::analysis::{Jitter, Latency, Linearisation, QuadraticForm};
 use libration::control::clock::{Fixed, Gaussian, Jittered, Skewed};
 use libration::control::controller::Force;
 use libration::control::{Clock, Schedule};
 use libration::ensemble::{All, Loops, Setup};
 use libration::integrator::SymplecticEuler;
-use libration::number::Mantissa;
+use libration::number::{Mantissa, Wide};
 use libration::system::Oscillator;
 use libration::{Float, Integrator, State};
 
@@ -26,13 +26,21 @@ pub(super) const COUNT: usize = 128;
 /// Of all that is random.
 const SEED: u64 = 20;
 
-/// The root of the mean square distance from undisturbed orbits, in units of their size, after so many steps.
-pub(super) fn divergence(
+/// What an imperfection does to trajectories, after each of some numbers of steps.
+pub(super) struct Effect {
+    /// The root of the mean square distance from undisturbed orbits, in units of their size.
+    pub(super) distance: Vec<f64>,
+    /// The root of the mean square of `ln E/E₀`, of the energy that undisturbed steps conserve.
+    pub(super) energy: Vec<f64>,
+}
+
+/// Runs disturbed trajectories beside undisturbed ones.
+pub(super) fn run(
     lab: &Lab<'_>,
     kind: Kind,
     profile: &Profile,
     steps: &[u64],
-) -> Result<Vec<f64>, StudyError> {
+) -> Result<Effect, StudyError> {
     let plain = clocked(lab, Fixed, steps)?;
     let disturbed = match kind {
         Kind::Latency => late(lab, profile.latency, steps)?,
@@ -52,7 +60,14 @@ pub(super) fn divergence(
         let size: f64 = pairs().map(|(_, b)| square(b.q[0], b.v[0])).sum();
         (off / size).sqrt()
     };
-    Ok(disturbed.iter().zip(&plain).map(apart).collect())
+    let step = Linearisation::new(SymplecticEuler, SPRING, &State::origin(), DT).step;
+    let form = QuadraticForm::carried_by(&step).map(Wide::to_f64);
+    let pumped = |(a, b): (&Vec<State<f64, 1>>, &Vec<State<f64, 1>>)| {
+        let squares = a.iter().zip(b).map(|(a, b)| (form.at(a) / form.at(b)).ln().powi(2));
+        (squares.sum::<f64>() / a.len() as f64).sqrt()
+    };
+    let pairs = || disturbed.iter().zip(&plain);
+    Ok(Effect { distance: pairs().map(apart).collect(), energy: pairs().map(pumped).collect() })
 }
 
 /// The states of all trajectories at each of these steps.
