@@ -96,7 +96,7 @@ fn drifts(config: &Config, record: &mut Record) {
         verdict(
             f,
             format!(
-                "the ratios are {}. No run diverges: the largest drift of all is {}. The source’s own \
+                "the ratios are {}. None of these runs diverges: their largest drift is {}. The source’s own \
                  number, δE ≈ 0.005, is what symplectic Euler swings by at z = 0.01: of its \
                  methods the one that shows least of its rounding",
                 told(f),
@@ -108,8 +108,8 @@ fn drifts(config: &Config, record: &mut Record) {
     rule(record, ("C67a", "7.7", text), &settings, |f| {
         let largest = f.iter().map(|f| f.measured).fold(0.0, f64::max);
         let because = format!(
-            "after the whole run no method has drifted by more than {} in f32, most of it by its own \
-             error; but {} of {} drifts are rounding for the most part, so nothing is gained there by \
+            "after the whole run none of symplectic Euler, velocity Verlet and RK4 has drifted by more than {} in \
+             f32, most of it by its own error; but {} of {} drifts are rounding for the most part, so nothing is gained there by \
              a better method or a smaller step",
             number(largest, 2),
             f.iter().filter(|f| ratio(f) > 2.0).count(),
