@@ -112,19 +112,39 @@ fn a_loop_becomes_stable_again_at_a_larger_latency() {
 }
 
 #[test]
-fn a_part_of_a_step_splits_it_where_the_command_arrives() {
-    // The critical latency of the exact sampled loop, between whole steps.
-    let feedback = Feedback { position: 10.0, velocity: 2.0 };
-    let plant = plant("exact_zoh", 0.01);
-    let excess = |steps: f64| {
-        plant.spectral_radius(feedback, Latency::of_steps(steps).unwrap()).to_f64() - 1.0
-    };
-    let (mut low, mut high) = (15.0, 16.0);
-    while high - low > 1e-11 {
-        let middle = 0.5 * (low + high);
-        if excess(middle) < 0.0 { low = middle } else { high = middle }
+fn where_commands_split_steps_the_edge_is_that_of_the_radius_and_of_the_sampled_system() {
+    let gains = Feedback { position: 10.0, velocity: 2.0 };
+    let model = Oscillator { omega2: 10.0 };
+    let origin = State { q: [0.0], v: [0.0] };
+    // By the exponential of a matrix for each part of the step, elsewhere.
+    let exact = Plant::exact(model, origin, 0.01);
+    close(exact.split_critical_latency(gains).unwrap(), 15.3234267109, &"exact");
+    let euler = Plant::new(SymplecticEuler, model, origin, 0.01);
+    let edge = euler.split_critical_latency(gains).unwrap();
+    // The textbook's λᵈ has it a tenth of a step later.
+    assert!((edge - 15.44014).abs() < 1e-5, "{edge}");
+    let radius = |d: f64| euler.spectral_radius(gains, Latency::of_steps(d).unwrap()).to_f64();
+    assert!(radius(edge - 1e-9) < 1.0 && radius(edge + 1e-9) > 1.0);
+}
+
+#[test]
+fn no_delay_unsettles_a_loop_whose_feedback_is_as_strong_as_its_spring_and_well_damped() {
+    let gains = Feedback { position: 10.0, velocity: 2.0 };
+    for gamma in [5.0, 100.0, 1000.0] {
+        let model = DampedOscillator { omega2: 10.0, gamma };
+        let plant = Plant::exact(model, State { q: [0.0], v: [0.0] }, 0.1);
+        assert_eq!(plant.latency_windows(gains).stable, [(0.0, None)], "γ = {gamma}");
     }
-    assert!((low - 15.323_426_710_9).abs() < 1e-9, "{low}");
+}
+
+#[test]
+fn without_gains_no_latency_changes_anything() {
+    let none = Feedback { position: 0.0, velocity: 0.0 };
+    let plant = Plant::exact(Oscillator { omega2: 10.0 }, State { q: [0.0], v: [0.0] }, 0.01);
+    for steps in [0.0, 1.5, 20.0, 1000.25] {
+        let radius = plant.spectral_radius(none, Latency::of_steps(steps).unwrap()).to_f64();
+        assert!((radius - 1.0).abs() < 1e-15, "{steps}: {radius}");
+    }
 }
 
 #[test]

@@ -10,7 +10,8 @@ pub(crate) struct TimingArgs {
     /// Close the loop: the command is −KP·q − KD·v
     #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
     pub(crate) feedback: Option<Feedback>,
-    /// How late the command arrives, as 0.015 (in s) or 1.5steps
+    /// How late the command arrives, as 0.015 (in s, of a clock that is right) or 1.5steps; up to 4096 steps, which
+    /// are as long as the loop's own
     #[arg(
         long,
         value_name = "TIME",
@@ -19,8 +20,8 @@ pub(crate) struct TimingArgs {
         allow_hyphen_values = true
     )]
     pub(crate) latency: Option<Late>,
-    /// The law of step times, each drawn by itself, with its relative rms: gaussian:0.1 or uniform:0.1; what it
-    /// does is said of the loop without latency
+    /// The law of step times, each drawn by itself, with its relative rms: gaussian:0.1 or uniform:0.1; where a
+    /// step would be negative, a simulation takes one of length zero (`analyze`: of the loop without latency)
     #[arg(long, value_name = "LAW:RMS", value_parser = law, allow_hyphen_values = true)]
     pub(crate) jitter: Option<Jitter>,
     /// The law of clock rates over an ensemble, with its relative rms: gaussian:0.01 or uniform:0.01
@@ -42,7 +43,7 @@ fn finite(text: &str) -> Option<f64> {
 
 fn feedback(text: &str) -> Result<Feedback, String> {
     let gains = text.split_once(',').and_then(|(kp, kd)| Some((finite(kp)?, finite(kd)?)));
-    let (position, velocity) = gains.ok_or("it must be two numbers, as 10,2")?;
+    let (position, velocity) = gains.ok_or("it must be two finite numbers, as 10,2")?;
     Ok(Feedback { position, velocity })
 }
 
@@ -52,11 +53,13 @@ fn latency(text: &str) -> Result<Late, String> {
         None => (text, Late::Seconds),
     };
     let number = finite(number).filter(|&x| x >= 0.0);
-    number.map(make).ok_or_else(|| "it must be at least 0, as 0.015 (in s) or 1.5steps".to_owned())
+    number.map(make).ok_or_else(|| {
+        "it must be a finite number of at least 0, as 0.015 (in s) or 1.5steps".to_owned()
+    })
 }
 
 fn law(text: &str) -> Result<Jitter, String> {
-    let rule = "it must be a law and its rms of at least 0, as gaussian:0.1 or uniform:0.1";
+    let rule = "it must be one of the laws gaussian and uniform, and a finite rms of at least 0, as gaussian:0.1";
     let (name, rms) = text.split_once(':').ok_or(rule)?;
     let rms = finite(rms).filter(|&x| x >= 0.0).ok_or(rule)?;
     match name {

@@ -162,6 +162,7 @@ fn describe_timing(timing: &TimingAnswer, text: &mut String) {
     if let Some(critical) = &timing.critical {
         line("critical latency", number(critical.critical_latency_steps, "steps"));
         line("", number(critical.critical_latency_seconds, "s"));
+        line("of split steps", number(critical.critical_latency_split_steps, "steps"));
         let end = |x: Option<f64>| x.map_or("∞".into(), |x| format!("{x:?}"));
         let shown: Vec<String> = critical
             .latency_windows
@@ -172,18 +173,30 @@ fn describe_timing(timing: &TimingAnswer, text: &mut String) {
         line("stable, steps late", shown);
         line("continuous margin", number(critical.delay_margin_seconds, "s"));
     }
+    let late = timing.latency_steps.is_some_and(|steps| steps > 0.0);
+    let of = if late { ", without latency" } else { "" };
     if let (Some(radius), Some(growth)) = (timing.mean_square_radius, timing.mean_square_growth) {
-        let late = timing.latency_steps.is_some_and(|steps| steps > 0.0);
-        let of = if late { ", without latency" } else { "" };
-        line("second moments grow by", format!("{radius:?} a step  (1 {growth:+e}){of}"));
+        let grown = radius.zip(growth);
+        let shown = grown.map(|(radius, growth)| format!("{radius:?} a step  (1 {growth:+e}){of}"));
+        line("second moments grow by", shown.unwrap_or_else(|| TOO_FAR.into()));
+        if timing.jitter_clips == Some(true) {
+            line("", CLIPPED.into());
+        }
     }
     if let Some(exponent) = timing.lyapunov_exponent {
-        line("a typical run grows", number(exponent, "a step"));
+        line("a typical run grows", number(exponent, "a step") + of);
     }
     if let Some(steps) = timing.dephasing_steps {
         line("mean falls to 1/e in", number(steps, "steps"));
     }
 }
+
+/// Why there are no second moments.
+const TOO_FAR: &str = "not known: an exact step turns too far for its series";
+
+/// What simulations do that theory does not.
+const CLIPPED: &str =
+    "some steps would be negative: a simulation takes none there, this theory does";
 
 /// What stands for a number that is not derived.
 const UNKNOWN: &str = "not known: the polynomials of this step outgrow exact arithmetic";

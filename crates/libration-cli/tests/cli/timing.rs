@@ -30,6 +30,8 @@ fn latency_moves_the_radius_and_has_its_critical_values() {
     close(&late["spectral_radius"], 0.992_337_179_288_081);
     close(&late["critical_latency_steps"], 15.324_841_096_092_2);
     close(&late["critical_latency_seconds"], 0.153_248_410_960_922);
+    let split = late["critical_latency_split_steps"].as_f64().unwrap();
+    assert!((split - 15.323_426_710_9).abs() < 1e-9, "{split}");
     close(&late["delay_margin_seconds"], 0.158_235_684_716_435);
     close(&late["latency_windows"][0][1], 15.324_841_096_092_2);
     let verlet = json(&format!("{LOOP} --integrator velocity-verlet --latency 0.05"));
@@ -44,6 +46,7 @@ fn latency_moves_the_radius_and_has_its_critical_values() {
                      --integrator explicit-euler",
     );
     assert!(none["critical_latency_steps"].is_null());
+    assert!(none["critical_latency_split_steps"].is_null());
     assert_eq!(none["latency_windows"], Value::Array(Vec::new()));
 }
 
@@ -56,6 +59,15 @@ fn jitter_and_skew_are_told_with_and_without_feedback() {
     assert!((noisy["lyapunov_exponent"].as_f64().unwrap() / 1.284_107_9e-5 - 1.0).abs() < 2e-7);
     assert!(noisy["dephasing_steps"].as_f64().unwrap() > 100.0);
     assert!(noisy.get("critical_latency_steps").is_none());
+    assert_eq!(
+        (&noisy["jitter_latency_steps"], &noisy["jitter_clips"]),
+        (&0.0.into(), &false.into())
+    );
+    // Where its steps turn too far for a series, exact steps have no moments; no number is better than a wrong one.
+    let far = "analyze --system oscillator --set omega2=10 --integrator exact --dt 30 --jitter gaussian:0.2";
+    let far = json(far);
+    assert!(far["mean_square_radius"].is_null() && far["lyapunov_exponent"].is_null());
+    assert_eq!(far["jitter_clips"], true);
     let text =
         libration(&format!("{LOOP} --integrator rk4 --latency 1.5steps --jitter uniform:0.1"));
     let told = contains("critical latency").and(contains("second moments grow by"));

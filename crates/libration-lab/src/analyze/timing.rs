@@ -1,11 +1,18 @@
 //! What timing does to the loop that a request describes.
 
 use libration::analysis::{Feedback, Jitter, Latency, Plant};
+use libration::integrator::Exact;
 use libration::number::Wide;
 use libration::{AnySystem, Model, Scalar, State};
 use serde::Serialize;
 
 use super::{AnalyzeError, Request, Stepping};
+
+/// Radians of an exact step up to which powers of its length stand for it to all digits.
+const TURNED: f64 = 3.0;
+
+/// The same of twice the angle that jitter adds, as an rms: in ten deviations of which a mean is summed.
+const BLURRED: f64 = 2.0;
 
 /// What is asked of timing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,6 +48,11 @@ impl Timing {
         given.into_iter().find_map(|(given, name)| given.then_some(name))
     }
 
+    /// How many times as long as the time step the longest step of a simulation may be.
+    pub(crate) fn longest(&self) -> f64 {
+        [self.jitter, self.skew].into_iter().flatten().map(|law| 1.0 + law.largest()).product()
+    }
+
     /// The latency in steps of `dt` seconds.
     ///
     /// # Errors
@@ -74,13 +86,22 @@ pub struct TimingAnswer {
     /// What the feedback makes of the loop, whatever the latency.
     #[serde(flatten)]
     pub critical: Option<Critical>,
-    /// `ρ(E[M ⊗ M])`: the factor by which second moments grow in a step, of the loop without latency.
+    /// The latency of the loop of which the next three keys speak, in steps: none.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub mean_square_radius: Option<f64>,
+    pub jitter_latency_steps: Option<f64>,
+    /// Whether some steps would be negative: a simulation takes steps of length zero there, which the next three keys do
+    /// not know.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub jitter_clips: Option<bool>,
+    /// `ρ(E[M ⊗ M])`: the factor by which second moments grow in a step, of the loop without latency; none where exact
+    /// steps turn too far for their series.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mean_square_radius: Option<Option<f64>>,
     /// The same minus one, without cancellation.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub mean_square_growth: Option<f64>,
-    /// The top Lyapunov exponent in a step, of the loop without latency; none where the mean step does not turn.
+    pub mean_square_growth: Option<Option<f64>>,
+    /// The top Lyapunov exponent in a step, of the loop without latency; none where the mean step does not turn, and
+    /// where exact steps turn too far.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lyapunov_exponent: Option<Option<f64>>,
     /// Steps after which the mean of an ensemble of clocks has fallen to 1/e; none where nothing turns.
@@ -94,8 +115,11 @@ pub struct TimingAnswer {
 /// At which latencies a loop is stable.
 #[derive(Debug, Serialize)]
 pub struct Critical {
-    /// The end of the stable latencies that begin with none, in steps; none if there is none.
+    /// The end of the stable latencies that begin with none, in steps; none if there is none. Between whole steps it
+    /// follows the textbook's `λᵈ`.
     pub critical_latency_steps: Option<f64>,
+    /// The same where a command that arrives within a step splits it, as in a simulation; none beyond 256 steps.
+    pub critical_latency_split_steps: Option<f64>,
     /// The same in s.
     pub critical_latency_seconds: Option<f64>,
     /// The intervals of latency, in steps, within which the loop is stable; an end that does not exist is
@@ -134,12 +158,21 @@ fn of_model(model: impl Model<1>, latency: Latency, request: &Request) -> Timing
         Stepping::Exact => Plant::exact(model, at, request.dt),
     };
     let feedback = timing.feedback.unwrap_or_default();
-    let mean_square = timing.jitter.map(|law| plant.mean_square(feedback, law).radius);
+    let known = |law: &Jitter| match request.stepping {
+        Stepping::Method(_) => true,
+        Stepping::Exact => {
+            let angle = Exact::angle(model, request.dt).unwrap_or(f64::INFINITY);
+            angle <= TURNED && 2.0 * angle * law.rms() <= BLURRED
+        }
+    };
+    let mean_square =
+        timing.jitter.map(|law| known(&law).then(|| plant.mean_square(feedback, law).radius));
     let critical = || {
         let windows = plant.latency_windows(feedback);
         let steps = windows.critical();
         Critical {
             critical_latency_steps: steps,
+            critical_latency_split_steps: plant.split_critical_latency(feedback),
             critical_latency_seconds: steps.map(|steps| steps * request.dt),
             latency_windows: windows.stable,
             delay_margin_seconds: plant.delay_margin(feedback).map(Wide::to_f64),
@@ -149,9 +182,13 @@ fn of_model(model: impl Model<1>, latency: Latency, request: &Request) -> Timing
         feedback: timing.feedback.map(|f| [f.position, f.velocity]),
         latency_steps: timing.feedback.map(|_| latency.steps()),
         critical: timing.feedback.map(|_| critical()),
-        mean_square_radius: mean_square.map(Wide::to_f64),
-        mean_square_growth: mean_square.map(|radius| (radius - Wide::one()).to_f64()),
-        lyapunov_exponent: timing.jitter.map(|law| plant.lyapunov_exponent(feedback, law)),
+        jitter_latency_steps: timing.jitter.map(|_| 0.0),
+        jitter_clips: timing.jitter.map(|law| law.largest() > 1.0),
+        mean_square_radius: mean_square.map(|radius| radius.map(Wide::to_f64)),
+        mean_square_growth: mean_square.map(|radius| radius.map(|r| (r - Wide::one()).to_f64())),
+        lyapunov_exponent: timing
+            .jitter
+            .map(|law| known(&law).then(|| plant.lyapunov_exponent(feedback, law)).flatten()),
         dephasing_steps: timing.skew.map(|law| plant.dephasing_steps(law).map(Wide::to_f64)),
         radius: timing.feedback.map(|_| plant.spectral_radius(feedback, latency)),
     }

@@ -2,8 +2,9 @@
 
 use libration::catalog::Allowed;
 use libration::ensemble::MOST_THREADS;
-use libration::{AnySystem, Float};
+use libration::{AnySystem, Float, with_system};
 
+use super::run::exact;
 use super::{Copies, FloatType, TrajectoryError, loops, units};
 use crate::analyze::{Stepping, Timing};
 
@@ -158,13 +159,20 @@ impl Request {
     }
 
     fn check_stepping(&self) -> Result<(), TrajectoryError> {
-        let exact = self.stepping == Stepping::Exact;
-        if exact && !self.system.is_linear() {
+        if self.stepping != Stepping::Exact {
+            return Ok(());
+        }
+        if !self.system.is_linear() {
             let value = format!("{} for {}", self.stepping.name(), self.system.name());
             let allowed = "another integrator: exact steps are known of linear systems only";
             return Err(wrong("integrator", value, allowed));
         }
-        Ok(())
+        with_system!(
+            self.system,
+            self.q.len(),
+            |model, D| exact::<D>(&model, self).map(|_| ()),
+            Ok(())
+        )
     }
 
     fn check_parameters<S: Float>(&self) -> Result<(), TrajectoryError> {

@@ -70,13 +70,14 @@ pub(super) fn exact<const D: usize>(
     model: &impl Model<D>,
     request: &Request,
 ) -> Result<Exact, TrajectoryError> {
-    Exact::new(*model, request.dt).ok_or_else(|| TrajectoryError::Value {
-        name: "dt",
-        value: format!("{:?}", request.dt),
-        allowed: format!(
-            "so short that an exact step turns by at most {} radians",
-            Exact::MOST_ANGLE
-        ),
+    // Made for the longest step of all.
+    let longest = request.timing.longest();
+    Exact::new(*model, longest * request.dt).ok_or_else(|| {
+        let most = Exact::MOST_ANGLE / Exact::angle(*model, longest).unwrap_or(f64::NAN);
+        let (value, turned) = (format!("{:?}", request.dt), Exact::MOST_ANGLE);
+        let allowed =
+            format!("at most {most:?}, where the longest exact step turns by {turned} radians");
+        TrajectoryError::Value { name: "dt", value, allowed }
     })
 }
 

@@ -2,8 +2,9 @@
 
 use std::sync::atomic::AtomicBool;
 
+use libration::analysis::Jitter;
 use libration::{AnySystem, Method, catalog};
-use libration_lab::analyze::Stepping;
+use libration_lab::analyze::{Stepping, Timing};
 use libration_lab::export::Values;
 use libration_lab::trajectory::{
     Copies, Ending, FloatType, Format, Request, Trajectory, TrajectoryError, simulate, write,
@@ -88,6 +89,13 @@ fn exact_steps_go_where_the_solution_is_alone_and_in_numbers() {
             let bound = (8.0 * t / 0.3 + 2.0 * omega * t + 1.0) * f64::EPSILON;
             assert!((q - (omega * t).cos()).abs() <= bound, "{t}: {q}");
         }
+    }
+    // Under jitter too, in steps up to eighteen times as long.
+    let timing = Timing { jitter: Some(Jitter::Gaussian(3.0)), ..Default::default() };
+    let jittered = simulate(&Request { timing, dt: 0.15, seed: 3, ..one.clone() }).unwrap();
+    let omega = one.system.parameters()[0].1.sqrt();
+    for (q, t) in f64s(&jittered, "q0").into_iter().zip(f64s(&jittered, "t")) {
+        assert!((q - (omega * t).cos()).abs() < 1e-11, "{t}: {q}");
     }
     let pendulum = Request { stepping, ..request("pendulum", Method::Rk4, 0.3, 10) };
     let refused = simulate(&pendulum).unwrap_err().to_string();

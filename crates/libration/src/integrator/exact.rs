@@ -44,9 +44,15 @@ impl Exact {
     /// Exact steps of about `dt` seconds; none of a system that is not [linear](Model::LINEAR), nor where a step goes
     /// further than [`Exact::MOST_ANGLE`].
     pub fn new<const D: usize>(model: impl Model<D>, dt: f64) -> Option<Self> {
-        let angle = rate(model)? * dt.abs();
+        let angle = Self::angle(model, dt)?;
         let parts = (angle / PART).ceil().max(1.0);
         (angle <= Self::MOST_ANGLE).then_some(Exact { parts: parts as i32 })
+    }
+
+    /// By how many radians, or powers of e, a step of `dt` seconds turns or shrinks the state, or by some per cent less;
+    /// none of a system that is not [linear](Model::LINEAR).
+    pub fn angle<const D: usize>(model: impl Model<D>, dt: f64) -> Option<f64> {
+        Some(rate(model)? * dt.abs())
     }
 }
 

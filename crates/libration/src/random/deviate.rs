@@ -15,7 +15,10 @@ pub fn odd(word: u32) -> f32 {
 /// What makes [`uniform`] of [`odd`]: a power of two, so that it may as well be a factor of something else.
 pub const UNIT: f32 = 1.0 / (1 << 24) as f32;
 
-/// A number with the standard normal distribution, up to 5.77 in size.
+/// More than any [`normal`] number has in size: `√(48 ln 2)` and its rounding.
+pub const LARGEST: f32 = 5.7683;
+
+/// A number with the standard normal distribution, up to [`LARGEST`] in size.
 ///
 /// G. E. P. Box, M. E. Muller, *A note on the generation of random normal deviates*, The Annals of Mathematical
 /// Statistics 29, 1958; in `f32` arithmetic throughout, and without a branch.

@@ -10,6 +10,6 @@ mod philox;
 mod streams;
 
 pub use address::{Address, Purpose};
-pub use deviate::{UNIT, normal, odd, uniform};
+pub use deviate::{LARGEST, UNIT, normal, odd, uniform};
 pub use philox::philox4x32;
 pub use streams::{EPOCH, Streams};

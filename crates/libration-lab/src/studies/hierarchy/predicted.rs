@@ -84,15 +84,7 @@ pub(super) fn horizon(kind: Kind, profile: &Profile, far: f64, most: u64) -> Opt
 pub(super) fn critical(kind: Kind) -> Option<f64> {
     let plant = |dt: f64| Plant::new(SymplecticEuler, SPRING, ORIGIN, dt);
     match kind {
-        Kind::Latency => {
-            // That of latencies which whole steps make up; between them steps are split.
-            let whole = plant(DT).latency_windows(GAINS).critical()?.floor();
-            let stable = |late: f64| {
-                let late = Latency::of_steps(late);
-                late.is_some_and(|late| plant(DT).spectral_radius(GAINS, late).to_f64() <= 1.0)
-            };
-            Some(largest(whole, whole + 1.0, stable))
-        }
+        Kind::Latency => plant(DT).split_critical_latency(GAINS),
         Kind::Jitter => match plant(DT).jitter_margin(GAINS, Jitter::Gaussian) {
             JitterMargin::Rms(rms) => Some(rms),
             JitterMargin::Beyond(_) | JitterMargin::Unstable => None,
@@ -105,19 +97,14 @@ pub(super) fn critical(kind: Kind) -> Option<f64> {
             while stable(high) {
                 (low, high) = (high, 2.0 * high);
             }
-            Some(largest(low, high, stable))
+            for _ in 0..50 {
+                let middle = 0.5 * (low + high);
+                if stable(middle) { low = middle } else { high = middle }
+            }
+            Some(low)
         }
         Kind::Precision => None,
     }
-}
-
-/// The end of what holds from `low` on and not at `high`, by bisection.
-fn largest(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..50 {
-        let middle = 0.5 * (low + high);
-        if holds(middle) { low = middle } else { high = middle }
-    }
-    low
 }
 
 /// How far the two may lie apart, as a part of the prediction, and why.

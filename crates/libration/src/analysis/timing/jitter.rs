@@ -2,6 +2,7 @@
 
 use crate::Scalar;
 use crate::number::Wide;
+use crate::random::LARGEST;
 
 /// The law of step times `Δt(1 + ε)`, drawn independently for every step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +34,21 @@ impl Jitter {
 }
 
 impl Jitter {
+    /// The standard deviation of `ε`.
+    pub fn rms(self) -> f64 {
+        match self {
+            Jitter::Gaussian(rms) | Jitter::Uniform(rms) => rms,
+        }
+    }
+
+    /// The largest `|ε|` that is drawn in a simulation, whose Gaussian numbers end at [`LARGEST`] deviations.
+    pub fn largest(self) -> f64 {
+        match self {
+            Jitter::Gaussian(rms) => f64::from(LARGEST) * rms,
+            Jitter::Uniform(rms) => 3.0_f64.sqrt() * rms,
+        }
+    }
+
     /// Weights and values of `ε` whose sums are means over the law, but for rounding, of what is smooth.
     pub(super) fn nodes(self) -> Vec<(f64, f64)> {
         match self {

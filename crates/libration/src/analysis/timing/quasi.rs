@@ -28,6 +28,10 @@ const CANDIDATES: usize = 6;
 impl Quasi {
     /// The largest absolute value of a root.
     pub(super) fn radius(&self) -> Wide {
+        // Where nothing is fed back there are as many roots at zero as commands wait, which no iteration separates.
+        if self.m > 0 && self.b.iter().all(|b| b.is_zero()) {
+            return Quasi { m: 0, ..*self }.radius();
+        }
         let mut roots = self.rough_roots();
         roots.sort_by(|x, y| y.norm().total_cmp(&x.norm()));
         let exact = roots.iter().take(CANDIDATES).map(|&root| self.polished(root).abs());
@@ -120,6 +124,14 @@ mod tests {
 
     fn wide<const N: usize>(numbers: [f64; N]) -> [Wide; N] {
         numbers.map(Wide::from_f64)
+    }
+
+    #[test]
+    fn without_feedback_the_delay_does_not_matter() {
+        for m in [1, 20, 4096] {
+            let quasi = Quasi { m, a: wide([1.0, -2.5]), b: [Wide::ZERO; 3] };
+            assert_eq!(quasi.radius().to_f64(), 2.0);
+        }
     }
 
     #[test]

@@ -30,6 +30,15 @@ struct Crossing {
 /// Whole latencies that are tried one by one.
 const TRIED: u32 = 64;
 
+/// Latencies beyond this are no numbers of steps, but the rounding of a loop that no delay makes unstable.
+const FARTHEST: f64 = 1e15;
+
+/// Up to this many whole steps of latency it is found where a loop becomes unstable within a step.
+const SPLIT: f64 = 256.0;
+
+/// Halvings of a step.
+const HALVINGS: u32 = 44;
+
 /// So many crossings are followed at most.
 const MOST: usize = 100_000;
 
@@ -73,6 +82,24 @@ impl Plant<'_> {
         }
         stable.extend(from.map(|begin| (begin, None)));
         Windows { stable }
+    }
+
+    /// The latency in steps at which the loop that `feedback` closes becomes unstable, where a command that arrives within
+    /// a step splits it, as it does in a simulation: where the spectral radius passes 1.
+    ///
+    /// It lies within the same step as that of [`Plant::latency_windows`]. None where that has none, and beyond 256 steps.
+    pub fn split_critical_latency(&self, feedback: Feedback) -> Option<f64> {
+        let mut low = self.latency_windows(feedback).critical().filter(|&d| d < SPLIT)?.floor();
+        let mut high = low + 1.0;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let radius = self.spectral_radius(feedback, Latency::of_steps(middle)?);
+            match positive(radius - Wide::one()) {
+                true => high = middle,
+                false => low = middle,
+            }
+        }
+        Some(low)
     }
 
     /// Runs of whole latencies at which the loop is stable, each tried.
@@ -131,7 +158,8 @@ fn crossings([a0, a1]: [Wide; 2], [b0, b1]: [Wide; 2]) -> Vec<Crossing> {
             outward: slope.is_negative(),
         }
     };
-    roots.into_iter().filter(inside).map(crossing).collect()
+    let seen = |crossing: &Crossing| crossing.first < FARTHEST;
+    roots.into_iter().filter(inside).map(crossing).filter(seen).collect()
 }
 
 /// All crossings by rising latency, as far as the loop can become stable again.
