@@ -56,7 +56,7 @@ pub(crate) struct SimulateArgs {
     #[command(flatten)]
     pub(crate) timing: TimingArgs,
     /// Seed of all that is random: --jitter and --skew
-    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "0")]
+    #[arg(long, value_name = "N", value_parser = seed, allow_hyphen_values = true, default_value = "0")]
     pub(crate) seed: u64,
     /// Format of the rows [default: that of the extension of --output, or csv]
     #[arg(long, value_parser = formats())]
@@ -76,7 +76,8 @@ Examples:
   libration simulate --system oscillator --integrator velocity-verlet --dt 0.01 --steps 2e3 \\
       --feedback 10,2 --latency 0.015 --jitter gaussian:0.1 --count 100 --seed 7 --output loop.csv
 
-The columns are step, t, q0, …, v0, …, energy. A state that overflows ends the rows with a note.
+The columns are step, t, q0, …, v0, …, energy. A state that overflows ends the rows with a note;
+with --count, --feedback, --jitter or --skew rows go on, and the note says how many overflowed.
 With --jitter or --skew, t is the time by a perfect clock. Before the first command arrives none acts.
 With --count the first column is trajectory; each has the bits that it would have alone, whatever
 --simd and --threads.";
@@ -85,6 +86,12 @@ With --count the first column is trajectory; each has the bits that it would hav
 fn every(text: &str) -> Result<u64, String> {
     let stride = whole_number(text).and_then(|n| u64::try_from(n).ok()).filter(|&n| n >= 1);
     stride.ok_or_else(|| "it must be a whole number of at least 1".to_owned())
+}
+
+/// Reads a seed.
+fn seed(text: &str) -> Result<u64, String> {
+    let seed = whole_number(text).and_then(|n| u64::try_from(n).ok());
+    seed.ok_or_else(|| format!("it must be a whole number from 0 to {}", u64::MAX))
 }
 
 fn float_types() -> impl TypedValueParser<Value = FloatType> {

@@ -211,7 +211,8 @@ where
     }
 
     /// Puts trajectory `n`, if there is one, back to `state`, as if it began there: what was remembered and what was on its way
-    /// is forgotten.
+    /// is forgotten. Steps are counted on, so that its noise, and a clock that depends on the step, are those of the
+    /// step at which all are.
     pub fn reset(&mut self, n: usize, state: State<T, D>) {
         if n < self.len() {
             self.trajectories.planes.share().set(n, state);
@@ -219,7 +220,7 @@ where
         }
     }
 
-    /// All there is to know at this step.
+    /// All there is to know at this step, but for the setup and the seed.
     pub fn snapshot(&self) -> Snapshot<T, D> {
         let states = (0..self.len()).filter_map(|n| self.state(n)).collect();
         Snapshot { step: self.step(), states, memories: self.memories.numbers().to_vec() }
