@@ -5,6 +5,8 @@ use std::net::TcpStream;
 use std::time::Duration;
 
 use serde_json::{Value, json};
+use tungstenite::client::client_with_config;
+use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Error, Message, WebSocket};
 
 /// An answer that takes longer than this will not come.
@@ -23,7 +25,10 @@ impl DevTools {
         let stream = TcpStream::connect(host).unwrap();
         stream.set_read_timeout(Some(PATIENCE)).unwrap();
         stream.set_nodelay(true).unwrap();
-        let (socket, _) = tungstenite::client(format!("ws://{host}{path}"), stream).unwrap();
+        // The accessibility tree of the whole page comes as one message of tens of megabytes.
+        let any_size = WebSocketConfig::default().max_message_size(None).max_frame_size(None);
+        let url = format!("ws://{host}{path}");
+        let (socket, _) = client_with_config(url, stream, Some(any_size)).unwrap();
         DevTools { socket, sent: 0, events: Vec::new() }
     }
 
