@@ -90,7 +90,7 @@ fn what_cannot_be_asked_of_timing_is_refused_in_words() {
     let kepler = "analyze --system kepler --integrator rk4 --dt 0.01 --feedback 1,1";
     libration(kepler).assert().code(2).stderr(contains("one degree of freedom"));
     let gains = "analyze --system oscillator --integrator rk4 --dt 0.01 --feedback 1";
-    libration(gains).assert().code(2).stderr(contains("two numbers"));
+    libration(gains).assert().code(2).stderr(contains("two finite numbers"));
     let late = "analyze --system oscillator --integrator rk4 --dt 0.01 --latency 1";
     libration(late).assert().code(2).stderr(contains("--feedback"));
     let pendulum = "analyze --system pendulum --integrator exact --dt 0.01";
