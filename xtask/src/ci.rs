@@ -29,9 +29,9 @@ const STEPS: [Step; 9] = [
         }),
     ),
     ("documentation", Now(documentation)),
-    // A compiler on one core for most of the time.
-    ("codegen", Beside(codegen::report)),
     ("test", Now(|| test::run(&[]))),
+    // A compiler on one core for most of the time: beside all before.
+    ("codegen", Beside(codegen::report)),
     ("examples", Now(examples::run)),
     ("report", Now(report::run)),
 ];

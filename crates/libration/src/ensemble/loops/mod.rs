@@ -44,7 +44,7 @@ use setup::Layout;
 ///     .controller(StateFeedback::to_origin(gains))
 ///     .clock(Jittered(Gaussian(0.1)))
 ///     .delay(Schedule::late(latency));
-/// let starts = [State { q: [1.0], v: [0.0] }; 100];
+/// let starts = [State { q: [1.0_f64], v: [0.0] }; 100];
 /// let (dt, seed, before) = (0.01, 7, [0.0]);
 /// let mut loops = Loops::new(setup, dt, seed, before, &starts, Execution::serial())?;
 /// loops.advance(1000)?;
