@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::scratch::Scratch;
 use crate::{Outcome, command, workspace};
 
-/// Runs two studies of a quick `lab`, which is to be quiet, and looks at what it wrote; the tests run all of them.
+/// Runs a quick `lab`, which is to be quiet, and looks at what it wrote.
 ///
 /// With the binary that the tests have built: a release build would take as long as all of them, and
 /// differs in nothing but its speed.
@@ -16,7 +16,7 @@ pub(crate) fn run() -> Outcome {
     let out = scratch.path().join("out");
     command::silent(
         command::program(workspace::built("debug/libration"))
-            .args(["lab", "spectrum", "latency", "--effort", "quick", "--quiet", "--out"])
+            .args(["lab", "--effort", "quick", "--quiet", "--out"])
             .arg(&out)
             .current_dir(scratch.path()),
     )?;
