@@ -29,11 +29,11 @@ const STEPS: [Step; 9] = [
         }),
     ),
     ("documentation", Now(documentation)),
-    ("test", Now(|| test::run(&[]))),
+    ("report", Now(report::run)),
+    ("test", Now(|| test::with_report(&report::folder()))),
     // A compiler on one core for most of the time: beside all before.
     ("codegen", Beside(codegen::report)),
     ("examples", Now(examples::run)),
-    ("report", Now(report::run)),
 ];
 
 /// Runs the steps and prints how long each took.

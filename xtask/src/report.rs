@@ -1,19 +1,25 @@
 //! `cargo xtask report`: the program as a user gets it, run once from end to end.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::scratch::Scratch;
 use crate::{Outcome, command, workspace};
 
-/// Runs a quick `lab`, which is to be quiet, and looks at what it wrote.
+/// Where the report lies.
+pub(crate) fn folder() -> PathBuf {
+    workspace::target().join("report")
+}
+
+/// Runs a quick `lab`, which is to be quiet, and looks at what it wrote into [`folder`].
 ///
 /// With the binary that the tests have built: a release build would take as long as all of them, and
 /// differs in nothing but its speed.
 pub(crate) fn run() -> Outcome {
     command::run(&mut command::cargo("test --workspace --no-run"))?;
-    let scratch = Scratch::new("report")?;
-    let out = scratch.path().join("out");
+    let (scratch, out) = (Scratch::new("report")?, folder());
+    // It may not be there.
+    let _ = fs::remove_dir_all(&out);
     command::silent(
         command::program(workspace::built("debug/libration"))
             .args(["lab", "--effort", "quick", "--quiet", "--out"])

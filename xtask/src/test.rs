@@ -1,11 +1,22 @@
 //! `cargo xtask test`: every test of the workspace, on a machine with only Rust and Python.
 
+use std::path::Path;
+
 use crate::{Outcome, command, python};
 
 /// Prepares the Python environment, then runs `cargo test --workspace` with `arguments`.
 pub(crate) fn run(arguments: &[String]) -> Outcome {
+    tests(arguments, None)
+}
+
+/// The same, where the browser opens this report and not one of its own.
+pub(crate) fn with_report(folder: &Path) -> Outcome {
+    tests(&[], Some(folder))
+}
+
+fn tests(arguments: &[String], report: Option<&Path>) -> Outcome {
     let interpreter = python::interpreter()?;
-    command::run(
-        command::cargo("test --workspace").args(arguments).env("LIBRATION_PYTHON", interpreter),
-    )
+    let mut cargo = command::cargo("test --workspace");
+    cargo.args(arguments).env("LIBRATION_PYTHON", interpreter);
+    command::run(report.map_or(&mut cargo, |folder| cargo.env("LIBRATION_REPORT", folder)))
 }

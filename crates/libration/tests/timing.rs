@@ -183,14 +183,14 @@ fn the_same_latencies_in_another_order_give_another_verdict() {
     let feedback = Feedback { position: 10.0, velocity: 2.0 };
     let plant = plant("exact_zoh", 0.1);
     for (hold, wanted) in [(0.0, 0.995_086_647_407), (0.5, 1.015_545_489_573)] {
-        let table = RandomLatency::new(vec![(0, 0.5), (2, 0.5)], hold).unwrap();
+        let table = RandomLatency::new(vec![(0.0, 0.5), (2.0, 0.5)], hold).unwrap();
         let found = plant.mean_square_late(feedback, &table);
         assert!((found - wanted).abs() < 1e-12, "{hold}: {found}");
     }
     // A latency that is certain is no random one.
-    for steps in [0_u32, 1, 3] {
-        let table = RandomLatency::new(vec![(steps as usize, 1.0)], 0.3).unwrap();
-        let latency = Latency::of_steps(f64::from(steps)).unwrap();
+    for steps in [0.0, 1.0, 3.0, 0.25, 2.5] {
+        let table = RandomLatency::new(vec![(steps, 1.0)], 0.3).unwrap();
+        let latency = Latency::of_steps(steps).unwrap();
         let certain = plant.spectral_radius(feedback, latency).to_f64();
         close(plant.mean_square_late(feedback, &table).sqrt(), certain, &steps);
     }

@@ -55,6 +55,10 @@ pub(crate) struct SimulateArgs {
     pub(crate) threads: usize,
     #[command(flatten)]
     pub(crate) timing: TimingArgs,
+    /// Steps as long as those between the time stamps of a loop that ran, in s, one on each line; --dt is then the step that
+    /// latencies are told in
+    #[arg(long, value_name = "FILE")]
+    pub(crate) time_stamps: Option<PathBuf>,
     /// Seed of all that is random: --jitter and --skew
     #[arg(long, value_name = "N", value_parser = seed, allow_hyphen_values = true, default_value = "0")]
     pub(crate) seed: u64,
@@ -77,8 +81,8 @@ Examples:
       --feedback 10,2 --latency 0.015 --jitter gaussian:0.1 --count 100 --seed 7 --output loop.csv
 
 The columns are step, t, q0, …, v0, …, energy. A state that overflows ends the rows with a note;
-with --count, --feedback, --jitter or --skew rows go on, and the note says how many overflowed.
-With --jitter or --skew, t is the time by a perfect clock. Before the first command arrives none acts.
+with --count, --feedback, --jitter, --skew or --time-stamps rows go on, and the note says how many
+overflowed. With --jitter, --skew or --time-stamps, t is the time by a perfect clock. Before the first command arrives none acts.
 With --count the first column is trajectory; each has the bits that it would have alone, whatever
 --simd and --threads.";
 

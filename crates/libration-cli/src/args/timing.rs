@@ -21,7 +21,7 @@ pub(crate) struct TimingArgs {
     )]
     pub(crate) latency: Option<Late>,
     /// The law of step times, each drawn by itself, with its relative rms: gaussian:0.1 or uniform:0.1; where a
-    /// step would be negative, a simulation takes one of length zero (`analyze`: of the loop without latency)
+    /// step would be negative, it is of length zero
     #[arg(long, value_name = "LAW:RMS", value_parser = law, allow_hyphen_values = true)]
     pub(crate) jitter: Option<Jitter>,
     /// The law of clock rates over an ensemble, with its relative rms: gaussian:0.01 or uniform:0.01

@@ -173,18 +173,18 @@ fn describe_timing(timing: &TimingAnswer, text: &mut String) {
         line("stable, steps late", shown);
         line("continuous margin", number(critical.delay_margin_seconds, "s"));
     }
-    let late = timing.latency_steps.is_some_and(|steps| steps > 0.0);
-    let of = if late { ", without latency" } else { "" };
     if let (Some(radius), Some(growth)) = (timing.mean_square_radius, timing.mean_square_growth) {
         let grown = radius.zip(growth);
-        let shown = grown.map(|(radius, growth)| format!("{radius:?} a step  (1 {growth:+e}){of}"));
+        let shown = grown.map(|(radius, growth)| format!("{radius:?} a step  (1 {growth:+e})"));
         line("second moments grow by", shown.unwrap_or_else(|| TOO_FAR.into()));
         if timing.jitter_clips == Some(true) {
             line("", CLIPPED.into());
         }
     }
     if let Some(exponent) = timing.lyapunov_exponent {
-        line("a typical run grows", number(exponent, "a step") + of);
+        let late = timing.latency_steps.is_some_and(|steps| steps > 0.0);
+        let shown = if late { LATE.into() } else { number(exponent, "a step") };
+        line("a typical run grows", shown);
     }
     if let Some(steps) = timing.dephasing_steps {
         line("mean falls to 1/e in", number(steps, "steps"));
@@ -192,11 +192,14 @@ fn describe_timing(timing: &TimingAnswer, text: &mut String) {
 }
 
 /// Why there are no second moments.
-const TOO_FAR: &str = "not known: an exact step turns too far for its series";
+const TOO_FAR: &str =
+    "not known: an exact step turns too far for its series, or the latency is above 17 steps";
 
-/// What simulations do that theory does not.
-const CLIPPED: &str =
-    "some steps would be negative: a simulation takes none there, this theory does";
+/// Why there is no exponent.
+const LATE: &str = "not known with a latency";
+
+/// The rule of steps that would be negative.
+const CLIPPED: &str = "some steps would be negative: they are of length zero";
 
 /// What stands for a number that is not derived.
 const UNKNOWN: &str = "not known: the polynomials of this step outgrow exact arithmetic";

@@ -1,9 +1,11 @@
 //! `libration simulate`.
 
+use std::fs;
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
+use libration::control::clock::Recorded;
 use libration_lab::export::ExportError;
 use libration_lab::trajectory::{self, Copies, Ending, Format, Request, Stopped, TrajectoryError};
 
@@ -87,8 +89,19 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
             instructions,
         }),
         timing: args.timing.timing(),
+        record: args.time_stamps.as_deref().map(|path| recorded(path, args.step.dt)).transpose()?,
         seed: args.seed,
     })
+}
+
+/// The steps between the time stamps of a file, in multiples of `dt` seconds.
+fn recorded(path: &Path, dt: f64) -> Result<Vec<f64>, Failure> {
+    let wrong = |reason: String| {
+        Failure::usage(format!("cannot use `{}` (--time-stamps): {reason}", path.display()))
+    };
+    let text = fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
+    let steps = Recorded::stamps_in(&text).and_then(|stamps| Recorded::steps_in(&stamps, dt));
+    steps.map_err(|error| wrong(error.to_string()))
 }
 
 fn into_file(

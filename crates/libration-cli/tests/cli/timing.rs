@@ -59,15 +59,18 @@ fn jitter_and_skew_are_told_with_and_without_feedback() {
     assert!((noisy["lyapunov_exponent"].as_f64().unwrap() / 1.284_107_9e-5 - 1.0).abs() < 2e-7);
     assert!(noisy["dephasing_steps"].as_f64().unwrap() > 100.0);
     assert!(noisy.get("critical_latency_steps").is_none());
-    assert_eq!(
-        (&noisy["jitter_latency_steps"], &noisy["jitter_clips"]),
-        (&0.0.into(), &false.into())
-    );
+    assert_eq!(noisy["jitter_clips"], false);
     // Where its steps turn too far for a series, exact steps have no moments; no number is better than a wrong one.
     let far = "analyze --system oscillator --set omega2=10 --integrator exact --dt 30 --jitter gaussian:0.2";
     let far = json(far);
     assert!(far["mean_square_radius"].is_null() && far["lyapunov_exponent"].is_null());
     assert_eq!(far["jitter_clips"], true);
+    // With a latency the second moments are those of the loop that has it.
+    let exact = format!("{LOOP} --integrator exact --jitter uniform:0");
+    let radius = |words: &str| json(&format!("{exact} {words}"))["mean_square_radius"].clone();
+    close(&radius("--latency 5steps"), 0.992_337_179_288_081_f64.powi(2));
+    assert_eq!(radius("--latency 18steps"), Value::Null);
+    assert!(json(&format!("{exact} --latency 1steps"))["lyapunov_exponent"].is_null());
     let text =
         libration(&format!("{LOOP} --integrator rk4 --latency 1.5steps --jitter uniform:0.1"));
     let told = contains("critical latency").and(contains("second moments grow by"));
@@ -169,5 +172,33 @@ fn what_cannot_be_simulated_of_a_loop_is_refused_in_words() {
         ("--system oscillator --seed -1", "--seed"),
     ] {
         libration(&format!("{words} {more}")).assert().code(2).stderr(contains(told));
+    }
+}
+
+#[test]
+fn a_loop_is_stepped_by_the_time_stamps_of_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    let stamps = path("stamps.csv", "t\n10\n10.5\n10.5\n11.25\n");
+    // Free, with velocity 2: as far as twice the time, which begins at the first stamp.
+    let free =
+        "--system oscillator --set omega2=1e-30 --integrator velocity-verlet --dt 0.25 --q 0 --v 2";
+    let found = rows(&format!("{free} --steps 3 --time-stamps {stamps}"));
+    let times: Vec<[f64; 2]> = found.iter().map(|row| [row[1], row[2]]).collect();
+    assert_eq!(times, [[0.0, 0.0], [0.5, 1.0], [0.5, 1.0], [1.25, 2.5]]);
+    let back = path("back", "1\n0.5\n");
+    let text = path("text", "1\n2\nthree\n");
+    for (steps, file, told) in [
+        (4, stamps.as_str(), "--steps is 4, but it must be at most 3"),
+        (1, &back, "time stamp 1 is 0.5 s, before the 1 s"),
+        (1, &text, "line 3 is `three`"),
+        (1, "/nowhere/at/all", "/nowhere/at/all"),
+    ] {
+        let words = format!("simulate {free} --steps {steps} --time-stamps {file}");
+        libration(&words).assert().code(2).stderr(contains(told));
     }
 }

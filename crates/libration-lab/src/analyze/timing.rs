@@ -58,20 +58,12 @@ impl Timing {
     /// # Errors
     /// The number of steps, if it is negative, not finite or too large.
     pub(crate) fn latency_of(&self, dt: f64) -> Result<Latency, f64> {
-        let steps = match self.latency {
-            None => 0.0,
-            Some(Late::Steps(steps)) => steps,
-            Some(Late::Seconds(seconds)) => whole(seconds / dt),
-        };
-        Latency::of_steps(steps).ok_or(steps)
+        match self.latency {
+            None => Ok(Latency::NONE),
+            Some(Late::Steps(steps)) => Latency::of_steps(steps).ok_or(steps),
+            Some(Late::Seconds(s)) => Latency::of_seconds(s, dt).ok_or(s / dt),
+        }
     }
-}
-
-/// A whole number where the quotient of two decimals misses one by rounding: 0.07 s are seven steps of 0.01 s.
-fn whole(quotient: f64) -> f64 {
-    let nearest = quotient.round();
-    // Three roundings, of both decimals and of their quotient, are less than 2 ε.
-    if (quotient - nearest).abs() <= 4.0 * f64::EPSILON * nearest { nearest } else { quotient }
 }
 
 /// What timing does to a loop; the fields are keys of `analyze --json`.
@@ -86,22 +78,18 @@ pub struct TimingAnswer {
     /// What the feedback makes of the loop, whatever the latency.
     #[serde(flatten)]
     pub critical: Option<Critical>,
-    /// The latency of the loop of which the next three keys speak, in steps: none.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub jitter_latency_steps: Option<f64>,
-    /// Whether some steps would be negative: a simulation takes steps of length zero there, which the next three keys do
-    /// not know.
+    /// Whether some steps would be negative, and are of length zero.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub jitter_clips: Option<bool>,
-    /// `ρ(E[M ⊗ M])`: the factor by which second moments grow in a step, of the loop without latency; none where exact
-    /// steps turn too far for their series.
+    /// `ρ(E[M ⊗ M])`: the factor by which second moments grow in a step; none where exact steps turn too far for their
+    /// series, or with a latency of more than 17 steps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_square_radius: Option<Option<f64>>,
     /// The same minus one, without cancellation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_square_growth: Option<Option<f64>>,
-    /// The top Lyapunov exponent in a step, of the loop without latency; none where the mean step does not turn, and
-    /// where exact steps turn too far.
+    /// The top Lyapunov exponent in a step; none with a latency, where the mean step does not turn, and where exact steps
+    /// turn too far.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lyapunov_exponent: Option<Option<f64>>,
     /// Steps after which the mean of an ensemble of clocks has fallen to 1/e; none where nothing turns.
@@ -165,8 +153,21 @@ fn of_model(model: impl Model<1>, latency: Latency, request: &Request) -> Timing
             angle <= TURNED && 2.0 * angle * law.rms() <= BLURRED
         }
     };
-    let mean_square =
-        timing.jitter.map(|law| known(&law).then(|| plant.mean_square(feedback, law).radius));
+    let mean_square = timing.jitter.map(|law| {
+        if !known(&law) {
+            None
+        } else if latency == Latency::NONE {
+            let radius = plant.mean_square(feedback, law).radius;
+            Some([radius, radius - Wide::one()].map(Wide::to_f64))
+        } else {
+            let rate = plant.mean_square_rate_late(feedback, latency, law)?;
+            Some([rate.exp(), rate.exp_m1()])
+        }
+    });
+    let exponent = |law: Jitter| {
+        let found = known(&law) && latency == Latency::NONE;
+        found.then(|| plant.lyapunov_exponent(feedback, law)).flatten()
+    };
     let critical = || {
         let windows = plant.latency_windows(feedback);
         let steps = windows.critical();
@@ -182,13 +183,10 @@ fn of_model(model: impl Model<1>, latency: Latency, request: &Request) -> Timing
         feedback: timing.feedback.map(|f| [f.position, f.velocity]),
         latency_steps: timing.feedback.map(|_| latency.steps()),
         critical: timing.feedback.map(|_| critical()),
-        jitter_latency_steps: timing.jitter.map(|_| 0.0),
-        jitter_clips: timing.jitter.map(|law| law.largest() > 1.0),
-        mean_square_radius: mean_square.map(|radius| radius.map(Wide::to_f64)),
-        mean_square_growth: mean_square.map(|radius| radius.map(|r| (r - Wide::one()).to_f64())),
-        lyapunov_exponent: timing
-            .jitter
-            .map(|law| known(&law).then(|| plant.lyapunov_exponent(feedback, law)).flatten()),
+        jitter_clips: timing.jitter.map(Jitter::clips),
+        mean_square_radius: mean_square.map(|found| found.map(|[radius, _]| radius)),
+        mean_square_growth: mean_square.map(|found| found.map(|[_, growth]| growth)),
+        lyapunov_exponent: timing.jitter.map(exponent),
         dephasing_steps: timing.skew.map(|law| plant.dephasing_steps(law).map(Wide::to_f64)),
         radius: timing.feedback.map(|_| plant.spectral_radius(feedback, latency)),
     }

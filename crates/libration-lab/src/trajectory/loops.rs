@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use bytemuck::Pod;
 use libration::analysis::{Jitter, Latency};
 use libration::control::Schedule;
-use libration::control::clock::{Jittered, Skewed};
+use libration::control::clock::{Jittered, Recorded, Skewed};
 use libration::control::controller::StateFeedback;
 use libration::ensemble::{All, Loops, Setup};
 use libration::integrator::SymplecticEuler;
@@ -20,8 +20,11 @@ use crate::export::{Number, Rows};
 /// Steps of trajectories between two looks at whether to stop: about a second.
 const CHUNK: u64 = 1 << 24;
 
-/// Every clock that can be asked for is a clock with a rate of its own whose steps jitter.
-type Clocks = (Skewed, Jittered<Jitter>);
+/// Every clock that can be asked for is a clock with a rate of its own whose steps, which may have been recorded, jitter.
+type Clocks<'a> = (Skewed, (Recorded<'a>, Jittered<Jitter>));
+
+/// The record of a clock of which there is none.
+const EVEN: [f64; 1] = [1.0];
 
 /// Most degrees of freedom: kernels for more would take long to compile.
 pub(super) const MOST_DIMENSIONS: usize = 2;
@@ -74,15 +77,16 @@ fn simulated<S: Float + Pod + Number, const D: usize>(
     rows: &mut dyn Rows<S>,
     stop: &AtomicBool,
 ) -> Result<Ending, TrajectoryError> {
-    let Request { dt, steps, every, timing, seed, .. } = request;
+    let Request { dt, steps, every, timing, record, seed, .. } = request;
     let one = Copies { count: 1, spread: 0.0, threads: 1, instructions: None };
     let copies = request.copies.unwrap_or(one);
     let (count, execution) = (copies.count, copies.execution()?);
     let dt = S::from_f64(*dt);
     let none = Jitter::Uniform(0.0);
-    let uneven = timing.jitter.is_some() || timing.skew.is_some();
-    let clocks: Clocks =
-        (Skewed(timing.skew.unwrap_or(none)), Jittered(timing.jitter.unwrap_or(none)));
+    let uneven = timing.jitter.is_some() || timing.skew.is_some() || record.is_some();
+    let recorded = record.as_deref().map_or(Recorded::repeated(&EVEN), Recorded::once);
+    let jittered = Jittered(timing.jitter.unwrap_or(none));
+    let clocks: Clocks<'_> = (Skewed(timing.skew.unwrap_or(none)), (recorded, jittered));
     let latency = timing.latency_of(dt.to_f64()).map_err(|steps| late(request, steps))?;
     let setup = Setup::new(All(system), integrator)
         .controller(StateFeedback::<D>::to_origin(timing.feedback.unwrap_or_default()))

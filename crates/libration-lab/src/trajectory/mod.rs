@@ -135,7 +135,7 @@ fn keep<S: Many>(request: &Request, stop: &AtomicBool) -> Result<Trajectory, Tra
 fn admit<S: Many>(request: &Request) -> Result<(), TrajectoryError> {
     request.check::<S>()?;
     let one = Copies { count: 1, spread: 0.0, threads: 1, instructions: None };
-    let looped = request.timing.first().map(|_| one);
+    let looped = request.looped().map(|_| one);
     request.copies.or(looped).map_or(Ok(()), |copies| S::admits(request, &copies))
 }
 
@@ -205,8 +205,11 @@ fn head(request: &Request) -> Vec<(&'static str, Value)> {
         ("units", request.column_units().into()),
     ];
     let Timing { feedback, jitter, skew, .. } = request.timing;
-    if request.timing.first().is_some() {
+    if request.looped().is_some() {
         head.push(("seed", request.seed.into()));
+    }
+    if let Some(record) = &request.record {
+        head.push(("recorded_steps", record.len().into()));
     }
     if let Some(Feedback { position, velocity }) = feedback {
         let late = request.timing.latency_of(request.dt).map_or(f64::NAN, Latency::steps);

@@ -34,11 +34,24 @@ pub struct Request {
     pub copies: Option<Copies>,
     /// The loop that is closed, and clocks and commands that are not ideal.
     pub timing: Timing,
+    /// The steps of a recorded clock, in multiples of `dt`, in place of steps that are all alike.
+    pub record: Option<Vec<f64>>,
     /// Of all that is random.
     pub seed: u64,
 }
 
 impl Request {
+    /// The first thing that is asked for which makes it a loop.
+    pub(super) fn looped(&self) -> Option<&'static str> {
+        self.timing.first().or(self.record.as_ref().map(|_| "time-stamps"))
+    }
+
+    /// How many times as long as the time step the longest step may be.
+    pub(super) fn longest(&self) -> f64 {
+        let recorded = self.record.as_ref().map(|r| r.iter().copied().fold(0.0, f64::max));
+        recorded.unwrap_or(1.0) * self.timing.longest()
+    }
+
     /// Names of the columns, from left to right.
     pub fn column_names(&self) -> Vec<String> {
         let coordinates = |x, d| (0..d).map(move |i| format!("{x}{i}"));
@@ -81,8 +94,12 @@ impl Request {
         if let Some(copies) = &self.copies {
             self.check_copies::<S>(copies)?;
         }
-        if let Some(flag) = self.timing.first() {
+        if let Some(flag) = self.looped() {
             self.check_timing(flag)?;
+        }
+        if let Some(record) = self.record.as_ref().filter(|r| (r.len() as u64) < self.steps) {
+            let allowed = format!("at most {}, the steps between the time stamps", record.len());
+            return Err(wrong("steps", self.steps, allowed));
         }
         self.check_rows()
     }

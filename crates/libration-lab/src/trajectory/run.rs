@@ -22,7 +22,7 @@ pub(super) fn run<S: Many>(
     rows: &mut dyn Rows<S>,
     stop: &AtomicBool,
 ) -> Result<Ending, TrajectoryError> {
-    if request.timing.first().is_some() {
+    if request.looped().is_some() {
         return S::loops(request, rows, stop);
     }
     match (request.copies, request.stepping) {
@@ -71,7 +71,7 @@ pub(super) fn exact<const D: usize>(
     request: &Request,
 ) -> Result<Exact, TrajectoryError> {
     // Made for the longest step of all.
-    let longest = request.timing.longest();
+    let longest = request.longest();
     Exact::new(*model, longest * request.dt).ok_or_else(|| {
         let most = Exact::MOST_ANGLE / Exact::angle(*model, longest).unwrap_or(f64::NAN);
         let (value, turned) = (format!("{:?}", request.dt), Exact::MOST_ANGLE);

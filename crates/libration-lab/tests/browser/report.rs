@@ -1,16 +1,19 @@
 //! The report that is looked at.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use std::sync::atomic::AtomicBool;
+use std::{env, fs};
 
 use libration_lab::output::Output;
 use libration_lab::{Config, Effort, Lab, Silent, session, studies};
 
-/// The page of one quick run of all studies, made once.
+/// The page of one quick run of all studies: made once, unless `LIBRATION_REPORT` names a folder that holds one.
 pub(crate) fn file() -> &'static Path {
     static FILE: LazyLock<PathBuf> = LazyLock::new(|| {
+        if let Some(folder) = env::var_os("LIBRATION_REPORT") {
+            return Path::new(&folder).join("report.html");
+        }
         let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("browser");
         let _ = fs::remove_dir_all(&folder);
         let (config, stop) = (Config::default(), AtomicBool::new(false));

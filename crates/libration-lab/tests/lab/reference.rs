@@ -65,6 +65,7 @@ fn a_million_steps_stay_within_the_rounding_bound() {
             every,
             copies: None,
             timing: Default::default(),
+            record: None,
             seed: 0,
         };
         let table = simulate(&request).unwrap().table;

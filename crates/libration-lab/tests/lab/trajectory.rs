@@ -25,6 +25,7 @@ fn request(system: &str, method: Method, dt: f64, steps: u64) -> Request {
         every: 1,
         copies: None,
         timing: Default::default(),
+        record: None,
         seed: 0,
     }
 }

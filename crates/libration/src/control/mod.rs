@@ -6,9 +6,11 @@
 pub mod clock;
 pub mod controller;
 pub mod delay;
+pub(crate) mod error;
 mod memory;
 
 pub use clock::Clock;
 pub use controller::Controller;
 pub use delay::{Delay, Schedule};
+pub use error::ControlError;
 pub use memory::Memory;

@@ -2,6 +2,7 @@
 
 use super::{InstructionSet, NoRoom};
 use crate::CatalogError;
+use crate::control::ControlError;
 
 /// Why an ensemble cannot be made or run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -59,6 +60,9 @@ pub enum EnsembleError {
         /// Trajectories of the snapshot.
         found: usize,
     },
+    /// A clock, a delay or a controller cannot be so.
+    #[error(transparent)]
+    Control(#[from] ControlError),
     /// The system does not exist so.
     #[error(transparent)]
     System(CatalogError),

@@ -123,7 +123,7 @@ fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_whatever_the_dela
         let [period, observation, action] = schedule;
         same_bits_of(base.delay(Schedule::new(period, observation, action).unwrap()));
     }
-    let table = RandomLatency::new(vec![(0, 0.5), (2, 0.25), (3, 0.25)], 0.5).unwrap();
+    let table = RandomLatency::new(vec![(0.0, 0.5), (2.0, 0.25), (3.25, 0.25)], 0.5).unwrap();
     same_bits_of(base.delay(Random(&table)));
     for order in [Order::NewestActs, Order::LastActs] {
         same_bits_of(base.delay(Packets::new(&[0.3, 0.3, 0.2], order).unwrap()));
@@ -150,6 +150,8 @@ fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_whatever_the_cont
     // A plant, a rate and a latency for each.
     let latencies: Vec<Latency> =
         (0..333).map(|n| Latency::of_steps(f64::from(n % 40) / 10.0).unwrap()).collect();
+    let seen: Vec<Latency> =
+        (0..333).map(|n| Latency::of_steps(f64::from(n % 7) / 4.0).unwrap()).collect();
     let systems: Vec<Oscillator<f32>> =
         (0..333).map(|n| Oscillator { omega2: 1.0 + n as f32 / 100.0 }).collect();
     let rates: Vec<f64> = (0..333).map(|n| 1.0 + f64::from(n) * 1e-4).collect();
@@ -157,7 +159,7 @@ fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_whatever_the_cont
         Setup::new(Each(&systems[..count]), Rk4)
             .controller(Saturated { controller: StateFeedback::to_origin(GAINS), most: 1.0 })
             .clock((Rates(&rates[..count]), Dropped { probability: 0.1 }))
-            .delay(Latencies(&latencies[..count]))
+            .delay(Latencies::of_commands(&latencies[..count]).and_observations(&seen[..count]))
     };
     same_bits(all(333), all);
 }
@@ -178,10 +180,8 @@ proptest! {
         let feedback = Feedback { position, velocity };
         let latency = Latency::of_steps(f64::from(whole) + part).unwrap();
         let start = State { q: [1.0], v: [0.25] };
-        let one = || One::new(omega2, VelocityVerlet, feedback, latency, start);
-        let (mut eager, mut patient) = (one(), one().whole_at_first());
-        (0..steps).for_each(|_| eager.step(dt));
-        (0..steps).for_each(|_| patient.step(dt));
+        let mut one = One::new(omega2, VelocityVerlet, feedback, latency, start);
+        (0..steps).for_each(|_| one.step(dt));
         let setup = Setup::new(All(Oscillator { omega2 }), VelocityVerlet)
             .controller(StateFeedback::to_origin(feedback));
         let (states, latencies) = (vec![start; 70], vec![latency; 70]);
@@ -189,12 +189,12 @@ proptest! {
         let scheduled = setup.delay(Schedule::late(latency));
         let mut shared = Loops::new(scheduled, dt, 0, [0.0], &states, serial()).unwrap();
         shared.advance(steps).unwrap();
-        let own = setup.delay(Latencies(&latencies));
+        let own = setup.delay(Latencies::of_commands(&latencies));
         let mut each = Loops::new(own, dt, 0, [0.0], &states, serial()).unwrap();
         each.advance(steps).unwrap();
         for n in [0, 1, 63, 69] {
-            prop_assert_eq!(shared.state(n), Some(patient.state), "shared, {}", n);
-            prop_assert_eq!(each.state(n), Some(eager.state), "each its own, {}", n);
+            prop_assert_eq!(shared.state(n), Some(one.state), "shared, {}", n);
+            prop_assert_eq!(each.state(n), Some(one.state), "each its own, {}", n);
         }
     }
 }
@@ -247,4 +247,25 @@ fn loops_that_are_restored_go_on_bit_for_bit_and_one_that_is_reset_begins_anew()
     // The neighbours noticed nothing.
     whole.advance(6).unwrap();
     assert_eq!(resumed.state(6), whole.state(6));
+}
+
+#[test]
+fn latencies_of_its_own_make_of_a_trajectory_what_a_schedule_for_all_does() {
+    let steps = |x: f64| Latency::of_steps(x).unwrap();
+    let pairs: Vec<[f64; 2]> =
+        (0..40_u32).map(|n| [n % 5, n / 5].map(|x| f64::from(x) * 0.75)).collect();
+    let [seen, commands] = [0, 1].map(|i| pairs.iter().map(|p| steps(p[i])).collect::<Vec<_>>());
+    let setup = oscillator(VelocityVerlet)
+        .controller(StateFeedback { gains: GAINS, target: [0.5] })
+        .clock(shaken());
+    let starts = [State { q: [1.0_f32], v: [0.25] }; 40];
+    let own = setup.delay(Latencies::of_commands(&commands).and_observations(&seen));
+    let mut own = Loops::new(own, 0.1, 3, [0.125], &starts, Execution::serial()).unwrap();
+    own.advance(30).unwrap();
+    for (n, [observation, command]) in pairs.into_iter().enumerate() {
+        let all = setup.delay(Schedule::new(1.0, observation, command).unwrap());
+        let mut all = Loops::new(all, 0.1, 3, [0.125], &starts, Execution::serial()).unwrap();
+        all.advance(30).unwrap();
+        assert_eq!(own.state(n), all.state(n), "{observation} {command}");
+    }
 }

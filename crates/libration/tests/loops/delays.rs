@@ -76,7 +76,7 @@ fn a_latency_of_any_part_splits_the_step_where_the_command_arrives() {
     let start = [State { q: [0.0], v: [0.0] }];
     let shared = setup.delay(Schedule::late(latency));
     let own = [latency];
-    let each = setup.delay(Latencies(&own));
+    let each = setup.delay(Latencies::of_commands(&own));
     let mut first = Loops::new(shared, 1.0, 0, [0.0], &start, Execution::serial()).unwrap();
     let mut second = Loops::new(each, 1.0, 0, [0.0], &start, Execution::serial()).unwrap();
     first.advance(1).unwrap();
@@ -90,13 +90,47 @@ fn a_latency_of_any_part_splits_the_step_where_the_command_arrives() {
 #[test]
 fn each_trajectory_has_its_own_latency() {
     let latencies = [0.0, 1.0, 2.5, 4.0].map(|steps| Latency::of_steps(steps).unwrap());
-    let times = computed_at(Latencies(&latencies), 4, 9);
+    let times = computed_at(Latencies::of_commands(&latencies), 4, 9);
     for (latency, times) in latencies.iter().zip(&times) {
         for (n, &time) in times.iter().enumerate() {
             let sent = n as f64 - latency.steps().trunc();
             assert_eq!(time, if sent >= 0.0 { sent } else { BEFORE }, "{latency:?} {n}");
         }
     }
+}
+
+#[test]
+fn each_trajectory_has_its_own_latency_of_what_it_observes() {
+    let steps = |x: f64| Latency::of_steps(x).unwrap();
+    let seen = [0.0, 0.25, 1.0, 1.75, 3.5].map(steps);
+    let commands = [0.5, 0.0, 2.5, 0.5, 1.0].map(steps);
+    let times = computed_at(Latencies::of_commands(&commands).and_observations(&seen), 5, 12);
+    for ((seen, command), times) in seen.iter().zip(&commands).zip(&times) {
+        for (n, &time) in times.iter().enumerate() {
+            // Computed at a whole step, of the state as it was before.
+            let saw = n as f64 - command.steps().trunc() - seen.steps();
+            assert_eq!(time, if saw >= 0.0 { saw } else { BEFORE }, "{seen:?} {command:?} {n}");
+        }
+    }
+}
+
+#[test]
+fn a_random_latency_and_a_packet_may_take_a_part_of_a_step() {
+    // Free, from rest, under a command of 1 as soon as one arrives.
+    let to = StateFeedback { gains: Feedback { position: 1.0, velocity: 0.0 }, target: [1.0] };
+    let setup = Setup::new(All(Oscillator { omega2: 0.0 }), VelocityVerlet).controller(to);
+    let table = RandomLatency::new(vec![(0.25, 1.0)], 0.0).unwrap();
+    let start = [State { q: [0.0_f64], v: [0.0] }];
+    let random = setup.delay(Random(&table));
+    let mut random = Loops::new(random, 1.0, 0, [0.0], &start, Execution::serial()).unwrap();
+    random.advance(1).unwrap();
+    let packets = Packets::new(&[1.0], Order::LastActs).unwrap();
+    assert!(packets.longer_by(1.0).unwrap_err().to_string().contains("below 1"));
+    let packets = setup.delay(packets.longer_by(0.25).unwrap());
+    let mut packets = Loops::new(packets, 1.0, 0, [0.0], &start, Execution::serial()).unwrap();
+    packets.advance(1).unwrap();
+    let velocities = [random.state(0), packets.state(0)].map(|state| state.unwrap().v[0]);
+    assert_eq!(velocities, [0.75; 2]);
 }
 
 #[test]
@@ -108,7 +142,7 @@ fn recorded_latencies_are_followed_step_by_step() {
 
 #[test]
 fn random_latencies_follow_their_table_and_hold() {
-    let table = RandomLatency::new(vec![(0, 0.5), (2, 0.3), (3, 0.2)], 0.75).unwrap();
+    let table = RandomLatency::new(vec![(0.0, 0.5), (2.0, 0.3), (3.0, 0.2)], 0.75).unwrap();
     let times = computed_at(Random(&table), 64, 1000);
     let (mut counts, mut stays) = ([0.0_f64; 4], 0.0);
     for times in &times {

@@ -1,6 +1,6 @@
 //! How simulated loops grow, beside their spectral radii.
 
-use libration::analysis::{Feedback, Latency, Plant};
+use libration::analysis::{Feedback, Jitter, Latency, Plant};
 use libration::control::controller::StateFeedback;
 use libration::control::delay::Schedule;
 use libration::ensemble::{All, Execution, Loops, Setup};
@@ -44,9 +44,8 @@ fn growth(
     (sizes[1] - sizes[0]) / f64::from(STEPS / 2) / f64::from(STEPS / 2)
 }
 
-/// The rate at which a loop grows in the long run, by its own steps: from what a step makes of a unit of everything
-/// that it knows, squared 45 times (I. Gelfand, 1941).
-fn rate(method: Method, omega2: f64, dt: f64, feedback: Feedback, latency: Latency) -> f64 {
+/// What a step of a loop makes of a unit of everything that it knows.
+fn map(method: Method, omega2: f64, dt: f64, feedback: Feedback, latency: Latency) -> DMatrix {
     let begin = State { q: [0.0], v: [0.0] };
     let size = One::new(omega2, Rk4, feedback, latency, begin).known().len();
     let columns: Vec<Vec<f64>> = (0..size)
@@ -59,8 +58,11 @@ fn rate(method: Method, omega2: f64, dt: f64, feedback: Feedback, latency: Laten
             })
         })
         .collect();
-    let mut power =
-        DMatrix((0..size).map(|i| (0..size).map(|j| columns[j][i]).collect()).collect());
+    DMatrix((0..size).map(|i| (0..size).map(|j| columns[j][i]).collect()).collect())
+}
+
+/// The rate at which powers of a matrix grow, squared 45 times (I. Gelfand, 1941).
+fn rate(mut power: DMatrix) -> f64 {
     let (mut log, mut steps) = (0.0, 1.0);
     for _ in 0..45 {
         let norm = power.norm();
@@ -111,7 +113,7 @@ proptest! {
         let model = Oscillator { omega2 };
         let plant = with_method!(method, |m| Plant::new(m, model, ORIGIN, dt));
         let predicted = plant.spectral_radius(feedback, latency).to_f64().ln();
-        let simulated = rate(method, omega2, dt, feedback, latency);
+        let simulated = rate(map(method, omega2, dt, feedback, latency));
         prop_assume!(predicted.abs() > 1e-9);
         prop_assert_eq!(predicted > 0.0, simulated > 0.0, "{} {}", predicted, simulated);
     }
@@ -146,5 +148,37 @@ fn a_loop_in_exact_steps_grows_as_the_sampled_system_does() {
     let exact = Exact::new::<1>(model, 0.01).unwrap();
     for steps in [0.0, 0.5, 42.25] {
         grows_as_its_plant(exact, &Plant::exact(model, ORIGIN, 0.01), steps);
+    }
+}
+
+#[test]
+fn second_moments_of_a_late_loop_under_jitter_grow_as_those_of_its_simulated_steps() {
+    // The mean of M ⊗ M over so many steps of lengths from the middles of equal parts of a uniform law; they miss its integral by
+    // their square.
+    const PARTS: u32 = 1000;
+    let feedback = Feedback { position: 6.0, velocity: 1.0 };
+    for method in [Method::SymplecticEuler, Method::VelocityVerlet, Method::Rk4] {
+        for (steps, rms) in [(1.0, 0.1), (2.5, 0.3), (0.75, 0.5)] {
+            let latency = Latency::of_steps(steps).unwrap();
+            let mut sum = Vec::new();
+            for i in 0..PARTS {
+                let x = (2.0 * f64::from(i) + 1.0) / f64::from(PARTS) - 1.0;
+                let dt = 0.1 * (1.0 + 3.0_f64.sqrt() * rms * x);
+                let DMatrix(m) = map(method, 10.0, dt, feedback, latency);
+                let n = m.len();
+                sum.resize(n * n, vec![0.0; n * n]);
+                for (row, sums) in sum.iter_mut().enumerate() {
+                    for (column, sum) in sums.iter_mut().enumerate() {
+                        *sum += m[row / n][column / n] * m[row % n][column % n] / f64::from(PARTS);
+                    }
+                }
+            }
+            let model = Oscillator { omega2: 10.0 };
+            let plant = with_method!(method, |m| Plant::new(m, model, ORIGIN, 0.1));
+            let law = Jitter::Uniform(rms);
+            let wanted = plant.mean_square_rate_late(feedback, latency, law).unwrap();
+            let found = rate(DMatrix(sum));
+            assert!((found - wanted).abs() < 1e-6, "{method:?} {steps} {rms}: {found} {wanted}");
+        }
     }
 }

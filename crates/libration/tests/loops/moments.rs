@@ -52,6 +52,9 @@ fn second_moments_under_jitter_are_within_three_standard_errors_of_theory() {
             Jitter::Uniform(0.1),
             Jitter::Gaussian(0.25),
             Jitter::Uniform(0.4),
+            // Some steps of these would be negative.
+            Jitter::Gaussian(0.6),
+            Jitter::Uniform(0.9),
         ] {
             for feedback in [Feedback::default(), Feedback { position: 4.0, velocity: 0.2 }] {
                 let plant = with!(method, |m| Plant::new(m, SPRING, ORIGIN, 0.1));
@@ -74,7 +77,7 @@ fn second_moments_under_jitter_are_within_three_standard_errors_of_theory() {
             }
         }
     }
-    assert_eq!(settings, 24);
+    assert_eq!(settings, 36);
 }
 
 #[test]
@@ -116,9 +119,13 @@ fn second_moments_under_random_latency_are_within_three_standard_errors_of_theor
     let mut settings = 0;
     for method in METHODS {
         for hold in [0.0, 0.5, 0.9] {
-            for table in
-                [vec![(0, 0.5), (2, 0.5)], vec![(0, 0.2), (1, 0.5), (3, 0.3)], vec![(1, 1.0)]]
-            {
+            for table in [
+                vec![(0.0, 0.5), (2.0, 0.5)],
+                vec![(0.0, 0.2), (1.0, 0.5), (3.0, 0.3)],
+                vec![(0.25, 0.4), (1.0, 0.3), (2.5, 0.3)],
+                vec![(1.0, 1.0)],
+                vec![(1.5, 1.0)],
+            ] {
                 let feedback = Feedback { position: 3.0, velocity: 1.0 };
                 let latency = RandomLatency::new(table, hold).unwrap();
                 let plant = with!(method, |m| Plant::new(m, SPRING, ORIGIN, 0.1));
@@ -143,5 +150,5 @@ fn second_moments_under_random_latency_are_within_three_standard_errors_of_theor
             }
         }
     }
-    assert_eq!(settings, 27);
+    assert_eq!(settings, 45);
 }

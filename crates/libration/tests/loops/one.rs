@@ -15,9 +15,6 @@ pub(crate) struct One<M> {
     pub(crate) state: State<f64, 1>,
     waiting: VecDeque<f64>,
     held: f64,
-    /// Steps before which no command arrives, where those do not split.
-    whole_until: usize,
-    steps: usize,
 }
 
 impl<M: Integrator> One<M> {
@@ -31,12 +28,7 @@ impl<M: Integrator> One<M> {
         let (whole, part) = (latency.steps().trunc() as usize, latency.steps().fract());
         let waiting = std::iter::repeat_n(0.0, whole).collect();
         let system = Oscillator { omega2 };
-        One { system, method, feedback, part, state, waiting, held: 0.0, whole_until: 0, steps: 0 }
-    }
-
-    /// This, where steps do not split before a first command arrives.
-    pub(crate) fn whole_at_first(self) -> Self {
-        One { whole_until: self.waiting.len(), ..self }
+        One { system, method, feedback, part, state, waiting, held: 0.0 }
     }
 
     /// Takes a step of `dt` seconds, which splits where a command arrives within it.
@@ -45,10 +37,8 @@ impl<M: Integrator> One<M> {
         let Feedback { position, velocity } = self.feedback;
         self.waiting.push_back(-(position * q) - velocity * v);
         let arrives = self.waiting.pop_front().unwrap();
-        let splits = self.part > 0.0 && self.steps >= self.whole_until;
-        let before = if splits { self.part * dt } else { 0.0 };
-        self.steps += 1;
-        if splits {
+        let before = self.part * dt;
+        if self.part > 0.0 {
             self.under_command(before);
         }
         self.held = arrives;

@@ -1,18 +1,21 @@
 //! What is refused, in words that name it.
 
 use libration::State;
-use libration::analysis::Latency;
-use libration::control::clock::{Rates, Recorded};
-use libration::control::controller::{Pid, PidGains};
+use libration::analysis::{Feedback, Jitter, Latency};
+use libration::control::clock::{
+    Correlated, Drifting, Dropped, Fixed, Gaussian, Jittered, Late, Rates, Recorded, Skewed,
+    Uniform, Wandering, Waving,
+};
+use libration::control::controller::{Pid, PidGains, Saturated, StateFeedback};
 use libration::control::delay::{Latencies, Order, Packets, RecordedLatencies, Schedule};
-use libration::control::{Clock, Delay};
+use libration::control::{Clock, Controller, Delay};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::Rk4;
 use libration::system::Oscillator;
 
 fn refused<C: Clock<f64>, L: Delay<f64>>(clock: C, delay: L, dt: f64, steps: u64) -> String {
     let setup = Setup::new(All(Oscillator { omega2: 1.0 }), Rk4)
-        .controller(libration::control::controller::StateFeedback::to_origin(Default::default()))
+        .controller(StateFeedback::to_origin(Default::default()))
         .clock(clock)
         .delay(delay);
     let starts = [State { q: [1.0], v: [0.0] }; 2];
@@ -23,7 +26,7 @@ fn refused<C: Clock<f64>, L: Delay<f64>>(clock: C, delay: L, dt: f64, steps: u64
 #[test]
 fn records_are_never_made_longer_and_lists_are_of_the_right_length() {
     let every = Schedule::EVERY_STEP;
-    let fixed = libration::control::clock::Fixed;
+    let fixed = Fixed;
     assert_eq!(
         refused(Recorded::once(&[1.0, 1.0]), every, 0.1, 3),
         "the record of a clock or a delay has 2 steps; 3 are asked for"
@@ -39,8 +42,13 @@ fn records_are_never_made_longer_and_lists_are_of_the_right_length() {
     );
     let one = [Latency::of_steps(1.0).unwrap()];
     assert_eq!(
-        refused(fixed, Latencies(&one), 0.1, 1),
+        refused(fixed, Latencies::of_commands(&one), 0.1, 1),
         "there are 1 latencies for 2 trajectories; there must be one each, or one for all"
+    );
+    let two = [one[0]; 2];
+    assert_eq!(
+        refused(fixed, Latencies::of_commands(&two).and_observations(&one), 0.1, 1),
+        "the number of latencies of observations is 1; it must be that of the latencies of commands, or 0"
     );
     for dt in [0.0, -0.1, f64::NAN, f64::INFINITY] {
         let error = refused(fixed, every, dt, 1);
@@ -59,6 +67,110 @@ fn a_clock_does_not_go_back() {
     assert_eq!(error(&[1.0]), "1 time stamps: there must be at least 2");
     assert_eq!(error(&[]), "0 time stamps: there must be at least 2");
     assert_eq!(error(&[1.0, 1.0]), "the mean step is 0 s: it must be above 0");
+}
+
+#[test]
+fn a_file_that_holds_no_time_stamps_is_told_by_its_line() {
+    let stamps = Recorded::stamps_in("# of a robot\nt,load\n0.5,3\n\n 1.0 \n1.75,x\n").unwrap();
+    assert_eq!(stamps, [0.5, 1.0, 1.75]);
+    assert_eq!(Recorded::steps_in(&stamps, 0.25).unwrap(), [2.0, 3.0]);
+    let error = |text: &str| Recorded::stamps_in(text).unwrap_err().to_string();
+    assert_eq!(
+        error("t\n0.5\n\nt\n"),
+        "line 4 is `t`; it must begin with a number, the time in seconds"
+    );
+    assert!(error("0.5\n1.0 s\n").contains("line 2 is `1.0 s`"));
+    assert!(error(",1\n").contains("line 1"));
+    assert_eq!(Recorded::stamps_in("").unwrap(), [0.0; 0]);
+}
+
+/// What is said of a clock before any step.
+fn of_clock(clock: impl Clock<f64>) -> String {
+    refused(clock, Schedule::EVERY_STEP, 0.1, 0)
+}
+
+#[test]
+fn numbers_that_are_no_clock_are_named() {
+    let least =
+        |name, value| format!("{name} is {value}; it must be a finite number of at least 0");
+    for bad in [-1.0, f64::NAN, f64::INFINITY] {
+        let jitter = least("the rms of step times", bad);
+        assert_eq!(of_clock(Jittered(Gaussian(bad))), jitter);
+        assert_eq!(of_clock(Jittered(Uniform(bad))), jitter);
+        assert_eq!(of_clock((Fixed, Jittered(Jitter::Uniform(bad)))), jitter);
+        assert_eq!(of_clock(Skewed(Jitter::Gaussian(bad))), least("the rms of clock rates", bad));
+        assert_eq!(of_clock(Drifting(Jitter::Uniform(bad))), least("the rms of clock drifts", bad));
+        assert_eq!(of_clock(Wandering { rms: bad }), least("the rms of changes of the rate", bad));
+        assert_eq!(of_clock(Rates(&[1.0, bad])), least("clock rate 1", bad));
+        assert_eq!(of_clock(Recorded::once(&[bad])), least("recorded step 0", bad));
+        let late = Late { probability: 0.5, by: bad };
+        assert_eq!(of_clock(late), least("the lateness of a tick", bad));
+        let waves = Waving { rms: bad, rate: 1.0, phase: 0.0 };
+        assert_eq!(of_clock(waves), least("the rms of waving steps", bad));
+        let correlated = Correlated { rms: bad, correlation: 0.5 };
+        assert_eq!(of_clock(correlated), least("the rms of correlated steps", bad));
+    }
+    let waves = Waving { rms: 0.1, rate: f64::NAN, phase: 0.0 };
+    assert_eq!(of_clock(waves), "the rate of waving steps is NaN; it must be a finite number");
+    assert_eq!(
+        of_clock(Dropped { probability: 1.0 }),
+        "the probability of a missed tick is 1; it must be at least 0 and below 1"
+    );
+    assert_eq!(
+        of_clock(Late { probability: -0.1, by: 0.5 }),
+        "the probability of a late tick is -0.1; it must be from 0 to 1"
+    );
+    assert_eq!(
+        of_clock(Correlated { rms: 0.1, correlation: 1.5 }),
+        "the correlation of steps is 1.5; it must be from -1 to 1"
+    );
+    assert_eq!(
+        of_clock(Recorded::repeated(&[])),
+        "the number of recorded steps is 0; it must be at least 1"
+    );
+}
+
+/// What is said of a controller, in steps of 0.5 s, and of what acts before its first command.
+fn of_controller(controller: impl Controller<f64, 1>, before: f64) -> String {
+    let setup = Setup::new(All(Oscillator { omega2: 1.0 }), Rk4).controller(controller);
+    let starts = [State { q: [1.0], v: [0.0] }];
+    let made = Loops::new(setup, 0.5, 0, [before], &starts, Execution::serial());
+    made.map(|_| ()).unwrap_err().to_string()
+}
+
+#[test]
+fn numbers_that_are_no_controller_are_named_also_inside_another() {
+    let gains = Feedback { position: f64::NAN, velocity: 1.0 };
+    let bad = StateFeedback::to_origin(gains);
+    let told = "the gain of the position is NaN; it must be a finite number";
+    assert_eq!(of_controller(bad, 0.0), told);
+    assert_eq!(of_controller(Saturated { controller: bad, most: 1.0 }, 0.0), told);
+    let fine = StateFeedback { gains: Feedback::default(), target: [0.0] };
+    assert_eq!(
+        of_controller(Saturated { controller: fine, most: -1.0 }, 0.0),
+        "the largest command is -1; it must be at least 0"
+    );
+    assert_eq!(
+        of_controller(StateFeedback { target: [f64::INFINITY], ..fine }, 0.0),
+        "the target is inf; it must be a finite number"
+    );
+    assert_eq!(
+        of_controller(fine, f64::NAN),
+        "the command before the first is NaN; it must be a finite number"
+    );
+    let pid = PidGains {
+        proportional: 1.0,
+        integral: 1.0,
+        derivative: 0.0,
+        filter: 0.0,
+        most: 1.0,
+        tracking: 0.25,
+        target: [0.0],
+    };
+    assert_eq!(
+        of_controller(Pid::new(pid).unwrap(), 0.0),
+        "the tracking time is 0.25; it must be more than half the sample time"
+    );
 }
 
 #[test]
@@ -88,11 +200,14 @@ fn numbers_that_are_no_delay_or_controller_are_named() {
         target: [0.0],
     };
     let pid = |gains| Pid::<1>::new(gains).unwrap_err().to_string();
-    assert_eq!(pid(gains), "integral is NaN; it must be a number");
+    assert_eq!(pid(gains), "the integral gain is NaN; it must be a finite number");
     assert_eq!(
         pid(PidGains { integral: 0.0, most: 0.0, ..gains }),
-        "most is 0; it must be above 0"
+        "the largest command is 0; it must be above 0"
     );
     let filter = PidGains { integral: 0.0, filter: -1.0, ..gains };
-    assert_eq!(pid(filter), "filter is -1; it must be at least 0 s");
+    assert_eq!(
+        pid(filter),
+        "the time of the filter is -1; it must be a finite number of at least 0"
+    );
 }

@@ -65,7 +65,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     }
     let exact = Plant::exact(SPRING, ORIGIN, DT);
     for hold in HOLDS {
-        let Ok(latency) = RandomLatency::new(vec![(0, 0.5), (2, 0.5)], hold) else { continue };
+        let Ok(latency) = RandomLatency::new(vec![(0.0, 0.5), (2.0, 0.5)], hold) else { continue };
         let radius = exact.mean_square_late(GAINS, &latency);
         table.push(["exact steps".into(), hold.into(), radius.into(), None.into(), None.into()]);
     }
@@ -76,7 +76,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
 /// The findings for a hold probability; growth as predicted and measured, and its standard error.
 fn one(lab: &Lab<'_>, method: Method, hold: f64) -> Result<(Vec<Finding>, [f64; 3]), StudyError> {
     // Of valid probabilities.
-    let Ok(latency) = RandomLatency::new(vec![(0, 0.5), (2, 0.5)], hold) else {
+    let Ok(latency) = RandomLatency::new(vec![(0.0, 0.5), (2.0, 0.5)], hold) else {
         return Ok((Vec::new(), [f64::NAN; 3]));
     };
     let name = method.name();

@@ -1,36 +1,17 @@
 //! Steps of random length.
 
-use crate::Scalar;
 use crate::number::Wide;
 use crate::random::LARGEST;
+use crate::{Elementary, Scalar};
 
-/// The law of step times `Δt(1 + ε)`, drawn independently for every step.
+/// The law of step times `Δt(1 + ε)`, drawn independently for every step. No step is negative: where `ε` would be below −1
+/// the step is of length zero, in theory as in a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Jitter {
     /// `ε` is Gaussian, with this standard deviation.
     Gaussian(f64),
     /// `ε` is uniform about zero, with this standard deviation.
     Uniform(f64),
-}
-
-impl Jitter {
-    /// `E[1], E[ε²], E[ε⁴], …`; the odd ones vanish.
-    pub(super) fn even_moments(self) -> impl Iterator<Item = Wide> {
-        let square = match self {
-            Jitter::Gaussian(rms) => Wide::from_f64(rms).powi(2),
-            // Half the width is √3·σ.
-            Jitter::Uniform(rms) => Wide::from_f64(rms).powi(2).ratio(3, 1),
-        };
-        // σᵏ·(k − 1)!!, and (√3·σ)ᵏ/(k + 1).
-        core::iter::successors(Some((1, Wide::one())), move |&(odd, moment)| {
-            let next = match self {
-                Jitter::Gaussian(_) => (moment * square).ratio(odd, 1),
-                Jitter::Uniform(_) => (moment * square).ratio(odd, odd + 2),
-            };
-            Some((odd + 2, next))
-        })
-        .map(|(_, moment)| moment)
-    }
 }
 
 impl Jitter {
@@ -49,8 +30,42 @@ impl Jitter {
         }
     }
 
+    /// Whether there are steps of length zero: whether any `ε` below −1 is drawn in a simulation.
+    pub fn clips(self) -> bool {
+        self.largest() > 1.0
+    }
+
+    /// `E[1], E[ε], E[ε²], …`, where `ε` is no less than −1.
+    pub(super) fn moments(self) -> Box<dyn Iterator<Item = Wide>> {
+        match (self, self.clips()) {
+            (Jitter::Gaussian(rms), true) => Box::new(gaussian_above(Wide::from_f64(rms))),
+            (Jitter::Uniform(rms), true) => Box::new(uniform_above(half_width(rms))),
+            (law, false) => Box::new(law.even_moments().flat_map(|moment| [moment, Wide::ZERO])),
+        }
+    }
+
+    /// `E[1], E[ε²], E[ε⁴], …` of the law that is not clipped; the odd ones vanish.
+    fn even_moments(self) -> impl Iterator<Item = Wide> {
+        let square = match self {
+            Jitter::Gaussian(rms) => Wide::from_f64(rms).powi(2),
+            Jitter::Uniform(rms) => half_width(rms).powi(2),
+        };
+        // σᵏ·(k − 1)!!, and (√3·σ)ᵏ/(k + 1).
+        core::iter::successors(Some((1, Wide::one())), move |&(odd, moment)| {
+            let next = match self {
+                Jitter::Gaussian(_) => (moment * square).ratio(odd, 1),
+                Jitter::Uniform(_) => (moment * square).ratio(odd, odd + 2),
+            };
+            Some((odd + 2, next))
+        })
+        .map(|(_, moment)| moment)
+    }
+
     /// Weights and values of `ε` whose sums are means over the law, but for rounding, of what is smooth.
     pub(super) fn nodes(self) -> Vec<(f64, f64)> {
+        if self.clips() {
+            return self.nodes_above();
+        }
         match self {
             // The trapezoidal rule on a Gaussian errs by exp(−2π²/h²) only: h = ½, to ten deviations.
             Jitter::Gaussian(rms) => {
@@ -64,6 +79,78 @@ impl Jitter {
                 legendre(24).into_iter().map(|(weight, x)| (weight / 2.0, half * x)).collect()
             }
         }
+    }
+}
+
+/// Half the width of a uniform law.
+fn half_width(rms: f64) -> Wide {
+    Wide::from_f64(3.0).sqrt() * Wide::from_f64(rms)
+}
+
+/// `±1`, the sign of `(−1)ᵏ`.
+fn sign(k: i32) -> Wide {
+    Wide::from_f64(if k % 2 == 0 { 1.0 } else { -1.0 })
+}
+
+/// The moments of a uniform law of this half width `w > 1`, of which what is below −1 is at −1: the integral of `εᵏ/2w` from
+/// −1 to `w`, and `(−1)ᵏ·(w − 1)/2w`.
+fn uniform_above(w: Wide) -> impl Iterator<Item = Wide> {
+    let (one, width) = (Wide::one(), w.scaled(1));
+    let atom = (w - one) / width;
+    let powers = core::iter::successors(Some(w), move |&power| Some(power * w));
+    (0..)
+        .zip(powers)
+        .map(move |(k, power)| ((power - sign(k + 1)) / width).ratio(1, k + 1) + sign(k) * atom)
+}
+
+/// The moments of a Gaussian law, of which what is below −1 is at −1. Of the part above it `Iₖ = σ²(k − 1)Iₖ₋₂ +
+/// σ²(−1)ᵏ⁻¹p(−1)` by parts, with the density `p`.
+fn gaussian_above(rms: Wide) -> impl Iterator<Item = Wide> {
+    let (one, z) = (Wide::one(), rms.recip());
+    let density = (z * z).scaled(-1).exp().recip() / Wide::pi().scaled(1).sqrt();
+    // Φ(z) − ½ = p·(z + z³/3 + z⁵/(3·5) + …).
+    let terms = core::iter::successors(Some((1, z)), |&(odd, term)| {
+        Some((odd + 2, (term * z * z).ratio(1, odd + 2)))
+    });
+    let sum = terms.take(SERIES).fold(Wide::ZERO, |sum, (_, term)| sum + term);
+    let above = one.scaled(-1) + density * sum;
+    let first = (rms * density, rms * rms);
+    let parts = core::iter::successors(Some((1, above, first.0)), move |&(k, now, next)| {
+        let square = first.1;
+        let after = (square * now).ratio(k, 1) + sign(k) * first.0;
+        Some((k + 1, next, after))
+    });
+    parts.map(move |(k, part, _)| part + sign(k - 1) * (one - above))
+}
+
+/// Terms of a series in `z²` for `z` up to [`LARGEST`]: the last is `z⁷⁹⁹/799!!`, below 2⁻¹²⁰⁰.
+const SERIES: usize = 400;
+
+impl Jitter {
+    /// [`Jitter::nodes`] of a law that is clipped: −1 with what is below it, and Gauss's quadrature on pieces of the rest.
+    fn nodes_above(self) -> Vec<(f64, f64)> {
+        let rms = self.rms();
+        let (end, density): (f64, Box<dyn Fn(f64) -> f64>) = match self {
+            Jitter::Gaussian(_) => {
+                let height = 1.0 / (rms * core::f64::consts::TAU.sqrt());
+                (10.0 * rms, Box::new(move |x| height * (-0.5 * (x / rms).powi(2)).exp()))
+            }
+            Jitter::Uniform(_) => {
+                (self.largest(), Box::new(move |_| 1.0 / (12.0_f64.sqrt() * rms)))
+            }
+        };
+        // Pieces of at most two deviations.
+        let pieces = ((end + 1.0) / (2.0 * rms)).ceil();
+        let half = (end + 1.0) / (2.0 * pieces);
+        let rule = legendre(24);
+        let pieces = (0..pieces as u32).map(|i| -1.0 + half * f64::from(2 * i + 1));
+        let mut nodes: Vec<(f64, f64)> = pieces
+            .flat_map(|middle| rule.iter().map(move |&(weight, x)| (weight, middle + half * x)))
+            .map(|(weight, x)| (half * weight * density(x), x))
+            .collect();
+        let above: f64 = nodes.iter().map(|(weight, _)| weight).sum();
+        nodes.push((1.0 - above, -1.0));
+        nodes
     }
 }
 
@@ -95,15 +182,36 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sums_over_nodes_are_moments() {
-        for law in [Jitter::Gaussian(0.3), Jitter::Uniform(0.3)] {
-            let even = law.even_moments().map(Wide::to_f64);
-            let moments = even.flat_map(|moment| [moment, 0.0]);
-            for (k, moment) in (0..9).zip(moments) {
-                let sum: f64 = law.nodes().iter().map(|(weight, x)| weight * x.powi(k)).sum();
-                assert!((sum - moment).abs() < 1e-15, "{law:?} {k}: {sum} {moment}");
+    fn sums_over_nodes_are_moments_also_of_laws_that_are_clipped() {
+        for rms in [0.1, 0.3, 0.6, 3.0] {
+            for law in [Jitter::Gaussian(rms), Jitter::Uniform(rms)] {
+                for (k, moment) in (0..9).zip(law.moments().map(Wide::to_f64)) {
+                    let sum: f64 = law.nodes().iter().map(|(weight, x)| weight * x.powi(k)).sum();
+                    // Roundings of each of a hundred terms; odd moments are sums of larger ones.
+                    let size: f64 =
+                        law.nodes().iter().map(|(weight, x)| (weight * x.powi(k)).abs()).sum();
+                    assert!((sum - moment).abs() < 1e-14 * size, "{law:?} {k}: {sum} {moment}");
+                }
             }
         }
+    }
+
+    #[test]
+    fn a_law_that_is_clipped_loses_what_is_below() {
+        // Uniform on ±2: a quarter is at −1, and E[ε] = (4 − 1)/8 − 1/4.
+        let uniform = Jitter::Uniform(2.0 / 3.0_f64.sqrt());
+        let found: Vec<f64> = uniform.moments().take(3).map(Wide::to_f64).collect();
+        for (found, wanted) in found.into_iter().zip([1.0, 0.125, 9.0 / 12.0 + 0.25]) {
+            // Of √3 in floats.
+            assert!((found - wanted).abs() < 4e-16, "{found} {wanted}");
+        }
+        // Of a standard normal number x: E[max(x, −1)] = p(1) − Φ(−1), M. Abramowitz, I. Stegun, table 26.1.
+        let mean = Jitter::Gaussian(1.0).moments().nth(1).unwrap().to_f64();
+        let (density, below) = (0.241_970_724_519_143_37, 0.158_655_253_931_457_05);
+        assert!((mean - (density - below)).abs() < 1e-16, "{mean}");
+        // Where nothing is clipped the law is what it was.
+        assert!(!Jitter::Gaussian(0.17).clips() && Jitter::Gaussian(0.18).clips());
+        assert!(!Jitter::Uniform(0.57).clips() && Jitter::Uniform(0.58).clips());
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use super::quasi::Quasi;
 use super::{Feedback, HeldStep, Plant};
+use crate::analysis::UpdateMatrix;
 use crate::number::Wide;
 use crate::{Scalar, State};
 
@@ -17,15 +18,38 @@ impl Latency {
     /// The most whole steps of which the spectral radius is found.
     pub const MOST_STEPS: u64 = 4096;
 
+    /// No latency.
+    pub const NONE: Latency = Latency { steps: 0, part: 0.0 };
+
     /// A latency in steps, if it is a number that is at least 0 and not too large.
     pub fn of_steps(steps: f64) -> Option<Self> {
         let fits = (0.0..=Self::MOST_STEPS as f64).contains(&steps);
         fits.then(|| Latency { steps: steps.trunc() as u64, part: steps.fract() })
     }
 
+    /// A latency in seconds, of a loop in steps of `dt` seconds: 0.07 s are seven steps of 0.01 s, though their quotient is not
+    /// seven in floats.
+    pub fn of_seconds(seconds: f64, dt: f64) -> Option<Self> {
+        let quotient = seconds / dt;
+        let nearest = quotient.round();
+        // Three roundings, of both decimals and of their quotient, are less than 2 ε.
+        let whole = (quotient - nearest).abs() <= 4.0 * f64::EPSILON * nearest;
+        Self::of_steps(if whole { nearest } else { quotient })
+    }
+
     /// In steps.
     pub fn steps(self) -> f64 {
         self.steps as f64 + self.part
+    }
+
+    /// The whole steps.
+    pub(crate) fn whole(self) -> u64 {
+        self.steps
+    }
+
+    /// The part of another step.
+    pub(crate) fn part(self) -> f64 {
+        self.part
     }
 }
 
@@ -41,23 +65,41 @@ impl Plant<'_> {
     /// The characteristic polynomial of the loop; its roots are the eigenvalues of the matrix that takes state
     /// and waiting commands to the next step.
     pub(super) fn characteristic(&self, feedback: Feedback, latency: Latency) -> Quasi {
-        let Latency { steps, part } = latency;
-        if part == 0.0 {
-            let HeldStep { phi, gamma } = (self.step)(self.dt);
-            return polynomial(feedback, steps, phi, gamma, State::origin());
+        let SplitStep { phi, old, new } = self.split(latency.part, self.dt);
+        match latency.part == 0.0 {
+            true => polynomial(feedback, latency.steps, phi, new, State::origin()),
+            false => polynomial(feedback, latency.steps + 1, phi, old, new),
         }
-        let part = self.dt * Wide::from_f64(part);
-        let (before, after) = ((self.step)(part), (self.step)(self.dt - part));
-        let (phi, old) = (after.phi.after(&before.phi), after.phi.apply(&before.gamma));
-        polynomial(feedback, steps + 1, phi, old, after.gamma)
     }
+
+    /// A step of `dt` seconds that splits after a part of it.
+    pub(super) fn split(&self, part: f64, dt: Wide) -> SplitStep {
+        if part == 0.0 {
+            let HeldStep { phi, gamma } = (self.step)(dt);
+            return SplitStep { phi, old: State::origin(), new: gamma };
+        }
+        let part = dt * Wide::from_f64(part);
+        let (before, after) = ((self.step)(part), (self.step)(dt - part));
+        SplitStep {
+            phi: after.phi.after(&before.phi),
+            old: after.phi.apply(&before.gamma),
+            new: after.gamma,
+        }
+    }
+}
+
+/// `y' = Φy + Γ_old·u_old + Γ_new·u_new`: a step within which a command takes over from another.
+pub(super) struct SplitStep {
+    pub(super) phi: UpdateMatrix<Wide, 1>,
+    pub(super) old: State<Wide, 1>,
+    pub(super) new: State<Wide, 1>,
 }
 
 /// `λᵐ·det(λ − Φ) + K·adj(λ − Φ)·(Γ_old + λ·Γ_new)` for `y' = Φy + Γ_old·u₋ₘ + Γ_new·u₁₋ₘ`.
 fn polynomial(
     feedback: Feedback,
     m: u64,
-    phi: crate::analysis::UpdateMatrix<Wide, 1>,
+    phi: UpdateMatrix<Wide, 1>,
     old: State<Wide, 1>,
     new: State<Wide, 1>,
 ) -> Quasi {

@@ -35,15 +35,14 @@ const POWERS: usize = 96;
 /// Between the step times at which a step is taken to find its powers: `2^−SPACING` of `Δt`.
 const SPACING: i64 = 4;
 
-/// `M ⊗ M` of a step of `Δt(1 + ε)`: what stands before `1, ε², ε⁴, …`, row by row.
+/// `M ⊗ M` of a step of `Δt(1 + ε)`: what stands before `1, ε, ε², …`, row by row.
 pub(super) struct Squares(Vec<[Wide; 9]>);
 
 impl Plant<'_> {
     /// The growth of second moments in the loop that `feedback` closes, with steps after `jitter`.
     ///
     /// `E[M ⊗ M]` is exact: the entries of `M` are polynomials in `ε`, found by interpolation in 1024 bits, and
-    /// of those the moments of the law are known. A clock that lets no step be negative has another law where
-    /// `ε < −1` is likely.
+    /// of those the moments of the law are known.
     pub fn mean_square(&self, feedback: Feedback, jitter: Jitter) -> MeanSquare {
         self.squares(feedback).mean(jitter)
     }
@@ -63,20 +62,20 @@ impl Plant<'_> {
         let powers: [Vec<Wide>; 9] = core::array::from_fn(|entry| {
             interpolated(&nodes, values.iter().map(|square| square[entry]).collect())
         });
-        let even = (0..POWERS).step_by(2);
-        Squares(even.map(|k| core::array::from_fn(|entry| powers[entry][k])).collect())
+        let of = |k: usize| core::array::from_fn(|entry| powers[entry][k]);
+        Squares((0..POWERS).map(of).collect())
     }
 }
 
 impl Squares {
-    /// The mean over `jitter`, whose odd moments vanish.
+    /// The mean over `jitter`.
     pub(super) fn mean(&self, jitter: Jitter) -> MeanSquare {
         let operator = self.operator(jitter);
         MeanSquare { radius: largest_root(&characteristic(operator)), operator }
     }
 
     fn operator(&self, jitter: Jitter) -> [Wide; 9] {
-        let terms = self.0.iter().zip(jitter.even_moments());
+        let terms = self.0.iter().zip(jitter.moments());
         terms.fold([Wide::ZERO; 9], |sum, (square, moment)| {
             core::array::from_fn(|i| sum[i] + square[i] * moment)
         })

@@ -7,6 +7,7 @@ mod circle;
 mod held_step;
 mod hidden_latency;
 mod jitter;
+mod jitter_late;
 mod jitter_margin;
 mod latency;
 mod lqr;
@@ -23,6 +24,7 @@ mod riccati;
 mod sample;
 mod skew;
 mod switching;
+mod waiting;
 mod windows;
 
 pub use held_step::HeldStep;

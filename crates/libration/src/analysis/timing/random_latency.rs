@@ -1,17 +1,17 @@
 //! Commands whose latency is random.
 
-use super::{Feedback, HeldStep, Plant};
+use super::waiting::{Matrix, Waiting, growth, product, symmetric_square, transposed};
+use super::{Feedback, Latency, Plant};
 use crate::State;
-use crate::number::Wide;
 
-/// Latencies of whole steps, each with its probability, drawn for every step: with the hold probability the last
-/// one stays, otherwise one is drawn anew.
+/// Latencies, each with its probability, drawn for every step: with the hold probability the last one stays, otherwise
+/// one is drawn anew.
 ///
-/// At step `k` with latency `d` the command of step `k − d` acts. So commands may overtake each other, and one that
-/// was overtaken may act after a later one did.
+/// In step `k` with latency `d` the command of step `k − ⌊d⌋` begins to act, after the part of the step that is left of
+/// `d`. So commands may overtake each other, and one that was overtaken may act after a later one did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RandomLatency {
-    table: Vec<(usize, f64)>,
+    table: Vec<(Latency, f64)>,
     hold: f64,
 }
 
@@ -21,6 +21,9 @@ pub enum LatencyTableError {
     /// There is nothing to draw from.
     #[error("the table has no latencies")]
     Empty,
+    /// A latency is none.
+    #[error("a latency is {0} steps; it must be at least 0 and at most {most}", most = Latency::MOST_STEPS)]
+    Latency(f64),
     /// The matrix of second moments would be too large.
     #[error(
         "{entries} latencies of up to {longest} steps make {moments} second moments; there may be at most \
@@ -46,19 +49,27 @@ pub enum LatencyTableError {
 const MOST_MOMENTS: usize = 600;
 
 impl RandomLatency {
-    /// Latencies with their probabilities, drawn anew for every step but with probability `hold`.
+    /// Latencies in steps with their probabilities, drawn anew for every step but with probability `hold`.
     ///
     /// # Errors
     /// A [`LatencyTableError`].
-    pub fn new(table: Vec<(usize, f64)>, hold: f64) -> Result<Self, LatencyTableError> {
-        let Some(longest) = table.iter().map(|&(steps, _)| steps).max() else {
+    pub fn new(table: Vec<(f64, f64)>, hold: f64) -> Result<Self, LatencyTableError> {
+        if table.is_empty() {
             return Err(LatencyTableError::Empty);
+        }
+        let entry = |&(steps, probability): &(f64, f64)| {
+            let latency = Latency::of_steps(steps).ok_or(LatencyTableError::Latency(steps))?;
+            Ok((latency, probability))
         };
-        let (entries, n) = (table.len(), longest.saturating_add(2));
-        let moments = entries.saturating_mul(n.saturating_mul(n.saturating_add(1)) / 2);
+        let table = table.iter().map(entry).collect::<Result<Vec<_>, LatencyTableError>>()?;
+        let latency = RandomLatency { table, hold };
+        let (entries, longest, n) =
+            (latency.table.len(), latency.longest(), latency.waiting().size());
+        let moments = entries.saturating_mul(n * (n + 1) / 2);
         if moments > MOST_MOMENTS {
             return Err(LatencyTableError::Size { entries, longest, moments });
         }
+        let table = &latency.table;
         let probabilities = || table.iter().map(|&(_, p)| p);
         if let Some(p) = probabilities().chain([hold]).find(|p| !(0.0..=1.0).contains(p)) {
             return Err(LatencyTableError::Probability(p));
@@ -67,11 +78,11 @@ impl RandomLatency {
         if (sum - 1.0).abs() > 1e-12 {
             return Err(LatencyTableError::Sum(sum));
         }
-        Ok(RandomLatency { table, hold })
+        Ok(latency)
     }
 
-    /// The latencies in steps, each with its probability.
-    pub fn table(&self) -> &[(usize, f64)] {
+    /// The latencies, each with its probability.
+    pub fn table(&self) -> &[(Latency, f64)] {
         &self.table
     }
 
@@ -80,9 +91,15 @@ impl RandomLatency {
         self.hold
     }
 
-    /// The longest latency, in steps.
+    /// The whole steps of the longest latency.
     pub fn longest(&self) -> usize {
-        self.table.iter().map(|&(steps, _)| steps).max().unwrap_or(0)
+        self.table.iter().map(|(latency, _)| latency.whole() as usize).max().unwrap_or(0)
+    }
+
+    /// What a step has to know.
+    fn waiting(&self) -> Waiting {
+        let splits = self.table.iter().any(|(latency, _)| latency.part() > 0.0);
+        Waiting { commands: self.longest(), splits }
     }
 
     /// The probability that entry `next` follows entry `now`.
@@ -91,9 +108,6 @@ impl RandomLatency {
         stays + (1.0 - self.hold) * self.table[next].1
     }
 }
-
-/// A square matrix, row by row.
-type Matrix = Vec<Vec<f64>>;
 
 impl Plant<'_> {
     /// The factor by which second moments grow in a step of the loop that `feedback` closes with random latencies.
@@ -110,7 +124,8 @@ impl Plant<'_> {
             let ((j, r), (i, c)) = ((row / size, row % size), (column / size, column % size));
             latency.follows(i, j) * squares[i][r][c]
         };
-        radius((0..m * size).map(|r| (0..m * size).map(|c| entry(r, c)).collect()).collect())
+        let all = (0..m * size).map(|r| (0..m * size).map(|c| entry(r, c)).collect()).collect();
+        growth(all).exp()
     }
 
     /// `E[q²]`, `E[qv]` and `E[v²]` after so many steps of that loop from `state`, where nothing acts before the first
@@ -147,78 +162,12 @@ impl Plant<'_> {
 
     /// The step with each latency of the table.
     fn steps_late(&self, feedback: Feedback, latency: &RandomLatency) -> Vec<Matrix> {
-        let held = (self.step)(self.dt);
-        let of = |&(d, _): &(usize, f64)| augmented(&held, feedback, d, latency.longest());
+        let of = |&(late, _): &(Latency, f64)| {
+            let step = self.split(late.part(), self.dt);
+            latency.waiting().step(&step, feedback, late.whole() as usize)
+        };
         latency.table.iter().map(of).collect()
     }
-}
-
-fn transposed(m: &Matrix) -> Matrix {
-    (0..m.len()).map(|i| m.iter().map(|row| row[i]).collect()).collect()
-}
-
-/// The spectral radius: the growth of the norm of higher and higher powers (I. Gelfand, 1941), each the square of the
-/// one before. After 50 of them what norm and radius differ by is divided by 2⁵⁰.
-fn radius(mut power: Matrix) -> f64 {
-    let (mut logarithm, mut share) = (0.0, 1.0);
-    for _ in 0..50 {
-        let norm = power.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
-        if norm == 0.0 {
-            return 0.0;
-        }
-        logarithm += share * norm.ln();
-        share /= 2.0;
-        power.iter_mut().flatten().for_each(|x| *x /= norm);
-        power = product(&power, &power);
-    }
-    logarithm.exp()
-}
-
-/// What a matrix makes of the products `xᵢxⱼ`, `i ≤ j`.
-fn symmetric_square(m: &Matrix) -> Matrix {
-    let n = m.len();
-    let pairs: Vec<(usize, usize)> = (0..n).flat_map(|i| (i..n).map(move |j| (i, j))).collect();
-    let entry = |(i, j): (usize, usize), (k, l): (usize, usize)| match k == l {
-        true => m[i][k] * m[j][k],
-        false => m[i][k] * m[j][l] + m[i][l] * m[j][k],
-    };
-    pairs.iter().map(|&row| pairs.iter().map(|&column| entry(row, column)).collect()).collect()
-}
-
-/// The step of state and waiting commands `(q, v, u₋₁, …)` where the command of `d` steps ago acts.
-fn augmented(held: &HeldStep, feedback: Feedback, d: usize, longest: usize) -> Matrix {
-    let n = 2 + longest;
-    let number = Wide::to_f64;
-    let gains = [feedback.position, feedback.velocity];
-    let gamma = [number(held.gamma.q[0]), number(held.gamma.v[0])];
-    let mut matrix = vec![vec![0.0; n]; n];
-    for i in 0..2 {
-        for j in 0..2 {
-            let now = if d == 0 { -gamma[i] * gains[j] } else { 0.0 };
-            matrix[i][j] = number(held.phi.entry(i, j)) + now;
-        }
-        if d > 0 {
-            matrix[i][1 + d] = gamma[i];
-        }
-    }
-    if longest > 0 {
-        matrix[2][..2].copy_from_slice(&gains.map(|gain| -gain));
-    }
-    for i in 3..n {
-        matrix[i][i - 1] = 1.0;
-    }
-    matrix
-}
-
-fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    let row = |a: &Vec<f64>| {
-        let mut row = vec![0.0; b.len()];
-        for (&factor, b) in a.iter().zip(b).filter(|(factor, _)| **factor != 0.0) {
-            row.iter_mut().zip(b).for_each(|(x, b)| *x += factor * b);
-        }
-        row
-    };
-    a.iter().map(row).collect()
 }
 
 #[cfg(test)]
@@ -229,10 +178,13 @@ mod tests {
     fn tables_that_are_none_are_refused_in_words() {
         let refused = |table, hold| RandomLatency::new(table, hold).unwrap_err().to_string();
         assert!(refused(vec![], 0.0).contains("no latencies"));
-        assert!(refused(vec![(0, 0.5), (2, 0.4)], 0.0).contains("sum to 0.9"));
-        assert!(refused(vec![(0, 1.5), (2, -0.5)], 0.0).contains("1.5"));
-        assert!(refused(vec![(0, 1.0)], f64::NAN).contains("NaN"));
-        assert!(refused(vec![(65, 1.0)], 0.0).contains("2278 second moments"));
-        assert!(refused(vec![(usize::MAX, 1.0)], 0.0).contains("at most 600"));
+        assert!(refused(vec![(0.0, 0.5), (2.0, 0.4)], 0.0).contains("sum to 0.9"));
+        assert!(refused(vec![(0.0, 1.5), (2.5, -0.5)], 0.0).contains("1.5"));
+        assert!(refused(vec![(0.0, 1.0)], f64::NAN).contains("NaN"));
+        assert!(refused(vec![(65.0, 1.0)], 0.0).contains("2278 second moments"));
+        assert!(refused(vec![(4096.0, 1.0)], 0.0).contains("at most 600"));
+        for bad in [-1.0, f64::NAN, 5000.0] {
+            assert!(refused(vec![(bad, 1.0)], 0.0).contains(&format!("a latency is {bad} steps")));
+        }
     }
 }

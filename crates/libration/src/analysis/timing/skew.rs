@@ -58,7 +58,7 @@ impl Plant<'_> {
 
 /// The first `x` with `sin x = x/e`.
 fn sinc_root() -> Wide {
-    let share = exponential_of_minus_one();
+    let share = Wide::one().exp().recip();
     let mut x = Wide::from_f64(2.199);
     // Newton's iteration, from eleven good bits on.
     for _ in 0..8 {
@@ -66,13 +66,4 @@ fn sinc_root() -> Wide {
         x = x - (sine - share * x) / (cosine - share);
     }
     x
-}
-
-/// `1/e`.
-fn exponential_of_minus_one() -> Wide {
-    let terms = (1..200).scan(Wide::one(), |term, k| {
-        *term = term.ratio(-1, k);
-        Some(*term)
-    });
-    terms.fold(Wide::one(), |sum, term| sum + term)
 }

@@ -4,6 +4,8 @@ use super::noise::once;
 use super::{Clock, Gaussian, Noise, forward};
 use crate::Float;
 use crate::analysis::Jitter;
+use crate::control::ControlError;
+use crate::control::error::{ensure, not_negative};
 use crate::random::Purpose;
 
 /// Steps of `1 + ε`, where `ε` is an autoregressive process of first order: `εₙ₊₁ = φ·εₙ + √(1 − φ²)·σ·ξ` with
@@ -21,6 +23,12 @@ impl<T: Float> Clock<T> for Correlated {
     type Beat = ();
 
     const DRAWS: bool = true;
+
+    fn check(&self) -> Result<(), ControlError> {
+        not_negative("the rms of correlated steps", self.rms)?;
+        let within = |x: f64| (-1.0..=1.0).contains(&x);
+        ensure("the correlation of steps", self.correlation, "from -1 to 1", within)
+    }
 
     fn start(&self, seed: u64, trajectory: u64) -> [T; 1] {
         let law = Jitter::Gaussian(self.rms);

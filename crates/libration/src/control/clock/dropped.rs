@@ -2,6 +2,8 @@
 
 use super::Clock;
 use crate::Float;
+use crate::control::ControlError;
+use crate::control::error::ensure;
 use crate::random::uniform;
 
 /// A clock of which each tick is missed with a probability: no time passes in that step, and the next one that is
@@ -17,6 +19,16 @@ impl<T: Float> Clock<T> for Dropped {
     type Beat = ();
 
     const DRAWS: bool = true;
+
+    fn check(&self) -> Result<(), ControlError> {
+        let below_one = |p: f64| (0.0..1.0).contains(&p);
+        ensure(
+            "the probability of a missed tick",
+            self.probability,
+            "at least 0 and below 1",
+            below_one,
+        )
+    }
 
     fn start(&self, _: u64, _: u64) -> [T; 1] {
         [T::zero()]

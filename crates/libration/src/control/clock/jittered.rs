@@ -2,6 +2,8 @@
 
 use super::{Clock, Noise, forward};
 use crate::Float;
+use crate::control::ControlError;
+use crate::control::error::law;
 
 /// Steps of `1 + ε`, with another `ε` for every step, independent of all others.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +17,10 @@ impl<T: Float, N: Noise> Clock<T> for Jittered<N> {
     type Beat = ();
 
     const DRAWS: bool = true;
+
+    fn check(&self) -> Result<(), ControlError> {
+        law("the rms of step times", self.0.law())
+    }
 
     fn start(&self, _: u64, _: u64) -> [T; 0] {
         []

@@ -2,6 +2,8 @@
 
 use super::{Clock, forward};
 use crate::Float;
+use crate::control::ControlError;
+use crate::control::error::{not_negative, probability};
 use crate::random::{Address, Purpose, uniform};
 
 /// A clock whose ticks come late by a random time and do not pass it on: a long step is followed by a short one, as
@@ -28,6 +30,11 @@ impl<T: Float> Clock<T> for Late {
     type Beat = ();
 
     const DRAWS: bool = true;
+
+    fn check(&self) -> Result<(), ControlError> {
+        probability("the probability of a late tick", self.probability)?;
+        not_negative("the lateness of a tick", self.by)
+    }
 
     fn start(&self, seed: u64, trajectory: u64) -> [T; 1] {
         let place = Address { seed, trajectory, step: 0, purpose: Purpose::ClockStart };

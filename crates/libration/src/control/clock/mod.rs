@@ -20,7 +20,7 @@ pub use steady::{Drifting, Fixed, Rates, Skewed};
 pub use wandering::Wandering;
 pub use waving::Waving;
 
-use super::Memory;
+use super::{ControlError, Memory};
 use crate::Float;
 
 /// Tells of every step of every trajectory how long it is, as a multiple of the time step `Δt`.
@@ -35,6 +35,14 @@ pub trait Clock<T: Float>: Copy + Send + Sync {
 
     /// Whether steps are random.
     const DRAWS: bool = false;
+
+    /// Whether its numbers are those of a clock; [`Loops`](crate::ensemble::Loops) ask before they begin.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check(&self) -> Result<(), ControlError> {
+        Ok(())
+    }
 
     /// The memory before the first step of `trajectory`, in the run of this seed.
     fn start(&self, seed: u64, trajectory: u64) -> Self::Memory;
@@ -73,6 +81,11 @@ impl<T: Float, A: Clock<T>, B: Clock<T>> Clock<T> for (A, B) {
     type Beat = (A::Beat, B::Beat);
 
     const DRAWS: bool = A::DRAWS || B::DRAWS;
+
+    fn check(&self) -> Result<(), ControlError> {
+        self.0.check()?;
+        self.1.check()
+    }
 
     fn start(&self, seed: u64, trajectory: u64) -> Self::Memory {
         (self.0.start(seed, trajectory), self.1.start(seed, trajectory))

@@ -4,6 +4,8 @@ use thiserror::Error;
 
 use super::Clock;
 use crate::Float;
+use crate::control::ControlError;
+use crate::control::error::{ensure, none_negative};
 
 /// The steps between the time stamps of a loop that ran.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +22,14 @@ pub enum RecordedError {
     TooFew {
         /// How many there are.
         count: usize,
+    },
+    /// A line of a file is no time stamp.
+    #[error("line {line} is `{text}`; it must begin with a number, the time in seconds")]
+    Line {
+        /// Which, from 1 on.
+        line: usize,
+        /// What stands there.
+        text: String,
     },
     /// One is infinite or not a number.
     #[error("time stamp {index} is {value}: it must be a number")]
@@ -48,12 +58,51 @@ pub enum RecordedError {
 }
 
 impl<'a> Recorded<'a> {
+    /// The time stamps, in seconds, of a file: one on each line, of which columns after a comma do not count. Empty lines and those
+    /// that begin with `#` are passed over, and so is the first line if it is the name of a column.
+    ///
+    /// # Errors
+    /// The first line that is no time stamp.
+    pub fn stamps_in(text: &str) -> Result<Vec<f64>, RecordedError> {
+        let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
+        let told = lines.filter(|(_, line)| !(line.is_empty() || line.starts_with('#')));
+        let mut stamps = Vec::new();
+        for (nth, (line, text)) in told.enumerate() {
+            let first = text.split(',').next().unwrap_or(text).trim();
+            let named = nth == 0 && first.starts_with(|c: char| c.is_alphabetic() || c == '"');
+            match first.parse() {
+                Ok(stamp) => stamps.push(stamp),
+                Err(_) if named => {}
+                Err(_) => {
+                    let text = text.chars().take(40).collect();
+                    return Err(RecordedError::Line { line, text });
+                }
+            }
+        }
+        Ok(stamps)
+    }
+
+    /// The steps between `stamps`, which are in seconds, as multiples of `dt` seconds.
+    ///
+    /// # Errors
+    /// As of [`Recorded::steps_between`].
+    pub fn steps_in(stamps: &[f64], dt: f64) -> Result<Vec<f64>, RecordedError> {
+        Self::mean_step(stamps)?;
+        Ok(stamps.windows(2).map(|pair| (pair[1] - pair[0]) / dt).collect())
+    }
+
     /// The steps between `stamps`, which are in seconds, as multiples of their mean; and that mean in seconds.
     ///
     /// # Errors
     /// If there are fewer than two stamps, if one is not a number or lies before the one in front of it, or if all are
     /// the same.
     pub fn steps_between(stamps: &[f64]) -> Result<(Vec<f64>, f64), RecordedError> {
+        let mean = Self::mean_step(stamps)?;
+        Ok((Self::steps_in(stamps, mean)?, mean))
+    }
+
+    /// The mean step in seconds.
+    fn mean_step(stamps: &[f64]) -> Result<f64, RecordedError> {
         if let Some(index) = stamps.iter().position(|stamp| !stamp.is_finite()) {
             return Err(RecordedError::NotFinite { index, value: stamps[index] });
         }
@@ -72,7 +121,7 @@ impl<'a> Recorded<'a> {
         if !(mean > 0.0 && mean.is_finite()) {
             return Err(RecordedError::NoTime { mean });
         }
-        Ok((stamps.windows(2).map(|pair| (pair[1] - pair[0]) / mean).collect(), mean))
+        Ok(mean)
     }
 
     /// These steps, as multiples of `Δt`, for all trajectories. A run that is longer is refused.
@@ -89,6 +138,12 @@ impl<'a> Recorded<'a> {
 impl<T: Float> Clock<T> for Recorded<'_> {
     type Memory = [T; 0];
     type Beat = T;
+
+    fn check(&self) -> Result<(), ControlError> {
+        none_negative("recorded step", self.ratios)?;
+        let count = self.ratios.len() as f64;
+        ensure("the number of recorded steps", count, "at least 1", |count| count > 0.0)
+    }
 
     fn start(&self, _: u64, _: u64) -> [T; 0] {
         []

@@ -4,6 +4,8 @@ use super::noise::once;
 use super::{Clock, forward};
 use crate::Float;
 use crate::analysis::Jitter;
+use crate::control::ControlError;
+use crate::control::error::{law, none_negative};
 use crate::random::Purpose;
 
 /// Every step is as long as the others.
@@ -37,6 +39,10 @@ impl<T: Float> Clock<T> for Skewed {
     type Memory = [T; 1];
     type Beat = ();
 
+    fn check(&self) -> Result<(), ControlError> {
+        law("the rms of clock rates", self.0)
+    }
+
     fn start(&self, seed: u64, trajectory: u64) -> [T; 1] {
         [forward(T::from_f64(once(self.0, Purpose::ClockRate, seed, trajectory)))]
     }
@@ -59,6 +65,10 @@ pub struct Rates<'a>(
 impl<T: Float> Clock<T> for Rates<'_> {
     type Memory = [T; 1];
     type Beat = ();
+
+    fn check(&self) -> Result<(), ControlError> {
+        none_negative("clock rate", self.0)
+    }
 
     fn start(&self, _: u64, trajectory: u64) -> [T; 1] {
         // Beyond the last are those that only fill a block.
@@ -88,6 +98,10 @@ pub struct Drifting(
 impl<T: Float> Clock<T> for Drifting {
     type Memory = [T; 1];
     type Beat = T;
+
+    fn check(&self) -> Result<(), ControlError> {
+        law("the rms of clock drifts", self.0)
+    }
 
     fn start(&self, seed: u64, trajectory: u64) -> [T; 1] {
         [T::from_f64(once(self.0, Purpose::ClockDrift, seed, trajectory))]

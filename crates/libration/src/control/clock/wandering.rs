@@ -2,6 +2,8 @@
 
 use super::{Clock, Gaussian, Noise, forward};
 use crate::Float;
+use crate::control::ControlError;
+use crate::control::error::not_negative;
 
 /// Steps of `1 + ε`, where `ε` begins at zero and changes by an independent Gaussian number in every step.
 ///
@@ -18,6 +20,10 @@ impl<T: Float> Clock<T> for Wandering {
     type Beat = ();
 
     const DRAWS: bool = true;
+
+    fn check(&self) -> Result<(), ControlError> {
+        not_negative("the rms of changes of the rate", self.rms)
+    }
 
     fn start(&self, _: u64, _: u64) -> [T; 1] {
         [T::zero()]

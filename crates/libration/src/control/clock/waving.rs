@@ -3,6 +3,8 @@
 use core::f64::consts::{SQRT_2, TAU};
 
 use super::{Clock, forward};
+use crate::control::ControlError;
+use crate::control::error::{finite, not_negative};
 use crate::{Elementary, Float};
 
 /// Steps of `1 + √2·σ·sin(φn + φ₀)`: at twice the angle by which the loop turns in a step it is in resonance.
@@ -19,6 +21,12 @@ pub struct Waving {
 impl<T: Float> Clock<T> for Waving {
     type Memory = [T; 0];
     type Beat = T;
+
+    fn check(&self) -> Result<(), ControlError> {
+        not_negative("the rms of waving steps", self.rms)?;
+        finite("the rate of waving steps", self.rate)?;
+        finite("the phase of waving steps", self.phase)
+    }
 
     fn start(&self, _: u64, _: u64) -> [T; 0] {
         []

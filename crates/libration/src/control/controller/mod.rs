@@ -8,11 +8,11 @@ mod state_feedback;
 
 pub use force::Force;
 pub use open::Open;
-pub use pid::{Pid, PidError, PidGains};
+pub use pid::{Pid, PidGains};
 pub use saturated::Saturated;
 pub use state_feedback::StateFeedback;
 
-use super::Memory;
+use super::{ControlError, Memory};
 use crate::{Float, State};
 
 /// Computes commands: an acceleration in each degree of freedom.
@@ -23,6 +23,16 @@ pub trait Controller<T: Float, const D: usize>: Copy + Send + Sync {
 
     /// What it keeps of a trajectory from sample to sample.
     type Memory: Memory<T>;
+
+    /// Whether its numbers are those of a controller that samples every `period` seconds; [`Loops`](crate::ensemble::Loops)
+    /// ask before they begin.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check(&self, period: f64) -> Result<(), ControlError> {
+        let _ = period;
+        Ok(())
+    }
 
     /// The memory before the first sample of a trajectory that begins at `state`.
     fn start(&self, state: &State<T, D>) -> Self::Memory;

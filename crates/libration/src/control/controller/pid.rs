@@ -2,9 +2,9 @@
 
 use core::array::from_fn;
 
-use thiserror::Error;
-
 use super::{Controller, within};
+use crate::control::ControlError;
+use crate::control::error::{ensure, finite, not_negative};
 use crate::{Float, State};
 
 /// A discrete PID controller of the position, which is all that it observes: with a filter for its derivative, a
@@ -37,45 +37,21 @@ pub struct PidGains<const D: usize> {
     pub target: [f64; D],
 }
 
-/// A number that is none for a PID controller.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[error("{name} is {value}; it must be {allowed}")]
-pub struct PidError {
-    /// Which of them.
-    pub name: &'static str,
-    /// What it is.
-    pub value: f64,
-    /// What it may be.
-    pub allowed: &'static str,
-}
-
 impl<const D: usize> Pid<D> {
     /// A controller with these gains.
     ///
     /// # Errors
-    /// [`PidError`] if a gain or the target is not finite, the filter is negative, or limit or tracking time are not above
+    /// [`ControlError`] if a gain or the target is not finite, the filter is negative, or limit or tracking time are not above
     /// zero.
-    pub fn new(gains: PidGains<D>) -> Result<Self, PidError> {
-        let finite = [
-            ("proportional", gains.proportional),
-            ("integral", gains.integral),
-            ("derivative", gains.derivative),
-        ];
-        let targets = gains.target.map(|x| ("target", x));
-        for (name, value) in finite.into_iter().chain(targets) {
-            if !value.is_finite() {
-                return Err(PidError { name, value, allowed: "a number" });
-            }
-        }
-        if !(gains.filter >= 0.0 && gains.filter.is_finite()) {
-            let (name, value) = ("filter", gains.filter);
-            return Err(PidError { name, value, allowed: "at least 0 s" });
-        }
-        for (name, value) in [("most", gains.most), ("tracking", gains.tracking)] {
-            if value.is_nan() || value <= 0.0 {
-                return Err(PidError { name, value, allowed: "above 0" });
-            }
-        }
+    pub fn new(gains: PidGains<D>) -> Result<Self, ControlError> {
+        finite("the proportional gain", gains.proportional)?;
+        finite("the integral gain", gains.integral)?;
+        finite("the derivative gain", gains.derivative)?;
+        gains.target.into_iter().try_for_each(|x| finite("the target", x))?;
+        not_negative("the time of the filter", gains.filter)?;
+        let positive = |x: f64| x > 0.0;
+        ensure("the largest command", gains.most, "above 0", positive)?;
+        ensure("the tracking time", gains.tracking, "above 0", positive)?;
         Ok(Pid { gains })
     }
 }
@@ -83,6 +59,13 @@ impl<const D: usize> Pid<D> {
 impl<T: Float, const D: usize> Controller<T, D> for Pid<D> {
     /// The integral term, the last position, the filtered derivative term.
     type Memory = ([T; D], ([T; D], [T; D]));
+
+    /// At the limit what it takes away decays by `1 − h/tracking` a sample: below half a sample that grows.
+    fn check(&self, period: f64) -> Result<(), ControlError> {
+        let decays = |tracking: f64| self.gains.most.is_infinite() || 2.0 * tracking > period;
+        let allowed = "more than half the sample time";
+        ensure("the tracking time", self.gains.tracking, allowed, decays)
+    }
 
     fn start(&self, state: &State<T, D>) -> Self::Memory {
         ([T::zero(); D], (state.q, [T::zero(); D]))

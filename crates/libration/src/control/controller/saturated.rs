@@ -1,6 +1,8 @@
 //! Actuators that can only do so much.
 
 use super::{Controller, within};
+use crate::control::ControlError;
+use crate::control::error::ensure;
 use crate::{Float, State};
 
 /// A controller whose command goes no further than `±most` in each degree of freedom.
@@ -14,6 +16,11 @@ pub struct Saturated<C> {
 
 impl<T: Float, C: Controller<T, D>, const D: usize> Controller<T, D> for Saturated<C> {
     type Memory = C::Memory;
+
+    fn check(&self, period: f64) -> Result<(), ControlError> {
+        ensure("the largest command", self.most, "at least 0", |most| most >= 0.0)?;
+        self.controller.check(period)
+    }
 
     fn start(&self, state: &State<T, D>) -> C::Memory {
         self.controller.start(state)

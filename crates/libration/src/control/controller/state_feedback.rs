@@ -2,6 +2,8 @@
 
 use super::Controller;
 use crate::analysis::Feedback;
+use crate::control::ControlError;
+use crate::control::error::finite;
 use crate::{Float, State};
 
 /// `u = −K_p·(q − r) − K_d·v`, the same gains in each degree of freedom: PD control, or what
@@ -23,6 +25,12 @@ impl<const D: usize> StateFeedback<D> {
 
 impl<T: Float, const D: usize> Controller<T, D> for StateFeedback<D> {
     type Memory = [T; 0];
+
+    fn check(&self, _: f64) -> Result<(), ControlError> {
+        finite("the gain of the position", self.gains.position)?;
+        finite("the gain of the velocity", self.gains.velocity)?;
+        self.target.into_iter().try_for_each(|x| finite("the target", x))
+    }
 
     fn start(&self, _: &State<T, D>) -> [T; 0] {
         []

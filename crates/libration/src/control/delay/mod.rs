@@ -12,7 +12,7 @@ pub use random::Random;
 pub use recorded::{RecordedLatencies, RecordedLatenciesError};
 pub use schedule::{Event, Schedule, ScheduleError};
 
-use super::Memory;
+use super::{ControlError, Memory};
 use crate::Float;
 
 /// Tells which command acts.
@@ -21,16 +21,24 @@ use crate::Float;
 pub trait Delay<T: Float>: Copy + Send + Sync {
     /// Whether there is one schedule for all.
     const SHARED: bool = false;
-    /// Whether a command can arrive within a step, which then splits.
-    const SPLITS: bool;
+    /// In how many places a step can split: where a command arrives, and where the loop looks.
+    const SPLITS: usize;
 
     /// What it keeps of a trajectory.
     type Memory: Memory<T>;
     /// What is the same for all trajectories at a step.
     type Beat: Copy;
 
-    /// The times of samples and commands that all trajectories share. Where they do not, commands are computed at the
-    /// beginning of every step.
+    /// Whether its numbers are those of a delay; [`Loops`](crate::ensemble::Loops) ask before they begin.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check(&self) -> Result<(), ControlError> {
+        Ok(())
+    }
+
+    /// The times of samples and commands that all trajectories share. Where they do not, a command is computed in every
+    /// step.
     fn schedule(&self) -> Schedule {
         Schedule::EVERY_STEP
     }
@@ -75,22 +83,25 @@ pub struct Arrival<T> {
     pub fresh: bool,
     /// How many steps ago it was computed; what is older than the longest latency never arrives.
     pub age: u32,
-    /// After which part of the step it arrives; at least 0 and below 1.
+    /// After which part of the step it arrives; at least 0 and below 1. It is 0 unless steps split.
     pub part: T,
+    /// After which part of the step the loop looks, and a command is computed that is of age 0 in this step; at least 0 and below 1.
+    /// It is 0 unless steps split in two places, and what arrives in the same step is older.
+    pub looks: T,
 }
 
 impl<T: Float> Arrival<T> {
     /// A command of `age` steps ago that arrives with the beginning of the step.
     #[inline(always)]
     fn of_age(age: u32) -> Self {
-        Arrival { fresh: true, age, part: T::zero() }
+        Arrival { fresh: true, age, part: T::zero(), looks: T::zero() }
     }
 }
 
 /// A schedule is a delay: the same for all trajectories.
 impl<T: Float> Delay<T> for Schedule {
     const SHARED: bool = true;
-    const SPLITS: bool = true;
+    const SPLITS: usize = 2;
 
     type Memory = [T; 0];
     type Beat = ();

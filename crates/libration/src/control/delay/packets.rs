@@ -17,6 +17,8 @@ pub struct Packets {
     /// Above which uniform number on (−1, 1) a packet takes longer than `i` steps.
     limits: [f32; PLACES],
     longest: usize,
+    /// What a packet takes besides whole steps.
+    part: f64,
     order: Order,
 }
 
@@ -43,6 +45,9 @@ pub enum PacketsError {
         /// What it is.
         value: f64,
     },
+    /// It is none, or there are whole steps in it.
+    #[error("the part of a step is {0}; it must be at least 0 and below 1")]
+    Part(f64),
     /// More than all.
     #[error("the probabilities sum to {0}; it must be at most 1, and the rest is lost")]
     Sum(f64),
@@ -72,12 +77,21 @@ impl Packets {
             // What rounding leaves to 1 is nobody's.
             *limit = if below >= 1.0 - 1e-12 { 1.0 } else { (2.0 * below - 1.0) as f32 };
         }
-        Ok(Packets { limits, longest: probabilities.len() - 1, order })
+        Ok(Packets { limits, longest: probabilities.len() - 1, part: 0.0, order })
+    }
+
+    /// These, each of which takes this part of a step longer.
+    ///
+    /// # Errors
+    /// If it is negative, or 1 or more.
+    pub fn longer_by(self, part: f64) -> Result<Self, PacketsError> {
+        let fits = (0.0..1.0).contains(&part);
+        fits.then_some(Packets { part, ..self }).ok_or(PacketsError::Part(part))
     }
 }
 
 impl<T: Float> Delay<T> for Packets {
-    const SPLITS: bool = false;
+    const SPLITS: usize = 1;
 
     /// The age of the command that acts; and in how many steps the packets of the last steps arrive, or −1.
     type Memory = ([T; 1], [T; PLACES]);
@@ -129,6 +143,6 @@ impl<T: Float> Delay<T> for Packets {
         let newer = T::from_f64(f64::from(age)) < older;
         let fresh = fresh & (newer | (self.order == Order::LastActs));
         held[0] = if fresh { T::from_f64(f64::from(age)) } else { older };
-        Arrival { fresh, age, part: T::zero() }
+        Arrival { fresh, age, part: T::from_f64(self.part), looks: T::zero() }
     }
 }

@@ -14,25 +14,25 @@ pub struct Random<'a>(
 );
 
 impl Random<'_> {
-    /// The latency for a number that is uniform on (−1, 1).
+    /// The entry for a number that is uniform on (−1, 1).
     #[inline(always)]
     fn pick<T: Float>(&self, number: f32) -> T {
         let share = (f64::from(number) + 1.0) / 2.0;
-        let (mut below, mut steps) = (0.0, 0.0);
-        for &(latency, probability) in self.0.table() {
+        let (mut below, mut entry) = (0.0, 0.0);
+        for (i, &(_, probability)) in self.0.table().iter().enumerate() {
             // The last one whose range begins below.
             let here = probability > 0.0 && share >= below;
-            steps = if here { latency as f64 } else { steps };
+            entry = if here { i as f64 } else { entry };
             below += probability;
         }
-        T::from_f64(steps)
+        T::from_f64(entry)
     }
 }
 
 impl<T: Float> Delay<T> for Random<'_> {
-    const SPLITS: bool = false;
+    const SPLITS: usize = 1;
 
-    /// The latency of the step before.
+    /// The entry of the step before.
     type Memory = [T; 1];
     type Beat = ();
 
@@ -52,15 +52,16 @@ impl<T: Float> Delay<T> for Random<'_> {
     }
 
     #[inline(always)]
-    fn arrival(
-        &self,
-        [latency]: &mut [T; 1],
-        (): (),
-        word: &mut impl FnMut() -> u32,
-    ) -> Arrival<T> {
+    fn arrival(&self, [entry]: &mut [T; 1], (): (), word: &mut impl FnMut() -> u32) -> Arrival<T> {
         let holds = uniform(word()) < (2.0 * self.0.hold() - 1.0) as f32;
         let fresh = self.pick(uniform(word()));
-        *latency = if holds { *latency } else { fresh };
-        Arrival::of_age(latency.to_f64() as u32)
+        *entry = if holds { *entry } else { fresh };
+        let (mut age, mut part) = (0, 0.0);
+        for (i, (latency, _)) in self.0.table().iter().enumerate() {
+            let this = entry.to_f64() == i as f64;
+            age = if this { latency.whole() as u32 } else { age };
+            part = if this { latency.part() } else { part };
+        }
+        Arrival { part: T::from_f64(part), ..Arrival::of_age(age) }
     }
 }

@@ -38,7 +38,7 @@ impl<'a> RecordedLatencies<'a> {
 }
 
 impl<T: Float> Delay<T> for RecordedLatencies<'_> {
-    const SPLITS: bool = true;
+    const SPLITS: usize = 1;
 
     type Memory = [T; 0];
     /// Whole steps, and the part of another.
@@ -69,6 +69,6 @@ impl<T: Float> Delay<T> for RecordedLatencies<'_> {
         (age, part): (u32, T),
         _: &mut impl FnMut() -> u32,
     ) -> Arrival<T> {
-        Arrival { fresh: true, age, part }
+        Arrival { fresh: true, age, part, looks: T::zero() }
     }
 }

@@ -51,9 +51,9 @@ pub enum ScheduleError {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// Command number so and so is computed from the state there.
-    Look(u64),
-    /// It begins to act.
-    Act(u64),
+    Look(i128),
+    /// It begins to act; a negative one is what acts before the first.
+    Act(i128),
 }
 
 impl Schedule {
@@ -101,25 +101,26 @@ impl Schedule {
         all.then(|| ((self.observation + self.action) >> FRACTION) as usize)
     }
 
-    /// What happens within a step, in order, each with the fraction of the step at which it does.
+    /// What happens within a step, in order, each with the fraction of the step at which it does. What would have been computed
+    /// before the start arrives as well: it is what acts before the first command.
     pub(crate) fn events(&self, step: u64) -> impl Iterator<Item = (f64, Event)> {
-        let begin = Time::from(step) << FRACTION;
+        let [begin, period, observation, action] =
+            [Time::from(step) << FRACTION, self.period, self.observation, self.action]
+                .map(Time::cast_signed);
         let end = begin + (1 << FRACTION);
-        let Schedule { period, observation, action } = *self;
+        let next = |time: i128| time.div_euclid(period) + i128::from(time.rem_euclid(period) > 0);
         // Commands whose look, or effect, lies in [begin, end).
-        let mut look = (begin + observation).div_ceil(period);
-        let mut act =
-            begin.saturating_sub(action).div_ceil(period).max(observation.div_ceil(period));
+        let (mut look, mut act) = (next(begin + observation), next(begin - action));
         core::iter::from_fn(move || {
             let (seen, done) = (look * period - observation, act * period + action);
-            let part = |time: Time| (time - begin) as f64 / (1_u128 << FRACTION) as f64;
+            let part = |time: i128| (time - begin) as f64 / (1_u128 << FRACTION) as f64;
             // A command that takes no time is computed first.
             if seen < end && seen <= done {
                 look += 1;
-                Some((part(seen), Event::Look((look - 1) as u64)))
+                Some((part(seen), Event::Look(look - 1)))
             } else if done < end {
                 act += 1;
-                Some((part(done), Event::Act((act - 1) as u64)))
+                Some((part(done), Event::Act(act - 1)))
             } else {
                 None
             }
@@ -151,8 +152,9 @@ mod tests {
     #[test]
     fn a_command_acts_when_its_latency_is_over_and_not_before() {
         let late = Schedule::new(1.0, 0.0, 2.25).unwrap();
-        assert_eq!(events(late, 0), [(0.0, Look(0))]);
-        assert_eq!(events(late, 1), [(0.0, Look(1))]);
+        // Steps split there before the first command as after it.
+        assert_eq!(events(late, 0), [(0.0, Look(0)), (0.25, Act(-2))]);
+        assert_eq!(events(late, 1), [(0.0, Look(1)), (0.25, Act(-1))]);
         assert_eq!(events(late, 2), [(0.0, Look(2)), (0.25, Act(0))]);
         assert_eq!(events(late, 5), [(0.0, Look(5)), (0.25, Act(3))]);
         assert_eq!((late.whole_steps(), late.commands_on_their_way()), (None, 3));
@@ -162,7 +164,7 @@ mod tests {
     fn an_observation_that_is_late_was_made_earlier() {
         let late = Schedule::new(1.0, 1.5, 0.5).unwrap();
         // Command 2 is computed at time 2, from the state at time 0.5; 1 would look at −0.5.
-        assert_eq!(events(late, 0), [(0.5, Look(2))]);
+        assert_eq!(events(late, 0), [(0.5, Look(2)), (0.5, Act(0))]);
         assert_eq!(events(late, 2), [(0.5, Look(4)), (0.5, Act(2))]);
     }
 

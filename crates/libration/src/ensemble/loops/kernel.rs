@@ -8,7 +8,7 @@ use pulp::{Simd, WithSimd};
 
 use super::rows::Block;
 use super::setup::{Layout, Setup};
-use crate::control::delay::{Arrival, Event};
+use crate::control::delay::Event;
 use crate::control::{Clock, Controller, Delay, Memory};
 use crate::ensemble::Assign;
 use crate::ensemble::kernel::{Lines, at, put};
@@ -88,6 +88,23 @@ where
                 (0..D).for_each(|i| memory.set(place + i, &commands[i]));
             }};
         }
+        macro_rules! look_where {
+            ($place:expr, $l:ident, $looks:expr) => {{
+                let place = layout.ring + $place * D;
+                let mut commands: [[T; W]; D] = from_fn(|i| memory.get(place + i, zero));
+                for $l in 0..W {
+                    let state = State { q: at(&q.0, $l), v: at(&v.0, $l) };
+                    let before = K::Memory::lane(&controllers, $l);
+                    let mut own = before;
+                    let command = controller.command(&mut own, &state, period);
+                    if $looks {
+                        put(&mut commands, $l, command);
+                        K::Memory::set_lane(&mut controllers, $l, own);
+                    }
+                }
+                (0..D).for_each(|i| memory.set(place + i, &commands[i]));
+            }};
+        }
         macro_rules! act {
             ($place:expr) => {{
                 let place = layout.ring + $place * D;
@@ -148,8 +165,8 @@ where
                             }
                         }
                         match event {
-                            Event::Look(k) => look!((k % layout.places as u64) as usize),
-                            Event::Act(k) => act!((k % layout.places as u64) as usize),
+                            Event::Look(k) => look!(k.rem_euclid(layout.places as i128) as usize),
+                            Event::Act(k) => act!(k.rem_euclid(layout.places as i128) as usize),
                         }
                     }
                     for l in 0..W {
@@ -159,37 +176,58 @@ where
             } else {
                 for step in begin..end {
                     let slot = (step % layout.places as u64) as usize;
-                    look!(slot);
                     let (beat, late) = (clock.beat(step), delay.beat(step));
-                    let (mut ages, mut rest) = ([NONE; W], [zero; W]);
+                    let (mut ages, mut parts, mut looks) = ([NONE; W], [zero; W], [zero; W]);
+                    let mut length = [zero; W];
                     for l in 0..W {
-                        let h = dt * ratio::<T, C, W>(&clock, &mut clocks, beat, &mut times, l);
+                        length[l] = dt * ratio::<T, C, W>(&clock, &mut clocks, beat, &mut times, l);
                         let mut own = L::Memory::lane(&delays, l);
-                        let Arrival { fresh, age, part } =
-                            delay.arrival(&mut own, late, &mut || latencies.next(l));
+                        let arrival = delay.arrival(&mut own, late, &mut || latencies.next(l));
                         L::Memory::set_lane(&mut delays, l, own);
-                        ages[l] = if fresh { age } else { NONE };
-                        rest[l] = h;
-                        if const { L::SPLITS } {
-                            let before = part * h;
-                            under_command!(l, before);
-                            rest[l] = h - before;
-                        }
+                        ages[l] = if arrival.fresh { arrival.age } else { NONE };
+                        (parts[l], looks[l]) = (arrival.part, arrival.looks);
+                    }
+                    let mut gone = [zero; W];
+                    macro_rules! until {
+                        ($l:ident, $part:expr) => {{
+                            for $l in 0..W {
+                                let then = $part * length[$l];
+                                under_command!($l, then - gone[$l]);
+                                gone[$l] = then;
+                            }
+                        }};
                     }
                     // Row by row, which is vectors, and not lane by lane.
-                    for age in 0..layout.places {
-                        let place = (slot + layout.places - age) % layout.places;
-                        for i in 0..D {
-                            let row = memory.get(layout.ring + place * D + i, zero);
-                            for l in 0..W {
-                                let arrives = ages[l] == age as u32;
-                                held.0[i][l] = if arrives { row[l] } else { held.0[i][l] };
+                    macro_rules! arrive {
+                        ($l:ident, $arrives:expr) => {{
+                            for age in 0..layout.places {
+                                let place = (slot + layout.places - age) % layout.places;
+                                for i in 0..D {
+                                    let row = memory.get(layout.ring + place * D + i, zero);
+                                    for $l in 0..W {
+                                        let this = (ages[$l] == age as u32) & $arrives;
+                                        held.0[i][$l] = if this { row[$l] } else { held.0[i][$l] };
+                                    }
+                                }
                             }
+                        }};
+                    }
+                    if const { L::SPLITS < 2 } {
+                        look!(slot);
+                        if const { L::SPLITS > 0 } {
+                            until!(l, parts[l]);
                         }
+                        arrive!(l, true);
+                    } else {
+                        // In some lanes the look comes first, in others the command.
+                        until!(l, if looks[l] <= parts[l] { looks[l] } else { parts[l] });
+                        look_where!(slot, l, looks[l] <= parts[l]);
+                        arrive!(l, looks[l] > parts[l]);
+                        until!(l, if looks[l] <= parts[l] { parts[l] } else { looks[l] });
+                        look_where!(slot, l, looks[l] > parts[l]);
+                        arrive!(l, looks[l] <= parts[l]);
                     }
-                    for (l, &rest) in rest.iter().enumerate() {
-                        under_command!(l, rest);
-                    }
+                    until!(l, T::one());
                 }
             }
             begin = end;

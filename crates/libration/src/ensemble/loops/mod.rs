@@ -15,6 +15,7 @@ pub use setup::Setup;
 pub use snapshot::Snapshot;
 
 use super::{Assign, Ensemble, EnsembleError, Execution, GRAIN, Nobody, Observer, chunk, shares};
+use crate::control::error::finite;
 use crate::control::{Clock, Controller, Delay, Memory};
 use crate::{Float, Integrator, State, System};
 use kernel::Common;
@@ -80,7 +81,8 @@ where
     ///
     /// # Errors
     /// [`EnsembleError::TimeStep`] if `dt` is not above zero; [`EnsembleError::Length`] if there are more or fewer
-    /// systems, rates or latencies than trajectories; [`EnsembleError::Memory`].
+    /// systems, rates or latencies than trajectories; [`EnsembleError::Control`] if a number of the setup, or `before`, cannot
+    /// be; [`EnsembleError::Memory`].
     pub fn new(
         setup: Setup<A, M, K, C, L>,
         dt: T,
@@ -92,6 +94,11 @@ where
         if !(dt > T::zero() && dt.is_finite()) {
             return Err(EnsembleError::TimeStep { dt: dt.to_f64() });
         }
+        setup.clock.check()?;
+        setup.delay.check()?;
+        let period = dt.to_f64() * setup.delay.schedule().period();
+        setup.controller.check(period)?;
+        before.iter().try_for_each(|x| finite("the command before the first", x.to_f64()))?;
         let len = states.len();
         for (what, values) in [
             ("systems", setup.systems.count()),

@@ -145,6 +145,22 @@ impl Wide {
         Wide::rounded(doublings < 0, count, 0) * ln_2() + t.odd_series(t * t).scaled(1)
     }
 
+    /// The exponential of a number of magnitude below 2¹⁰, with a relative error of at most 2⁻¹⁰⁰⁰; NaN beyond.
+    pub fn exp(self) -> Self {
+        if self.exponent().is_some_and(|e| e > 10) || self.is_nan() {
+            return Wide::NAN;
+        }
+        // A small part of it, whose exponential is squared again and again.
+        const HALVINGS: u32 = 18;
+        let part = self.scaled(-i64::from(HALVINGS));
+        let mut term = Wide::one();
+        let sum = Wide::series(Wide::one(), |k| {
+            term = (term * part).over_integer(k);
+            term
+        });
+        (0..HALVINGS).fold(sum, |power, _| power * power)
+    }
+
     /// The decimal logarithm, with a relative error of at most 2⁻¹⁰¹⁴; NaN unless positive.
     pub fn log10(self) -> Self {
         self.ln() / Wide::from_f64(10.0).ln()
