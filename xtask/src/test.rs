@@ -18,5 +18,8 @@ fn tests(arguments: &[String], report: Option<&Path>) -> Outcome {
     let interpreter = python::interpreter()?;
     let mut cargo = command::cargo("test --workspace");
     cargo.args(arguments).env("LIBRATION_PYTHON", interpreter);
-    command::run(report.map_or(&mut cargo, |folder| cargo.env("LIBRATION_REPORT", folder)))
+    if let Some(folder) = report {
+        cargo.env("LIBRATION_REPORT", folder);
+    }
+    command::run(&mut cargo)
 }

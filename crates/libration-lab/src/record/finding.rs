@@ -178,6 +178,12 @@ impl Finding {
     pub fn agrees(&self) -> bool {
         self.verdict == Verdict::Agrees
     }
+
+    /// Whether a prediction other than zero agrees, but so would zero: it is no larger than its tolerance.
+    pub fn agrees_as_zero_would(&self) -> bool {
+        let small = |p: f64| p != 0.0 && self.tolerance.tolerance.is_some_and(|t| t >= p.abs());
+        self.agrees() && self.relation == Relation::Equal && self.predicted.is_some_and(small)
+    }
 }
 
 #[cfg(test)]
@@ -199,6 +205,16 @@ mod tests {
         for (p, m) in [(f64::NAN, 1.0), (1.0, f64::NAN), (f64::INFINITY, f64::INFINITY)] {
             assert_eq!(equal(p, m, Tolerance::relative(1.0, "")), Verdict::Disagrees);
         }
+    }
+
+    #[test]
+    fn a_prediction_below_its_tolerance_says_no_more_than_zero() {
+        let found = |p, size| {
+            Finding::predicted("a.b", "", "1", p, p, Tolerance::absolute(size, ""))
+                .agrees_as_zero_would()
+        };
+        assert!(found(1e-3, 1e-2) && found(-1e-3, 1e-3));
+        assert!(!found(1e-3, 1e-4) && !found(0.0, 1.0));
     }
 
     #[test]

@@ -74,10 +74,14 @@ fn table(table: &Table, digits: usize) -> String {
 fn findings(findings: &[Finding]) -> String {
     let agree = findings.iter().filter(|f| f.verdict == Verdict::Agrees).count();
     let predicted = findings.iter().filter(|f| f.predicted.is_some()).count();
+    let small = match findings.iter().filter(|f| f.agrees_as_zero_would()).count() {
+        0 => String::new(),
+        small => format!("; {small} of them are smaller than their tolerance"),
+    };
     let rows: String = findings.iter().map(finding).collect();
     format!(
         "<details><summary>All findings: {agree} of {predicted} predictions agree with \
-         measurement</summary>{}<table><thead><tr><th>finding</th>\
+         measurement{small}</summary>{}<table><thead><tr><th>finding</th>\
          <th class=\"num\">predicted</th><th class=\"num\">measured</th><th class=\"num\">tolerance\
          </th><th>verdict</th></tr></thead><tbody>{rows}</tbody></table></div></details>\n",
         super::scroll("All findings")
@@ -86,6 +90,7 @@ fn findings(findings: &[Finding]) -> String {
 
 fn finding(finding: &Finding) -> String {
     let (class, verdict) = match finding.verdict {
+        Verdict::Agrees if finding.agrees_as_zero_would() => ("open", "agrees, as 0 would"),
         Verdict::Agrees => ("ok", "agrees"),
         Verdict::Disagrees => ("bad", "disagrees"),
         Verdict::Measured if finding.undecided.is_some() => ("open", "not judged"),

@@ -18,14 +18,15 @@ fn figures(page: &mut Page) -> Vec<String> {
     names
 }
 
-/// Of figures that are drawn from the same kinds of traces on axes of the same kinds, the first: its place and its name.
+/// Of figures with the same kinds of traces on axes of the same kinds, in one panel or in several, the first: its place
+/// and its name.
 fn kinds(page: &mut Page) -> Vec<(usize, String)> {
     let kinds = page.texts(
         "[...document.querySelectorAll('figure[data-figure]')].map((figure) => {
            const { data, layout } = JSON.parse(figure.querySelector('script').textContent);
-           const traces = data.map((t) => [t.type, t.mode, t.hoverinfo, t.xaxis, t.yaxis].join());
            const axes = Object.keys(layout).filter((key) => /axis/.test(key));
-           return [...new Set(traces)].sort() + axes.sort().map((key) => key + layout[key].type);
+           const types = [...data.map((t) => t.type), ...axes.map((key) => key[0] + layout[key].type)];
+           return [...new Set(types)].sort().join() + (axes.length > 2);
          })",
     );
     let first = |i: &usize| !kinds[..*i].contains(&kinds[*i]);

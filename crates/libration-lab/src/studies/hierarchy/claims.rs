@@ -2,20 +2,16 @@
 
 use super::imperfection::{Kind, PROFILES};
 use super::{SHORT, id};
-use crate::notation::{count, list};
+use crate::notation::count;
 use crate::record::{Finding, Judgement, Record, Ruling};
 
 /// Judges it from the findings of the record.
 pub(super) fn judge(record: &mut Record, long: u64) {
-    let settings: Vec<(String, Vec<String>)> = PROFILES
-        .iter()
-        .flat_map(|profile| [SHORT, long].map(|steps| (profile, steps)))
-        .map(|(profile, steps)| {
-            let ids = Kind::ALL.map(|kind| id(kind, profile, steps)).to_vec();
-            (format!("{} after {} steps", profile.title, count(steps)), ids)
-        })
+    let settings = PROFILES.iter().flat_map(|profile| [SHORT, long].map(|steps| (profile, steps)));
+    let ids: Vec<String> = settings
+        .flat_map(|(profile, steps)| Kind::ALL.map(|kind| id(kind, profile, steps)))
         .collect();
-    let ids: Vec<&str> = settings.iter().flat_map(|(_, ids)| ids).map(String::as_str).collect();
+    let ids: Vec<&str> = ids.iter().map(String::as_str).collect();
     let ruling = Ruling {
         id: "C67",
         source: "7.7, 9.6",
@@ -24,22 +20,28 @@ pub(super) fn judge(record: &mut Record, long: u64) {
     };
     record.judge(ruling, |findings| {
         let falls = |f: &[&Finding]| f.windows(2).all(|pair| pair[0].measured > pair[1].measured);
-        let holds: Vec<&str> = settings
-            .iter()
-            .zip(findings.chunks(Kind::ALL.len()))
-            .filter(|(_, f)| falls(f))
-            .map(|((title, _), _)| title.as_str())
-            .collect();
+        let orders: Vec<bool> = findings.chunks(Kind::ALL.len()).map(falls).collect();
+        // Two horizons each.
+        let named = PROFILES.iter().zip(orders.chunks(2)).filter_map(|(profile, order)| {
+            let after = match *order {
+                [true, true] => format!("{SHORT} and {} steps", count(long)),
+                [true, _] => format!("{SHORT} steps"),
+                [_, true] => format!("{} steps", count(long)),
+                _ => return None,
+            };
+            Some(format!("({}) after {after}", profile.title))
+        });
+        let named: Vec<String> = named.collect();
+        let holds = orders.iter().filter(|&&order| order).count();
         let because = format!(
-            "measured as the distance from the undisturbed orbit, that is the order in {} of {} settings: \
+            "measured as the distance from the undisturbed orbit, that is the order in {holds} of {} settings: \
              the sizes and the horizon decide, of which the source names none",
-            holds.len(),
-            settings.len()
+            orders.len()
         );
-        match holds.len() {
+        match holds {
             0 => Judgement::refuted(because),
-            n if n == settings.len() => Judgement::confirmed(because),
-            _ => Judgement::conditional(because).only(format!("at {}", list(&holds))),
+            n if n == orders.len() => Judgement::confirmed(because),
+            _ => Judgement::conditional(because).only(format!("at {}", named.join(" and at "))),
         }
     });
 }

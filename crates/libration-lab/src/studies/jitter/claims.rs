@@ -1,12 +1,9 @@
 //! The claims of the source report about jitter.
 
-use crate::notation::number;
+use crate::notation::{count, number};
 use crate::record::{Finding, Judgement, Record, Ruling};
 
-/// The condition of boundedness.
-const SHORT: &str = "the run is short beside 1/γ, as at Δt = 1 ms";
-
-/// Settings far on either side of it.
+/// Settings far on either side of `1/γ`.
 const STILL: [&str; 2] = [
     "jitter.symplectic-euler.dt-0.001.rms-0.1.bounded",
     "jitter.velocity-verlet.dt-0.001.rms-0.1.bounded",
@@ -26,8 +23,8 @@ const PHASES: [&str; 4] = [
 const EXPLODED: f64 = 1.0;
 
 /// Judges them from the findings of the record.
-pub(super) fn judge(record: &mut Record) {
-    energy(record);
+pub(super) fn judge(record: &mut Record, steps: u64) {
+    energy(record, steps);
     phase(record);
     let findings = ["jitter.replay.same-seed", "jitter.replay.other-seed"];
     let text = "Under jitter the deterministic trajectory is no longer preserved.";
@@ -47,11 +44,11 @@ fn explodes(record: &Record) -> bool {
     GROWN.iter().all(|id| record.finding(id).is_ok_and(|f| f.measured > EXPLODED))
 }
 
-fn told(f: &[&Finding]) -> String {
+fn told(f: &[&Finding], steps: &str) -> String {
     format!(
         "ln E walks at random: 2γN on average, 2√(γN) wide, with γ = σ²z⁴/8 of symplectic Euler and σ²z⁶/32 \
-         of velocity Verlet. At Δt = 1 ms and σ = 10 % ln E stays within {} and {} over the whole run, at 0.3 s it \
-         has grown by {} and {}",
+         of velocity Verlet. At Δt = 1 ms and σ = 10 % ln E stays within {} and {} over {steps} steps, at \
+         0.3 s it has grown by {} and {}",
         number(f[0].measured, 2),
         number(f[1].measured, 2),
         number(f[2].measured, 3),
@@ -59,10 +56,12 @@ fn told(f: &[&Finding]) -> String {
     )
 }
 
-fn energy(record: &mut Record) {
+fn energy(record: &mut Record, steps: u64) {
     if !explodes(record) {
         return;
     }
+    let steps = count(steps);
+    let short = format!("the number of steps is small beside 1/γ, as {steps} are at Δt = 1 ms");
     let findings = [&STILL[..], &GROWN[..], &COMMUTES[..]].concat();
     let text = "Under jitter energy remains bounded with symplectic methods.";
     record.judge(Ruling { id: "C60", source: "7.4", text, findings: &findings }, |f| {
@@ -70,22 +69,22 @@ fn energy(record: &mut Record) {
             "{}. Steps of different lengths keep different ellipses, and to change between them pumps; steps of \
              RK4 are functions of one matrix and commute: at Δt = 0.1 s and σ = 10 % ln E spreads by {} with RK4, and by \
              {} with symplectic Euler",
-            told(f),
+            told(f, &steps),
             number(f[4].measured, 2),
             number(f[5].measured, 2)
         ))
-        .only(SHORT)
+        .only(&short)
     });
     let findings = [&STILL[..], &GROWN[..], &PHASES[..2]].concat();
     let text = "Over a long horizon jitter induces phase drift, not an explosion of energy.";
     record.judge(Ruling { id: "C93", source: "9.6", text, findings: &findings }, |f| {
         Judgement::conditional(format!(
             "{}; phases walk {} and {} rad meanwhile",
-            told(f),
+            told(f, &steps),
             number(f[4].measured, 2),
             number(f[5].measured, 2)
         ))
-        .only(SHORT)
+        .only(&short)
     });
 }
 

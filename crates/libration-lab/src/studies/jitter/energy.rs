@@ -26,7 +26,7 @@ const FAR: f64 = 6.0;
 pub(super) const FEW: f64 = 0.01;
 
 /// Steps of a run.
-fn horizon(lab: &Lab<'_>) -> u64 {
+pub(super) fn horizon(lab: &Lab<'_>) -> u64 {
     lab.effort.choose(10_000, 1_000_000, 1_000_000)
 }
 

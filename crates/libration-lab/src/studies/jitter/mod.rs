@@ -46,7 +46,7 @@ impl Study for Jitter {
         switching::measure(lab, &mut record)?;
         margin::measure(lab, &mut record)?;
         map::measure(lab, &mut record)?;
-        claims::judge(&mut record);
+        claims::judge(&mut record, energy::horizon(lab));
         Ok(record)
     }
 

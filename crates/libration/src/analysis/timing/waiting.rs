@@ -1,0 +1,102 @@
+//! A step of a loop with all that it has to know, and how its second moments grow.
+
+use super::Feedback;
+use super::latency::SplitStep;
+use crate::State;
+use crate::number::Wide;
+
+/// A square matrix, row by row.
+pub(super) type Matrix = Vec<Vec<f64>>;
+
+/// What a step has to know, `(q, v, u₋₁, u₋₂, …, u)`: the state, the commands that wait and, where steps split, the one that
+/// acts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Waiting {
+    pub(super) commands: usize,
+    pub(super) splits: bool,
+}
+
+impl Waiting {
+    /// The number of its coordinates.
+    pub(super) fn size(self) -> usize {
+        2 + self.commands + usize::from(self.splits)
+    }
+
+    /// A step in which the command of `d` steps ago takes over.
+    pub(super) fn step(self, step: &SplitStep, feedback: Feedback, d: usize) -> Matrix {
+        let n = self.size();
+        let gains = [feedback.position, feedback.velocity];
+        let numbers = |of: &State<Wide, 1>| [of.q[0], of.v[0]].map(Wide::to_f64);
+        let (old, new) = (numbers(&step.old), numbers(&step.new));
+        let mut matrix = vec![vec![0.0; n]; n];
+        for i in 0..2 {
+            for j in 0..2 {
+                let now = if d == 0 { -new[i] * gains[j] } else { 0.0 };
+                matrix[i][j] = step.phi.entry(i, j).to_f64() + now;
+            }
+            if d > 0 {
+                matrix[i][1 + d] = new[i];
+            }
+        }
+        for i in 3..2 + self.commands {
+            matrix[i][i - 1] = 1.0;
+        }
+        let command = gains.map(|gain| -gain);
+        if self.commands > 0 {
+            matrix[2][..2].copy_from_slice(&command);
+        }
+        if self.splits {
+            (0..2).for_each(|i| matrix[i][n - 1] += old[i]);
+            match d {
+                0 => matrix[n - 1][..2].copy_from_slice(&command),
+                _ => matrix[n - 1][1 + d] = 1.0,
+            }
+        }
+        matrix
+    }
+}
+
+/// Rows for columns.
+pub(super) fn transposed(m: &Matrix) -> Matrix {
+    (0..m.len()).map(|i| m.iter().map(|row| row[i]).collect()).collect()
+}
+
+/// The logarithm of the spectral radius: the growth of the norm of higher and higher powers (I. Gelfand, 1941), each the square of the
+/// one before. After 50 of them what norm and radius differ by is divided by 2⁵⁰.
+pub(super) fn growth(mut power: Matrix) -> f64 {
+    let (mut logarithm, mut share) = (0.0, 1.0);
+    for _ in 0..50 {
+        let norm = power.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
+        if norm == 0.0 {
+            return f64::NEG_INFINITY;
+        }
+        logarithm += share * norm.ln();
+        share /= 2.0;
+        power.iter_mut().flatten().for_each(|x| *x /= norm);
+        power = product(&power, &power);
+    }
+    logarithm
+}
+
+/// What a matrix makes of the products `xᵢxⱼ`, `i ≤ j`.
+pub(super) fn symmetric_square(m: &Matrix) -> Matrix {
+    let n = m.len();
+    let pairs: Vec<(usize, usize)> = (0..n).flat_map(|i| (i..n).map(move |j| (i, j))).collect();
+    let entry = |(i, j): (usize, usize), (k, l): (usize, usize)| match k == l {
+        true => m[i][k] * m[j][k],
+        false => m[i][k] * m[j][l] + m[i][l] * m[j][k],
+    };
+    pairs.iter().map(|&row| pairs.iter().map(|&column| entry(row, column)).collect()).collect()
+}
+
+/// Their product.
+pub(super) fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    let row = |a: &Vec<f64>| {
+        let mut row = vec![0.0; b.len()];
+        for (&factor, b) in a.iter().zip(b).filter(|(factor, _)| **factor != 0.0) {
+            row.iter_mut().zip(b).for_each(|(x, b)| *x += factor * b);
+        }
+        row
+    };
+    a.iter().map(row).collect()
+}

@@ -1,0 +1,57 @@
+//! Numbers that a loop cannot be made of.
+
+use thiserror::Error;
+
+use crate::analysis::Jitter;
+
+/// A number that a clock, a delay or a controller cannot have.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[error("{name}{} is {value}; it must be {allowed}", index.map_or_else(String::new, |i| format!(" {i}")))]
+pub struct ControlError {
+    /// Which of its numbers.
+    pub name: &'static str,
+    /// Which of those of that name, from 0 on, if there are several.
+    pub index: Option<usize>,
+    /// What it is.
+    pub value: f64,
+    /// What it may be.
+    pub allowed: &'static str,
+}
+
+/// `value`, if it is what is allowed.
+pub(crate) fn ensure(
+    name: &'static str,
+    value: f64,
+    allowed: &'static str,
+    holds: impl Fn(f64) -> bool,
+) -> Result<(), ControlError> {
+    if holds(value) { Ok(()) } else { Err(ControlError { name, index: None, value, allowed }) }
+}
+
+/// Neither infinite nor no number.
+pub(crate) fn finite(name: &'static str, value: f64) -> Result<(), ControlError> {
+    ensure(name, value, "a finite number", f64::is_finite)
+}
+
+/// Finite, and not below zero.
+pub(crate) fn not_negative(name: &'static str, value: f64) -> Result<(), ControlError> {
+    ensure(name, value, "a finite number of at least 0", |x| x >= 0.0 && x.is_finite())
+}
+
+/// What [`not_negative`] says of each of several.
+pub(crate) fn none_negative(name: &'static str, values: &[f64]) -> Result<(), ControlError> {
+    let each = values.iter().enumerate().map(|(i, &value)| {
+        not_negative(name, value).map_err(|error| ControlError { index: Some(i), ..error })
+    });
+    each.collect()
+}
+
+/// From 0 to 1.
+pub(crate) fn probability(name: &'static str, value: f64) -> Result<(), ControlError> {
+    ensure(name, value, "from 0 to 1", |x| (0.0..=1.0).contains(&x))
+}
+
+/// A law has a standard deviation.
+pub(crate) fn law(name: &'static str, law: Jitter) -> Result<(), ControlError> {
+    not_negative(name, law.rms())
+}
