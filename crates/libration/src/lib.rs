@@ -15,6 +15,7 @@ pub mod integrator;
 mod method;
 pub mod number;
 pub mod random;
+pub mod rl;
 mod scalar;
 pub mod simulation;
 mod state;

@@ -50,6 +50,12 @@ pub enum EnsembleError {
         /// Steps that are asked for.
         asked: u64,
     },
+    /// Nothing would move.
+    #[error("there are 0 substeps; there must be at least 1")]
+    Substeps,
+    /// There is a time limit, and nowhere to say that it was reached.
+    #[error("the environments have a time limit: the rollout must have room for `truncated`")]
+    Truncated,
     /// A snapshot of something else.
     #[error(
         "the snapshot is of other loops: {found} trajectories, where {len} are, or with another memory"

@@ -64,7 +64,7 @@ impl Execution {
     }
 
     /// How many threads so many of the shortest steps are worth.
-    pub(super) fn threads_for(&self, steps: u64) -> usize {
+    pub(crate) fn threads_for(&self, steps: u64) -> usize {
         let worth = usize::try_from(steps / self.worth).unwrap_or(usize::MAX).max(1);
         worth.min(self.thread_count())
     }

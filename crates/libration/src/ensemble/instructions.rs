@@ -107,7 +107,7 @@ impl<L: Loop> Targeted for Vectorized<L> {
 }
 
 /// An instruction set as a type, so that what is compiled for it can depend on it.
-pub(super) trait Target: Copy + Send + Sync {
+pub(crate) trait Target: Copy + Send + Sync {
     /// Vector registers that the architecture names.
     const REGISTERS: usize;
     /// Bytes in one of them.
@@ -154,7 +154,7 @@ impl Target for pulp::x86::V4 {
 }
 
 /// Work that is compiled once for every instruction set, to be run on one of them.
-pub(super) trait Targeted {
+pub(crate) trait Targeted {
     /// What it yields.
     type Output;
 
@@ -170,7 +170,7 @@ impl InstructionSet {
     }
 
     /// Runs `work` on this instruction set, or on the baseline where the processor lacks it.
-    pub(super) fn run<K: Targeted>(self, work: K) -> K::Output {
+    pub(crate) fn run<K: Targeted>(self, work: K) -> K::Output {
         match self {
             #[cfg(target_arch = "x86_64")]
             InstructionSet::Avx512 if let Some(target) = pulp::x86::V4::try_new() => {

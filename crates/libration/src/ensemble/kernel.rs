@@ -143,11 +143,11 @@ where
 
 /// Planes that begin with a cache line: no vector that is kept in memory lies across two.
 #[repr(align(64))]
-pub(super) struct Lines<P>(pub(super) P);
+pub(crate) struct Lines<P>(pub(crate) P);
 
 /// Lane `l` of each plane.
 #[inline(always)]
-pub(super) fn at<T: Copy, const D: usize, const W: usize>(
+pub(crate) fn at<T: Copy, const D: usize, const W: usize>(
     planes: &[[T; W]; D],
     l: usize,
 ) -> [T; D] {
@@ -156,7 +156,7 @@ pub(super) fn at<T: Copy, const D: usize, const W: usize>(
 
 /// Sets lane `l` of each plane.
 #[inline(always)]
-pub(super) fn put<T: Copy, const D: usize, const W: usize>(
+pub(crate) fn put<T: Copy, const D: usize, const W: usize>(
     planes: &mut [[T; W]; D],
     l: usize,
     values: [T; D],
