@@ -55,8 +55,8 @@ pub(crate) struct SimulateArgs {
     pub(crate) threads: usize,
     #[command(flatten)]
     pub(crate) timing: TimingArgs,
-    /// Steps as long as those between the time stamps of a loop that ran, in s, one on each line; --dt is then the step that
-    /// latencies are told in
+    /// Steps as long as those between the time stamps of a loop that ran, in s: one on each line, up to a comma, with `#` before
+    /// comments and perhaps a name above; --dt is the step that these are multiples of
     #[arg(long, value_name = "FILE")]
     pub(crate) time_stamps: Option<PathBuf>,
     /// Seed of all that is random: --jitter and --skew

@@ -10,8 +10,8 @@ pub(crate) struct TimingArgs {
     /// Close the loop: the command is −KP·q − KD·v
     #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
     pub(crate) feedback: Option<Feedback>,
-    /// How late the command arrives, as 0.015 (in s, of a clock that is right) or 1.5steps; up to 4096 steps, which
-    /// are as long as the loop's own
+    /// How late the command arrives, as 0.015 (in s) or 1.5steps; up to 4096 steps. A latency scales with the loop's own steps: in
+    /// s it is that of a loop whose steps are all --dt long
     #[arg(
         long,
         value_name = "TIME",
@@ -37,13 +37,21 @@ impl TimingArgs {
     }
 }
 
+/// Products of gains must stay far within the range of floats.
+const MOST_GAIN: f64 = 1e50;
+
+/// Nobody's clock is worse.
+const MOST_RMS: f64 = 100.0;
+
 fn finite(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|x: &f64| x.is_finite())
 }
 
 fn feedback(text: &str) -> Result<Feedback, String> {
-    let gains = text.split_once(',').and_then(|(kp, kd)| Some((finite(kp)?, finite(kd)?)));
-    let (position, velocity) = gains.ok_or("it must be two finite numbers, as 10,2")?;
+    let gain = |text| finite(text).filter(|x| x.abs() <= MOST_GAIN);
+    let gains = text.split_once(',').and_then(|(kp, kd)| Some((gain(kp)?, gain(kd)?)));
+    let (position, velocity) =
+        gains.ok_or("it must be two finite numbers, of at most 1e50 in size, as 10,2")?;
     Ok(Feedback { position, velocity })
 }
 
@@ -59,9 +67,9 @@ fn latency(text: &str) -> Result<Late, String> {
 }
 
 fn law(text: &str) -> Result<Jitter, String> {
-    let rule = "it must be one of the laws gaussian and uniform, and a finite rms of at least 0, as gaussian:0.1";
+    let rule = "it must be one of the laws gaussian and uniform, and an rms from 0 to 100, as gaussian:0.1";
     let (name, rms) = text.split_once(':').ok_or(rule)?;
-    let rms = finite(rms).filter(|&x| x >= 0.0).ok_or(rule)?;
+    let rms = finite(rms).filter(|x| (0.0..=MOST_RMS).contains(x)).ok_or(rule)?;
     match name {
         "gaussian" => Ok(Jitter::Gaussian(rms)),
         "uniform" => Ok(Jitter::Uniform(rms)),

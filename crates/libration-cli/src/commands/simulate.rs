@@ -1,7 +1,7 @@
 //! `libration simulate`.
 
-use std::fs;
-use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
+use std::fs::File;
+use std::io::{self, BufWriter, ErrorKind, IsTerminal, Read, Write};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -94,12 +94,21 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
     })
 }
 
+/// Bytes of the largest file of time stamps.
+const MOST_TEXT: u64 = 256_000_000;
+
 /// The steps between the time stamps of a file, in multiples of `dt` seconds.
 fn recorded(path: &Path, dt: f64) -> Result<Vec<f64>, Failure> {
     let wrong = |reason: String| {
         Failure::usage(format!("cannot use `{}` (--time-stamps): {reason}", path.display()))
     };
-    let text = fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
+    let mut text = String::new();
+    let file = File::open(path).map_err(|error| wrong(error.to_string()))?;
+    // A device may have no end.
+    let read = file.take(MOST_TEXT + 1).read_to_string(&mut text);
+    if read.map_err(|error| wrong(error.to_string()))? as u64 > MOST_TEXT {
+        return Err(wrong(format!("it is longer than {} MB", MOST_TEXT / 1_000_000)));
+    }
     let steps = Recorded::stamps_in(&text).and_then(|stamps| Recorded::steps_in(&stamps, dt));
     steps.map_err(|error| wrong(error.to_string()))
 }

@@ -55,7 +55,7 @@ pub enum AnalyzeError {
         dimension: usize,
     },
     /// There is no such latency.
-    #[error("--latency is {steps} steps, but must be a number from 0 to {}", Latency::MOST_STEPS)]
+    #[error("--latency is {steps:?} steps, but must be a number from 0 to {}", Latency::MOST_STEPS)]
     Latency {
         /// In steps.
         steps: f64,

@@ -1,18 +1,11 @@
 //! What timing does to the loop that a request describes.
 
 use libration::analysis::{Feedback, Jitter, Latency, Plant};
-use libration::integrator::Exact;
 use libration::number::Wide;
 use libration::{AnySystem, Model, Scalar, State};
 use serde::Serialize;
 
 use super::{AnalyzeError, Request, Stepping};
-
-/// Radians of an exact step up to which powers of its length stand for it to all digits.
-const TURNED: f64 = 3.0;
-
-/// The same of twice the angle that jitter adds, as an rms: in ten deviations of which a mean is summed.
-const BLURRED: f64 = 2.0;
 
 /// What is asked of timing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -81,15 +74,15 @@ pub struct TimingAnswer {
     /// Whether some steps would be negative, and are of length zero.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub jitter_clips: Option<bool>,
-    /// `ρ(E[M ⊗ M])`: the factor by which second moments grow in a step; none where exact steps turn too far for their
-    /// series, or with a latency of more than 17 steps.
+    /// `ρ(E[M ⊗ M])`: the factor by which second moments grow in a step; none where steps turn by more than 2048 rad in a
+    /// deviation, or with a latency of more than 17 steps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_square_radius: Option<Option<f64>>,
     /// The same minus one, without cancellation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_square_growth: Option<Option<f64>>,
-    /// The top Lyapunov exponent in a step; none with a latency, where the mean step does not turn, and where exact steps
-    /// turn too far.
+    /// The top Lyapunov exponent in a step; none with a latency, where the mean step does not turn, and where steps turn by more
+    /// than 2048 rad in a deviation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lyapunov_exponent: Option<Option<f64>>,
     /// Steps after which the mean of an ensemble of clocks has fallen to 1/e; none where nothing turns.
@@ -146,27 +139,19 @@ fn of_model(model: impl Model<1>, latency: Latency, request: &Request) -> Timing
         Stepping::Exact => Plant::exact(model, at, request.dt),
     };
     let feedback = timing.feedback.unwrap_or_default();
-    let known = |law: &Jitter| match request.stepping {
-        Stepping::Method(_) => true,
-        Stepping::Exact => {
-            let angle = Exact::angle(model, request.dt).unwrap_or(f64::INFINITY);
-            angle <= TURNED && 2.0 * angle * law.rms() <= BLURRED
-        }
-    };
+    let finite = |[radius, growth]: [f64; 2]| radius.is_finite().then_some([radius, growth]);
     let mean_square = timing.jitter.map(|law| {
-        if !known(&law) {
-            None
-        } else if latency == Latency::NONE {
+        if latency == Latency::NONE {
             let radius = plant.mean_square(feedback, law).radius;
-            Some([radius, radius - Wide::one()].map(Wide::to_f64))
+            finite([radius, radius - Wide::one()].map(Wide::to_f64))
         } else {
             let rate = plant.mean_square_rate_late(feedback, latency, law)?;
-            Some([rate.exp(), rate.exp_m1()])
+            finite([rate.exp(), rate.exp_m1()])
         }
     });
     let exponent = |law: Jitter| {
-        let found = known(&law) && latency == Latency::NONE;
-        found.then(|| plant.lyapunov_exponent(feedback, law)).flatten()
+        let found = (latency == Latency::NONE).then(|| plant.lyapunov_exponent(feedback, law));
+        found.flatten().filter(|exponent| exponent.is_finite())
     };
     let critical = || {
         let windows = plant.latency_windows(feedback);

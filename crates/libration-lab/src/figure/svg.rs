@@ -72,6 +72,13 @@ fn panel(placed: &Placed<'_>, clip: &str, out: &mut String) {
         px(edge.width),
         px(edge.height)
     );
+    // Lines may stand out by half their width, pictures not at all.
+    let _ = write!(
+        out,
+        "<clipPath id=\"{clip}-p\"><rect x=\"{x}\" y=\"{y}\" width=\"{}\" height=\"{}\"/></clipPath>",
+        px(rect.width),
+        px(rect.height)
+    );
     let (mut grid, mut minor, mut numbers) = (String::new(), String::new(), String::new());
     for tick in &placed.x_ticks {
         let at = px(placed.frame.x.at(tick.value));

@@ -105,7 +105,8 @@ fn answers(chapters: &[Chapter]) -> String {
         .enumerate()
         .map(|(i, c)| {
             let class = if i == 0 { " class=\"lead\"" } else { "" };
-            format!("<p{class}>{}</p>\n", prose(&c.page.answer))
+            let (question, answer) = (prose(&c.record.question), prose(&c.page.answer));
+            format!("<p{class}><span class=\"asked\">{question}</span> {answer}</p>\n")
         })
         .collect()
 }

@@ -150,7 +150,7 @@ fn start<S: Float, const D: usize>(request: &Request, scale: f64) -> State<S, D>
 pub(super) fn late(request: &Request, steps: f64) -> TrajectoryError {
     TrajectoryError::Value {
         name: "latency",
-        value: format!("{steps} steps of {:?} s", request.dt),
+        value: format!("{steps:?} steps of {:?} s", request.dt),
         allowed: format!("at least 0 and at most {} steps", Latency::MOST_STEPS),
     }
 }

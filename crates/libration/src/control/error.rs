@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::Float;
 use crate::analysis::Jitter;
 
 /// A number that a clock, a delay or a controller cannot have.
@@ -28,20 +29,26 @@ pub(crate) fn ensure(
     if holds(value) { Ok(()) } else { Err(ControlError { name, index: None, value, allowed }) }
 }
 
-/// Neither infinite nor no number.
-pub(crate) fn finite(name: &'static str, value: f64) -> Result<(), ControlError> {
-    ensure(name, value, "a finite number", f64::is_finite)
+/// Neither infinite nor no number, in `T` either.
+pub(crate) fn finite<T: Float>(name: &'static str, value: f64) -> Result<(), ControlError> {
+    ensure(name, value, "a finite number", f64::is_finite)?;
+    let held = |x: f64| T::from_f64(x).is_finite();
+    ensure(name, value, "small enough for the float type", held)
 }
 
-/// Finite, and not below zero.
-pub(crate) fn not_negative(name: &'static str, value: f64) -> Result<(), ControlError> {
-    ensure(name, value, "a finite number of at least 0", |x| x >= 0.0 && x.is_finite())
+/// [`finite`], and not below zero.
+pub(crate) fn not_negative<T: Float>(name: &'static str, value: f64) -> Result<(), ControlError> {
+    ensure(name, value, "a finite number of at least 0", |x| x >= 0.0 && x.is_finite())?;
+    finite::<T>(name, value)
 }
 
 /// What [`not_negative`] says of each of several.
-pub(crate) fn none_negative(name: &'static str, values: &[f64]) -> Result<(), ControlError> {
+pub(crate) fn none_negative<T: Float>(
+    name: &'static str,
+    values: &[f64],
+) -> Result<(), ControlError> {
     let each = values.iter().enumerate().map(|(i, &value)| {
-        not_negative(name, value).map_err(|error| ControlError { index: Some(i), ..error })
+        not_negative::<T>(name, value).map_err(|error| ControlError { index: Some(i), ..error })
     });
     each.collect()
 }
@@ -52,6 +59,6 @@ pub(crate) fn probability(name: &'static str, value: f64) -> Result<(), ControlE
 }
 
 /// A law has a standard deviation.
-pub(crate) fn law(name: &'static str, law: Jitter) -> Result<(), ControlError> {
-    not_negative(name, law.rms())
+pub(crate) fn law<T: Float>(name: &'static str, law: Jitter) -> Result<(), ControlError> {
+    not_negative::<T>(name, law.rms())
 }

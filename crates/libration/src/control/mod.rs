@@ -3,12 +3,14 @@
 //! A [`Clock`] tells how long steps are, a [`Delay`] when commands arrive, a [`Controller`] computes them.
 //! [`Loops`](crate::ensemble::Loops) runs them.
 
+mod begin;
 pub mod clock;
 pub mod controller;
 pub mod delay;
 pub(crate) mod error;
 mod memory;
 
+pub use begin::Begin;
 pub use clock::Clock;
 pub use controller::Controller;
 pub use delay::{Delay, Schedule};

@@ -162,3 +162,37 @@ fn two_clocks_in_a_pair_are_one_whose_steps_are_products() {
     let pair = ratios((Rates(&[2.0]), Recorded::once(&steps)), 1, 4);
     assert_eq!(pair[0], [1.0, 4.0, 2.0, 6.0]);
 }
+
+#[test]
+fn the_halves_of_a_pair_have_nothing_to_do_with_each_other() {
+    let pair = (Skewed(Jitter::Gaussian(0.1)), Skewed(Jitter::Gaussian(0.1)));
+    let steps = ratios(pair, 2000, 1).concat();
+    let mean = steps.iter().sum::<f64>() / 2000.0;
+    let variance = steps.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / 2000.0;
+    // Of a product of independent rates σ² twice, and 0.04 of equal ones; √(2/2000) = 3 %, four times that.
+    assert!((mean - 1.0).abs() < 0.0127 && (variance / 0.0201 - 1.0).abs() < 0.13, "{variance}");
+}
+
+#[test]
+fn what_begins_again_does_not_begin_alike() {
+    let clock = Correlated { rms: 0.1, correlation: 0.9 };
+    let setup = Setup::new(All(Oscillator { omega2: 0.0 }), SymplecticEuler).clock(clock);
+    let start = State { q: [0.0], v: [1.0] };
+    let mut all = Loops::new(setup, 1.0, 77, [0.0], &[start; 3], Execution::serial()).unwrap();
+    let mut first = Vec::new();
+    for _ in 0..4 {
+        all.reset(1, start);
+        let step = all.step();
+        all.advance(10).unwrap();
+        // The same as of any trajectory of that number that is reset at that step.
+        let other = [start; 2];
+        let mut again = Loops::new(setup, 1.0, 77, [0.0], &other, Execution::serial()).unwrap();
+        again.advance(step).unwrap();
+        again.reset(1, start);
+        again.advance(10).unwrap();
+        assert_eq!(again.state(1), all.state(1));
+        first.push(f64::to_bits(all.state(1).unwrap().q[0]));
+    }
+    first.dedup();
+    assert_eq!(first.len(), 4);
+}

@@ -100,6 +100,27 @@ fn each_trajectory_has_its_own_latency() {
 }
 
 #[test]
+fn a_long_latency_is_kept_in_short_floats() {
+    // A command of 1 that is sent at once: the step in which it acts.
+    let to = StateFeedback { gains: Feedback { position: 1.0, velocity: 0.0 }, target: [1.0] };
+    let long = [7_u32, 127, 257, 259, 300, 1001, 2049, 4096];
+    let latencies = long.map(|steps| Latency::of_steps(f64::from(steps)).unwrap());
+    let setup = Setup::new(All(Oscillator { omega2: half::bf16::ZERO }), VelocityVerlet);
+    let setup = setup.controller(to).delay(Latencies::of_commands(&latencies));
+    let zero = half::bf16::ZERO;
+    let starts = [State { q: [zero], v: [zero] }; 8];
+    let dt = half::bf16::from_f64(1e-6);
+    let mut all = Loops::new(setup, dt, 0, [zero], &starts, Execution::serial()).unwrap();
+    for step in 0..=4096 {
+        all.advance(1).unwrap();
+        for (n, &latency) in long.iter().enumerate() {
+            let acts = all.command(n).unwrap()[0] != zero;
+            assert_eq!(acts, step >= latency, "{latency} {step}");
+        }
+    }
+}
+
+#[test]
 fn each_trajectory_has_its_own_latency_of_what_it_observes() {
     let steps = |x: f64| Latency::of_steps(x).unwrap();
     let seen = [0.0, 0.25, 1.0, 1.75, 3.5].map(steps);

@@ -61,12 +61,12 @@ fn a_clock_does_not_go_back() {
     let error = |stamps: &[f64]| Recorded::steps_between(stamps).unwrap_err().to_string();
     assert_eq!(
         error(&[0.0, 2.0, 1.0]),
-        "time stamp 2 is 1 s, before the 2 s of the one in front of it"
+        "time stamp 3 is 1 s; it must be at least the 2 s of the one in front of it"
     );
-    assert_eq!(error(&[0.0, f64::NAN]), "time stamp 1 is NaN: it must be a number");
-    assert_eq!(error(&[1.0]), "1 time stamps: there must be at least 2");
-    assert_eq!(error(&[]), "0 time stamps: there must be at least 2");
-    assert_eq!(error(&[1.0, 1.0]), "the mean step is 0 s: it must be above 0");
+    assert_eq!(error(&[0.0, f64::NAN]), "time stamp 2 is NaN; it must be a finite number");
+    assert_eq!(error(&[1.0]), "the number of time stamps is 1; it must be at least 2");
+    assert_eq!(error(&[]), "the number of time stamps is 0; it must be at least 2");
+    assert_eq!(error(&[1.0, 1.0]), "the mean step is 0 s; it must be a finite number above 0");
 }
 
 #[test]
@@ -81,6 +81,13 @@ fn a_file_that_holds_no_time_stamps_is_told_by_its_line() {
     );
     assert!(error("0.5\n1.0 s\n").contains("line 2 is `1.0 s`"));
     assert!(error(",1\n").contains("line 1"));
+    // A number that is damaged is not the name of a column.
+    assert!(error("O.01\n0.02\n").contains("line 1 is `O.01`"));
+    assert_eq!(Recorded::stamps_in("\u{feff}time\n1\n2\n").unwrap(), [1.0, 2.0]);
+    for dt in [0.0, -1.0, f64::NAN] {
+        let told = Recorded::steps_in(&[0.0, 1.0], dt).unwrap_err().to_string();
+        assert!(told.contains("above 0"), "{told}");
+    }
     assert_eq!(Recorded::stamps_in("").unwrap(), [0.0; 0]);
 }
 
@@ -103,8 +110,6 @@ fn numbers_that_are_no_clock_are_named() {
         assert_eq!(of_clock(Wandering { rms: bad }), least("the rms of changes of the rate", bad));
         assert_eq!(of_clock(Rates(&[1.0, bad])), least("clock rate 1", bad));
         assert_eq!(of_clock(Recorded::once(&[bad])), least("recorded step 0", bad));
-        let late = Late { probability: 0.5, by: bad };
-        assert_eq!(of_clock(late), least("the lateness of a tick", bad));
         let waves = Waving { rms: bad, rate: 1.0, phase: 0.0 };
         assert_eq!(of_clock(waves), least("the rms of waving steps", bad));
         let correlated = Correlated { rms: bad, correlation: 0.5 };
@@ -119,6 +124,10 @@ fn numbers_that_are_no_clock_are_named() {
     assert_eq!(
         of_clock(Late { probability: -0.1, by: 0.5 }),
         "the probability of a late tick is -0.1; it must be from 0 to 1"
+    );
+    assert_eq!(
+        of_clock(Late { probability: 0.5, by: 1.5 }),
+        "the lateness of a tick is 1.5; it must be from 0 to 1"
     );
     assert_eq!(
         of_clock(Correlated { rms: 0.1, correlation: 1.5 }),
@@ -158,6 +167,11 @@ fn numbers_that_are_no_controller_are_named_also_inside_another() {
         of_controller(fine, f64::NAN),
         "the command before the first is NaN; it must be a finite number"
     );
+    let setup = Setup::new(All(Oscillator { omega2: 1.0_f32 }), Rk4)
+        .controller(StateFeedback::<1>::to_origin(Feedback { position: 1e39, velocity: 1.0 }));
+    let starts = [State { q: [0.0_f32], v: [0.0] }];
+    let short = Loops::new(setup, 0.5, 0, [0.0], &starts, Execution::serial()).map(|_| ());
+    assert!(short.unwrap_err().to_string().contains("small enough for the float type"));
     let pid = PidGains {
         proportional: 1.0,
         integral: 1.0,

@@ -18,6 +18,9 @@ pub(super) fn marks(placed: &Placed<'_>, clip: &str, out: &mut String) {
         let _ = match drawn {
             Drawn::Words(_) => continue,
             Drawn::Points(_) => write!(out, "<g class=\"ink-{ink}{on}\">"),
+            Drawn::Picture(_) => {
+                write!(out, "<g class=\"ink-{ink}{on}\" clip-path=\"url(#{clip}-p)\">")
+            }
             _ => write!(out, "<g class=\"ink-{ink}{on}\" clip-path=\"url(#{clip})\">"),
         };
         match drawn {

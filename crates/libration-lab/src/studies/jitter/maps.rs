@@ -36,7 +36,7 @@ pub(super) fn maps(record: &Record) -> Result<Figure, RecordError> {
     if record.series("map-free").is_err() {
         return Ok(figure);
     }
-    let few = "bounded over 10⁶ steps: below this line";
+    let few = "bounded over 10⁶ steps: left of this line";
     let free = Mark::raster(
         grid(record, "map-free")?,
         Colors::new("growth of ln |y| per step").log().range(1e-12, 1e-1),
@@ -67,13 +67,13 @@ pub(super) fn maps(record: &Record) -> Result<Figure, RecordError> {
                     line("boundary-typical")?
                         .ink(Ink::Theory)
                         .dash(Dash::Solid)
-                        .label("typical run: exponent 0"),
+                        .label("solid: exponent 0"),
                 )
                 .mark(
                     line("boundary-mean-square")?
                         .ink(Ink::Theory)
                         .dash(Dash::Dashed)
-                        .label("mean square: radius 1"),
+                        .label("dashed: radius 1"),
                 ),
         ))
 }

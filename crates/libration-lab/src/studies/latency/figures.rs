@@ -146,7 +146,6 @@ pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
         let mut panel = Panel::new(across, vertical.range(low, high))
             .title(method.title())
             .mark(Mark::raster(Grid { x, y, z }, colors));
-        panel = panel.marks(edges(record, kind, method)?);
         if kind == Kind::Step {
             let at = |i: u32| low * (high / low).powf(f64::from(i) / 200.0);
             let (x, y): (Vec<f64>, Vec<f64>) = (0..=200)
@@ -156,6 +155,8 @@ pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
             let line = Mark::line(x, y).ink(Ink::Neutral).dash(Dash::Dashed).width(1.4);
             panel = panel.mark(line.label("delay margin"));
         }
+        // What is predicted lies over all else.
+        panel = panel.marks(edges(record, kind, method)?);
         figure = figure.panel(panel);
     }
     Ok(figure)

@@ -113,6 +113,10 @@ struct Compared {
     slip: Option<f64>,
 }
 
+/// Where bounds on a run in `f32` come from.
+const ROUNDED: &str = "what the roundings of single steps leave, four times √n of their scatter, n times their mean, and four times the \
+                       error of that; and how far the orbit stays off the edge of its band";
+
 impl Compared {
     fn new<I: Integrator>(lab: &Lab<'_>, method: Method, i: I, dt: f64) -> Option<Self> {
         let (config, steps) = (lab.config, lab.config.precision.steps);
@@ -187,19 +191,20 @@ impl Compared {
         let energy = self.single.map(|run| {
             let what = text("largest energy drift in f32, beside that of exact arithmetic");
             match self.rounding {
-                Some(rounding) => Finding::predicted(
-                    id("f32"),
-                    what,
-                    "1",
-                    self.exact[0],
-                    run.largest,
-                    Tolerance::absolute(
-                        (1.0 + self.exact[0]) * rounding + self.gap[0],
-                        "what the roundings of single steps leave: four times √n of their scatter, \
-                         n times their mean, and four times the error of that; and how far the orbit \
-                         stays off the edge of its band",
-                    ),
-                ),
+                Some(rounding) => {
+                    let (exact, why) = (self.exact[0], ROUNDED);
+                    let left = (1.0 + exact) * rounding + self.gap[0];
+                    if left < exact {
+                        let tolerance = Tolerance::absolute(left, why);
+                        Finding::predicted(id("f32"), what, "1", exact, run.largest, tolerance)
+                    } else {
+                        // Rounding hides the rest, and is known up to a bound.
+                        let (most, bound) = (exact + left, Relation::AtMost);
+                        let tolerance =
+                            Tolerance::exact(format!("the prediction is a bound: {why}"));
+                        Finding::related(id("f32"), what, "1", bound, most, run.largest, tolerance)
+                    }
+                }
                 None => Finding::measured(id("f32"), what, "1", run.largest),
             }
         });

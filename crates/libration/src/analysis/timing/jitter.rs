@@ -61,22 +61,26 @@ impl Jitter {
         .map(|(_, moment)| moment)
     }
 
-    /// Weights and values of `ε` whose sums are means over the law, but for rounding, of what is smooth.
-    pub(super) fn nodes(self) -> Vec<(f64, f64)> {
+    /// Weights and values of `ε` whose sums are means over the law, but for rounding, of what is smooth, and turns by no more than `turn`
+    /// radians where `ε` changes by a standard deviation. Beyond [`MOST_TURN`] it is taken as that.
+    pub(super) fn nodes(self, turn: f64) -> Vec<(f64, f64)> {
+        let turn = turn.abs().min(MOST_TURN);
         if self.clips() {
-            return self.nodes_above();
+            return self.nodes_above(turn);
         }
         match self {
-            // The trapezoidal rule on a Gaussian errs by exp(−2π²/h²) only: h = ½, to ten deviations.
+            // The trapezoidal rule on a Gaussian errs by exp(−(2π/h − turn)²/2) only; to ten deviations.
             Jitter::Gaussian(rms) => {
-                let at = |j: i32| f64::from(j) / 2.0;
+                let apart = (core::f64::consts::TAU / (turn + 12.0)).min(0.5);
+                let last = (10.0 / apart).ceil() as i32;
+                let at = |j: i32| f64::from(j) * apart;
                 let weight = |x: f64| (-x * x / 2.0).exp();
-                let all: f64 = (-20..=20).map(|j| weight(at(j))).sum();
-                (-20..=20).map(|j| (weight(at(j)) / all, at(j) * rms)).collect()
+                let all: f64 = (-last..=last).map(|j| weight(at(j))).sum();
+                (-last..=last).map(|j| (weight(at(j)) / all, at(j) * rms)).collect()
             }
             Jitter::Uniform(rms) => {
-                let half = 3.0_f64.sqrt() * rms;
-                legendre(24).into_iter().map(|(weight, x)| (weight / 2.0, half * x)).collect()
+                let half = half_width(rms).to_f64();
+                pieces(-half, half, rms, turn, |_| 1.0 / (2.0 * half))
             }
         }
     }
@@ -126,9 +130,38 @@ fn gaussian_above(rms: Wide) -> impl Iterator<Item = Wide> {
 /// Terms of a series in `z²` for `z` up to [`LARGEST`]: the last is `z⁷⁹⁹/799!!`, below 2⁻¹²⁰⁰.
 const SERIES: usize = 400;
 
+/// Radians by which what is averaged turns within a standard deviation, beyond which more nodes are too many.
+pub(super) const MOST_TURN: f64 = 4096.0;
+
+/// Gauss's quadrature with 24 nodes on pieces of an interval, of at most two deviations, or so many that what turns does so by 10 radians.
+fn pieces(
+    low: f64,
+    high: f64,
+    rms: f64,
+    turn: f64,
+    density: impl Fn(f64) -> f64,
+) -> Vec<(f64, f64)> {
+    // Without jitter there is one.
+    let count = if rms > 0.0 {
+        ((high - low) / rms * (turn / 10.0).max(0.25)).ceil().max(1.0)
+    } else {
+        1.0
+    };
+    let half = (high - low) / (2.0 * count);
+    let rule = legendre(24);
+    if half == 0.0 {
+        return vec![(1.0, low)];
+    }
+    (0..count as u32)
+        .map(|i| low + half * f64::from(2 * i + 1))
+        .flat_map(|middle| rule.iter().map(move |&(weight, x)| (weight, middle + half * x)))
+        .map(|(weight, x)| (half * weight * density(x), x))
+        .collect()
+}
+
 impl Jitter {
-    /// [`Jitter::nodes`] of a law that is clipped: −1 with what is below it, and Gauss's quadrature on pieces of the rest.
-    fn nodes_above(self) -> Vec<(f64, f64)> {
+    /// [`Jitter::nodes`] of a law that is clipped: −1 with what is below it, and pieces of the rest.
+    fn nodes_above(self, turn: f64) -> Vec<(f64, f64)> {
         let rms = self.rms();
         let (end, density): (f64, Box<dyn Fn(f64) -> f64>) = match self {
             Jitter::Gaussian(_) => {
@@ -139,15 +172,7 @@ impl Jitter {
                 (self.largest(), Box::new(move |_| 1.0 / (12.0_f64.sqrt() * rms)))
             }
         };
-        // Pieces of at most two deviations.
-        let pieces = ((end + 1.0) / (2.0 * rms)).ceil();
-        let half = (end + 1.0) / (2.0 * pieces);
-        let rule = legendre(24);
-        let pieces = (0..pieces as u32).map(|i| -1.0 + half * f64::from(2 * i + 1));
-        let mut nodes: Vec<(f64, f64)> = pieces
-            .flat_map(|middle| rule.iter().map(move |&(weight, x)| (weight, middle + half * x)))
-            .map(|(weight, x)| (half * weight * density(x), x))
-            .collect();
+        let mut nodes = pieces(-1.0, end, rms, turn, density);
         let above: f64 = nodes.iter().map(|(weight, _)| weight).sum();
         nodes.push((1.0 - above, -1.0));
         nodes
@@ -186,14 +211,29 @@ mod tests {
         for rms in [0.1, 0.3, 0.6, 3.0] {
             for law in [Jitter::Gaussian(rms), Jitter::Uniform(rms)] {
                 for (k, moment) in (0..9).zip(law.moments().map(Wide::to_f64)) {
-                    let sum: f64 = law.nodes().iter().map(|(weight, x)| weight * x.powi(k)).sum();
-                    // Roundings of each of a hundred terms; odd moments are sums of larger ones.
+                    let sum: f64 =
+                        law.nodes(0.0).iter().map(|(weight, x)| weight * x.powi(k)).sum();
+                    // Roundings of nodes, to their k-th power, and of weights, which Newton's iteration leaves with 14 digits; odd moments
+                    // are sums of larger ones.
                     let size: f64 =
-                        law.nodes().iter().map(|(weight, x)| (weight * x.powi(k)).abs()).sum();
-                    assert!((sum - moment).abs() < 1e-14 * size, "{law:?} {k}: {sum} {moment}");
+                        law.nodes(0.0).iter().map(|(weight, x)| (weight * x.powi(k)).abs()).sum();
+                    assert!((sum - moment).abs() < 1e-13 * size, "{law:?} {k}: {sum} {moment}");
                 }
             }
         }
+    }
+
+    #[test]
+    fn nodes_hold_what_turns_as_often_as_is_said() {
+        // The characteristic functions of the laws, at y = 30 deviations.
+        let at = |law: Jitter| {
+            let nodes = law.nodes(30.0);
+            nodes.iter().map(|(weight, x)| weight * (300.0 * x).cos()).sum::<f64>()
+        };
+        assert!(at(Jitter::Gaussian(0.1)).abs() < 1e-14);
+        let half = 30.0 * 3.0_f64.sqrt();
+        let (found, wanted) = (at(Jitter::Uniform(0.1)), half.sin() / half);
+        assert!((found - wanted).abs() < 1e-14, "{found} {wanted}");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What random step times do to second moments.
 
+use super::jitter::MOST_TURN;
 use super::{Feedback, Jitter, Plant};
 use crate::analysis::eigenvalues::largest_root;
 use crate::number::Wide;
@@ -35,20 +36,30 @@ const POWERS: usize = 96;
 /// Between the step times at which a step is taken to find its powers: `2^−SPACING` of `Δt`.
 const SPACING: i64 = 4;
 
-/// `M ⊗ M` of a step of `Δt(1 + ε)`: what stands before `1, ε, ε², …`, row by row.
-pub(super) struct Squares(Vec<[Wide; 9]>);
+/// `M ⊗ M` of a step of `Δt(1 + ε)` of a loop.
+pub(super) struct Squares<'p> {
+    plant: &'p Plant<'p>,
+    feedback: Feedback,
+    /// What stands before `1, ε, ε², …`, row by row.
+    powers: Vec<[Wide; 9]>,
+}
+
+/// Bits to which the last powers must have fallen: what is left out then is less than an `f64` shows.
+const SETTLED: i64 = 80;
 
 impl Plant<'_> {
     /// The growth of second moments in the loop that `feedback` closes, with steps after `jitter`.
     ///
     /// `E[M ⊗ M]` is exact: the entries of `M` are polynomials in `ε`, found by interpolation in 1024 bits, and
-    /// of those the moments of the law are known.
+    /// of those the moments of the law are known. Of exact steps, which are no polynomials, that holds as long as their powers
+    /// settle; where they do not the mean is taken by quadrature in `f64`, and the radius is NaN where steps turn by more than 2048 rad
+    /// in a deviation.
     pub fn mean_square(&self, feedback: Feedback, jitter: Jitter) -> MeanSquare {
         self.squares(feedback).mean(jitter)
     }
 
     /// Of the loop that `feedback` closes.
-    pub(super) fn squares(&self, feedback: Feedback) -> Squares {
+    pub(super) fn squares(&self, feedback: Feedback) -> Squares<'_> {
         let half = (POWERS / 2) as i64;
         let node = |i: usize| Wide::from_f64((i as i64 - half) as f64).scaled(-SPACING);
         let nodes: Vec<Wide> = (0..POWERS).map(node).collect();
@@ -63,21 +74,51 @@ impl Plant<'_> {
             interpolated(&nodes, values.iter().map(|square| square[entry]).collect())
         });
         let of = |k: usize| core::array::from_fn(|entry| powers[entry][k]);
-        Squares((0..POWERS).map(of).collect())
+        Squares { plant: self, feedback, powers: (0..POWERS).map(of).collect() }
     }
 }
 
-impl Squares {
+impl Squares<'_> {
     /// The mean over `jitter`.
     pub(super) fn mean(&self, jitter: Jitter) -> MeanSquare {
         let operator = self.operator(jitter);
-        MeanSquare { radius: largest_root(&characteristic(operator)), operator }
+        let known = operator.iter().all(|x| !x.is_nan());
+        let radius = if known { largest_root(&characteristic(operator)) } else { Wide::NAN };
+        MeanSquare { radius, operator }
     }
 
     fn operator(&self, jitter: Jitter) -> [Wide; 9] {
-        let terms = self.0.iter().zip(jitter.moments());
-        terms.fold([Wide::ZERO; 9], |sum, (square, moment)| {
-            core::array::from_fn(|i| sum[i] + square[i] * moment)
+        let moments: Vec<Wide> = jitter.moments().take(POWERS).collect();
+        let term = |k: usize, i: usize| self.powers[k][i] * moments[k];
+        let sum: [Wide; 9] =
+            core::array::from_fn(|i| (0..POWERS).fold(Wide::ZERO, |sum, k| sum + term(k, i)));
+        let largest = |of: &mut dyn Iterator<Item = Wide>| {
+            of.fold(Wide::ZERO, |most, x| if x.abs() > most { x.abs() } else { most })
+        };
+        let rest = largest(
+            &mut (POWERS - 8..POWERS)
+                .flat_map(|k| (0..9).map(move |i| (k, i)))
+                .map(|(k, i)| term(k, i)),
+        );
+        if rest < largest(&mut sum.iter().copied()).scaled(-SETTLED) {
+            sum
+        } else {
+            self.by_nodes(jitter)
+        }
+    }
+
+    /// The mean by quadrature, to the digits of an `f64`: of exact steps whose powers do not settle.
+    fn by_nodes(&self, jitter: Jitter) -> [Wide; 9] {
+        let turn = 2.0 * self.plant.turn(jitter);
+        if turn > MOST_TURN {
+            return [Wide::NAN; 9];
+        }
+        let nodes = jitter.nodes(turn);
+        nodes.into_iter().fold([Wide::ZERO; 9], |sum, (weight, epsilon)| {
+            let dt = self.plant.dt * (Wide::one() + Wide::from_f64(epsilon));
+            let step = self.plant.closed(self.feedback, dt);
+            let square = square([0, 1].map(|i| [0, 1].map(|j| step.entry(i, j))));
+            core::array::from_fn(|i| sum[i] + Wide::from_f64(weight) * square[i])
         })
     }
 

@@ -28,6 +28,9 @@ const CANDIDATES: usize = 6;
 impl Quasi {
     /// The largest absolute value of a root.
     pub(super) fn radius(&self) -> Wide {
+        if self.a.iter().chain(&self.b).any(|x| x.is_nan()) {
+            return Wide::NAN;
+        }
         // Where nothing is fed back there are as many roots at zero as commands wait, which no iteration separates.
         if self.m > 0 && self.b.iter().all(|b| b.is_zero()) {
             return Quasi { m: 0, ..*self }.radius();
@@ -43,11 +46,10 @@ impl Quasi {
     /// Computation 27, 1973).
     fn rough_roots(&self) -> Vec<C> {
         let degree = self.m as usize + 2;
-        // Most roots are about as large as λᵐ⁺² = −b₀ has them. No root is to begin on an axis of symmetry.
-        let size = self.b.iter().map(|x| x.abs().to_f64()).fold(1e-300, f64::max);
-        let radius = size.powf(1.0 / degree as f64).max(1e-3);
+        // No root is to begin on an axis of symmetry.
         let angle = |k: usize| (k as f64 + 0.37) * core::f64::consts::TAU / degree as f64;
-        let mut roots: Vec<C> = (0..degree).map(|k| C::from_polar(radius, angle(k))).collect();
+        let sizes = self.sizes().into_iter().enumerate();
+        let mut roots: Vec<C> = sizes.map(|(k, size)| C::from_polar(size, angle(k))).collect();
         for _ in 0..SWEEPS {
             let mut largest = 0.0_f64;
             for i in 0..degree {
@@ -65,6 +67,41 @@ impl Quasi {
             }
         }
         roots
+    }
+
+    /// About how large the roots are, by Newton's polygon: the upper hull of the logarithms of the coefficients (D. A. Bini, *Numerical
+    /// computation of polynomial zeros by means of Aberth's method*, Numerical Algorithms 13, 1996).
+    fn sizes(&self) -> Vec<f64> {
+        let m = self.m as usize;
+        let mut coefficients = vec![(m + 2, Wide::one())];
+        let lower =
+            [(m + 1, self.a[1]), (m, self.a[0]), (2, self.b[2]), (1, self.b[1]), (0, self.b[0])];
+        for (power, value) in lower {
+            match coefficients.iter_mut().find(|(other, _)| *other == power) {
+                Some((_, sum)) => *sum = *sum + value,
+                None => coefficients.push((power, value)),
+            }
+        }
+        coefficients.sort_by_key(|&(power, _)| power);
+        let points = coefficients.iter().filter(|(_, c)| !c.is_zero());
+        let points = points.map(|&(power, c)| (power, c.abs().ln().to_f64()));
+        let mut hull: Vec<(usize, f64)> = Vec::new();
+        for (power, log) in points {
+            // Left turns are no corners.
+            while let [.., (p0, l0), (p1, l1)] = hull[..]
+                && (l1 - l0) * (power - p0) as f64 <= (log - l0) * (p1 - p0) as f64
+            {
+                hull.pop();
+            }
+            hull.push((power, log));
+        }
+        let zeros = hull.first().map_or(0, |&(power, _)| power);
+        let mut sizes = vec![1e-3; zeros];
+        for pair in hull.windows(2) {
+            let (count, fall) = (pair[1].0 - pair[0].0, pair[0].1 - pair[1].1);
+            sizes.extend(core::iter::repeat_n((fall / count as f64).exp(), count));
+        }
+        sizes
     }
 
     /// `p/p'` at `x`, without overflow.
@@ -87,7 +124,7 @@ impl Quasi {
         }
     }
 
-    /// A root from nearby, by Newton's iteration in 1024 bits.
+    /// A root from nearby, by Newton's iteration on `p/p'` in 1024 bits, to which roots that are double are simple ones.
     fn polished(&self, from: C) -> Complex {
         let ([a0, a1], [b0, b1, b2]) = (self.a, self.b);
         let real = Complex::real;
@@ -100,6 +137,7 @@ impl Quasi {
         for _ in 0..NEWTON {
             let a = horner(x, [a0, a1, Wide::one()]);
             let da = horner(x, [a1, two(Wide::one()), Wide::ZERO]);
+            let (dda, ddb) = (real(two(Wide::one())), real(two(b2)));
             let (b, db) = (horner(x, [b0, b1, b2]), horner(x, [b1, two(b2), Wide::ZERO]));
             // λᵐ, and mλᵐ⁻¹.
             let power = x.powi(self.m);
@@ -109,10 +147,20 @@ impl Quasi {
             };
             let value = power.times(a).plus(b);
             let derivative = power.times(da).plus(slope.times(a)).plus(db);
-            if derivative.abs().is_zero() {
+            let bend = match self.m.checked_sub(2) {
+                Some(less) => {
+                    let factor = self.m as f64 * (self.m - 1) as f64;
+                    x.powi(less).times(real(Wide::from_f64(factor)))
+                }
+                None => real(Wide::ZERO),
+            };
+            let twice = slope.times(da).times(real(two(Wide::one())));
+            let second = bend.times(a).plus(twice).plus(power.times(dda)).plus(ddb);
+            let below = derivative.times(derivative).minus(value.times(second));
+            if below.abs().is_zero() {
                 break;
             }
-            x = x.minus(value.over(derivative));
+            x = x.minus(value.times(derivative).over(below));
         }
         x
     }

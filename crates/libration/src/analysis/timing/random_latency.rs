@@ -114,7 +114,8 @@ impl Plant<'_> {
     /// The loop is stable in the mean square where it is below 1.
     ///
     /// It is the spectral radius of the map `Pⱼ ← Σᵢ πᵢⱼ Mᵢ Pᵢ Mᵢᵀ` of second moments by latency, with the step `Mᵢ` of
-    /// state and waiting commands (O. L. V. Costa, M. D. Fragoso, R. P. Marques, *Discrete-Time Markov Jump Linear
+    /// state and waiting commands, in `f64`: some 13 digits are right, but only 3 where the largest eigenvalues meet, as at critical
+    /// damping (O. L. V. Costa, M. D. Fragoso, R. P. Marques, *Discrete-Time Markov Jump Linear
     /// Systems*, 2005, chapter 3).
     pub fn mean_square_late(&self, feedback: Feedback, latency: &RandomLatency) -> f64 {
         let steps = self.steps_late(feedback, latency);

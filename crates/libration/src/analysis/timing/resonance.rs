@@ -20,10 +20,10 @@ impl StepNoise {
         StepNoise { rms, memory: 0.0 }
     }
 
-    /// Of this standard deviation and with this `φ`, the correlation of one `ε` with the next; none unless it is
-    /// between −1 and 1.
+    /// Of this standard deviation and with this `φ`, the correlation of one `ε` with the next; none unless that is
+    /// between −1 and 1, and the deviation a number of at least 0.
     pub fn autoregressive(rms: f64, memory: f64) -> Option<Self> {
-        (memory.abs() < 1.0).then_some(StepNoise { rms, memory })
+        (memory.abs() < 1.0 && rms >= 0.0 && rms.is_finite()).then_some(StepNoise { rms, memory })
     }
 
     /// The power spectrum `Σₖ E[εₙεₙ₊ₖ]·cos kψ` at so many radians a step; its mean over all angles is the variance.

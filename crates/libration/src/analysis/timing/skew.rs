@@ -23,7 +23,8 @@ impl Plant<'_> {
         (!speed.is_zero()).then(|| at / speed)
     }
 
-    /// The mean over such an ensemble, all of it from `state`, after so many steps.
+    /// The mean over such an ensemble, all of it from `state`, after so many steps: right as long as no two trajectories that are a
+    /// deviation apart are out of phase by more than 4096 rad. A rate below zero is zero.
     pub fn asynchronous_mean(
         &self,
         state: &State<f64, 1>,
@@ -31,20 +32,30 @@ impl Plant<'_> {
         steps: u64,
     ) -> State<f64, 1> {
         let start = state.map(Wide::from_f64);
-        let sum = law.nodes().into_iter().fold(State::origin(), |sum, (weight, delta)| {
-            let dt = self.dt * (Wide::one() + Wide::from_f64(delta));
-            let mut moved = start;
-            let (mut power, mut left) = ((self.step)(dt).phi, steps);
-            while left > 0 {
-                if left % 2 == 1 {
-                    moved = power.apply(&moved);
+        let sum = law.nodes(steps as f64 * self.turn(law)).into_iter().fold(
+            State::origin(),
+            |sum, (weight, delta)| {
+                let dt = self.dt * (Wide::one() + Wide::from_f64(delta));
+                let mut moved = start;
+                let (mut power, mut left) = ((self.step)(dt).phi, steps);
+                while left > 0 {
+                    if left % 2 == 1 {
+                        moved = power.apply(&moved);
+                    }
+                    power = power.after(&power);
+                    left /= 2;
                 }
-                power = power.after(&power);
-                left /= 2;
-            }
-            sum.plus(Wide::from_f64(weight), moved)
-        });
+                sum.plus(Wide::from_f64(weight), moved)
+            },
+        );
         sum.map(Wide::to_f64)
+    }
+
+    /// By how many radians a step turns the further, where its length is a standard deviation of `law` more.
+    pub(super) fn turn(&self, law: Jitter) -> f64 {
+        // Of the plant alone: the integrator's own is nearly that, and what damps only makes it less.
+        let rate = self.generator.determinant().abs().sqrt();
+        (rate * self.dt).to_f64() * law.rms()
     }
 
     /// The angle by which a step of `dt` seconds turns, if it turns.

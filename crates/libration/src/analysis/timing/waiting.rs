@@ -61,12 +61,17 @@ pub(super) fn transposed(m: &Matrix) -> Matrix {
     (0..m.len()).map(|i| m.iter().map(|row| row[i]).collect()).collect()
 }
 
-/// The logarithm of the spectral radius: the growth of the norm of higher and higher powers (I. Gelfand, 1941), each the square of the
-/// one before. After 50 of them what norm and radius differ by is divided by 2⁵⁰.
+/// The logarithm of the spectral radius: the growth of the norm of higher and higher powers (I. Gelfand, 1941), each the square of
+/// the one before. After 50 of them what norm and radius differ by is divided by 2⁵⁰. Where several of the largest eigenvalues meet,
+/// rounding parts them, and three digits may be all that are right.
 pub(super) fn growth(mut power: Matrix) -> f64 {
     let (mut logarithm, mut share) = (0.0, 1.0);
     for _ in 0..50 {
-        let norm = power.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
+        // Squares of it could overflow.
+        let norm = power
+            .iter()
+            .flatten()
+            .fold(0.0, |most: f64, x| if x.abs() > most || x.is_nan() { x.abs() } else { most });
         if norm == 0.0 {
             return f64::NEG_INFINITY;
         }

@@ -27,6 +27,21 @@ struct Crossing {
     outward: bool,
 }
 
+impl Crossing {
+    /// Where it is without latency, says whether it leaves the circle then; rounding may have put it a turn later.
+    fn begin(&mut self) -> Option<bool> {
+        let near = |d: f64| d.abs() < 1e-9 * self.apart;
+        if near(self.first) || near(self.first - self.apart) {
+            self.first = 0.0;
+            return Some(self.outward);
+        }
+        None
+    }
+}
+
+/// Bits after the point to which a determinant must be 1 to be that of a pair on the circle.
+const EDGE: i64 = 900;
+
 /// Whole latencies that are tried one by one.
 const TRIED: u32 = 64;
 
@@ -64,9 +79,27 @@ impl Plant<'_> {
         if !positive(one - a1 + a0 - (b0 - b1).abs()) {
             return self.whole_windows(feedback);
         }
-        // By Jury's conditions, of which two are met: both eigenvalues are inside, or none.
-        let mut unstable: u32 = if positive(one - a0 - b0) { 0 } else { 2 };
-        let crossings = crossings([a0, a1], [b0, b1]);
+        let mut crossings = crossings([a0, a1], [b0, b1]);
+        // By Jury's conditions, of which two are met: both eigenvalues are inside, or none, or both are on the circle.
+        let room = one - a0 - b0;
+        let edge = room.abs() < one.scaled(-EDGE);
+        let moved = crossings.iter_mut().filter(|_| edge).find_map(Crossing::begin);
+        let mut unstable: u32 = match moved {
+            Some(outward) => {
+                if outward {
+                    0
+                } else {
+                    2
+                }
+            }
+            None => {
+                if positive(room) {
+                    0
+                } else {
+                    2
+                }
+            }
+        };
         let mut stable = Vec::new();
         let mut from = (unstable == 0).then_some(0.0);
         for (d, outward) in events(&crossings) {
@@ -74,7 +107,8 @@ impl Plant<'_> {
             match (unstable, from) {
                 (0, None) => from = Some(d),
                 (1.., Some(begin)) => {
-                    stable.push((begin, Some(d)));
+                    // What leaves the circle without latency was never within.
+                    stable.extend((d > begin).then_some((begin, Some(d))));
                     from = None;
                 }
                 _ => {}

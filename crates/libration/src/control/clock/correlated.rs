@@ -1,11 +1,10 @@
 //! Jitter that remembers.
 
-use super::noise::once;
 use super::{Clock, Gaussian, Noise, forward};
 use crate::Float;
 use crate::analysis::Jitter;
-use crate::control::ControlError;
 use crate::control::error::{ensure, not_negative};
+use crate::control::{Begin, ControlError};
 use crate::random::Purpose;
 
 /// Steps of `1 + ε`, where `ε` is an autoregressive process of first order: `εₙ₊₁ = φ·εₙ + √(1 − φ²)·σ·ξ` with
@@ -25,14 +24,14 @@ impl<T: Float> Clock<T> for Correlated {
     const DRAWS: bool = true;
 
     fn check(&self) -> Result<(), ControlError> {
-        not_negative("the rms of correlated steps", self.rms)?;
+        not_negative::<T>("the rms of correlated steps", self.rms)?;
         let within = |x: f64| (-1.0..=1.0).contains(&x);
         ensure("the correlation of steps", self.correlation, "from -1 to 1", within)
     }
 
-    fn start(&self, seed: u64, trajectory: u64) -> [T; 1] {
+    fn start(&self, begin: Begin) -> [T; 1] {
         let law = Jitter::Gaussian(self.rms);
-        [T::from_f64(once(law, Purpose::ClockStart, seed, trajectory))]
+        [T::from_f64(begin.draw(law, Purpose::ClockStart))]
     }
 
     fn beat(&self, _: u64) {}

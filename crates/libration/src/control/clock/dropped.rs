@@ -2,8 +2,8 @@
 
 use super::Clock;
 use crate::Float;
-use crate::control::ControlError;
 use crate::control::error::ensure;
+use crate::control::{Begin, ControlError};
 use crate::random::uniform;
 
 /// A clock of which each tick is missed with a probability: no time passes in that step, and the next one that is
@@ -30,7 +30,7 @@ impl<T: Float> Clock<T> for Dropped {
         )
     }
 
-    fn start(&self, _: u64, _: u64) -> [T; 1] {
+    fn start(&self, _: Begin) -> [T; 1] {
         [T::zero()]
     }
 

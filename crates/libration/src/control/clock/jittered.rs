@@ -2,8 +2,8 @@
 
 use super::{Clock, Noise, forward};
 use crate::Float;
-use crate::control::ControlError;
 use crate::control::error::law;
+use crate::control::{Begin, ControlError};
 
 /// Steps of `1 + ε`, with another `ε` for every step, independent of all others.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,10 +19,10 @@ impl<T: Float, N: Noise> Clock<T> for Jittered<N> {
     const DRAWS: bool = true;
 
     fn check(&self) -> Result<(), ControlError> {
-        law("the rms of step times", self.0.law())
+        law::<T>("the rms of step times", self.0.law())
     }
 
-    fn start(&self, _: u64, _: u64) -> [T; 0] {
+    fn start(&self, _: Begin) -> [T; 0] {
         []
     }
 

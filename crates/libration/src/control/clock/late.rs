@@ -2,9 +2,9 @@
 
 use super::{Clock, forward};
 use crate::Float;
-use crate::control::ControlError;
-use crate::control::error::{not_negative, probability};
-use crate::random::{Address, Purpose, uniform};
+use crate::control::error::{ensure, probability};
+use crate::control::{Begin, ControlError};
+use crate::random::{Purpose, uniform};
 
 /// A clock whose ticks come late by a random time and do not pass it on: a long step is followed by a short one, as
 /// of a timer with absolute deadlines.
@@ -12,7 +12,7 @@ use crate::random::{Address, Purpose, uniform};
 pub struct Late {
     /// The probability that a tick is late.
     pub probability: f64,
-    /// By how many `Δt` it then is, at least 0. Steps are not negative as long as this is at most 1.
+    /// By how many `Δt` it then is: from 0 to 1, beyond which a tick would come before the one in front of it.
     pub by: f64,
 }
 
@@ -33,12 +33,11 @@ impl<T: Float> Clock<T> for Late {
 
     fn check(&self) -> Result<(), ControlError> {
         probability("the probability of a late tick", self.probability)?;
-        not_negative("the lateness of a tick", self.by)
+        ensure("the lateness of a tick", self.by, "from 0 to 1", |by| (0.0..=1.0).contains(&by))
     }
 
-    fn start(&self, seed: u64, trajectory: u64) -> [T; 1] {
-        let place = Address { seed, trajectory, step: 0, purpose: Purpose::ClockStart };
-        [self.lateness(uniform(place.bits()[0]))]
+    fn start(&self, begin: Begin) -> [T; 1] {
+        [self.lateness(uniform(begin.address(Purpose::ClockStart).bits()[0]))]
     }
 
     fn beat(&self, _: u64) {}

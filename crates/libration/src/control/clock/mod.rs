@@ -20,7 +20,7 @@ pub use steady::{Drifting, Fixed, Rates, Skewed};
 pub use wandering::Wandering;
 pub use waving::Waving;
 
-use super::{ControlError, Memory};
+use super::{Begin, ControlError, Memory};
 use crate::Float;
 
 /// Tells of every step of every trajectory how long it is, as a multiple of the time step `Δt`.
@@ -44,8 +44,8 @@ pub trait Clock<T: Float>: Copy + Send + Sync {
         Ok(())
     }
 
-    /// The memory before the first step of `trajectory`, in the run of this seed.
-    fn start(&self, seed: u64, trajectory: u64) -> Self::Memory;
+    /// The memory before the first step.
+    fn start(&self, begin: Begin) -> Self::Memory;
 
     /// What is the same for all trajectories at `step`.
     fn beat(&self, step: u64) -> Self::Beat;
@@ -87,8 +87,9 @@ impl<T: Float, A: Clock<T>, B: Clock<T>> Clock<T> for (A, B) {
         self.1.check()
     }
 
-    fn start(&self, seed: u64, trajectory: u64) -> Self::Memory {
-        (self.0.start(seed, trajectory), self.1.start(seed, trajectory))
+    fn start(&self, begin: Begin) -> Self::Memory {
+        let [first, second] = begin.halves();
+        (self.0.start(first), self.1.start(second))
     }
 
     fn beat(&self, step: u64) -> Self::Beat {
@@ -128,5 +129,6 @@ fn fewest<N: Ord>(a: Option<N>, b: Option<N>) -> Option<N> {
 #[inline(always)]
 fn forward<T: Float>(epsilon: T) -> T {
     let ratio = T::one() + epsilon;
-    if ratio > T::zero() { ratio } else { T::zero() }
+    // What is no number stays none, to be seen.
+    if ratio < T::zero() { T::zero() } else { ratio }
 }

@@ -2,7 +2,7 @@
 
 use crate::Float;
 use crate::analysis::Jitter;
-use crate::random::{Address, Purpose, UNIT, normal, odd};
+use crate::random::{UNIT, normal, odd};
 
 /// A law with mean zero.
 pub trait Noise: Copy + Send + Sync {
@@ -74,15 +74,5 @@ impl Noise for Jitter {
             Jitter::Gaussian(rms) => Gaussian(rms).draw(word),
             Jitter::Uniform(rms) => Uniform(rms).draw(word),
         }
-    }
-}
-
-/// A draw once for a trajectory.
-pub(super) fn once(law: Jitter, purpose: Purpose, seed: u64, trajectory: u64) -> f64 {
-    let place = Address { seed, trajectory, step: 0, purpose };
-    match law {
-        Jitter::Gaussian(rms) => rms * place.gaussian()[0],
-        // The width of a uniform law is √12 of its deviations.
-        Jitter::Uniform(rms) => rms * 12.0_f64.sqrt() * (place.uniform()[0] - 0.5),
     }
 }

@@ -4,8 +4,8 @@ use thiserror::Error;
 
 use super::Clock;
 use crate::Float;
-use crate::control::ControlError;
 use crate::control::error::{ensure, none_negative};
+use crate::control::{Begin, ControlError};
 
 /// The steps between the time stamps of a loop that ran.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Recorded<'a> {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum RecordedError {
     /// There is no step between them.
-    #[error("{count} time stamps: there must be at least 2")]
+    #[error("the number of time stamps is {count}; it must be at least 2")]
     TooFew {
         /// How many there are.
         count: usize,
@@ -32,17 +32,17 @@ pub enum RecordedError {
         text: String,
     },
     /// One is infinite or not a number.
-    #[error("time stamp {index} is {value}: it must be a number")]
+    #[error("time stamp {} is {value}; it must be a finite number", index + 1)]
     NotFinite {
-        /// Which, from 0 on.
+        /// Which, from 0 on; the message counts from 1.
         index: usize,
         /// What it is.
         value: f64,
     },
     /// A clock does not go back.
-    #[error("time stamp {index} is {after} s, before the {before} s of the one in front of it")]
+    #[error("time stamp {} is {after} s; it must be at least the {before} s of the one in front of it", index + 1)]
     Backwards {
-        /// Which, from 0 on.
+        /// Which, from 0 on; the message counts from 1.
         index: usize,
         /// The one in front of it, in seconds.
         before: f64,
@@ -50,7 +50,7 @@ pub enum RecordedError {
         after: f64,
     },
     /// Something is needed that is above zero.
-    #[error("the mean step is {mean} s: it must be above 0")]
+    #[error("the mean step is {mean} s; it must be a finite number above 0")]
     NoTime {
         /// The mean step in seconds.
         mean: f64,
@@ -59,17 +59,20 @@ pub enum RecordedError {
 
 impl<'a> Recorded<'a> {
     /// The time stamps, in seconds, of a file: one on each line, of which columns after a comma do not count. Empty lines and those
-    /// that begin with `#` are passed over, and so is the first line if it is the name of a column.
+    /// that begin with `#` are passed over, and so is the first line if it is the name of a column: letters without a digit.
     ///
     /// # Errors
     /// The first line that is no time stamp.
     pub fn stamps_in(text: &str) -> Result<Vec<f64>, RecordedError> {
+        // Some programs mark a file as Unicode.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
         let told = lines.filter(|(_, line)| !(line.is_empty() || line.starts_with('#')));
         let mut stamps = Vec::new();
         for (nth, (line, text)) in told.enumerate() {
             let first = text.split(',').next().unwrap_or(text).trim();
-            let named = nth == 0 && first.starts_with(|c: char| c.is_alphabetic() || c == '"');
+            let letters = first.contains(char::is_alphabetic) && !first.contains(char::is_numeric);
+            let named = nth == 0 && letters;
             match first.parse() {
                 Ok(stamp) => stamps.push(stamp),
                 Err(_) if named => {}
@@ -85,8 +88,11 @@ impl<'a> Recorded<'a> {
     /// The steps between `stamps`, which are in seconds, as multiples of `dt` seconds.
     ///
     /// # Errors
-    /// As of [`Recorded::steps_between`].
+    /// As of [`Recorded::steps_between`]; and if `dt` is not above zero.
     pub fn steps_in(stamps: &[f64], dt: f64) -> Result<Vec<f64>, RecordedError> {
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(RecordedError::NoTime { mean: dt });
+        }
         Self::mean_step(stamps)?;
         Ok(stamps.windows(2).map(|pair| (pair[1] - pair[0]) / dt).collect())
     }
@@ -140,12 +146,12 @@ impl<T: Float> Clock<T> for Recorded<'_> {
     type Beat = T;
 
     fn check(&self) -> Result<(), ControlError> {
-        none_negative("recorded step", self.ratios)?;
+        none_negative::<T>("recorded step", self.ratios)?;
         let count = self.ratios.len() as f64;
         ensure("the number of recorded steps", count, "at least 1", |count| count > 0.0)
     }
 
-    fn start(&self, _: u64, _: u64) -> [T; 0] {
+    fn start(&self, _: Begin) -> [T; 0] {
         []
     }
 

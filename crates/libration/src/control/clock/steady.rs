@@ -1,11 +1,10 @@
 //! Clocks of which every step is known from the start of a trajectory.
 
-use super::noise::once;
 use super::{Clock, forward};
 use crate::Float;
 use crate::analysis::Jitter;
-use crate::control::ControlError;
 use crate::control::error::{law, none_negative};
+use crate::control::{Begin, ControlError};
 use crate::random::Purpose;
 
 /// Every step is as long as the others.
@@ -16,7 +15,7 @@ impl<T: Float> Clock<T> for Fixed {
     type Memory = [T; 0];
     type Beat = ();
 
-    fn start(&self, _: u64, _: u64) -> [T; 0] {
+    fn start(&self, _: Begin) -> [T; 0] {
         []
     }
 
@@ -40,11 +39,11 @@ impl<T: Float> Clock<T> for Skewed {
     type Beat = ();
 
     fn check(&self) -> Result<(), ControlError> {
-        law("the rms of clock rates", self.0)
+        law::<T>("the rms of clock rates", self.0)
     }
 
-    fn start(&self, seed: u64, trajectory: u64) -> [T; 1] {
-        [forward(T::from_f64(once(self.0, Purpose::ClockRate, seed, trajectory)))]
+    fn start(&self, begin: Begin) -> [T; 1] {
+        [forward(T::from_f64(begin.draw(self.0, Purpose::ClockRate)))]
     }
 
     fn beat(&self, _: u64) {}
@@ -67,12 +66,12 @@ impl<T: Float> Clock<T> for Rates<'_> {
     type Beat = ();
 
     fn check(&self) -> Result<(), ControlError> {
-        none_negative("clock rate", self.0)
+        none_negative::<T>("clock rate", self.0)
     }
 
-    fn start(&self, _: u64, trajectory: u64) -> [T; 1] {
+    fn start(&self, begin: Begin) -> [T; 1] {
         // Beyond the last are those that only fill a block.
-        let rate = self.0.get(trajectory as usize).copied().unwrap_or(1.0);
+        let rate = self.0.get(begin.trajectory() as usize).copied().unwrap_or(1.0);
         [forward(T::from_f64(rate) - T::one())]
     }
 
@@ -100,11 +99,11 @@ impl<T: Float> Clock<T> for Drifting {
     type Beat = T;
 
     fn check(&self) -> Result<(), ControlError> {
-        law("the rms of clock drifts", self.0)
+        law::<T>("the rms of clock drifts", self.0)
     }
 
-    fn start(&self, seed: u64, trajectory: u64) -> [T; 1] {
-        [T::from_f64(once(self.0, Purpose::ClockDrift, seed, trajectory))]
+    fn start(&self, begin: Begin) -> [T; 1] {
+        [T::from_f64(begin.draw(self.0, Purpose::ClockDrift))]
     }
 
     fn beat(&self, step: u64) -> T {

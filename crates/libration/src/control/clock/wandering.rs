@@ -2,8 +2,8 @@
 
 use super::{Clock, Gaussian, Noise, forward};
 use crate::Float;
-use crate::control::ControlError;
 use crate::control::error::not_negative;
+use crate::control::{Begin, ControlError};
 
 /// Steps of `1 + ε`, where `ε` begins at zero and changes by an independent Gaussian number in every step.
 ///
@@ -22,10 +22,10 @@ impl<T: Float> Clock<T> for Wandering {
     const DRAWS: bool = true;
 
     fn check(&self) -> Result<(), ControlError> {
-        not_negative("the rms of changes of the rate", self.rms)
+        not_negative::<T>("the rms of changes of the rate", self.rms)
     }
 
-    fn start(&self, _: u64, _: u64) -> [T; 1] {
+    fn start(&self, _: Begin) -> [T; 1] {
         [T::zero()]
     }
 

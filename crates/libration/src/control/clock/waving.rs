@@ -3,8 +3,8 @@
 use core::f64::consts::{SQRT_2, TAU};
 
 use super::{Clock, forward};
-use crate::control::ControlError;
 use crate::control::error::{finite, not_negative};
+use crate::control::{Begin, ControlError};
 use crate::{Elementary, Float};
 
 /// Steps of `1 + √2·σ·sin(φn + φ₀)`: at twice the angle by which the loop turns in a step it is in resonance.
@@ -23,19 +23,19 @@ impl<T: Float> Clock<T> for Waving {
     type Beat = T;
 
     fn check(&self) -> Result<(), ControlError> {
-        not_negative("the rms of waving steps", self.rms)?;
-        finite("the rate of waving steps", self.rate)?;
-        finite("the phase of waving steps", self.phase)
+        not_negative::<T>("the rms of waving steps", self.rms)?;
+        finite::<T>("the rate of waving steps", self.rate)?;
+        finite::<T>("the phase of waving steps", self.phase)
     }
 
-    fn start(&self, _: u64, _: u64) -> [T; 0] {
+    fn start(&self, _: Begin) -> [T; 0] {
         []
     }
 
     fn beat(&self, step: u64) -> T {
         // In turns, of which whole ones do not count.
-        let turns = self.rate / TAU * step as f64;
-        let angle = TAU * turns.fract() + self.phase;
+        let turns = self.rate % TAU / TAU * step as f64;
+        let angle = TAU * turns.fract() + self.phase % TAU;
         T::from_f64(SQRT_2 * self.rms * Elementary::sin(angle))
     }
 

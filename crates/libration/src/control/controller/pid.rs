@@ -44,11 +44,11 @@ impl<const D: usize> Pid<D> {
     /// [`ControlError`] if a gain or the target is not finite, the filter is negative, or limit or tracking time are not above
     /// zero.
     pub fn new(gains: PidGains<D>) -> Result<Self, ControlError> {
-        finite("the proportional gain", gains.proportional)?;
-        finite("the integral gain", gains.integral)?;
-        finite("the derivative gain", gains.derivative)?;
-        gains.target.into_iter().try_for_each(|x| finite("the target", x))?;
-        not_negative("the time of the filter", gains.filter)?;
+        finite::<f64>("the proportional gain", gains.proportional)?;
+        finite::<f64>("the integral gain", gains.integral)?;
+        finite::<f64>("the derivative gain", gains.derivative)?;
+        gains.target.into_iter().try_for_each(|x| finite::<f64>("the target", x))?;
+        not_negative::<f64>("the time of the filter", gains.filter)?;
         let positive = |x: f64| x > 0.0;
         ensure("the largest command", gains.most, "above 0", positive)?;
         ensure("the tracking time", gains.tracking, "above 0", positive)?;
@@ -62,6 +62,13 @@ impl<T: Float, const D: usize> Controller<T, D> for Pid<D> {
 
     /// At the limit what it takes away decays by `1 − h/tracking` a sample: below half a sample that grows.
     fn check(&self, period: f64) -> Result<(), ControlError> {
+        let gains = self.gains;
+        finite::<T>("the proportional gain", gains.proportional)?;
+        finite::<T>("the integral gain", gains.integral)?;
+        finite::<T>("the derivative gain", gains.derivative)?;
+        let follows = |tracking: f64| T::from_f64(1.0 / tracking).is_finite();
+        let allowed = "long enough for the float type";
+        ensure("the tracking time", gains.tracking, allowed, follows)?;
         let decays = |tracking: f64| self.gains.most.is_infinite() || 2.0 * tracking > period;
         let allowed = "more than half the sample time";
         ensure("the tracking time", self.gains.tracking, allowed, decays)

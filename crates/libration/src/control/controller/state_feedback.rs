@@ -27,9 +27,9 @@ impl<T: Float, const D: usize> Controller<T, D> for StateFeedback<D> {
     type Memory = [T; 0];
 
     fn check(&self, _: f64) -> Result<(), ControlError> {
-        finite("the gain of the position", self.gains.position)?;
-        finite("the gain of the velocity", self.gains.velocity)?;
-        self.target.into_iter().try_for_each(|x| finite("the target", x))
+        finite::<T>("the gain of the position", self.gains.position)?;
+        finite::<T>("the gain of the velocity", self.gains.velocity)?;
+        self.target.into_iter().try_for_each(|x| finite::<T>("the target", x))
     }
 
     fn start(&self, _: &State<T, D>) -> [T; 0] {

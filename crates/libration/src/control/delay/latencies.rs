@@ -3,7 +3,7 @@
 use super::{Arrival, Delay};
 use crate::Float;
 use crate::analysis::Latency;
-use crate::control::ControlError;
+use crate::control::{Begin, ControlError};
 
 /// Latencies of the command, and of what is observed, for each trajectory, of any length: steps split where the loop looks and
 /// where commands arrive.
@@ -33,6 +33,9 @@ impl<'a> Latencies<'a> {
     }
 }
 
+/// In which an age has two digits: every float type holds whole numbers up to it.
+const DIGIT: u64 = 128;
+
 /// The steps between a look and its command's arrival, each at the part of the step at which it happens.
 fn age((command, observation): (Latency, Latency)) -> u64 {
     command.whole() + observation.whole() + u64::from(observation.part() > 0.0)
@@ -41,8 +44,9 @@ fn age((command, observation): (Latency, Latency)) -> u64 {
 impl<T: Float> Delay<T> for Latencies<'_> {
     const SPLITS: usize = 2;
 
-    /// The age of what arrives, and the parts of a step after which it does, and after which the loop looks.
-    type Memory = [T; 3];
+    /// The age of what arrives, in two digits, since short floats do not hold every whole number; and the parts of a step after which it
+    /// does, and after which the loop looks.
+    type Memory = [T; 4];
     type Beat = ();
 
     fn check(&self) -> Result<(), ControlError> {
@@ -62,11 +66,13 @@ impl<T: Float> Delay<T> for Latencies<'_> {
         (0..self.commands.len()).map(|n| age(self.of(n)) as usize).max().unwrap_or(0)
     }
 
-    fn start(&self, _: u64, trajectory: u64) -> [T; 3] {
-        let (command, observation) = self.of(trajectory as usize);
+    fn start(&self, begin: Begin) -> [T; 4] {
+        let (command, observation) = self.of(begin.trajectory() as usize);
         // What is observed late was seen in the rest of a step before.
         let looks = if observation.part() > 0.0 { 1.0 - observation.part() } else { 0.0 };
-        [age((command, observation)) as f64, command.part(), looks].map(T::from_f64)
+        let age = age((command, observation));
+        let [high, low] = [age / DIGIT, age % DIGIT].map(|digit| digit as f64);
+        [high, low, command.part(), looks].map(T::from_f64)
     }
 
     fn beat(&self, _: u64) {}
@@ -78,10 +84,11 @@ impl<T: Float> Delay<T> for Latencies<'_> {
     #[inline(always)]
     fn arrival(
         &self,
-        &mut [age, part, looks]: &mut [T; 3],
+        &mut [high, low, part, looks]: &mut [T; 4],
         (): (),
         _: &mut impl FnMut() -> u32,
     ) -> Arrival<T> {
-        Arrival { fresh: true, age: age.to_f64() as u32, part, looks }
+        let age = high.to_f64() as u32 * DIGIT as u32 + low.to_f64() as u32;
+        Arrival { fresh: true, age, part, looks }
     }
 }

@@ -12,7 +12,7 @@ pub use random::Random;
 pub use recorded::{RecordedLatencies, RecordedLatenciesError};
 pub use schedule::{Event, Schedule, ScheduleError};
 
-use super::{ControlError, Memory};
+use super::{Begin, ControlError, Memory};
 use crate::Float;
 
 /// Tells which command acts.
@@ -46,8 +46,8 @@ pub trait Delay<T: Float>: Copy + Send + Sync {
     /// How many commands back the oldest is that may yet arrive.
     fn longest(&self) -> usize;
 
-    /// The memory before the first step of `trajectory`, in the run of this seed.
-    fn start(&self, seed: u64, trajectory: u64) -> Self::Memory;
+    /// The memory before the first step.
+    fn start(&self, begin: Begin) -> Self::Memory;
 
     /// What is the same for all trajectories at `step`.
     fn beat(&self, step: u64) -> Self::Beat;
@@ -114,7 +114,7 @@ impl<T: Float> Delay<T> for Schedule {
         self.commands_on_their_way()
     }
 
-    fn start(&self, _: u64, _: u64) -> [T; 0] {
+    fn start(&self, _: Begin) -> [T; 0] {
         []
     }
 

@@ -3,7 +3,8 @@
 use super::{Arrival, Delay};
 use crate::Float;
 use crate::analysis::RandomLatency;
-use crate::random::{Address, Purpose, uniform};
+use crate::control::Begin;
+use crate::random::{Purpose, uniform};
 
 /// In every step a latency from a table with probabilities, or with the hold probability the one of the step before: what
 /// [`Plant::mean_square_late`](crate::analysis::Plant::mean_square_late) predicts.
@@ -40,9 +41,8 @@ impl<T: Float> Delay<T> for Random<'_> {
         self.0.longest()
     }
 
-    fn start(&self, seed: u64, trajectory: u64) -> [T; 1] {
-        let place = Address { seed, trajectory, step: 0, purpose: Purpose::LatencyStart };
-        [self.pick(uniform(place.bits()[0]))]
+    fn start(&self, begin: Begin) -> [T; 1] {
+        [self.pick(uniform(begin.address(Purpose::LatencyStart).bits()[0]))]
     }
 
     fn beat(&self, _: u64) {}

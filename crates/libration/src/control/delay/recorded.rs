@@ -5,6 +5,7 @@ use thiserror::Error;
 use super::{Arrival, Delay};
 use crate::Float;
 use crate::analysis::Latency;
+use crate::control::Begin;
 
 /// A latency for each step, the same for all trajectories: in step `k` the command of `⌊latency⌋` steps ago arrives, after
 /// the part of the step that is left. A run that is longer than the record is refused.
@@ -48,7 +49,7 @@ impl<T: Float> Delay<T> for RecordedLatencies<'_> {
         self.0.iter().fold(0.0_f64, |most, &steps| most.max(steps)) as usize
     }
 
-    fn start(&self, _: u64, _: u64) -> [T; 0] {
+    fn start(&self, _: Begin) -> [T; 0] {
         []
     }
 

@@ -25,6 +25,9 @@ pub(super) struct Common<'s, T, A, M, K, C, L> {
     pub(super) seed: u64,
 }
 
+/// Commands on their way up to which it is as fast to look at all of them.
+const SCANNED: usize = 8;
+
 /// The age of no command.
 const NONE: u32 = u32::MAX;
 
@@ -197,10 +200,21 @@ where
                             }
                         }};
                     }
-                    // Row by row, which is vectors, and not lane by lane.
+                    // Few rows one by one, which is vectors, and many lane by lane.
                     macro_rules! arrive {
                         ($l:ident, $arrives:expr) => {{
-                            for age in 0..layout.places {
+                            for $l in (0..W).filter(|_| layout.places > SCANNED) {
+                                let age = ages[$l] as usize;
+                                if (age < layout.places) & $arrives {
+                                    let place = (slot + layout.places - age) % layout.places;
+                                    for i in 0..D {
+                                        let row = layout.ring + place * D + i;
+                                        held.0[i][$l] = memory.lane(row, $l).unwrap_or(zero);
+                                    }
+                                }
+                            }
+                            let scanned = if layout.places > SCANNED { 0 } else { layout.places };
+                            for age in 0..scanned {
                                 let place = (slot + layout.places - age) % layout.places;
                                 for i in 0..D {
                                     let row = memory.get(layout.ring + place * D + i, zero);

@@ -16,7 +16,7 @@ pub use snapshot::Snapshot;
 
 use super::{Assign, Ensemble, EnsembleError, Execution, GRAIN, Nobody, Observer, chunk, shares};
 use crate::control::error::finite;
-use crate::control::{Clock, Controller, Delay, Memory};
+use crate::control::{Begin, Clock, Controller, Delay, Memory};
 use crate::{Float, Integrator, State, System};
 use kernel::Common;
 use rows::Memories;
@@ -98,7 +98,7 @@ where
         setup.delay.check()?;
         let period = dt.to_f64() * setup.delay.schedule().period();
         setup.controller.check(period)?;
-        before.iter().try_for_each(|x| finite("the command before the first", x.to_f64()))?;
+        before.iter().try_for_each(|x| finite::<T>("the command before the first", x.to_f64()))?;
         let len = states.len();
         for (what, values) in [
             ("systems", setup.systems.count()),
@@ -218,8 +218,8 @@ where
     }
 
     /// Puts trajectory `n`, if there is one, back to `state`, as if it began there: what was remembered and what was on its way
-    /// is forgotten. Steps are counted on, so that its noise, and a clock that depends on the step, are those of the
-    /// step at which all are.
+    /// is forgotten. Steps are counted on, so that its noise, what is drawn once for a
+    /// trajectory, and a clock that depends on the step, are those of the step at which all are.
     pub fn reset(&mut self, n: usize, state: State<T, D>) {
         if n < self.len() {
             self.trajectories.planes.share().set(n, state);
@@ -260,10 +260,10 @@ where
     fn forget(&mut self, n: usize) {
         let Some(state) = self.state(n) else { return };
         let Layout { clock, delay, controller, held, rows, .. } = self.layout;
-        let (setup, seed, trajectory) = (&self.setup, self.seed, n as u64);
+        let (setup, begin) = (&self.setup, Begin::new(self.seed, n as u64, self.step()));
         // One lane.
-        let clocks = setup.clock.start(seed, trajectory).alone();
-        let delays = setup.delay.start(seed, trajectory).alone();
+        let clocks = setup.clock.start(begin).alone();
+        let delays = setup.delay.start(begin).alone();
         let controllers = setup.controller.start(&state).alone();
         let mut values = Vec::with_capacity(rows);
         let mut push = |_: usize, &[value]: &[T; 1]| values.push(value);

@@ -92,6 +92,13 @@ impl<T: Copy, const W: usize> Block<'_, T, W> {
         lanes
     }
 
+    /// The number in lane `l` of a row, which is within the pieces.
+    #[inline(always)]
+    pub(super) fn lane(&self, row: usize, l: usize) -> Option<T> {
+        let (piece, lane) = if W < GRAIN { (0, self.lane + l) } else { (l / GRAIN, l % GRAIN) };
+        self.pieces.get((piece * self.rows + row) * GRAIN + lane).copied()
+    }
+
     #[inline(always)]
     pub(super) fn set(&mut self, row: usize, lanes: &[T; W]) {
         let size = if W < GRAIN { W } else { GRAIN };

@@ -145,7 +145,7 @@ impl Wide {
         Wide::rounded(doublings < 0, count, 0) * ln_2() + t.odd_series(t * t).scaled(1)
     }
 
-    /// The exponential of a number of magnitude below 2¹⁰, with a relative error of at most 2⁻¹⁰⁰⁰; NaN beyond.
+    /// The exponential of a number of magnitude below 2¹¹, with a relative error of at most 2⁻¹⁰⁰⁰; NaN beyond.
     pub fn exp(self) -> Self {
         if self.exponent().is_some_and(|e| e > 10) || self.is_nan() {
             return Wide::NAN;
