@@ -3,7 +3,7 @@
 use super::imperfection::{Kind, Profile};
 use super::predicted;
 use super::trial::Effect;
-use crate::notation::count;
+use crate::notation::{count, number};
 use crate::record::{Cell, Finding, Record, Table, Tolerance};
 
 /// A distance at which trajectories are apart, in units of the orbit.
@@ -72,9 +72,16 @@ pub(super) fn row(kind: Kind, profile: &Profile, found: Found, margin: Option<f6
     let size = kind.size(profile);
     let known = |x: Option<f64>| x.map_or_else(|| Cell::absent(""), Cell::from);
     let words: [Cell; 3] = [profile.title.into(), kind.title().into(), size.into()];
-    let all = found.steps.into_iter().chain(found.energy);
-    let margins = [margin, margin.map(|margin| size / margin)];
-    words.into_iter().chain(all.chain(margins).map(known)).collect()
+    let all = found.steps.into_iter().chain(found.energy).map(known);
+    let margins = match (margin, kind) {
+        (Some(margin), _) => [Cell::from(margin), Cell::from(size / margin)],
+        // Beyond it steps would be negative, and none is tried.
+        (None, Kind::Jitter) => {
+            ["above 1/3".to_owned(), format!("below {}", number(3.0 * size, 2))].map(Cell::absent)
+        }
+        (None, _) => ["none known"; 2].map(Cell::absent),
+    };
+    words.into_iter().chain(all).chain(margins).collect()
 }
 
 /// Where the distance first exceeds [`FAR`], between two looks in proportion.

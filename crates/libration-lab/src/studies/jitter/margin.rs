@@ -42,7 +42,8 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         return Ok(());
     };
     let text = format!(
-        "velocity Verlet with a damper, ωΔt = {Z}: largest σ at which the mean square stays bounded"
+        "velocity Verlet with a damper, ωΔt = {Z}: largest σ at which the mean square stays bounded, computed; loops below and above \
+         it are simulated"
     );
     record.find(Finding::measured("jitter.margin.rms", text, "1", margin));
     let Feedback { velocity, .. } = damping(lab);

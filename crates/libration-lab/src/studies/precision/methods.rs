@@ -11,7 +11,7 @@ use super::parts::{between, nearest_turn};
 use super::tag;
 use super::types::ERRORS;
 use crate::notation::{count, seconds};
-use crate::record::{Cell, Finding, Table, Tolerance};
+use crate::record::{Cell, Finding, Relation, Table, Tolerance};
 use crate::studies::rounding::{path_of_unit_step, rounding_of_run, slip_of_run};
 use crate::study::StudyError;
 use crate::{Lab, Record};
