@@ -12,7 +12,7 @@ use crate::analysis::QuadraticForm;
 use crate::number::Wide;
 
 /// Fewest and most harmonics of the density of directions that are kept.
-const HARMONICS: [f64; 2] = [32.0, 128.0];
+const HARMONICS: [f64; 2] = [32.0, 96.0];
 
 /// Harmonics for steps that stretch one direction so many times as much as another: sharper densities need more.
 fn harmonics(steps: &[(f64, Matrix)]) -> usize {
@@ -23,7 +23,7 @@ fn harmonics(steps: &[(f64, Matrix)]) -> usize {
     let most =
         steps.iter().map(|(_, step)| stretch(step)).filter(|x| x.is_finite()).fold(1.0, f64::max);
     let [fewest, limit] = HARMONICS;
-    (16.0 * most).clamp(fewest, limit) as usize
+    (8.0 * most).clamp(fewest, limit) as usize
 }
 
 impl Plant<'_> {
@@ -87,10 +87,12 @@ fn mean_growth(steps: &[(f64, Matrix)]) -> f64 {
         }
     }
     // Coefficients of a function of direction: Σ cₘ e^{imx}.
+    let roots: Vec<Complex<f64>> = (0..directions)
+        .map(|k| Complex::from_polar(1.0, -TAU * k as f64 / directions as f64))
+        .collect();
     let coefficient = |values: &[Complex<f64>], m: isize| {
-        let phase =
-            |n: usize| Complex::from_polar(1.0, -TAU * (m * n as isize) as f64 / directions as f64);
-        values.iter().enumerate().map(|(n, value)| value * phase(n)).sum::<Complex<f64>>()
+        let root = |n: usize| roots[(m * n as isize).rem_euclid(directions as isize) as usize];
+        values.iter().enumerate().map(|(n, value)| value * root(n)).sum::<Complex<f64>>()
             / directions as f64
     };
     let order = |i: usize| i as isize - harmonics as isize;

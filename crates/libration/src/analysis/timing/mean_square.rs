@@ -42,6 +42,8 @@ pub(super) struct Squares<'p> {
     feedback: Feedback,
     /// What stands before `1, ε, ε², …`, row by row.
     powers: Vec<[Wide; 9]>,
+    /// Whether these powers are all that there is to it.
+    follows: bool,
 }
 
 /// Bits to which the last powers must have fallen: what is left out then is less than an `f64` shows.
@@ -63,18 +65,25 @@ impl Plant<'_> {
         let half = (POWERS / 2) as i64;
         let node = |i: usize| Wide::from_f64((i as i64 - half) as f64).scaled(-SPACING);
         let nodes: Vec<Wide> = (0..POWERS).map(node).collect();
-        let values: Vec<[Wide; 9]> = nodes
-            .iter()
-            .map(|&epsilon| {
-                let step = self.closed(feedback, self.dt * (Wide::one() + epsilon));
-                square([0, 1].map(|i| [0, 1].map(|j| step.entry(i, j))))
-            })
-            .collect();
+        let at = |epsilon: Wide| {
+            let step = self.closed(feedback, self.dt * (Wide::one() + epsilon));
+            square([0, 1].map(|i| [0, 1].map(|j| step.entry(i, j))))
+        };
+        let values: Vec<[Wide; 9]> = nodes.iter().map(|&epsilon| at(epsilon)).collect();
         let powers: [Vec<Wide>; 9] = core::array::from_fn(|entry| {
             interpolated(&nodes, values.iter().map(|square| square[entry]).collect())
         });
         let of = |k: usize| core::array::from_fn(|entry| powers[entry][k]);
-        Squares { plant: self, feedback, powers: (0..POWERS).map(of).collect() }
+        let powers: Vec<[Wide; 9]> = (0..POWERS).map(of).collect();
+        // Between two nodes, near the end where a polynomial follows last.
+        let between = nodes[POWERS - 2] + Wide::one().scaled(-SPACING - 1);
+        let polynomial =
+            |i: usize| powers.iter().rev().fold(Wide::ZERO, |sum, power| sum * between + power[i]);
+        let there = at(between);
+        let size = largest(there);
+        let off = largest(core::array::from_fn(|i| polynomial(i) - there[i]));
+        let follows = off <= size.scaled(-SETTLED);
+        Squares { plant: self, feedback, powers, follows }
     }
 }
 
@@ -92,18 +101,11 @@ impl Squares<'_> {
         let term = |k: usize, i: usize| self.powers[k][i] * moments[k];
         let sum: [Wide; 9] =
             core::array::from_fn(|i| (0..POWERS).fold(Wide::ZERO, |sum, k| sum + term(k, i)));
-        let largest = |of: &mut dyn Iterator<Item = Wide>| {
-            of.fold(Wide::ZERO, |most, x| if x.abs() > most { x.abs() } else { most })
-        };
-        let rest = largest(
-            &mut (POWERS - 8..POWERS)
-                .flat_map(|k| (0..9).map(move |i| (k, i)))
-                .map(|(k, i)| term(k, i)),
-        );
-        if rest < largest(&mut sum.iter().copied()).scaled(-SETTLED) {
-            sum
-        } else {
-            self.by_nodes(jitter)
+        let rest = (POWERS - 8..POWERS).map(|k| largest(core::array::from_fn(|i| term(k, i))));
+        let settled = rest.fold(Wide::ZERO, |most, x| if x > most { x } else { most });
+        match self.follows && settled <= largest(sum).scaled(-SETTLED) {
+            true => sum,
+            false => self.by_nodes(jitter),
         }
     }
 
@@ -127,6 +129,12 @@ impl Squares<'_> {
         let coefficients = characteristic(self.operator(jitter));
         coefficients.into_iter().fold(Wide::one(), |sum, c| sum + c) > Wide::ZERO
     }
+}
+
+/// The largest size of an entry.
+fn largest(entries: [Wide; 9]) -> Wide {
+    let sizes = entries.into_iter().map(Wide::abs);
+    sizes.fold(Wide::ZERO, |most, size| if size > most { size } else { most })
 }
 
 /// The lower coefficients of the characteristic polynomial of a matrix of three rows.
