@@ -60,15 +60,18 @@ impl Plant<'_> {
         self.squares(feedback).mean(jitter)
     }
 
+    /// `M ⊗ M` of a step of `Δt(1 + ε)`.
+    fn square_at(&self, feedback: Feedback, epsilon: Wide) -> [Wide; 9] {
+        let step = self.closed(feedback, self.dt * (Wide::one() + epsilon));
+        square([0, 1].map(|i| [0, 1].map(|j| step.entry(i, j))))
+    }
+
     /// Of the loop that `feedback` closes.
     pub(super) fn squares(&self, feedback: Feedback) -> Squares<'_> {
         let half = (POWERS / 2) as i64;
         let node = |i: usize| Wide::from_f64((i as i64 - half) as f64).scaled(-SPACING);
         let nodes: Vec<Wide> = (0..POWERS).map(node).collect();
-        let at = |epsilon: Wide| {
-            let step = self.closed(feedback, self.dt * (Wide::one() + epsilon));
-            square([0, 1].map(|i| [0, 1].map(|j| step.entry(i, j))))
-        };
+        let at = |epsilon: Wide| self.square_at(feedback, epsilon);
         let values: Vec<[Wide; 9]> = nodes.iter().map(|&epsilon| at(epsilon)).collect();
         let powers: [Vec<Wide>; 9] = core::array::from_fn(|entry| {
             interpolated(&nodes, values.iter().map(|square| square[entry]).collect())
@@ -117,9 +120,7 @@ impl Squares<'_> {
         }
         let nodes = jitter.nodes(turn);
         nodes.into_iter().fold([Wide::ZERO; 9], |sum, (weight, epsilon)| {
-            let dt = self.plant.dt * (Wide::one() + Wide::from_f64(epsilon));
-            let step = self.plant.closed(self.feedback, dt);
-            let square = square([0, 1].map(|i| [0, 1].map(|j| step.entry(i, j))));
+            let square = self.plant.square_at(self.feedback, Wide::from_f64(epsilon));
             core::array::from_fn(|i| sum[i] + Wide::from_f64(weight) * square[i])
         })
     }

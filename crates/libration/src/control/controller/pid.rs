@@ -37,6 +37,17 @@ pub struct PidGains<const D: usize> {
     pub target: [f64; D],
 }
 
+impl<const D: usize> PidGains<D> {
+    /// Whether `T` holds them.
+    fn check<T: Float>(&self) -> Result<(), ControlError> {
+        finite::<T>("the proportional gain", self.proportional)?;
+        finite::<T>("the integral gain", self.integral)?;
+        finite::<T>("the derivative gain", self.derivative)?;
+        self.target.into_iter().try_for_each(|x| finite::<T>("the target", x))?;
+        not_negative::<T>("the time of the filter", self.filter)
+    }
+}
+
 impl<const D: usize> Pid<D> {
     /// A controller with these gains.
     ///
@@ -44,11 +55,7 @@ impl<const D: usize> Pid<D> {
     /// [`ControlError`] if a gain or the target is not finite, the filter is negative, or limit or tracking time are not above
     /// zero.
     pub fn new(gains: PidGains<D>) -> Result<Self, ControlError> {
-        finite::<f64>("the proportional gain", gains.proportional)?;
-        finite::<f64>("the integral gain", gains.integral)?;
-        finite::<f64>("the derivative gain", gains.derivative)?;
-        gains.target.into_iter().try_for_each(|x| finite::<f64>("the target", x))?;
-        not_negative::<f64>("the time of the filter", gains.filter)?;
+        gains.check::<f64>()?;
         let positive = |x: f64| x > 0.0;
         ensure("the largest command", gains.most, "above 0", positive)?;
         ensure("the tracking time", gains.tracking, "above 0", positive)?;
@@ -63,15 +70,13 @@ impl<T: Float, const D: usize> Controller<T, D> for Pid<D> {
     /// At the limit what it takes away decays by `1 − h/tracking` a sample: below half a sample that grows.
     fn check(&self, period: f64) -> Result<(), ControlError> {
         let gains = self.gains;
-        finite::<T>("the proportional gain", gains.proportional)?;
-        finite::<T>("the integral gain", gains.integral)?;
-        finite::<T>("the derivative gain", gains.derivative)?;
+        gains.check::<T>()?;
         let follows = |tracking: f64| T::from_f64(1.0 / tracking).is_finite();
         let allowed = "long enough for the float type";
         ensure("the tracking time", gains.tracking, allowed, follows)?;
-        let decays = |tracking: f64| self.gains.most.is_infinite() || 2.0 * tracking > period;
+        let decays = |tracking: f64| gains.most.is_infinite() || 2.0 * tracking > period;
         let allowed = "more than half the sample time";
-        ensure("the tracking time", self.gains.tracking, allowed, decays)
+        ensure("the tracking time", gains.tracking, allowed, decays)
     }
 
     fn start(&self, state: &State<T, D>) -> Self::Memory {

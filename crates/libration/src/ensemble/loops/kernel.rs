@@ -25,7 +25,8 @@ pub(super) struct Common<'s, T, A, M, K, C, L> {
     pub(super) seed: u64,
 }
 
-/// Commands on their way up to which it is as fast to look at all of them.
+/// Commands on their way up to which all rows are looked at, which is vectors; of more, lane by lane, the one that arrives. The number
+/// is a guess, and changes no bit.
 const SCANNED: usize = 8;
 
 /// The age of no command.
@@ -97,8 +98,7 @@ where
                 let mut commands: [[T; W]; D] = from_fn(|i| memory.get(place + i, zero));
                 for $l in 0..W {
                     let state = State { q: at(&q.0, $l), v: at(&v.0, $l) };
-                    let before = K::Memory::lane(&controllers, $l);
-                    let mut own = before;
+                    let mut own = K::Memory::lane(&controllers, $l);
                     let command = controller.command(&mut own, &state, period);
                     if $looks {
                         put(&mut commands, $l, command);
