@@ -1,5 +1,7 @@
 //! What is remembered of a trajectory from step to step.
 
+use core::fmt::Debug;
+
 /// Numbers that a clock, a delay or a controller keeps of every trajectory: part of the state of a loop.
 ///
 /// An array of numbers, or a pair of such memories.
@@ -9,7 +11,7 @@ pub trait Memory<T: Copy>: Copy + Send + Sync {
 
     /// The memories of `W` neighbouring trajectories, a row for each number.
     #[doc(hidden)]
-    type Lanes<const W: usize>: Copy;
+    type Lanes<const W: usize>: Copy + Debug + Send + Sync;
 
     /// From the rows.
     #[doc(hidden)]
@@ -32,7 +34,7 @@ pub trait Memory<T: Copy>: Copy + Send + Sync {
     fn set_lane<const W: usize>(lanes: &mut Self::Lanes<W>, l: usize, memory: Self);
 }
 
-impl<T: Copy + Send + Sync, const N: usize> Memory<T> for [T; N] {
+impl<T: Copy + Debug + Send + Sync, const N: usize> Memory<T> for [T; N] {
     const LEN: usize = N;
     type Lanes<const W: usize> = [[T; W]; N];
 

@@ -53,9 +53,6 @@ pub enum EnsembleError {
     /// Nothing would move.
     #[error("there are 0 substeps; there must be at least 1")]
     Substeps,
-    /// There is a time limit, and nowhere to say that it was reached.
-    #[error("the environments have a time limit: the rollout must have room for `truncated`")]
-    Truncated,
     /// A snapshot of something else.
     #[error(
         "the snapshot is of other loops: {found} trajectories, where {len} are, or with another memory"

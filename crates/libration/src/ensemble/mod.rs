@@ -22,7 +22,7 @@ mod memory;
 mod observer;
 mod planes;
 mod run;
-mod stream;
+pub(crate) mod stream;
 
 use core::marker::PhantomData;
 
@@ -38,7 +38,7 @@ pub use instructions::{InstructionSet, Loop};
 pub use loops::{Loops, Setup, Snapshot};
 pub use memory::{NoRoom, available_memory, installed_memory};
 pub use observer::{Copies, Drift, Lanes, MeanSquareError, Moments, Observer, Summary};
-pub use stream::stream;
+pub use stream::{stream, stream_again};
 
 use crate::{Float, Integrator, State, System};
 use planes::{Planes, Share};

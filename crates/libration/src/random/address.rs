@@ -22,6 +22,14 @@ pub enum Purpose {
     LatencyStart,
     /// The start of a trajectory.
     Start,
+    /// What else is different in an episode of an environment.
+    Variation,
+    /// The latencies of an episode.
+    Delay,
+    /// The noise of what is observed.
+    Observation,
+    /// An action.
+    Action,
 }
 
 /// The place of a draw.

@@ -33,12 +33,17 @@ impl<const W: usize> Streams<W> {
         streams
     }
 
+    /// Generators of which nothing is asked.
+    pub fn none() -> Self {
+        Streams { low: [0; W], high: [0; W] }
+    }
+
     /// The generators of the trajectories from `first` on, at `step`, if each step takes so many words: none were
     /// taken where no step does.
     #[inline(always)]
     pub fn resumed(seed: u64, first: u64, step: u64, purpose: Purpose, words: usize) -> Self {
         if words == 0 {
-            return Streams { low: [0; W], high: [0; W] };
+            return Streams::none();
         }
         let mut streams = Streams::at(seed, first, step / EPOCH, purpose);
         for _ in 0..(step % EPOCH) as usize * words {

@@ -1,54 +1,46 @@
 //! Many environments.
 
-use core::marker::PhantomData;
-
 use bytemuck::Pod;
 
-use super::kernel::{Horizon, TILE};
-use super::{Environment, Policy, Rollout, Start, Task};
-use crate::ensemble::{Assign, Buffer, EnsembleError, Execution, Pages};
-use crate::{Float, Integrator, State, System};
+use super::block::{self, BlockOf};
+use super::draws::Draws;
+use super::history::History;
+use super::kernel::{Horizon, LANES, Share, TILE};
+use super::row::first_of;
+use super::stage::Stage;
+use super::start::Episode;
+use super::{
+    Autoreset, Environment, EnvironmentError, Place, Policy, Rollout, Sensor, Start, Variation,
+    World, policy,
+};
+use crate::control::Clock;
+use crate::ensemble::{Assign, EnsembleError, Execution, NoRoom};
+use crate::random::{Purpose, Streams};
+use crate::{Float, State};
 
-/// The end of an episode.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Final<T, const O: usize> {
-    /// In which step of the rollout.
-    pub step: usize,
-    /// Of which environment.
-    pub environment: usize,
-    /// What was seen last, before the next episode began.
-    pub observation: [T; O],
-    /// What the episode paid in all.
-    pub episode_return: T,
-    /// Its actions.
-    pub length: u32,
-}
-
-/// Environments that are stepped together. Where an episode ends another begins in the same step: what is seen next is its
-/// start, and what was seen last is kept (`Final`).
+/// Environments that are stepped together.
 ///
 /// ```
 /// use libration::State;
+/// use libration::control::clock::{Gaussian, Jittered};
 /// use libration::ensemble::{All, Execution};
 /// use libration::integrator::SymplecticEuler;
 /// use libration::rl::policy::Linear;
-/// use libration::rl::{Environment, Environments, Layout, Rollout, Writes};
+/// use libration::rl::{Delays, Environment, Environments, Plan, Rollout};
 /// use libration::rl::{start::Between, task::Regulate};
 /// use libration::system::Oscillator;
 ///
-/// # fn main() -> Result<(), libration::ensemble::EnsembleError> {
-/// let environment = Environment {
-///     systems: All(Oscillator { omega2: 10.0_f32 }),
-///     method: SymplecticEuler,
-///     dt: 0.01,
-///     substeps: 1,
-///     task: Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 },
-///     start: Between(State { q: [-1.0], v: [0.0] }, State { q: [1.0], v: [0.0] }),
-///     limit: Some(200),
-/// };
+/// # fn main() -> Result<(), libration::rl::EnvironmentError> {
+/// let spring = All(Oscillator { omega2: 10.0_f32 });
+/// let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
+/// let start = Between(State { q: [-1.0], v: [0.0] }, State { q: [1.0], v: [0.0] });
+/// let environment = Environment::new(spring, SymplecticEuler, 0.01, task, start)
+///     .limit(200)
+///     .delays(Delays::of(0, 1))
+///     .clock(Jittered(Gaussian(0.1)));
 /// let mut all = Environments::new(environment, 1000, 7, Execution::serial())?;
 /// let policy = Linear { weights: [[-10.0, -2.0]], bias: [0.0] };
-/// let mut rollout = Rollout::new(256, 1000, true, Layout::Interleaved, Writes::Plain)?;
+/// let mut rollout = Rollout::new(Plan::new(256, 1000).truncated())?;
 /// all.rollout(policy, &mut rollout)?;
 /// // Every episode was cut off once, and none was lost.
 /// assert_eq!(rollout.finals().len(), 1000);
@@ -57,74 +49,72 @@ pub struct Final<T, const O: usize> {
 /// # }
 /// ```
 #[derive(Debug)]
-pub struct Environments<T, Sys, A, M, K, S, const O: usize, const D: usize> {
-    environment: Environment<A, M, K, S>,
+pub struct Environments<T, E, const O: usize, const D: usize>
+where
+    T: Float,
+    E: World<T, O, D>,
+{
+    world: E,
     seed: u64,
     step: u64,
     len: usize,
     execution: Execution,
-    /// Pieces of all numbers of [`TILE`] environments each.
-    tiles: Buffer<T>,
-    counters: Buffer<u32>,
-    system: PhantomData<Sys>,
+    blocks: Vec<BlockOf<T, E, O, D>>,
+    history: History,
+    past: Vec<T>,
+    /// For clocks, sensors and actions.
+    draws: [Draws; 3],
 }
 
-/// The memory of neighbouring environments, in whole tiles.
-#[derive(Debug)]
-pub(super) struct Share<'a, T> {
-    pub(super) first: usize,
-    pub(super) len: usize,
-    /// For each tile rows of [`TILE`]: `D` positions, `D` velocities, and what the episode has paid so far.
-    pub(super) tiles: &'a mut [T],
-    /// For each tile two rows: steps of the episode, and its number.
-    pub(super) counters: &'a mut [u32],
-}
-
-impl<T, Sys, A, M, K, S, const O: usize, const D: usize> Environments<T, Sys, A, M, K, S, O, D>
+impl<T, E, const O: usize, const D: usize> Environments<T, E, O, D>
 where
     T: Float + Pod,
-    A: Assign<Sys>,
-    M: Integrator,
-    K: Task<T, D, O>,
-    S: Start<T, D>,
-    Sys: System<T, D> + Copy + Send + Sync,
+    E: World<T, O, D>,
 {
-    /// Rows of numbers of a tile.
-    const ROWS: usize = 2 * D + 1;
-
-    /// `len` environments, each at the start of its first episode, drawn from `seed`.
+    /// `len` environments, each at the start of its first episode; all that is random is drawn from `seed`.
     ///
     /// # Errors
-    /// [`EnsembleError::TimeStep`] if `dt` is not above zero; [`EnsembleError::Substeps`] if there are none;
-    /// [`EnsembleError::Length`] if there are more or fewer systems than environments; [`EnsembleError::Control`] if a number
-    /// of the start cannot be; [`EnsembleError::Memory`].
+    /// [`EnvironmentError::Ensemble`] if the time step is not above zero, there are no substeps, there are more or fewer systems or
+    /// rates of clocks than environments, or there is not so much memory; [`EnvironmentError::Number`] if a number of the
+    /// environment cannot be; [`EnvironmentError::Limit`].
     pub fn new(
-        environment: Environment<A, M, K, S>,
+        world: E,
         len: usize,
         seed: u64,
         execution: Execution,
-    ) -> Result<Self, EnsembleError> {
-        let dt = environment.dt;
+    ) -> Result<Self, EnvironmentError> {
+        let parts = world.parts();
+        let Environment { dt, substeps, delays, .. } = *parts;
         if !(dt > 0.0 && T::from_f64(dt) > T::zero() && T::from_f64(dt).is_finite()) {
-            return Err(EnsembleError::TimeStep { dt });
+            return Err(EnsembleError::TimeStep { dt }.into());
         }
-        if environment.substeps == 0 {
-            return Err(EnsembleError::Substeps);
+        if substeps == 0 {
+            return Err(EnsembleError::Substeps.into());
         }
-        environment.start.check()?;
-        if let Some(values) = environment.systems.count().filter(|&values| values != len) {
-            return Err(EnsembleError::Length { what: "systems", values, len });
+        if parts.limit == Some(0) {
+            return Err(EnvironmentError::Limit);
         }
-        let padded = len.next_multiple_of(TILE);
-        let tiles = Buffer::new(padded * Self::ROWS, Pages::Huge)?;
-        let counters = Buffer::new(padded * 2, Pages::Huge)?;
-        let (step, system) = (0, PhantomData);
+        parts.start.check()?;
+        parts.clock.check()?;
+        parts.sensor.check()?;
+        parts.variation.check()?;
+        delays.check()?;
+        for (what, values) in
+            [("systems", parts.systems.count()), ("rates of clocks", parts.clock.trajectories())]
+        {
+            if let Some(values) = values.filter(|&values| values != len) {
+                return Err(EnsembleError::Length { what, values, len }.into());
+            }
+        }
+        let history = History::new(delays, substeps, D);
+        let count = len.div_ceil(LANES);
+        let blocks = room(count, &block::empty::<T, E, O, D>())?;
+        let past = room(count.saturating_mul(history.len()), &T::zero())?;
+        let draws = [Purpose::StepTime, Purpose::Observation, Purpose::Action].map(Draws::new);
+        let step = 0;
         let mut all =
-            Environments { environment, seed, step, len, execution, tiles, counters, system };
-        for n in 0..len {
-            let state = all.environment.start.draw(seed, n as u64, 0);
-            all.set(n, &state);
-        }
+            Environments { world, seed, step, len, execution, blocks, history, past, draws };
+        (0..len).for_each(|n| all.begin(n, 0));
         Ok(all)
     }
 
@@ -143,94 +133,165 @@ where
         self.step
     }
 
-    /// The state of environment `n`, if there is one.
-    pub fn state(&self, n: usize) -> Option<State<T, D>> {
-        let number = |row| self.tiles[Self::place(n, row)];
-        (n < self.len).then(|| State {
-            q: core::array::from_fn(&number),
-            v: core::array::from_fn(|i| number(D + i)),
-        })
+    /// What each is.
+    pub fn world(&self) -> &E {
+        &self.world
     }
 
-    /// What is seen of environment `n` now, if there is one.
-    pub fn observation(&self, n: usize) -> Option<[T; O]> {
-        self.state(n).map(|state| self.environment.task.observe(&state))
+    /// The state of environment `n`, if there is one.
+    pub fn state(&self, n: usize) -> Option<State<T, D>> {
+        (n < self.len).then(|| self.blocks[n / LANES].state(n % LANES))
+    }
+
+    /// Begins another episode in every environment for which there is a `true`.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] if there is not one for each.
+    pub fn reset(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
+        EnvironmentError::shape("marks of the reset", which.len(), self.len)?;
+        for n in (0..self.len).filter(|&n| which[n]) {
+            self.begin(n, self.blocks[n / LANES].episode[n % LANES] + 1);
+        }
+        Ok(())
+    }
+
+    /// Writes what is seen now, before the next action: `[n, i]`.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] if that is not the length of `to`.
+    pub fn observe(&mut self, to: &mut [T]) -> Result<(), EnvironmentError> {
+        EnvironmentError::shape("numbers to be observed", to.len(), self.len.saturating_mul(O))?;
+        let Environments { world, history, seed, step, len, .. } = *self;
+        let (sensor, systems) = (world.parts().sensor, world.parts().systems);
+        let words = self.draws[1].prepare(seed, step, 0, sensor.words(), self.blocks.len());
+        // A look needs no policy.
+        let stage = Stage::<T, E, _, O, D>::new(&world, policy::Constant([0.0; D]), history, seed);
+        for (b, block) in self.blocks.iter().enumerate() {
+            let first = b * LANES;
+            let count = (len - first).min(LANES);
+            let systems = systems.lanes::<LANES>(first, count);
+            let place = Place { environment: first, environments: len, step, row: 0 };
+            let past = &mut self.past[b * history.len()..][..history.len()];
+            let mut words = words.get(b).copied().unwrap_or_else(Streams::none);
+            let mut seen = [[T::zero(); LANES]; O];
+            stage.look(place, &systems, block, past, &mut words, &mut seen);
+            let rows = to[first * O..][..count * O].chunks_exact_mut(O.max(1));
+            for (l, row) in rows.enumerate() {
+                (0..O).for_each(|i| row[i] = seen[i][l]);
+            }
+        }
+        Ok(())
     }
 
     /// Fills `rollout` with what all do under `policy`.
     ///
     /// # Errors
-    /// [`EnsembleError::Length`] if it is for another number of environments; [`EnsembleError::Truncated`] if it has no room to say that an
-    /// episode was cut off, and this can be.
+    /// [`EnvironmentError::Shape`] if it is for another number of environments, or the policy is;
+    /// [`EnvironmentError::Field`] if it has no room for something that has to be said; [`EnvironmentError::Ensemble`] if a record of the
+    /// clock ends before.
     pub fn rollout<P: Policy<T, O, D>>(
         &mut self,
         policy: P,
         rollout: &mut Rollout<T, O, D>,
-    ) -> Result<(), EnsembleError> {
-        let (values, len) = (rollout.environments(), self.len);
-        if values != len {
-            return Err(EnsembleError::Length { what: "environments of the rollout", values, len });
+    ) -> Result<(), EnvironmentError> {
+        let plan = rollout.plan();
+        let (horizon, len) = (plan.horizon, self.len);
+        EnvironmentError::shape("environments of the rollout", plan.environments, len)?;
+        policy.check(len, horizon)?;
+        let parts = self.world.parts();
+        if parts.limit.is_some() && !plan.truncated {
+            let (why, field) = ("the environments have a time limit", "truncated");
+            return Err(EnvironmentError::Field { why, field });
         }
-        if self.environment.limit.is_some() && !rollout.has_truncated() {
-            return Err(EnsembleError::Truncated);
+        let (steps, substeps) = (horizon as u64, u64::from(parts.substeps));
+        let asked = self.step.saturating_add(steps).saturating_mul(substeps);
+        if let Some(known) = parts.clock.steps().filter(|&known| known < asked) {
+            return Err(EnsembleError::Record { known, asked }.into());
         }
-        let horizon = rollout.horizon();
-        let steps = (len as u64).saturating_mul(horizon as u64);
         // A transition writes as much as several steps take.
-        let threads = self.execution.threads_for(steps.saturating_mul(WRITTEN));
+        let transitions = (len as u64).saturating_mul(steps);
+        let threads = self.execution.threads_for(transitions.saturating_mul(WRITTEN));
         let tiles = len.div_ceil(TILE);
         let counts: Vec<usize> = (0..threads)
             .map(|i| [i, i + 1].map(|i| (tiles * i / threads * TILE).min(len)))
             .map(|[from, to]| to - from)
             .collect();
-        let (layout, writes) = (rollout.layout(), rollout.writes());
-        let rows = rollout.shares(&counts);
-        let (mut numbers, mut counters) = (&mut self.tiles[..], &mut self.counters[..]);
+        rollout.pauses = parts.autoreset != Autoreset::SameStep;
+        rollout.idle = if rollout.pauses { self.standing() } else { Vec::new() };
+
+        let Environments { world, history, seed, step, .. } = *self;
+        let blocks = self.blocks.len();
+        let [times, looks, acts] = &mut self.draws;
+        let words = world.parts().clock.words();
+        let times = times.prepare(seed, step * substeps, steps * substeps, words, blocks);
+        let words = world.parts().sensor.words();
+        let looks = looks.prepare(seed, step, steps, words, blocks);
+        let acts = acts.prepare(seed, step, steps, policy.words(), blocks);
+        let mut rest = (&mut self.blocks[..], &mut self.past[..], [times, looks, acts]);
         let mut first = 0;
-        let mut parts = Vec::with_capacity(counts.len());
-        for (len, rows) in counts.into_iter().zip(rows) {
-            let padded = len.next_multiple_of(TILE);
-            let (own, rest) = numbers.split_at_mut(padded * Self::ROWS);
-            numbers = rest;
-            let (counts, rest) = counters.split_at_mut(padded * 2);
-            counters = rest;
-            parts.push((Share { first, len, tiles: own, counters: counts }, rows));
+        let mut shares = Vec::with_capacity(counts.len());
+        for (&len, rows) in counts.iter().zip(rollout.shares(&counts)) {
+            let count = len.div_ceil(LANES);
+            let share = Share {
+                first,
+                len,
+                blocks: first_of(&mut rest.0, count),
+                past: first_of(&mut rest.1, count * history.len()),
+                words: rest.2.each_mut().map(|words| first_of(words, count)),
+            };
+            shares.push((share, rows));
             first += len;
         }
-        let (environment, seed, step) = (&self.environment, self.seed, self.step);
         let instructions = self.execution.instruction_set();
-        let finals = self.execution.each(parts, |(share, rows)| {
-            let system = PhantomData::<Sys>;
-            instructions.run(Horizon {
-                environment,
+        let finals = self.execution.each(shares, |(share, rows)| {
+            instructions.run(Horizon::<T, E, P, _, O, D> {
+                world: &world,
                 policy,
+                history,
                 seed,
+                environments: len,
                 step,
                 share,
                 rows,
-                layout,
-                writes,
-                system,
+                layout: plan.layout,
+                writes: plan.writes,
             })
         });
         rollout.finals = finals.into_iter().flatten().collect();
         rollout.finals.sort_by_key(|end| (end.step, end.environment));
-        self.step += horizon as u64;
+        self.step += steps;
         Ok(())
     }
 
-    /// Where number `row` of environment `n` lies.
-    fn place(n: usize, row: usize) -> usize {
-        (n / TILE * Self::ROWS + row) * TILE + n % TILE
+    /// Those that stand still.
+    fn standing(&self) -> Vec<usize> {
+        let stands = |n: &usize| self.blocks[n / LANES].ended[n % LANES] != 0;
+        (0..self.len).filter(stands).collect()
     }
 
-    fn set(&mut self, n: usize, state: &State<T, D>) {
-        for i in 0..D {
-            self.tiles[Self::place(n, i)] = state.q[i];
-            self.tiles[Self::place(n, D + i)] = state.v[i];
-        }
+    /// Begins an episode of environment `n`.
+    fn begin(&mut self, n: usize, number: u64) {
+        let Environments { world, history, seed, step, .. } = *self;
+        let (b, l) = (n / LANES, n % LANES);
+        let past = &mut self.past[b * history.len()..][..history.len()];
+        let episode = Episode { seed, environment: n as u64, number };
+        block::begin(&mut self.blocks[b], history, past, &world, l, episode, step);
     }
 }
 
 /// The shortest steps that take as long as to write a transition.
 const WRITTEN: u64 = 4;
+
+/// So many of the same.
+///
+/// # Errors
+/// If there is no memory for them.
+fn room<X: Clone>(count: usize, x: &X) -> Result<Vec<X>, EnsembleError> {
+    let mut all = Vec::new();
+    let needed = count as u128 * size_of::<X>() as u128;
+    NoRoom::check(needed)?;
+    let refused = |_| NoRoom { needed, available: None };
+    all.try_reserve_exact(count).map_err(refused)?;
+    all.resize(count, x.clone());
+    Ok(all)
+}

@@ -1,8 +1,18 @@
 //! What an environment is made of.
 
-/// A system with its integrator, a task, a start and a time limit.
+use core::marker::PhantomData;
+
+use super::sensor::Exact;
+use super::variation::Same;
+use super::{Delays, Sensor, Start, Task, Variation};
+use crate::control::Clock;
+use crate::control::clock::Fixed;
+use crate::ensemble::Assign;
+use crate::{Float, Integrator, System};
+
+/// A system with its integrator, a task, a start and a time limit, and what is not ideal about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Environment<A, M, K, S> {
+pub struct Environment<Sys, A, M, K, S, C = Fixed, N = Exact, V = Same> {
     /// The system of every environment: [`All`](crate::ensemble::All) or [`Each`](crate::ensemble::Each).
     pub systems: A,
     /// The integrator.
@@ -17,4 +27,201 @@ pub struct Environment<A, M, K, S> {
     pub start: S,
     /// Actions after which an episode is cut off, if it is.
     pub limit: Option<u32>,
+    /// What follows the end of an episode.
+    pub autoreset: Autoreset,
+    /// How long steps of the integrator are.
+    pub clock: C,
+    /// How late observations and actions are.
+    pub delays: Delays,
+    /// How observations are measured.
+    pub sensor: N,
+    /// What is different in every episode.
+    pub variation: V,
+    pub(super) system: PhantomData<Sys>,
+}
+
+/// What follows the end of an episode.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Autoreset {
+    /// The next episode begins in the same step: what is seen next is its start.
+    #[default]
+    SameStep,
+    /// What is seen next is what was seen last, and the action upon it is ignored: that step pays nothing, ends nothing, and
+    /// leads to the start of the next episode.
+    NextStep,
+    /// Nothing: the environment stands still, pays nothing and tells how it ended, until it is
+    /// [reset](super::Environments::reset).
+    Disabled,
+}
+
+impl<Sys, A, M, K, S> Environment<Sys, A, M, K, S> {
+    /// An ideal environment without a time limit, whose actions are held for one step of `dt` seconds.
+    pub fn new(systems: A, method: M, dt: f64, task: K, start: S) -> Self
+    where
+        A: Assign<Sys>,
+    {
+        Environment {
+            systems,
+            method,
+            dt,
+            substeps: 1,
+            task,
+            start,
+            limit: None,
+            autoreset: Autoreset::SameStep,
+            clock: Fixed,
+            delays: Delays::default(),
+            sensor: Exact,
+            variation: Same,
+            system: PhantomData,
+        }
+    }
+}
+
+impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
+    /// This, with actions that are held for so many steps of the integrator.
+    pub fn substeps(self, substeps: u32) -> Self {
+        Environment { substeps, ..self }
+    }
+
+    /// This, with episodes that are cut off after so many actions.
+    pub fn limit(self, limit: u32) -> Self {
+        Environment { limit: Some(limit), ..self }
+    }
+
+    /// This, with another way to go on after an episode.
+    pub fn autoreset(self, autoreset: Autoreset) -> Self {
+        Environment { autoreset, ..self }
+    }
+
+    /// This, with delays.
+    pub fn delays(self, delays: Delays) -> Self {
+        Environment { delays, ..self }
+    }
+
+    /// This, with steps of another clock.
+    pub fn clock<Other>(self, clock: Other) -> Environment<Sys, A, M, K, S, Other, N, V> {
+        let Environment { systems, method, dt, substeps, task, start, limit, .. } = self;
+        let Environment { autoreset, delays, sensor, variation, system, .. } = self;
+        Environment {
+            systems,
+            method,
+            dt,
+            substeps,
+            task,
+            start,
+            limit,
+            autoreset,
+            clock,
+            delays,
+            sensor,
+            variation,
+            system,
+        }
+    }
+
+    /// This, with observations that are measured so.
+    pub fn sensor<Other>(self, sensor: Other) -> Environment<Sys, A, M, K, S, C, Other, V> {
+        let Environment { systems, method, dt, substeps, task, start, limit, .. } = self;
+        let Environment { autoreset, delays, clock, variation, system, .. } = self;
+        Environment {
+            systems,
+            method,
+            dt,
+            substeps,
+            task,
+            start,
+            limit,
+            autoreset,
+            clock,
+            delays,
+            sensor,
+            variation,
+            system,
+        }
+    }
+
+    /// This, with episodes that differ in more than their start.
+    pub fn variation<Other>(self, variation: Other) -> Environment<Sys, A, M, K, S, C, N, Other> {
+        let Environment { systems, method, dt, substeps, task, start, limit, .. } = self;
+        let Environment { autoreset, delays, clock, sensor, system, .. } = self;
+        Environment {
+            systems,
+            method,
+            dt,
+            substeps,
+            task,
+            start,
+            limit,
+            autoreset,
+            clock,
+            delays,
+            sensor,
+            variation,
+            system,
+        }
+    }
+}
+
+/// An [`Environment`] whose parts fit each other, with `O` numbers to be seen and `D` degrees of freedom: a name for all its
+/// types.
+pub trait World<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
+    /// Of the system.
+    type System: System<T, D> + Copy + Send + Sync;
+    /// Of the systems of all environments.
+    type Systems: Assign<Self::System>;
+    /// Of the integrator.
+    type Method: Integrator;
+    /// Of the task.
+    type Task: Task<T, D, O>;
+    /// Of the start.
+    type Start: Start<T, D>;
+    /// Of the clock.
+    type Clock: Clock<T>;
+    /// Of the sensor.
+    type Sensor: Sensor<T, O>;
+    /// Of the variation.
+    type Variation: Variation<T, Self::System, Self::Task>;
+
+    /// The environment.
+    fn parts(&self) -> &Parts<T, Self, O, D>;
+}
+
+/// The environment that a world is.
+pub type Parts<T, E, const O: usize, const D: usize> = Environment<
+    <E as World<T, O, D>>::System,
+    <E as World<T, O, D>>::Systems,
+    <E as World<T, O, D>>::Method,
+    <E as World<T, O, D>>::Task,
+    <E as World<T, O, D>>::Start,
+    <E as World<T, O, D>>::Clock,
+    <E as World<T, O, D>>::Sensor,
+    <E as World<T, O, D>>::Variation,
+>;
+
+impl<T, Sys, A, M, K, S, C, N, V, const O: usize, const D: usize> World<T, O, D>
+    for Environment<Sys, A, M, K, S, C, N, V>
+where
+    T: Float,
+    Sys: System<T, D> + Copy + Send + Sync,
+    A: Assign<Sys>,
+    M: Integrator,
+    K: Task<T, D, O>,
+    S: Start<T, D>,
+    C: Clock<T>,
+    N: Sensor<T, O>,
+    V: Variation<T, Sys, K>,
+{
+    type System = Sys;
+    type Systems = A;
+    type Method = M;
+    type Task = K;
+    type Start = S;
+    type Clock = C;
+    type Sensor = N;
+    type Variation = V;
+
+    fn parts(&self) -> &Self {
+        self
+    }
 }

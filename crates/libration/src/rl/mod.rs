@@ -1,22 +1,40 @@
 //! Environments for reinforcement learning, many at once, and the tensors that they yield.
 //!
 //! An [`Environment`] is a system with its integrator, a [`Task`] that sees, rewards and ends, a [`Start`] and a time
-//! limit. [`Environments`] are many of them. A [`Rollout`] holds what they do under a [`Policy`] over a horizon.
+//! limit, and what is not ideal about it: a [`Clock`](crate::control::Clock), [`Delays`], a [`Sensor`], a [`Variation`] from
+//! episode to episode. [`Environments`] are many of them. A [`Rollout`] holds what they do under a [`Policy`] over a horizon.
 //!
 //! What environment `i` does follows from its number, the seed, the policy and the steps taken: not from the number of
 //! environments or threads, the instruction set, the layout of the rollout or how many steps are taken at a time.
 
 mod batch;
+mod block;
+mod delays;
+mod draws;
+mod ends;
 mod environment;
+mod error;
+mod history;
 mod kernel;
+mod plan;
 pub mod policy;
 mod rollout;
+mod row;
+pub mod sensor;
+mod stage;
 pub mod start;
 pub mod task;
+pub mod variation;
 
-pub use batch::{Environments, Final};
-pub use environment::Environment;
-pub use policy::{Place, Policy};
-pub use rollout::{Layout, Plan, Rollout, Writes};
-pub use start::Start;
+pub use batch::Environments;
+pub use delays::Delays;
+pub use ends::Final;
+pub use environment::{Autoreset, Environment, Parts, World};
+pub use error::EnvironmentError;
+pub use plan::{Layout, Plan, Writes};
+pub use policy::{Act, Place, Policy};
+pub use rollout::Rollout;
+pub use sensor::Sensor;
+pub use start::{Episode, Start};
 pub use task::Task;
+pub use variation::Variation;

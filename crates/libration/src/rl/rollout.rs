@@ -1,80 +1,13 @@
 //! What environments do over a horizon, as tensors.
 
-use core::mem::take;
+use core::array::from_fn;
+use core::slice::ChunksExactMut;
 
 use bytemuck::Pod;
 
-use crate::ensemble::{Buffer, EnsembleError, NoRoom, Pages};
-
-use super::Final;
-
-/// How several numbers of a transition lie in memory.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Layout {
-    /// Side by side: `[t, n, i]`, as most learners read them.
-    Interleaved,
-    /// Apart: `[i, t, n]`, a structure of arrays.
-    Planes,
-}
-
-/// How the tensors are written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Writes {
-    /// Through the caches: fastest where they hold all of it.
-    Plain,
-    /// Past the caches: fastest where they do not.
-    Past,
-}
-
-/// How large a rollout is to be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Plan {
-    /// Actions of each environment.
-    pub horizon: usize,
-    /// How many environments there are.
-    pub environments: usize,
-    /// Numbers that are seen of each.
-    pub observation: usize,
-    /// Numbers of an action.
-    pub action: usize,
-    /// Whether episodes can be cut off: without a time limit none is, and no memory is needed to say so.
-    pub truncated: bool,
-    /// Bytes of a number.
-    pub number: usize,
-}
-
-impl Plan {
-    /// Every field with its bytes for a transition.
-    pub fn fields(&self) -> [(&'static str, usize); 5] {
-        [
-            ("observation", self.observation * self.number),
-            ("action", self.action * self.number),
-            ("reward", self.number),
-            ("terminated", 1),
-            ("truncated", usize::from(self.truncated)),
-        ]
-    }
-
-    /// Bytes for a transition.
-    pub fn bytes_each(&self) -> usize {
-        self.fields().iter().map(|(_, bytes)| bytes).sum()
-    }
-
-    /// How many transitions there are.
-    pub fn transitions(&self) -> u128 {
-        self.horizon as u128 * self.environments as u128
-    }
-
-    /// All bytes.
-    pub fn bytes(&self) -> u128 {
-        self.transitions() * self.bytes_each() as u128
-    }
-
-    /// How to write it where the last cache holds so many bytes.
-    pub fn writes(&self, cache: u64) -> Writes {
-        if self.bytes() > cache.into() { Writes::Past } else { Writes::Plain }
-    }
-}
+use super::row::Row;
+use super::{EnvironmentError, Final, Layout, Plan};
+use crate::ensemble::{Buffer, NoRoom, Pages};
 
 /// What environments did over a horizon: allocated once, to be filled again and again.
 ///
@@ -82,79 +15,54 @@ impl Plan {
 /// what came of it.
 #[derive(Debug)]
 pub struct Rollout<T, const O: usize, const D: usize> {
-    horizon: usize,
-    environments: usize,
-    layout: Layout,
-    writes: Writes,
+    plan: Plan,
     observation: Buffer<T>,
     action: Buffer<T>,
     reward: Buffer<T>,
     terminated: Buffer<u8>,
     truncated: Buffer<u8>,
+    log_probability: Buffer<T>,
+    value: Buffer<T>,
     /// Ends of episodes, by step and environment.
     pub(super) finals: Vec<Final<T, O>>,
+    /// Environments whose first step was none.
+    pub(super) idle: Vec<usize>,
+    /// Whether the step after an end is none.
+    pub(super) pauses: bool,
 }
 
 impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
-    /// What a rollout of this kind takes.
-    pub fn plan(horizon: usize, environments: usize, truncated: bool) -> Plan {
-        let number = size_of::<T>();
-        Plan { horizon, environments, observation: O, action: D, truncated, number }
-    }
-
     /// Memory for a rollout, which nobody has touched.
     ///
     /// # Errors
-    /// [`EnsembleError::Memory`] if there is not so much.
-    pub fn new(
-        horizon: usize,
-        environments: usize,
-        truncated: bool,
-        layout: Layout,
-        writes: Writes,
-    ) -> Result<Self, EnsembleError> {
-        let plan = Self::plan(horizon, environments, truncated);
-        NoRoom::check(plan.bytes())?;
-        let refused = NoRoom { needed: plan.bytes(), available: None };
-        let all = horizon.checked_mul(environments).filter(|n| n.checked_mul(O.max(D)).is_some());
-        let all = all.ok_or(refused)?;
+    /// [`EnvironmentError::Ensemble`] if there is not so much.
+    pub fn new(plan: Plan) -> Result<Self, EnvironmentError> {
+        let needed = plan.bytes(O, D, size_of::<T>());
+        NoRoom::check(needed)?;
+        let all = plan.horizon.checked_mul(plan.environments);
+        let all = all.filter(|n| n.checked_mul(O.max(D)).is_some());
+        let all = all.ok_or(NoRoom { needed, available: None })?;
+        let room = |asked| if asked { all } else { 0 };
+        let numbers = |count| Buffer::new(count, Pages::Huge);
+        let flags = |count| Buffer::new(count, Pages::Huge);
         Ok(Rollout {
-            horizon,
-            environments,
-            layout,
-            writes,
-            observation: Buffer::new(all * O, Pages::Huge)?,
-            action: Buffer::new(all * D, Pages::Huge)?,
-            reward: Buffer::new(all, Pages::Huge)?,
-            terminated: Buffer::new(all, Pages::Huge)?,
-            truncated: Buffer::new(if truncated { all } else { 0 }, Pages::Huge)?,
+            plan,
+            observation: numbers(all * O)?,
+            action: numbers(all * D)?,
+            reward: numbers(all)?,
+            terminated: flags(all)?,
+            truncated: flags(room(plan.truncated))?,
+            log_probability: numbers(room(plan.log_probability))?,
+            value: numbers(room(plan.value))?,
             finals: Vec::new(),
+            idle: Vec::new(),
+            pauses: false,
         })
     }
 
-    /// Actions of each environment.
-    pub fn horizon(&self) -> usize {
-        self.horizon
-    }
-
-    /// How many environments there are.
-    pub fn environments(&self) -> usize {
-        self.environments
-    }
-
-    /// How its numbers lie.
-    pub fn layout(&self) -> Layout {
-        self.layout
-    }
-
-    /// How it is written.
-    pub fn writes(&self) -> Writes {
-        self.writes
-    }
-
-    /// Whether there is room to say that episodes were cut off.
-    pub fn has_truncated(&self) -> bool {
-        !self.truncated.is_empty() || self.terminated.is_empty()
+    /// What it holds.
+    pub fn plan(&self) -> Plan {
+        self.plan
     }
 
     /// What was seen: `[t, n, i]` or `[i, t, n]`, as the layout says.
@@ -177,14 +85,44 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
         &self.terminated
     }
 
-    /// 1 where it was cut off at the time limit, otherwise 0: `[t, n]`; empty without a limit.
+    /// 1 where it was cut off at the time limit, otherwise 0: `[t, n]`, or empty.
     pub fn truncated(&self) -> &[u8] {
         &self.truncated
+    }
+
+    /// The logarithms of the probability densities of what was done: `[t, n]`, or empty.
+    pub fn log_probability(&self) -> &[T] {
+        &self.log_probability
+    }
+
+    /// What the caller holds observations to be worth: `[t, n]`, or empty.
+    pub fn value(&self) -> &[T] {
+        &self.value
+    }
+
+    /// The values, to be written.
+    pub fn value_mut(&mut self) -> &mut [T] {
+        &mut self.value
     }
 
     /// The episodes that ended, by step and environment.
     pub fn finals(&self) -> &[Final<T, O>] {
         &self.finals
+    }
+
+    /// Whether step `t` of environment `n` is a transition: not where it stood still, or began anew upon an end.
+    ///
+    /// # Panics
+    /// If there is no such step or environment.
+    pub fn is_transition(&self, t: usize, n: usize) -> bool {
+        let Plan { horizon, environments, .. } = self.plan;
+        assert!(t < horizon && n < environments, "step {t} of environment {n}");
+        let Some(before) = t.checked_sub(1) else {
+            return self.idle.binary_search(&n).is_err();
+        };
+        let at = before * environments + n;
+        let ended = self.terminated[at] | self.truncated.get(at).copied().unwrap_or(0);
+        !(self.pauses && ended != 0)
     }
 
     /// What was seen by environment `n` in step `t`.
@@ -204,9 +142,10 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
     }
 
     fn of<const N: usize>(&self, numbers: &[T], t: usize, n: usize) -> [T; N] {
-        assert!(t < self.horizon && n < self.environments, "step {t} of environment {n}");
-        let (at, all) = (t * self.environments + n, self.horizon * self.environments);
-        core::array::from_fn(|i| match self.layout {
+        let Plan { horizon, environments, layout, .. } = self.plan;
+        assert!(t < horizon && n < environments, "step {t} of environment {n}");
+        let (at, all) = (t * environments + n, horizon * environments);
+        from_fn(|i| match layout {
             Layout::Interleaved => numbers[at * N + i],
             Layout::Planes => numbers[i * all + at],
         })
@@ -214,24 +153,31 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
 
     /// The rows of neighbouring environments, so many for each: for each of them all steps.
     pub(super) fn shares(&mut self, counts: &[usize]) -> Vec<Vec<Row<'_, T, O, D>>> {
-        let (n, all) = (self.environments, self.horizon * self.environments);
-        let mut observation = planes(&mut self.observation, self.layout, all, n);
-        let mut action = planes(&mut self.action, self.layout, all, n);
+        let Plan { horizon, environments, layout, .. } = self.plan;
+        let (n, all) = (environments, horizon * environments);
+        let mut observation = planes(&mut self.observation, layout, all, n);
+        let mut action = planes(&mut self.action, layout, all, n);
         let mut reward = self.reward.chunks_exact_mut(n.max(1));
         let mut terminated = self.terminated.chunks_exact_mut(n.max(1));
         let mut truncated = self.truncated.chunks_exact_mut(n.max(1));
-        let mut shares: Vec<Vec<_>> =
-            counts.iter().map(|_| Vec::with_capacity(self.horizon)).collect();
-        for _ in 0..self.horizon {
+        let mut log_probability = self.log_probability.chunks_exact_mut(n.max(1));
+        let mut shares: Vec<Vec<_>> = counts.iter().map(|_| Vec::with_capacity(horizon)).collect();
+        for _ in 0..horizon {
             let mut row = Row {
                 observation: observation.each_mut().map(|plane| plane.next().unwrap_or_default()),
                 action: action.each_mut().map(|plane| plane.next().unwrap_or_default()),
                 reward: reward.next().unwrap_or_default(),
                 terminated: terminated.next().unwrap_or_default(),
                 truncated: truncated.next().unwrap_or_default(),
+                log_probability: log_probability.next().unwrap_or_default(),
             };
+            // Most often there is one, and all of a row is its own.
+            if let [share] = &mut shares[..] {
+                share.push(row);
+                continue;
+            }
             for (share, &count) in shares.iter_mut().zip(counts) {
-                share.push(row.split_off(count, self.layout));
+                share.push(row.split_off(count, layout));
             }
         }
         shares
@@ -244,45 +190,11 @@ fn planes<T, const N: usize>(
     layout: Layout,
     all: usize,
     n: usize,
-) -> [core::slice::ChunksExactMut<'_, T>; N] {
+) -> [ChunksExactMut<'_, T>; N] {
     let (plane, row) = match layout {
         Layout::Interleaved => (all * N, n * N),
         Layout::Planes => (all, n),
     };
     let mut planes = numbers.chunks_exact_mut(plane.max(1));
-    core::array::from_fn(|_| planes.next().unwrap_or_default().chunks_exact_mut(row.max(1)))
-}
-
-/// A step of neighbouring environments.
-#[derive(Debug)]
-pub(super) struct Row<'a, T, const O: usize, const D: usize> {
-    /// The planes, or all numbers in the first.
-    pub(super) observation: [&'a mut [T]; O],
-    pub(super) action: [&'a mut [T]; D],
-    pub(super) reward: &'a mut [T],
-    pub(super) terminated: &'a mut [u8],
-    /// Empty without a time limit.
-    pub(super) truncated: &'a mut [u8],
-}
-
-impl<'a, T, const O: usize, const D: usize> Row<'a, T, O, D> {
-    /// Takes off the first `count` environments.
-    fn split_off(&mut self, count: usize, layout: Layout) -> Row<'a, T, O, D> {
-        let width = |n| if layout == Layout::Interleaved { n } else { 1 };
-        Row {
-            observation: self.observation.each_mut().map(|plane| cut(plane, count * width(O))),
-            action: self.action.each_mut().map(|plane| cut(plane, count * width(D))),
-            reward: cut(&mut self.reward, count),
-            terminated: cut(&mut self.terminated, count),
-            truncated: cut(&mut self.truncated, count),
-        }
-    }
-}
-
-/// Takes off the first `count`, or all if there are fewer.
-fn cut<'a, X>(slice: &mut &'a mut [X], count: usize) -> &'a mut [X] {
-    let whole = take(slice);
-    let (head, tail) = whole.split_at_mut(count.min(whole.len()));
-    *slice = tail;
-    head
+    from_fn(|_| planes.next().unwrap_or_default().chunks_exact_mut(row.max(1)))
 }

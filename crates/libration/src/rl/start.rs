@@ -3,8 +3,19 @@
 use core::array::from_fn;
 
 use crate::control::ControlError;
-use crate::random::{Address, Purpose};
+use crate::random::Purpose;
 use crate::{Float, State};
+
+/// The address of all that is drawn for an episode once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Episode {
+    /// Of all environments.
+    pub seed: u64,
+    /// Whose episode it is.
+    pub environment: u64,
+    /// How many went before.
+    pub number: u64,
+}
 
 /// The start of every episode of every environment.
 pub trait Start<T: Float, const D: usize>: Copy + Send + Sync {
@@ -16,8 +27,8 @@ pub trait Start<T: Float, const D: usize>: Copy + Send + Sync {
         Ok(())
     }
 
-    /// Where episode number `episode` of `environment` begins.
-    fn draw(&self, seed: u64, environment: u64, episode: u64) -> State<T, D>;
+    /// Where an episode begins.
+    fn draw(&self, episode: Episode) -> State<T, D>;
 }
 
 /// Always there.
@@ -28,7 +39,7 @@ pub struct At<const D: usize>(
 );
 
 impl<T: Float, const D: usize> Start<T, D> for At<D> {
-    fn draw(&self, _: u64, _: u64, _: u64) -> State<T, D> {
+    fn draw(&self, _: Episode) -> State<T, D> {
         self.0.map(T::from_f64)
     }
 }
@@ -42,30 +53,62 @@ pub struct Between<const D: usize>(
     pub State<f64, D>,
 );
 
-/// Draws of an episode that have an address of their own, of two numbers each.
-const DRAWS: u64 = 64;
-
 impl<T: Float, const D: usize> Start<T, D> for Between<D> {
     fn check(&self) -> Result<(), ControlError> {
-        let ends = self.0.coordinates().zip(self.1.coordinates());
-        for (index, (low, high)) in ends.enumerate() {
+        between::check("width of the start", self.0.coordinates().zip(self.1.coordinates()))
+    }
+
+    fn draw(&self, episode: Episode) -> State<T, D> {
+        let positions = between::shares::<D>(episode, Purpose::Start, 0);
+        let velocities = between::shares::<D>(episode, Purpose::Start, D);
+        State {
+            q: from_fn(|i| between::at((self.0.q[i], self.1.q[i]), positions[i])),
+            v: from_fn(|i| between::at((self.0.v[i], self.1.v[i]), velocities[i])),
+        }
+    }
+}
+
+/// Numbers that are uniform between two ends.
+pub(super) mod between {
+    use core::array::from_fn;
+
+    use super::Episode;
+    use crate::Float;
+    use crate::control::ControlError;
+    use crate::random::{Address, Purpose};
+
+    /// Draws of an episode that have an address of their own.
+    const DRAWS: u64 = 64;
+
+    /// Every lower end is below its upper one, or both are the same.
+    pub(in crate::rl) fn check(
+        name: &'static str,
+        ends: impl IntoIterator<Item = (f64, f64)>,
+    ) -> Result<(), ControlError> {
+        for (index, (low, high)) in ends.into_iter().enumerate() {
             if !(low <= high && (high - low).is_finite()) {
-                let (name, allowed) = ("width of the start", "a finite number of at least 0");
-                return Err(ControlError { name, index: Some(index), value: high - low, allowed });
+                let (value, allowed) = (high - low, "a finite number of at least 0");
+                return Err(ControlError { name, index: Some(index), value, allowed });
             }
         }
         Ok(())
     }
 
-    fn draw(&self, seed: u64, environment: u64, episode: u64) -> State<T, D> {
-        let shares: [[f64; 2]; D] = from_fn(|i| {
-            let step = episode * DRAWS + i as u64;
-            Address { seed, trajectory: environment, step, purpose: Purpose::Start }.uniform()
-        });
-        let between = |low: f64, high: f64, share: f64| T::from_f64(low + share * (high - low));
-        State {
-            q: from_fn(|i| between(self.0.q[i], self.1.q[i], shares[i][0])),
-            v: from_fn(|i| between(self.0.v[i], self.1.v[i], shares[i][1])),
-        }
+    /// Where between its ends each of `N` numbers is, from 0 to 1: those from number `first` on.
+    pub(in crate::rl) fn shares<const N: usize>(
+        episode: Episode,
+        purpose: Purpose,
+        first: usize,
+    ) -> [f64; N] {
+        let Episode { seed, environment: trajectory, number } = episode;
+        from_fn(|i| {
+            let step = number.wrapping_mul(DRAWS).wrapping_add((first + i) as u64);
+            Address { seed, trajectory, step, purpose }.uniform()[0]
+        })
+    }
+
+    /// The number there.
+    pub(in crate::rl) fn at<T: Float>((low, high): (f64, f64), share: f64) -> T {
+        T::from_f64(low + share * (high - low))
     }
 }

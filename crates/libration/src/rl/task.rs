@@ -40,12 +40,15 @@ macro_rules! regulate {
             fn reward(&self, _: &State<T, $d>, action: &[T; $d], after: &State<T, $d>) -> T {
                 let [position, velocity, effort] =
                     [self.position, self.velocity, self.effort].map(T::from_f64);
-                let mut cost = T::zero();
-                for i in 0..$d {
+                let cost = |i: usize| {
                     let (q, v, u) = (after.q[i], after.v[i], action[i]);
-                    cost = cost + (position * (q * q) + velocity * (v * v) + effort * (u * u));
+                    position * (q * q) + velocity * (v * v) + effort * (u * u)
+                };
+                let mut all = cost(0);
+                for i in 1..$d {
+                    all = all + cost(i);
                 }
-                -cost
+                -all
             }
 
             #[inline(always)]

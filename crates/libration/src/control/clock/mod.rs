@@ -33,6 +33,8 @@ pub trait Clock<T: Float>: Copy + Send + Sync {
     /// What is the same for all trajectories at a step.
     type Beat: Copy;
 
+    /// Whether every step is `Δt` long.
+    const EVEN: bool = false;
     /// Whether steps are random.
     const DRAWS: bool = false;
 
@@ -80,6 +82,7 @@ impl<T: Float, A: Clock<T>, B: Clock<T>> Clock<T> for (A, B) {
     type Memory = (A::Memory, B::Memory);
     type Beat = (A::Beat, B::Beat);
 
+    const EVEN: bool = A::EVEN && B::EVEN;
     const DRAWS: bool = A::DRAWS || B::DRAWS;
 
     fn check(&self) -> Result<(), ControlError> {

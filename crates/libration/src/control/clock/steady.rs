@@ -12,6 +12,8 @@ use crate::random::Purpose;
 pub struct Fixed;
 
 impl<T: Float> Clock<T> for Fixed {
+    const EVEN: bool = true;
+
     type Memory = [T; 0];
     type Beat = ();
 

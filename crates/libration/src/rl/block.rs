@@ -1,0 +1,114 @@
+//! Neighbouring environments.
+
+use super::history::History;
+use super::kernel::LANES;
+use super::start::Episode;
+use super::{Start, Variation, World};
+use crate::control::{Begin, Clock, Memory};
+use crate::ensemble::kernel::{at, put};
+use crate::{Float, State};
+
+/// Neighbouring environments, of which each has a lane.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Block<T, C, V, const D: usize> {
+    pub(super) q: [[T; LANES]; D],
+    pub(super) v: [[T; LANES]; D],
+    /// What the episode has paid so far.
+    pub(super) paid: [T; LANES],
+    /// What the clock remembers.
+    pub(super) clock: C,
+    /// What was drawn for the episode.
+    pub(super) numbers: V,
+    /// The latencies of what is seen and of actions.
+    pub(super) delays: [[u32; LANES]; 2],
+    /// The step with which the episode began.
+    pub(super) began: [u64; LANES],
+    /// Its number.
+    pub(super) episode: [u64; LANES],
+    /// How it ended, if it did and no other has begun: [`OVER`] and [`CUT`].
+    pub(super) ended: [u8; LANES],
+}
+
+/// An episode is over: terminated.
+pub(super) const OVER: u8 = 1;
+/// It was cut off: truncated.
+pub(super) const CUT: u8 = 2;
+
+/// The block of a world.
+pub(super) type BlockOf<T, E, const O: usize, const D: usize> =
+    Block<T, ClockLanes<T, E, O, D>, NumberLanes<T, E, O, D>, D>;
+
+/// What its clock remembers of an environment.
+pub(super) type ClockMemory<T, E, const O: usize, const D: usize> =
+    <<E as World<T, O, D>>::Clock as Clock<T>>::Memory;
+type ClockLanes<T, E, const O: usize, const D: usize> =
+    <ClockMemory<T, E, O, D> as Memory<T>>::Lanes<LANES>;
+
+/// What is drawn for an episode.
+pub(super) type Numbers<T, E, const O: usize, const D: usize> =
+    <<E as World<T, O, D>>::Variation as Variation<
+        T,
+        <E as World<T, O, D>>::System,
+        <E as World<T, O, D>>::Task,
+    >>::Numbers;
+/// In lanes.
+pub(super) type NumberLanes<T, E, const O: usize, const D: usize> =
+    <Numbers<T, E, O, D> as Memory<T>>::Lanes<LANES>;
+
+/// A block before any episode.
+pub(super) fn empty<T: Float, E: World<T, O, D>, const O: usize, const D: usize>()
+-> BlockOf<T, E, O, D> {
+    let none = |_: usize| [T::zero(); LANES];
+    Block {
+        q: [[T::zero(); LANES]; D],
+        v: [[T::zero(); LANES]; D],
+        paid: [T::zero(); LANES],
+        clock: ClockMemory::<T, E, O, D>::load(&none),
+        numbers: Numbers::<T, E, O, D>::load(&none),
+        delays: [[0; LANES]; 2],
+        began: [0; LANES],
+        episode: [0; LANES],
+        ended: [0; LANES],
+    }
+}
+
+/// Begins an episode in lane `l` of a block, with the step `now`.
+pub(super) fn begin<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
+    block: &mut BlockOf<T, E, O, D>,
+    history: History,
+    past: &mut [T],
+    world: &E,
+    l: usize,
+    episode: Episode,
+    now: u64,
+) {
+    let parts = world.parts();
+    let state: State<T, D> = parts.start.draw(episode);
+    put(&mut block.q, l, state.q);
+    put(&mut block.v, l, state.v);
+    let begin = Begin::new(episode.seed, episode.environment, now);
+    ClockMemory::<T, E, O, D>::set_lane(&mut block.clock, l, parts.clock.start(begin));
+    Numbers::<T, E, O, D>::set_lane(&mut block.numbers, l, parts.variation.draw(episode));
+    let delays = parts.delays.draw(episode);
+    (0..2).for_each(|i| block.delays[i][l] = delays[i]);
+    (block.paid[l], block.ended[l]) = (T::zero(), 0);
+    (block.began[l], block.episode[l]) = (now, episode.number);
+    history.begin(past, l, &state);
+}
+
+impl<T: Copy, C: Copy, V, const D: usize> Block<T, C, V, D> {
+    /// The state of lane `l`.
+    #[inline(always)]
+    pub(super) fn state(&self, l: usize) -> State<T, D> {
+        State { q: at(&self.q, l), v: at(&self.v, l) }
+    }
+
+    /// Lane `l` is as it was. What the clocks of all remember goes on; it is begun anew with the next episode.
+    pub(super) fn stand(&mut self, as_it_was: &Self, l: usize) {
+        let State { q, v } = as_it_was.state(l);
+        put(&mut self.q, l, q);
+        put(&mut self.v, l, v);
+        self.paid[l] = as_it_was.paid[l];
+    }
+}

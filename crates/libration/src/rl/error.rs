@@ -1,0 +1,66 @@
+//! What can be wrong with environments.
+
+use thiserror::Error;
+
+use crate::Float;
+use crate::control::ControlError;
+use crate::ensemble::{EnsembleError, NoRoom};
+
+/// Why environments or a rollout cannot be made or run.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum EnvironmentError {
+    /// As for every ensemble.
+    #[error(transparent)]
+    Ensemble(#[from] EnsembleError),
+    /// A number cannot be so.
+    #[error(transparent)]
+    Number(#[from] ControlError),
+    /// There are more or fewer of something.
+    #[error("there are {found} {name}; there must be {wanted}")]
+    Shape {
+        /// Of what.
+        name: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there must be.
+        wanted: usize,
+    },
+    /// There is no room to say something that has to be said.
+    #[error("{why}: the rollout must have room for `{field}`")]
+    Field {
+        /// Why it has to be said.
+        why: &'static str,
+        /// Which of its fields is missing.
+        field: &'static str,
+    },
+    /// A time limit of nothing.
+    #[error("the time limit is 0 actions; it must be at least 1, or there must be none")]
+    Limit,
+}
+
+impl From<NoRoom> for EnvironmentError {
+    fn from(error: NoRoom) -> Self {
+        EnsembleError::from(error).into()
+    }
+}
+
+impl EnvironmentError {
+    /// Nothing, if there are as many as there must be.
+    pub(super) fn shape(name: &'static str, found: usize, wanted: usize) -> Result<(), Self> {
+        if found == wanted { Ok(()) } else { Err(EnvironmentError::Shape { name, found, wanted }) }
+    }
+
+    /// Nothing, if the number is one above zero, in the float type as well.
+    pub(super) fn above_zero<T: Float>(
+        name: &'static str,
+        index: usize,
+        value: f64,
+    ) -> Result<(), Self> {
+        let held = T::from_f64(value);
+        if value.is_finite() && held > T::zero() && held.is_finite() {
+            return Ok(());
+        }
+        let allowed = "a finite number above 0";
+        Err(ControlError { name, index: Some(index), value, allowed }.into())
+    }
+}

@@ -1,0 +1,107 @@
+//! How large a rollout is to be.
+
+/// How several numbers of a transition lie in memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Layout {
+    /// Side by side: `[t, n, i]`, as most learners read them.
+    #[default]
+    Interleaved,
+    /// Apart: `[i, t, n]`, a structure of arrays.
+    Planes,
+}
+
+/// How the tensors are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Writes {
+    /// Through the caches: fastest where they hold all of it.
+    #[default]
+    Plain,
+    /// Past the caches: fastest where they do not.
+    Past,
+}
+
+/// What a rollout holds, how it lies and how it is written; and the memory that it takes, before anything is allocated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Plan {
+    /// Actions of each environment.
+    pub horizon: usize,
+    /// How many environments there are. Where a row of them fills whole lines of the cache, as that of a multiple of 64 does,
+    /// all of it can be streamed.
+    pub environments: usize,
+    /// Whether there is room to say that episodes were cut off.
+    pub truncated: bool,
+    /// Whether there is room for the log-probabilities of actions.
+    pub log_probability: bool,
+    /// Whether there is room for values, which nobody but the caller writes.
+    pub value: bool,
+    /// How its numbers lie.
+    pub layout: Layout,
+    /// How it is written.
+    pub writes: Writes,
+}
+
+impl Plan {
+    /// A plan of what every transition has, side by side, written through the caches.
+    pub fn new(horizon: usize, environments: usize) -> Self {
+        Plan { horizon, environments, ..Plan::default() }
+    }
+
+    /// This, with room to say that episodes were cut off.
+    pub fn truncated(self) -> Self {
+        Plan { truncated: true, ..self }
+    }
+
+    /// This, with room for the log-probabilities of actions.
+    pub fn log_probabilities(self) -> Self {
+        Plan { log_probability: true, ..self }
+    }
+
+    /// This, with room for values.
+    pub fn values(self) -> Self {
+        Plan { value: true, ..self }
+    }
+
+    /// This, in another layout.
+    pub fn layout(self, layout: Layout) -> Self {
+        Plan { layout, ..self }
+    }
+
+    /// This, written so.
+    pub fn writes(self, writes: Writes) -> Self {
+        Plan { writes, ..self }
+    }
+
+    /// How many transitions there are.
+    pub fn transitions(&self) -> u128 {
+        self.horizon as u128 * self.environments as u128
+    }
+
+    /// Every field with its bytes for a transition of `observation` and `action` numbers, of so many bytes each.
+    pub fn fields(
+        &self,
+        observation: usize,
+        action: usize,
+        number: usize,
+    ) -> [(&'static str, usize); 7] {
+        let room = |asked: bool, bytes| if asked { bytes } else { 0 };
+        [
+            ("observation", observation * number),
+            ("action", action * number),
+            ("reward", number),
+            ("terminated", 1),
+            ("truncated", room(self.truncated, 1)),
+            ("log_probability", room(self.log_probability, number)),
+            ("value", room(self.value, number)),
+        ]
+    }
+
+    /// Bytes of all of them for a transition.
+    pub fn bytes_each(&self, observation: usize, action: usize, number: usize) -> usize {
+        self.fields(observation, action, number).iter().map(|(_, bytes)| bytes).sum()
+    }
+
+    /// All bytes.
+    pub fn bytes(&self, observation: usize, action: usize, number: usize) -> u128 {
+        self.transitions() * self.bytes_each(observation, action, number) as u128
+    }
+}

@@ -1,0 +1,84 @@
+//! Exploration.
+
+use super::{Act, Place, Policy};
+use crate::Float;
+use crate::random::{Streams, normal};
+use crate::rl::EnvironmentError;
+
+/// A policy with Gaussian noise on each of its actions; the log-probability is that of the noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Explore<P, const D: usize> {
+    /// The policy, whose actions are the means.
+    pub policy: P,
+    /// The standard deviations, above zero.
+    pub sigma: [f64; D],
+}
+
+impl<P, const D: usize> Explore<P, D> {
+    /// The log-probability of the mean.
+    fn highest(&self) -> f64 {
+        let log = |sigma: f64| libm::log(sigma) + 0.5 * libm::log(core::f64::consts::TAU);
+        -self.sigma.iter().map(|&sigma| log(sigma)).sum::<f64>()
+    }
+}
+
+impl<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize> Policy<T, O, D>
+    for Explore<P, D>
+{
+    const DRAWS: bool = true;
+
+    fn check(&self, environments: usize, horizon: usize) -> Result<(), EnvironmentError> {
+        self.policy.check(environments, horizon)?;
+        for (index, &sigma) in self.sigma.iter().enumerate() {
+            EnvironmentError::above_zero::<T>("standard deviation of exploration", index, sigma)?;
+        }
+        Ok(())
+    }
+
+    fn words(&self) -> usize {
+        self.policy.words() + 2 * D
+    }
+
+    #[inline(always)]
+    fn act(&self, place: Place, seen: &[T; O], word: &mut impl FnMut() -> u32) -> Act<T, D> {
+        let mut act = self.policy.act(place, seen, word);
+        act.log_probability = act.log_probability + T::from_f64(self.highest());
+        for i in 0..D {
+            let (next, log) = explored(act.action[i], self.sigma[i], [word(), word()]);
+            act.action[i] = next;
+            act.log_probability = act.log_probability + log;
+        }
+        act
+    }
+
+    #[inline(always)]
+    fn act_all<const W: usize>(
+        &self,
+        place: Place,
+        seen: &[[T; W]; O],
+        words: &mut Streams<W>,
+        actions: &mut [[T; W]; D],
+        log_probabilities: &mut [T; W],
+    ) {
+        self.policy.act_all(place, seen, words, actions, log_probabilities);
+        let highest = T::from_f64(self.highest());
+        for l in 0..W {
+            log_probabilities[l] = log_probabilities[l] + highest;
+        }
+        for i in 0..D {
+            for l in 0..W {
+                let drawn = [words.next(l), words.next(l)];
+                let (next, log) = explored(actions[i][l], self.sigma[i], drawn);
+                actions[i][l] = next;
+                log_probabilities[l] = log_probabilities[l] + log;
+            }
+        }
+    }
+}
+
+/// An action of this mean and deviation, and how much less likely than the mean it is.
+#[inline(always)]
+fn explored<T: Float>(mean: T, sigma: f64, words: [u32; 2]) -> (T, T) {
+    let z = T::from_f64(normal(words).into());
+    (mean + T::from_f64(sigma) * z, -(T::from_f64(0.5) * (z * z)))
+}

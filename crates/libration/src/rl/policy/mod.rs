@@ -1,0 +1,117 @@
+//! Who acts.
+
+mod explore;
+mod given;
+mod linear;
+mod perceptron;
+mod random;
+
+pub use explore::Explore;
+pub use given::Given;
+pub use linear::{Each, Linear};
+pub use perceptron::{Activation, Perceptron};
+pub use random::Random;
+
+use super::EnvironmentError;
+use crate::Float;
+use crate::random::Streams;
+
+/// Chooses an action: an acceleration in each of `D` degrees of freedom, from `O` numbers that are seen.
+pub trait Policy<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
+    /// Whether an environment's action is best asked for by itself: where that is one short formula.
+    const BRIEF: bool = false;
+    /// Whether anything is random.
+    const DRAWS: bool = false;
+
+    /// Whether it can act for so many environments over so many steps.
+    ///
+    /// # Errors
+    /// What is wrong.
+    fn check(&self, environments: usize, horizon: usize) -> Result<(), EnvironmentError> {
+        let _ = (environments, horizon);
+        Ok(())
+    }
+
+    /// Random words that an action takes: always as many.
+    fn words(&self) -> usize {
+        0
+    }
+
+    /// The action. It branches on nothing but what `self` holds, and is `#[inline(always)]`, or the loops over environments
+    /// are no vectors.
+    fn act(&self, place: Place, seen: &[T; O], word: &mut impl FnMut() -> u32) -> Act<T, D>;
+
+    /// The actions and their log-probabilities of `W` neighbouring environments, the first of which has this place.
+    #[inline(always)]
+    fn act_all<const W: usize>(
+        &self,
+        place: Place,
+        seen: &[[T; W]; O],
+        words: &mut Streams<W>,
+        actions: &mut [[T; W]; D],
+        log_probabilities: &mut [T; W],
+    ) {
+        for l in 0..W {
+            let seen = core::array::from_fn(|i| seen[i][l]);
+            let act = self.act(place.lane(l), &seen, &mut || words.next(l));
+            for i in 0..D {
+                actions[i][l] = act.action[i];
+            }
+            log_probabilities[l] = act.log_probability;
+        }
+    }
+}
+
+/// An action, and how likely it was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Act<T, const D: usize> {
+    /// What is done.
+    pub action: [T; D],
+    /// The logarithm of its probability density; 0 where nothing is drawn.
+    pub log_probability: T,
+}
+
+impl<T: Float, const D: usize> Act<T, D> {
+    /// What is done for sure.
+    #[inline(always)]
+    pub fn sure(action: [T; D]) -> Self {
+        Act { action, log_probability: T::zero() }
+    }
+}
+
+/// Which action is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The number of the environment.
+    pub environment: usize,
+    /// How many environments there are.
+    pub environments: usize,
+    /// Steps since the batch was made.
+    pub step: u64,
+    /// Steps since the rollout began.
+    pub row: usize,
+}
+
+impl Place {
+    /// That of a neighbour, so many environments further.
+    #[inline(always)]
+    pub fn lane(self, l: usize) -> Self {
+        Place { environment: self.environment + l, ..self }
+    }
+}
+
+/// Always the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constant<const D: usize>(
+    /// The action.
+    pub [f64; D],
+);
+
+impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Constant<D> {
+    const BRIEF: bool = true;
+
+    #[inline(always)]
+    fn act(&self, _: Place, _: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
+        Act::sure(self.0.map(T::from_f64))
+    }
+}

@@ -1,0 +1,357 @@
+//! What a step of a block consists of: scalar functions in loops over lanes.
+
+use core::marker::PhantomData;
+
+use super::block::{self, BlockOf, CUT, ClockMemory, NumberLanes, Numbers, OVER};
+use super::ends::Final;
+use super::history::History;
+use super::kernel::LANES;
+use super::start::Episode;
+use super::{Autoreset, Parts, Place, Policy, Sensor, Task, Variation, World};
+use crate::control::{Clock, Memory};
+use crate::ensemble::Assign;
+use crate::ensemble::kernel::{Lines, at, put};
+use crate::random::{EPOCH, Purpose, Streams};
+use crate::system::Held;
+use crate::{Float, Integrator, State};
+
+/// What a block yields in a step, before it is written. It begins with a line of the cache, as each of its rows does: no vector
+/// lies across two.
+#[repr(align(64))]
+pub(super) struct Yield<T, const O: usize, const D: usize> {
+    pub(super) seen: [[T; LANES]; O],
+    pub(super) actions: [[T; LANES]; D],
+    pub(super) log_probabilities: [T; LANES],
+    pub(super) rewards: [T; LANES],
+    pub(super) overs: [u8; LANES],
+    pub(super) cuts: [u8; LANES],
+}
+
+impl<T: Float, const O: usize, const D: usize> Yield<T, O, D> {
+    pub(super) fn zeros() -> Self {
+        let zeros = [T::zero(); LANES];
+        Yield {
+            seen: [zeros; O],
+            actions: [zeros; D],
+            log_probabilities: zeros,
+            rewards: zeros,
+            overs: [0; LANES],
+            cuts: [0; LANES],
+        }
+    }
+}
+
+/// What all blocks and steps share.
+#[derive(Clone, Copy)]
+pub(super) struct Stage<'s, T, E, P, const O: usize, const D: usize> {
+    world: &'s E,
+    policy: P,
+    history: History,
+    seed: u64,
+    dt: T,
+    substeps: u32,
+    limit: Option<u64>,
+    autoreset: Autoreset,
+    numbers: PhantomData<T>,
+}
+
+/// The systems of the lanes of a block.
+type Systems<T, E, const O: usize, const D: usize> =
+    <<E as World<T, O, D>>::Systems as Assign<<E as World<T, O, D>>::System>>::Lanes<LANES>;
+
+impl<'s, T, E, P, const O: usize, const D: usize> Stage<'s, T, E, P, O, D>
+where
+    T: Float,
+    E: World<T, O, D>,
+    P: Policy<T, O, D>,
+{
+    pub(super) fn new(world: &'s E, policy: P, history: History, seed: u64) -> Self {
+        let parts = world.parts();
+        Stage {
+            world,
+            policy,
+            history,
+            seed,
+            dt: T::from_f64(parts.dt),
+            substeps: parts.substeps,
+            limit: parts.limit.map(u64::from),
+            autoreset: parts.autoreset,
+            numbers: PhantomData,
+        }
+    }
+
+    /// Whether nothing but a short formula comes between what is seen and what it leads to.
+    pub(super) fn is_brief(&self) -> bool {
+        let ideal = const { P::BRIEF && !P::DRAWS && !E::Sensor::DRAWS && E::Clock::EVEN };
+        let timely = !self.history.sees_late() && !self.history.acts_late();
+        ideal && timely && self.substeps == 1
+    }
+
+    /// The environment, as a value of its own: behind a reference the compiler would look for changes after every store.
+    #[inline(always)]
+    fn parts(&self) -> Parts<T, E, O, D> {
+        *self.world.parts()
+    }
+
+    /// All of an ideal step.
+    #[inline(always)]
+    pub(super) fn brief(
+        &self,
+        place: Place,
+        systems: &Systems<T, E, O, D>,
+        block: &mut BlockOf<T, E, O, D>,
+        out: &mut Yield<T, O, D>,
+    ) -> u8 {
+        let (parts, policy, dt) = (self.parts(), self.policy, self.dt);
+        let mut ended = 0;
+        for l in 0..LANES {
+            let (system, task) = lane::<T, E, O, D>(&parts, systems, &block.numbers, l);
+            let before = block.state(l);
+            let seen = task.observe(&before);
+            let act = policy.act(place.lane(l), &seen, &mut || 0);
+            let system = Held { system, command: act.action };
+            let after = parts.method.step(&system, before, dt);
+            // An action that is no number leaves no state that is one.
+            let lost = !is_finite(&after);
+            let (reward, over) = judged(&task, lost, &before, &act.action, &after);
+            put(&mut out.seen, l, seen);
+            put(&mut out.actions, l, act.action);
+            out.rewards[l] = reward;
+            block.paid[l] = block.paid[l] + reward;
+            put(&mut block.q, l, after.q);
+            put(&mut block.v, l, after.v);
+            out.overs[l] = over;
+            ended |= over;
+        }
+        ended
+    }
+
+    /// What is seen at the beginning of a step.
+    #[inline(always)]
+    pub(super) fn look(
+        &self,
+        place: Place,
+        systems: &Systems<T, E, O, D>,
+        block: &BlockOf<T, E, O, D>,
+        past: &mut [T],
+        words: &mut Streams<LANES>,
+        seen: &mut [[T; LANES]; O],
+    ) {
+        if const { E::Sensor::DRAWS } && place.step.is_multiple_of(EPOCH) {
+            let first = place.environment as u64;
+            *words = Streams::at(self.seed, first, place.step / EPOCH, Purpose::Observation);
+        }
+        let (mut q, mut v) = (Lines(block.q), Lines(block.v));
+        if self.history.sees_late() {
+            let step = place.step * u64::from(self.substeps);
+            self.history.pass(past, step, &q.0, &v.0);
+            self.history.seen(past, step, &block.delays[0], &mut q.0, &mut v.0);
+        }
+        let parts = self.parts();
+        for l in 0..LANES {
+            let (_, task) = lane::<T, E, O, D>(&parts, systems, &block.numbers, l);
+            let sees = task.observe(&State { q: at(&q.0, l), v: at(&v.0, l) });
+            put(seen, l, parts.sensor.measure(sees, &mut || words.next(l)));
+        }
+    }
+
+    /// What is done about it.
+    #[inline(always)]
+    pub(super) fn act(&self, place: Place, words: &mut Streams<LANES>, out: &mut Yield<T, O, D>) {
+        if const { P::DRAWS } && place.step.is_multiple_of(EPOCH) {
+            let first = place.environment as u64;
+            *words = Streams::at(self.seed, first, place.step / EPOCH, Purpose::Action);
+        }
+        let Yield { seen, actions, log_probabilities, .. } = out;
+        let policy = self.policy;
+        policy.act_all(place, seen, words, actions, log_probabilities);
+    }
+
+    /// What comes of it.
+    #[inline(always)]
+    pub(super) fn advance(
+        &self,
+        place: Place,
+        systems: &Systems<T, E, O, D>,
+        block: &mut BlockOf<T, E, O, D>,
+        past: &mut [T],
+        words: &mut Streams<LANES>,
+        out: &mut Yield<T, O, D>,
+    ) -> u8 {
+        let (parts, dt) = (self.parts(), self.dt);
+        let (mut q, mut v, mut held) = (Lines(block.q), Lines(block.v), Lines(out.actions));
+        if self.history.acts_late() {
+            self.history.act(past, place.step, &out.actions);
+        }
+        for substep in 0..self.substeps {
+            let step = place.step * u64::from(self.substeps) + u64::from(substep);
+            if self.history.acts_late() {
+                let late = &block.delays[1];
+                self.history.effective(past, place.step, substep, late, &mut held.0);
+            }
+            if substep > 0 && self.history.sees_late() {
+                self.history.pass(past, step, &q.0, &v.0);
+            }
+            if const { E::Clock::DRAWS } && step.is_multiple_of(EPOCH) {
+                let first = place.environment as u64;
+                *words = Streams::at(self.seed, first, step / EPOCH, Purpose::StepTime);
+            }
+            let beat = parts.clock.beat(step);
+            for l in 0..LANES {
+                let (system, _) = lane::<T, E, O, D>(&parts, systems, &block.numbers, l);
+                let mut memory = ClockMemory::<T, E, O, D>::lane(&block.clock, l);
+                let ratio = parts.clock.ratio(&mut memory, beat, &mut || words.next(l));
+                ClockMemory::<T, E, O, D>::set_lane(&mut block.clock, l, memory);
+                let system = Held { system, command: at(&held.0, l) };
+                let state = State { q: at(&q.0, l), v: at(&v.0, l) };
+                let state = parts.method.step(&system, state, dt * ratio);
+                put(&mut q.0, l, state.q);
+                put(&mut v.0, l, state.v);
+            }
+        }
+        let mut ended = 0;
+        for l in 0..LANES {
+            let (_, task) = lane::<T, E, O, D>(&parts, systems, &block.numbers, l);
+            let after = State { q: at(&q.0, l), v: at(&v.0, l) };
+            let action = at(&out.actions, l);
+            let lost = !is_finite(&after) | !is_number(&action);
+            let (reward, over) = judged(&task, lost, &block.state(l), &action, &after);
+            out.rewards[l] = reward;
+            block.paid[l] = block.paid[l] + reward;
+            out.overs[l] = over;
+            ended |= over;
+        }
+        (block.q, block.v) = (q.0, v.0);
+        ended
+    }
+
+    /// Whether there is a time limit.
+    pub(super) fn limited(&self) -> bool {
+        self.limit.is_some()
+    }
+
+    /// Which episodes are cut off.
+    #[inline(always)]
+    pub(super) fn limit(
+        &self,
+        now: u64,
+        block: &BlockOf<T, E, O, D>,
+        cuts: &mut [u8; LANES],
+    ) -> u8 {
+        let last = self.limit.unwrap_or(u64::MAX) - 1;
+        let mut ended = 0;
+        for l in 0..LANES {
+            cuts[l] = u8::from(now - block.began[l] >= last);
+            ended |= cuts[l];
+        }
+        ended
+    }
+
+    /// Whether no environment of a block stands still.
+    #[inline(always)]
+    pub(super) fn all_move(&self, block: &BlockOf<T, E, O, D>) -> bool {
+        self.autoreset == Autoreset::SameStep || block.ended == [0; LANES]
+    }
+
+    /// What follows where an episode ended, in this step or before: in scalars, since it is rare.
+    #[inline(never)]
+    pub(super) fn end(
+        &self,
+        place: Place,
+        count: usize,
+        systems: &Systems<T, E, O, D>,
+        block: &mut BlockOf<T, E, O, D>,
+        stood: Option<&BlockOf<T, E, O, D>>,
+        past: &mut [T],
+        words: &Streams<LANES>,
+        out: &mut Yield<T, O, D>,
+        finals: &mut Vec<Final<T, O>>,
+    ) {
+        let next = Place { step: place.step + 1, ..place };
+        let substeps = u64::from(self.substeps);
+        let mut last = [[T::zero(); LANES]; O];
+        // Those that go on will see the same again.
+        self.look(next, systems, block, past, &mut words.clone(), &mut last);
+        for l in 0..count {
+            let environment = place.environment + l;
+            let number = block.episode[l] + 1;
+            let episode = Episode { seed: self.seed, environment: environment as u64, number };
+            if let Some(stood) = stood.filter(|stood| stood.ended[l] != 0) {
+                out.rewards[l] = T::zero();
+                let flags = if self.autoreset == Autoreset::Disabled { stood.ended[l] } else { 0 };
+                (out.overs[l], out.cuts[l]) = (flags & OVER, (flags & CUT) / CUT);
+                if self.autoreset == Autoreset::Disabled {
+                    block.stand(stood, l);
+                    let steps = place.step * substeps..next.step * substeps;
+                    self.history.stand(past, l, steps, &stood.state(l));
+                } else {
+                    block::begin(block, self.history, past, self.world, l, episode, next.step);
+                }
+                continue;
+            }
+            let flags = out.overs[l] * OVER + out.cuts[l] * CUT;
+            if flags == 0 {
+                continue;
+            }
+            finals.push(Final {
+                step: place.row,
+                environment,
+                observation: at(&last, l),
+                episode_return: block.paid[l],
+                length: next.step - block.began[l],
+                lost: !is_finite(&block.state(l)) | !is_number(&at(&out.actions, l)),
+            });
+            match self.autoreset {
+                Autoreset::SameStep => {
+                    block::begin(block, self.history, past, self.world, l, episode, next.step);
+                }
+                Autoreset::NextStep | Autoreset::Disabled => block.ended[l] = flags,
+            }
+        }
+    }
+}
+
+/// The system and the task of lane `l`.
+#[inline(always)]
+fn lane<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
+    parts: &Parts<T, E, O, D>,
+    systems: &Systems<T, E, O, D>,
+    numbers: &NumberLanes<T, E, O, D>,
+    l: usize,
+) -> (E::System, E::Task) {
+    let numbers = Numbers::<T, E, O, D>::lane(numbers, l);
+    parts.variation.apply(&numbers, E::Systems::lane(systems, l), parts.task)
+}
+
+/// What a step pays, and whether all is over with it. What is lost pays nothing: no number comes of it.
+#[inline(always)]
+fn judged<T: Float, K: Task<T, D, O>, const O: usize, const D: usize>(
+    task: &K,
+    lost: bool,
+    before: &State<T, D>,
+    action: &[T; D],
+    after: &State<T, D>,
+) -> (T, u8) {
+    let reward = task.reward(before, action, after);
+    (if lost { T::zero() } else { reward }, u8::from(task.terminated(after) | lost))
+}
+
+/// Whether the sum of all coordinates is.
+#[inline(always)]
+fn is_finite<T: Float, const D: usize>(state: &State<T, D>) -> bool {
+    let mut sum = state.q[0] + state.v[0];
+    for i in 1..D {
+        sum = sum + (state.q[i] + state.v[i]);
+    }
+    sum - sum == T::zero()
+}
+
+/// Whether each of these is a finite number.
+#[inline(always)]
+fn is_number<T: Float, const D: usize>(action: &[T; D]) -> bool {
+    let mut nothing = action[0] - action[0];
+    for i in 1..D {
+        nothing = nothing + (action[i] - action[i]);
+    }
+    nothing == T::zero()
+}

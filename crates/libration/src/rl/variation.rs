@@ -1,0 +1,89 @@
+//! What is different in every episode.
+
+use core::array::from_fn;
+
+use super::start::{Episode, between};
+use crate::Float;
+use crate::control::{ControlError, Memory};
+use crate::random::Purpose;
+
+/// Draws numbers at the beginning of every episode and makes the system and the task of them: domain randomisation.
+///
+/// The rate of a clock is drawn by a [`Clock`](crate::control::Clock), a latency by [`Delays`](super::Delays).
+pub trait Variation<T: Float, Sys, K>: Copy + Send + Sync {
+    /// What is kept of an environment for the episode.
+    type Numbers: Memory<T>;
+
+    /// Whether its numbers are those of a variation.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check(&self) -> Result<(), ControlError> {
+        Ok(())
+    }
+
+    /// What is drawn for an episode.
+    fn draw(&self, episode: Episode) -> Self::Numbers;
+
+    /// The system and the task of the episode. It branches on nothing but what `self` holds, and is `#[inline(always)]`, or the
+    /// loops over environments are no vectors.
+    fn apply(&self, numbers: &Self::Numbers, system: Sys, task: K) -> (Sys, K);
+}
+
+/// Nothing is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Same;
+
+impl<T: Float, Sys, K> Variation<T, Sys, K> for Same {
+    type Numbers = [T; 0];
+
+    fn draw(&self, _: Episode) -> [T; 0] {
+        []
+    }
+
+    #[inline(always)]
+    fn apply(&self, _: &[T; 0], system: Sys, task: K) -> (Sys, K) {
+        (system, task)
+    }
+}
+
+/// `N` numbers, each uniform between two ends, and what they change.
+///
+/// ```
+/// use libration::rl::{task::Regulate, variation::Varied};
+/// use libration::system::Oscillator;
+///
+/// let stiffness = Varied {
+///     ends: [(5.0, 15.0)],
+///     apply: |[omega2]: [f32; 1], _: Oscillator<f32>, task: Regulate| (Oscillator { omega2 }, task),
+/// };
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Varied<F, const N: usize> {
+    /// The ends of each.
+    pub ends: [(f64, f64); N],
+    /// The system and the task, made of the numbers and of what they would be without.
+    pub apply: F,
+}
+
+impl<T, Sys, K, F, const N: usize> Variation<T, Sys, K> for Varied<F, N>
+where
+    T: Float,
+    F: Fn([T; N], Sys, K) -> (Sys, K) + Copy + Send + Sync,
+{
+    type Numbers = [T; N];
+
+    fn check(&self) -> Result<(), ControlError> {
+        between::check("width of the variation", self.ends)
+    }
+
+    fn draw(&self, episode: Episode) -> [T; N] {
+        let shares = between::shares::<N>(episode, Purpose::Variation, 0);
+        from_fn(|i| between::at(self.ends[i], shares[i]))
+    }
+
+    #[inline(always)]
+    fn apply(&self, numbers: &[T; N], system: Sys, task: K) -> (Sys, K) {
+        (self.apply)(*numbers, system, task)
+    }
+}

@@ -1,0 +1,148 @@
+//! One environment by itself, in scalars, as the documentation says it: all its past is kept, and nothing lies in a ring.
+
+use libration::control::{Begin, Clock};
+use libration::random::{EPOCH, Purpose, Streams};
+use libration::rl::{
+    Autoreset, Episode, Parts, Place, Policy, Sensor, Start, Task, Variation, World,
+};
+use libration::system::Held;
+use libration::{Integrator, State};
+
+/// What an environment did in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Told {
+    pub(crate) seen: [f32; 2],
+    pub(crate) action: [f32; 1],
+    pub(crate) log_probability: f32,
+    pub(crate) reward: f32,
+    pub(crate) over: u8,
+    pub(crate) cut: u8,
+    /// Whether it was a step at all.
+    pub(crate) moved: bool,
+    /// What was seen last, where an episode ended.
+    pub(crate) last: Option<[f32; 2]>,
+}
+
+/// The words of one trajectory for one purpose, one after the other.
+struct Words {
+    address: (u64, u64, Purpose),
+    stream: Streams<1>,
+}
+
+impl Words {
+    fn new(seed: u64, n: u64, purpose: Purpose) -> Self {
+        Words { address: (seed, n, purpose), stream: Streams::at(seed, n, 0, purpose) }
+    }
+
+    fn before(&mut self, step: u64) {
+        let (seed, n, purpose) = self.address;
+        if step % EPOCH == 0 {
+            self.stream = Streams::at(seed, n, step / EPOCH, purpose);
+        }
+    }
+}
+
+/// What environment `n` of `environments` does in so many steps.
+pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
+    world: &E,
+    policy: P,
+    (n, environments): (usize, usize),
+    seed: u64,
+    steps: u64,
+) -> Vec<Told> {
+    let parts: Parts<f32, E, 2, 1> = *world.parts();
+    let substeps = u64::from(parts.substeps);
+    let address = |number| Episode { seed, environment: n as u64, number };
+    let words = |purpose| Words::new(seed, n as u64, purpose);
+    let [mut times, mut looks, mut acts] =
+        [Purpose::StepTime, Purpose::Observation, Purpose::Action].map(words);
+    let mut told: Vec<Told> = Vec::new();
+    let mut number = 0;
+    let mut standing: Option<(u8, u8)> = None;
+    // Of the episode: states at the beginning of each step of the integrator, and actions.
+    let (mut states, mut actions, mut clock) = (Vec::new(), Vec::<[f32; 1]>::new(), None);
+    for step in 0..steps {
+        if clock.is_none() {
+            states = vec![parts.start.draw(address(number))];
+            actions.clear();
+            clock = Some(parts.clock.start(Begin::new(seed, n as u64, step)));
+        }
+        let numbers = parts.variation.draw(address(number));
+        let systems = libration::ensemble::Assign::of(parts.systems, n);
+        let (system, task) = parts.variation.apply(&numbers, systems, parts.task);
+        let [late, effect] = delays(&parts.delays, address(number));
+        let see = |states: &[State<f32, 1>], looks: &mut Words, step: u64| {
+            looks.before(step);
+            let shown = states[states.len().saturating_sub(1 + late)];
+            let seen = task.observe(&shown);
+            parts.sensor.measure(seen, &mut || looks.stream.next(0))
+        };
+        let seen = see(&states, &mut looks, step);
+        acts.before(step);
+        let place = Place { environment: n, environments, step, row: 0 };
+        let act = policy.act(place, &seen, &mut || acts.stream.next(0));
+        let before = *states.last().unwrap();
+        actions.push(act.action);
+        let mut state = before;
+        for substep in 0..substeps {
+            let at = step * substeps + substep;
+            times.before(at);
+            // The action whose look lies a latency or more behind.
+            let passed = (states.len() as i64 - 1 - effect as i64).div_euclid(substeps as i64);
+            let command = usize::try_from(passed).map_or([0.0], |passed| actions[passed]);
+            let memory = clock.as_mut().unwrap();
+            let ratio =
+                parts.clock.ratio(memory, parts.clock.beat(at), &mut || times.stream.next(0));
+            let system = Held { system, command };
+            state = parts.method.step(&system, state, parts.dt as f32 * ratio);
+            states.push(state);
+        }
+        let mut now = Told {
+            seen,
+            action: act.action,
+            log_probability: act.log_probability,
+            reward: task.reward(&before, &act.action, &state),
+            over: u8::from(task.terminated(&state)),
+            cut: u8::from(actions.len() as u32 >= parts.limit.unwrap_or(u32::MAX)),
+            moved: true,
+            last: None,
+        };
+        if let Some((over, cut)) = standing {
+            // No step at all; sensors go on seeing what stands still.
+            let passed = states.len() - substeps as usize;
+            states[passed..].fill(before);
+            (now.reward, now.moved) = (0.0, false);
+            if parts.autoreset == Autoreset::NextStep {
+                (now.over, now.cut) = (0, 0);
+                (number, clock, standing) = (number + 1, None, None);
+            } else {
+                (now.over, now.cut) = (over, cut);
+            }
+        } else if now.over + now.cut > 0 {
+            let mut ahead = Words { stream: looks.stream, ..looks };
+            now.last = Some(see(&states, &mut ahead, step + 1));
+            match parts.autoreset {
+                Autoreset::SameStep => (number, clock) = (number + 1, None),
+                Autoreset::NextStep | Autoreset::Disabled => standing = Some((now.over, now.cut)),
+            }
+        }
+        told.push(now);
+    }
+    told
+}
+
+/// The latencies of an episode: as many shares of the interval as there are whole numbers in it.
+fn delays(delays: &libration::rl::Delays, episode: Episode) -> [usize; 2] {
+    let mut drawn = [0; 2];
+    for (i, [least, most]) in [delays.observation, delays.action].into_iter().enumerate() {
+        let place = libration::random::Address {
+            seed: episode.seed,
+            trajectory: episode.environment,
+            step: episode.number * 64 + i as u64,
+            purpose: Purpose::Delay,
+        };
+        let whole = (place.uniform()[0] * f64::from(most - least + 1)).floor();
+        drawn[i] = least as usize + whole as usize;
+    }
+    drawn
+}

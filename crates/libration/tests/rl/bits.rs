@@ -1,0 +1,124 @@
+//! What an environment does, it does wherever it runs.
+
+use libration::ensemble::Execution;
+use libration::rl::policy::{Explore, Linear};
+use libration::rl::{Autoreset, Environments, Layout, Plan, Policy, Rollout, Task, World, Writes};
+
+use crate::alone::{Told, alone};
+use crate::{executions, ideal, perturbed};
+
+pub(crate) const POLICY: Linear<2, 1> = Linear { weights: [[-3.0, 0.5]], bias: [0.25] };
+
+/// What `count` environments tell of so many steps, in as many rollouts as there are horizons.
+pub(crate) fn told<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
+    world: E,
+    policy: P,
+    count: usize,
+    execution: Execution,
+    horizons: &[usize],
+    (layout, writes): (Layout, Writes),
+) -> Vec<Vec<Told>> {
+    let mut all = Environments::new(world, count, 9, execution).unwrap();
+    let mut told: Vec<Vec<Told>> = vec![Vec::new(); count];
+    for &horizon in horizons {
+        let plan = Plan::new(horizon, count).truncated().log_probabilities();
+        let mut rollout = Rollout::new(plan.layout(layout).writes(writes)).unwrap();
+        all.rollout(policy, &mut rollout).unwrap();
+        for (n, told) in told.iter_mut().enumerate() {
+            told.extend((0..horizon).map(|t| {
+                let at = t * count + n;
+                let end = rollout.finals().iter().find(|end| (end.step, end.environment) == (t, n));
+                Told {
+                    seen: rollout.seen(t, n),
+                    action: rollout.done(t, n),
+                    log_probability: rollout.log_probability()[at],
+                    reward: rollout.reward()[at],
+                    over: rollout.terminated()[at],
+                    cut: rollout.truncated()[at],
+                    moved: rollout.is_transition(t, n),
+                    last: end.map(|end| end.observation),
+                }
+            }));
+        }
+    }
+    told
+}
+
+/// Compares some of `count` environments with what each does alone, and counts the episodes that end before their limit.
+fn compare<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(world: E, policy: P) -> usize {
+    const STEPS: usize = 300;
+    let mut ends = 0;
+    let wanted = |n, count| alone(&world, policy, (n, count), 9, STEPS as u64);
+    let lone: Vec<_> = (0..600).map(|n| wanted(n, 600)).collect();
+    for execution in executions() {
+        for (count, layout, writes) in [
+            (1, Layout::Planes, Writes::Past),
+            (77, Layout::Interleaved, Writes::Plain),
+            (512, Layout::Interleaved, Writes::Past),
+            (600, Layout::Planes, Writes::Plain),
+        ] {
+            let horizons = [1, 130, STEPS - 131];
+            let found = told(world, policy, count, execution.clone(), &horizons, (layout, writes));
+            for n in (0..count).step_by(41) {
+                for (t, (found, wanted)) in found[n].iter().zip(&lone[n]).enumerate() {
+                    assert_eq!(found, wanted, "{n} of {count} at {t}, {layout:?} {execution:?}");
+                }
+                ends += lone[n].iter().filter(|now| now.moved && now.over == 1).count();
+            }
+        }
+    }
+    ends
+}
+
+#[test]
+fn an_ideal_environment_does_what_it_does_alone_whatever_runs_beside_it_and_however() {
+    assert!(compare(ideal(), POLICY) > 100, "some episodes end before their limit");
+}
+
+#[test]
+fn so_does_one_with_delays_jitter_skew_noise_variation_and_exploration_under_every_autoreset() {
+    let policy = Explore { policy: POLICY, sigma: [0.5] };
+    for autoreset in [Autoreset::SameStep, Autoreset::NextStep, Autoreset::Disabled] {
+        let ends = compare(perturbed(autoreset), policy);
+        assert!(ends > 50, "some episodes end before their limit: {ends} {autoreset:?}");
+    }
+}
+
+#[test]
+fn a_step_is_the_same_by_the_short_way_as_by_the_long() {
+    // A policy that is not brief, but says the same.
+    #[derive(Clone, Copy)]
+    struct Long(Linear<2, 1>);
+    impl Policy<f32, 2, 1> for Long {
+        fn act(
+            &self,
+            place: libration::rl::Place,
+            seen: &[f32; 2],
+            word: &mut impl FnMut() -> u32,
+        ) -> libration::rl::Act<f32, 1> {
+            self.0.act(place, seen, word)
+        }
+    }
+    let how = (Layout::Interleaved, Writes::Plain);
+    let short = told(ideal(), POLICY, 100, Execution::serial(), &[200], how);
+    let long = told(ideal(), Long(POLICY), 100, Execution::serial(), &[200], how);
+    assert_eq!(short, long);
+}
+
+#[test]
+fn a_look_from_outside_sees_what_the_next_step_does() {
+    let world = perturbed(Autoreset::SameStep);
+    let mut all = Environments::new(world, 100, 3, Execution::serial()).unwrap();
+    for horizon in [1, 254, 1, 1, 20] {
+        let mut seen = vec![0.0; 200];
+        all.observe(&mut seen).unwrap();
+        let mut rollout = Rollout::new(Plan::new(horizon, 100).truncated()).unwrap();
+        all.rollout(POLICY, &mut rollout).unwrap();
+        assert_eq!(rollout.observation()[..200], seen);
+    }
+    // The noise is there.
+    let state = all.state(5).unwrap();
+    let mut seen = vec![0.0; 200];
+    all.observe(&mut seen).unwrap();
+    assert_ne!(seen[10..12], Task::<f32, 1, 2>::observe(&crate::TASK, &state));
+}

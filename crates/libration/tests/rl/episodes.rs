@@ -1,0 +1,103 @@
+//! Episodes begin, end, and leave something behind.
+
+use libration::State;
+use libration::ensemble::{All, Execution};
+use libration::integrator::SymplecticEuler;
+use libration::rl::policy::Constant;
+use libration::rl::start::At;
+use libration::rl::task::Regulate;
+use libration::rl::{Autoreset, Delays, Environment, Environments, Layout, Plan, Rollout};
+
+use crate::bits::POLICY;
+use crate::{SPRING, TASK, ideal, perturbed};
+
+#[test]
+fn an_episode_that_ends_is_kept_with_what_was_seen_last_and_what_it_paid() {
+    let mut all = Environments::new(ideal(), 200, 4, Execution::serial()).unwrap();
+    let mut rollout = Rollout::new(Plan::new(130, 200).truncated().layout(Layout::Planes)).unwrap();
+    all.rollout(POLICY, &mut rollout).unwrap();
+    let flags = (0..130 * 200).filter(|&at| rollout.terminated()[at] + rollout.truncated()[at] > 0);
+    assert_eq!(
+        rollout.finals().iter().map(|end| end.step * 200 + end.environment).collect::<Vec<_>>(),
+        flags.collect::<Vec<_>>()
+    );
+    for end in rollout.finals() {
+        let steps = end.step + 1 - end.length as usize..=end.step;
+        let paid = steps.clone().map(|t| rollout.reward()[t * 200 + end.environment]);
+        assert_eq!(end.episode_return, paid.fold(0.0, |sum, reward| sum + reward));
+        // The next episode begins elsewhere.
+        if end.step + 1 < 130 {
+            assert_ne!(rollout.seen(end.step + 1, end.environment), end.observation);
+        }
+        let over = rollout.terminated()[end.step * 200 + end.environment] == 1;
+        assert_eq!(over, end.observation[0].abs() > 1.2);
+        assert!(end.length <= 60 && (over || end.length == 60) && !end.lost);
+    }
+}
+
+#[test]
+fn what_is_no_longer_finite_is_over_pays_nothing_and_begins_again() {
+    // Beyond z = 2 symplectic Euler grows without end.
+    let task = Regulate { bound: f64::INFINITY, ..TASK };
+    let start = At(State { q: [1.0], v: [0.0] });
+    let environment = Environment::new(All(SPRING), SymplecticEuler, 1e6, task, start);
+    let mut all = Environments::new(environment, 3, 0, Execution::serial()).unwrap();
+    let mut rollout = Rollout::new(Plan::new(20, 3)).unwrap();
+    all.rollout(Constant([0.0]), &mut rollout).unwrap();
+    assert!(rollout.finals().len() >= 3 && rollout.finals().iter().all(|end| end.lost));
+    assert!(rollout.observation().iter().all(|x| x.is_finite()));
+    for end in rollout.finals() {
+        assert_eq!(rollout.reward()[end.step * 3 + end.environment], 0.0);
+    }
+    assert!(rollout.truncated().is_empty());
+}
+
+#[test]
+fn an_action_that_is_no_number_ends_the_episode_of_its_environment_and_touches_no_other() {
+    use libration::rl::policy::Given;
+    let run = |bad: Option<usize>, delays| {
+        let environment = ideal().delays(delays);
+        let mut all = Environments::new(environment, 70, 1, Execution::serial()).unwrap();
+        let mut actions = vec![0.5_f32; 70 * 6];
+        bad.into_iter().for_each(|n| actions[2 * 70 + n] = f32::NAN);
+        let mut rollout = Rollout::new(Plan::new(6, 70).truncated()).unwrap();
+        all.rollout(Given(&actions), &mut rollout).unwrap();
+        rollout
+    };
+    // Also where its effect would come later.
+    for delays in [Delays::default(), Delays::of(0, 2)] {
+        let (good, bad) = (run(None, delays), run(Some(33), delays));
+        for t in 0..6 {
+            for n in (0..70).filter(|&n| n != 33) {
+                assert_eq!(good.seen(t, n), bad.seen(t, n));
+                assert_eq!(good.reward()[t * 70 + n], bad.reward()[t * 70 + n]);
+            }
+        }
+        let end = bad.finals().iter().find(|end| end.environment == 33 && end.lost).unwrap();
+        assert_eq!(end.step, 2);
+        assert_eq!(bad.terminated()[2 * 70 + 33], 1);
+        assert!(bad.reward().iter().chain(bad.observation()).all(|x| x.is_finite()));
+    }
+}
+
+#[test]
+fn what_stands_still_waits_for_its_reset_and_nothing_else_does() {
+    let world = perturbed(Autoreset::Disabled);
+    let mut all = Environments::new(world, 100, 3, Execution::serial()).unwrap();
+    let mut rollout = Rollout::new(Plan::new(80, 100).truncated()).unwrap();
+    all.rollout(POLICY, &mut rollout).unwrap();
+    // After 60 actions at the latest each has ended, once.
+    assert_eq!(rollout.finals().len(), 100);
+    assert!((0..100).all(|n| !rollout.is_transition(79, n)));
+    let states: Vec<_> = (0..100).map(|n| all.state(n)).collect();
+    let which: Vec<bool> = (0..100).map(|n| n % 3 == 0).collect();
+    all.reset(&which).unwrap();
+    all.rollout(POLICY, &mut rollout).unwrap();
+    for (n, &again) in which.iter().enumerate() {
+        assert_eq!(rollout.is_transition(0, n), again, "{n}");
+        assert_eq!(all.state(n) == states[n], !again, "{n}");
+    }
+    assert!(rollout.finals().iter().all(|end| which[end.environment]));
+    let short = all.reset(&[true]).unwrap_err().to_string();
+    assert_eq!(short, "there are 1 marks of the reset; there must be 100");
+}

@@ -1,0 +1,109 @@
+//! What cannot be is refused in words, before anything happens.
+
+use libration::control::clock::{Gaussian, Jittered, Recorded, Uniform};
+use libration::ensemble::{All, Execution};
+use libration::rl::policy::{Activation, Each, Explore, Given, Perceptron, Random};
+use libration::rl::sensor::Noisy;
+use libration::rl::start::Between;
+use libration::rl::{Delays, Environment, Environments, Plan, Policy, Rollout, World, Writes};
+
+use crate::bits::POLICY;
+use crate::{ANYWHERE, ideal};
+
+fn made<E: World<f32, 2, 1>>(world: E) -> Result<Environments<f32, E, 2, 1>, String> {
+    Environments::new(world, 2, 0, Execution::serial()).map_err(|error| error.to_string())
+}
+
+fn refused<E: World<f32, 2, 1>>(world: E) -> String {
+    made(world).map(|_| ()).unwrap_err()
+}
+
+#[test]
+fn an_environment_that_cannot_be_is_refused() {
+    let mut backwards = ideal();
+    backwards.dt = -1.0;
+    assert_eq!(refused(backwards), "the time step is -1 s; it must be above 0");
+    assert_eq!(refused(ideal().substeps(0)), "there are 0 substeps; there must be at least 1");
+    assert_eq!(
+        refused(ideal().limit(0)),
+        "the time limit is 0 actions; it must be at least 1, or there must be none"
+    );
+    let mut turned = ideal();
+    turned.start = Between(ANYWHERE.1, ANYWHERE.0);
+    assert_eq!(
+        refused(turned),
+        "width of the start 0 is -2; it must be a finite number of at least 0"
+    );
+    let late = |observation, action| ideal().delays(Delays { observation, action });
+    assert_eq!(
+        refused(late([0, 5000], [0, 0])),
+        "latency of observations is 5000; it must be at most 4096 steps"
+    );
+    assert_eq!(
+        refused(late([0, 0], [3, 2])),
+        "latency of actions is 3; it must be at most the largest"
+    );
+    assert!(refused(ideal().clock(Jittered(Gaussian(f64::NAN)))).contains("rms of step times"));
+    let noisy = ideal().sensor(Noisy([Uniform(0.1), Uniform(-0.1)]));
+    assert_eq!(
+        refused(noisy),
+        "the rms of the noise of observation 1 is -0.1; it must be a finite number of at least 0"
+    );
+    // The latency of an observation may be longer than any episode: it sees the start.
+    assert!(made(late([4096; 2], [4096; 2])).is_ok());
+}
+
+#[test]
+fn a_rollout_that_does_not_fit_is_refused_and_nothing_has_moved() {
+    let mut two = made(ideal()).unwrap();
+    let mut fill = |plan: Plan| {
+        let mut rollout = Rollout::new(plan).unwrap();
+        two.rollout(POLICY, &mut rollout).map_err(|error| error.to_string())
+    };
+    let other = fill(Plan::new(4, 3).truncated()).unwrap_err();
+    assert_eq!(other, "there are 3 environments of the rollout; there must be 2");
+    let unsaid = fill(Plan::new(4, 2)).unwrap_err();
+    assert!(unsaid.contains("room for `truncated`"), "{unsaid}");
+    fill(Plan::new(0, 2).truncated().writes(Writes::Past)).unwrap();
+    assert_eq!(two.step(), 0);
+    let large = Rollout::<f32, 2, 1>::new(Plan::new(usize::MAX / 4, 1 << 20));
+    assert!(large.map(|_| ()).unwrap_err().to_string().contains("memory"));
+    let mut none = Environments::new(ideal(), 0, 0, Execution::serial()).unwrap();
+    none.rollout(POLICY, &mut Rollout::new(Plan::new(3, 0).truncated()).unwrap()).unwrap();
+    let clock = Recorded::once(&[1.0, 1.1, 0.9]);
+    let mut short = Environments::new(ideal().clock(clock), 2, 0, Execution::serial()).unwrap();
+    let mut rollout = Rollout::new(Plan::new(5, 2).truncated()).unwrap();
+    let error = short.rollout(POLICY, &mut rollout).unwrap_err().to_string();
+    assert_eq!(error, "the record of a clock or a delay has 3 steps; 5 are asked for");
+}
+
+#[test]
+fn a_policy_that_cannot_act_is_refused() {
+    fn told<P: Policy<f32, 2, 1>>(policy: P) -> String {
+        let mut two = made(ideal()).unwrap();
+        let mut rollout = Rollout::new(Plan::new(5, 2).truncated()).unwrap();
+        two.rollout(policy, &mut rollout).unwrap_err().to_string()
+    }
+    assert_eq!(told(Given(&[0.0; 9])), "there are 9 actions; there must be 10");
+    assert_eq!(told(Each(&[0.0; 5])), "there are 5 weights of the policy; there must be 6");
+    let network = Perceptron::<f32, 8> { parameters: &[0.0; 34], activation: Activation::Tanh };
+    assert_eq!(told(network), "there are 34 parameters of the network; there must be 105");
+    assert_eq!(
+        told(Explore { policy: POLICY, sigma: [0.0] }),
+        "standard deviation of exploration 0 is 0; it must be a finite number above 0"
+    );
+    assert_eq!(
+        told(Random { low: [1.0], high: [0.0] }),
+        "width of the random action 0 is -1; it must be a finite number of at least 0"
+    );
+}
+
+#[test]
+fn systems_must_be_as_many_as_environments() {
+    let three = [crate::SPRING; 3];
+    let Environment { method, dt, task, start, .. } = ideal();
+    let each = Environment::new(libration::ensemble::Each(&three), method, dt, task, start);
+    assert!(refused(each).contains("3 systems for 2 trajectories"));
+    let one = Environment::new(All(crate::SPRING), method, dt, task, start);
+    assert!(made(one).is_ok());
+}

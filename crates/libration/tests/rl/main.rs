@@ -1,0 +1,77 @@
+//! Environments and their rollouts.
+
+#![allow(clippy::unwrap_used)]
+
+mod alone;
+mod bits;
+mod episodes;
+mod faults;
+mod policies;
+mod tensors;
+
+use libration::State;
+use libration::control::clock::{Fixed, Gaussian, Jittered, Skewed, Uniform};
+use libration::ensemble::{All, Execution, InstructionSet};
+use libration::integrator::SymplecticEuler;
+use libration::rl::sensor::{Exact, Noisy};
+use libration::rl::start::Between;
+use libration::rl::task::Regulate;
+use libration::rl::variation::Same;
+use libration::rl::{Autoreset, Delays, Environment, Variation};
+use libration::system::Oscillator;
+
+const SPRING: Oscillator<f32> = Oscillator { omega2: 10.0 };
+const TASK: Regulate = Regulate { position: 1.0, velocity: 0.1, effort: 0.01, bound: 1.2 };
+const ANYWHERE: Between<1> = Between(State { q: [-1.0], v: [-2.0] }, State { q: [1.0], v: [2.0] });
+
+/// A spring in one degree of freedom.
+type Spring<C = Fixed, N = Exact, V = Same> = Environment<
+    Oscillator<f32>,
+    All<Oscillator<f32>>,
+    SymplecticEuler,
+    Regulate,
+    Between<1>,
+    C,
+    N,
+    V,
+>;
+
+/// Clocks that are wrong and uneven.
+type Uneven = (Skewed, Jittered<Gaussian>);
+
+/// Energy is pumped in, so that some episodes end at the bound before the limit of 60 steps.
+fn ideal() -> Spring {
+    Environment::new(All(SPRING), SymplecticEuler, 0.06, TASK, ANYWHERE).limit(60)
+}
+
+/// All that an environment can suffer from.
+fn perturbed(
+    autoreset: Autoreset,
+) -> Spring<Uneven, Noisy<Uniform, 2>, impl Variation<f32, Oscillator<f32>, Regulate>> {
+    use libration::analysis::Jitter;
+    use libration::rl::variation::Varied;
+
+    Environment::new(All(SPRING), SymplecticEuler, 0.02, TASK, ANYWHERE)
+        .substeps(3)
+        .limit(60)
+        .autoreset(autoreset)
+        .delays(Delays { observation: [0, 4], action: [2, 7] })
+        .clock((Skewed(Jitter::Uniform(0.01)), Jittered(Gaussian(0.2))))
+        .sensor(Noisy([Uniform(0.05), Uniform(0.1)]))
+        .variation(Varied {
+            ends: [(8.0, 12.0), (1.0, 1.4)],
+            apply: |[omega2, bound]: [f32; 2], _: Oscillator<f32>, task: Regulate| {
+                (Oscillator { omega2 }, Regulate { bound: bound.into(), ..task })
+            },
+        })
+}
+
+/// On every instruction set, with one to three threads.
+fn executions() -> Vec<Execution> {
+    let sets = InstructionSet::available().flat_map(|set| [1, 2, 3].map(|threads| (set, threads)));
+    sets.map(|(set, threads)| {
+        let execution = Execution::serial().threads(threads).unwrap().worth(1);
+        execution.instructions(set).unwrap()
+    })
+    .collect()
+}
