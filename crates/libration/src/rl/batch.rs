@@ -7,7 +7,7 @@ use super::draws::Draws;
 use super::history::History;
 use super::kernel::{Horizon, LANES, Share, TILE};
 use super::row::first_of;
-use super::stage::Stage;
+use super::stage::{Site, Stage};
 use super::start::Episode;
 use super::{
     Autoreset, Environment, EnvironmentError, Place, Policy, Rollout, Sensor, Start, Variation,
@@ -171,10 +171,11 @@ where
             let count = (len - first).min(LANES);
             let systems = systems.lanes::<LANES>(first, count);
             let place = Place { environment: first, environments: len, step, row: 0 };
+            let site = Site { place, count, systems };
             let past = &mut self.past[b * history.len()..][..history.len()];
             let mut words = words.get(b).copied().unwrap_or_else(Streams::none);
             let mut seen = [[T::zero(); LANES]; O];
-            stage.look(place, &systems, block, past, &mut words, &mut seen);
+            stage.look(&site, block, past, &mut words, &mut seen);
             let rows = to[first * O..][..count * O].chunks_exact_mut(O.max(1));
             for (l, row) in rows.enumerate() {
                 (0..O).for_each(|i| row[i] = seen[i][l]);

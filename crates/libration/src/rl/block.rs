@@ -10,7 +10,7 @@ use crate::{Float, State};
 
 /// Neighbouring environments, of which each has a lane.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
+#[repr(C, align(64))]
 pub(super) struct Block<T, C, V, const D: usize> {
     pub(super) q: [[T; LANES]; D],
     pub(super) v: [[T; LANES]; D],

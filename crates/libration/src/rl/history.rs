@@ -68,10 +68,8 @@ impl History {
     ) {
         let rows = past.as_chunks_mut::<LANES>().0;
         let rows = &mut rows[ring(step, self.states) * 2 * D..][..2 * D];
-        for i in 0..D {
-            rows[i] = q[i];
-            rows[D + i] = v[i];
-        }
+        rows[..D].copy_from_slice(q);
+        rows[D..].copy_from_slice(v);
     }
 
     /// Lane `l` stood still in these steps of the integrator.
@@ -103,13 +101,11 @@ impl History {
         let now = ring(step, self.states);
         if same(latencies) {
             let rows = &rows[back(now, latencies[0] as usize, self.states) * 2 * D..][..2 * D];
-            for i in 0..D {
-                q[i] = rows[i];
-                v[i] = rows[D + i];
-            }
+            q.copy_from_slice(&rows[..D]);
+            v.copy_from_slice(&rows[D..]);
         } else {
-            for l in 0..LANES {
-                let rows = &rows[back(now, latencies[l] as usize, self.states) * 2 * D..][..2 * D];
+            for (l, &latency) in latencies.iter().enumerate() {
+                let rows = &rows[back(now, latency as usize, self.states) * 2 * D..][..2 * D];
                 for i in 0..D {
                     q[i][l] = rows[i][l];
                     v[i][l] = rows[D + i][l];
@@ -127,9 +123,7 @@ impl History {
         actions: &[[T; LANES]; D],
     ) {
         let rows = &mut past.as_chunks_mut::<LANES>().0[self.states * 2 * D..];
-        for i in 0..D {
-            rows[ring(now, self.actions) * D + i] = actions[i];
-        }
+        rows[ring(now, self.actions) * D..][..D].copy_from_slice(actions);
     }
 
     /// The actions that are in effect in a substep of step `now`.
@@ -138,21 +132,20 @@ impl History {
         &self,
         past: &[T],
         now: u64,
-        substep: u32,
+        substep: u64,
         latencies: &[u32; LANES],
         held: &mut [[T; LANES]; D],
     ) {
         let rows = &past.as_chunks::<LANES>().0[self.states * 2 * D..];
         let now = ring(now, self.actions);
-        let age = |latency: u32| (latency.saturating_sub(substep) as usize).div_ceil(self.substeps);
+        let age = |latency: u32| u64::from(latency).saturating_sub(substep) as usize;
+        let age = |latency: u32| age(latency).div_ceil(self.substeps);
         if same(latencies) {
             let place = back(now, age(latencies[0]), self.actions);
-            for i in 0..D {
-                held[i] = rows[place * D + i];
-            }
+            held.copy_from_slice(&rows[place * D..][..D]);
         } else {
-            for l in 0..LANES {
-                let place = back(now, age(latencies[l]), self.actions);
+            for (l, &latency) in latencies.iter().enumerate() {
+                let place = back(now, age(latency), self.actions);
                 put(held, l, at::<T, D, LANES>(&core::array::from_fn(|i| rows[place * D + i]), l));
             }
         }

@@ -4,11 +4,11 @@ use bytemuck::Pod;
 use pulp::{Simd, WithSimd};
 
 use super::block::BlockOf;
-use super::ends::Final;
 use super::history::History;
-use super::row::Row;
-use super::stage::{Stage, Yield};
-use super::{Layout, Place, Policy, World, Writes};
+use super::row::{Row, Writer};
+use super::stage::{Site, Stage};
+use super::yields::Yield;
+use super::{Final, Layout, Place, Policy, World, Writes};
 use crate::Float;
 use crate::ensemble::Assign;
 use crate::ensemble::instructions::{Target, Targeted};
@@ -80,53 +80,52 @@ where
         let On(horizon, target) = self;
         let Horizon { world, policy, history, seed, environments, step, .. } = horizon;
         let Horizon { share, mut rows, layout, writes, .. } = horizon;
-        let streaming = Streaming::on(target);
+        let writer = Writer { streaming: Streaming::on(target), layout, writes };
         let parts = world.parts();
         let stage = Stage::<T, E, P, O, D>::new(world, policy, history, seed);
         let brief = stage.is_brief();
         let [times, looks, acts] = share.words;
         let mut none = [Streams::<LANES>::none(); 3];
         let [no_times, no_looks, no_acts] = &mut none;
-        let mut ends = Vec::new();
         let mut out = Yield::<T, O, D>::zeros();
         for (index, blocks) in share.blocks.chunks_mut(TILE / LANES).enumerate() {
             for (t, row) in rows.iter_mut().enumerate() {
-                let now = step + t as u64;
                 for (b, block) in blocks.iter_mut().enumerate() {
                     let b = index * (TILE / LANES) + b;
                     let first = share.first + b * LANES;
                     let count = (share.len - b * LANES).min(LANES);
                     let systems = parts.systems.lanes::<LANES>(first, count);
+                    let now = step + t as u64;
                     let place = Place { environment: first, environments, step: now, row: t };
+                    let site = Site { place, count, systems };
                     // What stands still is stepped with its neighbours, and put back.
                     let stood = (!stage.all_move(block)).then_some(*block);
+                    macro_rules! past {
+                        () => {
+                            &mut share.past[b * history.len()..][..history.len()]
+                        };
+                    }
                     let mut ended = if brief {
-                        stage.brief(place, &systems, block, &mut out)
+                        stage.brief(&site, block, &mut out)
                     } else {
-                        let past = &mut share.past[b * history.len()..][..history.len()];
                         let looks = looks.get_mut(b).unwrap_or(no_looks);
-                        stage.look(place, &systems, block, past, looks, &mut out.seen);
-                        let acts = acts.get_mut(b).unwrap_or(no_acts);
-                        stage.act(place, acts, &mut out);
+                        stage.look(&site, block, past!(), looks, &mut out.seen);
+                        stage.act(place, acts.get_mut(b).unwrap_or(no_acts), &mut out);
                         let times = times.get_mut(b).unwrap_or(no_times);
-                        stage.advance(place, &systems, block, past, times, &mut out)
+                        stage.advance(&site, block, past!(), times, &mut out)
                     };
                     if stage.limited() {
                         ended |= stage.limit(now, block, &mut out.cuts);
                     }
                     let whole = ended == 0 && stood.is_none();
                     if !whole {
-                        let past = &mut share.past[b * history.len()..][..history.len()];
-                        let looks = looks.get_mut(b).unwrap_or(no_looks);
-                        let stood = stood.as_ref();
-                        stage.end(
-                            place, count, &systems, block, stood, past, looks, &mut out, &mut ends,
-                        );
+                        let looks = looks.get(b).unwrap_or(no_looks);
+                        stage.end(&site, block, stood.as_ref(), past!(), looks, &mut out);
                     }
-                    row.write(&streaming, layout, writes, b * LANES, count, whole, &out);
+                    row.write(&writer, b * LANES, count, whole, &out);
                 }
             }
         }
-        ends
+        out.finals
     }
 }

@@ -25,6 +25,7 @@ mod stage;
 pub mod start;
 pub mod task;
 pub mod variation;
+mod yields;
 
 pub use batch::Environments;
 pub use delays::Delays;

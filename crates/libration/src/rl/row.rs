@@ -5,7 +5,7 @@ use core::mem::take;
 use bytemuck::Pod;
 
 use super::kernel::LANES;
-use super::stage::Yield;
+use super::yields::Yield;
 use super::{Layout, Writes};
 use crate::Float;
 use crate::ensemble::instructions::Target;
@@ -23,6 +23,13 @@ pub(super) struct Row<'a, T, const O: usize, const D: usize> {
     /// Empty where nobody asked for it, as the next.
     pub(super) truncated: &'a mut [u8],
     pub(super) log_probability: &'a mut [T],
+}
+
+/// How rows are written.
+pub(super) struct Writer<I: Target> {
+    pub(super) streaming: Streaming<I>,
+    pub(super) layout: Layout,
+    pub(super) writes: Writes,
 }
 
 static NO_FLAGS: Lines<[u8; LANES]> = Lines([0; LANES]);
@@ -48,14 +55,13 @@ impl<T: Float + Pod, const O: usize, const D: usize> Row<'_, T, O, D> {
     #[inline(always)]
     pub(super) fn write<I: Target>(
         &mut self,
-        streaming: &Streaming<I>,
-        layout: Layout,
-        writes: Writes,
+        writer: &Writer<I>,
         from: usize,
         count: usize,
         whole: bool,
         out: &Yield<T, O, D>,
     ) {
+        let Writer { streaming, layout, writes } = writer;
         // Each arm has its own copy of what it writes: one that is named elsewhere would be kept in memory.
         macro_rules! write {
             ($from:expr, $to:expr) => {{
@@ -69,7 +75,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Row<'_, T, O, D> {
         }
         macro_rules! write_numbers {
             ($from:expr, $to:expr, $n:ident) => {{
-                if layout == Layout::Interleaved && const { $n > 1 } {
+                if *layout == Layout::Interleaved && const { $n > 1 } {
                     if let Some(all) = $to.first_mut() {
                         let all = all.as_chunks_mut::<$n>().0;
                         write!(interleaved(&$from), all);

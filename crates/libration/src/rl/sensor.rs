@@ -67,8 +67,8 @@ impl<T: Float, N: Noise, const O: usize> Sensor<T, O> for Noisy<N, O> {
 
     #[inline(always)]
     fn measure(&self, mut seen: [T; O], word: &mut impl FnMut() -> u32) -> [T; O] {
-        for i in 0..O {
-            seen[i] = seen[i] + self.0[i].draw(word);
+        for (number, noise) in seen.iter_mut().zip(&self.0) {
+            *number = *number + noise.draw(word);
         }
         seen
     }

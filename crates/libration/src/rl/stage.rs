@@ -2,11 +2,10 @@
 
 use core::marker::PhantomData;
 
-use super::block::{self, BlockOf, CUT, ClockMemory, NumberLanes, Numbers, OVER};
-use super::ends::Final;
+use super::block::{BlockOf, ClockMemory, NumberLanes, Numbers};
 use super::history::History;
 use super::kernel::LANES;
-use super::start::Episode;
+use super::yields::Yield;
 use super::{Autoreset, Parts, Place, Policy, Sensor, Task, Variation, World};
 use crate::control::{Clock, Memory};
 use crate::ensemble::Assign;
@@ -15,44 +14,27 @@ use crate::random::{EPOCH, Purpose, Streams};
 use crate::system::Held;
 use crate::{Float, Integrator, State};
 
-/// What a block yields in a step, before it is written. It begins with a line of the cache, as each of its rows does: no vector
-/// lies across two.
-#[repr(align(64))]
-pub(super) struct Yield<T, const O: usize, const D: usize> {
-    pub(super) seen: [[T; LANES]; O],
-    pub(super) actions: [[T; LANES]; D],
-    pub(super) log_probabilities: [T; LANES],
-    pub(super) rewards: [T; LANES],
-    pub(super) overs: [u8; LANES],
-    pub(super) cuts: [u8; LANES],
-}
-
-impl<T: Float, const O: usize, const D: usize> Yield<T, O, D> {
-    pub(super) fn zeros() -> Self {
-        let zeros = [T::zero(); LANES];
-        Yield {
-            seen: [zeros; O],
-            actions: [zeros; D],
-            log_probabilities: zeros,
-            rewards: zeros,
-            overs: [0; LANES],
-            cuts: [0; LANES],
-        }
-    }
-}
-
 /// What all blocks and steps share.
 #[derive(Clone, Copy)]
 pub(super) struct Stage<'s, T, E, P, const O: usize, const D: usize> {
-    world: &'s E,
+    pub(super) world: &'s E,
     policy: P,
-    history: History,
-    seed: u64,
+    pub(super) history: History,
+    pub(super) seed: u64,
     dt: T,
-    substeps: u32,
+    pub(super) substeps: u64,
     limit: Option<u64>,
-    autoreset: Autoreset,
+    pub(super) autoreset: Autoreset,
     numbers: PhantomData<T>,
+}
+
+/// A block, and the step that it takes.
+pub(super) struct Site<T: Float, E: World<T, O, D>, const O: usize, const D: usize> {
+    /// Of its first lane.
+    pub(super) place: Place,
+    /// Lanes that are environments.
+    pub(super) count: usize,
+    pub(super) systems: Systems<T, E, O, D>,
 }
 
 /// The systems of the lanes of a block.
@@ -73,7 +55,7 @@ where
             history,
             seed,
             dt: T::from_f64(parts.dt),
-            substeps: parts.substeps,
+            substeps: parts.substeps.into(),
             limit: parts.limit.map(u64::from),
             autoreset: parts.autoreset,
             numbers: PhantomData,
@@ -97,18 +79,17 @@ where
     #[inline(always)]
     pub(super) fn brief(
         &self,
-        place: Place,
-        systems: &Systems<T, E, O, D>,
+        site: &Site<T, E, O, D>,
         block: &mut BlockOf<T, E, O, D>,
         out: &mut Yield<T, O, D>,
     ) -> u8 {
         let (parts, policy, dt) = (self.parts(), self.policy, self.dt);
         let mut ended = 0;
         for l in 0..LANES {
-            let (system, task) = lane::<T, E, O, D>(&parts, systems, &block.numbers, l);
+            let (system, task) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
             let before = block.state(l);
             let seen = task.observe(&before);
-            let act = policy.act(place.lane(l), &seen, &mut || 0);
+            let act = policy.act(site.place.lane(l), &seen, &mut || 0);
             let system = Held { system, command: act.action };
             let after = parts.method.step(&system, before, dt);
             // An action that is no number leaves no state that is one.
@@ -130,26 +111,25 @@ where
     #[inline(always)]
     pub(super) fn look(
         &self,
-        place: Place,
-        systems: &Systems<T, E, O, D>,
+        site: &Site<T, E, O, D>,
         block: &BlockOf<T, E, O, D>,
         past: &mut [T],
         words: &mut Streams<LANES>,
         seen: &mut [[T; LANES]; O],
     ) {
-        if const { E::Sensor::DRAWS } && place.step.is_multiple_of(EPOCH) {
-            let first = place.environment as u64;
-            *words = Streams::at(self.seed, first, place.step / EPOCH, Purpose::Observation);
+        if const { E::Sensor::DRAWS } && site.place.step.is_multiple_of(EPOCH) {
+            let first = site.place.environment as u64;
+            *words = Streams::at(self.seed, first, site.place.step / EPOCH, Purpose::Observation);
         }
         let (mut q, mut v) = (Lines(block.q), Lines(block.v));
         if self.history.sees_late() {
-            let step = place.step * u64::from(self.substeps);
+            let step = site.place.step * self.substeps;
             self.history.pass(past, step, &q.0, &v.0);
             self.history.seen(past, step, &block.delays[0], &mut q.0, &mut v.0);
         }
         let parts = self.parts();
         for l in 0..LANES {
-            let (_, task) = lane::<T, E, O, D>(&parts, systems, &block.numbers, l);
+            let (_, task) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
             let sees = task.observe(&State { q: at(&q.0, l), v: at(&v.0, l) });
             put(seen, l, parts.sensor.measure(sees, &mut || words.next(l)));
         }
@@ -171,8 +151,7 @@ where
     #[inline(always)]
     pub(super) fn advance(
         &self,
-        place: Place,
-        systems: &Systems<T, E, O, D>,
+        site: &Site<T, E, O, D>,
         block: &mut BlockOf<T, E, O, D>,
         past: &mut [T],
         words: &mut Streams<LANES>,
@@ -181,24 +160,24 @@ where
         let (parts, dt) = (self.parts(), self.dt);
         let (mut q, mut v, mut held) = (Lines(block.q), Lines(block.v), Lines(out.actions));
         if self.history.acts_late() {
-            self.history.act(past, place.step, &out.actions);
+            self.history.act(past, site.place.step, &out.actions);
         }
         for substep in 0..self.substeps {
-            let step = place.step * u64::from(self.substeps) + u64::from(substep);
+            let step = site.place.step * self.substeps + substep;
             if self.history.acts_late() {
                 let late = &block.delays[1];
-                self.history.effective(past, place.step, substep, late, &mut held.0);
+                self.history.effective(past, site.place.step, substep, late, &mut held.0);
             }
             if substep > 0 && self.history.sees_late() {
                 self.history.pass(past, step, &q.0, &v.0);
             }
             if const { E::Clock::DRAWS } && step.is_multiple_of(EPOCH) {
-                let first = place.environment as u64;
+                let first = site.place.environment as u64;
                 *words = Streams::at(self.seed, first, step / EPOCH, Purpose::StepTime);
             }
             let beat = parts.clock.beat(step);
             for l in 0..LANES {
-                let (system, _) = lane::<T, E, O, D>(&parts, systems, &block.numbers, l);
+                let (system, _) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
                 let mut memory = ClockMemory::<T, E, O, D>::lane(&block.clock, l);
                 let ratio = parts.clock.ratio(&mut memory, beat, &mut || words.next(l));
                 ClockMemory::<T, E, O, D>::set_lane(&mut block.clock, l, memory);
@@ -211,7 +190,7 @@ where
         }
         let mut ended = 0;
         for l in 0..LANES {
-            let (_, task) = lane::<T, E, O, D>(&parts, systems, &block.numbers, l);
+            let (_, task) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
             let after = State { q: at(&q.0, l), v: at(&v.0, l) };
             let action = at(&out.actions, l);
             let lost = !is_finite(&after) | !is_number(&action);
@@ -240,74 +219,11 @@ where
     ) -> u8 {
         let last = self.limit.unwrap_or(u64::MAX) - 1;
         let mut ended = 0;
-        for l in 0..LANES {
-            cuts[l] = u8::from(now - block.began[l] >= last);
-            ended |= cuts[l];
+        for (cut, began) in cuts.iter_mut().zip(&block.began) {
+            *cut = u8::from(now - began >= last);
+            ended |= *cut;
         }
         ended
-    }
-
-    /// Whether no environment of a block stands still.
-    #[inline(always)]
-    pub(super) fn all_move(&self, block: &BlockOf<T, E, O, D>) -> bool {
-        self.autoreset == Autoreset::SameStep || block.ended == [0; LANES]
-    }
-
-    /// What follows where an episode ended, in this step or before: in scalars, since it is rare.
-    #[inline(never)]
-    pub(super) fn end(
-        &self,
-        place: Place,
-        count: usize,
-        systems: &Systems<T, E, O, D>,
-        block: &mut BlockOf<T, E, O, D>,
-        stood: Option<&BlockOf<T, E, O, D>>,
-        past: &mut [T],
-        words: &Streams<LANES>,
-        out: &mut Yield<T, O, D>,
-        finals: &mut Vec<Final<T, O>>,
-    ) {
-        let next = Place { step: place.step + 1, ..place };
-        let substeps = u64::from(self.substeps);
-        let mut last = [[T::zero(); LANES]; O];
-        // Those that go on will see the same again.
-        self.look(next, systems, block, past, &mut words.clone(), &mut last);
-        for l in 0..count {
-            let environment = place.environment + l;
-            let number = block.episode[l] + 1;
-            let episode = Episode { seed: self.seed, environment: environment as u64, number };
-            if let Some(stood) = stood.filter(|stood| stood.ended[l] != 0) {
-                out.rewards[l] = T::zero();
-                let flags = if self.autoreset == Autoreset::Disabled { stood.ended[l] } else { 0 };
-                (out.overs[l], out.cuts[l]) = (flags & OVER, (flags & CUT) / CUT);
-                if self.autoreset == Autoreset::Disabled {
-                    block.stand(stood, l);
-                    let steps = place.step * substeps..next.step * substeps;
-                    self.history.stand(past, l, steps, &stood.state(l));
-                } else {
-                    block::begin(block, self.history, past, self.world, l, episode, next.step);
-                }
-                continue;
-            }
-            let flags = out.overs[l] * OVER + out.cuts[l] * CUT;
-            if flags == 0 {
-                continue;
-            }
-            finals.push(Final {
-                step: place.row,
-                environment,
-                observation: at(&last, l),
-                episode_return: block.paid[l],
-                length: next.step - block.began[l],
-                lost: !is_finite(&block.state(l)) | !is_number(&at(&out.actions, l)),
-            });
-            match self.autoreset {
-                Autoreset::SameStep => {
-                    block::begin(block, self.history, past, self.world, l, episode, next.step);
-                }
-                Autoreset::NextStep | Autoreset::Disabled => block.ended[l] = flags,
-            }
-        }
     }
 }
 
@@ -338,20 +254,21 @@ fn judged<T: Float, K: Task<T, D, O>, const O: usize, const D: usize>(
 
 /// Whether the sum of all coordinates is.
 #[inline(always)]
-fn is_finite<T: Float, const D: usize>(state: &State<T, D>) -> bool {
+pub(super) fn is_finite<T: Float, const D: usize>(state: &State<T, D>) -> bool {
     let mut sum = state.q[0] + state.v[0];
     for i in 1..D {
         sum = sum + (state.q[i] + state.v[i]);
     }
-    sum - sum == T::zero()
+    // What is not finite times zero is not zero.
+    sum * T::zero() == T::zero()
 }
 
 /// Whether each of these is a finite number.
 #[inline(always)]
-fn is_number<T: Float, const D: usize>(action: &[T; D]) -> bool {
-    let mut nothing = action[0] - action[0];
-    for i in 1..D {
-        nothing = nothing + (action[i] - action[i]);
+pub(super) fn is_number<T: Float, const D: usize>(action: &[T; D]) -> bool {
+    let mut sum = T::zero();
+    for &number in action {
+        sum = sum + number * T::zero();
     }
-    nothing == T::zero()
+    sum == T::zero()
 }

@@ -28,6 +28,16 @@ pub struct Regulate {
     pub bound: f64,
 }
 
+/// The sum of so many terms, of which there is at least one.
+#[inline(always)]
+fn sum<T: Float, const D: usize>(term: impl Fn(usize) -> T) -> T {
+    let mut all = term(0);
+    for i in 1..D {
+        all = all + term(i);
+    }
+    all
+}
+
 macro_rules! regulate {
     ($d:literal, $o:literal) => {
         impl<T: Float> Task<T, $d, $o> for Regulate {
@@ -44,11 +54,7 @@ macro_rules! regulate {
                     let (q, v, u) = (after.q[i], after.v[i], action[i]);
                     position * (q * q) + velocity * (v * v) + effort * (u * u)
                 };
-                let mut all = cost(0);
-                for i in 1..$d {
-                    all = all + cost(i);
-                }
-                -all
+                -sum::<T, $d>(cost)
             }
 
             #[inline(always)]

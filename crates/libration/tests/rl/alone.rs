@@ -36,7 +36,7 @@ impl Words {
 
     fn before(&mut self, step: u64) {
         let (seed, n, purpose) = self.address;
-        if step % EPOCH == 0 {
+        if step.is_multiple_of(EPOCH) {
             self.stream = Streams::at(seed, n, step / EPOCH, purpose);
         }
     }

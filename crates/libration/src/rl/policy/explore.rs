@@ -62,14 +62,14 @@ impl<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize> Policy<T, O, 
     ) {
         self.policy.act_all(place, seen, words, actions, log_probabilities);
         let highest = T::from_f64(self.highest());
-        for l in 0..W {
-            log_probabilities[l] = log_probabilities[l] + highest;
+        for log in log_probabilities.iter_mut() {
+            *log = *log + highest;
         }
-        for i in 0..D {
+        for (row, &sigma) in actions.iter_mut().zip(&self.sigma) {
             for l in 0..W {
                 let drawn = [words.next(l), words.next(l)];
-                let (next, log) = explored(actions[i][l], self.sigma[i], drawn);
-                actions[i][l] = next;
+                let (next, log) = explored(row[l], sigma, drawn);
+                row[l] = next;
                 log_probabilities[l] = log_probabilities[l] + log;
             }
         }

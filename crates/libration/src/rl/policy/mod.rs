@@ -14,6 +14,7 @@ pub use random::Random;
 
 use super::EnvironmentError;
 use crate::Float;
+use crate::ensemble::kernel::{at, put};
 use crate::random::Streams;
 
 /// Chooses an action: an acceleration in each of `D` degrees of freedom, from `O` numbers that are seen.
@@ -51,13 +52,10 @@ pub trait Policy<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
         actions: &mut [[T; W]; D],
         log_probabilities: &mut [T; W],
     ) {
-        for l in 0..W {
-            let seen = core::array::from_fn(|i| seen[i][l]);
-            let act = self.act(place.lane(l), &seen, &mut || words.next(l));
-            for i in 0..D {
-                actions[i][l] = act.action[i];
-            }
-            log_probabilities[l] = act.log_probability;
+        for (l, log) in log_probabilities.iter_mut().enumerate() {
+            let act = self.act(place.lane(l), &at(seen, l), &mut || words.next(l));
+            put(actions, l, act.action);
+            *log = act.log_probability;
         }
     }
 }

@@ -86,14 +86,14 @@ impl<T: Float + Elementary, const H: usize> Perceptron<'_, T, H> {
         for row in hidden {
             match self.activation {
                 Activation::Tanh => {
-                    for l in 0..W {
-                        row[l] = tanh(row[l]);
+                    for x in row {
+                        *x = tanh(*x);
                     }
                 }
                 Activation::Relu => {
-                    for l in 0..W {
+                    for x in row {
                         // What is no number stays none.
-                        row[l] = if row[l] < T::zero() { T::zero() } else { row[l] };
+                        *x = if *x < T::zero() { T::zero() } else { *x };
                     }
                 }
             }
