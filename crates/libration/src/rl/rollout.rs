@@ -117,12 +117,30 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
     pub fn is_transition(&self, t: usize, n: usize) -> bool {
         let Plan { horizon, environments, .. } = self.plan;
         assert!(t < horizon && n < environments, "step {t} of environment {n}");
+        let mut idle = [0];
+        self.write_idle(t, n, &mut idle);
+        idle[0] == 0
+    }
+
+    /// Writes for the environments from `first` on whether step `t` is no transition: not 0 if it is none.
+    pub(super) fn write_idle(&self, t: usize, first: usize, idle: &mut [u8]) {
+        idle.fill(0);
+        if !self.pauses {
+            return;
+        }
         let Some(before) = t.checked_sub(1) else {
-            return self.idle.binary_search(&n).is_err();
+            let all = self.idle.iter().filter_map(|n| n.checked_sub(first));
+            for l in all {
+                idle.get_mut(l).into_iter().for_each(|idle| *idle = 1);
+            }
+            return;
         };
-        let at = before * environments + n;
-        let ended = self.terminated[at] | self.truncated.get(at).copied().unwrap_or(0);
-        !(self.pauses && ended != 0)
+        // What ended in one step is idle in the next.
+        let at = before * self.plan.environments + first;
+        for flags in [&self.terminated, &self.truncated] {
+            let flags = flags.get(at..at + idle.len()).unwrap_or_default();
+            idle.iter_mut().zip(flags).for_each(|(idle, flag)| *idle |= flag);
+        }
     }
 
     /// What was seen by environment `n` in step `t`.

@@ -73,3 +73,113 @@ fn values_have_their_room_and_nobody_else_writes_there() {
     assert!(rollout.value().iter().all(|&value| value == 2.5));
     assert!(rollout.reward().iter().any(|&reward| reward != 0.0));
 }
+
+/// What the definition says, environment by environment, in the widest sums.
+fn advantages(
+    rollout: &Rollout<f32, 2, 1>,
+    next: &[f32],
+    last: &[f32],
+    [gamma, lambda]: [f64; 2],
+) -> Vec<f64> {
+    let Plan { horizon, environments, .. } = rollout.plan();
+    let mut all = vec![0.0; horizon * environments];
+    for n in 0..environments {
+        let (mut carried, mut worth) = (0.0, f64::from(next[n]));
+        for t in (0..horizon).rev() {
+            let at = t * environments + n;
+            let value = f64::from(rollout.value()[at]);
+            if rollout.is_transition(t, n) {
+                let end =
+                    rollout.finals().iter().position(|end| (end.step, end.environment) == (t, n));
+                if let Some(end) = end {
+                    let over = rollout.terminated()[at] == 1;
+                    (carried, worth) = (0.0, if over { 0.0 } else { f64::from(last[end]) });
+                }
+                let error = f64::from(rollout.reward()[at]) + gamma * worth - value;
+                all[at] = error + gamma * lambda * carried;
+            }
+            (carried, worth) = (all[at], value);
+        }
+    }
+    all
+}
+
+#[test]
+fn advantages_are_those_of_the_definition_under_every_autoreset() {
+    use libration::rl::{Autoreset, Discounts, Estimates};
+    for autoreset in [Autoreset::SameStep, Autoreset::NextStep, Autoreset::Disabled] {
+        let environment = crate::ideal().autoreset(autoreset);
+        let mut all = Environments::new(environment, 90, 6, Execution::serial()).unwrap();
+        let plan = Plan::new(100, 90).truncated().values();
+        let mut rollout = Rollout::new(plan).unwrap();
+        // In the second of both some have ended before.
+        all.rollout(crate::bits::POLICY, &mut rollout).unwrap();
+        all.rollout(crate::bits::POLICY, &mut rollout).unwrap();
+        let number = |k: usize| ((k * 37 % 101) as f32 - 50.0) / 25.0;
+        rollout.value_mut().iter_mut().enumerate().for_each(|(k, value)| *value = number(k));
+        let next: Vec<f32> = (0..90).map(|k| number(k + 7)).collect();
+        let last: Vec<f32> = (0..rollout.finals().len()).map(|k| number(k + 13)).collect();
+        let wanted = advantages(&rollout, &next, &last, [0.99, 0.95]);
+        let (rewards, errors) = (0.99, 0.95);
+        for execution in crate::executions() {
+            let mut estimates = Estimates::new(plan).unwrap();
+            let discounts = Discounts { rewards, errors };
+            estimates.fill(discounts, &rollout, &next, &last, &execution).unwrap();
+            for (at, wanted) in wanted.iter().enumerate() {
+                let (t, n) = (at / 90, at % 90);
+                let (found, value) = (f64::from(estimates.advantage()[at]), rollout.value()[at]);
+                // Some hundred roundings of numbers up to some ten.
+                assert!((found - wanted).abs() < 1e-4, "{t} {n} {found} {wanted} {autoreset:?}");
+                let whole =
+                    if rollout.is_transition(t, n) { found + f64::from(value) } else { 0.0 };
+                assert!((f64::from(estimates.returned()[at]) - whole).abs() < 1e-5);
+            }
+        }
+        let mut estimates = Estimates::new(plan).unwrap();
+        let mut told = |next: &[f32], rewards| {
+            let discounts = Discounts { rewards, errors };
+            let serial = Execution::serial();
+            estimates.fill(discounts, &rollout, next, &last, &serial).unwrap_err().to_string()
+        };
+        assert_eq!(
+            told(&next[1..], 0.9),
+            "there are 89 values after the last step; there must be 90"
+        );
+        assert_eq!(told(&next, 1.5), "discount of rewards is 1.5; it must be from 0 to 1");
+    }
+}
+
+#[test]
+fn short_and_long_floats_are_environments_too() {
+    use half::f16;
+    use libration::ensemble::{All, InstructionSet};
+    use libration::integrator::SymplecticEuler;
+    use libration::rl::policy::Linear;
+    use libration::rl::task::Regulate;
+    use libration::system::Oscillator;
+    fn last<T: libration::Float + bytemuck::Pod>(omega2: T, set: InstructionSet) -> Vec<f64>
+    where
+        T: libration::Elementary,
+    {
+        let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
+        let start = At(State { q: [1.0], v: [0.0] });
+        let environment =
+            Environment::new(All(Oscillator { omega2 }), SymplecticEuler, 0.0625, task, start);
+        let execution = Execution::serial().instructions(set).unwrap();
+        let mut all = Environments::new(environment, 70, 0, execution).unwrap();
+        let mut rollout: Rollout<T, 2, 1> = Rollout::new(Plan::new(32, 70)).unwrap();
+        let policy = Linear { weights: [[-1.0, -0.5]], bias: [0.0] };
+        all.rollout(policy, &mut rollout).unwrap();
+        rollout.observation()[31 * 140..].iter().map(|x| x.to_f64()).collect()
+    }
+    for set in InstructionSet::available() {
+        let wide = last(10.0_f64, set);
+        // An oscillation of size 1 over 32 steps keeps some digits of ten bits.
+        for (short, bound) in [(last(10.0_f32, set), 1e-5), (last(f16::from_f64(10.0), set), 0.05)]
+        {
+            let furthest = |worst: f64, (a, b): (&f64, &f64)| worst.max((a - b).abs());
+            let error = short.iter().zip(&wide).fold(0.0, furthest);
+            assert!(error > 0.0 && error < bound, "{error}");
+        }
+    }
+}
