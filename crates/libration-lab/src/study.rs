@@ -52,6 +52,9 @@ pub enum StudyError {
     /// Trajectories could not be made or run together.
     #[error(transparent)]
     Ensemble(#[from] libration::ensemble::EnsembleError),
+    /// Environments could not be made or run.
+    #[error(transparent)]
+    Environment(#[from] libration::rl::EnvironmentError),
     /// Exact arithmetic ran out of digits.
     #[error("exact arithmetic overflowed while {0}")]
     Exact(String),

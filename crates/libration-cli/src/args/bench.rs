@@ -4,7 +4,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use libration::ensemble::InstructionSet;
 use libration_lab::Effort;
-use libration_lab::bench::{BenchFloat, Implementation};
+use libration_lab::bench::{BenchFloat, Implementation, RolloutCase, RolloutTask};
 
 use super::number::count;
 use super::{efforts, simd};
@@ -35,6 +35,19 @@ pub(crate) struct BenchArgs {
         requires = "implementation"
     )]
     pub(crate) float: Vec<BenchFloat>,
+    /// Time rollouts of environments, against fills of as much memory
+    #[arg(long, conflicts_with = "implementation")]
+    pub(crate) rollouts: bool,
+    /// Environments and horizons for --rollouts, as in 4096x1024 [default: those of the report, and a swing-up]
+    #[arg(
+        long,
+        value_name = "NxT",
+        value_delimiter = ',',
+        value_parser = rollout_case,
+        requires = "rollouts",
+        allow_hyphen_values = true
+    )]
+    pub(crate) case: Vec<RolloutCase>,
     /// Instruction set [default: the widest of this processor, or LIBRATION_SIMD]
     #[arg(long, value_name = "SET", value_parser = simd::instruction_sets())]
     pub(crate) simd: Option<InstructionSet>,
@@ -51,6 +64,7 @@ Examples:
   libration bench                                  what this machine can do, and what limits it
   libration bench --effort standard --json > machine.json
   libration bench --implementation fused,threads --count 1e3,1e5,1e7 --float f32
+  libration bench --rollouts --effort standard     how near to the memory rollouts come
 
 All implementations advance harmonic oscillators by symplectic Euler and give the same bits.
 Rates are medians; of each it is said how far the quartiles of its repeats lie apart.";
@@ -64,4 +78,15 @@ fn implementations() -> impl TypedValueParser<Value = Implementation> {
 fn floats() -> impl TypedValueParser<Value = BenchFloat> {
     PossibleValuesParser::new(BenchFloat::ALL.map(BenchFloat::name))
         .try_map(|name| BenchFloat::from_name(&name).ok_or("unknown float type"))
+}
+
+/// A case of so many environments over such a horizon.
+fn rollout_case(text: &str) -> Result<RolloutCase, String> {
+    let shape = || "it must be environments × horizon, as in 4096x1024".to_owned();
+    let (environments, horizon) = text.split_once(['x', '×']).ok_or_else(shape)?;
+    let [environments, horizon] = [environments, horizon].map(count);
+    let (environments, horizon) = (environments?, horizon?);
+    let case = RolloutCase { task: RolloutTask::Regulate, environments, horizon };
+    case.check().map_err(|error| error.to_string())?;
+    Ok(case)
 }

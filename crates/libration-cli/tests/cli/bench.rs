@@ -33,6 +33,29 @@ fn named_implementations_are_timed_alone_and_each_once() {
 }
 
 #[test]
+fn rollouts_are_timed_in_both_layouts_beside_fills_of_as_much_memory() {
+    let words = "--quiet bench --rollouts --case 256x16,300x40 --json";
+    let run = libration(words).assert().success().stderr(is_empty());
+    let answer: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
+    assert_eq!(answer["schema"], "libration.bench/1");
+    let rates = answer["rollouts"].as_array().unwrap();
+    for (environments, horizon) in [(256, 16), (300, 40)] {
+        let size = |rate: &Value| [&rate["environments"], &rate["horizon"]].map(Value::as_u64);
+        let of_case = |rate: &&Value| size(rate) == [Some(environments), Some(horizon)];
+        let found: Vec<_> = rates.iter().filter(of_case).collect();
+        assert!(found.iter().any(|rate| rate["layout"] == "interleaved" && rate["threads"] == 1));
+        assert!(found.iter().any(|rate| rate["layout"] == "planes"));
+        // The source's 17 bytes a transition.
+        assert!(found.iter().all(|rate| rate["bytes"] == 17 * environments * horizon));
+    }
+    for rate in rates {
+        assert_eq!(rate["task"], "regulate");
+        assert!(rate["transitions_per_second"].as_f64().unwrap() > 0.0);
+        assert!(rate["share_of_fill"].as_f64().unwrap() > 0.0);
+    }
+}
+
+#[test]
 fn what_cannot_be_timed_is_refused_before_any_work() {
     for (words, told) in [
         ("bench --implementation fussed", "fused"),
@@ -41,6 +64,11 @@ fn what_cannot_be_timed_is_refused_before_any_work() {
         ("bench --count 10", "--implementation"),
         ("bench --implementation in-place --count 1e15 --float f64", "GB of memory are needed"),
         ("bench --simd sse9", "avx512"),
+        ("bench --rollouts --implementation fused", "--implementation"),
+        ("bench --rollouts --case 4096", "as in 4096x1024"),
+        ("bench --rollouts --case 0x5", "at least 1"),
+        ("bench --rollouts --case 1e9x1e9", "GB of memory are needed"),
+        ("bench --case 256x16", "--rollouts"),
     ] {
         libration(words).assert().code(2).stdout(is_empty()).stderr(contains(told));
     }

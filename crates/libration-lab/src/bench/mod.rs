@@ -10,6 +10,7 @@ mod oscillators;
 mod passes;
 mod peers;
 mod platform;
+mod rollouts;
 mod rung;
 mod stopwatch;
 
@@ -24,5 +25,6 @@ pub(crate) use oscillators::{oscillators, stepping};
 pub(crate) use passes::{PASSES, Traffic};
 pub(crate) use peers::Peers;
 pub(crate) use platform::PlatformPendulum;
+pub use rollouts::{RolloutCase, RolloutRate, RolloutTask, rollouts};
 pub(crate) use rung::{Task, prepare};
 pub(crate) use stopwatch::{Contestant, Rates, Turns, race};

@@ -3,14 +3,12 @@
 use core::mem::take;
 
 use bytemuck::Pod;
-use pulp::{Simd, WithSimd};
 
 use super::row::first_of;
 use super::{EnvironmentError, Plan, Rollout};
 use crate::Float;
 use crate::control::error::probability;
-use crate::ensemble::instructions::{Target, Targeted};
-use crate::ensemble::{Buffer, EnsembleError, Execution, Pages};
+use crate::ensemble::{Buffer, EnsembleError, Execution, Loop, Pages};
 
 /// Generalised advantage estimation: J. Schulman, P. Moritz, S. Levine, M. Jordan, P. Abbeel, *High-dimensional continuous
 /// control using generalized advantage estimation*, ICLR 2016, equation 16.
@@ -97,7 +95,7 @@ impl<T: Float + Pod> Estimates<T> {
             first += len;
         }
         let instructions = execution.instruction_set();
-        execution.each(parts, |strip| instructions.run(strip));
+        execution.each(parts, |strip| instructions.vectorize(strip));
         Ok(())
     }
 }
@@ -125,19 +123,11 @@ struct Strip<'a, T, const O: usize, const D: usize> {
     returns: Vec<&'a mut [T]>,
 }
 
-impl<T: Float + Pod, const O: usize, const D: usize> Targeted for Strip<'_, T, O, D> {
-    type Output = ();
-
-    fn on<I: Target>(self, target: I) {
-        target.run(self);
-    }
-}
-
-impl<T: Float + Pod, const O: usize, const D: usize> WithSimd for Strip<'_, T, O, D> {
+impl<T: Float + Pod, const O: usize, const D: usize> Loop for Strip<'_, T, O, D> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
+    fn run(self) {
         let Strip { discounts, rollout, next, last, first, len, mut advantages, mut returns } =
             self;
         let n = rollout.plan().environments;

@@ -1,4 +1,4 @@
-use astro_float::{BigFloat, Consts, RoundingMode::ToEven};
+use astro_float_num::{BigFloat, Consts, RoundingMode::ToEven};
 use libration::number::{Ratio, Wide};
 use libration::{Elementary, Scalar};
 use proptest::prelude::*;

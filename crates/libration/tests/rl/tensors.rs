@@ -1,6 +1,6 @@
 //! Rollouts as memory.
 
-use libration::State;
+use bytemuck::Pod;
 use libration::ensemble::{Each, Execution};
 use libration::integrator::{Integrator, Rk4};
 use libration::rl::policy::Constant;
@@ -8,6 +8,7 @@ use libration::rl::start::At;
 use libration::rl::task::SwingUp;
 use libration::rl::{Environment, Environments, Plan, Rollout};
 use libration::system::{Held, Pendulum};
+use libration::{Float, State};
 
 #[test]
 fn each_environment_has_its_own_system_and_tasks_see_what_they_say() {
@@ -83,8 +84,8 @@ fn advantages(
 ) -> Vec<f64> {
     let Plan { horizon, environments, .. } = rollout.plan();
     let mut all = vec![0.0; horizon * environments];
-    for n in 0..environments {
-        let (mut carried, mut worth) = (0.0, f64::from(next[n]));
+    for (n, &next) in next.iter().enumerate() {
+        let (mut carried, mut worth) = (0.0, f64::from(next));
         for t in (0..horizon).rev() {
             let at = t * environments + n;
             let value = f64::from(rollout.value()[at]);
@@ -157,10 +158,7 @@ fn short_and_long_floats_are_environments_too() {
     use libration::rl::policy::Linear;
     use libration::rl::task::Regulate;
     use libration::system::Oscillator;
-    fn last<T: libration::Float + bytemuck::Pod>(omega2: T, set: InstructionSet) -> Vec<f64>
-    where
-        T: libration::Elementary,
-    {
+    fn last<T: Float + Pod>(omega2: T, set: InstructionSet) -> Vec<f64> {
         let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
         let start = At(State { q: [1.0], v: [0.0] });
         let environment =
