@@ -104,6 +104,16 @@ impl<T: Copy, C: Copy, V, const D: usize> Block<T, C, V, D> {
         State { q: at(&self.q, l), v: at(&self.v, l) }
     }
 
+    /// Lane `l`, which is no environment, is at rest from the step `now` on.
+    pub(super) fn rest(&mut self, l: usize, now: u64)
+    where
+        T: Float,
+    {
+        put(&mut self.q, l, [T::zero(); D]);
+        put(&mut self.v, l, [T::zero(); D]);
+        (self.paid[l], self.began[l]) = (T::zero(), now);
+    }
+
     /// Lane `l` is as it was. What the clocks of all remember goes on; it is begun anew with the next episode.
     pub(super) fn stand(&mut self, as_it_was: &Self, l: usize) {
         let State { q, v } = as_it_was.state(l);

@@ -56,6 +56,10 @@ where
         // Those that go on will see the same again.
         let next = Site { place: Place { step, ..place }, count, systems };
         self.look(&next, block, past, &mut words.clone(), &mut last);
+        for l in count..LANES {
+            // Lanes that are no environments begin anew with every end, or they would be at an end in every step.
+            block.rest(l, step);
+        }
         for l in 0..count {
             let environment = place.environment + l;
             let number = block.episode[l] + 1;

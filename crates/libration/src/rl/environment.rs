@@ -101,50 +101,27 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
 
     /// This, with steps of another clock.
     pub fn clock<Other>(self, clock: Other) -> Environment<Sys, A, M, K, S, Other, N, V> {
-        let Environment { systems, method, dt, substeps, task, start, limit, .. } = self;
-        let Environment { autoreset, delays, sensor, variation, system, .. } = self;
-        Environment {
-            systems,
-            method,
-            dt,
-            substeps,
-            task,
-            start,
-            limit,
-            autoreset,
-            clock,
-            delays,
-            sensor,
-            variation,
-            system,
-        }
+        self.with(|_, sensor, variation| (clock, sensor, variation))
     }
 
     /// This, with observations that are measured so.
     pub fn sensor<Other>(self, sensor: Other) -> Environment<Sys, A, M, K, S, C, Other, V> {
-        let Environment { systems, method, dt, substeps, task, start, limit, .. } = self;
-        let Environment { autoreset, delays, clock, variation, system, .. } = self;
-        Environment {
-            systems,
-            method,
-            dt,
-            substeps,
-            task,
-            start,
-            limit,
-            autoreset,
-            clock,
-            delays,
-            sensor,
-            variation,
-            system,
-        }
+        self.with(|clock, _, variation| (clock, sensor, variation))
     }
 
     /// This, with episodes that differ in more than their start.
     pub fn variation<Other>(self, variation: Other) -> Environment<Sys, A, M, K, S, C, N, Other> {
+        self.with(|clock, sensor, _| (clock, sensor, variation))
+    }
+
+    /// This, with other parts of other types.
+    fn with<C2, N2, V2>(
+        self,
+        change: impl FnOnce(C, N, V) -> (C2, N2, V2),
+    ) -> Environment<Sys, A, M, K, S, C2, N2, V2> {
         let Environment { systems, method, dt, substeps, task, start, limit, .. } = self;
-        let Environment { autoreset, delays, clock, sensor, system, .. } = self;
+        let Environment { autoreset, clock, delays, sensor, variation, system, .. } = self;
+        let (clock, sensor, variation) = change(clock, sensor, variation);
         Environment {
             systems,
             method,

@@ -100,6 +100,7 @@ pub(super) mod between {
         purpose: Purpose,
         first: usize,
     ) -> [f64; N] {
+        const { assert!(N as u64 <= DRAWS, "more numbers than an episode has addresses") };
         let Episode { seed, environment: trajectory, number } = episode;
         from_fn(|i| {
             let step = number.wrapping_mul(DRAWS).wrapping_add((first + i) as u64);
