@@ -33,6 +33,21 @@ pub enum EnvironmentError {
         /// Which of its fields is missing.
         field: &'static str,
     },
+    /// A rollout that does not fit.
+    #[error(
+        "a rollout of {horizon} steps of {environments} environments takes {bytes} bytes a transition. {room}. {}",
+        advice(*bytes, *horizon, *environments, room)
+    )]
+    Room {
+        /// Steps that were asked for.
+        horizon: usize,
+        /// Environments that were asked for.
+        environments: usize,
+        /// Bytes of a transition.
+        bytes: usize,
+        /// What is missing.
+        room: NoRoom,
+    },
     /// A time limit of nothing.
     #[error("the time limit is 0 actions; it must be at least 1, or there must be none")]
     Limit,
@@ -63,4 +78,18 @@ impl EnvironmentError {
         let allowed = "a finite number above 0";
         Err(ControlError { name, index: Some(index), value, allowed }.into())
     }
+}
+
+/// What would fit.
+fn advice(bytes: usize, horizon: usize, environments: usize, room: &NoRoom) -> String {
+    let Some(available) = room.available else {
+        return "A horizon can be run in pieces, one after the other".to_owned();
+    };
+    let fit = |by: usize| available / (bytes as u64).saturating_mul(by as u64).max(1);
+    format!(
+        "There is room for {} steps of so many environments, which can be run one after the other, or for {} environments \
+         over so many steps",
+        fit(environments),
+        fit(horizon)
+    )
 }

@@ -20,6 +20,13 @@ pub enum Writes {
     Past,
 }
 
+impl Writes {
+    /// The way for so many bytes, where a cache holds so many of them: the last, or what of it this process can hope for.
+    pub fn suited(bytes: u128, cache: u64) -> Self {
+        if bytes > cache.into() { Writes::Past } else { Writes::Plain }
+    }
+}
+
 /// What a rollout holds, how it lies and how it is written; and the memory that it takes, before anything is allocated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Plan {

@@ -35,13 +35,16 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
     /// Memory for a rollout, which nobody has touched.
     ///
     /// # Errors
-    /// [`EnvironmentError::Ensemble`] if there is not so much.
+    /// [`EnvironmentError::Room`] if there is not so much: with what would fit, and before anything is taken.
     pub fn new(plan: Plan) -> Result<Self, EnvironmentError> {
-        let needed = plan.bytes(O, D, size_of::<T>());
-        NoRoom::check(needed)?;
-        let all = plan.horizon.checked_mul(plan.environments);
+        let Plan { horizon, environments, .. } = plan;
+        let number = size_of::<T>();
+        let (needed, bytes) = (plan.bytes(O, D, number), plan.bytes_each(O, D, number));
+        let refused = |room| EnvironmentError::Room { horizon, environments, bytes, room };
+        NoRoom::check(needed).map_err(refused)?;
+        let all = horizon.checked_mul(environments);
         let all = all.filter(|n| n.checked_mul(O.max(D)).is_some());
-        let all = all.ok_or(NoRoom { needed, available: None })?;
+        let all = all.ok_or_else(|| refused(NoRoom { needed, available: None }))?;
         let room = |asked| if asked { all } else { 0 };
         let numbers = |count| Buffer::new(count, Pages::Huge);
         let flags = |count| Buffer::new(count, Pages::Huge);

@@ -59,6 +59,17 @@ fn a_plan_counts_the_bytes_of_table_9_11() {
 }
 
 #[test]
+fn what_a_cache_holds_is_written_through_it_and_what_it_does_not_past_it() {
+    use libration::rl::Writes;
+    let bytes = Plan::new(512, 1024).bytes(2, 1, 4);
+    let cache = 512 * 1024 * 17;
+    assert_eq!(
+        [cache, cache - 1].map(|cache| Writes::suited(bytes, cache)),
+        [Writes::Plain, Writes::Past]
+    );
+}
+
+#[test]
 fn values_have_their_room_and_nobody_else_writes_there() {
     let mut rollout = Rollout::<f32, 2, 1>::new(Plan::new(4, 64).values()).unwrap();
     rollout.value_mut().fill(2.5);
