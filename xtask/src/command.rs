@@ -41,8 +41,7 @@ pub(crate) fn silent(command: &mut Command) -> Outcome {
 pub(crate) fn output(command: &mut Command) -> Result<String, String> {
     let output = command.output().map_err(|error| not_started(command, &error))?;
     if !output.status.success() {
-        let complaint = [output.stdout, output.stderr].concat();
-        let complaint = String::from_utf8_lossy(&complaint);
+        let complaint = String::from_utf8_lossy(&output.stderr);
         return Err(format!("`{}` failed ({})\n{complaint}", shown(command), output.status));
     }
     String::from_utf8(output.stdout)

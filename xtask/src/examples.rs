@@ -23,14 +23,14 @@ const STUDYING: [&str; 1] = ["own_system"];
 pub(crate) fn run() -> Outcome {
     command::run(&mut command::cargo("test --workspace --no-run"))?;
     for folder in PLAIN {
-        for name in programs_in(&workspace::root().join(folder)) {
+        for name in examples_in(&workspace::root().join(folder)) {
             println!("example {name}");
             command::run(&mut command::program(built(&name)))?;
         }
     }
     let scratch = Scratch::new("examples")?;
     let folder = workspace::root().join("crates/libration-lab/examples");
-    let drawing = programs_in(&folder);
+    let drawing = examples_in(&folder);
     for name in STUDYING {
         println!("example {name}");
         let config = folder.join(format!("{name}.toml"));
@@ -52,8 +52,8 @@ fn built(example: &str) -> std::path::PathBuf {
     workspace::built(&format!("debug/examples/{example}"))
 }
 
-/// The names of the examples, or tests, in `folder`, sorted: `NAME.rs` or `NAME/main.rs`.
-pub(crate) fn programs_in(folder: &Path) -> Vec<String> {
+/// The names of the examples in `folder`, sorted: `NAME.rs` or `NAME/main.rs`.
+fn examples_in(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut names: Vec<String> = entries
         .map(|entry| entry.path())
@@ -76,11 +76,11 @@ mod tests {
         fs::create_dir(scratch.path().join("cart")).unwrap();
         fs::write(scratch.path().join("cart/main.rs"), "").unwrap();
         fs::create_dir(scratch.path().join("data")).unwrap();
-        assert_eq!(programs_in(scratch.path()), ["cart", "orbit"]);
+        assert_eq!(examples_in(scratch.path()), ["cart", "orbit"]);
     }
 
     #[test]
     fn a_folder_that_does_not_exist_holds_no_examples() {
-        assert!(programs_in(Path::new("no/such/folder")).is_empty());
+        assert!(examples_in(Path::new("no/such/folder")).is_empty());
     }
 }

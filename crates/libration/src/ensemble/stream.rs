@@ -21,6 +21,9 @@ pub fn stream<T: Pod>(from: &[T], to: &mut [T]) {
 
 /// Fills `to` with one copy of `from` after the other, past the caches as [`stream`] does: where `from` fits the first cache,
 /// nothing but the memory takes time.
+///
+/// # Panics
+/// If there is something to fill and nothing to fill it with.
 pub fn stream_again<T: Pod>(from: &[T], to: &mut [T]) {
     InstructionSet::widest().run(Copy { from, to });
 }
@@ -48,6 +51,7 @@ impl<T: Pod, I: Target> WithSimd for Widest<Copy<'_, T>, I> {
     fn with_simd<S: Simd>(self, _: S) {
         let streaming = Streaming::on(self.1);
         let Copy { from, to } = self.0;
+        assert!(to.is_empty() || !from.is_empty(), "nothing to fill it with");
         for to in to.chunks_mut(from.len().max(1)) {
             streaming.copy(&from[..to.len()], to);
         }

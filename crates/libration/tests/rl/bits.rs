@@ -1,5 +1,7 @@
 //! What an environment does, it does wherever it runs.
 
+use std::collections::HashMap;
+
 use libration::ensemble::Execution;
 use libration::rl::policy::{Explore, Linear};
 use libration::rl::{Autoreset, Environments, Layout, Plan, Policy, Rollout, Task, World, Writes};
@@ -24,10 +26,12 @@ pub(crate) fn told<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
         let plan = Plan::new(horizon, count).truncated().log_probabilities();
         let mut rollout = Rollout::new(plan.layout(layout).writes(writes)).unwrap();
         all.rollout(policy, &mut rollout).unwrap();
+        let ends: HashMap<_, _> =
+            rollout.finals().iter().map(|end| ((end.step, end.environment), end)).collect();
         for (n, told) in told.iter_mut().enumerate() {
             told.extend((0..horizon).map(|t| {
                 let at = t * count + n;
-                let end = rollout.finals().iter().find(|end| (end.step, end.environment) == (t, n));
+                let end = ends.get(&(t, n));
                 Told {
                     seen: rollout.seen(t, n),
                     action: rollout.done(t, n),
@@ -49,7 +53,7 @@ fn compare<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(world: E, policy: P) -> us
     const STEPS: usize = 300;
     let mut ends = 0;
     let wanted = |n, count| alone(&world, policy, (n, count), 9, STEPS as u64);
-    let lone: Vec<_> = (0..600).map(|n| wanted(n, 600)).collect();
+    let lone: HashMap<_, _> = (0..600).step_by(41).map(|n| (n, wanted(n, 600))).collect();
     for execution in executions() {
         for (count, layout, writes) in [
             (1, Layout::Planes, Writes::Past),
@@ -60,10 +64,10 @@ fn compare<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(world: E, policy: P) -> us
             let horizons = [1, 130, STEPS - 131];
             let found = told(world, policy, count, execution.clone(), &horizons, (layout, writes));
             for n in (0..count).step_by(41) {
-                for (t, (found, wanted)) in found[n].iter().zip(&lone[n]).enumerate() {
+                for (t, (found, wanted)) in found[n].iter().zip(&lone[&n]).enumerate() {
                     assert_eq!(found, wanted, "{n} of {count} at {t}, {layout:?} {execution:?}");
                 }
-                ends += lone[n].iter().filter(|now| now.moved && now.over == 1).count();
+                ends += lone[&n].iter().filter(|now| now.moved && now.over == 1).count();
             }
         }
     }
