@@ -70,7 +70,7 @@ fn wanted(args: &BenchArgs) -> Result<Vec<Wanted>, Failure> {
     Ok(wanted)
 }
 
-/// The rollouts that are timed: where it is to be quick, none of half a gigabyte and more.
+/// The rollouts that are timed: where it is to be quick, none of 256 MiB and more.
 fn cases(args: &BenchArgs) -> Vec<RolloutCase> {
     if !args.case.is_empty() {
         return args.case.clone();

@@ -1,7 +1,5 @@
 //! What a step of a block consists of: scalar functions in loops over lanes.
 
-use core::marker::PhantomData;
-
 use super::block::{BlockOf, ClockMemory, NumberLanes, Numbers};
 use super::history::History;
 use super::kernel::LANES;
@@ -25,7 +23,6 @@ pub(super) struct Stage<'s, T, E, P, const O: usize, const D: usize> {
     pub(super) substeps: u64,
     limit: Option<u64>,
     pub(super) autoreset: Autoreset,
-    numbers: PhantomData<T>,
 }
 
 /// A block, and the step that it takes.
@@ -58,7 +55,6 @@ where
             substeps: parts.substeps.into(),
             limit: parts.limit.map(u64::from),
             autoreset: parts.autoreset,
-            numbers: PhantomData,
         }
     }
 
