@@ -189,7 +189,7 @@ fn rollout(
             let task = SwingUp { velocity: 0.1, effort: 0.001 };
             let corner = |sign: f64| State { q: [sign * 3.0], v: [sign] };
             let start = Between(corner(-1.0), corner(1.0));
-            let policy = Random { low: [-2.0], high: [2.0] };
+            let policy = Random::between([-2.0], [2.0]);
             let system = All(Pendulum { omega2 });
             let world = Environment::new(system, SymplecticEuler, 0.05, task, start).limit(200);
             contestant::<_, _, 3>(world, policy, case, plan, execution)

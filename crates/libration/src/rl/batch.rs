@@ -56,6 +56,7 @@ where
 {
     world: E,
     seed: u64,
+    first: usize,
     step: u64,
     len: usize,
     execution: Execution,
@@ -83,6 +84,24 @@ where
         seed: u64,
         execution: Execution,
     ) -> Result<Self, EnvironmentError> {
+        Environments::shard(world, 0, len, seed, execution)
+    }
+
+    /// A part of more environments, as another process or machine may have the rest: those from number `first` on. Each does
+    /// what it does among all of them.
+    ///
+    /// What is listed for each environment, systems, actions or weights, is listed for those of the shard; rates of
+    /// clocks alone for all up to its last. Ends of episodes are counted from its first.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn shard(
+        world: E,
+        first: usize,
+        len: usize,
+        seed: u64,
+        execution: Execution,
+    ) -> Result<Self, EnvironmentError> {
         let parts = world.parts();
         let Environment { dt, substeps, delays, .. } = *parts;
         if !(dt > 0.0 && T::from_f64(dt) > T::zero() && T::from_f64(dt).is_finite()) {
@@ -99,9 +118,11 @@ where
         parts.sensor.check()?;
         parts.variation.check()?;
         delays.check()?;
-        for (what, values) in
-            [("systems", parts.systems.count()), ("rates of clocks", parts.clock.trajectories())]
-        {
+        let rates = parts.clock.trajectories();
+        for (what, values, len) in [
+            ("systems", parts.systems.count(), len),
+            ("rates of clocks", rates, first.saturating_add(len)),
+        ] {
             if let Some(values) = values.filter(|&values| values != len) {
                 return Err(EnsembleError::Length { what, values, len }.into());
             }
@@ -110,10 +131,11 @@ where
         let count = len.div_ceil(LANES);
         let blocks = room(count, &block::empty::<T, E, O, D>())?;
         let past = room(count.saturating_mul(history.len()), &T::zero())?;
-        let draws = [Purpose::StepTime, Purpose::Observation, Purpose::Action].map(Draws::new);
+        let draws = [Purpose::StepTime, Purpose::Observation, Purpose::Action]
+            .map(|purpose| Draws::new(purpose, first));
         let step = 0;
         let mut all =
-            Environments { world, seed, step, len, execution, blocks, history, past, draws };
+            Environments { world, seed, first, step, len, execution, blocks, history, past, draws };
         (0..len).for_each(|n| all.begin(n, 0));
         Ok(all)
     }
@@ -161,11 +183,12 @@ where
     /// [`EnvironmentError::Shape`] if that is not the length of `to`.
     pub fn observe(&mut self, to: &mut [T]) -> Result<(), EnvironmentError> {
         EnvironmentError::shape("numbers to be observed", to.len(), self.len.saturating_mul(O))?;
-        let Environments { world, history, seed, step, len, .. } = *self;
+        let Environments { world, history, seed, first, step, len, .. } = *self;
         let (sensor, systems) = (world.parts().sensor, world.parts().systems);
         let words = self.draws[1].prepare(seed, step, 0, sensor.words(), self.blocks.len());
         // A look needs no policy.
-        let stage = Stage::<T, E, _, O, D>::new(&world, policy::Constant([0.0; D]), history, seed);
+        let nobody = policy::Constant([0.0; D]);
+        let stage = Stage::<T, E, _, O, D>::new(&world, nobody, history, [seed, first as u64]);
         for (b, block) in self.blocks.iter().enumerate() {
             let first = b * LANES;
             let count = (len - first).min(LANES);
@@ -220,7 +243,7 @@ where
         rollout.pauses = parts.autoreset != Autoreset::SameStep;
         rollout.idle = if rollout.pauses { self.standing() } else { Vec::new() };
 
-        let Environments { world, history, seed, step, .. } = *self;
+        let Environments { world, history, seed, first: shard, step, .. } = *self;
         let blocks = self.blocks.len();
         let [times, looks, acts] = &mut self.draws;
         let words = world.parts().clock.words();
@@ -249,7 +272,7 @@ where
                 world: &world,
                 policy,
                 history,
-                seed,
+                draws: [seed, shard as u64],
                 environments: len,
                 step,
                 share,
@@ -272,11 +295,12 @@ where
 
     /// Begins an episode of environment `n`.
     fn begin(&mut self, n: usize, number: u64) {
-        let Environments { world, history, seed, step, .. } = *self;
+        let Environments { world, history, seed, first, step, .. } = *self;
         let (b, l) = (n / LANES, n % LANES);
         let past = &mut self.past[b * history.len()..][..history.len()];
-        let episode = Episode { seed, environment: n as u64, number };
+        let episode = Episode { seed, environment: (first + n) as u64, number };
         block::begin(&mut self.blocks[b], history, past, &world, l, episode, step);
+        self.blocks[b].settle();
     }
 }
 

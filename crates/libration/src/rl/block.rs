@@ -24,6 +24,8 @@ pub(super) struct Block<T, C, V, const D: usize> {
     pub(super) delays: [[u32; LANES]; 2],
     /// The step with which the episode began.
     pub(super) began: [u64; LANES],
+    /// The first of these steps.
+    pub(super) oldest: u64,
     /// Its number.
     pub(super) episode: [u64; LANES],
     /// How it ended, if it did and no other has begun: [`OVER`] and [`CUT`].
@@ -68,6 +70,7 @@ pub(super) fn empty<T: Float, E: World<T, O, D>, const O: usize, const D: usize>
         numbers: Numbers::<T, E, O, D>::load(&none),
         delays: [[0; LANES]; 2],
         began: [0; LANES],
+        oldest: 0,
         episode: [0; LANES],
         ended: [0; LANES],
     }
@@ -114,11 +117,18 @@ impl<T: Copy, C: Copy, V, const D: usize> Block<T, C, V, D> {
         (self.paid[l], self.began[l]) = (T::zero(), now);
     }
 
+    /// Episodes have begun.
+    pub(super) fn settle(&mut self) {
+        self.oldest = self.began.iter().copied().fold(u64::MAX, u64::min);
+    }
+
     /// Lane `l` is as it was. What the clocks of all remember goes on; it is begun anew with the next episode.
     pub(super) fn stand(&mut self, as_it_was: &Self, l: usize) {
         let State { q, v } = as_it_was.state(l);
         put(&mut self.q, l, q);
         put(&mut self.v, l, v);
         self.paid[l] = as_it_was.paid[l];
+        // Its time stands as well.
+        self.began[l] = as_it_was.began[l] + 1;
     }
 }

@@ -7,14 +7,16 @@ use crate::random::{Purpose, Streams};
 #[derive(Clone, Debug)]
 pub(super) struct Draws {
     purpose: Purpose,
+    /// The number of the first environment.
+    first: usize,
     streams: Vec<Streams<LANES>>,
     /// The step, and how many words each takes.
     ready: Option<(u64, usize)>,
 }
 
 impl Draws {
-    pub(super) fn new(purpose: Purpose) -> Self {
-        Draws { purpose, streams: Vec::new(), ready: None }
+    pub(super) fn new(purpose: Purpose, first: usize) -> Self {
+        Draws { purpose, first, streams: Vec::new(), ready: None }
     }
 
     /// Makes them those before `step`, where each step takes so many words; a step of none has no streams. What follows takes
@@ -32,8 +34,8 @@ impl Draws {
             return &mut [];
         }
         if self.ready != Some((step, words)) || self.streams.len() != blocks {
-            let at =
-                |b: usize| Streams::resumed(seed, (b * LANES) as u64, step, self.purpose, words);
+            let first = |b: usize| (self.first + b * LANES) as u64;
+            let at = |b: usize| Streams::resumed(seed, first(b), step, self.purpose, words);
             self.streams = (0..blocks).map(at).collect();
         }
         self.ready = Some((step + steps, words));

@@ -63,9 +63,10 @@ where
         for l in 0..count {
             let environment = place.environment + l;
             let number = block.episode[l] + 1;
-            let episode = Episode { seed: self.seed, environment: environment as u64, number };
+            let address = self.first + environment as u64;
+            let episode = Episode { seed: self.seed, environment: address, number };
             if let Some(stood) = stood.filter(|stood| stood.ended[l] != 0) {
-                out.rewards[l] = T::zero();
+                out.step.rewards[l] = T::zero();
                 let flags = if self.autoreset == Autoreset::Disabled { stood.ended[l] } else { 0 };
                 (out.overs[l], out.cuts[l]) = (flags & OVER, (flags & CUT) / CUT);
                 if self.autoreset == Autoreset::Disabled {
@@ -87,7 +88,7 @@ where
                 observation: at(&last, l),
                 episode_return: block.paid[l],
                 length: step - block.began[l],
-                lost: !is_finite(&block.state(l)) | !is_number(&at(&out.actions, l)),
+                lost: !is_finite(&block.state(l)) | !is_number(&at(&out.step.actions, l)),
             });
             match self.autoreset {
                 Autoreset::SameStep => {
@@ -96,5 +97,6 @@ where
                 Autoreset::NextStep | Autoreset::Disabled => block.ended[l] = flags,
             }
         }
+        block.settle();
     }
 }

@@ -5,7 +5,7 @@ use pulp::{Simd, WithSimd};
 
 use super::block::BlockOf;
 use super::history::History;
-use super::row::{Row, Writer};
+use super::row::{Records, Row, Writer};
 use super::stage::{Site, Stage};
 use super::yields::Yield;
 use super::{Final, Layout, Place, Policy, World, Writes};
@@ -37,7 +37,8 @@ pub(super) struct Horizon<'a, 's, T, E, P, B, const O: usize, const D: usize> {
     pub(super) world: &'s E,
     pub(super) policy: P,
     pub(super) history: History,
-    pub(super) seed: u64,
+    /// The seed, and the number of the first environment.
+    pub(super) draws: [u64; 2],
     /// All environments.
     pub(super) environments: usize,
     /// Steps taken before.
@@ -78,16 +79,17 @@ where
     #[inline(always)]
     fn with_simd<V: Simd>(self, _: V) -> Vec<Final<T, O>> {
         let On(horizon, target) = self;
-        let Horizon { world, policy, history, seed, environments, step, .. } = horizon;
+        let Horizon { world, policy, history, draws, environments, step, .. } = horizon;
         let Horizon { share, mut rows, layout, writes, .. } = horizon;
         let writer = Writer { streaming: Streaming::on(target), layout, writes };
-        let parts = world.parts();
-        let stage = Stage::<T, E, P, O, D>::new(world, policy, history, seed);
+        let parts = *world.parts();
+        let stage = Stage::<T, E, P, O, D>::new(world, policy, history, draws);
         let brief = stage.is_brief();
         let [times, looks, acts] = share.words;
         let mut none = [Streams::<LANES>::none(); 3];
         let [no_times, no_looks, no_acts] = &mut none;
         let mut out = Yield::<T, O, D>::zeros();
+        let mut records = Records::zeros();
         for (index, blocks) in share.blocks.chunks_mut(TILE / LANES).enumerate() {
             for (t, row) in rows.iter_mut().enumerate() {
                 for (b, block) in blocks.iter_mut().enumerate() {
@@ -105,27 +107,49 @@ where
                             &mut share.past[b * history.len()..][..history.len()]
                         };
                     }
-                    let mut ended = if brief {
-                        stage.brief(&site, block, &mut out)
+                    let acts = acts.get_mut(b).unwrap_or(no_acts);
+                    let swift = brief && count == LANES && stood.is_none();
+                    let mut ended = if swift {
+                        let overs = &mut out.overs;
+                        stage.brief(parts, &site, block, acts, overs, b, row, &writer, &mut records)
                     } else {
                         let looks = looks.get_mut(b).unwrap_or(no_looks);
-                        stage.look(&site, block, past!(), looks, &mut out.seen);
-                        stage.act(place, acts.get_mut(b).unwrap_or(no_acts), &mut out);
+                        stage.look(&site, block, past!(), looks, &mut out.step.seen);
+                        stage.act(place, acts, &mut out.step);
                         let times = times.get_mut(b).unwrap_or(no_times);
                         stage.advance(&site, block, past!(), times, &mut out)
                     };
-                    if stage.limited() {
-                        ended |= stage.limit(now, block, &mut out.cuts);
-                    }
+                    ended |= stage.limit(now, block, ended != 0 || stood.is_some(), &mut out.cuts);
                     let whole = ended == 0 && stood.is_none();
                     if !whole {
                         let looks = looks.get(b).unwrap_or(no_looks);
+                        if swift {
+                            // An action that is no number leaves no state that is one.
+                            out.step.actions = [[T::zero(); LANES]; D];
+                        }
                         stage.end(&site, block, stood.as_ref(), past!(), looks, &mut out);
                     }
-                    row.write(&writer, b * LANES, count, whole, &out);
+                    if count < LANES {
+                        if whole {
+                            (out.overs, out.cuts) = NO_FLAGS;
+                        }
+                        row.write_part(writer.layout, b * LANES, count, &out);
+                        continue;
+                    }
+                    if !swift {
+                        // A copy: where both arms write the same, the compiler joins them, and what was in registers
+                        // is in memory.
+                        let step = out.step;
+                        row.write_block(&writer, b, &step, &mut records);
+                    }
+                    let flags = if whole { &NO_FLAGS } else { &(out.overs, out.cuts) };
+                    row.write_flags(&writer, b, &flags.0, &flags.1);
                 }
             }
         }
         out.finals
     }
 }
+
+/// No episode terminated, and none was cut off.
+const NO_FLAGS: ([u8; LANES], [u8; LANES]) = ([0; LANES], [0; LANES]);

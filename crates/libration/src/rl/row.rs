@@ -5,11 +5,10 @@ use core::mem::take;
 use bytemuck::Pod;
 
 use super::kernel::LANES;
-use super::yields::Yield;
+use super::yields::{Step, Yield};
 use super::{Layout, Writes};
 use crate::Float;
 use crate::ensemble::instructions::Target;
-use crate::ensemble::kernel::Lines;
 use crate::ensemble::stream::Streaming;
 
 /// Where a step of neighbouring environments is written.
@@ -25,14 +24,25 @@ pub(super) struct Row<'a, T, const O: usize, const D: usize> {
     pub(super) log_probability: &'a mut [T],
 }
 
+/// Room for what is interleaved. A value of the step's own would be taken apart, and its vectors with it.
+#[repr(C, align(64))]
+pub(super) struct Records<T, const O: usize, const D: usize> {
+    seen: [[T; O]; LANES],
+    actions: [[T; D]; LANES],
+}
+
+impl<T: Float, const O: usize, const D: usize> Records<T, O, D> {
+    pub(super) fn zeros() -> Self {
+        Records { seen: [[T::zero(); O]; LANES], actions: [[T::zero(); D]; LANES] }
+    }
+}
+
 /// How rows are written.
 pub(super) struct Writer<I: Target> {
     pub(super) streaming: Streaming<I>,
     pub(super) layout: Layout,
     pub(super) writes: Writes,
 }
-
-static NO_FLAGS: Lines<[u8; LANES]> = Lines([0; LANES]);
 
 impl<'a, T, const O: usize, const D: usize> Row<'a, T, O, D> {
     /// Takes off the first `count` environments.
@@ -50,75 +60,129 @@ impl<'a, T, const O: usize, const D: usize> Row<'a, T, O, D> {
 }
 
 impl<T: Float + Pod, const O: usize, const D: usize> Row<'_, T, O, D> {
-    /// Writes what a block yielded: of `count` environments from the `from`-th of the row on, which is a multiple of
-    /// [`LANES`]. Where no episode ends in it there are no flags.
+    /// Writes the numbers of the `b`-th block, all of whose lanes are in the row.
     #[inline(always)]
-    pub(super) fn write<I: Target>(
+    pub(super) fn write_block<I: Target>(
         &mut self,
         writer: &Writer<I>,
+        b: usize,
+        step: &Step<T, O, D>,
+        records: &mut Records<T, O, D>,
+    ) {
+        writer.write_numbers(b, &step.seen, &mut records.seen, &mut self.observation);
+        writer.write_numbers(b, &step.actions, &mut records.actions, &mut self.action);
+        writer.write(b, &step.rewards, self.reward);
+        if !self.log_probability.is_empty() {
+            writer.write(b, &step.log_probabilities, self.log_probability);
+        }
+    }
+
+    /// Writes which episodes ended in the `b`-th block.
+    #[inline(always)]
+    pub(super) fn write_flags<I: Target>(
+        &mut self,
+        writer: &Writer<I>,
+        b: usize,
+        overs: &[u8; LANES],
+        cuts: &[u8; LANES],
+    ) {
+        writer.write(b, overs, self.terminated);
+        if !self.truncated.is_empty() {
+            writer.write(b, cuts, self.truncated);
+        }
+    }
+
+    /// Writes what a block yielded that begins with the `from`-th environment, and of which only `count` lanes are in the row.
+    #[inline(never)]
+    pub(super) fn write_part(
+        &mut self,
+        layout: Layout,
         from: usize,
         count: usize,
-        whole: bool,
         out: &Yield<T, O, D>,
     ) {
-        let Writer { streaming, layout, writes } = writer;
-        // Each arm has its own copy of what it writes: one that is named elsewhere would be kept in memory.
-        macro_rules! write {
-            ($from:expr, $to:expr) => {{
-                let full = $to.as_chunks_mut::<LANES>().0.get_mut(from / LANES);
-                match (full, writes) {
-                    (Some(to), Writes::Plain) => *to = $from,
-                    (Some(to), Writes::Past) if streaming.takes(to) => streaming.block(&$from, to),
-                    _ => $to[from..][..count].copy_from_slice(&$from[..count]),
+        fn numbers<T: Copy, const N: usize>(
+            layout: Layout,
+            which: [usize; 2],
+            planes: &[[T; LANES]; N],
+            to: &mut [&mut [T]; N],
+        ) {
+            for (i, plane) in planes.iter().enumerate() {
+                if layout == Layout::Planes {
+                    copy(which, plane, to[i]);
+                    continue;
                 }
-            }};
-        }
-        macro_rules! write_numbers {
-            ($from:expr, $to:expr, $n:ident) => {{
-                if *layout == Layout::Interleaved && const { $n > 1 } {
-                    if let Some(all) = $to.first_mut() {
-                        let all = all.as_chunks_mut::<$n>().0;
-                        write!(interleaved(&$from), all);
-                    }
-                } else {
-                    for i in 0..$n {
-                        write!($from[i], $to[i]);
-                    }
-                }
-            }};
-        }
-        write_numbers!(out.seen, self.observation, O);
-        write_numbers!(out.actions, self.action, D);
-        write!(out.rewards, self.reward);
-        if !self.log_probability.is_empty() {
-            write!(out.log_probabilities, self.log_probability);
-        }
-        if whole {
-            write!(NO_FLAGS.0, self.terminated);
-            if !self.truncated.is_empty() {
-                write!(NO_FLAGS.0, self.truncated);
+                let [from, count] = which;
+                let records = to[0].chunks_exact_mut(N).skip(from).take(count);
+                records.zip(plane).for_each(|(record, x)| record[i] = *x);
             }
+        }
+        fn copy<X: Copy>([from, count]: [usize; 2], what: &[X; LANES], to: &mut [X]) {
+            let to = to.iter_mut().skip(from).take(count);
+            to.zip(what).for_each(|(to, x)| *to = *x);
+        }
+        let which = [from, count];
+        numbers(layout, which, &out.step.seen, &mut self.observation);
+        numbers(layout, which, &out.step.actions, &mut self.action);
+        copy(which, &out.step.rewards, self.reward);
+        copy(which, &out.step.log_probabilities, self.log_probability);
+        copy(which, &out.overs, self.terminated);
+        copy(which, &out.cuts, self.truncated);
+    }
+}
+
+impl<I: Target> Writer<I> {
+    /// Writes the `at`-th `N` of `to`.
+    #[inline(always)]
+    fn write<X: Pod, const N: usize>(&self, at: usize, from: &[X; N], to: &mut [X]) {
+        let Some(to) = to.as_chunks_mut::<N>().0.get_mut(at) else { return };
+        if self.goes_past(to) {
+            self.streaming.block(from, to);
         } else {
-            // What was written just now in pieces cannot be forwarded as a whole: this waits, but it is rare.
-            write!(out.overs, self.terminated);
-            if !self.truncated.is_empty() {
-                write!(out.cuts, self.truncated);
+            *to = *from;
+        }
+    }
+
+    /// Whether this is to be written past the caches, and can be.
+    #[inline(always)]
+    fn goes_past<X: Pod, const N: usize>(&self, to: &[X; N]) -> bool {
+        self.writes == Writes::Past && self.streaming.takes(to)
+    }
+
+    /// Writes several numbers for each of the `b`-th block. Where they are interleaved on their way past the caches, it is in
+    /// `records`.
+    #[inline(always)]
+    fn write_numbers<T: Float + Pod, const N: usize>(
+        &self,
+        b: usize,
+        planes: &[[T; LANES]; N],
+        records: &mut [[T; N]; LANES],
+        to: &mut [&mut [T]; N],
+    ) {
+        if const { N == 1 } || self.layout == Layout::Planes {
+            for (plane, to) in planes.iter().zip(to) {
+                self.write(b, plane, to);
             }
+            return;
+        }
+        let Some(to) = to[0].as_chunks_mut().0.as_chunks_mut().0.get_mut(b) else { return };
+        if self.goes_past(to) {
+            interleave(planes, records);
+            self.streaming.block(records, to);
+        } else {
+            interleave(planes, to);
         }
     }
 }
 
 /// Numbers of every lane side by side.
 #[inline(always)]
-fn interleaved<T: Float + Pod, const N: usize>(planes: &[[T; LANES]; N]) -> [[T; N]; LANES] {
-    let mut records = Lines([[T::zero(); N]; LANES]);
-    let flat = records.0.as_flattened_mut();
-    for l in 0..LANES {
-        for i in 0..N {
-            flat[l * N + i] = planes[i][l];
+fn interleave<T: Copy, const N: usize>(planes: &[[T; LANES]; N], records: &mut [[T; N]; LANES]) {
+    for (l, record) in records.iter_mut().enumerate() {
+        for (number, plane) in record.iter_mut().zip(planes) {
+            *number = plane[l];
         }
     }
-    records.0
 }
 
 /// Takes off the first `count`, or all if there are fewer.

@@ -1,12 +1,16 @@
 //! What a step of a block consists of: scalar functions in loops over lanes.
 
-use super::block::{BlockOf, ClockMemory, NumberLanes, Numbers};
+use bytemuck::Pod;
+
+use super::block::{self, BlockOf, ClockMemory, NumberLanes};
 use super::history::History;
 use super::kernel::LANES;
-use super::yields::Yield;
+use super::row::{Records, Row, Writer};
+use super::yields::{Step, Yield};
 use super::{Autoreset, Parts, Place, Policy, Sensor, Task, Variation, World};
 use crate::control::{Clock, Memory};
 use crate::ensemble::Assign;
+use crate::ensemble::instructions::Target;
 use crate::ensemble::kernel::{Lines, at, put};
 use crate::random::{EPOCH, Purpose, Streams};
 use crate::system::Held;
@@ -19,7 +23,11 @@ pub(super) struct Stage<'s, T, E, P, const O: usize, const D: usize> {
     policy: P,
     pub(super) history: History,
     pub(super) seed: u64,
+    /// The number of the first environment.
+    pub(super) first: u64,
     dt: T,
+    /// From action to action.
+    span: T,
     pub(super) substeps: u64,
     limit: Option<u64>,
     pub(super) autoreset: Autoreset,
@@ -44,14 +52,16 @@ where
     E: World<T, O, D>,
     P: Policy<T, O, D>,
 {
-    pub(super) fn new(world: &'s E, policy: P, history: History, seed: u64) -> Self {
+    pub(super) fn new(world: &'s E, policy: P, history: History, draws: [u64; 2]) -> Self {
         let parts = world.parts();
         Stage {
             world,
             policy,
             history,
-            seed,
+            seed: draws[0],
+            first: draws[1],
             dt: T::from_f64(parts.dt),
+            span: T::from_f64(parts.dt * f64::from(parts.substeps)),
             substeps: parts.substeps.into(),
             limit: parts.limit.map(u64::from),
             autoreset: parts.autoreset,
@@ -60,9 +70,20 @@ where
 
     /// Whether nothing but a short formula comes between what is seen and what it leads to.
     pub(super) fn is_brief(&self) -> bool {
-        let ideal = const { P::BRIEF && !P::DRAWS && !E::Sensor::DRAWS && E::Clock::EVEN };
+        let ideal = const { P::BRIEF && !E::Sensor::DRAWS && E::Clock::EVEN };
         let timely = !self.history.sees_late() && !self.history.acts_late();
         ideal && timely && self.substeps == 1
+    }
+
+    /// Seconds since an episode began, if anybody asks: steps are as long as they should be.
+    #[inline(always)]
+    fn time(&self, now: u64, began: u64) -> T {
+        if const { E::Task::TIMED } {
+            // As many as an episode has: a `u32`, of which processors make floats sooner than of a `u64`.
+            T::from_f64(f64::from((now - began) as u32)) * self.span
+        } else {
+            T::zero()
+        }
     }
 
     /// The environment, as a value of its own: behind a reference the compiler would look for changes after every store.
@@ -71,34 +92,60 @@ where
         *self.world.parts()
     }
 
-    /// All of an ideal step.
+    /// All of an ideal step of a whole block, and its numbers where they belong: what one loop computes stays in registers until
+    /// it is written.
     #[inline(always)]
-    pub(super) fn brief(
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn brief<I: Target>(
         &self,
+        parts: Parts<T, E, O, D>,
         site: &Site<T, E, O, D>,
         block: &mut BlockOf<T, E, O, D>,
-        out: &mut Yield<T, O, D>,
-    ) -> u8 {
-        let (parts, policy, dt) = (self.parts(), self.policy, self.dt);
+        words: &mut Streams<LANES>,
+        overs: &mut [u8; LANES],
+        b: usize,
+        row: &mut Row<'_, T, O, D>,
+        writer: &Writer<I>,
+        records: &mut Records<T, O, D>,
+    ) -> u8
+    where
+        T: Pod,
+    {
+        self.renew(site.place, words);
+        let (policy, dt) = (self.policy, self.dt);
         let mut ended = 0;
+        let mut out = Step {
+            seen: [[T::zero(); LANES]; O],
+            actions: [[T::zero(); LANES]; D],
+            rewards: [T::zero(); LANES],
+            log_probabilities: [T::zero(); LANES],
+        };
+        let mut drawn = *words;
         for l in 0..LANES {
             let (system, task) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
             let before = block.state(l);
-            let seen = task.observe(&before);
-            let act = policy.act(site.place.lane(l), &seen, &mut || 0);
+            let time = self.time(site.place.step, block.began[l]);
+            let seen = task.observe(time, &before);
+            let act = policy.act(site.place.lane(l), &seen, &mut || drawn.next(l));
             let system = Held { system, command: act.action };
             let after = parts.method.step(&system, before, dt);
             // An action that is no number leaves no state that is one.
+            let time = self.time(site.place.step + 1, block.began[l]);
             let lost = !is_finite(&after);
-            let (reward, over) = judged(&task, lost, &before, &act.action, &after);
+            let (reward, over) = judged(&task, lost, time, &before, &act.action, &after);
             put(&mut out.seen, l, seen);
             put(&mut out.actions, l, act.action);
+            out.log_probabilities[l] = act.log_probability;
             out.rewards[l] = reward;
             block.paid[l] = block.paid[l] + reward;
             put(&mut block.q, l, after.q);
             put(&mut block.v, l, after.v);
-            out.overs[l] = over;
+            overs[l] = over;
             ended |= over;
+        }
+        row.write_block(writer, b, &out, records);
+        if const { P::DRAWS } {
+            *words = drawn;
         }
         ended
     }
@@ -114,7 +161,7 @@ where
         seen: &mut [[T; LANES]; O],
     ) {
         if const { E::Sensor::DRAWS } && site.place.step.is_multiple_of(EPOCH) {
-            let first = site.place.environment as u64;
+            let first = self.first + site.place.environment as u64;
             *words = Streams::at(self.seed, first, site.place.step / EPOCH, Purpose::Observation);
         }
         let (mut q, mut v) = (Lines(block.q), Lines(block.v));
@@ -126,19 +173,26 @@ where
         let parts = self.parts();
         for l in 0..LANES {
             let (_, task) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
-            let sees = task.observe(&State { q: at(&q.0, l), v: at(&v.0, l) });
+            let time = self.time(site.place.step, block.began[l]);
+            let sees = task.observe(time, &State { q: at(&q.0, l), v: at(&v.0, l) });
             put(seen, l, parts.sensor.measure(sees, &mut || words.next(l)));
+        }
+    }
+
+    /// The words of actions, before those of a step.
+    #[inline(always)]
+    fn renew(&self, place: Place, words: &mut Streams<LANES>) {
+        if const { P::DRAWS } && place.step.is_multiple_of(EPOCH) {
+            let first = self.first + place.environment as u64;
+            *words = Streams::at(self.seed, first, place.step / EPOCH, Purpose::Action);
         }
     }
 
     /// What is done about it.
     #[inline(always)]
-    pub(super) fn act(&self, place: Place, words: &mut Streams<LANES>, out: &mut Yield<T, O, D>) {
-        if const { P::DRAWS } && place.step.is_multiple_of(EPOCH) {
-            let first = place.environment as u64;
-            *words = Streams::at(self.seed, first, place.step / EPOCH, Purpose::Action);
-        }
-        let Yield { seen, actions, log_probabilities, .. } = out;
+    pub(super) fn act(&self, place: Place, words: &mut Streams<LANES>, out: &mut Step<T, O, D>) {
+        self.renew(place, words);
+        let Step { seen, actions, log_probabilities, .. } = out;
         let policy = self.policy;
         policy.act_all(place, seen, words, actions, log_probabilities);
     }
@@ -154,9 +208,9 @@ where
         out: &mut Yield<T, O, D>,
     ) -> u8 {
         let (parts, dt) = (self.parts(), self.dt);
-        let (mut q, mut v, mut held) = (Lines(block.q), Lines(block.v), Lines(out.actions));
+        let (mut q, mut v, mut held) = (Lines(block.q), Lines(block.v), Lines(out.step.actions));
         if self.history.acts_late() {
-            self.history.act(past, site.place.step, &out.actions);
+            self.history.act(past, site.place.step, &out.step.actions);
         }
         for substep in 0..self.substeps {
             let step = site.place.step * self.substeps + substep;
@@ -168,7 +222,7 @@ where
                 self.history.pass(past, step, &q.0, &v.0);
             }
             if const { E::Clock::DRAWS } && step.is_multiple_of(EPOCH) {
-                let first = site.place.environment as u64;
+                let first = self.first + site.place.environment as u64;
                 *words = Streams::at(self.seed, first, step / EPOCH, Purpose::StepTime);
             }
             let beat = parts.clock.beat(step);
@@ -188,10 +242,11 @@ where
         for l in 0..LANES {
             let (_, task) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
             let after = State { q: at(&q.0, l), v: at(&v.0, l) };
-            let action = at(&out.actions, l);
+            let action = at(&out.step.actions, l);
             let lost = !is_finite(&after) | !is_number(&action);
-            let (reward, over) = judged(&task, lost, &block.state(l), &action, &after);
-            out.rewards[l] = reward;
+            let time = self.time(site.place.step + 1, block.began[l]);
+            let (reward, over) = judged(&task, lost, time, &block.state(l), &action, &after);
+            out.step.rewards[l] = reward;
             block.paid[l] = block.paid[l] + reward;
             out.overs[l] = over;
             ended |= over;
@@ -200,20 +255,19 @@ where
         ended
     }
 
-    /// Whether there is a time limit.
-    pub(super) fn limited(&self) -> bool {
-        self.limit.is_some()
-    }
-
-    /// Which episodes are cut off.
+    /// Which episodes are cut off. Most often none can be yet, and nobody asks.
     #[inline(always)]
     pub(super) fn limit(
         &self,
         now: u64,
         block: &BlockOf<T, E, O, D>,
+        asked: bool,
         cuts: &mut [u8; LANES],
     ) -> u8 {
-        let last = self.limit.unwrap_or(u64::MAX) - 1;
+        let Some(last) = self.limit.map(|limit| limit - 1) else { return 0 };
+        if !asked && now - block.oldest < last {
+            return 0;
+        }
         let mut ended = 0;
         for (cut, began) in cuts.iter_mut().zip(&block.began) {
             *cut = u8::from(now - began >= last);
@@ -231,7 +285,7 @@ fn lane<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
     numbers: &NumberLanes<T, E, O, D>,
     l: usize,
 ) -> (E::System, E::Task) {
-    let numbers = Numbers::<T, E, O, D>::lane(numbers, l);
+    let numbers = block::Numbers::<T, E, O, D>::lane(numbers, l);
     parts.variation.apply(&numbers, E::Systems::lane(systems, l), parts.task)
 }
 
@@ -240,12 +294,13 @@ fn lane<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
 fn judged<T: Float, K: Task<T, D, O>, const O: usize, const D: usize>(
     task: &K,
     lost: bool,
+    time: T,
     before: &State<T, D>,
     action: &[T; D],
     after: &State<T, D>,
 ) -> (T, u8) {
-    let reward = task.reward(before, action, after);
-    (if lost { T::zero() } else { reward }, u8::from(task.terminated(after) | lost))
+    let reward = task.reward(time, before, action, after);
+    (if lost { T::zero() } else { reward }, u8::from(task.terminated(time, after) | lost))
 }
 
 /// Whether the sum of all coordinates is.

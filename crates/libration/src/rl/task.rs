@@ -4,15 +4,20 @@ use crate::{Elementary, Float, State};
 
 /// A task on a system with `D` degrees of freedom, of which `O` numbers are seen. Nothing in it branches on data, and each
 /// function is `#[inline(always)]`, or the loops over environments are no vectors.
+///
+/// `time` is that since the episode began, in seconds, as an ideal clock counts it.
 pub trait Task<T: Float, const D: usize, const O: usize>: Copy + Send + Sync {
-    /// What is seen of a state.
-    fn observe(&self, state: &State<T, D>) -> [T; O];
+    /// Whether it asks for the time; 0 is what it is told otherwise.
+    const TIMED: bool = false;
 
-    /// What a step from `before` to `after` under `action` pays.
-    fn reward(&self, before: &State<T, D>, action: &[T; D], after: &State<T, D>) -> T;
+    /// What is seen of a state.
+    fn observe(&self, time: T, state: &State<T, D>) -> [T; O];
+
+    /// What a step from `before` to `after` under `action` pays, at its end.
+    fn reward(&self, time: T, before: &State<T, D>, action: &[T; D], after: &State<T, D>) -> T;
 
     /// Whether it is over with this state. What is no longer finite is over in any case.
-    fn terminated(&self, after: &State<T, D>) -> bool;
+    fn terminated(&self, time: T, after: &State<T, D>) -> bool;
 }
 
 /// To rest at the origin: a step pays `−(p·q² + r·v² + e·u²)`, and the episode is over beyond a distance.
@@ -42,12 +47,12 @@ macro_rules! regulate {
     ($d:literal, $o:literal) => {
         impl<T: Float> Task<T, $d, $o> for Regulate {
             #[inline(always)]
-            fn observe(&self, state: &State<T, $d>) -> [T; $o] {
+            fn observe(&self, _: T, state: &State<T, $d>) -> [T; $o] {
                 core::array::from_fn(|i| if i < $d { state.q[i] } else { state.v[i - $d] })
             }
 
             #[inline(always)]
-            fn reward(&self, _: &State<T, $d>, action: &[T; $d], after: &State<T, $d>) -> T {
+            fn reward(&self, _: T, _: &State<T, $d>, action: &[T; $d], after: &State<T, $d>) -> T {
                 let [position, velocity, effort] =
                     [self.position, self.velocity, self.effort].map(T::from_f64);
                 let cost = |i: usize| {
@@ -58,7 +63,7 @@ macro_rules! regulate {
             }
 
             #[inline(always)]
-            fn terminated(&self, after: &State<T, $d>) -> bool {
+            fn terminated(&self, _: T, after: &State<T, $d>) -> bool {
                 let bound = T::from_f64(self.bound);
                 let mut beyond = false;
                 for i in 0..$d {
@@ -74,7 +79,8 @@ regulate!(1, 2);
 regulate!(2, 4);
 
 /// To stand a pendulum on its head, which hangs at `q = 0`: seen are the cosine and the sine of its angle and its velocity, and
-/// a step pays `cos q − 1 − r·v² − e·u²` of the angle from the top. It is never over.
+/// an action pays `cos q − 1 − r·v² − e·u²` of the angle from the top and the velocity that it finds, as that of Gymnasium's
+/// `Pendulum` does. It is never over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwingUp {
     /// `r`, the price of a velocity squared.
@@ -85,19 +91,89 @@ pub struct SwingUp {
 
 impl<T: Float + Elementary> Task<T, 1, 3> for SwingUp {
     #[inline(always)]
-    fn observe(&self, &State { q: [q], v: [v] }: &State<T, 1>) -> [T; 3] {
+    fn observe(&self, _: T, &State { q: [q], v: [v] }: &State<T, 1>) -> [T; 3] {
         [-Elementary::cos(q), -Elementary::sin(q), v]
     }
 
     #[inline(always)]
-    fn reward(&self, _: &State<T, 1>, &[u]: &[T; 1], after: &State<T, 1>) -> T {
+    fn reward(&self, _: T, before: &State<T, 1>, &[u]: &[T; 1], _: &State<T, 1>) -> T {
         let (velocity, effort) = (T::from_f64(self.velocity), T::from_f64(self.effort));
-        let v = after.v[0];
-        -Elementary::cos(after.q[0]) - T::one() - velocity * (v * v) - effort * (u * u)
+        let v = before.v[0];
+        -Elementary::cos(before.q[0]) - T::one() - velocity * (v * v) - effort * (u * u)
     }
 
     #[inline(always)]
-    fn terminated(&self, _: &State<T, 1>) -> bool {
+    fn terminated(&self, _: T, _: &State<T, 1>) -> bool {
         false
+    }
+}
+
+/// Where something ought to be.
+pub trait Reference<T: Float>: Copy + Send + Sync {
+    /// Its position and its velocity.
+    fn at(&self, time: T) -> [T; 2];
+}
+
+/// `A·sin(ω·t + φ)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sine {
+    /// `A`.
+    pub amplitude: f64,
+    /// `ω`, in radians a second.
+    pub angular_frequency: f64,
+    /// `φ`, in radians.
+    pub phase: f64,
+}
+
+impl<T: Float + Elementary> Reference<T> for Sine {
+    #[inline(always)]
+    fn at(&self, time: T) -> [T; 2] {
+        let [amplitude, omega, phase] =
+            [self.amplitude, self.angular_frequency, self.phase].map(T::from_f64);
+        let angle = omega * time + phase;
+        [amplitude * Elementary::sin(angle), amplitude * omega * Elementary::cos(angle)]
+    }
+}
+
+/// To follow a reference: seen are position and velocity, and those of the reference; a step pays
+/// `−(p·(q − q₀)² + r·(v − v₀)² + e·u²)`, and the episode is over beyond a distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Track<R> {
+    /// The reference, known without noise and without delay.
+    pub reference: R,
+    /// Prices of distances from it, and the distance from it beyond which all is lost.
+    pub regulate: Regulate,
+}
+
+impl<R> Track<R> {
+    /// A state as the reference sees it.
+    #[inline(always)]
+    fn apart<T: Float>(&self, time: T, state: &State<T, 1>) -> State<T, 1>
+    where
+        R: Reference<T>,
+    {
+        let [q, v] = self.reference.at(time);
+        State { q: [state.q[0] - q], v: [state.v[0] - v] }
+    }
+}
+
+impl<T: Float, R: Reference<T>> Task<T, 1, 4> for Track<R> {
+    const TIMED: bool = true;
+
+    #[inline(always)]
+    fn observe(&self, time: T, state: &State<T, 1>) -> [T; 4] {
+        let [q, v] = self.reference.at(time);
+        [state.q[0], state.v[0], q, v]
+    }
+
+    #[inline(always)]
+    fn reward(&self, time: T, before: &State<T, 1>, action: &[T; 1], after: &State<T, 1>) -> T {
+        // Only where it came to is paid for.
+        self.regulate.reward(time, before, action, &self.apart(time, after))
+    }
+
+    #[inline(always)]
+    fn terminated(&self, time: T, after: &State<T, 1>) -> bool {
+        self.regulate.terminated(time, &self.apart(time, after))
     }
 }

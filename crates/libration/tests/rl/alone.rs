@@ -74,7 +74,7 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
         let see = |states: &[State<f32, 1>], looks: &mut Words, step: u64| {
             looks.before(step);
             let shown = states[states.len().saturating_sub(1 + late)];
-            let seen = task.observe(&shown);
+            let seen = task.observe(0.0, &shown);
             parts.sensor.measure(seen, &mut || looks.stream.next(0))
         };
         let seen = see(&states, &mut looks, step);
@@ -101,8 +101,8 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
             seen,
             action: act.action,
             log_probability: act.log_probability,
-            reward: task.reward(&before, &act.action, &state),
-            over: u8::from(task.terminated(&state)),
+            reward: task.reward(0.0, &before, &act.action, &state),
+            over: u8::from(task.terminated(0.0, &state)),
             cut: u8::from(actions.len() as u32 >= parts.limit.unwrap_or(u32::MAX)),
             moved: true,
             last: None,

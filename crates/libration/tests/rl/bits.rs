@@ -1,6 +1,7 @@
 //! What an environment does, it does wherever it runs.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use libration::ensemble::Execution;
 use libration::rl::policy::{Explore, Linear};
@@ -11,16 +12,17 @@ use crate::{executions, ideal, perturbed};
 
 pub(crate) const POLICY: Linear<2, 1> = Linear { weights: [[-3.0, 0.5]], bias: [0.25] };
 
-/// What `count` environments tell of so many steps, in as many rollouts as there are horizons.
+/// What these environments tell of so many steps, in as many rollouts as there are horizons.
 pub(crate) fn told<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
     world: E,
     policy: P,
-    count: usize,
+    which: Range<usize>,
     execution: Execution,
     horizons: &[usize],
     (layout, writes): (Layout, Writes),
 ) -> Vec<Vec<Told>> {
-    let mut all = Environments::new(world, count, 9, execution).unwrap();
+    let count = which.len();
+    let mut all = Environments::shard(world, which.start, count, 9, execution).unwrap();
     let mut told: Vec<Vec<Told>> = vec![Vec::new(); count];
     for &horizon in horizons {
         let plan = Plan::new(horizon, count).truncated().log_probabilities();
@@ -62,7 +64,8 @@ fn compare<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(world: E, policy: P) -> us
             (600, Layout::Planes, Writes::Plain),
         ] {
             let horizons = [1, 130, STEPS - 131];
-            let found = told(world, policy, count, execution.clone(), &horizons, (layout, writes));
+            let found =
+                told(world, policy, 0..count, execution.clone(), &horizons, (layout, writes));
             for n in (0..count).step_by(41) {
                 for (t, (found, wanted)) in found[n].iter().zip(&lone[&n]).enumerate() {
                     assert_eq!(found, wanted, "{n} of {count} at {t}, {layout:?} {execution:?}");
@@ -89,6 +92,18 @@ fn so_does_one_with_delays_jitter_skew_noise_variation_and_exploration_under_eve
 }
 
 #[test]
+fn shards_of_any_size_do_what_all_do_together() {
+    let (world, policy) =
+        (perturbed(Autoreset::SameStep), Explore { policy: POLICY, sigma: [0.5] });
+    let how = (Layout::Interleaved, Writes::Plain);
+    let whole = told(world, policy, 0..400, Execution::serial(), &[270], how);
+    for which in [0..1, 1..64, 64..100, 100..399, 399..400] {
+        let shard = told(world, policy, which.clone(), Execution::serial(), &[70, 200], how);
+        assert_eq!(shard, whole[which]);
+    }
+}
+
+#[test]
 fn a_step_is_the_same_by_the_short_way_as_by_the_long() {
     // A policy that is not brief, but says the same.
     #[derive(Clone, Copy)]
@@ -104,8 +119,8 @@ fn a_step_is_the_same_by_the_short_way_as_by_the_long() {
         }
     }
     let how = (Layout::Interleaved, Writes::Plain);
-    let short = told(ideal(), POLICY, 100, Execution::serial(), &[200], how);
-    let long = told(ideal(), Long(POLICY), 100, Execution::serial(), &[200], how);
+    let short = told(ideal(), POLICY, 0..100, Execution::serial(), &[200], how);
+    let long = told(ideal(), Long(POLICY), 0..100, Execution::serial(), &[200], how);
     assert_eq!(short, long);
 }
 
@@ -124,5 +139,5 @@ fn a_look_from_outside_sees_what_the_next_step_does() {
     let state = all.state(5).unwrap();
     let mut seen = vec![0.0; 200];
     all.observe(&mut seen).unwrap();
-    assert_ne!(seen[10..12], Task::<f32, 1, 2>::observe(&crate::TASK, &state));
+    assert_ne!(seen[10..12], Task::<f32, 1, 2>::observe(&crate::TASK, 0.0, &state));
 }

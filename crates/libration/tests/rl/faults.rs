@@ -102,7 +102,7 @@ fn a_policy_that_cannot_act_is_refused() {
         "standard deviation of exploration 0 is 0; it must be a finite number above 0"
     );
     assert_eq!(
-        told(Random { low: [1.0], high: [0.0] }),
+        told(Random::between([1.0], [0.0])),
         "width of the random action 0 is -1; it must be a finite number of at least 0"
     );
 }

@@ -74,7 +74,7 @@ fn exploration_has_the_deviation_and_the_log_probability_that_it_says() {
 
 #[test]
 fn random_actions_are_uniform_between_their_ends_and_equally_likely() {
-    let found = rollout(Random { low: [-1.0], high: [3.0] }, 256, Execution::serial());
+    let found = rollout(Random::between([-1.0], [3.0]), 256, Execution::serial());
     let mean = found.action().iter().map(|&a| f64::from(a)).sum::<f64>() / (300.0 * 256.0);
     assert!(found.action().iter().all(|a| (-1.0..=3.0).contains(a)));
     // Four standard errors: the deviation is 4/√12.
@@ -89,9 +89,9 @@ fn a_network_acts_alike_on_every_instruction_set_and_beside_any_number_of_others
     for activation in [Activation::Tanh, Activation::Relu] {
         let network = Perceptron::<f32, 16> { parameters: &parameters, activation };
         let how = Default::default();
-        let wanted = told(ideal(), network, 130, Execution::serial(), &[100], how);
+        let wanted = told(ideal(), network, 0..130, Execution::serial(), &[100], how);
         for execution in executions() {
-            let found = told(ideal(), network, 3, execution, &[60, 40], how);
+            let found = told(ideal(), network, 0..3, execution, &[60, 40], how);
             assert_eq!(found[..], wanted[..3]);
         }
         // It does something, and not always the same.

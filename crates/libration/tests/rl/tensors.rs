@@ -1,13 +1,13 @@
 //! Rollouts as memory.
 
 use bytemuck::Pod;
-use libration::ensemble::{Each, Execution};
+use libration::ensemble::{All, Each, Execution};
 use libration::integrator::{Integrator, Rk4};
 use libration::rl::policy::Constant;
 use libration::rl::start::At;
-use libration::rl::task::SwingUp;
-use libration::rl::{Environment, Environments, Plan, Rollout};
-use libration::system::{Held, Pendulum};
+use libration::rl::task::{Regulate, Sine, SwingUp, Track};
+use libration::rl::{Autoreset, Environment, Environments, Plan, Rollout};
+use libration::system::{Held, Oscillator, Pendulum};
 use libration::{Float, State};
 
 #[test]
@@ -23,15 +23,67 @@ fn each_environment_has_its_own_system_and_tasks_see_what_they_say() {
     all.observe(&mut seen).unwrap();
     for (n, &system) in systems.iter().enumerate() {
         let held = Held { system, command: [0.125] };
-        let state = (0..20).fold(State { q: [0.5], v: [0.0] }, |s, _| Rk4.step(&held, s, 0.05));
+        let start = State { q: [0.5], v: [0.0] };
+        let after = |steps| (0..steps).fold(start, |s, _| Rk4.step(&held, s, 0.05));
+        let state = after(20);
         assert_eq!(all.state(n), Some(state));
         let (cosine, sine, velocity) = (seen[3 * n], seen[3 * n + 1], seen[3 * n + 2]);
         // From the top: at rest below it is −1 and 0.
         let close = |a: f64, b: f64| (a - b).abs() < 1e-15;
         assert!(close(cosine, -state.q[0].cos()) && close(sine, -state.q[0].sin()), "{n}");
         assert_eq!(velocity, state.v[0]);
-        let paid = rollout.reward()[9 * 70 + n];
-        assert!((paid - (cosine - 1.0 - 0.1 * velocity * velocity)).abs() < 1e-14, "{n} {paid}");
+        // The last action pays for what it found.
+        let (found, paid) = (after(18), rollout.reward()[9 * 70 + n]);
+        let wanted = -found.q[0].cos() - 1.0 - 0.1 * found.v[0] * found.v[0];
+        assert!((paid - wanted).abs() < 1e-14, "{n} {paid}");
+    }
+}
+
+#[test]
+fn a_reference_is_seen_and_paid_for_at_the_time_of_the_episode() {
+    let reference = Sine { amplitude: 0.5, angular_frequency: 3.0, phase: 0.25 };
+    let regulate = Regulate { position: 2.0, velocity: 0.5, effort: 0.0, bound: 0.75 };
+    let (task, start) = (Track { reference, regulate }, At(State { q: [0.0], v: [0.0] }));
+    let system = Oscillator { omega2: 1.0_f64 };
+    for autoreset in [Autoreset::SameStep, Autoreset::NextStep, Autoreset::Disabled] {
+        let environment = Environment::new(All(system), Rk4, 0.05, task, start)
+            .substeps(2)
+            .limit(11)
+            .autoreset(autoreset);
+        let mut all = Environments::new(environment, 70, 0, Execution::serial()).unwrap();
+        let mut rollout: Rollout<f64, 4, 1> = Rollout::new(Plan::new(40, 70).truncated()).unwrap();
+        all.rollout(Constant([0.5]), &mut rollout).unwrap();
+        let (mut taken, mut stands) = (0, false);
+        for t in 0..40 {
+            let at = |taken: i32| {
+                let (time, amplitude) = (0.1 * f64::from(taken), 0.5);
+                let angle = 3.0 * time + 0.25;
+                [amplitude * angle.sin(), amplitude * 3.0 * angle.cos()]
+            };
+            let [q, v, seen @ ..] = rollout.seen(t, 69);
+            // The sine is good to some last places.
+            let near = |a: f64, b: f64| (a - b).abs() < 1e-14;
+            assert!(seen.iter().zip(at(taken)).all(|(&a, b)| near(a, b)), "{t} {autoreset:?}");
+            if stands {
+                assert_eq!(rollout.reward()[t * 70 + 69], 0.0);
+                if autoreset == Autoreset::NextStep {
+                    (taken, stands) = (0, false);
+                }
+                continue;
+            }
+            let held = Held { system, command: [0.5] };
+            let after = (0..2).fold(State { q: [q], v: [v] }, |s, _| Rk4.step(&held, s, 0.05));
+            taken += 1;
+            let [q, v] = at(taken);
+            let (q, v) = (after.q[0] - q, after.v[0] - v);
+            assert!(near(rollout.reward()[t * 70 + 69], -(2.0 * q * q + 0.5 * v * v)), "{t}");
+            assert_eq!(rollout.terminated()[t * 70 + 69] == 1, q.abs() > 0.75, "{t}");
+            if rollout.terminated()[t * 70 + 69] + rollout.truncated()[t * 70 + 69] > 0 {
+                stands = autoreset != Autoreset::SameStep;
+                taken = if stands { taken } else { 0 };
+            }
+        }
+        assert!(!rollout.finals().is_empty());
     }
 }
 
@@ -118,7 +170,7 @@ fn advantages(
 
 #[test]
 fn advantages_are_those_of_the_definition_under_every_autoreset() {
-    use libration::rl::{Autoreset, Discounts, Estimates};
+    use libration::rl::{Discounts, Estimates};
     for autoreset in [Autoreset::SameStep, Autoreset::NextStep, Autoreset::Disabled] {
         let environment = crate::ideal().autoreset(autoreset);
         let mut all = Environments::new(environment, 90, 6, Execution::serial()).unwrap();
@@ -164,11 +216,9 @@ fn advantages_are_those_of_the_definition_under_every_autoreset() {
 #[test]
 fn short_and_long_floats_are_environments_too() {
     use half::f16;
-    use libration::ensemble::{All, InstructionSet};
+    use libration::ensemble::InstructionSet;
     use libration::integrator::SymplecticEuler;
     use libration::rl::policy::Linear;
-    use libration::rl::task::Regulate;
-    use libration::system::Oscillator;
     fn last<T: Float + Pod>(omega2: T, set: InstructionSet) -> Vec<f64> {
         let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
         let start = At(State { q: [1.0], v: [0.0] });

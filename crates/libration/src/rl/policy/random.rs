@@ -11,13 +11,22 @@ use crate::rl::start::between;
 /// Uniform between two ends in each degree of freedom, drawn by address.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Random<const D: usize> {
-    /// The lower ends.
-    pub low: [f64; D],
-    /// The upper ends.
-    pub high: [f64; D],
+    low: [f64; D],
+    high: [f64; D],
+    /// Of any action: a logarithm that no step should wait for.
+    log_probability: f64,
+}
+
+impl<const D: usize> Random<D> {
+    /// Between the lower ends and the upper ends.
+    pub fn between(low: [f64; D], high: [f64; D]) -> Self {
+        let widths = low.iter().zip(&high).map(|(low, high)| high - low);
+        Random { low, high, log_probability: -widths.map(libm::log).sum::<f64>() }
+    }
 }
 
 impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Random<D> {
+    const BRIEF: bool = true;
     const DRAWS: bool = true;
 
     fn check(&self, _: usize, _: usize) -> Result<(), EnvironmentError> {
@@ -31,13 +40,11 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Random<D> {
 
     #[inline(always)]
     fn act(&self, _: Place, _: &[T; O], word: &mut impl FnMut() -> u32) -> Act<T, D> {
-        let mut log_probability = 0.0;
         let action = from_fn(|i| {
             let half = 0.5 * (self.high[i] - self.low[i]);
-            log_probability -= libm::log(2.0 * half);
             let (middle, unit) = (self.low[i] + half, half * f64::from(UNIT));
             T::from_f64(middle) + T::from_f64(unit) * T::from_f64(odd(word()).into())
         });
-        Act { action, log_probability: T::from_f64(log_probability) }
+        Act { action, log_probability: T::from_f64(self.log_probability) }
     }
 }
