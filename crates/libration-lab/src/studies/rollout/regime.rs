@@ -1,0 +1,92 @@
+//! What limits a rollout, read off its rates.
+
+use super::line::Line;
+use super::scaling::{EXECUTIONS, Varied, series_name};
+use crate::record::{Finding, Record, RecordError, Series, Table};
+use crate::studies::regime::{Limit, regimes};
+
+/// From this share of a fill on it is the stores that limit.
+const STORES: f64 = 0.75;
+
+/// What limits where more environments or steps change nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Bound {
+    /// A fill of as much memory is hardly faster.
+    Stores,
+    /// It is much faster.
+    Steps,
+}
+
+/// Divides every curve of the record into regimes, and lays a line through the times of a step.
+pub(super) fn detect(record: &mut Record) -> Result<(), RecordError> {
+    let columns = ["varied", "cores", "from", "to", "limited by", "best rate (10⁶ transitions/s)"];
+    let mut table = Table::new("regimes", &columns);
+    for varied in Varied::ALL {
+        for execution in EXECUTIONS {
+            let Ok(series) = record.series(&series_name(varied, execution)) else { continue };
+            let counts = series.column(varied.name())?;
+            let rates = series.column("transitions_per_second")?;
+            let fills = series.column("fill")?;
+            let bound = |count: f64, rate: f64| {
+                let at = counts.iter().position(|&n| n == count);
+                let fill = at.map_or(f64::NAN, |at| fills[at]);
+                if rate >= STORES * fill { Bound::Stores } else { Bound::Steps }
+            };
+            for regime in regimes(counts, rates, bound) {
+                table.push([
+                    varied.name().into(),
+                    execution.into(),
+                    (regime.from as u64).into(),
+                    (regime.to as u64).into(),
+                    words(varied, regime.limit).into(),
+                    (regime.rate / 1e6).into(),
+                ]);
+            }
+        }
+    }
+    record.tables.push(table);
+    steps(record)
+}
+
+/// In words.
+fn words(varied: Varied, limit: Limit<Bound>) -> &'static str {
+    match (limit, varied) {
+        (Limit::Overhead, Varied::Environments) => {
+            "the cost of a step, however few environments take it"
+        }
+        (Limit::Overhead, Varied::Horizon) => "the cost of a rollout, however short it is",
+        (Limit::Plateau(Bound::Stores), _) => "stores: a fill of as much memory is hardly faster",
+        (Limit::Plateau(Bound::Steps), _) => "the operations of the steps",
+    }
+}
+
+/// The time of a step of all environments on one core, as a line.
+fn steps(record: &mut Record) -> Result<(), RecordError> {
+    let series = record.series(&series_name(Varied::Environments, EXECUTIONS[0]))?;
+    let environments = series.column("environments")?.to_vec();
+    let rates = series.column("transitions_per_second")?;
+    let times: Vec<f64> = environments.iter().zip(rates).map(|(n, rate)| n / rate).collect();
+    let line = Line::through(&environments, &times);
+    let each: Vec<f64> = rates.iter().map(|rate| 1e9 / rate).collect();
+    let [first, last] = [each.first(), each.last()].map(|x| x.copied().unwrap_or(f64::NAN));
+    for (id, text, unit, value) in [
+        ("fixed", "a of a + b·N through the times of a step on one core", "s", line.fixed),
+        ("each", "b of a + b·N through the times of a step on one core", "s", line.each),
+        (
+            "fall",
+            "one core: time of a transition of the fewest environments over that of the most",
+            "1",
+            first / last,
+        ),
+    ] {
+        record.find(Finding::measured(format!("rollout.step.{id}"), text, unit, value));
+    }
+    let fitted = environments.iter().map(|&n| line.at(n)).collect();
+    record.series.push(
+        Series::new("steps")
+            .with("environments", "1", environments)
+            .with("seconds", "s", times)
+            .with("fitted", "s", fitted),
+    );
+    Ok(())
+}
