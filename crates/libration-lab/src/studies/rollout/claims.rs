@@ -24,12 +24,12 @@ fn show(x: f64) -> String {
 
 /// How a batch is stepped and stored.
 fn design(record: &mut Record) {
-    let ids = ["rollout.source.overhead", "rollout.source.share", "rollout.step.fixed"];
+    let ids = ["rollout.source.overhead", "rollout.source.share", "rollout.step.least"];
     let text = "A batched environment needs no loop in Python at all.";
     record.judge(Ruling { id: "C49", source: "6.2", text, findings: &ids }, |f| {
         let because = format!(
             "the loop over the steps remains. By its own table it costs {} µs a step whatever the number of \
-             environments, {} % of a step of the smallest batch; here a step costs {} µs",
+             environments, {} % of a step of the smallest batch; here a step of the fewest takes {} µs",
             show(1e6 * f[0].measured),
             number(100.0 * f[1].measured, 2),
             show(1e6 * f[2].measured)

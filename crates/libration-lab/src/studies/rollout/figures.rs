@@ -8,7 +8,7 @@ use crate::record::{Record, RecordError};
 use crate::studies::reported::TABLE;
 
 /// The inks of one core and of all, the same in every figure.
-const INKS: [Ink; 2] = [Ink::Accent(0), Ink::SymplecticEuler];
+const INKS: [Ink; 2] = [Ink::Accent(0), Ink::Accent(1)];
 
 const CORES: [&str; 2] = ["one core", "all cores"];
 
@@ -16,8 +16,9 @@ const CORES: [&str; 2] = ["one core", "all cores"];
 pub(super) fn scaling(record: &Record) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("fig-9-9", "Rollouts against environments and horizon")
         .caption(
-            "Solid: rollouts. Dashed: fills of as much memory by as many cores. Left: a fixed horizon, with the rows \
-             of the source’s table 9.11. Right: 1024 environments.",
+            "Solid: rollouts. Dashed: fills of as much memory, on all cores however small they are, where a rollout uses as \
+             many as it is worth. Left: a fixed horizon, with the rows of the source’s table 9.11. Right: 1024 \
+             environments.",
         )
         .description("Log-log: transitions a second rise to a plateau below the fills.")
         .columns(2)
@@ -30,7 +31,7 @@ pub(super) fn scaling(record: &Record) -> Result<Figure, RecordError> {
             let rates = Mark::line(x, series.column("transitions_per_second")?);
             let fills = Mark::line(x, series.column("fill")?);
             panel = panel
-                .mark(rates.ink(INKS[i]).label(CORES[i]))
+                .mark(rates.ink(INKS[i]).dash(Dash::Solid).label(CORES[i]))
                 .mark(fills.ink(INKS[i]).dash(Dash::Dashed).label(format!("fill, {}", CORES[i])));
         }
         if varied == Varied::Environments {
@@ -47,36 +48,33 @@ pub(super) fn scaling(record: &Record) -> Result<Figure, RecordError> {
 pub(super) fn steps(record: &Record) -> Result<Figure, RecordError> {
     let series = record.series("steps")?;
     let own = series.column("environments")?;
-    let [first, last] = [own.first(), own.last()].map(|x| x.copied().unwrap_or(f64::NAN));
+    let least = record.finding("rollout.step.least")?.measured;
+    let [fewest, most] = [own.first(), own.last()].map(|x| x.copied().unwrap_or(f64::NAN));
+    let along: Vec<f64> =
+        (0..=60).map(|i| fewest * (most / fewest).powf(f64::from(i) / 60.0)).collect();
     let reported = line();
-    let along: Vec<f64> = own.to_vec();
     let fitted: Vec<f64> = along.iter().map(|&n| reported.at(n)).collect();
     let x = TABLE.map(|row| row.of.environments as f64);
-    let fixed = record.finding("rollout.step.fixed")?.measured;
-    let panel = Panel::new(
-        Axis::log("environments").range(first, last),
-        Axis::log("time of a step").unit("s"),
-    )
-    .mark(
-        Mark::line(along, fitted).ink(Ink::Neutral).dash(Dash::Dashed).label("a + b·N, the source"),
-    )
-    .mark(Mark::points(x, TABLE.map(|row| row.step())).ink(Ink::Neutral).label("the source"))
-    .mark(
-        Mark::line(own, series.column("fitted")?)
-            .ink(Ink::Theory)
-            .dash(Dash::Dashed)
-            .label("a + b·N, one core"),
-    )
-    .mark(Mark::points(own, series.column("seconds")?).ink(INKS[0]).label("one core"));
+    let panel = Panel::new(Axis::log("environments"), Axis::log("time of a step").unit("s"))
+        .mark(
+            Mark::line(along, fitted)
+                .ink(Ink::Neutral)
+                .dash(Dash::Dashed)
+                .label("a + b·N through the source"),
+        )
+        .mark(Mark::points(x, TABLE.map(|row| row.step())).ink(Ink::Neutral).label("the source"))
+        .mark(Mark::line(own, series.column("seconds")?).ink(INKS[0]).label(CORES[0]));
     Ok(Figure::new(
         "step-times",
         format!(
-            "A step costs {} µs in the source however few environments take it, and {} µs here",
+            "A step costs {} µs in the source however few environments take it; here one of {fewest} takes {} µs",
             number(1e6 * reported.fixed, 2),
-            number(1e6 * fixed, 2)
+            number(1e6 * least, 2)
         ),
     )
-    .caption("Where the line is flat, more environments cost nothing: transitions a second rise with their number.")
+    .caption(
+        "Where a curve is flat, more environments cost nothing, and transitions a second rise with their number.",
+    )
     .description("Log-log: time of a step against environments, flat at first and then in proportion.")
     .panel(panel))
 }
@@ -89,7 +87,7 @@ pub(super) fn summary(record: &Record) -> Result<Figure, RecordError> {
     let mut panel = Panel::new(Axis::log("transitions a second"), Axis::names("", names));
     let all = [
         ("source", "the source", Ink::Neutral, Marker::Square),
-        ("numpy", "NumPy", Ink::Accent(1), Marker::Diamond),
+        ("numpy", "NumPy", Ink::Accent(2), Marker::Diamond),
         ("one", "one core", INKS[0], Marker::Circle),
         ("all", "all cores", INKS[1], Marker::Circle),
     ];

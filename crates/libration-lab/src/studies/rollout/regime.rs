@@ -1,6 +1,5 @@
 //! What limits a rollout, read off its rates.
 
-use super::line::Line;
 use super::scaling::{EXECUTIONS, Varied, series_name};
 use crate::record::{Finding, Record, RecordError, Series, Table};
 use crate::studies::regime::{Limit, regimes};
@@ -17,7 +16,7 @@ enum Bound {
     Steps,
 }
 
-/// Divides every curve of the record into regimes, and lays a line through the times of a step.
+/// Divides every curve of the record into regimes.
 pub(super) fn detect(record: &mut Record) -> Result<(), RecordError> {
     let columns = ["varied", "cores", "from", "to", "limited by", "best rate (10⁶ transitions/s)"];
     let mut table = Table::new("regimes", &columns);
@@ -60,33 +59,29 @@ fn words(varied: Varied, limit: Limit<Bound>) -> &'static str {
     }
 }
 
-/// The time of a step of all environments on one core, as a line.
+/// The time of a step of all environments on one core.
 fn steps(record: &mut Record) -> Result<(), RecordError> {
     let series = record.series(&series_name(Varied::Environments, EXECUTIONS[0]))?;
     let environments = series.column("environments")?.to_vec();
     let rates = series.column("transitions_per_second")?;
     let times: Vec<f64> = environments.iter().zip(rates).map(|(n, rate)| n / rate).collect();
-    let line = Line::through(&environments, &times);
-    let each: Vec<f64> = rates.iter().map(|rate| 1e9 / rate).collect();
-    let [first, last] = [each.first(), each.last()].map(|x| x.copied().unwrap_or(f64::NAN));
-    for (id, text, unit, value) in [
-        ("fixed", "a of a + b·N through the times of a step on one core", "s", line.fixed),
-        ("each", "b of a + b·N through the times of a step on one core", "s", line.each),
-        (
-            "fall",
-            "one core: time of a transition of the fewest environments over that of the most",
-            "1",
-            first / last,
-        ),
-    ] {
-        record.find(Finding::measured(format!("rollout.step.{id}"), text, unit, value));
-    }
-    let fitted = environments.iter().map(|&n| line.at(n)).collect();
-    record.series.push(
-        Series::new("steps")
-            .with("environments", "1", environments)
-            .with("seconds", "s", times)
-            .with("fitted", "s", fitted),
-    );
+    let ends =
+        |values: &[f64]| [values.first(), values.last()].map(|x| x.copied().unwrap_or(f64::NAN));
+    let ([least, _], [slowest, fastest]) = (ends(&times), ends(rates));
+    let [fewest, _] = ends(&environments);
+    record.find(Finding::measured(
+        "rollout.step.least",
+        format!("one core: time of a step of {fewest} environments, the fewest"),
+        "s",
+        least,
+    ));
+    record.find(Finding::measured(
+        "rollout.step.fall",
+        "one core: time of a transition of the fewest environments over that of the most",
+        "1",
+        fastest / slowest,
+    ));
+    let series = Series::new("steps").with("environments", "1", environments);
+    record.series.push(series.with("seconds", "s", times));
     Ok(())
 }

@@ -40,10 +40,8 @@ impl Varied {
         match self {
             Varied::Environments => {
                 let horizon = effort.choose(64, 256, 256);
-                match effort.choose(true, false, false) {
-                    true => powers(4, 4).map(|n| of(16 * n, horizon)).collect(),
-                    false => powers(2, 10).map(|n| of(16 * n, horizon)).collect(),
-                }
+                let (base, most) = effort.choose((4, 4), (2, 10), (2, 10));
+                powers(base, most).map(|n| of(16 * n, horizon)).collect()
             }
             Varied::Horizon => {
                 let most = effort.choose(4, 6, 6);

@@ -49,20 +49,22 @@ pub(super) fn judge(record: &mut Record) {
         );
         Judgement::holds_if(fall < 1.0, because)
     });
-    let ids = ["rollout.source.bandwidth", &own, "rollout.source.fall"];
+    let ids = ["rollout.source.bandwidth", &own];
     let text = "Bandwidth of memory is the main bottleneck of large simulations.";
     record.judge(Ruling { id: "C96", source: "10", text, findings: &ids }, |f| {
         let (bandwidth, share) = (f[0].measured, f[1].measured);
-        let because = format!(
-            "{}. It is the limit of a fused rollout that no cache holds ({} % of a fill); steps whose results nobody \
-             keeps wait for no memory, as the chapter on throughput shows",
-            source(bandwidth),
-            number(100.0 * share, 2)
-        );
+        let percent = number(100.0 * share, 2);
+        let nobody = "Steps whose results nobody keeps wait for no memory, as the chapter on throughput shows";
         match share > BOUND {
-            true => Judgement::conditional(because)
-                .only("every step is stored and nothing else costs; not of the source’s own"),
-            false => Judgement::refuted(because),
+            true => Judgement::conditional(format!(
+                "{}. It does limit a fused rollout that no cache holds, which reaches {percent} % of a fill. {nobody}",
+                source(bandwidth)
+            ))
+            .only("every step is stored and nothing else costs; not of the source’s own"),
+            false => Judgement::refuted(format!(
+                "{}. A fused rollout that no cache holds reaches no more than {percent} % of a fill. {nobody}",
+                source(bandwidth)
+            )),
         }
     });
 }

@@ -1,7 +1,7 @@
 //! Claims that are numbers of the source.
 
 use super::show;
-use crate::notation::number;
+use crate::notation::{count, number};
 use crate::record::{Judgement, Record, Ruling};
 use crate::studies::reported::{EXAMPLES, PEAK_MILLIONS, Row, TABLE};
 use crate::studies::rollout::table::example_times;
@@ -76,7 +76,7 @@ fn row(record: &mut Record, row: &Row, id: &str) {
     let text = format!(
         "{}: {} transitions, {} MB, {} s, {} million a second.",
         row.of.title(),
-        row.of.transitions,
+        count(row.of.transitions),
         row.of.megabytes,
         row.seconds,
         row.millions
