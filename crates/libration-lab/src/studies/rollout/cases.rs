@@ -65,11 +65,10 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
             "horizon",
             "threads",
             "layout",
-            "written",
-            "10⁶ transitions/s",
-            "GB/s",
+            "plain (10⁶/s)",
             "share of a fill",
-            "spread",
+            "past (10⁶/s)",
+            "share of such a fill",
         ],
     );
     for case in RolloutCase::ALL {
@@ -104,7 +103,6 @@ fn timed(
     record: &mut Record,
     table: &mut Table,
 ) -> Result<(), StudyError> {
-    let each = case.bytes() as f64 / case.transitions() as f64;
     for execution in desk.executions() {
         let threads = execution.thread_count();
         let mut best = [0.0_f64; 2];
@@ -116,21 +114,17 @@ fn timed(
                 contestants.push(fill(case, writes, execution)?);
             }
             let rates = desk.race_of(&mut contestants)?;
+            let mut row: Vec<Cell> = vec![
+                case.task.name().into(),
+                (case.environments as u64).into(),
+                (case.horizon as u64).into(),
+                (threads as u64).into(),
+                layout_name.into(),
+            ];
             for ((writes, way), pair) in WAYS.into_iter().zip(rates.chunks_exact(2)) {
                 let (rate, share) = (pair[0].median(), pair[0].over(&pair[1]));
                 best[l] = best[l].max(rate);
-                table.push([
-                    case.task.name().into(),
-                    (case.environments as u64).into(),
-                    (case.horizon as u64).into(),
-                    (threads as u64).into(),
-                    layout_name.into(),
-                    way.into(),
-                    (rate / 1e6).into(),
-                    (rate * each / 1e9).into(),
-                    share.median().into(),
-                    Cell::rounded(share.spread(), 2),
-                ]);
+                row.extend([(rate / 1e6).into(), share.median().into()]);
                 if layout == Layout::Interleaved && writes == suited(case.bytes()) {
                     let id = format!("rollout.{}{}", name(case), on(threads));
                     let text = format!(
@@ -144,6 +138,7 @@ fn timed(
                     judge(record, id, text, bar(case, threads), &share);
                 }
             }
+            table.push(row);
         }
         tell(record, case, threads, best);
     }

@@ -23,7 +23,7 @@ const TENSORS: usize = 4;
 /// Times rollouts into new tensors and into those of the rollout before, on one core.
 pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
     let columns =
-        ["environments", "horizon", "tensors", "page faults", "10⁶ transitions/s", "over used"];
+        ["environments", "horizon", "tensors", "page faults", "transitions (10⁶/s)", "over used"];
     let mut table = Table::new("fresh and used tensors", &columns);
     for case in CASES.into_iter().filter(|case| case.check().is_ok()) {
         let plan = case.plan().writes(suited(case.bytes()));

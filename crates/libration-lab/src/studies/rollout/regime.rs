@@ -18,7 +18,7 @@ enum Bound {
 
 /// Divides every curve of the record into regimes.
 pub(super) fn detect(record: &mut Record) -> Result<(), RecordError> {
-    let columns = ["varied", "cores", "from", "to", "limited by", "best rate (10⁶ transitions/s)"];
+    let columns = ["varied", "cores", "from", "to", "limited by", "best (10⁶/s)"];
     let mut table = Table::new("regimes", &columns);
     for varied in Varied::ALL {
         for execution in EXECUTIONS {
@@ -50,12 +50,10 @@ pub(super) fn detect(record: &mut Record) -> Result<(), RecordError> {
 /// In words.
 fn words(varied: Varied, limit: Limit<Bound>) -> &'static str {
     match (limit, varied) {
-        (Limit::Overhead, Varied::Environments) => {
-            "the cost of a step, however few environments take it"
-        }
-        (Limit::Overhead, Varied::Horizon) => "the cost of a rollout, however short it is",
-        (Limit::Plateau(Bound::Stores), _) => "stores: a fill of as much memory is hardly faster",
-        (Limit::Plateau(Bound::Steps), _) => "the operations of the steps",
+        (Limit::Overhead, Varied::Environments) => "what a step costs at all",
+        (Limit::Overhead, Varied::Horizon) => "what a rollout costs at all",
+        (Limit::Plateau(Bound::Stores), _) => "stores: a fill is hardly faster",
+        (Limit::Plateau(Bound::Steps), _) => "steps: a fill is much faster",
     }
 }
 

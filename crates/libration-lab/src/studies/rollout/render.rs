@@ -29,12 +29,18 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     );
     page.figure(figures::steps(record)?);
     page.table(record.table("steps of table 9.11")?, 3);
+    page.paragraph(
+        "Here regimes are read off the curves: where more environments or steps reach twice the rate, what is paid once \
+         outweighs the rest; beyond, rates within a factor of 1.3 make one plateau, which is bound by stores where the \
+         rate comes to three quarters of a fill.",
+    );
     page.table(record.table("regimes")?, 3);
     page.heading("Layouts, and ways to write");
     page.paragraph(
         "What the source calls a structure of arrays is an array of structures: position and velocity of an environment \
          lie side by side. Where no cache holds the rollout, stores past the caches save reading each line before it \
-         is overwritten; where one does, they go the longer way. The share is that of a fill in the same way.",
+         is overwritten; where one does, they may go the longer way. Both are told in millions of transitions a second, and as \
+         shares of a fill that writes in the same way.",
     );
     page.table(record.table("layouts")?, 3);
     let missing = record.table("not timed")?;

@@ -16,12 +16,11 @@ pub(super) fn compare(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         "environments",
         "horizon",
         "transitions",
-        "memory (MiB)",
+        "MiB",
         "the source (s)",
         "the source (10⁶/s)",
-        "one core (s)",
         "one core (10⁶/s)",
-        "all cores (10⁶/s)",
+        "all (10⁶/s)",
     ];
     if peers.is_some() {
         columns.push("NumPy (10⁶/s)");
@@ -43,7 +42,6 @@ pub(super) fn compare(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
             row.of.megabytes.into(),
             row.seconds.into(),
             Cell::rounded(row.millions, 4),
-            one.map(|rate| row.of.transitions as f64 / rate).into(),
             millions(one),
             millions(all),
         ];
