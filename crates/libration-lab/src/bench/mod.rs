@@ -3,6 +3,7 @@
 
 mod arithmetic;
 mod chain;
+mod faults;
 mod float;
 mod implementation;
 mod memory;
@@ -17,14 +18,16 @@ mod stopwatch;
 pub use crate::studies::throughput::{Rate, Wanted, ladder};
 pub(crate) use arithmetic::{Mix, widths};
 pub(crate) use chain::{CHAIN_LINKS, Chain, Link};
+pub(crate) use faults::{PAGE, count_faults};
 pub(crate) use float::with_float;
 pub use float::{Bench, BenchFloat};
 pub use implementation::Implementation;
 pub(crate) use memory::{Triad, Update};
 pub(crate) use oscillators::{oscillators, stepping};
 pub(crate) use passes::{PASSES, Traffic};
-pub(crate) use peers::Peers;
+pub(crate) use peers::{Peer, PeerRow, Peers, RolloutPeer};
 pub(crate) use platform::PlatformPendulum;
+pub(crate) use rollouts::{FEEDBACK, fill, regulating, rollout};
 pub use rollouts::{RolloutCase, RolloutRate, RolloutTask, rollouts};
 pub(crate) use rung::{Task, prepare};
 pub(crate) use stopwatch::{Contestant, Rates, Turns, race};

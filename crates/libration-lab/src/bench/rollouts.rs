@@ -78,7 +78,8 @@ impl RolloutCase {
         self.environments.saturating_mul(self.horizon)
     }
 
-    fn plan(&self) -> Plan {
+    /// What the rollout holds.
+    pub(crate) fn plan(&self) -> Plan {
         let plan = Plan::new(self.horizon, self.environments);
         if self.task == RolloutTask::SwingUp { plan.truncated() } else { plan }
     }
@@ -169,28 +170,32 @@ fn timed(
     Ok(rates)
 }
 
+/// The source's oscillator as an environment.
+pub(crate) fn regulating() -> impl World<f32, 2, 1> + 'static {
+    let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
+    let (system, start) = (All(Oscillator { omega2: OMEGA2 }), At(State { q: [1.0], v: [0.0] }));
+    Environment::new(system, SymplecticEuler, 0.01, task, start)
+}
+
+/// What is done there: it does not damp, since what decays comes to numbers so small that processors take a slow path.
+pub(crate) const FEEDBACK: Linear<2, 1> = Linear { weights: [[-2.0, 0.0]], bias: [0.0] };
+
+const OMEGA2: f32 = 10.0;
+
 /// A rollout, again and again into the same memory.
-fn rollout(
+pub(crate) fn rollout(
     case: RolloutCase,
     plan: Plan,
     execution: &Execution,
 ) -> Result<Contestant<'static>, EnvironmentError> {
-    let omega2 = 10.0_f32;
     match case.task {
-        RolloutTask::Regulate => {
-            let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
-            let (system, start) = (All(Oscillator { omega2 }), At(State { q: [1.0], v: [0.0] }));
-            // It does not damp: what decays comes to numbers so small that processors take a slow path.
-            let policy = Linear { weights: [[-2.0, 0.0]], bias: [0.0] };
-            let world = Environment::new(system, SymplecticEuler, 0.01, task, start);
-            contestant::<_, _, 2>(world, policy, case, plan, execution)
-        }
+        RolloutTask::Regulate => contestant(regulating(), FEEDBACK, case, plan, execution),
         RolloutTask::SwingUp => {
             let task = SwingUp { velocity: 0.1, effort: 0.001 };
             let corner = |sign: f64| State { q: [sign * 3.0], v: [sign] };
             let start = Between(corner(-1.0), corner(1.0));
             let policy = Random::between([-2.0], [2.0]);
-            let system = All(Pendulum { omega2 });
+            let system = All(Pendulum { omega2: OMEGA2 });
             let world = Environment::new(system, SymplecticEuler, 0.05, task, start).limit(200);
             contestant::<_, _, 3>(world, policy, case, plan, execution)
         }
@@ -221,7 +226,7 @@ where
 }
 
 /// As many bytes as the rollout has, and nothing but written.
-fn fill(
+pub(crate) fn fill(
     case: RolloutCase,
     writes: Writes,
     execution: &Execution,
@@ -237,11 +242,8 @@ fn fill(
         for _ in 0..times {
             execution.each(memory.chunks_mut(part).collect(), |part: &mut [u8]| match writes {
                 Writes::Past => stream_again(&pattern, part),
-                Writes::Plain => {
-                    for piece in part.chunks_mut(PATTERN) {
-                        piece.copy_from_slice(&pattern[..piece.len()]);
-                    }
-                }
+                // In pieces: with all at once the library might go past the caches as well.
+                Writes::Plain => part.chunks_mut(PATTERN).for_each(|piece| piece.fill(2)),
             });
             black_box(&*memory);
         }

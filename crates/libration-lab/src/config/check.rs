@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::ops::RangeInclusive;
+use std::path::Path;
 
 use libration::catalog::Allowed;
 use libration::ensemble::EnsembleError;
@@ -9,7 +10,7 @@ use libration::{Hamiltonian, State};
 
 use super::limits::{self, within};
 use super::{Config, Spring, Start, Throughput, names};
-use crate::bench::Peers;
+use crate::bench::{Peer, PeerRow, Peers, RolloutPeer};
 use crate::studies;
 
 /// A value of a configuration that is not allowed.
@@ -78,7 +79,8 @@ impl Config {
             let message = EnsembleError::Instructions { asked }.to_string();
             return Err(Fault::new("simd", message));
         }
-        self.throughput.check()
+        self.throughput.check()?;
+        peers::<RolloutPeer>("rollout.peers", self.rollout.peers.as_deref())
     }
 
     fn check_names(&self) -> Result<(), Fault> {
@@ -159,10 +161,15 @@ impl Throughput {
             }
         }
         counts("throughput.counts", &self.counts)?;
-        match self.peers.as_deref().map(Peers::read) {
-            Some(Err(message)) => Err(Fault::new("throughput.peers", message)),
-            _ => Ok(()),
-        }
+        peers::<Peer>("throughput.peers", self.peers.as_deref())
+    }
+}
+
+/// A file of peers is read before any work.
+fn peers<R: PeerRow>(key: &'static str, path: Option<&Path>) -> Result<(), Fault> {
+    match path.map(Peers::<R>::read) {
+        Some(Err(message)) => Err(Fault::new(key, message)),
+        _ => Ok(()),
     }
 }
 

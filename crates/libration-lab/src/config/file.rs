@@ -10,12 +10,12 @@ use serde::{Deserialize, Serialize};
 use super::locate::Document;
 use super::tables::{
     ConvergenceTable, DriftTable, EfficiencyTable, ErrorTable, NonlinearTable, PrecisionTable,
-    SpectrumTable, SpringTable, StabilityTable, StartTable, ThroughputTable,
+    RolloutTable, SpectrumTable, SpringTable, StabilityTable, StartTable, ThroughputTable,
 };
 use super::value::{Count, Number};
 use super::{
     Config, ConfigError, Convergence, Drift, Efficiency, Error, Fault, Nonlinear, Precision,
-    Spectrum, Spring, Stability, Start, Throughput, check, names, schema,
+    Rollout, Spectrum, Spring, Stability, Start, Throughput, check, names, schema,
 };
 use crate::Effort;
 use crate::bench::Implementation;
@@ -62,6 +62,8 @@ pub(super) struct File {
     pub(super) precision: PrecisionTable,
     /// The study of speed.
     pub(super) throughput: ThroughputTable,
+    /// The study of rollouts.
+    pub(super) rollout: RolloutTable,
 }
 
 /// Reads a configuration; keys that are not given take their defaults.
@@ -114,6 +116,7 @@ impl Default for File {
             nonlinear,
             precision,
             throughput,
+            rollout,
             ..
         } = config;
         let numbers = |list: Vec<f64>| list.into_iter().map(Number).collect();
@@ -155,8 +158,9 @@ impl Default for File {
             throughput: ThroughputTable {
                 implementations: names_of(&throughput.implementations),
                 counts: counts(throughput.counts),
-                peers: throughput.peers.map_or_else(String::new, |path| path.display().to_string()),
+                peers: path_of(throughput.peers),
             },
+            rollout: RolloutTable { peers: path_of(rollout.peers) },
         }
     }
 }
@@ -184,6 +188,7 @@ impl TryFrom<File> for Config {
             nonlinear,
             precision,
             throughput,
+            rollout,
             ..
         } = file;
         let effort = Effort::from_name(&effort).ok_or_else(|| {
@@ -231,10 +236,20 @@ impl TryFrom<File> for Config {
             throughput: Throughput {
                 implementations: implementations(&throughput.implementations)?,
                 counts: counts("throughput.counts", throughput.counts)?,
-                peers: Some(throughput.peers).filter(|path| !path.is_empty()).map(PathBuf::from),
+                peers: path(throughput.peers),
             },
+            rollout: Rollout { peers: path(rollout.peers) },
         })
     }
+}
+
+/// A path as it stands in a file; empty if there is none.
+fn path_of(path: Option<PathBuf>) -> String {
+    path.map_or_else(String::new, |path| path.display().to_string())
+}
+
+fn path(text: String) -> Option<PathBuf> {
+    Some(text).filter(|text| !text.is_empty()).map(PathBuf::from)
 }
 
 fn names_of(implementations: &[Implementation]) -> Vec<String> {

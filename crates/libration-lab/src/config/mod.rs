@@ -60,6 +60,8 @@ pub struct Config {
     pub precision: Precision,
     /// Settings of the study `throughput`.
     pub throughput: Throughput,
+    /// Settings of the study `rollout`.
+    pub rollout: Rollout,
 }
 
 /// A mass on a spring.
@@ -176,6 +178,14 @@ pub struct Throughput {
     pub peers: Option<PathBuf>,
 }
 
+/// Settings of the study `rollout`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Rollout {
+    /// What `benches/rollouts.py` wrote on this machine, if its ratios are to be judged.
+    #[serde(serialize_with = "path")]
+    pub peers: Option<PathBuf>,
+}
+
 impl Default for Config {
     fn default() -> Self {
         Config {
@@ -218,6 +228,7 @@ impl Default for Config {
                 counts: (0..=8).map(|power| 10u64.pow(power)).collect(),
                 peers: None,
             },
+            rollout: Rollout::default(),
         }
     }
 }

@@ -141,6 +141,14 @@ pub(super) struct ThroughputTable {
     pub(super) peers: String,
 }
 
+/// Settings of the study `rollout`.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct RolloutTable {
+    /// A file that `benches/rollouts.py` wrote on this machine; none if empty.
+    pub(super) peers: String,
+}
+
 macro_rules! default_of_table {
     ($($table:ident = $key:ident),*) => {
         $(impl Default for $table {
@@ -162,5 +170,6 @@ default_of_table!(
     ConvergenceTable = convergence,
     NonlinearTable = nonlinear,
     PrecisionTable = precision,
-    ThroughputTable = throughput
+    ThroughputTable = throughput,
+    RolloutTable = rollout
 );

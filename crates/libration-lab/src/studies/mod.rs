@@ -1,8 +1,10 @@
 //! The studies, in the order in which they are told.
 
 mod asynchrony;
+mod changed;
 mod convergence;
 mod coverage;
+mod desk;
 mod determinism;
 mod drift;
 mod efficiency;
@@ -12,8 +14,12 @@ mod hierarchy;
 mod ink;
 mod jitter;
 mod latency;
+mod memory;
 mod nonlinear;
 mod precision;
+mod regime;
+mod reported;
+mod rollout;
 mod rounding;
 mod sample;
 mod sampled;
@@ -34,8 +40,10 @@ pub use error::Error;
 pub use hierarchy::Hierarchy;
 pub use jitter::Jitter;
 pub use latency::Latency;
+pub use memory::Memory;
 pub use nonlinear::Nonlinear;
 pub use precision::Precision;
+pub use rollout::Rollout;
 pub use spectrum::Spectrum;
 pub use stability::Stability;
 pub use subject::{
@@ -60,6 +68,8 @@ pub const ALL: &[&dyn Study] = &[
     &Hierarchy,
     &Determinism,
     &Throughput,
+    &Memory,
+    &Rollout,
 ];
 
 /// The study of that name, if there is one.

@@ -148,6 +148,9 @@ fn a_file_of_peers_is_read_before_any_work() {
     assert!(told().contains("was measured on `abacus`; this is `"), "{}", told());
     std::fs::write(&file, other.to_string().replace("peers/1", "peers/9")).unwrap();
     assert!(told().contains("it must be `libration.peers/1`"), "{}", told());
+    // Those of rollouts are of another kind.
+    let told = error(&format!("rollout.peers = '{}'", file.display())).message().to_owned();
+    assert!(told.contains("it must be `libration.rollouts/1`"), "{told}");
 }
 
 #[test]
@@ -260,6 +263,6 @@ fn the_schema_describes_every_key() {
         }
     }
     let schema = schema();
-    assert_eq!(schema["properties"].as_object().unwrap().len(), 15);
+    assert_eq!(schema["properties"].as_object().unwrap().len(), 16);
     assert_described(&schema);
 }

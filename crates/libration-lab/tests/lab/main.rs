@@ -18,6 +18,7 @@ mod own_system;
 mod precision;
 mod reference;
 mod report;
+mod rollout;
 mod settings;
 mod studies;
 mod throughput;

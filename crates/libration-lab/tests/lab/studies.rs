@@ -87,9 +87,11 @@ fn predictions_are_those_of_the_textbook() {
 }
 
 /// Claims about speed, on which machines may differ: how much slower Verlet is, and what array
-/// operations and blocks of steps gain.
-const OF_THE_MACHINE: [&str; 11] =
-    ["C01", "C02", "C36", "C37", "C39", "C40", "C42", "C46", "C47", "C81", "C82"];
+/// operations and blocks of steps gain, and what fills its memory.
+const OF_THE_MACHINE: [&str; 15] = [
+    "C01", "C02", "C36", "C37", "C39", "C40", "C42", "C46", "C47", "C56", "C57", "C81", "C82",
+    "C95", "C96",
+];
 
 #[test]
 fn verdicts_on_the_source_are_these() {
@@ -126,7 +128,15 @@ fn verdicts_on_the_source_are_these() {
         ("C43", Conditional),
         ("C44", Refuted),
         ("C45", NotReproducible),
+        ("C48", Confirmed),
+        ("C49", Refuted),
+        ("C50", Refuted),
+        ("C52", Conditional),
         ("C53", Conditional),
+        ("C53a", Refuted),
+        ("C54", Refuted),
+        ("C55", Conditional),
+        ("C58", Confirmed),
         ("C58a", NotReproducible),
         ("C59", Confirmed),
         ("C59a", Conditional),
@@ -154,6 +164,14 @@ fn verdicts_on_the_source_are_these() {
         ("C78", Refuted),
         ("C79", Refuted),
         ("C80", Conditional),
+        ("C84", Refuted),
+        ("C85", Confirmed),
+        ("C86", Confirmed),
+        ("C87", Confirmed),
+        ("C88", Confirmed),
+        ("C89", Refuted),
+        ("C90", Confirmed),
+        ("C91", Refuted),
         ("C93", Conditional),
     ];
     let mut judged: Vec<_> = records()
@@ -225,6 +243,8 @@ fn findings_agree_for_other_springs_starts_methods_and_steps() {
             "determinism",
             "hierarchy",
             "throughput",
+            "memory",
+            "rollout",
         ];
         let own = studies::ALL.iter().filter(|s| !others.contains(&s.name()));
         let records: Vec<Record> = own.map(|study| study.run(&lab).unwrap()).collect();
@@ -238,9 +258,10 @@ fn a_run_repeats_to_the_bit_on_one_thread_and_on_many() {
     let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     for (study, a) in studies::ALL.iter().zip(records()) {
-        // That ensembles of loops repeat on any number of threads the engine's tests show, and `determinism`; `throughput`
-        // measures nothing but time.
-        if ["latency", "jitter", "asynchrony", "throughput"].contains(&study.name()) {
+        // That ensembles of loops repeat on any number of threads the engine's tests show, and `determinism`; `throughput`,
+        // `memory` and `rollout` measure time.
+        let others = ["latency", "jitter", "asynchrony", "throughput", "memory", "rollout"];
+        if others.contains(&study.name()) {
             continue;
         }
         let b = pool.install(|| study.run(&lab)).unwrap();

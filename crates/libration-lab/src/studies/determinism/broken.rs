@@ -7,10 +7,11 @@ use libration::integrator::SymplecticEuler;
 use libration::system::Pendulum;
 use libration::{Ensemble, State, System};
 
-use super::runs::{Bits, COUNT, DT, SPRING, differing, plain, shaken, start, steps, tell};
+use super::runs::{Bits, COUNT, DT, SPRING, differing, plain, shaken, start, steps};
 use crate::Lab;
 use crate::bench::PlatformPendulum;
 use crate::record::{Finding, Record, Relation, Tolerance};
+use crate::studies::changed::tell;
 use crate::study::StudyError;
 
 /// Numbers that are added.

@@ -6,9 +6,10 @@ use libration::ensemble::{All, InstructionSet, Moments};
 use libration::integrator::SymplecticEuler;
 use libration::system::Oscillator;
 
-use super::runs::{COUNT, DT, SPRING, differing, plain, shaken, start, steps, tell};
+use super::runs::{COUNT, DT, SPRING, differing, plain, shaken, start, steps};
 use crate::Lab;
 use crate::record::{Finding, Record, Tolerance};
+use crate::studies::changed::tell;
 use crate::study::StudyError;
 
 /// Threads that are tried.

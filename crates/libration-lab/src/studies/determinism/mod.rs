@@ -7,7 +7,8 @@ mod render;
 mod runs;
 
 use crate::page::Page;
-use crate::record::{RecordError, Table};
+use crate::record::RecordError;
+use crate::studies::changed;
 use crate::study::{Study, StudyError};
 use crate::{Lab, Record};
 
@@ -26,7 +27,7 @@ impl Study for Determinism {
 
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
         let mut record = Record::new(self.name(), self.question());
-        record.tables.push(Table::new("what is changed", &["changed", "compared", "differ"]));
+        changed::begin(&mut record);
         kept::measure(lab, &mut record)?;
         broken::measure(lab, &mut record)?;
         claims::judge(&mut record);

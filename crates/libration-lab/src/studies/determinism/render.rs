@@ -2,6 +2,7 @@
 
 use crate::page::Page;
 use crate::record::{Record, RecordError};
+use crate::studies::changed;
 
 /// Writes the chapter.
 pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
@@ -19,7 +20,7 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          so, their steps jitter, each clock has a rate of its own, and a feedback is one and a half \
          steps late.",
     );
-    page.table(record.table("what is changed")?, 4);
+    page.table(changed::table(record)?, 4);
     page.paragraph(
         "What is equal in exact arithmetic is not in floats: a product that is formed ahead of the loop, a \
          fused multiplication and addition, or a sum in parts is another result. So the engine fuses \

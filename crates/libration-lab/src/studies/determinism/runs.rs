@@ -10,7 +10,6 @@ use libration::system::Oscillator;
 use libration::{AnySystem, Method, State};
 
 use crate::Lab;
-use crate::record::{Cell, Finding, Record};
 use crate::study::StudyError;
 
 /// Trajectories that are compared.
@@ -83,14 +82,4 @@ pub(super) fn shaken(
     loops.advance(steps(lab).min(500))?;
     let bits = |state: State<f32, 1>| [state.q[0].to_bits(), state.v[0].to_bits()];
     Ok((0..count).filter_map(|n| loops.state(n)).map(bits).collect())
-}
-
-/// Leaves a finding, and a row in the table.
-pub(super) fn tell(record: &mut Record, changed: &str, compared: usize, finding: Finding) {
-    let row: [Cell; 3] =
-        [changed.into(), (compared as u64).into(), (finding.measured as u64).into()];
-    record.find(finding);
-    if let Some(table) = record.tables.first_mut() {
-        table.push(row);
-    }
 }

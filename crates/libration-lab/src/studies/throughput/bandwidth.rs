@@ -4,10 +4,10 @@ use std::hint::black_box;
 
 use libration::ensemble::{Buffer, Execution, Pages, available_memory, stream};
 
-use super::desk::Desk;
 use crate::bench::{Contestant, Rates, Triad, Update};
 use crate::machine::Machine;
 use crate::record::{Finding, Record, Table};
+use crate::studies::desk::Desk;
 use crate::study::StudyError;
 
 /// What the arrays are made of.
@@ -72,14 +72,13 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         &["loop", "formula", "arrays of (MiB)", "one core (GB/s)", "all cores (GB/s)"],
     );
     let len = usize::try_from(footprint(desk)).unwrap_or(usize::MAX) / 3 / size_of::<Number>();
-    let cores = desk.parallel.thread_count();
     let mut planes = Vec::new();
     for _ in 0..3 {
         planes.push(Buffer::<Number>::new(len, Pages::Huge)?);
     }
     for kernel in Kernel::ALL {
         let mut rates = Vec::new();
-        for execution in [&desk.serial, &desk.parallel].into_iter().take(cores.min(2)) {
+        for execution in desk.executions() {
             rates.push(bandwidth(desk, kernel, &mut planes, execution)?);
         }
         let gigabytes: Vec<f64> = rates.iter().map(|rate| rate.median() / 1e9).collect();

@@ -5,6 +5,7 @@ use crate::bench::BenchFloat::{F32, F64};
 use crate::bench::Implementation::{Fused, InPlace, OneStep, Scalar, Temporaries};
 use crate::notation::number;
 use crate::record::{Judgement, Record, Ruling};
+use crate::studies::reported::SATURATED;
 
 /// A billion.
 const BILLION: f64 = 1e9;
@@ -14,9 +15,6 @@ const SEVERAL: f64 = 2.0;
 
 /// What counts as a substantial increase.
 const SUBSTANTIAL: f64 = 1.2;
-
-/// Bandwidth that the source takes for that of its memory (§9.4), in GB/s.
-const SOURCE_BANDWIDTH: f64 = 24.0;
 
 /// Judges them from the findings of the record.
 pub(super) fn judge(record: &mut Record) {
@@ -237,7 +235,7 @@ fn bandwidth(record: &mut Record) {
                 show(memory),
                 show(formula),
                 show(formula / memory),
-                show(SOURCE_BANDWIDTH)
+                show(SATURATED)
             );
             Judgement::not_reproducible(because)
         });

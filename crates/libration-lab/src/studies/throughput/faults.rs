@@ -4,17 +4,14 @@ use std::hint::black_box;
 
 use libration::ensemble::{Buffer, Pages};
 
-use super::desk::Desk;
 use super::scaling::Wanted;
-use crate::bench::{BenchFloat, Contestant, Implementation, Task, prepare};
+use crate::bench::{BenchFloat, Contestant, Implementation, PAGE, Task, count_faults, prepare};
 use crate::record::{Cell, Finding, Record, Relation, Table, Tolerance};
+use crate::studies::desk::Desk;
 use crate::study::StudyError;
 
 /// Numbers in the buffer that is written.
 const LEN: usize = 16 << 20;
-
-/// An ordinary page.
-const PAGE: usize = 4096;
 
 /// A huge page of x86-64.
 const HUGE_PAGE: usize = 2 << 20;
@@ -134,19 +131,4 @@ fn temporaries(desk: &Desk<'_>, record: &mut Record, table: &mut Table) -> Resul
         ]);
     }
     Ok(())
-}
-
-/// The page faults of this process while `work` is done, if the system tells.
-fn count_faults(work: impl FnOnce() -> Result<(), StudyError>) -> Result<Option<u64>, StudyError> {
-    let before = faults_so_far();
-    work()?;
-    Ok(faults_so_far().zip(before).map(|(after, before)| after - before))
-}
-
-/// The minor faults of this process so far: the tenth entry of `/proc/self/stat`, counted from one.
-fn faults_so_far() -> Option<u64> {
-    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // The second entry is a name in parentheses, which may hold blanks.
-    let (_, rest) = stat.rsplit_once(')')?;
-    rest.split_whitespace().nth(7)?.parse().ok()
 }

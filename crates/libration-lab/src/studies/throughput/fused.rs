@@ -7,9 +7,9 @@ use libration::ensemble::{Execution, InstructionSet};
 use libration::system::Oscillator;
 use libration::{Method, with_method};
 
-use super::desk::{Desk, judge};
 use crate::bench::{Bench, BenchFloat, Contestant, Mix, Rates, stepping, widths, with_float};
 use crate::record::{Record, Table};
+use crate::studies::desk::{Desk, judge};
 use crate::study::StudyError;
 
 /// Trajectories whose states stay in a cache of the core, in whole blocks of most widths.

@@ -5,12 +5,12 @@ use std::hint::black_box;
 use libration::Method;
 use libration::analysis::Operation;
 
-use super::desk::{Desk, judge};
 use super::fused::{STEPS, flow};
 use crate::bench::{
     Bench, BenchFloat, CHAIN_LINKS, Chain, Contestant, Link, Rates, stepping, with_float,
 };
 use crate::record::{Record, Table};
+use crate::studies::desk::{Desk, judge};
 use crate::study::StudyError;
 
 /// Share of the bound that a lone trajectory is to reach.

@@ -1,8 +1,8 @@
 //! The machine on which all this was measured.
 
-use super::desk::Desk;
 use crate::machine::Machine;
 use crate::record::{Cell, Record, RecordError, Table};
+use crate::studies::desk::Desk;
 
 /// Describes it, with the ends of its powers that `record` holds.
 pub(super) fn describe(desk: &Desk<'_>, record: &mut Record) -> Result<(), RecordError> {

@@ -3,7 +3,6 @@
 mod bandwidth;
 mod claims;
 mod comparison;
-mod desk;
 mod faults;
 mod figures;
 mod fused;
@@ -21,9 +20,9 @@ mod threads;
 
 use crate::page::Page;
 use crate::record::RecordError;
+use crate::studies::desk::Desk;
 use crate::study::{Study, StudyError};
 use crate::{Lab, Record};
-use desk::Desk;
 
 pub use scaling::{Rate, Wanted, ladder};
 

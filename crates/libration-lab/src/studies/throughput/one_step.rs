@@ -5,9 +5,9 @@ use std::hint::black_box;
 use libration::ensemble::{Buffer, Execution, NoRoom, Pages};
 use libration::{Ensemble, Method};
 
-use super::desk::{Desk, judge};
 use crate::bench::{Contestant, Update, stepping};
 use crate::record::{Record, Table};
+use crate::studies::desk::{Desk, judge};
 use crate::study::StudyError;
 
 /// Share of the update loop that one step a pass is to reach.

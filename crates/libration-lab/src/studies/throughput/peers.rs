@@ -1,15 +1,15 @@
 //! Libration beside NumPy and numba, as another program measured them.
 
-use super::desk::{Desk, Ratio, judge};
-use crate::bench::Peers;
+use crate::bench::{Peer, Peers};
 use crate::notation::number;
 use crate::record::{Finding, Record, Table, Undecided};
+use crate::studies::desk::{Desk, Ratio, judge};
 use crate::study::StudyError;
 
 /// Judges the ratios of the file that the configuration names, if it names one.
 pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
     let Some(path) = &desk.lab.config.throughput.peers else { return Ok(()) };
-    let peers = Peers::read(path).map_err(StudyError::Exact)?;
+    let peers = Peers::<Peer>::read(path).map_err(StudyError::Exact)?;
     let mut table = Table::new(
         "peers",
         &[

@@ -12,10 +12,10 @@ use libration::integrator::SymplecticEuler;
 use libration::system::Oscillator;
 use libration::{Ensemble, Float, State};
 
-use super::desk::{Desk, judge};
 use super::fused::RESIDENT;
 use crate::bench::Contestant;
 use crate::record::{Record, Table};
+use crate::studies::desk::{Desk, judge};
 use crate::study::StudyError;
 
 /// Steps of a pass: as many as a draw by address serves.

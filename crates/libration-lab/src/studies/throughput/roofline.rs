@@ -5,11 +5,11 @@ use std::hint::black_box;
 use libration::Method;
 
 use super::bandwidth::footprint;
-use super::desk::{Desk, judge};
 use super::fused::{flow, peak};
 use super::one_step::update;
 use crate::bench::{Contestant, oscillators};
 use crate::record::{Finding, Record, Series};
+use crate::studies::desk::{Desk, judge};
 use crate::study::StudyError;
 
 /// Bytes that a pass moves for each trajectory: position and velocity, read and written.

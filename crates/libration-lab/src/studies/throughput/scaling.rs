@@ -2,10 +2,10 @@
 
 use libration::ensemble::{Execution, NoRoom};
 
-use super::desk::Desk;
 use crate::Lab;
 use crate::bench::{Bench, BenchFloat, Contestant, Implementation, Task, prepare, with_float};
 use crate::record::{Record, Series, Table};
+use crate::studies::desk::Desk;
 use crate::study::StudyError;
 
 /// Steps that are taken with a block of trajectories before the next.

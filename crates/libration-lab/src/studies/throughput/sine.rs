@@ -8,11 +8,11 @@ use libration::integrator::SymplecticEuler;
 use libration::system::Pendulum;
 use libration::{Ensemble, State, System};
 
-use super::desk::{Desk, judge};
 use super::fused::{RESIDENT, arithmetic, peak};
 use crate::bench::{Contestant, PlatformPendulum};
 use crate::notation::number;
 use crate::record::{Finding, Record, Undecided};
+use crate::studies::desk::{Desk, judge};
 use crate::study::StudyError;
 
 /// Steps of a pass.

@@ -2,10 +2,10 @@
 
 use libration::Method;
 
-use super::desk::{Desk, judge};
 use super::fused::{RESIDENT, STEPS, flow, peak};
 use crate::bench::{Contestant, Rates, stepping};
 use crate::record::{Finding, Record, Table};
+use crate::studies::desk::{Desk, judge};
 use crate::study::StudyError;
 
 /// What fused steps are to gain from all cores, of what independent arithmetic gains.

@@ -1,4 +1,4 @@
-//! Where the study times things: the execution, the length of its turns, and how ratios are judged.
+//! Where studies time things: the execution, the length of its turns, and how ratios are judged.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -41,7 +41,12 @@ impl<'a> Desk<'a> {
         self.serial.instruction_set()
     }
 
-    /// The task of the study with so many trajectories.
+    /// One core and all; one alone where there is no other.
+    pub(super) fn executions(&self) -> impl Iterator<Item = &Execution> {
+        [&self.serial, &self.parallel].into_iter().take(self.parallel.thread_count().min(2))
+    }
+
+    /// The task of the study `throughput` with so many trajectories.
     pub(super) fn task(&self, count: usize) -> Task {
         // Small enough for every bounded method to stay so; explicit Euler leaves an f32 after 10⁸ steps.
         let oscillator = self.lab.config.oscillator;
