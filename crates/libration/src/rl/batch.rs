@@ -7,15 +7,13 @@ use super::draws::Draws;
 use super::history::History;
 use super::kernel::{Horizon, LANES, Share, TILE};
 use super::row::first_of;
-use super::stage::{Site, Stage};
 use super::start::Episode;
 use super::{
-    Autoreset, Environment, EnvironmentError, Place, Policy, Rollout, Sensor, Start, Variation,
-    World, policy,
+    Autoreset, Environment, EnvironmentError, Policy, Rollout, Sensor, Start, Variation, World,
 };
 use crate::control::Clock;
 use crate::ensemble::{Assign, EnsembleError, Execution, NoRoom};
-use crate::random::{Purpose, Streams};
+use crate::random::Purpose;
 use crate::{Float, State};
 
 /// Environments that are stepped together.
@@ -54,17 +52,17 @@ where
     T: Float,
     E: World<T, O, D>,
 {
-    world: E,
-    seed: u64,
-    first: usize,
-    step: u64,
-    len: usize,
-    execution: Execution,
-    blocks: Vec<BlockOf<T, E, O, D>>,
-    history: History,
-    past: Vec<T>,
+    pub(super) world: E,
+    pub(super) seed: u64,
+    pub(super) first: usize,
+    pub(super) step: u64,
+    pub(super) len: usize,
+    pub(super) execution: Execution,
+    pub(super) blocks: Vec<BlockOf<T, E, O, D>>,
+    pub(super) history: History,
+    pub(super) past: Vec<T>,
     /// For clocks, sensors and actions.
-    draws: [Draws; 3],
+    pub(super) draws: [Draws; 3],
 }
 
 impl<T, E, const O: usize, const D: usize> Environments<T, E, O, D>
@@ -173,36 +171,6 @@ where
         EnvironmentError::shape("marks of the reset", which.len(), self.len)?;
         for n in (0..self.len).filter(|&n| which[n]) {
             self.begin(n, self.blocks[n / LANES].episode[n % LANES] + 1);
-        }
-        Ok(())
-    }
-
-    /// Writes what is seen now, before the next action: `[n, i]`.
-    ///
-    /// # Errors
-    /// [`EnvironmentError::Shape`] if that is not the length of `to`.
-    pub fn observe(&mut self, to: &mut [T]) -> Result<(), EnvironmentError> {
-        EnvironmentError::shape("numbers to be observed", to.len(), self.len.saturating_mul(O))?;
-        let Environments { world, history, seed, first, step, len, .. } = *self;
-        let (sensor, systems) = (world.parts().sensor, world.parts().systems);
-        let words = self.draws[1].prepare(seed, step, 0, sensor.words(), self.blocks.len());
-        // A look needs no policy.
-        let nobody = policy::Constant([0.0; D]);
-        let stage = Stage::<T, E, _, O, D>::new(&world, nobody, history, [seed, first as u64]);
-        for (b, block) in self.blocks.iter().enumerate() {
-            let first = b * LANES;
-            let count = (len - first).min(LANES);
-            let systems = systems.lanes::<LANES>(first, count);
-            let place = Place { environment: first, environments: len, step, row: 0 };
-            let site = Site { place, count, systems };
-            let past = &mut self.past[b * history.len()..][..history.len()];
-            let mut words = words.get(b).copied().unwrap_or_else(Streams::none);
-            let mut seen = [[T::zero(); LANES]; O];
-            stage.look(&site, block, past, &mut words, &mut seen);
-            let rows = to[first * O..][..count * O].chunks_exact_mut(O.max(1));
-            for (l, row) in rows.enumerate() {
-                (0..O).for_each(|i| row[i] = seen[i][l]);
-            }
         }
         Ok(())
     }

@@ -9,6 +9,7 @@
 
 mod batch;
 mod block;
+mod brief;
 mod delays;
 mod draws;
 mod ends;
@@ -17,6 +18,7 @@ mod error;
 mod estimates;
 mod history;
 mod kernel;
+mod look;
 mod plan;
 pub mod policy;
 mod rollout;

@@ -1,16 +1,12 @@
 //! What a step of a block consists of: scalar functions in loops over lanes.
 
-use bytemuck::Pod;
-
 use super::block::{self, BlockOf, ClockMemory, NumberLanes};
 use super::history::History;
 use super::kernel::LANES;
-use super::row::{Records, Row, Writer};
 use super::yields::{Step, Yield};
 use super::{Autoreset, Parts, Place, Policy, Sensor, Task, Variation, World};
 use crate::control::{Clock, Memory};
 use crate::ensemble::Assign;
-use crate::ensemble::instructions::Target;
 use crate::ensemble::kernel::{Lines, at, put};
 use crate::random::{EPOCH, Purpose, Streams};
 use crate::system::Held;
@@ -20,12 +16,12 @@ use crate::{Float, Integrator, State};
 #[derive(Clone, Copy)]
 pub(super) struct Stage<'s, T, E, P, const O: usize, const D: usize> {
     pub(super) world: &'s E,
-    policy: P,
+    pub(super) policy: P,
     pub(super) history: History,
     pub(super) seed: u64,
     /// The number of the first environment.
     pub(super) first: u64,
-    dt: T,
+    pub(super) dt: T,
     /// From action to action.
     span: T,
     pub(super) substeps: u64,
@@ -68,16 +64,9 @@ where
         }
     }
 
-    /// Whether nothing but a short formula comes between what is seen and what it leads to.
-    pub(super) fn is_brief(&self) -> bool {
-        let ideal = const { P::BRIEF && !E::Sensor::DRAWS && E::Clock::EVEN };
-        let timely = !self.history.sees_late() && !self.history.acts_late();
-        ideal && timely && self.substeps == 1
-    }
-
     /// Seconds since an episode began, if anybody asks: steps are as long as they should be.
     #[inline(always)]
-    fn time(&self, now: u64, began: u64) -> T {
+    pub(super) fn time(&self, now: u64, began: u64) -> T {
         if const { E::Task::TIMED } {
             // As many as an episode has: a `u32`, of which processors make floats sooner than of a `u64`.
             T::from_f64(f64::from((now - began) as u32)) * self.span
@@ -90,64 +79,6 @@ where
     #[inline(always)]
     fn parts(&self) -> Parts<T, E, O, D> {
         *self.world.parts()
-    }
-
-    /// All of an ideal step of a whole block, and its numbers where they belong: what one loop computes stays in registers until
-    /// it is written.
-    #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
-    pub(super) fn brief<I: Target>(
-        &self,
-        parts: Parts<T, E, O, D>,
-        site: &Site<T, E, O, D>,
-        block: &mut BlockOf<T, E, O, D>,
-        words: &mut Streams<LANES>,
-        overs: &mut [u8; LANES],
-        b: usize,
-        row: &mut Row<'_, T, O, D>,
-        writer: &Writer<I>,
-        records: &mut Records<T, O, D>,
-    ) -> u8
-    where
-        T: Pod,
-    {
-        self.renew(site.place, words);
-        let (policy, dt) = (self.policy, self.dt);
-        let mut ended = 0;
-        let mut out = Step {
-            seen: [[T::zero(); LANES]; O],
-            actions: [[T::zero(); LANES]; D],
-            rewards: [T::zero(); LANES],
-            log_probabilities: [T::zero(); LANES],
-        };
-        let mut drawn = *words;
-        for l in 0..LANES {
-            let (system, task) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
-            let before = block.state(l);
-            let time = self.time(site.place.step, block.began[l]);
-            let seen = task.observe(time, &before);
-            let act = policy.act(site.place.lane(l), &seen, &mut || drawn.next(l));
-            let system = Held { system, command: act.action };
-            let after = parts.method.step(&system, before, dt);
-            // An action that is no number leaves no state that is one.
-            let time = self.time(site.place.step + 1, block.began[l]);
-            let lost = !is_finite(&after);
-            let (reward, over) = judged(&task, lost, time, &before, &act.action, &after);
-            put(&mut out.seen, l, seen);
-            put(&mut out.actions, l, act.action);
-            out.log_probabilities[l] = act.log_probability;
-            out.rewards[l] = reward;
-            block.paid[l] = block.paid[l] + reward;
-            put(&mut block.q, l, after.q);
-            put(&mut block.v, l, after.v);
-            overs[l] = over;
-            ended |= over;
-        }
-        row.write_block(writer, b, &out, records);
-        if const { P::DRAWS } {
-            *words = drawn;
-        }
-        ended
     }
 
     /// What is seen at the beginning of a step.
@@ -181,7 +112,7 @@ where
 
     /// The words of actions, before those of a step.
     #[inline(always)]
-    fn renew(&self, place: Place, words: &mut Streams<LANES>) {
+    pub(super) fn renew(&self, place: Place, words: &mut Streams<LANES>) {
         if const { P::DRAWS } && place.step.is_multiple_of(EPOCH) {
             let first = self.first + place.environment as u64;
             *words = Streams::at(self.seed, first, place.step / EPOCH, Purpose::Action);
@@ -279,7 +210,7 @@ where
 
 /// The system and the task of lane `l`.
 #[inline(always)]
-fn lane<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
+pub(super) fn lane<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
     parts: &Parts<T, E, O, D>,
     systems: &Systems<T, E, O, D>,
     numbers: &NumberLanes<T, E, O, D>,
@@ -291,7 +222,7 @@ fn lane<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
 
 /// What a step pays, and whether all is over with it. What is lost pays nothing: no number comes of it.
 #[inline(always)]
-fn judged<T: Float, K: Task<T, D, O>, const O: usize, const D: usize>(
+pub(super) fn judged<T: Float, K: Task<T, D, O>, const O: usize, const D: usize>(
     task: &K,
     lost: bool,
     time: T,

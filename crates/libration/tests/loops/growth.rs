@@ -6,7 +6,7 @@ use libration::control::delay::Schedule;
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::{Exact, Rk4, VelocityVerlet};
 use libration::system::Oscillator;
-use libration::{Integrator, Method, State, with_method};
+use libration::{Integrator, Method, State};
 use proptest::prelude::*;
 
 use super::one::One;
@@ -50,12 +50,10 @@ fn map(method: Method, omega2: f64, dt: f64, feedback: Feedback, latency: Latenc
     let size = One::new(omega2, Rk4, feedback, latency, begin).known().len();
     let columns: Vec<Vec<f64>> = (0..size)
         .map(|j| {
-            with_method!(method, |m| {
-                let mut one = One::new(omega2, m, feedback, latency, begin);
-                one.set((0..size).map(|i| f64::from(u8::from(i == j))).collect());
-                one.step(dt);
-                one.known()
-            })
+            let mut one = One::new(omega2, method, feedback, latency, begin);
+            one.set((0..size).map(|i| f64::from(u8::from(i == j))).collect());
+            one.step(dt);
+            one.known()
         })
         .collect();
     DMatrix((0..size).map(|i| (0..size).map(|j| columns[j][i]).collect()).collect())
@@ -111,7 +109,7 @@ proptest! {
         let feedback = Feedback { position, velocity };
         let latency = Latency::of_steps(f64::from(whole) + part).unwrap();
         let model = Oscillator { omega2 };
-        let plant = with_method!(method, |m| Plant::new(m, model, ORIGIN, dt));
+        let plant = Plant::new(method, model, ORIGIN, dt);
         let predicted = plant.spectral_radius(feedback, latency).to_f64().ln();
         let simulated = rate(map(method, omega2, dt, feedback, latency));
         prop_assume!(predicted.abs() > 1e-9);
@@ -174,7 +172,7 @@ fn second_moments_of_a_late_loop_under_jitter_grow_as_those_of_its_simulated_ste
                 }
             }
             let model = Oscillator { omega2: 10.0 };
-            let plant = with_method!(method, |m| Plant::new(m, model, ORIGIN, 0.1));
+            let plant = Plant::new(method, model, ORIGIN, 0.1);
             let law = Jitter::Uniform(rms);
             let wanted = plant.mean_square_rate_late(feedback, latency, law).unwrap();
             let found = rate(DMatrix(sum));

@@ -127,14 +127,17 @@ fn a_step_is_the_same_by_the_short_way_as_by_the_long() {
 #[test]
 fn a_look_from_outside_sees_what_the_next_step_does() {
     let world = perturbed(Autoreset::SameStep);
-    let mut all = Environments::new(world, 100, 3, Execution::serial()).unwrap();
-    for horizon in [1, 254, 1, 1, 20] {
-        let mut seen = vec![0.0; 200];
-        all.observe(&mut seen).unwrap();
-        let mut rollout = Rollout::new(Plan::new(horizon, 100).truncated()).unwrap();
-        all.rollout(POLICY, &mut rollout).unwrap();
-        assert_eq!(rollout.observation()[..200], seen);
+    for execution in executions() {
+        let mut all = Environments::new(world, 200, 3, execution).unwrap();
+        for horizon in [1, 254, 1, 1, 20] {
+            let mut seen = vec![0.0; 400];
+            all.observe(&mut seen).unwrap();
+            let mut rollout = Rollout::new(Plan::new(horizon, 200).truncated()).unwrap();
+            all.rollout(POLICY, &mut rollout).unwrap();
+            assert_eq!(rollout.observation()[..400], seen);
+        }
     }
+    let mut all = Environments::new(world, 100, 3, Execution::serial()).unwrap();
     // The noise is there.
     let state = all.state(5).unwrap();
     let mut seen = vec![0.0; 200];

@@ -1,5 +1,7 @@
 //! What may be changed about a rollout without another bit.
 
+use std::ops::Range;
+
 use libration::State;
 use libration::analysis::Jitter;
 use libration::control::clock::{Gaussian, Jittered, Skewed, Uniform};
@@ -24,6 +26,9 @@ const COUNT: usize = 1500;
 
 /// The numbers of environments among which the first are the same.
 const COUNTS: [usize; 4] = [1, 77, 512, 2 * COUNT];
+
+/// Where shards begin and end.
+const SHARDS: [usize; 5] = [0, 1, 64, 500, COUNT];
 
 /// Threads that are tried.
 const THREADS: [usize; 4] = [1, 2, 3, 4];
@@ -60,11 +65,12 @@ const POLICY: Explore<Linear<2, 1>, 1> =
 
 /// A rollout of these environments over so many steps.
 pub(super) fn rolled(
-    (count, seed): (usize, u64),
+    which: Range<usize>,
+    seed: u64,
     execution: Execution,
     plans: &[Plan],
 ) -> Result<Vec<Rollout<f32, 2, 1>>, StudyError> {
-    let mut all = Environments::new(world(), count, seed, execution)?;
+    let mut all = Environments::shard(world(), which.start, which.len(), seed, execution)?;
     let one = |&plan: &Plan| {
         let mut rollout = Rollout::new(plan)?;
         all.rollout(POLICY, &mut rollout)?;
@@ -76,6 +82,8 @@ pub(super) fn rolled(
 /// A rollout that is to be compared.
 #[derive(Clone)]
 struct Run {
+    /// The number of the first environment.
+    first: usize,
     count: usize,
     seed: u64,
     execution: Execution,
@@ -86,6 +94,10 @@ struct Run {
 }
 
 impl Run {
+    fn which(&self) -> Range<usize> {
+        self.first..self.first + self.count
+    }
+
     /// A hash for each environment of all that it saw and did and what came of it.
     fn hashes(&self, lab: &Lab<'_>) -> Result<Vec<u64>, StudyError> {
         let whole = horizon(lab);
@@ -95,7 +107,7 @@ impl Run {
             plan.layout(self.layout).writes(self.writes)
         };
         let plans: Vec<Plan> = (0..self.calls).map(plan).collect();
-        let rollouts = rolled((self.count, self.seed), self.execution.clone(), &plans)?;
+        let rollouts = rolled(self.which(), self.seed, self.execution.clone(), &plans)?;
         let mut hashes = vec![OFFSET; self.count];
         for rollout in &rollouts {
             for t in 0..rollout.plan().horizon {
@@ -136,6 +148,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     let lab = desk.lab;
     changed::begin(record);
     let run = Run {
+        first: 0,
         count: COUNT,
         seed: SEED,
         execution: desk.serial.clone(),
@@ -149,7 +162,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         for run in runs {
             lab.check()?;
             sums[0] += run.count.min(COUNT);
-            sums[1] += differing(&whole, &run.hashes(lab)?);
+            sums[1] += differing(&whole[run.first..], &run.hashes(lab)?);
         }
         Ok(sums)
     };
@@ -164,6 +177,13 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     let fewer = COUNTS.map(|count| Run { count, ..run.clone() });
     let what = format!("{COUNT} environments: 1, 77, 512 and {} instead", 2 * COUNT);
     same(record, "environments", &what, differ(fewer.to_vec())?);
+    let shards = SHARDS.windows(2).map(|ends| Run {
+        first: ends[0],
+        count: ends[1] - ends[0],
+        ..run.clone()
+    });
+    let what = "all in one: shards of 1, 63, 436 and 1000 environments";
+    same(record, "shards", what, differ(shards.collect())?);
     let mut runs = Vec::new();
     for set in InstructionSet::available() {
         let execution = desk.serial.clone().instructions(set)?;

@@ -15,7 +15,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     let layouts = [("interleaved", Layout::Interleaved, 2), ("planes", Layout::Planes, 1)];
     for (name, layout, numbers) in layouts {
         let plan = Plan::new(SIZE, SIZE).truncated().log_probabilities().layout(layout);
-        let rollouts = rolled((SIZE, 1), desk.serial.clone(), &[plan])?;
+        let rollouts = rolled(0..SIZE, 1, desk.serial.clone(), &[plan])?;
         let Some(rollout) = rollouts.first() else { continue };
         let place = |n| {
             let [position, _] = rollout.seen(0, n);
