@@ -145,6 +145,27 @@ pub(super) fn judge(
     });
 }
 
+/// A ratio that is wanted to reach a bar which no theory tells: to fall short of it is no disagreement, and stands there with
+/// what is known of the reason.
+pub(super) fn aim(
+    record: &mut Record,
+    id: String,
+    text: String,
+    bar: Option<f64>,
+    ratio: impl Into<Ratio>,
+    reason: &str,
+) {
+    let ratio = ratio.into();
+    match bar.filter(|&bar| !cfg!(debug_assertions) && ratio.median < bar) {
+        Some(bar) => {
+            let finding = Finding::measured(id, text, "1", ratio.median);
+            let reason = format!("not reached; {reason}; wanted: {bar}");
+            record.find(finding.undecided(Undecided::Beyond(reason)));
+        }
+        None => judge(record, id, text, bar, ratio),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
