@@ -104,7 +104,7 @@ pub struct RolloutRate {
     pub layout: Layout,
     /// How they were written.
     pub writes: Writes,
-    /// On so many threads.
+    /// Of an execution on so many threads, of which a small rollout takes fewer.
     pub threads: usize,
     /// Transitions a second: the median of the rounds.
     pub median: f64,
@@ -237,7 +237,8 @@ pub(crate) fn fill(
     memory.fill(1);
     let pattern = vec![2_u8; PATTERN];
     let execution = execution.clone();
-    let part = case.bytes().div_ceil(execution.thread_count()).next_multiple_of(PATTERN);
+    let threads = case.plan().threads(&execution);
+    let part = case.bytes().div_ceil(threads).next_multiple_of(PATTERN);
     Ok(Contestant::new(case.transitions() as f64, move |times| {
         for _ in 0..times {
             execution.each(memory.chunks_mut(part).collect(), |part: &mut [u8]| match writes {

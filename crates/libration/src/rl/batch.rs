@@ -200,9 +200,7 @@ where
         if let Some(known) = parts.clock.steps().filter(|&known| known < asked) {
             return Err(EnsembleError::Record { known, asked }.into());
         }
-        // A transition writes as much as several steps take.
-        let transitions = (len as u64).saturating_mul(steps);
-        let threads = self.execution.threads_for(transitions.saturating_mul(WRITTEN));
+        let threads = plan.threads(&self.execution);
         let tiles = len.div_ceil(TILE);
         let counts: Vec<usize> = (0..threads)
             .map(|i| [i, i + 1].map(|i| (tiles * i / threads * TILE).min(len)))
@@ -271,9 +269,6 @@ where
         self.blocks[b].settle();
     }
 }
-
-/// The shortest steps that take as long as to write a transition.
-const WRITTEN: u64 = 4;
 
 /// So many of the same.
 ///

@@ -1,5 +1,11 @@
 //! How large a rollout is to be.
 
+use super::kernel::TILE;
+use crate::ensemble::Execution;
+
+/// The shortest steps that take as long as to write a transition.
+const WRITTEN: u64 = 4;
+
 /// How several numbers of a transition lie in memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Layout {
@@ -81,6 +87,13 @@ impl Plan {
     /// How many transitions there are.
     pub fn transitions(&self) -> u128 {
         self.horizon as u128 * self.environments as u128
+    }
+
+    /// On how many of its threads an execution has such a rollout: on fewer where there is little to do, or where there are few
+    /// environments.
+    pub fn threads(&self, execution: &Execution) -> usize {
+        let steps = u64::try_from(self.transitions()).unwrap_or(u64::MAX).saturating_mul(WRITTEN);
+        execution.threads_for(steps).min(self.environments.div_ceil(TILE).max(1))
     }
 
     /// Every field with its bytes for a transition of `observation` and `action` numbers, of so many bytes each.

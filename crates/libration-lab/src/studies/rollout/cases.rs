@@ -45,7 +45,7 @@ pub(super) fn on(threads: usize) -> &'static str {
 
 /// As the page says it.
 pub(super) fn on_cores(threads: usize) -> String {
-    if threads == 1 { "one core".into() } else { format!("{threads} threads") }
+    if threads == 1 { "one core".into() } else { format!("up to {threads} threads") }
 }
 
 /// How a rollout of so many bytes is best written on this machine.

@@ -44,10 +44,10 @@ fn design(record: &mut Record) {
         let [interleaved, planes, gain] = [0, 1, 2].map(|i| f[i].measured);
         let because = format!(
             "it is an array of structures: the next position is {} bytes away, since a velocity lies between \
-             them; in planes it is {}. Here planes are {} times as fast as that, one core, {}",
+             them; in planes it is {}. Here planes are written at {} % of the rate of that, one core, {}",
             show(interleaved),
             show(planes),
-            show(gain),
+            show(100.0 * gain),
             example.title()
         );
         Judgement::holds_if(interleaved == planes, because)

@@ -16,9 +16,8 @@ const CORES: [&str; 2] = ["one core", "all cores"];
 pub(super) fn scaling(record: &Record) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("fig-9-9", "Rollouts against environments and horizon")
         .caption(
-            "Solid: rollouts. Dashed: fills of as much memory, on all cores however small they are, where a rollout uses as \
-             many as it is worth. Left: a fixed horizon, with the rows of the source’s table 9.11. Right: 1024 \
-             environments.",
+            "Solid: rollouts. Dashed: fills of as much memory, on as many cores. Left: a fixed horizon, with the rows of \
+             the source’s table 9.11. Right: 1024 environments.",
         )
         .description("Log-log: transitions a second rise to a plateau below the fills.")
         .columns(2)
