@@ -7,7 +7,11 @@ use crate::analysis::Jitter;
 
 /// A number that a clock, a delay or a controller cannot have.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[error("{name}{} is {value}; it must be {allowed}", index.map_or_else(String::new, |i| format!(" {i}")))]
+#[error(
+    "{name}{} is {}; it must be {allowed}",
+    index.map_or_else(String::new, |i| format!(" {i}")),
+    shown(*value)
+)]
 pub struct ControlError {
     /// Which of its numbers.
     pub name: &'static str,
@@ -17,6 +21,12 @@ pub struct ControlError {
     pub value: f64,
     /// What it may be.
     pub allowed: &'static str,
+}
+
+/// A number without rows of zeros.
+fn shown(value: f64) -> String {
+    let plain = value == 0.0 || !value.is_finite() || (1e-6..1e16).contains(&value.abs());
+    if plain { value.to_string() } else { format!("{value:e}") }
 }
 
 /// `value`, if it is what is allowed.

@@ -9,7 +9,8 @@ use super::kernel::{Horizon, LANES, Share, TILE};
 use super::row::first_of;
 use super::start::Episode;
 use super::{
-    Autoreset, Environment, EnvironmentError, Policy, Rollout, Sensor, Start, Variation, World,
+    Autoreset, Environment, EnvironmentError, Policy, Rollout, Sensor, Start, Task, Variation,
+    World,
 };
 use crate::control::Clock;
 use crate::ensemble::{Assign, EnsembleError, Execution, NoRoom};
@@ -111,6 +112,7 @@ where
         if parts.limit == Some(0) {
             return Err(EnvironmentError::Limit);
         }
+        parts.task.check()?;
         parts.start.check()?;
         parts.clock.check()?;
         parts.sensor.check()?;

@@ -37,6 +37,9 @@ pub(super) const OVER: u8 = 1;
 /// It was cut off: truncated.
 pub(super) const CUT: u8 = 2;
 
+/// In what a block yields: over, since a number of it is none.
+pub(super) const LOST: u8 = 2;
+
 /// The block of a world.
 pub(super) type BlockOf<T, E, const O: usize, const D: usize> =
     Block<T, ClockLanes<T, E, O, D>, NumberLanes<T, E, O, D>, D>;

@@ -5,7 +5,7 @@ use bytemuck::Pod;
 use super::block::BlockOf;
 use super::kernel::LANES;
 use super::row::{Records, Row, Writer};
-use super::stage::{Site, Stage, is_finite, judged, lane};
+use super::stage::{Site, Stage, judged, lane};
 use super::yields::Step;
 use super::{Parts, Policy, Sensor, Task, World};
 use crate::control::Clock;
@@ -65,8 +65,7 @@ where
             let after = parts.method.step(&system, before, dt);
             // An action that is no number leaves no state that is one.
             let time = self.time(site.place.step + 1, block.began[l]);
-            let lost = !is_finite(&after);
-            let (reward, over) = judged(&task, lost, time, &before, &act.action, &after);
+            let (reward, over) = judged(&task, true, time, &before, &act.action, &after);
             put(&mut out.seen, l, seen);
             put(&mut out.actions, l, act.action);
             out.log_probabilities[l] = act.log_probability;

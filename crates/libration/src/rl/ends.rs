@@ -1,8 +1,8 @@
 //! Ends of episodes.
 
-use super::block::{self, BlockOf, CUT, OVER};
+use super::block::{self, BlockOf, CUT, LOST, OVER};
 use super::kernel::LANES;
-use super::stage::{Site, Stage, is_finite, is_number};
+use super::stage::{Site, Stage};
 use super::start::Episode;
 use super::yields::Yield;
 use super::{Autoreset, Place, Policy, World};
@@ -23,7 +23,7 @@ pub struct Final<T, const O: usize> {
     pub episode_return: T,
     /// Its actions.
     pub length: u64,
-    /// Whether the environment was lost: its state was no longer finite.
+    /// Whether the environment was lost: its state, its action or what it was paid was no finite number.
     pub lost: bool,
 }
 
@@ -78,6 +78,8 @@ where
                 }
                 continue;
             }
+            let lost = out.overs[l] & LOST != 0;
+            out.overs[l] = u8::from(out.overs[l] != 0);
             let flags = out.overs[l] * OVER + out.cuts[l] * CUT;
             if flags == 0 {
                 continue;
@@ -88,7 +90,7 @@ where
                 observation: at(&last, l),
                 episode_return: block.paid[l],
                 length: step - block.began[l],
-                lost: !is_finite(&block.state(l)) | !is_number(&at(&out.step.actions, l)),
+                lost,
             });
             match self.autoreset {
                 Autoreset::SameStep => {

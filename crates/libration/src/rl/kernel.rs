@@ -123,10 +123,6 @@ where
                     let whole = ended == 0 && stood.is_none();
                     if !whole {
                         let looks = looks.get(b).unwrap_or(no_looks);
-                        if swift {
-                            // An action that is no number leaves no state that is one.
-                            out.step.actions = [[T::zero(); LANES]; D];
-                        }
                         stage.end(&site, block, stood.as_ref(), past!(), looks, &mut out);
                     }
                     if count < LANES {

@@ -122,6 +122,6 @@ impl Plan {
 
     /// All bytes.
     pub fn bytes(&self, observation: usize, action: usize, number: usize) -> u128 {
-        self.transitions() * self.bytes_each(observation, action, number) as u128
+        self.transitions().saturating_mul(self.bytes_each(observation, action, number) as u128)
     }
 }

@@ -159,7 +159,7 @@ impl<I: Target> Writer<I> {
         records: &mut [[T; N]; LANES],
         to: &mut [&mut [T]; N],
     ) {
-        if const { N == 1 } || self.layout == Layout::Planes {
+        if const { N <= 1 } || self.layout == Layout::Planes {
             for (plane, to) in planes.iter().zip(to) {
                 self.write(b, plane, to);
             }

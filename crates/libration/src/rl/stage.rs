@@ -1,6 +1,6 @@
 //! What a step of a block consists of: scalar functions in loops over lanes.
 
-use super::block::{self, BlockOf, ClockMemory, NumberLanes};
+use super::block::{self, BlockOf, ClockMemory, LOST, NumberLanes};
 use super::history::History;
 use super::kernel::LANES;
 use super::yields::{Step, Yield};
@@ -174,9 +174,9 @@ where
             let (_, task) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
             let after = State { q: at(&q.0, l), v: at(&v.0, l) };
             let action = at(&out.step.actions, l);
-            let lost = !is_finite(&after) | !is_number(&action);
+            let acted = is_number(&action);
             let time = self.time(site.place.step + 1, block.began[l]);
-            let (reward, over) = judged(&task, lost, time, &block.state(l), &action, &after);
+            let (reward, over) = judged(&task, acted, time, &block.state(l), &action, &after);
             out.step.rewards[l] = reward;
             block.paid[l] = block.paid[l] + reward;
             out.overs[l] = over;
@@ -220,25 +220,28 @@ pub(super) fn lane<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
     parts.variation.apply(&numbers, E::Systems::lane(systems, l), parts.task)
 }
 
-/// What a step pays, and whether all is over with it. What is lost pays nothing: no number comes of it.
+/// What a step pays, and whether all is over with it, or it is [`LOST`]: what is lost pays nothing. `acted` is whether the action
+/// was a number.
 #[inline(always)]
 pub(super) fn judged<T: Float, K: Task<T, D, O>, const O: usize, const D: usize>(
     task: &K,
-    lost: bool,
+    acted: bool,
     time: T,
     before: &State<T, D>,
     action: &[T; D],
     after: &State<T, D>,
 ) -> (T, u8) {
     let reward = task.reward(time, before, action, after);
-    (if lost { T::zero() } else { reward }, u8::from(task.terminated(time, after) | lost))
+    let lost = !acted | !is_finite(after, reward);
+    let over = u8::from(task.terminated(time, after)) | (u8::from(lost) * LOST);
+    (if lost { T::zero() } else { reward }, over)
 }
 
-/// Whether the sum of all coordinates is.
+/// Whether the sum of all coordinates and the reward is.
 #[inline(always)]
-pub(super) fn is_finite<T: Float, const D: usize>(state: &State<T, D>) -> bool {
-    let mut sum = state.q[0] + state.v[0];
-    for i in 1..D {
+fn is_finite<T: Float, const D: usize>(state: &State<T, D>, reward: T) -> bool {
+    let mut sum = reward;
+    for i in 0..D {
         sum = sum + (state.q[i] + state.v[i]);
     }
     // What is not finite times zero is not zero.
@@ -247,7 +250,7 @@ pub(super) fn is_finite<T: Float, const D: usize>(state: &State<T, D>) -> bool {
 
 /// Whether each of these is a finite number.
 #[inline(always)]
-pub(super) fn is_number<T: Float, const D: usize>(action: &[T; D]) -> bool {
+fn is_number<T: Float, const D: usize>(action: &[T; D]) -> bool {
     let mut sum = T::zero();
     for &number in action {
         sum = sum + number * T::zero();

@@ -3,6 +3,7 @@
 use core::array::from_fn;
 
 use crate::control::ControlError;
+use crate::control::error::finite;
 use crate::random::Purpose;
 use crate::{Float, State};
 
@@ -39,6 +40,10 @@ pub struct At<const D: usize>(
 );
 
 impl<T: Float, const D: usize> Start<T, D> for At<D> {
+    fn check(&self) -> Result<(), ControlError> {
+        self.0.coordinates().try_for_each(|x| finite::<T>("coordinate of the start", x))
+    }
+
     fn draw(&self, _: Episode) -> State<T, D> {
         self.0.map(T::from_f64)
     }
@@ -55,7 +60,9 @@ pub struct Between<const D: usize>(
 
 impl<T: Float, const D: usize> Start<T, D> for Between<D> {
     fn check(&self) -> Result<(), ControlError> {
-        between::check("width of the start", self.0.coordinates().zip(self.1.coordinates()))
+        between::check("width of the start", self.0.coordinates().zip(self.1.coordinates()))?;
+        self.0.coordinates().try_for_each(|x| finite::<T>("lower end of the start", x))?;
+        self.1.coordinates().try_for_each(|x| finite::<T>("upper end of the start", x))
     }
 
     fn draw(&self, episode: Episode) -> State<T, D> {

@@ -1,5 +1,7 @@
 //! What an environment shows, what it pays, and when it is over.
 
+use crate::control::ControlError;
+use crate::control::error::{ensure, finite};
 use crate::{Elementary, Float, State};
 
 /// A task on a system with `D` degrees of freedom, of which `O` numbers are seen. Nothing in it branches on data, and each
@@ -9,6 +11,14 @@ use crate::{Elementary, Float, State};
 pub trait Task<T: Float, const D: usize, const O: usize>: Copy + Send + Sync {
     /// Whether it asks for the time; 0 is what it is told otherwise.
     const TIMED: bool = false;
+
+    /// Whether its numbers are those of a task.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check(&self) -> Result<(), ControlError> {
+        Ok(())
+    }
 
     /// What is seen of a state.
     fn observe(&self, time: T, state: &State<T, D>) -> [T; O];
@@ -46,6 +56,13 @@ fn sum<T: Float, const D: usize>(term: impl Fn(usize) -> T) -> T {
 macro_rules! regulate {
     ($d:literal, $o:literal) => {
         impl<T: Float> Task<T, $d, $o> for Regulate {
+            fn check(&self) -> Result<(), ControlError> {
+                finite::<T>("price of a distance", self.position)?;
+                finite::<T>("price of a velocity", self.velocity)?;
+                finite::<T>("price of an effort", self.effort)?;
+                ensure("bound", self.bound, "above 0", |bound| T::from_f64(bound) > T::zero())
+            }
+
             #[inline(always)]
             fn observe(&self, _: T, state: &State<T, $d>) -> [T; $o] {
                 core::array::from_fn(|i| if i < $d { state.q[i] } else { state.v[i - $d] })
@@ -90,6 +107,11 @@ pub struct SwingUp {
 }
 
 impl<T: Float + Elementary> Task<T, 1, 3> for SwingUp {
+    fn check(&self) -> Result<(), ControlError> {
+        finite::<T>("price of a velocity", self.velocity)?;
+        finite::<T>("price of an effort", self.effort)
+    }
+
     #[inline(always)]
     fn observe(&self, _: T, &State { q: [q], v: [v] }: &State<T, 1>) -> [T; 3] {
         [-Elementary::cos(q), -Elementary::sin(q), v]
@@ -110,6 +132,14 @@ impl<T: Float + Elementary> Task<T, 1, 3> for SwingUp {
 
 /// Where something ought to be.
 pub trait Reference<T: Float>: Copy + Send + Sync {
+    /// Whether its numbers are those of a reference.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check(&self) -> Result<(), ControlError> {
+        Ok(())
+    }
+
     /// Its position and its velocity.
     fn at(&self, time: T) -> [T; 2];
 }
@@ -126,6 +156,12 @@ pub struct Sine {
 }
 
 impl<T: Float + Elementary> Reference<T> for Sine {
+    fn check(&self) -> Result<(), ControlError> {
+        finite::<T>("amplitude of the reference", self.amplitude)?;
+        finite::<T>("angular frequency of the reference", self.angular_frequency)?;
+        finite::<T>("phase of the reference", self.phase)
+    }
+
     #[inline(always)]
     fn at(&self, time: T) -> [T; 2] {
         let [amplitude, omega, phase] =
@@ -159,6 +195,11 @@ impl<R> Track<R> {
 
 impl<T: Float, R: Reference<T>> Task<T, 1, 4> for Track<R> {
     const TIMED: bool = true;
+
+    fn check(&self) -> Result<(), ControlError> {
+        self.reference.check()?;
+        Task::<T, 1, 2>::check(&self.regulate)
+    }
 
     #[inline(always)]
     fn observe(&self, time: T, state: &State<T, 1>) -> [T; 4] {

@@ -53,20 +53,23 @@ fn what_is_no_longer_finite_is_over_pays_nothing_and_begins_again() {
 }
 
 #[test]
-fn an_action_that_is_no_number_ends_the_episode_of_its_environment_and_touches_no_other() {
+fn an_action_or_a_reward_that_is_no_number_ends_the_episode_of_its_environment_and_touches_no_other()
+ {
     use libration::rl::policy::Given;
-    let run = |bad: Option<usize>, delays| {
+    let run = |bad: Option<f32>, delays| {
         let environment = ideal().delays(delays);
         let mut all = Environments::new(environment, 70, 1, Execution::serial()).unwrap();
         let mut actions = vec![0.5_f32; 70 * 6];
-        bad.into_iter().for_each(|n| actions[2 * 70 + n] = f32::NAN);
+        bad.into_iter().for_each(|action| actions[2 * 70 + 33] = action);
         let mut rollout = Rollout::new(Plan::new(6, 70).truncated()).unwrap();
         all.rollout(Given(&actions), &mut rollout).unwrap();
         rollout
     };
     // Also where its effect would come later.
-    for delays in [Delays::default(), Delays::of(0, 2)] {
-        let (good, bad) = (run(None, delays), run(Some(33), delays));
+    let delays = [Delays::default(), Delays::of(0, 2)];
+    // The square of the second is infinite, and so would its price be.
+    for (delays, action) in delays.into_iter().flat_map(|d| [(d, f32::NAN), (d, 1e20)]) {
+        let (good, bad) = (run(None, delays), run(Some(action), delays));
         for t in 0..6 {
             for n in (0..70).filter(|&n| n != 33) {
                 assert_eq!(good.seen(t, n), bad.seen(t, n));

@@ -1,10 +1,12 @@
 //! What cannot be is refused in words, before anything happens.
 
+use libration::State;
 use libration::control::clock::{Gaussian, Jittered, Recorded, Uniform};
 use libration::ensemble::{All, Execution};
 use libration::rl::policy::{Activation, Each, Explore, Given, Perceptron, Random};
 use libration::rl::sensor::Noisy;
 use libration::rl::start::Between;
+use libration::rl::task::Regulate;
 use libration::rl::{Delays, Environment, Environments, Plan, Policy, Rollout, World, Writes};
 
 use crate::bits::POLICY;
@@ -103,8 +105,31 @@ fn a_policy_that_cannot_act_is_refused() {
     );
     assert_eq!(
         told(Random::between([1.0], [0.0])),
-        "width of the random action 0 is -1; it must be a finite number of at least 0"
+        "width of the random action 0 is -1; it must be a finite number above 0"
     );
+    assert_eq!(
+        told(Random::between([0.0], [1e300])),
+        "width of the random action 0 is 1e300; it must be a finite number above 0"
+    );
+}
+
+#[test]
+fn tasks_and_starts_that_cannot_be_are_refused() {
+    let with = |task, start| {
+        let Environment { systems, method, dt, .. } = ideal();
+        refused(Environment::new(systems, method, dt, task, start))
+    };
+    let told = with(Regulate { bound: f64::NAN, ..crate::TASK }, ANYWHERE);
+    assert!(told.contains("bound is NaN; it must be above 0"), "{told}");
+    let told = with(Regulate { velocity: 1e300, ..crate::TASK }, ANYWHERE);
+    let wanted = "price of a velocity is 1e300; it must be small enough for the float type";
+    assert!(told.contains(wanted), "{told}");
+    let far = Between(State { q: [0.0], v: [0.0] }, State { q: [1e300], v: [0.0] });
+    let told = with(crate::TASK, far);
+    assert!(told.contains("upper end of the start is 1e300"), "{told}");
+    // Most plans are larger than any memory, and some than any number.
+    let none = Rollout::<f32, 2, 1>::new(Plan::new(usize::MAX, usize::MAX));
+    assert!(none.unwrap_err().to_string().contains("memory"));
 }
 
 #[test]

@@ -4,9 +4,9 @@ use core::array::from_fn;
 
 use super::{Act, Place, Policy};
 use crate::Float;
+use crate::control::error::finite;
 use crate::random::{UNIT, odd};
 use crate::rl::EnvironmentError;
-use crate::rl::start::between;
 
 /// Uniform between two ends in each degree of freedom, drawn by address.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,11 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Random<D> {
     const DRAWS: bool = true;
 
     fn check(&self, _: usize, _: usize) -> Result<(), EnvironmentError> {
-        between::check("width of the random action", self.low.into_iter().zip(self.high))?;
+        for (index, (low, high)) in self.low.into_iter().zip(self.high).enumerate() {
+            EnvironmentError::above_zero::<T>("width of the random action", index, high - low)?;
+            finite::<T>("lower end of the random action", low)?;
+            finite::<T>("upper end of the random action", high)?;
+        }
         Ok(())
     }
 
