@@ -13,6 +13,7 @@ use super::{
     World,
 };
 use crate::control::Clock;
+use crate::control::error::ensure;
 use crate::ensemble::{Assign, EnsembleError, Execution, NoRoom};
 use crate::random::Purpose;
 use crate::{Float, State};
@@ -112,6 +113,8 @@ where
         if parts.limit == Some(0) {
             return Err(EnvironmentError::Limit);
         }
+        let allowed = "at most 2⁵³";
+        ensure("number of the first environment", first as f64, allowed, |n| n <= FURTHEST)?;
         parts.task.check()?;
         parts.start.check()?;
         parts.clock.check()?;
@@ -271,6 +274,9 @@ where
         self.blocks[b].settle();
     }
 }
+
+/// The largest number of a first environment: there is room for those after it.
+const FURTHEST: f64 = (1_u64 << 53) as f64;
 
 /// So many of the same.
 ///

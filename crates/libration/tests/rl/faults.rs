@@ -7,7 +7,9 @@ use libration::rl::policy::{Activation, Each, Explore, Given, Perceptron, Random
 use libration::rl::sensor::Noisy;
 use libration::rl::start::Between;
 use libration::rl::task::Regulate;
-use libration::rl::{Delays, Environment, Environments, Plan, Policy, Rollout, World, Writes};
+use libration::rl::{
+    Delays, Environment, Environments, Estimates, Plan, Policy, Rollout, World, Writes,
+};
 
 use crate::bits::POLICY;
 use crate::{ANYWHERE, ideal};
@@ -127,9 +129,15 @@ fn tasks_and_starts_that_cannot_be_are_refused() {
     let far = Between(State { q: [0.0], v: [0.0] }, State { q: [1e300], v: [0.0] });
     let told = with(crate::TASK, far);
     assert!(told.contains("upper end of the start is 1e300"), "{told}");
+    let far = Environments::<f32, _, 2, 1>::shard(ideal(), usize::MAX, 3, 0, Execution::serial());
+    assert!(far.unwrap_err().to_string().contains("number of the first environment"));
     // Most plans are larger than any memory, and some than any number.
-    let none = Rollout::<f32, 2, 1>::new(Plan::new(usize::MAX, usize::MAX));
-    assert!(none.unwrap_err().to_string().contains("memory"));
+    let plan = Plan::new(usize::MAX, usize::MAX);
+    let told = [
+        Rollout::<f32, 2, 1>::new(plan).unwrap_err().to_string(),
+        Estimates::<f32>::new(plan).unwrap_err().to_string(),
+    ];
+    assert!(told.iter().all(|told| told.contains("memory")), "{told:?}");
 }
 
 #[test]
