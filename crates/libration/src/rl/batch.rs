@@ -121,6 +121,7 @@ where
         parts.sensor.check()?;
         parts.variation.check()?;
         delays.check()?;
+        parts.severity.check()?;
         let rates = parts.clock.trajectories();
         for (what, values, len) in [
             ("systems", parts.systems.count(), len),
@@ -206,9 +207,11 @@ where
             return Err(EnsembleError::Record { known, asked }.into());
         }
         let threads = plan.threads(&self.execution);
-        let tiles = len.div_ceil(TILE);
+        // Whole tiles where there are enough for all threads.
+        let tile = TILE.min(len.div_ceil(threads).next_multiple_of(LANES)).max(LANES);
+        let tiles = len.div_ceil(tile);
         let counts: Vec<usize> = (0..threads)
-            .map(|i| [i, i + 1].map(|i| (tiles * i / threads * TILE).min(len)))
+            .map(|i| [i, i + 1].map(|i| (tiles * i / threads * tile).min(len)))
             .map(|[from, to]| to - from)
             .collect();
         rollout.pauses = parts.autoreset != Autoreset::SameStep;

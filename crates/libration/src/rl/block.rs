@@ -20,6 +20,8 @@ pub(super) struct Block<T, C, V, const D: usize> {
     pub(super) clock: C,
     /// What was drawn for the episode.
     pub(super) numbers: V,
+    /// How bad the clock and the sensor are in the episode.
+    pub(super) severity: [[T; LANES]; 2],
     /// The latencies of what is seen and of actions.
     pub(super) delays: [[u32; LANES]; 2],
     /// The step with which the episode began.
@@ -71,6 +73,7 @@ pub(super) fn empty<T: Float, E: World<T, O, D>, const O: usize, const D: usize>
         paid: [T::zero(); LANES],
         clock: ClockMemory::<T, E, O, D>::load(&none),
         numbers: Numbers::<T, E, O, D>::load(&none),
+        severity: [[T::one(); LANES]; 2],
         delays: [[0; LANES]; 2],
         began: [0; LANES],
         oldest: 0,
@@ -98,6 +101,8 @@ pub(super) fn begin<T: Float, E: World<T, O, D>, const O: usize, const D: usize>
     Numbers::<T, E, O, D>::set_lane(&mut block.numbers, l, parts.variation.draw(episode));
     let delays = parts.delays.draw(episode);
     (0..2).for_each(|i| block.delays[i][l] = delays[i]);
+    let severity = parts.severity.draw(episode);
+    (0..2).for_each(|i| block.severity[i][l] = T::from_f64(severity[i]));
     (block.paid[l], block.ended[l]) = (T::zero(), 0);
     (block.began[l], block.episode[l]) = (now, episode.number);
     history.begin(past, l, &state);

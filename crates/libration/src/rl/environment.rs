@@ -4,7 +4,7 @@ use core::marker::PhantomData;
 
 use super::sensor::Exact;
 use super::variation::Same;
-use super::{Delays, Sensor, Start, Task, Variation};
+use super::{Delays, Sensor, Severity, Start, Task, Variation};
 use crate::control::Clock;
 use crate::control::clock::Fixed;
 use crate::ensemble::Assign;
@@ -37,6 +37,8 @@ pub struct Environment<Sys, A, M, K, S, C = Fixed, N = Exact, V = Same> {
     pub sensor: N,
     /// What is different in every episode.
     pub variation: V,
+    /// And how bad the clock and the sensor are in it.
+    pub severity: Severity,
     pub(super) system: PhantomData<Sys>,
 }
 
@@ -73,6 +75,7 @@ impl<Sys, A, M, K, S> Environment<Sys, A, M, K, S> {
             delays: Delays::default(),
             sensor: Exact,
             variation: Same,
+            severity: Severity::default(),
             system: PhantomData,
         }
     }
@@ -99,6 +102,11 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
         Environment { delays, ..self }
     }
 
+    /// This, with clocks and sensors that are more or less wrong from episode to episode.
+    pub fn severity(self, severity: Severity) -> Self {
+        Environment { severity, ..self }
+    }
+
     /// This, with steps of another clock.
     pub fn clock<Other>(self, clock: Other) -> Environment<Sys, A, M, K, S, Other, N, V> {
         self.with(|_, sensor, variation| (clock, sensor, variation))
@@ -120,7 +128,8 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
         change: impl FnOnce(C, N, V) -> (C2, N2, V2),
     ) -> Environment<Sys, A, M, K, S, C2, N2, V2> {
         let Environment { systems, method, dt, substeps, task, start, limit, .. } = self;
-        let Environment { autoreset, clock, delays, sensor, variation, system, .. } = self;
+        let Environment { autoreset, clock, delays, sensor, variation, severity, system, .. } =
+            self;
         let (clock, sensor, variation) = change(clock, sensor, variation);
         Environment {
             systems,
@@ -135,6 +144,7 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
             delays,
             sensor,
             variation,
+            severity,
             system,
         }
     }

@@ -1,8 +1,8 @@
 //! Environments for reinforcement learning, many at once, and the tensors that they yield.
 //!
 //! An [`Environment`] is a system with its integrator, a [`Task`] that sees, rewards and ends, a [`Start`] and a time
-//! limit, and what is not ideal about it: a [`Clock`](crate::control::Clock), [`Delays`], a [`Sensor`], a [`Variation`] from
-//! episode to episode. [`Environments`] are many of them. A [`Rollout`] holds what they do under a [`Policy`] over a horizon.
+//! limit, and what is not ideal about it: a [`Clock`](crate::control::Clock), [`Delays`], a [`Sensor`], a [`Variation`] and a
+//! [`Severity`] from episode to episode. [`Environments`] are many of them. A [`Rollout`] holds what they do under a [`Policy`] over a horizon.
 //!
 //! What environment `i` does follows from its number, the seed, the policy and the steps taken: not from the number of
 //! environments or threads, the instruction set, the layout of the rollout or how many steps are taken at a time.
@@ -24,6 +24,7 @@ pub mod policy;
 mod rollout;
 mod row;
 pub mod sensor;
+mod severity;
 mod stage;
 pub mod start;
 pub mod task;
@@ -40,6 +41,7 @@ pub use plan::{Layout, Plan, Writes};
 pub use policy::{Act, Place, Policy};
 pub use rollout::Rollout;
 pub use sensor::Sensor;
+pub use severity::Severity;
 pub use start::{Episode, Start};
 pub use task::Task;
 pub use variation::Variation;

@@ -1,6 +1,6 @@
 //! How large a rollout is to be.
 
-use super::kernel::TILE;
+use super::kernel::LANES;
 use crate::ensemble::Execution;
 
 /// The shortest steps that take as long as to write a transition.
@@ -93,7 +93,7 @@ impl Plan {
     /// environments.
     pub fn threads(&self, execution: &Execution) -> usize {
         let steps = u64::try_from(self.transitions()).unwrap_or(u64::MAX).saturating_mul(WRITTEN);
-        execution.threads_for(steps).min(self.environments.div_ceil(TILE).max(1))
+        execution.threads_for(steps).min(self.environments.div_ceil(LANES).max(1))
     }
 
     /// Every field with its bytes for a transition of `observation` and `action` numbers, of so many bytes each.

@@ -106,7 +106,13 @@ where
             let (_, task) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
             let time = self.time(site.place.step, block.began[l]);
             let sees = task.observe(time, &State { q: at(&q.0, l), v: at(&v.0, l) });
-            put(seen, l, parts.sensor.measure(sees, &mut || words.next(l)));
+            let mut measured = parts.sensor.measure(sees, &mut || words.next(l));
+            if const { E::Sensor::DRAWS } {
+                for i in 0..O {
+                    measured[i] = sees[i] + block.severity[1][l] * (measured[i] - sees[i]);
+                }
+            }
+            put(seen, l, measured);
         }
     }
 
@@ -160,7 +166,11 @@ where
             for l in 0..LANES {
                 let (system, _) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
                 let mut memory = ClockMemory::<T, E, O, D>::lane(&block.clock, l);
-                let ratio = parts.clock.ratio(&mut memory, beat, &mut || words.next(l));
+                let mut ratio = parts.clock.ratio(&mut memory, beat, &mut || words.next(l));
+                if const { !E::Clock::EVEN } {
+                    ratio = T::one() + block.severity[0][l] * (ratio - T::one());
+                    ratio = if ratio < T::zero() { T::zero() } else { ratio };
+                }
                 ClockMemory::<T, E, O, D>::set_lane(&mut block.clock, l, memory);
                 let system = Held { system, command: at(&held.0, l) };
                 let state = State { q: at(&q.0, l), v: at(&v.0, l) };

@@ -9,7 +9,8 @@ use crate::random::Purpose;
 
 /// Draws numbers at the beginning of every episode and makes the system and the task of them: domain randomisation.
 ///
-/// The rate of a clock is drawn by a [`Clock`](crate::control::Clock), a latency by [`Delays`](super::Delays).
+/// The rate of a clock is drawn by a [`Clock`](crate::control::Clock), a latency by [`Delays`](super::Delays), and how bad clock and
+/// sensor are by [`Severity`](super::Severity).
 pub trait Variation<T: Float, Sys, K>: Copy + Send + Sync {
     /// What is kept of an environment for the episode.
     type Numbers: Memory<T>;

@@ -1,9 +1,9 @@
 //! One environment by itself, in scalars, as the documentation says it: all its past is kept, and nothing lies in a ring.
 
 use libration::control::{Begin, Clock};
-use libration::random::{EPOCH, Purpose, Streams};
+use libration::random::{Address, EPOCH, Purpose, Streams};
 use libration::rl::{
-    Autoreset, Episode, Parts, Place, Policy, Sensor, Start, Task, Variation, World,
+    Autoreset, Episode, Parts, Place, Policy, Sensor, Severity, Start, Task, Variation, World,
 };
 use libration::system::Held;
 use libration::{Integrator, State};
@@ -70,12 +70,15 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
         let numbers = parts.variation.draw(address(number));
         let systems = libration::ensemble::Assign::of(parts.systems, n);
         let (system, task) = parts.variation.apply(&numbers, systems, parts.task);
+        let severity = severity(&parts.severity, address(number));
         let [late, effect] = delays(&parts.delays, address(number));
         let see = |states: &[State<f32, 1>], looks: &mut Words, step: u64| {
             looks.before(step);
             let shown = states[states.len().saturating_sub(1 + late)];
             let seen = task.observe(0.0, &shown);
-            parts.sensor.measure(seen, &mut || looks.stream.next(0))
+            let measured = parts.sensor.measure(seen, &mut || looks.stream.next(0));
+            let noisy = |i: usize| seen[i] + severity[1] * (measured[i] - seen[i]);
+            if E::Sensor::DRAWS { [noisy(0), noisy(1)] } else { measured }
         };
         let seen = see(&states, &mut looks, step);
         acts.before(step);
@@ -93,6 +96,8 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
             let memory = clock.as_mut().unwrap();
             let ratio =
                 parts.clock.ratio(memory, parts.clock.beat(at), &mut || times.stream.next(0));
+            let ratio = if E::Clock::EVEN { ratio } else { 1.0 + severity[0] * (ratio - 1.0) };
+            let ratio = if ratio < 0.0 { 0.0 } else { ratio };
             let system = Held { system, command };
             state = parts.method.step(&system, state, parts.dt as f32 * ratio);
             states.push(state);
@@ -131,11 +136,25 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
     told
 }
 
+/// How bad the clock and the sensor of an episode are.
+fn severity(severity: &Severity, episode: Episode) -> [f32; 2] {
+    let one = |i: u64, [least, most]: [f64; 2]| {
+        let place = Address {
+            seed: episode.seed,
+            trajectory: episode.environment,
+            step: episode.number * 64 + 2 + i,
+            purpose: Purpose::Delay,
+        };
+        (least + place.uniform()[0] * (most - least)) as f32
+    };
+    [one(0, severity.clock), one(1, severity.sensor)]
+}
+
 /// The latencies of an episode: as many shares of the interval as there are whole numbers in it.
 fn delays(delays: &libration::rl::Delays, episode: Episode) -> [usize; 2] {
     let mut drawn = [0; 2];
     for (i, [least, most]) in [delays.observation, delays.action].into_iter().enumerate() {
-        let place = libration::random::Address {
+        let place = Address {
             seed: episode.seed,
             trajectory: episode.environment,
             step: episode.number * 64 + i as u64,

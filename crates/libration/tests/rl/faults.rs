@@ -8,7 +8,7 @@ use libration::rl::sensor::Noisy;
 use libration::rl::start::Between;
 use libration::rl::task::Regulate;
 use libration::rl::{
-    Delays, Environment, Environments, Estimates, Plan, Policy, Rollout, World, Writes,
+    Delays, Environment, Environments, Estimates, Plan, Policy, Rollout, Severity, World, Writes,
 };
 
 use crate::bits::POLICY;
@@ -129,6 +129,9 @@ fn tasks_and_starts_that_cannot_be_are_refused() {
     let far = Between(State { q: [0.0], v: [0.0] }, State { q: [1e300], v: [0.0] });
     let told = with(crate::TASK, far);
     assert!(told.contains("upper end of the start is 1e300"), "{told}");
+    let kind = Severity { clock: [-0.5, 1.0], ..Severity::default() };
+    let told = refused(ideal().severity(kind));
+    assert!(told.contains("severity of the clock is -0.5; it must be at least 0"), "{told}");
     let far = Environments::<f32, _, 2, 1>::shard(ideal(), usize::MAX, 3, 0, Execution::serial());
     assert!(far.unwrap_err().to_string().contains("number of the first environment"));
     // Most plans are larger than any memory, and some than any number.

@@ -17,7 +17,7 @@ use libration::rl::sensor::{Exact, Noisy};
 use libration::rl::start::Between;
 use libration::rl::task::Regulate;
 use libration::rl::variation::Same;
-use libration::rl::{Autoreset, Delays, Environment, Variation};
+use libration::rl::{Autoreset, Delays, Environment, Severity, Variation};
 use libration::system::Oscillator;
 
 const SPRING: Oscillator<f32> = Oscillator { omega2: 10.0 };
@@ -58,6 +58,7 @@ fn perturbed(
         .delays(Delays { observation: [0, 4], action: [2, 7] })
         .clock((Skewed(Jitter::Uniform(0.01)), Jittered(Gaussian(0.2))))
         .sensor(Noisy([Uniform(0.05), Uniform(0.1)]))
+        .severity(Severity { clock: [0.0, 2.0], sensor: [0.5, 1.5] })
         .variation(Varied {
             ends: [(8.0, 12.0), (1.0, 1.4)],
             apply: |[omega2, bound]: [f32; 2], _: Oscillator<f32>, task: Regulate| {
