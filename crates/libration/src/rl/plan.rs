@@ -19,10 +19,10 @@ pub enum Layout {
 /// How the tensors are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Writes {
-    /// Through the caches: fastest where they hold all of it.
+    /// Through the caches: fastest where those near the core hold all of it.
     #[default]
     Plain,
-    /// Past the caches: fastest where they do not.
+    /// Past the caches: fastest where they do not. What a last cache that is shared holds may be faster either way.
     Past,
 }
 

@@ -135,8 +135,8 @@ fn timed(
                         case.horizon,
                         on_cores(threads)
                     );
-                    let reason =
-                        "a fill waits for nothing but its stores, a rollout for its steps as well";
+                    let reason = "a fill waits for its stores alone, a rollout for its steps as well; the \
+                                  table of layouts has other ways to write";
                     aim(record, id, text, bar(case, threads), &share, reason);
                 }
             }
