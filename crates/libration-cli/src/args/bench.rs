@@ -23,6 +23,7 @@ pub(crate) struct BenchArgs {
         value_delimiter = ',',
         value_parser = count,
         requires = "implementation",
+        conflicts_with = "rollouts",
         allow_hyphen_values = true
     )]
     pub(crate) count: Vec<usize>,
@@ -32,7 +33,8 @@ pub(crate) struct BenchArgs {
         value_name = "TYPE",
         value_delimiter = ',',
         value_parser = floats(),
-        requires = "implementation"
+        requires = "implementation",
+        conflicts_with = "rollouts"
     )]
     pub(crate) float: Vec<BenchFloat>,
     /// Time rollouts of environments, against fills of as much memory

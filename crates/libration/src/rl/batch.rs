@@ -5,13 +5,9 @@ use bytemuck::Pod;
 use super::block::{self, BlockOf};
 use super::draws::Draws;
 use super::history::History;
-use super::kernel::{Horizon, LANES, Share, TILE};
-use super::row::first_of;
+use super::kernel::LANES;
 use super::start::Episode;
-use super::{
-    Autoreset, Environment, EnvironmentError, Policy, Rollout, Sensor, Start, Task, Variation,
-    World,
-};
+use super::{Environment, EnvironmentError, Sensor, Start, Task, Variation, World};
 use crate::control::Clock;
 use crate::control::error::ensure;
 use crate::ensemble::{Assign, EnsembleError, Execution, NoRoom};
@@ -179,92 +175,6 @@ where
             self.begin(n, self.blocks[n / LANES].episode[n % LANES] + 1);
         }
         Ok(())
-    }
-
-    /// Fills `rollout` with what all do under `policy`.
-    ///
-    /// # Errors
-    /// [`EnvironmentError::Shape`] if it is for another number of environments, or the policy is;
-    /// [`EnvironmentError::Field`] if it has no room for something that has to be said; [`EnvironmentError::Ensemble`] if a record of the
-    /// clock ends before.
-    pub fn rollout<P: Policy<T, O, D>>(
-        &mut self,
-        policy: P,
-        rollout: &mut Rollout<T, O, D>,
-    ) -> Result<(), EnvironmentError> {
-        let plan = rollout.plan();
-        let (horizon, len) = (plan.horizon, self.len);
-        EnvironmentError::shape("environments of the rollout", plan.environments, len)?;
-        policy.check(len, horizon)?;
-        let parts = self.world.parts();
-        if parts.limit.is_some() && !plan.truncated {
-            let (why, field) = ("the environments have a time limit", "truncated");
-            return Err(EnvironmentError::Field { why, field });
-        }
-        let (steps, substeps) = (horizon as u64, u64::from(parts.substeps));
-        let asked = self.step.saturating_add(steps).saturating_mul(substeps);
-        if let Some(known) = parts.clock.steps().filter(|&known| known < asked) {
-            return Err(EnsembleError::Record { known, asked }.into());
-        }
-        let threads = plan.threads(&self.execution);
-        // Whole tiles where there are enough for all threads.
-        let tile = TILE.min(len.div_ceil(threads).next_multiple_of(LANES)).max(LANES);
-        let tiles = len.div_ceil(tile);
-        let counts: Vec<usize> = (0..threads)
-            .map(|i| [i, i + 1].map(|i| (tiles * i / threads * tile).min(len)))
-            .map(|[from, to]| to - from)
-            .collect();
-        rollout.pauses = parts.autoreset != Autoreset::SameStep;
-        rollout.idle = if rollout.pauses { self.standing() } else { Vec::new() };
-
-        let Environments { world, history, seed, first: shard, step, .. } = *self;
-        let blocks = self.blocks.len();
-        let [times, looks, acts] = &mut self.draws;
-        let words = world.parts().clock.words();
-        let times = times.prepare(seed, step * substeps, steps * substeps, words, blocks);
-        let words = world.parts().sensor.words();
-        let looks = looks.prepare(seed, step, steps, words, blocks);
-        let acts = acts.prepare(seed, step, steps, policy.words(), blocks);
-        let mut rest = (&mut self.blocks[..], &mut self.past[..], [times, looks, acts]);
-        let mut first = 0;
-        let mut shares = Vec::with_capacity(counts.len());
-        for (&len, rows) in counts.iter().zip(rollout.shares(&counts)) {
-            let count = len.div_ceil(LANES);
-            let share = Share {
-                first,
-                len,
-                blocks: first_of(&mut rest.0, count),
-                past: first_of(&mut rest.1, count * history.len()),
-                words: rest.2.each_mut().map(|words| first_of(words, count)),
-            };
-            shares.push((share, rows));
-            first += len;
-        }
-        let instructions = self.execution.instruction_set();
-        let finals = self.execution.each(shares, |(share, rows)| {
-            instructions.run(Horizon::<T, E, P, _, O, D> {
-                world: &world,
-                policy,
-                history,
-                draws: [seed, shard as u64],
-                environments: len,
-                step,
-                share,
-                rows,
-                layout: plan.layout,
-                writes: plan.writes,
-            })
-        });
-        rollout.finals = finals.into_iter().flatten().collect();
-        rollout.finals.sort_by_key(|end| (end.step, end.environment));
-        self.step += steps;
-        Ok(())
-    }
-
-    /// Those that stand still.
-    fn standing(&self) -> Vec<usize> {
-        let stands = |n: &usize| self.blocks[n / LANES].ended[n % LANES] != 0;
-        (0..self.len).filter(stands).collect()
     }
 
     /// Begins an episode of environment `n`.

@@ -16,7 +16,7 @@ pub enum EnvironmentError {
     #[error(transparent)]
     Number(#[from] ControlError),
     /// There are more or fewer of something.
-    #[error("there are {found} {name}; there must be {wanted}")]
+    #[error("the number of {name} is {found}; it must be {wanted}")]
     Shape {
         /// Of what.
         name: &'static str,
@@ -86,10 +86,17 @@ fn advice(bytes: usize, horizon: usize, environments: usize, room: &NoRoom) -> S
         return "A horizon can be run in pieces, one after the other".to_owned();
     };
     let fit = |by: usize| available / (bytes as u64).saturating_mul(by as u64).max(1);
-    format!(
-        "There is room for {} steps of so many environments, which can be run one after the other, or for {} environments \
-         over so many steps",
-        fit(environments),
-        fit(horizon)
-    )
+    match [fit(environments), fit(horizon)] {
+        [0, 0] => "There is no room for a single step of so many environments, nor for a single one over so many steps".to_owned(),
+        [0, fewer] => {
+            format!("There is room for {fewer} environments over so many steps")
+        }
+        [pieces, 0] => format!(
+            "There is room for {pieces} steps of so many environments, which can be run one after the other"
+        ),
+        [pieces, fewer] => format!(
+            "There is room for {pieces} steps of so many environments, which can be run one after the other, or for {fewer} \
+             environments over so many steps"
+        ),
+    }
 }

@@ -1,10 +1,9 @@
 //! What actions were worth, from what was paid.
 
-use core::mem::take;
-
 use bytemuck::Pod;
+use ndarray::ArrayViewMut2;
 
-use super::row::first_of;
+use super::strip::{first_columns, row, rows_of};
 use super::{EnvironmentError, Plan, Rollout};
 use crate::Float;
 use crate::control::error::probability;
@@ -87,11 +86,13 @@ impl<T: Float + Pod> Estimates<T> {
         let threads = execution.threads_for(work);
         let counts: Vec<usize> =
             (0..threads).map(|i| n * (i + 1) / threads - n * i / threads).collect();
-        let advantages = strips(&mut self.advantage, n, &counts);
-        let returns = strips(&mut self.returned, n, &counts);
+        let mut advantages = rows_of(&mut self.advantage, horizon);
+        let mut returns = rows_of(&mut self.returned, horizon);
         let mut first = 0;
         let mut parts = Vec::with_capacity(threads);
-        for ((&len, advantages), returns) in counts.iter().zip(advantages).zip(returns) {
+        for len in counts {
+            let advantages = first_columns(&mut advantages, len);
+            let returns = first_columns(&mut returns, len);
             parts.push(Strip { discounts, rollout, next, last, first, len, advantages, returns });
             first += len;
         }
@@ -99,17 +100,6 @@ impl<T: Float + Pod> Estimates<T> {
         execution.each(parts, |strip| instructions.vectorize(strip));
         Ok(())
     }
-}
-
-/// The rows of neighbouring environments, so many for each.
-fn strips<'a, T>(numbers: &'a mut [T], n: usize, counts: &[usize]) -> Vec<Vec<&'a mut [T]>> {
-    let mut strips: Vec<Vec<_>> = counts.iter().map(|_| Vec::new()).collect();
-    for mut row in numbers.chunks_exact_mut(n.max(1)) {
-        for (strip, &count) in strips.iter_mut().zip(counts) {
-            strip.push(first_of(&mut row, count));
-        }
-    }
-    strips
 }
 
 /// Neighbouring environments, from the last step to the first.
@@ -120,8 +110,8 @@ struct Strip<'a, T, const O: usize, const D: usize> {
     last: &'a [T],
     first: usize,
     len: usize,
-    advantages: Vec<&'a mut [T]>,
-    returns: Vec<&'a mut [T]>,
+    advantages: ArrayViewMut2<'a, T>,
+    returns: ArrayViewMut2<'a, T>,
 }
 
 impl<T: Float + Pod, const O: usize, const D: usize> Loop for Strip<'_, T, O, D> {
@@ -141,8 +131,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Loop for Strip<'_, T, O, D>
         let mut idle = vec![0_u8; len];
         let mut ends = rollout.finals().iter().zip(last).rev();
         let mut end = ends.next();
-        for (t, (advantages, returns)) in advantages.iter_mut().zip(&mut returns).enumerate().rev()
-        {
+        for t in (0..advantages.nrows()).rev() {
             while let Some((last, &value)) = end.filter(|(end, _)| end.step == t) {
                 if own.contains(&last.environment) {
                     let over = rollout.terminated()[t * n + last.environment] != 0;
@@ -151,7 +140,8 @@ impl<T: Float + Pod, const O: usize, const D: usize> Loop for Strip<'_, T, O, D>
                 end = ends.next();
             }
             rollout.write_idle(t, first, &mut idle);
-            let (advantages, returns) = (&mut take(advantages)[..len], &mut take(returns)[..len]);
+            let advantages = &mut row(&mut advantages, t)[..len];
+            let returns = &mut row(&mut returns, t)[..len];
             let rewards = &rollout.reward()[t * n + first..][..len];
             let values = &rollout.value()[t * n + first..][..len];
             let row = t * n + first..t * n + first + len;

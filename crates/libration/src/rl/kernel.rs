@@ -5,10 +5,11 @@ use pulp::{Simd, WithSimd};
 
 use super::block::BlockOf;
 use super::history::History;
-use super::row::{Records, Row, Writer};
+use super::row::{Records, Writer};
 use super::stage::{Site, Stage};
+use super::strip::Strip;
 use super::yields::Yield;
-use super::{Final, Layout, Place, Policy, World, Writes};
+use super::{Final, Place, Policy, World, Writes};
 use crate::Float;
 use crate::ensemble::Assign;
 use crate::ensemble::instructions::{Target, Targeted};
@@ -44,8 +45,7 @@ pub(super) struct Horizon<'a, 's, T, E, P, B, const O: usize, const D: usize> {
     /// Steps taken before.
     pub(super) step: u64,
     pub(super) share: Share<'a, T, B>,
-    pub(super) rows: Vec<Row<'a, T, O, D>>,
-    pub(super) layout: Layout,
+    pub(super) strip: Strip<'a, T, O, D>,
     pub(super) writes: Writes,
 }
 
@@ -80,8 +80,8 @@ where
     fn with_simd<V: Simd>(self, _: V) -> Vec<Final<T, O>> {
         let On(horizon, target) = self;
         let Horizon { world, policy, history, draws, environments, step, .. } = horizon;
-        let Horizon { share, mut rows, layout, writes, .. } = horizon;
-        let writer = Writer { streaming: Streaming::on(target), layout, writes };
+        let Horizon { share, mut strip, writes, .. } = horizon;
+        let writer = Writer { streaming: Streaming::on(target), layout: strip.layout, writes };
         let parts = *world.parts();
         let stage = Stage::<T, E, P, O, D>::new(world, policy, history, draws);
         let brief = stage.is_brief();
@@ -91,7 +91,8 @@ where
         let mut out = Yield::<T, O, D>::zeros();
         let mut records = Records::zeros();
         for (index, blocks) in share.blocks.chunks_mut(TILE / LANES).enumerate() {
-            for (t, row) in rows.iter_mut().enumerate() {
+            for t in 0..strip.steps() {
+                let row = &mut strip.row(t);
                 for (b, block) in blocks.iter_mut().enumerate() {
                     let b = index * (TILE / LANES) + b;
                     let first = share.first + b * LANES;

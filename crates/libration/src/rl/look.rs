@@ -3,8 +3,8 @@
 use bytemuck::Pod;
 
 use super::kernel::LANES;
-use super::row::first_of;
 use super::stage::{Site, Stage};
+use super::strip::first_of;
 use super::{EnvironmentError, Environments, Place, Sensor, World, policy};
 use crate::Float;
 use crate::ensemble::Assign;

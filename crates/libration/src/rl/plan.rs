@@ -3,8 +3,8 @@
 use super::kernel::LANES;
 use crate::ensemble::Execution;
 
-/// The shortest steps that take as long as to write a transition.
-const WRITTEN: u64 = 4;
+/// The shortest steps that take as long as a transition.
+const WRITTEN: u64 = 8;
 
 /// How several numbers of a transition lie in memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -27,9 +27,10 @@ pub enum Writes {
 }
 
 impl Writes {
-    /// The way for so many bytes, where a cache holds so many of them: the last, or what of it this process can hope for.
+    /// The way for so many bytes, where the last cache holds so many of them. Others have their share of it: from half of it on, to
+    /// write past it is faster.
     pub fn suited(bytes: u128, cache: u64) -> Self {
-        if bytes > cache.into() { Writes::Past } else { Writes::Plain }
+        if bytes > u128::from(cache / 2) { Writes::Past } else { Writes::Plain }
     }
 }
 

@@ -1,11 +1,10 @@
 //! What environments do over a horizon, as tensors.
 
 use core::array::from_fn;
-use core::slice::ChunksExactMut;
 
 use bytemuck::Pod;
 
-use super::row::Row;
+use super::strip::{Strip, planes, rows_of};
 use super::{EnvironmentError, Final, Layout, Plan};
 use crate::ensemble::{Buffer, NoRoom, Pages};
 
@@ -108,7 +107,7 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
         &mut self.value
     }
 
-    /// The episodes that ended, by step and environment.
+    /// The episodes that ended, by step and environment: memory for them is taken as they end, beside that of the plan.
     pub fn finals(&self) -> &[Final<T, O>] {
         &self.finals
     }
@@ -172,50 +171,17 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
         })
     }
 
-    /// The rows of neighbouring environments, so many for each: for each of them all steps.
-    pub(super) fn shares(&mut self, counts: &[usize]) -> Vec<Vec<Row<'_, T, O, D>>> {
-        let Plan { horizon, environments, layout, .. } = self.plan;
-        let (n, all) = (environments, horizon * environments);
-        let mut observation = planes(&mut self.observation, layout, all, n);
-        let mut action = planes(&mut self.action, layout, all, n);
-        let mut reward = self.reward.chunks_exact_mut(n.max(1));
-        let mut terminated = self.terminated.chunks_exact_mut(n.max(1));
-        let mut truncated = self.truncated.chunks_exact_mut(n.max(1));
-        let mut log_probability = self.log_probability.chunks_exact_mut(n.max(1));
-        let mut shares: Vec<Vec<_>> = counts.iter().map(|_| Vec::with_capacity(horizon)).collect();
-        for _ in 0..horizon {
-            let mut row = Row {
-                observation: observation.each_mut().map(|plane| plane.next().unwrap_or_default()),
-                action: action.each_mut().map(|plane| plane.next().unwrap_or_default()),
-                reward: reward.next().unwrap_or_default(),
-                terminated: terminated.next().unwrap_or_default(),
-                truncated: truncated.next().unwrap_or_default(),
-                log_probability: log_probability.next().unwrap_or_default(),
-            };
-            // Most often there is one, and all of a row is its own.
-            if let [share] = &mut shares[..] {
-                share.push(row);
-                continue;
-            }
-            for (share, &count) in shares.iter_mut().zip(counts) {
-                share.push(row.split_off(count, layout));
-            }
+    /// All of it, to be written.
+    pub(super) fn strip(&mut self) -> Strip<'_, T, O, D> {
+        let Plan { horizon, layout, .. } = self.plan;
+        Strip {
+            observation: planes(&mut self.observation, layout, horizon),
+            action: planes(&mut self.action, layout, horizon),
+            reward: rows_of(&mut self.reward, horizon),
+            terminated: rows_of(&mut self.terminated, horizon),
+            truncated: rows_of(&mut self.truncated, horizon),
+            log_probability: rows_of(&mut self.log_probability, horizon),
+            layout,
         }
-        shares
     }
-}
-
-/// The rows of each plane; where numbers lie side by side there is one, and its rows are longer.
-fn planes<T, const N: usize>(
-    numbers: &mut [T],
-    layout: Layout,
-    all: usize,
-    n: usize,
-) -> [ChunksExactMut<'_, T>; N] {
-    let (plane, row) = match layout {
-        Layout::Interleaved => (all * N, n * N),
-        Layout::Planes => (all, n),
-    };
-    let mut planes = numbers.chunks_exact_mut(plane.max(1));
-    from_fn(|_| planes.next().unwrap_or_default().chunks_exact_mut(row.max(1)))
 }

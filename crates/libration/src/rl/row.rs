@@ -1,7 +1,5 @@
 //! A step of neighbouring environments in a rollout.
 
-use core::mem::take;
-
 use bytemuck::Pod;
 
 use super::kernel::LANES;
@@ -42,21 +40,6 @@ pub(super) struct Writer<I: Target> {
     pub(super) streaming: Streaming<I>,
     pub(super) layout: Layout,
     pub(super) writes: Writes,
-}
-
-impl<'a, T, const O: usize, const D: usize> Row<'a, T, O, D> {
-    /// Takes off the first `count` environments.
-    pub(super) fn split_off(&mut self, count: usize, layout: Layout) -> Row<'a, T, O, D> {
-        let width = |n| if layout == Layout::Interleaved { n } else { 1 };
-        Row {
-            observation: self.observation.each_mut().map(|plane| first_of(plane, count * width(O))),
-            action: self.action.each_mut().map(|plane| first_of(plane, count * width(D))),
-            reward: first_of(&mut self.reward, count),
-            terminated: first_of(&mut self.terminated, count),
-            truncated: first_of(&mut self.truncated, count),
-            log_probability: first_of(&mut self.log_probability, count),
-        }
-    }
 }
 
 impl<T: Float + Pod, const O: usize, const D: usize> Row<'_, T, O, D> {
@@ -183,12 +166,4 @@ fn interleave<T: Copy, const N: usize>(planes: &[[T; LANES]; N], records: &mut [
             *number = plane[l];
         }
     }
-}
-
-/// Takes off the first `count`, or all if there are fewer.
-pub(super) fn first_of<'a, X>(slice: &mut &'a mut [X], count: usize) -> &'a mut [X] {
-    let whole = take(slice);
-    let (head, tail) = whole.split_at_mut(count.min(whole.len()));
-    *slice = tail;
-    head
 }

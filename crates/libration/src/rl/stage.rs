@@ -23,7 +23,7 @@ pub(super) struct Stage<'s, T, E, P, const O: usize, const D: usize> {
     pub(super) first: u64,
     pub(super) dt: T,
     /// From action to action.
-    span: T,
+    span: f64,
     pub(super) substeps: u64,
     limit: Option<u64>,
     pub(super) autoreset: Autoreset,
@@ -57,7 +57,7 @@ where
             seed: draws[0],
             first: draws[1],
             dt: T::from_f64(parts.dt),
-            span: T::from_f64(parts.dt * f64::from(parts.substeps)),
+            span: parts.dt * f64::from(parts.substeps),
             substeps: parts.substeps.into(),
             limit: parts.limit.map(u64::from),
             autoreset: parts.autoreset,
@@ -69,7 +69,8 @@ where
     pub(super) fn time(&self, now: u64, began: u64) -> T {
         if const { E::Task::TIMED } {
             // As many as an episode has: a `u32`, of which processors make floats sooner than of a `u64`.
-            T::from_f64(f64::from((now - began) as u32)) * self.span
+            // Short floats hold no large numbers of steps.
+            T::from_f64(f64::from((now - began) as u32) * self.span)
         } else {
             T::zero()
         }
@@ -230,7 +231,8 @@ pub(super) fn lane<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
     parts.variation.apply(&numbers, E::Systems::lane(systems, l), parts.task)
 }
 
-/// What a step pays, and whether all is over with it, or it is [`LOST`]: what is lost pays nothing. `acted` is whether the action
+/// What a step pays, and whether all is over with it, or it is [`LOST`]: what is lost pays nothing. What is not finite times zero is
+/// not zero. `acted` is whether the action
 /// was a number.
 #[inline(always)]
 pub(super) fn judged<T: Float, K: Task<T, D, O>, const O: usize, const D: usize>(
@@ -242,20 +244,13 @@ pub(super) fn judged<T: Float, K: Task<T, D, O>, const O: usize, const D: usize>
     after: &State<T, D>,
 ) -> (T, u8) {
     let reward = task.reward(time, before, action, after);
-    let lost = !acted | !is_finite(after, reward);
+    let mut none = reward * T::zero();
+    for i in 0..D {
+        none = none + (after.q[i] * T::zero() + after.v[i] * T::zero());
+    }
+    let lost = !acted | (none != T::zero());
     let over = u8::from(task.terminated(time, after)) | (u8::from(lost) * LOST);
     (if lost { T::zero() } else { reward }, over)
-}
-
-/// Whether the sum of all coordinates and the reward is.
-#[inline(always)]
-fn is_finite<T: Float, const D: usize>(state: &State<T, D>, reward: T) -> bool {
-    let mut sum = reward;
-    for i in 0..D {
-        sum = sum + (state.q[i] + state.v[i]);
-    }
-    // What is not finite times zero is not zero.
-    sum * T::zero() == T::zero()
 }
 
 /// Whether each of these is a finite number.

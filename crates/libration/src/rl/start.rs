@@ -4,7 +4,7 @@ use core::array::from_fn;
 
 use crate::control::ControlError;
 use crate::control::error::finite;
-use crate::random::Purpose;
+use crate::random::{Address, Purpose};
 use crate::{Float, State};
 
 /// The address of all that is drawn for an episode once.
@@ -16,6 +16,23 @@ pub struct Episode {
     pub environment: u64,
     /// How many went before.
     pub number: u64,
+}
+
+/// Draws of an episode for the same purpose.
+const DRAWS: u64 = 64;
+
+impl Episode {
+    /// The address of its `i`-th draw for a purpose.
+    pub(super) fn address(self, purpose: Purpose, i: usize) -> Address {
+        let Episode { seed, environment: trajectory, number } = self;
+        let step = number.wrapping_mul(DRAWS).wrapping_add(i as u64);
+        Address { seed, trajectory, step, purpose }
+    }
+
+    /// Nothing, if so many draws have addresses of their own.
+    pub(super) const fn has(draws: usize) {
+        assert!(draws as u64 <= DRAWS, "more numbers than an episode has addresses");
+    }
 }
 
 /// The start of every episode of every environment.
@@ -82,10 +99,7 @@ pub(super) mod between {
     use super::Episode;
     use crate::Float;
     use crate::control::ControlError;
-    use crate::random::{Address, Purpose};
-
-    /// Draws of an episode that have an address of their own.
-    const DRAWS: u64 = 64;
+    use crate::random::Purpose;
 
     /// Every lower end is below its upper one, or both are the same.
     pub(in crate::rl) fn check(
@@ -107,12 +121,8 @@ pub(super) mod between {
         purpose: Purpose,
         first: usize,
     ) -> [f64; N] {
-        const { assert!(N as u64 <= DRAWS, "more numbers than an episode has addresses") };
-        let Episode { seed, environment: trajectory, number } = episode;
-        from_fn(|i| {
-            let step = number.wrapping_mul(DRAWS).wrapping_add((first + i) as u64);
-            Address { seed, trajectory, step, purpose }.uniform()[0]
-        })
+        const { Episode::has(N) };
+        from_fn(|i| episode.address(purpose, first + i).uniform()[0])
     }
 
     /// The number there.

@@ -2,7 +2,8 @@
 
 use core::array::from_fn;
 
-use super::start::{Episode, between};
+use super::Spread;
+use super::start::Episode;
 use crate::Float;
 use crate::control::{ControlError, Memory};
 use crate::random::Purpose;
@@ -48,21 +49,21 @@ impl<T: Float, Sys, K> Variation<T, Sys, K> for Same {
     }
 }
 
-/// `N` numbers, each uniform between two ends, and what they change.
+/// `N` numbers, each with its distribution, and what they change.
 ///
 /// ```
-/// use libration::rl::{task::Regulate, variation::Varied};
+/// use libration::rl::{Spread, task::Regulate, variation::Varied};
 /// use libration::system::Oscillator;
 ///
 /// let stiffness = Varied {
-///     ends: [(5.0, 15.0)],
+///     numbers: [Spread::Uniform(5.0, 15.0)],
 ///     apply: |[omega2]: [f32; 1], _: Oscillator<f32>, task: Regulate| (Oscillator { omega2 }, task),
 /// };
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Varied<F, const N: usize> {
-    /// The ends of each.
-    pub ends: [(f64, f64); N],
+    /// How each is distributed.
+    pub numbers: [Spread; N],
     /// The system and the task, made of the numbers and of what they would be without.
     pub apply: F,
 }
@@ -75,12 +76,12 @@ where
     type Numbers = [T; N];
 
     fn check(&self) -> Result<(), ControlError> {
-        between::check("width of the variation", self.ends)
+        self.numbers.iter().enumerate().try_for_each(|(i, spread)| spread.check::<T>(i))
     }
 
     fn draw(&self, episode: Episode) -> [T; N] {
-        let shares = between::shares::<N>(episode, Purpose::Variation, 0);
-        from_fn(|i| between::at(self.ends[i], shares[i]))
+        const { Episode::has(N) };
+        from_fn(|i| T::from_f64(self.numbers[i].draw(episode, Purpose::Variation, i)))
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@ use libration::integrator::SymplecticEuler;
 use libration::rl::policy::Constant;
 use libration::rl::start::At;
 use libration::rl::task::Regulate;
-use libration::rl::{Autoreset, Delays, Environment, Environments, Layout, Plan, Rollout};
+use libration::rl::{Autoreset, Delays, Environment, Environments, Layout, Plan, Rollout, Task};
 
 use crate::bits::POLICY;
 use crate::{SPRING, TASK, ideal, perturbed};
@@ -84,6 +84,60 @@ fn an_action_or_a_reward_that_is_no_number_ends_the_episode_of_its_environment_a
 }
 
 #[test]
+fn what_is_lost_is_seen_so_in_no_transition_and_begins_again() {
+    use libration::rl::policy::Given;
+    for autoreset in [Autoreset::NextStep, Autoreset::Disabled] {
+        let mut all =
+            Environments::new(ideal().autoreset(autoreset), 70, 1, Execution::serial()).unwrap();
+        let mut actions = vec![0.5_f32; 70 * 6];
+        actions[2 * 70 + 33] = f32::INFINITY;
+        let mut rollout = Rollout::new(Plan::new(6, 70).truncated()).unwrap();
+        all.rollout(Given(&actions), &mut rollout).unwrap();
+        assert!(rollout.finals().iter().any(|end| end.lost && end.environment == 33));
+        assert!(rollout.reward().iter().all(|reward| reward.is_finite()));
+        for (t, n) in (0..6).flat_map(|t| (0..70).map(move |n| (t, n))) {
+            let seen = rollout.seen(t, n).iter().all(|x| x.is_finite());
+            assert!(seen || (n == 33 && !rollout.is_transition(t, n)), "{t} {n} {autoreset:?}");
+        }
+        // Lost in the third step, it stands in the fourth, and then begins again or waits.
+        let moves = [3, 4].map(|t| rollout.is_transition(t, 33));
+        assert_eq!(moves, [false, autoreset == Autoreset::NextStep]);
+        if autoreset == Autoreset::Disabled {
+            all.reset(&[true; 70]).unwrap();
+            all.rollout(Given(&[0.5; 70 * 6]), &mut rollout).unwrap();
+            assert!(rollout.observation().iter().all(|x| x.is_finite()));
+        }
+    }
+}
+
+#[test]
+fn what_is_finite_is_not_lost_however_large() {
+    use half::f16;
+    /// Nothing is paid for, and nothing is over.
+    #[derive(Clone, Copy)]
+    struct Nothing;
+    impl Task<f16, 1, 2> for Nothing {
+        fn observe(&self, _: f16, state: &State<f16, 1>) -> [f16; 2] {
+            [state.q[0], state.v[0]]
+        }
+        fn reward(&self, _: f16, _: &State<f16, 1>, _: &[f16; 1], _: &State<f16, 1>) -> f16 {
+            f16::MAX
+        }
+        fn terminated(&self, _: f16, _: &State<f16, 1>) -> bool {
+            false
+        }
+    }
+    // Of no two of these numbers there is a sum in this type.
+    let start = At(State { q: [40_000.0], v: [40_000.0] });
+    let still = libration::system::Oscillator { omega2: f16::ZERO };
+    let environment = Environment::new(All(still), SymplecticEuler, 1e-7, Nothing, start);
+    let mut all = Environments::new(environment, 64, 0, Execution::serial()).unwrap();
+    let mut rollout: Rollout<f16, 2, 1> = Rollout::new(Plan::new(3, 64)).unwrap();
+    all.rollout(Constant([0.0]), &mut rollout).unwrap();
+    assert!(rollout.finals().is_empty());
+}
+
+#[test]
 fn what_stands_still_waits_for_its_reset_and_nothing_else_does() {
     let world = perturbed(Autoreset::Disabled);
     let mut all = Environments::new(world, 100, 3, Execution::serial()).unwrap();
@@ -102,5 +156,5 @@ fn what_stands_still_waits_for_its_reset_and_nothing_else_does() {
     }
     assert!(rollout.finals().iter().all(|end| which[end.environment]));
     let short = all.reset(&[true]).unwrap_err().to_string();
-    assert_eq!(short, "there are 1 marks of the reset; there must be 100");
+    assert_eq!(short, "the number of marks of the reset is 1; it must be 100");
 }

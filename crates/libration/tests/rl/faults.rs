@@ -3,13 +3,18 @@
 use libration::State;
 use libration::control::clock::{Gaussian, Jittered, Recorded, Uniform};
 use libration::ensemble::{All, Execution};
-use libration::rl::policy::{Activation, Each, Explore, Given, Perceptron, Random};
+use libration::rl::policy::{
+    Activation, Constant, Each, EachPerceptron, Explore, Given, Linear, Perceptron, Random,
+};
 use libration::rl::sensor::Noisy;
 use libration::rl::start::Between;
 use libration::rl::task::Regulate;
+use libration::rl::variation::Varied;
 use libration::rl::{
-    Delays, Environment, Environments, Estimates, Plan, Policy, Rollout, Severity, World, Writes,
+    Delays, Environment, Environments, Estimates, Plan, Policy, Rollout, Severity, Spread, World,
+    Writes,
 };
+use libration::system::Oscillator;
 
 use crate::bits::POLICY;
 use crate::{ANYWHERE, ideal};
@@ -53,6 +58,35 @@ fn an_environment_that_cannot_be_is_refused() {
         refused(noisy),
         "the rms of the noise of observation 1 is -0.1; it must be a finite number of at least 0"
     );
+    let varied = |spread| {
+        let apply = |_: [f32; 1], system: Oscillator<f32>, task: Regulate| (system, task);
+        refused(ideal().variation(Varied { numbers: [spread], apply }))
+    };
+    for (spread, wanted) in [
+        (
+            Spread::Uniform(2.0, 1.0),
+            "width of the variation 0 is -1; it must be a finite number of at least 0",
+        ),
+        (Spread::LogUniform(0.0, 1.0), "lower end of the variation 0 is 0; it must be above 0"),
+        (
+            Spread::LogUniform(2.0, 1.0),
+            "upper end of the variation 0 is 1; it must be at least the lower",
+        ),
+        (
+            Spread::Normal(0.0, -1.0),
+            "standard deviation of the variation 0 is -1; it must be at least 0",
+        ),
+        (
+            Spread::Normal(f64::NAN, 1.0),
+            "mean of the variation 0 is NaN; it must be finite in the float type",
+        ),
+        (
+            Spread::Either(1.5, [0.0; 2]),
+            "probability of the variation 0 is 1.5; it must be from 0 to 1",
+        ),
+    ] {
+        assert_eq!(varied(spread), wanted);
+    }
     // The latency of an observation may be longer than any episode: it sees the start.
     assert!(made(late([4096; 2], [4096; 2])).is_ok());
 }
@@ -65,7 +99,7 @@ fn a_rollout_that_does_not_fit_is_refused_and_nothing_has_moved() {
         two.rollout(POLICY, &mut rollout).map_err(|error| error.to_string())
     };
     let other = fill(Plan::new(4, 3).truncated()).unwrap_err();
-    assert_eq!(other, "there are 3 environments of the rollout; there must be 2");
+    assert_eq!(other, "the number of environments of the rollout is 3; it must be 2");
     let unsaid = fill(Plan::new(4, 2)).unwrap_err();
     assert!(unsaid.contains("room for `truncated`"), "{unsaid}");
     fill(Plan::new(0, 2).truncated().writes(Writes::Past)).unwrap();
@@ -97,14 +131,32 @@ fn a_policy_that_cannot_act_is_refused() {
         let mut rollout = Rollout::new(Plan::new(5, 2).truncated()).unwrap();
         two.rollout(policy, &mut rollout).unwrap_err().to_string()
     }
-    assert_eq!(told(Given(&[0.0; 9])), "there are 9 actions; there must be 10");
-    assert_eq!(told(Each(&[0.0; 5])), "there are 5 weights of the policy; there must be 6");
+    assert_eq!(told(Given(&[0.0; 9])), "the number of actions is 9; it must be 10");
+    assert_eq!(told(Each(&[0.0; 5])), "the number of weights of the policy is 5; it must be 6");
     let network = Perceptron::<f32, 8> { parameters: &[0.0; 34], activation: Activation::Tanh };
-    assert_eq!(told(network), "there are 34 parameters of the network; there must be 105");
+    assert_eq!(told(network), "the number of parameters of the network is 34; it must be 105");
     assert_eq!(
         told(Explore { policy: POLICY, sigma: [0.0] }),
         "standard deviation of exploration 0 is 0; it must be a finite number above 0"
     );
+    assert_eq!(
+        told(Linear { weights: [[1.0, f64::NAN]], bias: [0.0] }),
+        "weight of the policy 1 is NaN; it must be finite in the float type"
+    );
+    assert_eq!(
+        told(Constant([1e300])),
+        "constant action 0 is 1e300; it must be finite in the float type"
+    );
+    let mut weights = [0.0; 6];
+    weights[4] = f32::INFINITY;
+    assert!(told(Each(&weights)).contains("weight of the policy 4 is inf"));
+    let mut parameters = [0.0; Perceptron::<f32, 8>::parameters(2, 1, 1)];
+    parameters[32] = f32::NAN;
+    let network = Perceptron::<f32, 8> { parameters: &parameters, activation: Activation::Relu };
+    assert!(told(network).contains("parameter of the network 32 is NaN"));
+    let networks =
+        EachPerceptron::<f32, 8> { parameters: &parameters, activation: Activation::Relu };
+    assert_eq!(told(networks), "the number of parameters of the networks is 33; it must be 66");
     assert_eq!(
         told(Random::between([1.0], [0.0])),
         "width of the random action 0 is -1; it must be a finite number above 0"

@@ -8,6 +8,7 @@ mod episodes;
 mod faults;
 mod policies;
 mod tensors;
+mod widths;
 
 use libration::State;
 use libration::control::clock::{Fixed, Gaussian, Jittered, Skewed, Uniform};
@@ -17,7 +18,7 @@ use libration::rl::sensor::{Exact, Noisy};
 use libration::rl::start::Between;
 use libration::rl::task::Regulate;
 use libration::rl::variation::Same;
-use libration::rl::{Autoreset, Delays, Environment, Severity, Variation};
+use libration::rl::{Autoreset, Delays, Environment, Severity, Spread, Variation};
 use libration::system::Oscillator;
 
 const SPRING: Oscillator<f32> = Oscillator { omega2: 10.0 };
@@ -60,7 +61,7 @@ fn perturbed(
         .sensor(Noisy([Uniform(0.05), Uniform(0.1)]))
         .severity(Severity { clock: [0.0, 2.0], sensor: [0.5, 1.5] })
         .variation(Varied {
-            ends: [(8.0, 12.0), (1.0, 1.4)],
+            numbers: [Spread::Uniform(8.0, 12.0), Spread::Uniform(1.0, 1.4)],
             apply: |[omega2, bound]: [f32; 2], _: Oscillator<f32>, task: Regulate| {
                 (Oscillator { omega2 }, Regulate { bound: bound.into(), ..task })
             },

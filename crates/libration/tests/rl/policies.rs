@@ -1,7 +1,9 @@
 //! Who acts, and with which words.
 
 use libration::ensemble::Execution;
-use libration::rl::policy::{Activation, Each, Explore, Given, Linear, Perceptron, Random};
+use libration::rl::policy::{
+    Activation, Each, EachPerceptron, Explore, Given, Linear, Perceptron, Random,
+};
 use libration::rl::{Environments, Plan, Policy, Rollout};
 
 use crate::bits::{POLICY, told};
@@ -90,6 +92,16 @@ fn a_network_acts_alike_on_every_instruction_set_and_beside_any_number_of_others
         let network = Perceptron::<f32, 16> { parameters: &parameters, activation };
         let how = Default::default();
         let wanted = told(ideal(), network, 0..130, Execution::serial(), &[100], how);
+        // Networks for each, which happen to be the same; and where one is not, it alone does something else.
+        let mut copies: Vec<f32> = parameters.iter().flat_map(|&p| [p; 130]).collect();
+        let each = EachPerceptron::<f32, 16> { parameters: &copies, activation };
+        assert_eq!(told(ideal(), each, 0..130, Execution::serial(), &[100], how), wanted);
+        copies[(COUNT - 1) * 130 + 77] += 0.5;
+        let each = EachPerceptron::<f32, 16> { parameters: &copies, activation };
+        let found = told(ideal(), each, 0..130, Execution::serial(), &[100], how);
+        for n in 0..130 {
+            assert_eq!(found[n] == wanted[n], n != 77);
+        }
         for execution in executions() {
             let found = told(ideal(), network, 0..3, execution, &[60, 40], how);
             assert_eq!(found[..], wanted[..3]);

@@ -111,12 +111,12 @@ fn a_plan_counts_the_bytes_of_table_9_11() {
 }
 
 #[test]
-fn what_a_cache_holds_is_written_through_it_and_what_it_does_not_past_it() {
+fn what_half_a_cache_holds_is_written_through_it_and_what_it_does_not_past_it() {
     use libration::rl::Writes;
     let bytes = Plan::new(512, 1024).bytes(2, 1, 4);
-    let cache = 512 * 1024 * 17;
+    let cache = 2 * 512 * 1024 * 17;
     assert_eq!(
-        [cache, cache - 1].map(|cache| Writes::suited(bytes, cache)),
+        [cache, cache - 2].map(|cache| Writes::suited(bytes, cache)),
         [Writes::Plain, Writes::Past]
     );
 }
@@ -207,7 +207,7 @@ fn advantages_are_those_of_the_definition_under_every_autoreset() {
         };
         assert_eq!(
             told(&next[1..], 0.9),
-            "there are 89 values after the last step; there must be 90"
+            "the number of values after the last step is 89; it must be 90"
         );
         assert_eq!(told(&next, 1.5), "discount of rewards is 1.5; it must be from 0 to 1");
     }

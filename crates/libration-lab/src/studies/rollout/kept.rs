@@ -12,7 +12,9 @@ use libration::rl::sensor::Noisy;
 use libration::rl::start::Between;
 use libration::rl::task::Regulate;
 use libration::rl::variation::Varied;
-use libration::rl::{Delays, Environment, Environments, Layout, Plan, Rollout, World, Writes};
+use libration::rl::{
+    Delays, Environment, Environments, Layout, Plan, Rollout, Spread, World, Writes,
+};
 use libration::system::Oscillator;
 
 use crate::Lab;
@@ -52,7 +54,7 @@ fn world() -> impl World<f32, 2, 1> {
         .clock((Skewed(Jitter::Uniform(0.01)), Jittered(Gaussian(0.2))))
         .sensor(Noisy([Uniform(0.05), Uniform(0.1)]))
         .variation(Varied {
-            ends: [(8.0, 12.0), (1.0, 1.4)],
+            numbers: [Spread::Uniform(8.0, 12.0), Spread::Uniform(1.0, 1.4)],
             apply: |[omega2, bound]: [f32; 2], _: Oscillator<f32>, task: Regulate| {
                 (Oscillator { omega2 }, Regulate { bound: bound.into(), ..task })
             },

@@ -5,7 +5,8 @@ use crate::Float;
 use crate::random::{Streams, normal};
 use crate::rl::EnvironmentError;
 
-/// A policy with Gaussian noise on each of its actions; the log-probability is that of the noise.
+/// A policy with Gaussian noise on each of its actions; the log-probability is that of the noise. A policy that is itself random
+/// has none that were known, and does not compile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Explore<P, const D: usize> {
     /// The policy, whose actions are the means.
@@ -28,6 +29,7 @@ impl<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize> Policy<T, O, 
     const DRAWS: bool = true;
 
     fn check(&self, environments: usize, horizon: usize) -> Result<(), EnvironmentError> {
+        const { assert!(!P::DRAWS, "exploration is around actions that are sure") };
         self.policy.check(environments, horizon)?;
         for (index, &sigma) in self.sigma.iter().enumerate() {
             EnvironmentError::above_zero::<T>("standard deviation of exploration", index, sigma)?;
@@ -36,7 +38,7 @@ impl<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize> Policy<T, O, 
     }
 
     fn words(&self) -> usize {
-        self.policy.words() + 2 * D
+        2 * D
     }
 
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use core::array::from_fn;
 
-use super::{Act, Place, Policy};
+use super::{Act, Place, Policy, all_finite, lanes};
 use crate::Float;
 use crate::random::Streams;
 use crate::rl::EnvironmentError;
@@ -18,6 +18,11 @@ pub struct Linear<const O: usize, const D: usize> {
 
 impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Linear<O, D> {
     const BRIEF: bool = true;
+
+    fn check(&self, _: usize, _: usize) -> Result<(), EnvironmentError> {
+        all_finite::<T>("weight of the policy", self.weights.as_flattened().iter().copied())?;
+        all_finite::<T>("bias of the policy", self.bias)
+    }
 
     #[inline(always)]
     fn act(&self, _: Place, seen: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
@@ -42,7 +47,8 @@ pub struct Each<'a, T>(
 impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Each<'_, T> {
     fn check(&self, environments: usize, _: usize) -> Result<(), EnvironmentError> {
         let wanted = environments.saturating_mul(D * (O + 1));
-        EnvironmentError::shape("weights of the policy", self.0.len(), wanted)
+        EnvironmentError::shape("weights of the policy", self.0.len(), wanted)?;
+        all_finite::<T>("weight of the policy", self.0.iter().map(|x| x.to_f64()))
     }
 
     #[inline(always)]
@@ -66,13 +72,7 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Each<'_, T> {
         actions: &mut [[T; W]; D],
         _: &mut [T; W],
     ) {
-        // A row of lanes where there is a whole one; beyond the last environment it does not matter what is done.
-        let row = |k: usize| -> [T; W] {
-            let row = &self.0[k * place.environments..][place.environment..place.environments];
-            row.first_chunk()
-                .copied()
-                .unwrap_or_else(|| from_fn(|l| row.get(l).copied().unwrap_or_else(T::zero)))
-        };
+        let row = |k| lanes::<T, W>(self.0, place, k);
         for (i, action) in actions.iter_mut().enumerate() {
             *action = row(i * (O + 1) + O);
             for (k, seen) in seen.iter().enumerate() {

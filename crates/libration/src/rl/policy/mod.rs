@@ -9,11 +9,14 @@ mod random;
 pub use explore::Explore;
 pub use given::Given;
 pub use linear::{Each, Linear};
-pub use perceptron::{Activation, Perceptron};
+pub use perceptron::{Activation, EachPerceptron, Perceptron};
 pub use random::Random;
+
+use core::array::from_fn;
 
 use super::EnvironmentError;
 use crate::Float;
+use crate::control::ControlError;
 use crate::ensemble::kernel::{at, put};
 use crate::random::Streams;
 
@@ -108,8 +111,34 @@ pub struct Constant<const D: usize>(
 impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Constant<D> {
     const BRIEF: bool = true;
 
+    fn check(&self, _: usize, _: usize) -> Result<(), EnvironmentError> {
+        all_finite::<T>("constant action", self.0)
+    }
+
     #[inline(always)]
     fn act(&self, _: Place, _: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
         Act::sure(self.0.map(T::from_f64))
     }
+}
+
+/// Nothing, if each of these numbers is finite, in the float type as well: a policy with another loses every environment.
+fn all_finite<T: Float>(
+    name: &'static str,
+    numbers: impl IntoIterator<Item = f64>,
+) -> Result<(), EnvironmentError> {
+    let mut numbers = numbers.into_iter().enumerate();
+    let Some((index, value)) = numbers.find(|&(_, x)| !T::from_f64(x).is_finite()) else {
+        return Ok(());
+    };
+    let allowed = "finite in the float type";
+    Err(ControlError { name, index: Some(index), value, allowed }.into())
+}
+
+/// Number `k` of neighbouring environments, from `[k, n]`. Beyond the last environment it does not matter what is done.
+#[inline(always)]
+fn lanes<T: Float, const W: usize>(numbers: &[T], place: Place, k: usize) -> [T; W] {
+    let row = &numbers[k * place.environments..][place.environment..place.environments];
+    // All at once where there are as many.
+    let whole = row.first_chunk().copied();
+    whole.unwrap_or_else(|| from_fn(|l| row.get(l).copied().unwrap_or_else(T::zero)))
 }

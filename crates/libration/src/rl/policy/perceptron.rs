@@ -1,6 +1,6 @@
 //! A small neural network.
 
-use super::{Act, Place, Policy};
+use super::{Act, Place, Policy, all_finite, lanes};
 use crate::random::Streams;
 use crate::rl::EnvironmentError;
 use crate::{Elementary, Float};
@@ -24,9 +24,24 @@ pub struct Perceptron<'a, T, const H: usize> {
     pub activation: Activation,
 }
 
+/// A [`Perceptron`] with parameters for each environment, as evolution strategies want.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EachPerceptron<'a, T, const H: usize> {
+    /// `[k, n]`, where number `k` of environment `n` is that of a [`Perceptron`].
+    pub parameters: &'a [T],
+    /// Of the hidden layers.
+    pub activation: Activation,
+}
+
 /// Parameters of a layer.
 const fn parameters(inputs: usize, outputs: usize) -> usize {
     outputs * (inputs + 1)
+}
+
+/// Hidden layers between the first and the last, if there are so many parameters.
+fn between<const O: usize, const H: usize, const D: usize>(count: usize) -> usize {
+    let ends = const { parameters(O, H) + parameters(H, D) };
+    count.saturating_sub(ends).div_ceil(const { parameters(H, H) })
 }
 
 impl<T, const H: usize> Perceptron<'_, T, H> {
@@ -42,18 +57,16 @@ where
     T: Float + Elementary,
 {
     fn check(&self, _: usize, _: usize) -> Result<(), EnvironmentError> {
-        let (found, least) = (self.parameters.len(), Self::parameters(O, 1, D));
-        let between = found.saturating_sub(least);
-        let layers = 1 + between.div_ceil(const { parameters(H, H) });
-        EnvironmentError::shape("parameters of the network", found, Self::parameters(O, layers, D))
+        let found = self.parameters.len();
+        let wanted = Self::parameters(O, 1 + between::<O, H, D>(found), D);
+        EnvironmentError::shape("parameters of the network", found, wanted)?;
+        let parameters = self.parameters.iter().map(|x| x.to_f64());
+        all_finite::<T>("parameter of the network", parameters)
     }
 
     #[inline(always)]
     fn act(&self, place: Place, seen: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
-        let (mut actions, mut likely) = ([[T::zero(); 1]; D], [T::zero()]);
-        let mut words = Streams::resumed(0, 0, 0, crate::random::Purpose::Action, 0);
-        self.act_all(place, &seen.map(|x| [x]), &mut words, &mut actions, &mut likely);
-        Act::sure(actions.map(|[x]| x))
+        alone(self, place, seen)
     }
 
     #[inline(always)]
@@ -66,54 +79,119 @@ where
         log_probabilities: &mut [T; W],
     ) {
         *log_probabilities = [T::zero(); W];
-        let (first, rest) = self.parameters.split_at(const { parameters(O, H) });
-        let (between, last) = rest.split_at(rest.len() - const { parameters(H, D) });
-        let mut hidden = [[T::zero(); W]; H];
-        layer(first, seen, &mut hidden);
-        self.activate(&mut hidden);
-        for each in between.chunks_exact(const { parameters(H, H) }) {
-            let inputs = hidden;
-            layer(each, &inputs, &mut hidden);
-            self.activate(&mut hidden);
-        }
-        layer(last, &hidden, actions);
+        let between = between::<O, H, D>(self.parameters.len());
+        let parameter = |k| [self.parameters[k]; W];
+        forward::<T, O, H, D, W>(self.activation, between, parameter, seen, actions);
     }
 }
 
-impl<T: Float + Elementary, const H: usize> Perceptron<'_, T, H> {
+impl<T, const O: usize, const H: usize, const D: usize> Policy<T, O, D> for EachPerceptron<'_, T, H>
+where
+    T: Float + Elementary,
+{
+    fn check(&self, environments: usize, _: usize) -> Result<(), EnvironmentError> {
+        let found = self.parameters.len();
+        let layers = 1 + between::<O, H, D>(found.checked_div(environments).unwrap_or(0));
+        let wanted = Perceptron::<T, H>::parameters(O, layers, D).saturating_mul(environments);
+        EnvironmentError::shape("parameters of the networks", found, wanted)?;
+        let parameters = self.parameters.iter().map(|x| x.to_f64());
+        all_finite::<T>("parameter of the networks", parameters)
+    }
+
     #[inline(always)]
-    fn activate<const W: usize>(&self, hidden: &mut [[T; W]; H]) {
-        for row in hidden {
-            match self.activation {
-                Activation::Tanh => {
-                    for x in row {
-                        *x = tanh(*x);
-                    }
+    fn act(&self, place: Place, seen: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
+        alone(self, place, seen)
+    }
+
+    #[inline(always)]
+    fn act_all<const W: usize>(
+        &self,
+        place: Place,
+        seen: &[[T; W]; O],
+        _: &mut Streams<W>,
+        actions: &mut [[T; W]; D],
+        log_probabilities: &mut [T; W],
+    ) {
+        *log_probabilities = [T::zero(); W];
+        let between = between::<O, H, D>(self.parameters.len() / place.environments.max(1));
+        let parameter = |k| lanes::<T, W>(self.parameters, place, k);
+        forward::<T, O, H, D, W>(self.activation, between, parameter, seen, actions);
+    }
+}
+
+/// One action of a policy that has many at once.
+#[inline(always)]
+fn alone<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize>(
+    policy: &P,
+    place: Place,
+    seen: &[T; O],
+) -> Act<T, D> {
+    let (mut actions, mut likely) = ([[T::zero(); 1]; D], [T::zero()]);
+    let mut words = Streams::none();
+    policy.act_all(place, &seen.map(|x| [x]), &mut words, &mut actions, &mut likely);
+    Act::sure(actions.map(|[x]| x))
+}
+
+/// What networks answer, whose `k`-th parameters are known.
+#[inline(always)]
+fn forward<T, const O: usize, const H: usize, const D: usize, const W: usize>(
+    activation: Activation,
+    between: usize,
+    parameter: impl Fn(usize) -> [T; W],
+    seen: &[[T; W]; O],
+    actions: &mut [[T; W]; D],
+) where
+    T: Float + Elementary,
+{
+    let mut hidden = [[T::zero(); W]; H];
+    layer(0, &parameter, seen, &mut hidden);
+    activate(activation, &mut hidden);
+    let mut first = const { parameters(O, H) };
+    for _ in 0..between {
+        let inputs = hidden;
+        layer(first, &parameter, &inputs, &mut hidden);
+        activate(activation, &mut hidden);
+        first += const { parameters(H, H) };
+    }
+    layer(first, &parameter, &hidden, actions);
+}
+
+#[inline(always)]
+fn activate<T: Float + Elementary, const H: usize, const W: usize>(
+    activation: Activation,
+    hidden: &mut [[T; W]; H],
+) {
+    for row in hidden {
+        match activation {
+            Activation::Tanh => {
+                for x in row {
+                    *x = tanh(*x);
                 }
-                Activation::Relu => {
-                    for x in row {
-                        // What is no number stays none.
-                        *x = if *x < T::zero() { T::zero() } else { *x };
-                    }
+            }
+            Activation::Relu => {
+                for x in row {
+                    // What is no number stays none.
+                    *x = if *x < T::zero() { T::zero() } else { *x };
                 }
             }
         }
     }
 }
 
-/// The sums of a layer, each from its bias on.
+/// The sums of a layer, each from its bias on; its parameters are those from the `first` on.
 #[inline(always)]
 fn layer<T: Float, const I: usize, const N: usize, const W: usize>(
-    parameters: &[T],
+    first: usize,
+    parameter: &impl Fn(usize) -> [T; W],
     inputs: &[[T; W]; I],
     outputs: &mut [[T; W]; N],
 ) {
-    let (weights, biases) = parameters.split_at(N * I);
     for (j, output) in outputs.iter_mut().enumerate() {
-        let mut sums = [biases[j]; W];
-        for (&weight, input) in weights[j * I..][..I].iter().zip(inputs) {
+        let mut sums = parameter(first + N * I + j);
+        for (i, input) in inputs.iter().enumerate() {
+            let weight = parameter(first + j * I + i);
             for l in 0..W {
-                sums[l] = sums[l] + weight * input[l];
+                sums[l] = sums[l] + weight[l] * input[l];
             }
         }
         *output = sums;
@@ -187,6 +265,6 @@ mod tests {
         }
         let short = Perceptron::<f64, 2> { parameters: &p[..14], activation: Activation::Relu };
         let refused = Policy::<f64, 2, 1>::check(&short, 1, 1).unwrap_err().to_string();
-        assert_eq!(refused, "there are 14 parameters of the network; there must be 15");
+        assert_eq!(refused, "the number of parameters of the network is 14; it must be 15");
     }
 }

@@ -1,0 +1,106 @@
+//! Neighbouring environments of a rollout, over all its steps.
+
+use core::array::from_fn;
+use core::mem::{replace, take};
+
+use ndarray::{ArrayViewMut2, Axis};
+
+use super::Layout;
+use super::row::Row;
+
+/// Where all steps of neighbouring environments are written. To divide and to read it allocates nothing: for a short rollout
+/// a list of its rows took as long as the steps.
+pub(super) struct Strip<'a, T, const O: usize, const D: usize> {
+    /// The planes, or all numbers in the first.
+    pub(super) observation: [ArrayViewMut2<'a, T>; O],
+    pub(super) action: [ArrayViewMut2<'a, T>; D],
+    pub(super) reward: ArrayViewMut2<'a, T>,
+    pub(super) terminated: ArrayViewMut2<'a, u8>,
+    /// Without columns where nobody asked for it, as the next.
+    pub(super) truncated: ArrayViewMut2<'a, u8>,
+    pub(super) log_probability: ArrayViewMut2<'a, T>,
+    pub(super) layout: Layout,
+}
+
+impl<'a, T, const O: usize, const D: usize> Strip<'a, T, O, D> {
+    /// Takes off the first `count` environments.
+    pub(super) fn split_off(&mut self, count: usize) -> Strip<'a, T, O, D> {
+        let layout = self.layout;
+        let width = |n| if layout == Layout::Interleaved { n } else { 1 };
+        Strip {
+            observation: self
+                .observation
+                .each_mut()
+                .map(|all| first_columns(all, count * width(O))),
+            action: self.action.each_mut().map(|all| first_columns(all, count * width(D))),
+            reward: first_columns(&mut self.reward, count),
+            terminated: first_columns(&mut self.terminated, count),
+            truncated: first_columns(&mut self.truncated, count),
+            log_probability: first_columns(&mut self.log_probability, count),
+            layout,
+        }
+    }
+
+    /// How many steps there are.
+    pub(super) fn steps(&self) -> usize {
+        self.reward.nrows()
+    }
+
+    /// Step `t`.
+    pub(super) fn row(&mut self, t: usize) -> Row<'_, T, O, D> {
+        Row {
+            observation: self.observation.each_mut().map(|all| row(all, t)),
+            action: self.action.each_mut().map(|all| row(all, t)),
+            reward: row(&mut self.reward, t),
+            terminated: row(&mut self.terminated, t),
+            truncated: row(&mut self.truncated, t),
+            log_probability: row(&mut self.log_probability, t),
+        }
+    }
+}
+
+/// The `N` planes of a tensor, each as so many rows; where its numbers lie side by side there is one, and its rows are longer.
+pub(super) fn planes<T, const N: usize>(
+    numbers: &mut [T],
+    layout: Layout,
+    rows: usize,
+) -> [ArrayViewMut2<'_, T>; N] {
+    let plane = match layout {
+        Layout::Interleaved => numbers.len(),
+        Layout::Planes => numbers.len() / N.max(1),
+    };
+    let mut planes = numbers.chunks_exact_mut(plane.max(1));
+    from_fn(|_| rows_of(planes.next().unwrap_or_default(), rows))
+}
+
+/// So many rows, of what is as long as some.
+pub(super) fn rows_of<T>(numbers: &mut [T], rows: usize) -> ArrayViewMut2<'_, T> {
+    let width = numbers.len().checked_div(rows).unwrap_or(0);
+    ArrayViewMut2::from_shape((rows, width), numbers).expect("whole rows")
+}
+
+/// Row `t` of columns.
+pub(super) fn row<'r, X>(columns: &'r mut ArrayViewMut2<'_, X>, t: usize) -> &'r mut [X] {
+    columns.index_axis_mut(Axis(0), t).into_slice().unwrap_or_default()
+}
+
+/// Takes off the first `count` columns, or all if there are fewer.
+pub(super) fn first_columns<'a, X>(
+    columns: &mut ArrayViewMut2<'a, X>,
+    count: usize,
+) -> ArrayViewMut2<'a, X> {
+    let none = rows_of(&mut [], 0);
+    let whole = replace(columns, none);
+    let count = count.min(whole.ncols());
+    let (head, tail) = whole.split_at(Axis(1), count);
+    *columns = tail;
+    head
+}
+
+/// Takes off the first `count`, or all if there are fewer.
+pub(super) fn first_of<'a, X>(slice: &mut &'a mut [X], count: usize) -> &'a mut [X] {
+    let whole = take(slice);
+    let (head, tail) = whole.split_at_mut(count.min(whole.len()));
+    *slice = tail;
+    head
+}
