@@ -7,12 +7,16 @@ use libration::rl::{Discounts, Environments, Estimates, Rollout};
 
 use super::cases::{on, on_cores, suited};
 use crate::bench::{Contestant, FEEDBACK, RolloutCase, RolloutTask, regulating, rollout};
-use crate::record::{Finding, Record, Table};
-use crate::studies::desk::Desk;
+use crate::record::{Record, Table};
+use crate::studies::desk::{Desk, aim};
 use crate::study::StudyError;
 
 const CASE: RolloutCase =
     RolloutCase { task: RolloutTask::Regulate, environments: 4096, horizon: 256 };
+
+/// Of a transition a rollout writes 17 bytes past the caches. Advantages read 9, and write 8 that are fetched before: with 25
+/// bytes to move, half the speed is the same class.
+const WANTED: f64 = 0.5;
 
 /// As learners have them.
 const DISCOUNTS: Discounts = Discounts { rewards: 0.99, errors: 0.95 };
@@ -27,23 +31,20 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         let plan = CASE.plan().writes(suited(CASE.bytes()));
         let contestants = [rollout(CASE, plan, execution)?, estimates(execution)?];
         let [rollouts, advantages] = desk.look(contestants)?;
-        let ratio = advantages.over(&rollouts).median();
-        record.find(Finding::measured(
-            format!("rollout.advantages{}", on(threads)),
-            format!(
-                "{} × {}, {}: transitions a second of generalised advantages and returns over those of the rollout",
-                CASE.environments,
-                CASE.horizon,
-                on_cores(threads)
-            ),
-            "1",
-            ratio,
-        ));
+        let ratio = advantages.over(&rollouts);
+        let id = format!("rollout.advantages{}", on(threads));
+        let text = format!(
+            "{} × {}, {}: transitions a second of generalised advantages and returns over those of the rollout",
+            CASE.environments,
+            CASE.horizon,
+            on_cores(threads)
+        );
+        aim(record, id, text, Some(WANTED), &ratio, "they move half again as many bytes");
         table.push([
             (threads as u64).into(),
             (rollouts.median() / 1e6).into(),
             (advantages.median() / 1e6).into(),
-            ratio.into(),
+            ratio.median().into(),
         ]);
     }
     record.tables.push(table);

@@ -58,7 +58,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
             record.find(Finding::related(
                 format!("rollout.faults.{name}"),
                 format!(
-                    "page faults of a rollout of {} × {} into new tensors, beside one for each page of 4 KiB",
+                    "page faults of a rollout of {} × {} into new tensors; at most one for each page of 4 KiB",
                     case.environments, case.horizon
                 ),
                 "1",
@@ -67,7 +67,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
                 faults as f64,
                 Tolerance::relative(
                     0.05,
-                    "lists of rows, and other threads of the process; fewer where the system hands out larger pages",
+                    "other threads of the process; fewer where the system hands out larger pages",
                 ),
             ));
         }
