@@ -170,7 +170,11 @@ fn layout(rate: &RolloutRate) -> &'static str {
 }
 
 fn writes(rate: &RolloutRate) -> &'static str {
-    match rate.writes {
+    way(rate.writes)
+}
+
+fn way(writes: Writes) -> &'static str {
+    match writes {
         Writes::Plain => "plain",
         Writes::Past => "past the caches",
     }
@@ -188,6 +192,7 @@ fn rollouts_json(rates: &[RolloutRate]) -> String {
             "threads": rate.threads,
             "transitions_per_second": rate.median,
             "spread": rate.spread,
+            "fill": way(rate.case.against()),
             "share_of_fill": rate.share,
             "share_spread": rate.share_spread,
         })

@@ -27,7 +27,7 @@ pub(crate) use oscillators::{oscillators, stepping};
 pub(crate) use passes::{PASSES, Traffic};
 pub(crate) use peers::{Peer, PeerRow, Peers, RolloutPeer};
 pub(crate) use platform::PlatformPendulum;
-pub(crate) use rollouts::{FEEDBACK, fill, regulating, rollout};
+pub(crate) use rollouts::{FEEDBACK, fill, regulating, rollout, suited};
 pub use rollouts::{RolloutCase, RolloutRate, RolloutTask, rollouts};
 pub(crate) use rung::{Task, prepare};
 pub(crate) use stopwatch::{Contestant, Rates, Turns, race};

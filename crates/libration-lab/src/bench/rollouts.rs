@@ -14,8 +14,8 @@ use libration::rl::{
 use libration::system::{Oscillator, Pendulum};
 
 use super::{Contestant, Rates, Turns, race};
-use crate::Lab;
 use crate::study::StudyError;
+use crate::{Lab, Machine};
 
 /// What the environments of a rollout are to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +46,9 @@ pub struct RolloutCase {
     /// Actions of each.
     pub horizon: usize,
 }
+
+/// What the last caches of most machines hold: 1024 × 512 transitions of the source's case, and some more.
+const CACHED: usize = 12 << 20;
 
 impl RolloutCase {
     /// Those of the source's table 9.11, one that no cache holds, two that the nearest do, and a swing-up.
@@ -89,10 +92,22 @@ impl RolloutCase {
         usize::try_from(self.all_bytes()).unwrap_or(usize::MAX)
     }
 
+    /// The fill that its speed is measured by: a plain one as long as a last cache of a few MiB holds it, one past the caches beyond.
+    pub fn against(&self) -> Writes {
+        if self.bytes() <= CACHED { Writes::Plain } else { Writes::Past }
+    }
+
     fn all_bytes(&self) -> u128 {
         let observation = if self.task == RolloutTask::SwingUp { 3 } else { 2 };
         self.plan().bytes(observation, 1, size_of::<f32>())
     }
+}
+
+/// How a rollout of so many bytes is best written on this machine.
+pub(crate) fn suited(bytes: usize) -> Writes {
+    let caches = Machine::detect().caches;
+    let near = caches.iter().rev().find(|cache| cache.level <= 2);
+    Writes::suited(bytes as u128, near.map_or(1 << 20, |cache| cache.bytes))
 }
 
 /// How fast a rollout is, in the faster way to write it.
@@ -104,13 +119,14 @@ pub struct RolloutRate {
     pub layout: Layout,
     /// How they were written.
     pub writes: Writes,
-    /// Of an execution on so many threads, of which a small rollout takes fewer.
+    /// On how many threads: a small one takes no more than it is worth.
     pub threads: usize,
     /// Transitions a second: the median of the rounds.
     pub median: f64,
     /// How far the quartiles of the rounds lie apart.
     pub spread: f64,
-    /// The share of a fill of as many bytes in the same way, by as many threads: the median of the rounds.
+    /// The share of a fill of as many bytes, by as many threads, written as [`against`](RolloutCase::against) says: the median of the
+    /// rounds.
     pub share: f64,
     /// How far the quartiles of the shares lie apart.
     pub share_spread: f64,
@@ -151,21 +167,24 @@ fn timed(
             contestants.push(fill(case, writes, execution)?);
         }
         let measured = race(lab, turns, &mut contestants)?;
-        let ways = WAYS.into_iter().zip(measured.chunks_exact(2));
-        let best = ways.max_by(|(_, a), (_, b)| a[0].median().total_cmp(&b[0].median()));
-        rates.extend(best.map(|(writes, pair)| {
-            let share: Rates = pair[0].over(&pair[1]);
-            RolloutRate {
-                case,
-                layout,
-                writes,
-                threads: execution.thread_count(),
-                median: pair[0].median(),
-                spread: pair[0].spread(),
-                share: share.median(),
-                share_spread: share.spread(),
-            }
-        }));
+        let [plain, plain_fill, past, past_fill] = &measured[..] else { continue };
+        let fill = if case.against() == Writes::Past { past_fill } else { plain_fill };
+        let (writes, rate) = if past.median() > plain.median() {
+            (Writes::Past, past)
+        } else {
+            (Writes::Plain, plain)
+        };
+        let share: Rates = rate.over(fill);
+        rates.push(RolloutRate {
+            case,
+            layout,
+            writes,
+            threads: case.plan().threads(execution),
+            median: rate.median(),
+            spread: rate.spread(),
+            share: share.median(),
+            share_spread: share.spread(),
+        });
     }
     Ok(rates)
 }

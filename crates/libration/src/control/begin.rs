@@ -17,7 +17,7 @@ pub struct Begin {
 const PARTS: u64 = 128;
 
 impl Begin {
-    /// Of `trajectory`, in the run of this seed, at a step: 0, or that of its reset.
+    /// Of `trajectory`, in the run of this seed, at a step: 0, or that of its reset; of an environment, the number of its episode.
     pub fn new(seed: u64, trajectory: u64, step: u64) -> Self {
         Begin { seed, trajectory, step, part: 0 }
     }

@@ -37,7 +37,9 @@ pub enum EnsembleError {
         len: usize,
     },
     /// A step must take time.
-    #[error("the time step is {dt} s; it must be above 0")]
+    #[error(
+        "the time step is {dt:?} s; it must be a finite number above 0, in the float type as well"
+    )]
     TimeStep {
         /// What it is, in seconds.
         dt: f64,

@@ -4,6 +4,7 @@ use bytemuck::Pod;
 
 use super::block::{self, BlockOf};
 use super::draws::Draws;
+use super::error::NOTHING_DRAWN;
 use super::history::History;
 use super::kernel::LANES;
 use super::start::Episode;
@@ -117,7 +118,11 @@ where
         parts.sensor.check()?;
         parts.variation.check()?;
         delays.check()?;
-        parts.severity.check()?;
+        let [clock, sensor] = [parts.clock.words(), parts.sensor.words()].map(|n| n as f64);
+        let (timed, seen) = (E::Clock::DRAWS, E::Sensor::DRAWS);
+        ensure("random words of the clock", clock, NOTHING_DRAWN, |n| timed || n == 0.0)?;
+        ensure("random words of the sensor", sensor, NOTHING_DRAWN, |n| seen || n == 0.0)?;
+        parts.severity.check::<T>()?;
         let rates = parts.clock.trajectories();
         for (what, values, len) in [
             ("systems", parts.systems.count(), len),

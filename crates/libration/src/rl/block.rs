@@ -14,8 +14,10 @@ use crate::{Float, State};
 pub(super) struct Block<T, C, V, const D: usize> {
     pub(super) q: [[T; LANES]; D],
     pub(super) v: [[T; LANES]; D],
-    /// What the episode has paid so far.
+    /// What the episode has paid since the last sum was formed.
     pub(super) paid: [T; LANES],
+    /// And before: a short float would soon hold nothing more.
+    pub(super) banked: [f64; LANES],
     /// What the clock remembers.
     pub(super) clock: C,
     /// What was drawn for the episode.
@@ -33,6 +35,9 @@ pub(super) struct Block<T, C, V, const D: usize> {
     /// How it ended, if it did and no other has begun: [`OVER`] and [`CUT`].
     pub(super) ended: [u8; LANES],
 }
+
+/// Steps whose rewards are summed in the float type.
+const BANKED: u64 = 32;
 
 /// An episode is over: terminated.
 pub(super) const OVER: u8 = 1;
@@ -71,6 +76,7 @@ pub(super) fn empty<T: Float, E: World<T, O, D>, const O: usize, const D: usize>
         q: [[T::zero(); LANES]; D],
         v: [[T::zero(); LANES]; D],
         paid: [T::zero(); LANES],
+        banked: [0.0; LANES],
         clock: ClockMemory::<T, E, O, D>::load(&none),
         numbers: Numbers::<T, E, O, D>::load(&none),
         severity: [[T::one(); LANES]; 2],
@@ -96,14 +102,14 @@ pub(super) fn begin<T: Float, E: World<T, O, D>, const O: usize, const D: usize>
     let state: State<T, D> = parts.start.draw(episode);
     put(&mut block.q, l, state.q);
     put(&mut block.v, l, state.v);
-    let begin = Begin::new(episode.seed, episode.environment, now);
+    let begin = Begin::new(episode.seed, episode.environment, episode.number);
     ClockMemory::<T, E, O, D>::set_lane(&mut block.clock, l, parts.clock.start(begin));
     Numbers::<T, E, O, D>::set_lane(&mut block.numbers, l, parts.variation.draw(episode));
     let delays = parts.delays.draw(episode);
     (0..2).for_each(|i| block.delays[i][l] = delays[i]);
     let severity = parts.severity.draw(episode);
     (0..2).for_each(|i| block.severity[i][l] = T::from_f64(severity[i]));
-    (block.paid[l], block.ended[l]) = (T::zero(), 0);
+    (block.paid[l], block.banked[l], block.ended[l]) = (T::zero(), 0.0, 0);
     (block.began[l], block.episode[l]) = (now, episode.number);
     history.begin(past, l, &state);
 }
@@ -125,6 +131,28 @@ impl<T: Copy, C: Copy, V, const D: usize> Block<T, C, V, D> {
         (self.paid[l], self.began[l]) = (T::zero(), now);
     }
 
+    /// What was paid goes to what was before, every so many steps.
+    #[inline(always)]
+    pub(super) fn bank(&mut self, step: u64)
+    where
+        T: Float,
+    {
+        if step.is_multiple_of(BANKED) {
+            for l in 0..LANES {
+                self.banked[l] += self.paid[l].to_f64();
+                self.paid[l] = T::zero();
+            }
+        }
+    }
+
+    /// All that the episode of lane `l` has paid.
+    pub(super) fn paid(&self, l: usize) -> f64
+    where
+        T: Float,
+    {
+        self.banked[l] + self.paid[l].to_f64()
+    }
+
     /// Episodes have begun.
     pub(super) fn settle(&mut self) {
         self.oldest = self.began.iter().copied().fold(u64::MAX, u64::min);
@@ -135,7 +163,7 @@ impl<T: Copy, C: Copy, V, const D: usize> Block<T, C, V, D> {
         let State { q, v } = as_it_was.state(l);
         put(&mut self.q, l, q);
         put(&mut self.v, l, v);
-        self.paid[l] = as_it_was.paid[l];
+        (self.paid[l], self.banked[l]) = (as_it_was.paid[l], as_it_was.banked[l]);
         // Its time stands as well.
         self.began[l] = as_it_was.began[l] + 1;
     }

@@ -19,8 +19,8 @@ pub struct Final<T, const O: usize> {
     pub environment: usize,
     /// What was seen last, before the next episode began.
     pub observation: [T; O],
-    /// What the episode paid in all.
-    pub episode_return: T,
+    /// What the episode paid in all: the sum of sums of at most 32 rewards in the float type.
+    pub episode_return: f64,
     /// Its actions.
     pub length: u64,
     /// Whether the environment was lost: its state, its action or what it was paid was no finite number.
@@ -88,7 +88,7 @@ where
                 step: place.row,
                 environment,
                 observation: at(&last, l),
-                episode_return: block.paid[l],
+                episode_return: block.paid(l),
                 length: step - block.began[l],
                 lost,
             });

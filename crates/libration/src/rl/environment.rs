@@ -51,7 +51,7 @@ pub enum Autoreset {
     /// What is seen next is what was seen last, and the action upon it is ignored: that step pays nothing, ends nothing, and
     /// leads to the start of the next episode.
     NextStep,
-    /// Nothing: the environment stands still, pays nothing and tells how it ended, until it is
+    /// Nothing: the environment stands still (what is seen late still arrives), pays nothing and tells how it ended, until it is
     /// [reset](super::Environments::reset).
     Disabled,
 }

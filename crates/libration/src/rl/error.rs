@@ -80,6 +80,9 @@ impl EnvironmentError {
     }
 }
 
+/// What is allowed of the random words of what does not draw.
+pub(super) const NOTHING_DRAWN: &str = "0, unless it says that it draws";
+
 /// What would fit.
 fn advice(bytes: usize, horizon: usize, environments: usize, room: &NoRoom) -> String {
     let Some(available) = room.available else {

@@ -101,6 +101,7 @@ where
                     let now = step + t as u64;
                     let place = Place { environment: first, environments, step: now, row: t };
                     let site = Site { place, count, systems };
+                    block.bank(now);
                     // What stands still is stepped with its neighbours, and put back.
                     let stood = (!stage.all_move(block)).then_some(*block);
                     macro_rules! past {

@@ -7,6 +7,10 @@
 //! What environment `i` does follows from its number, the seed, the policy and the steps taken: not from the number of
 //! environments or threads, the instruction set, the layout of the rollout or how many steps are taken at a time.
 
+//!
+//! All is computed in the float type of the rollout. An `f16` is for looking at what that does to an environment: of increments
+//! that are smaller than its spacing nothing is left, and advantages round like all else.
+
 mod batch;
 mod block;
 mod brief;

@@ -22,15 +22,16 @@ pub enum Writes {
     /// Through the caches: fastest where those near the core hold all of it.
     #[default]
     Plain,
-    /// Past the caches: fastest where they do not. What a last cache that is shared holds may be faster either way.
+    /// Past the caches: fastest where they do not.
     Past,
 }
 
 impl Writes {
-    /// The way for so many bytes, where the last cache holds so many of them. Others have their share of it: from half of it on, to
-    /// write past it is faster.
-    pub fn suited(bytes: u128, cache: u64) -> Self {
-        if bytes > u128::from(cache / 2) { Writes::Past } else { Writes::Plain }
+    /// The way for so many bytes, where the caches that a core has for itself hold so many of them. A cache that is shared is no
+    /// better than the memory past it: a step takes longer than its numbers take to get there, and who writes plainly waits for
+    /// lines to be fetched first.
+    pub fn suited(bytes: u128, near: u64) -> Self {
+        if bytes > u128::from(near) { Writes::Past } else { Writes::Plain }
     }
 }
 
@@ -106,8 +107,8 @@ impl Plan {
     ) -> [(&'static str, usize); 7] {
         let room = |asked: bool, bytes| if asked { bytes } else { 0 };
         [
-            ("observation", observation * number),
-            ("action", action * number),
+            ("observation", observation.saturating_mul(number)),
+            ("action", action.saturating_mul(number)),
             ("reward", number),
             ("terminated", 1),
             ("truncated", room(self.truncated, 1)),
@@ -118,7 +119,8 @@ impl Plan {
 
     /// Bytes of all of them for a transition.
     pub fn bytes_each(&self, observation: usize, action: usize, number: usize) -> usize {
-        self.fields(observation, action, number).iter().map(|(_, bytes)| bytes).sum()
+        let fields = self.fields(observation, action, number);
+        fields.iter().fold(0, |sum: usize, (_, bytes)| sum.saturating_add(*bytes))
     }
 
     /// All bytes.

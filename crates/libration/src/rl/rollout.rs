@@ -41,7 +41,7 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
         let (needed, bytes) = (plan.bytes(O, D, number), plan.bytes_each(O, D, number));
         let refused = |room| EnvironmentError::Room { horizon, environments, bytes, room };
         NoRoom::check(needed).map_err(refused)?;
-        let all = horizon.checked_mul(environments);
+        let all = horizon.checked_mul(environments).filter(|_| horizon <= isize::MAX as usize);
         let all = all.filter(|n| n.checked_mul(O.max(D)).is_some());
         let all = all.ok_or_else(|| refused(NoRoom { needed, available: None }))?;
         let room = |asked| if asked { all } else { 0 };

@@ -4,11 +4,13 @@ use core::mem::swap;
 
 use bytemuck::Pod;
 
+use super::error::NOTHING_DRAWN;
 use super::kernel::{Horizon, LANES, Share, TILE};
 use super::strip::first_of;
 use super::{Autoreset, EnvironmentError, Environments, Final, Policy, Rollout, Sensor, World};
 use crate::Float;
 use crate::control::Clock;
+use crate::control::error::ensure;
 use crate::ensemble::{EnsembleError, NoRoom};
 
 impl<T, E, const O: usize, const D: usize> Environments<T, E, O, D>
@@ -31,6 +33,10 @@ where
         let (horizon, len) = (plan.horizon, self.len);
         EnvironmentError::shape("environments of the rollout", plan.environments, len)?;
         policy.check(len, horizon)?;
+        let drawn = if P::DRAWS { "at least 1, since it draws" } else { NOTHING_DRAWN };
+        ensure("random words of the policy", policy.words() as f64, drawn, |n| {
+            P::DRAWS == (n > 0.0)
+        })?;
         let parts = self.world.parts();
         if parts.limit.is_some() && !plan.truncated {
             let (why, field) = ("the environments have a time limit", "truncated");
@@ -63,7 +69,13 @@ where
         let blocks = self.blocks.len();
         let [times, looks, acts] = &mut self.draws;
         let words = world.parts().clock.words();
-        let times = times.prepare(seed, step * substeps, steps * substeps, words, blocks);
+        let times = times.prepare(
+            seed,
+            step.saturating_mul(substeps),
+            steps.saturating_mul(substeps),
+            words,
+            blocks,
+        );
         let words = world.parts().sensor.words();
         let looks = looks.prepare(seed, step, steps, words, blocks);
         let acts = acts.prepare(seed, step, steps, policy.words(), blocks);
@@ -106,7 +118,7 @@ where
             rollout.finals.append(&mut ends);
         }
         rollout.finals.sort_unstable_by_key(|end| (end.step, end.environment));
-        self.step += steps;
+        self.step = self.step.saturating_add(steps);
         Ok(())
     }
 

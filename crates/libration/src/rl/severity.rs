@@ -1,13 +1,15 @@
 //! How bad an episode is.
 
 use super::start::{Episode, between};
+use crate::Float;
 use crate::control::ControlError;
+use crate::control::error::not_negative;
 use crate::random::Purpose;
 
 /// How much of what the clock and the sensor do wrong there is in an episode: a factor for each, drawn for every environment
 /// at the beginning of every episode, uniformly from a least to a most. 1 is all of it, 0 nothing.
 ///
-/// Steps that would be negative are of length zero, as with clocks.
+/// Steps that would be negative are of length zero, as with clocks. Where clock and sensor are exact there is nothing to be severe about.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Severity {
     /// Of how far a step is from its length: least and most.
@@ -24,15 +26,15 @@ impl Default for Severity {
 }
 
 impl Severity {
-    pub(super) fn check(&self) -> Result<(), ControlError> {
-        let ends = [self.clock, self.sensor].map(|[least, most]| (least, most));
-        between::check("range of the severity", ends)?;
-        for (name, [least, _]) in
+    pub(super) fn check<T: Float>(&self) -> Result<(), ControlError> {
+        for (name, [least, most]) in
             [("severity of the clock", self.clock), ("severity of the sensor", self.sensor)]
         {
-            crate::control::error::ensure(name, least, "at least 0", |least| least >= 0.0)?;
+            not_negative::<T>(name, least)?;
+            not_negative::<T>(name, most)?;
         }
-        Ok(())
+        let ends = [self.clock, self.sensor].map(|[least, most]| (least, most));
+        between::check("range of the severity", ends)
     }
 
     /// What is drawn for an episode: of the clock and of the sensor.

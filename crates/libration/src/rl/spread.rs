@@ -41,7 +41,8 @@ impl Spread {
                 finite("upper end of the variation", high)
             }
             Spread::LogUniform(low, high) => {
-                ensure("lower end of the variation", low, "above 0", low > 0.0)?;
+                let held = T::from_f64(low) > T::zero();
+                ensure("lower end of the variation", low, "above 0 in the float type", held)?;
                 ensure("upper end of the variation", high, "at least the lower", high >= low)?;
                 finite("upper end of the variation", high)
             }

@@ -110,7 +110,7 @@ where
             let mut measured = parts.sensor.measure(sees, &mut || words.next(l));
             if const { E::Sensor::DRAWS } {
                 for i in 0..O {
-                    measured[i] = sees[i] + block.severity[1][l] * (measured[i] - sees[i]);
+                    measured[i] = worse(measured[i], sees[i], block.severity[1][l]);
                 }
             }
             put(seen, l, measured);
@@ -169,7 +169,7 @@ where
                 let mut memory = ClockMemory::<T, E, O, D>::lane(&block.clock, l);
                 let mut ratio = parts.clock.ratio(&mut memory, beat, &mut || words.next(l));
                 if const { !E::Clock::EVEN } {
-                    ratio = T::one() + block.severity[0][l] * (ratio - T::one());
+                    ratio = worse(ratio, T::one(), block.severity[0][l]);
                     ratio = if ratio < T::zero() { T::zero() } else { ratio };
                 }
                 ClockMemory::<T, E, O, D>::set_lane(&mut block.clock, l, memory);
@@ -217,6 +217,12 @@ where
         }
         ended
     }
+}
+
+/// What is, if it is so many times as far from what should be: with a factor of 1, what is to the last bit.
+#[inline(always)]
+fn worse<T: Float>(is: T, should_be: T, factor: T) -> T {
+    is + (factor - T::one()) * (is - should_be)
 }
 
 /// The system and the task of lane `l`.

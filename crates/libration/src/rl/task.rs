@@ -175,7 +175,7 @@ impl<T: Float + Elementary> Reference<T> for Sine {
 /// `−(p·(q − q₀)² + r·(v − v₀)² + e·u²)`, and the episode is over beyond a distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Track<R> {
-    /// The reference, known without noise and without delay.
+    /// The reference, known without delay; a [`Sensor`](super::Sensor) measures it like what else is seen.
     pub reference: R,
     /// Prices of distances from it, and the distance from it beyond which all is lost.
     pub regulate: Regulate,

@@ -52,7 +52,12 @@ fn records_are_never_made_longer_and_lists_are_of_the_right_length() {
     );
     for dt in [0.0, -0.1, f64::NAN, f64::INFINITY] {
         let error = refused(fixed, every, dt, 1);
-        assert_eq!(error, format!("the time step is {dt} s; it must be above 0"));
+        assert_eq!(
+            error,
+            format!(
+                "the time step is {dt:?} s; it must be a finite number above 0, in the float type as well"
+            )
+        );
     }
 }
 

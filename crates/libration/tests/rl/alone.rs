@@ -65,7 +65,7 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
         if clock.is_none() {
             states = vec![parts.start.draw(address(number))];
             actions.clear();
-            clock = Some(parts.clock.start(Begin::new(seed, n as u64, step)));
+            clock = Some(parts.clock.start(Begin::new(seed, n as u64, number)));
         }
         let numbers = parts.variation.draw(address(number));
         let systems = libration::ensemble::Assign::of(parts.systems, n);
@@ -77,7 +77,7 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
             let shown = states[states.len().saturating_sub(1 + late)];
             let seen = task.observe(0.0, &shown);
             let measured = parts.sensor.measure(seen, &mut || looks.stream.next(0));
-            let noisy = |i: usize| seen[i] + severity[1] * (measured[i] - seen[i]);
+            let noisy = |i: usize| measured[i] + (severity[1] - 1.0) * (measured[i] - seen[i]);
             if E::Sensor::DRAWS { [noisy(0), noisy(1)] } else { measured }
         };
         let seen = see(&states, &mut looks, step);
@@ -96,7 +96,8 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
             let memory = clock.as_mut().unwrap();
             let ratio =
                 parts.clock.ratio(memory, parts.clock.beat(at), &mut || times.stream.next(0));
-            let ratio = if E::Clock::EVEN { ratio } else { 1.0 + severity[0] * (ratio - 1.0) };
+            let ratio =
+                if E::Clock::EVEN { ratio } else { ratio + (severity[0] - 1.0) * (ratio - 1.0) };
             let ratio = if ratio < 0.0 { 0.0 } else { ratio };
             let system = Held { system, command };
             state = parts.method.step(&system, state, parts.dt as f32 * ratio);

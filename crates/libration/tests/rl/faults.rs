@@ -11,8 +11,8 @@ use libration::rl::start::Between;
 use libration::rl::task::Regulate;
 use libration::rl::variation::Varied;
 use libration::rl::{
-    Delays, Environment, Environments, Estimates, Plan, Policy, Rollout, Severity, Spread, World,
-    Writes,
+    Act, Delays, Environment, Environments, Estimates, Place, Plan, Policy, Rollout, Severity,
+    Spread, World, Writes,
 };
 use libration::system::Oscillator;
 
@@ -31,7 +31,10 @@ fn refused<E: World<f32, 2, 1>>(world: E) -> String {
 fn an_environment_that_cannot_be_is_refused() {
     let mut backwards = ideal();
     backwards.dt = -1.0;
-    assert_eq!(refused(backwards), "the time step is -1 s; it must be above 0");
+    assert_eq!(
+        refused(backwards),
+        "the time step is -1.0 s; it must be a finite number above 0, in the float type as well"
+    );
     assert_eq!(refused(ideal().substeps(0)), "there are 0 substeps; there must be at least 1");
     assert_eq!(
         refused(ideal().limit(0)),
@@ -67,7 +70,14 @@ fn an_environment_that_cannot_be_is_refused() {
             Spread::Uniform(2.0, 1.0),
             "width of the variation 0 is -1; it must be a finite number of at least 0",
         ),
-        (Spread::LogUniform(0.0, 1.0), "lower end of the variation 0 is 0; it must be above 0"),
+        (
+            Spread::LogUniform(0.0, 1.0),
+            "lower end of the variation 0 is 0; it must be above 0 in the float type",
+        ),
+        (
+            Spread::LogUniform(1e-300, 1.0),
+            "lower end of the variation 0 is 1e-300; it must be above 0 in the float type",
+        ),
         (
             Spread::LogUniform(2.0, 1.0),
             "upper end of the variation 0 is 1; it must be at least the lower",
@@ -183,16 +193,45 @@ fn tasks_and_starts_that_cannot_be_are_refused() {
     assert!(told.contains("upper end of the start is 1e300"), "{told}");
     let kind = Severity { clock: [-0.5, 1.0], ..Severity::default() };
     let told = refused(ideal().severity(kind));
-    assert!(told.contains("severity of the clock is -0.5; it must be at least 0"), "{told}");
+    assert!(
+        told.contains("severity of the clock is -0.5; it must be a finite number of at least 0"),
+        "{told}"
+    );
+    let told = refused(ideal().severity(Severity { sensor: [0.0, 1e39], ..Severity::default() }));
+    assert!(told.contains("severity of the sensor is 1e39; it must be small enough"), "{told}");
     let far = Environments::<f32, _, 2, 1>::shard(ideal(), usize::MAX, 3, 0, Execution::serial());
     assert!(far.unwrap_err().to_string().contains("number of the first environment"));
     // Most plans are larger than any memory, and some than any number.
-    let plan = Plan::new(usize::MAX, usize::MAX);
-    let told = [
-        Rollout::<f32, 2, 1>::new(plan).unwrap_err().to_string(),
-        Estimates::<f32>::new(plan).unwrap_err().to_string(),
-    ];
-    assert!(told.iter().all(|told| told.contains("memory")), "{told:?}");
+    for plan in [Plan::new(usize::MAX, usize::MAX), Plan::new(usize::MAX, 0)] {
+        assert_eq!(plan.bytes_each(usize::MAX, 1, 8), usize::MAX);
+        let told = [
+            Rollout::<f32, 2, 1>::new(plan).unwrap_err().to_string(),
+            Estimates::<f32>::new(plan).unwrap_err().to_string(),
+        ];
+        assert!(told.iter().all(|told| told.contains("memory")), "{told:?}");
+    }
+}
+
+#[test]
+fn a_policy_that_draws_without_saying_so_is_refused() {
+    #[derive(Clone, Copy)]
+    struct Secretive(usize);
+    impl Policy<f32, 2, 1> for Secretive {
+        fn words(&self) -> usize {
+            self.0
+        }
+
+        fn act(&self, _: Place, _: &[f32; 2], word: &mut impl FnMut() -> u32) -> Act<f32, 1> {
+            Act::sure([word() as f32])
+        }
+    }
+    let mut all = made(ideal()).unwrap();
+    let mut rollout = Rollout::new(Plan::new(1, 2).truncated()).unwrap();
+    assert!(all.rollout(Secretive(0), &mut rollout).is_ok());
+    assert_eq!(
+        all.rollout(Secretive(1), &mut rollout).unwrap_err().to_string(),
+        "random words of the policy is 1; it must be 0, unless it says that it draws"
+    );
 }
 
 #[test]

@@ -4,6 +4,7 @@
 
 mod alone;
 mod bits;
+mod clocks;
 mod episodes;
 mod faults;
 mod policies;

@@ -15,6 +15,24 @@ use libration::{Float, State};
 
 use crate::executions;
 
+#[test]
+fn a_short_float_holds_the_return_of_a_long_episode() {
+    use libration::ensemble::Execution;
+    use libration::rl::policy::Constant;
+    use libration::rl::start::At;
+    use libration::system::Oscillator;
+
+    let free = All(Oscillator { omega2: f16::ZERO });
+    let task = Regulate { position: 1.0, velocity: 0.0, effort: 0.0, bound: 2.0 };
+    let start = At(State { q: [1.0], v: [0.0] });
+    let world = Environment::new(free, VelocityVerlet, 0.01, task, start).limit(5000);
+    let mut all = Environments::<f16, _, 2, 1>::new(world, 3, 0, Execution::serial()).unwrap();
+    let mut rollout = Rollout::new(Plan::new(5000, 3).truncated()).unwrap();
+    all.rollout(Constant([0.0]), &mut rollout).unwrap();
+    // From 2048 on a sum of ones stands still in this type.
+    assert!(rollout.finals().iter().all(|end| end.episode_return == -5000.0));
+}
+
 const POLICY: Linear<4, 2> =
     Linear { weights: [[-1.0, 0.25, -0.5, 0.0], [0.5, -2.0, 0.0, -0.75]], bias: [0.125, -0.25] };
 const TASK: Regulate = Regulate { position: 1.0, velocity: 0.5, effort: 0.125, bound: 0.75 };

@@ -5,8 +5,8 @@ use std::hint::black_box;
 use libration::ensemble::Execution;
 use libration::rl::{Discounts, Environments, Estimates, Rollout};
 
-use super::cases::{on, on_cores, suited};
-use crate::bench::{Contestant, FEEDBACK, RolloutCase, RolloutTask, regulating, rollout};
+use super::cases::{on, on_cores};
+use crate::bench::{Contestant, FEEDBACK, RolloutCase, RolloutTask, regulating, rollout, suited};
 use crate::record::{Record, Table};
 use crate::studies::desk::{Desk, aim};
 use crate::study::StudyError;

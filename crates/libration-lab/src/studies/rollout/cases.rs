@@ -1,10 +1,10 @@
 //! Rollouts against fills of as much memory: in both layouts, written through the caches and past them.
 
+use libration::ensemble::Execution;
 use libration::rl::{Layout, Writes};
 
 use crate::Effort;
-use crate::bench::{RolloutCase, RolloutTask, fill, rollout};
-use crate::machine::Machine;
+use crate::bench::{Rates, RolloutCase, RolloutTask, fill, rollout, suited};
 use crate::record::{Cell, Finding, Record, Table};
 use crate::studies::desk::{Desk, aim};
 use crate::study::StudyError;
@@ -21,10 +21,11 @@ const WAYS: [(Writes, &str); 2] = [(Writes::Plain, "plain"), (Writes::Past, "pas
 fn bar(case: RolloutCase, threads: usize) -> Option<f64> {
     match (case.task, case.environments, case.horizon) {
         (RolloutTask::SwingUp, ..) => None,
-        // What no cache holds.
+        // What few caches hold.
         (_, 4096, 1024) | (_, 16_384, 2048) => Some(0.9),
-        // What the last one holds; less than that is not worth a second thread.
-        (_, 256, 16) | (_, 512, 64) | (_, 1024, 512) if threads == 1 => Some(0.6),
+        (_, 1024, 512) => Some(0.6),
+        // Less than that is not worth a second thread.
+        (_, 256, 16) | (_, 512, 64) | (_, 256, 512) if threads == 1 => Some(0.6),
         _ => None,
     }
 }
@@ -45,13 +46,7 @@ pub(super) fn on(threads: usize) -> &'static str {
 
 /// As the page says it.
 pub(super) fn on_cores(threads: usize) -> String {
-    if threads == 1 { "one core".into() } else { format!("up to {threads} threads") }
-}
-
-/// How a rollout of so many bytes is best written on this machine.
-pub(super) fn suited(bytes: usize) -> Writes {
-    let last = Machine::detect().caches.last().map_or(32 << 20, |cache| cache.bytes);
-    Writes::suited(bytes as u128, last)
+    if threads == 1 { "one core".into() } else { format!("{threads} threads") }
 }
 
 /// Times all of them, as far as effort and memory go.
@@ -104,7 +99,6 @@ fn timed(
     table: &mut Table,
 ) -> Result<(), StudyError> {
     for execution in desk.executions() {
-        let threads = execution.thread_count();
         let mut best = [0.0_f64; 2];
         for (l, (layout, layout_name)) in LAYOUTS.into_iter().enumerate() {
             let mut contestants = Vec::new();
@@ -118,39 +112,48 @@ fn timed(
                 case.task.name().into(),
                 (case.environments as u64).into(),
                 (case.horizon as u64).into(),
-                (threads as u64).into(),
+                (case.plan().threads(execution) as u64).into(),
                 layout_name.into(),
             ];
-            for ((writes, way), pair) in WAYS.into_iter().zip(rates.chunks_exact(2)) {
+            for pair in rates.chunks_exact(2) {
                 let (rate, share) = (pair[0].median(), pair[0].over(&pair[1]));
                 best[l] = best[l].max(rate);
                 row.extend([(rate / 1e6).into(), share.median().into()]);
-                if layout == Layout::Interleaved && writes == suited(case.bytes()) {
-                    let id = format!("rollout.{}{}", name(case), on(threads));
-                    let text = format!(
-                        "{}, {} × {}, {}, written {way}: transitions a second over those of a fill of as \
-                         much memory",
-                        case.task.name(),
-                        case.environments,
-                        case.horizon,
-                        on_cores(threads)
-                    );
-                    let reason = "a fill waits for its stores alone, a rollout for its steps as well; the \
-                                  table of layouts has other ways to write";
-                    aim(record, id, text, bar(case, threads), &share, reason);
-                }
+            }
+            if layout == Layout::Interleaved {
+                compare(record, case, execution, &rates);
             }
             table.push(row);
         }
-        tell(record, case, threads, best);
+        tell(record, case, execution, best);
     }
     Ok(())
 }
 
+/// What is written as it suits the machine, over the fill that it is measured by.
+fn compare(record: &mut Record, case: RolloutCase, execution: &Execution, rates: &[Rates]) {
+    let at = |writes| if writes == Writes::Past { 2 } else { 0 };
+    let (own, by) = (suited(case.bytes()), case.against());
+    let share = rates[at(own)].over(&rates[at(by) + 1]);
+    let [own, by] = [own, by].map(|w| if w == Writes::Past { WAYS[1].1 } else { WAYS[0].1 });
+    let allowed = execution.thread_count();
+    let id = format!("rollout.{}{}", name(case), on(allowed));
+    let text = format!(
+        "{}, {} × {}, {}, written {own}: transitions a second over those of a fill of as much memory, written {by}",
+        case.task.name(),
+        case.environments,
+        case.horizon,
+        on_cores(case.plan().threads(execution)),
+    );
+    let reason = "a fill waits for its stores alone, a rollout for its steps as well; the table of layouts has other ways to write";
+    aim(record, id, text, bar(case, allowed), &share, reason);
+}
+
 /// The rates of both layouts, in the faster way to write them.
-fn tell(record: &mut Record, case: RolloutCase, threads: usize, [one, planes]: [f64; 2]) {
-    let (name, on) = (name(case), on(threads));
-    let what = format!("{} × {}, {}", case.environments, case.horizon, on_cores(threads));
+fn tell(record: &mut Record, case: RolloutCase, execution: &Execution, [one, planes]: [f64; 2]) {
+    let (name, on) = (name(case), on(execution.thread_count()));
+    let threads = on_cores(case.plan().threads(execution));
+    let what = format!("{} × {}, {threads}", case.environments, case.horizon);
     record.find(Finding::measured(
         format!("rollout.rate.{name}{on}"),
         format!("{}, {what}: transitions a second", case.task.name()),

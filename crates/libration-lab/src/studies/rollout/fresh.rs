@@ -4,9 +4,9 @@ use std::hint::black_box;
 
 use libration::rl::{Environments, Rollout};
 
-use super::cases::{name, suited};
+use super::cases::name;
 use crate::bench::{
-    Contestant, FEEDBACK, PAGE, RolloutCase, RolloutTask, count_faults, regulating, rollout,
+    Contestant, FEEDBACK, PAGE, RolloutCase, RolloutTask, count_faults, regulating, rollout, suited,
 };
 use crate::record::{Cell, Finding, Record, Relation, Table, Tolerance};
 use crate::studies::desk::Desk;

@@ -1,11 +1,9 @@
 //! Rates against the number of environments and against the horizon.
 
-use crate::bench::{Rates, RolloutCase, RolloutTask, fill, rollout};
+use crate::bench::{Rates, RolloutCase, RolloutTask, fill, rollout, suited};
 use crate::record::{Record, Series};
 use crate::studies::desk::Desk;
 use crate::study::StudyError;
-
-use super::cases::suited;
 
 /// Environments whose horizons are varied.
 const ENVIRONMENTS: usize = 1024;

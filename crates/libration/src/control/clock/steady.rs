@@ -74,7 +74,7 @@ impl<T: Float> Clock<T> for Rates<'_> {
     fn start(&self, begin: Begin) -> [T; 1] {
         // Beyond the last are those that only fill a block.
         let rate = self.0.get(begin.trajectory() as usize).copied().unwrap_or(1.0);
-        [forward(T::from_f64(rate) - T::one())]
+        [T::from_f64(rate)]
     }
 
     fn beat(&self, _: u64) {}
@@ -89,31 +89,40 @@ impl<T: Float> Clock<T> for Rates<'_> {
     }
 }
 
-/// Drifting clocks: step `n` is `1 + n·δ` long, with another `δ` for every trajectory.
+/// Drifting clocks: step `n` is `1 + n·δ` long, with another `δ` for every trajectory, counted from its beginning: of an environment,
+/// from that of an episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drifting(
     /// The law of `δ`, the change in a step.
     pub Jitter,
 );
 
+/// Up to here any float counts.
+const COUNTED: f64 = 1024.0;
+
 impl<T: Float> Clock<T> for Drifting {
-    type Memory = [T; 1];
-    type Beat = T;
+    /// `δ`, and the number of steps as `j + 1024·k`.
+    type Memory = [T; 3];
+    type Beat = ();
 
     fn check(&self) -> Result<(), ControlError> {
         law::<T>("the rms of clock drifts", self.0)
     }
 
-    fn start(&self, begin: Begin) -> [T; 1] {
-        [T::from_f64(begin.draw(self.0, Purpose::ClockDrift))]
+    fn start(&self, begin: Begin) -> [T; 3] {
+        [T::from_f64(begin.draw(self.0, Purpose::ClockDrift)), T::zero(), T::zero()]
     }
 
-    fn beat(&self, step: u64) -> T {
-        T::from_f64(step as f64)
-    }
+    fn beat(&self, _: u64) {}
 
     #[inline(always)]
-    fn ratio(&self, [rate]: &mut [T; 1], beat: T, _: &mut impl FnMut() -> u32) -> T {
-        forward(*rate * beat)
+    fn ratio(&self, [rate, j, k]: &mut [T; 3], (): (), _: &mut impl FnMut() -> u32) -> T {
+        let counted = T::from_f64(COUNTED);
+        let ratio = forward(*rate * *j + (*rate * counted) * *k);
+        let next = *j + T::one();
+        let full = next >= counted;
+        *j = if full { T::zero() } else { next };
+        *k = if full { *k + T::one() } else { *k };
+        ratio
     }
 }

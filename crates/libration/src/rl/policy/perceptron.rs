@@ -41,7 +41,11 @@ const fn parameters(inputs: usize, outputs: usize) -> usize {
 /// Hidden layers between the first and the last, if there are so many parameters.
 fn between<const O: usize, const H: usize, const D: usize>(count: usize) -> usize {
     let ends = const { parameters(O, H) + parameters(H, D) };
-    count.saturating_sub(ends).div_ceil(const { parameters(H, H) })
+    let each = const {
+        assert!(H > 0, "a hidden layer of nothing");
+        parameters(H, H)
+    };
+    count.saturating_sub(ends).div_ceil(each)
 }
 
 impl<T, const H: usize> Perceptron<'_, T, H> {

@@ -41,8 +41,8 @@ pub(super) fn judge(record: &mut Record) {
     record.judge(Ruling { id: "C91", source: "9.5", text, findings: &ids }, |f| {
         let [fall, bandwidth, own] = [0, 1, 2].map(|i| f[i].measured);
         let because = format!(
-            "a wall of memory would make transitions slower. Through its table they become {} times as fast, as they \
-             do where the cost of a step is shared by more environments ({} times here); and {}",
+            "a wall of memory would make transitions slower. Through its table they become {} times as fast: the cost of a \
+             step is shared by more environments (from the fewest to the most, {} times as fast here); and {}",
             show(fall),
             show(own),
             source(bandwidth)
@@ -57,13 +57,15 @@ pub(super) fn judge(record: &mut Record) {
         let nobody = "Steps whose results nobody keeps wait for no memory, as the chapter on throughput shows";
         match share > BOUND {
             true => Judgement::conditional(format!(
-                "{}. It does limit a fused rollout that no cache holds, which reaches {percent} % of a fill. {nobody}",
-                source(bandwidth)
+                "{}. It does limit a fused rollout of {}, which reaches {percent} % of a fill. {nobody}",
+                source(bandwidth),
+                example.title()
             ))
             .only("every step is stored and nothing else costs; not of the source’s own"),
             false => Judgement::refuted(format!(
-                "{}. A fused rollout that no cache holds reaches no more than {percent} % of a fill. {nobody}",
-                source(bandwidth)
+                "{}. A fused rollout of {} reaches no more than {percent} % of a fill. {nobody}",
+                source(bandwidth),
+                example.title()
             )),
         }
     });
