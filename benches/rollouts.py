@@ -316,16 +316,16 @@ def own_rates(program, file=None):
 
 
 def own_rate(own, task, environments, horizon, threads):
-    """One of them; the best over the horizons if that is None."""
+    """One of them; the best over the horizons if that is None. A small rollout takes fewer threads than it may."""
     found = [
-        rate
+        (number, rate)
         for (*key, length, number), rate in own.items()
-        if key == [task, environments] and number == threads and horizon in (None, length)
+        if key == [task, environments] and number <= threads and horizon in (None, length)
     ]
     if not found:
         size = size_of(environments, horizon)
         raise SystemExit(f"no rate of Libration: {task}, {size}, threads: {threads}")
-    return max(found)
+    return max(found)[1]
 
 
 def check(peers):
