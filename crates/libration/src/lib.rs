@@ -8,6 +8,7 @@
 
 pub mod analysis;
 pub mod catalog;
+pub mod checkpoint;
 pub mod control;
 pub mod elementary;
 pub mod ensemble;
@@ -15,6 +16,7 @@ pub mod integrator;
 mod method;
 pub mod number;
 pub mod random;
+pub mod replay;
 pub mod rl;
 mod scalar;
 pub mod simulation;

@@ -60,6 +60,11 @@ impl<T: Pod> Buffer<T> {
         let _ = (pages, HUGE);
         Ok(Buffer { memory, len, number: PhantomData })
     }
+
+    /// The memory itself.
+    pub(crate) fn into_map(self) -> MmapMut {
+        self.memory
+    }
 }
 
 impl<T: Pod> Deref for Buffer<T> {

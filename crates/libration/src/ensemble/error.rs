@@ -55,16 +55,6 @@ pub enum EnsembleError {
     /// Nothing would move.
     #[error("there are 0 substeps; there must be at least 1")]
     Substeps,
-    /// A snapshot of something else.
-    #[error(
-        "the snapshot is of other loops: {found} trajectories, where {len} are, or with another memory"
-    )]
-    Snapshot {
-        /// Trajectories there are.
-        len: usize,
-        /// Trajectories of the snapshot.
-        found: usize,
-    },
     /// A clock, a delay or a controller cannot be so.
     #[error(transparent)]
     Control(#[from] ControlError),

@@ -13,6 +13,7 @@
 mod any;
 mod assign;
 mod buffer;
+mod checkpoint;
 mod error;
 mod execution;
 pub(crate) mod instructions;
@@ -35,7 +36,7 @@ pub use buffer::{Buffer, Pages};
 pub use error::EnsembleError;
 pub use execution::{Execution, MOST_THREADS};
 pub use instructions::{InstructionSet, Loop};
-pub use loops::{Loops, Setup, Snapshot};
+pub use loops::{Loops, Setup};
 pub use memory::{NoRoom, available_memory, installed_memory};
 pub use observer::{Copies, Drift, Lanes, MeanSquareError, Moments, Observer, Summary};
 pub use stream::{stream, stream_again};

@@ -30,6 +30,8 @@ pub enum Purpose {
     Observation,
     /// An action.
     Action,
+    /// What is drawn from a replay buffer.
+    Replay,
 }
 
 /// The place of a draw.

@@ -14,6 +14,7 @@
 mod batch;
 mod block;
 mod brief;
+mod checkpoint;
 mod delays;
 mod draws;
 mod ends;
@@ -51,5 +52,6 @@ pub use sensor::Sensor;
 pub use severity::Severity;
 pub use spread::Spread;
 pub use start::{Episode, Start};
+pub(crate) use strip::first_of;
 pub use task::Task;
 pub use variation::Variation;

@@ -124,8 +124,13 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
         idle[0] == 0
     }
 
+    /// Whether there may be steps that are no transitions.
+    pub(crate) fn pauses(&self) -> bool {
+        self.pauses
+    }
+
     /// Writes for the environments from `first` on whether step `t` is no transition: not 0 if it is none.
-    pub(super) fn write_idle(&self, t: usize, first: usize, idle: &mut [u8]) {
+    pub(crate) fn write_idle(&self, t: usize, first: usize, idle: &mut [u8]) {
         idle.fill(0);
         if !self.pauses {
             return;

@@ -98,7 +98,7 @@ pub(super) fn first_columns<'a, X>(
 }
 
 /// Takes off the first `count`, or all if there are fewer.
-pub(super) fn first_of<'a, X>(slice: &mut &'a mut [X], count: usize) -> &'a mut [X] {
+pub(crate) fn first_of<'a, X>(slice: &mut &'a mut [X], count: usize) -> &'a mut [X] {
     let whole = take(slice);
     let (head, tail) = whole.split_at_mut(count.min(whole.len()));
     *slice = tail;

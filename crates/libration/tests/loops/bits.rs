@@ -1,6 +1,7 @@
 //! What the bits of a trajectory depend on, and what not.
 
 use libration::analysis::{Feedback, Jitter, Latency, RandomLatency};
+use libration::checkpoint::Checkpoint;
 use libration::control::clock::{
     Correlated, Drifting, Dropped, Gaussian, Jittered, Late, Rates, Skewed, Uniform, Wandering,
     Waving,
@@ -228,13 +229,13 @@ fn loops_that_are_restored_go_on_bit_for_bit_and_one_that_is_reset_begins_anew()
     let fresh = || Loops::new(setup, 0.1, 3, [0.5], &starts(100), Execution::serial()).unwrap();
     let mut whole = fresh();
     whole.advance(7).unwrap();
-    let middle = whole.snapshot();
+    let middle = whole.to_bytes();
     whole.advance(20).unwrap();
     let mut resumed = fresh();
     resumed.advance(3).unwrap();
     resumed.restore(&middle).unwrap();
     resumed.advance(20).unwrap();
-    assert_eq!((resumed.snapshot(), resumed.step()), (whole.snapshot(), 27));
+    assert_eq!((resumed.to_bytes(), resumed.step()), (whole.to_bytes(), 27));
     // Before the first command arrives the initial one acts, as at the very beginning.
     assert_ne!(resumed.command(5), Some([0.5]));
     resumed.reset(5, starts(100)[5]);

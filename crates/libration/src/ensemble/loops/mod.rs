@@ -4,7 +4,6 @@ mod kernel;
 mod rows;
 mod run;
 mod setup;
-mod snapshot;
 
 use core::marker::PhantomData;
 use core::ops::Range;
@@ -12,7 +11,6 @@ use core::ops::Range;
 use bytemuck::Pod;
 
 pub use setup::Setup;
-pub use snapshot::Snapshot;
 
 use super::{Assign, Ensemble, EnsembleError, Execution, GRAIN, Nobody, Observer, chunk, shares};
 use crate::control::error::finite;
@@ -227,28 +225,24 @@ where
         }
     }
 
-    /// All there is to know at this step, but for the setup and the seed.
-    pub fn snapshot(&self) -> Snapshot<T, D> {
-        let states = (0..self.len()).filter_map(|n| self.state(n)).collect();
-        Snapshot { step: self.step(), states, memories: self.memories.numbers().to_vec() }
+    /// All that loops remember, as it lies in memory.
+    pub(super) fn remembered(&self) -> &[T] {
+        self.memories.numbers()
     }
 
-    /// Goes on from a snapshot of loops of the same setup and number.
-    ///
-    /// # Errors
-    /// [`EnsembleError::Snapshot`] if it is of others, as far as that shows.
-    pub fn restore(&mut self, snapshot: &Snapshot<T, D>) -> Result<(), EnsembleError> {
-        let Snapshot { step, states, memories } = snapshot;
-        if states.len() != self.len() || memories.len() != self.memories.numbers().len() {
-            return Err(EnsembleError::Snapshot { len: self.len(), found: states.len() });
-        }
-        let mut share = self.trajectories.planes.share();
-        for (n, &state) in states.iter().enumerate() {
-            share.set(n, state);
-        }
-        self.memories.numbers_mut().copy_from_slice(memories);
-        self.trajectories.step = *step;
-        Ok(())
+    /// All that changes.
+    pub(super) fn state_mut(&mut self) -> (&mut Ensemble<T, D>, &mut [T]) {
+        (&mut self.trajectories, self.memories.numbers_mut())
+    }
+
+    /// Where all that is random is drawn from.
+    pub(super) fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The time step in seconds.
+    pub(super) fn dt(&self) -> T {
+        self.dt
     }
 
     /// Where number `row` of trajectory `n` lies.

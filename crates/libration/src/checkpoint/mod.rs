@@ -1,0 +1,71 @@
+//! The complete state of what runs, as bytes from which it goes on bit for bit.
+//!
+//! An ensemble, loops, environments and a replay buffer say what they are ([`Checkpoint::traits`]) and what their state is, to the last
+//! bit: on however many threads and whatever instructions it goes on. Where bytes go and come from is the caller's affair.
+
+mod error;
+mod reader;
+
+use core::convert::Infallible;
+
+pub use error::CheckpointError;
+pub(crate) use reader::Reader;
+
+/// What can be left and taken up again.
+pub trait Checkpoint {
+    /// What must be the same where the state is restored, by name: the kind, the float type, how many there are. What is code, as
+    /// a system, a policy or a task, cannot be told.
+    fn traits(&self) -> Vec<Trait>;
+
+    /// Gives all bytes of the state, one piece after the other.
+    ///
+    /// # Errors
+    /// What `sink` fails with.
+    fn save<E>(&self, sink: impl FnMut(&[u8]) -> Result<(), E>) -> Result<(), E>
+    where
+        Self: Sized;
+
+    /// All bytes of the state in one piece.
+    fn to_bytes(&self) -> Vec<u8>
+    where
+        Self: Sized,
+    {
+        let mut bytes = Vec::new();
+        let piece = |piece: &[u8]| -> Result<(), Infallible> {
+            bytes.extend_from_slice(piece);
+            Ok(())
+        };
+        match self.save(piece) {
+            Ok(()) => bytes,
+            Err(never) => match never {},
+        }
+    }
+
+    /// Takes up a state with the same traits.
+    ///
+    /// # Errors
+    /// If there are more or fewer bytes, or what they say cannot be. Nothing has changed then.
+    fn restore(&mut self, state: &[u8]) -> Result<(), CheckpointError>;
+}
+
+/// A name and a value.
+pub type Trait = (&'static str, String);
+
+/// Nothing, if a state of these traits can be restored where those are wanted.
+///
+/// # Errors
+/// The first that is different.
+pub fn agree<'a>(
+    found: impl IntoIterator<Item = (&'a str, &'a str)> + Clone,
+    wanted: &[Trait],
+) -> Result<(), CheckpointError> {
+    for (name, wanted) in wanted {
+        let value = found.clone().into_iter().find(|(other, _)| other == name);
+        let value = value.map_or("not told", |(_, value)| value);
+        if value != wanted {
+            let (found, wanted) = (value.to_owned(), wanted.clone());
+            return Err(CheckpointError::Other { name, found, wanted });
+        }
+    }
+    Ok(())
+}

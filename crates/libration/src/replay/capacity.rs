@@ -1,0 +1,130 @@
+//! How much a replay buffer holds.
+
+use core::ops::Range;
+
+use super::ReplayError;
+use crate::ensemble::NoRoom;
+
+/// What a replay buffer holds, and the memory that it takes, before anything is allocated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Capacity {
+    /// The last steps that are kept of every environment.
+    pub steps: usize,
+    /// How many environments there are.
+    pub environments: usize,
+    /// Ends of episodes among them: where there are more, the oldest steps go earlier.
+    pub ends: usize,
+    /// Whether every transition has a priority.
+    pub priorities: bool,
+}
+
+/// Bytes before the fields, which begin at a page of their own.
+pub(super) const PAGE: usize = 4096;
+
+impl Capacity {
+    /// So many steps of so many environments, of whose transitions a quarter at most end an episode.
+    pub fn new(steps: usize, environments: usize) -> Self {
+        let ends = (steps.saturating_mul(environments) / 4).max(environments);
+        Capacity { steps, environments, ends, priorities: false }
+    }
+
+    /// This, with room for so many ends.
+    pub fn ends(self, ends: usize) -> Self {
+        Capacity { ends, ..self }
+    }
+
+    /// This, with priorities.
+    pub fn priorities(self) -> Self {
+        Capacity { priorities: true, ..self }
+    }
+
+    /// How many transitions it is.
+    pub fn transitions(&self) -> u128 {
+        self.steps as u128 * self.environments as u128
+    }
+
+    /// Rows: one more than there are steps, for what is seen after the last.
+    pub(super) fn rows(&self) -> usize {
+        self.steps + 1
+    }
+
+    /// All bytes, with `observation` and `action` numbers in a transition, of so many bytes each.
+    ///
+    /// # Errors
+    /// [`ReplayError::Nothing`] if it holds nothing; [`ReplayError::Environment`] if no machine has so much memory.
+    pub fn bytes(
+        &self,
+        observation: usize,
+        action: usize,
+        number: usize,
+    ) -> Result<usize, ReplayError> {
+        Ok(self.fields([observation, action], number)?.len)
+    }
+
+    /// Where everything lies.
+    pub(super) fn fields(
+        &self,
+        [observation, action]: [usize; 2],
+        number: usize,
+    ) -> Result<Fields, ReplayError> {
+        let Capacity { steps, environments, ends, priorities } = *self;
+        for (name, value) in [("steps", steps), ("environments", environments), ("ends", ends)] {
+            if value == 0 {
+                return Err(ReplayError::Nothing { name });
+            }
+        }
+        let cells = (steps as u128 + 1) * environments as u128;
+        let wide = |count: u128, each: usize| count.saturating_mul(each as u128);
+        let sizes = [
+            wide(cells, observation * number),
+            wide(cells, action * number),
+            wide(cells, number),
+            cells,
+            if priorities { wide(cells, 8) } else { 0 },
+            wide(ends as u128, 8),
+            wide(ends as u128, observation * number),
+        ];
+        let mut at = PAGE as u128;
+        let mut ranges = [const { 0..0 }; 7];
+        let last = isize::MAX as u128;
+        for (range, size) in ranges.iter_mut().zip(sizes) {
+            let needed = at.saturating_add(size);
+            if needed >= last - PAGE as u128 {
+                return Err(NoRoom { needed, available: None }.into());
+            }
+            *range = at as usize..needed as usize;
+            at = needed.next_multiple_of(PAGE as u128);
+        }
+        let [observation, action, reward, flags, weight, end_place, end_seen] = ranges;
+        let len = at as usize;
+        Ok(Fields { observation, action, reward, flags, weight, end_place, end_seen, len })
+    }
+}
+
+/// Where the fields lie, in bytes; each begins with a page.
+#[derive(Clone, Debug)]
+pub(super) struct Fields {
+    /// `[row, n, i]`.
+    pub(super) observation: Range<usize>,
+    /// `[row, n, i]`.
+    pub(super) action: Range<usize>,
+    /// `[row, n]`, as the next two.
+    pub(super) reward: Range<usize>,
+    pub(super) flags: Range<usize>,
+    /// Powers of priorities, as `f64`.
+    pub(super) weight: Range<usize>,
+    /// Of which transition each end is, in a ring of rising numbers.
+    pub(super) end_place: Range<usize>,
+    /// And what was seen there.
+    pub(super) end_seen: Range<usize>,
+    /// All bytes.
+    pub(super) len: usize,
+}
+
+impl Fields {
+    /// No fields.
+    pub(super) fn none() -> Self {
+        let [observation, action, reward, flags, weight, end_place, end_seen] = [const { 0..0 }; 7];
+        Fields { observation, action, reward, flags, weight, end_place, end_seen, len: 0 }
+    }
+}

@@ -1,0 +1,180 @@
+//! Transitions that are drawn, each as likely.
+
+use core::ops::Range;
+
+use bytemuck::Pod;
+
+use super::store::{CUT, END, NONE, OVER};
+use super::{Columns, Draw, Replay, ReplayError};
+use crate::Float;
+use crate::control::error::probability;
+use crate::ensemble::Execution;
+
+/// How many steps a transition of a batch goes over.
+///
+/// R. S. Sutton, *Learning to predict by the methods of temporal differences*, Machine Learning 3, 1988. Fewer where the episode
+/// ends, and where the last step that is known comes, before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lookahead {
+    /// Steps, at least 1.
+    pub steps: usize,
+    /// `γ`, from 0 to 1.
+    pub discount: f64,
+}
+
+impl Default for Lookahead {
+    /// A single step, with `γ = 0.99`.
+    fn default() -> Self {
+        Lookahead { steps: 1, discount: 0.99 }
+    }
+}
+
+impl Lookahead {
+    pub(super) fn check(&self) -> Result<(), ReplayError> {
+        probability("discount", self.discount)?;
+        if self.steps == 0 {
+            Err(ReplayError::Nothing { name: "steps to look ahead" })
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// Steps of which transitions are drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Starts {
+    /// The number of the first.
+    first: u64,
+    /// All of them, transitions or not.
+    count: u64,
+    /// Transitions.
+    live: u64,
+}
+
+/// Attempts to meet a transition among steps that may be none, before they are counted.
+const ATTEMPTS: u32 = 16;
+
+/// Transitions of a batch that are worth a thread.
+const PIECE: usize = 1 << 14;
+
+impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
+    /// Fills a batch with transitions that are drawn with replacement, each as likely; their weights are 1.
+    ///
+    /// # Errors
+    /// [`ReplayError::Empty`] if there is no transition; [`ReplayError::Environment`] if the columns are not equally long or the
+    /// lookahead cannot be.
+    pub fn sample(
+        &self,
+        draw: Draw,
+        lookahead: Lookahead,
+        batch: &mut Columns<'_, T, O, D>,
+        execution: &Execution,
+    ) -> Result<(), ReplayError> {
+        lookahead.check()?;
+        let len = batch.len()?;
+        let starts = self.drawable(self.marks.tail..self.marks.head);
+        let starts = starts.ok_or(ReplayError::Empty("transitions"))?;
+        for (i, number) in batch.number.iter_mut().enumerate() {
+            *number = self.any(&starts, draw, i);
+        }
+        batch.weight.fill(T::one());
+        self.gather_all(lookahead, batch, len, execution);
+        Ok(())
+    }
+
+    /// These steps, if there is a transition among them.
+    pub(super) fn drawable(&self, steps: Range<u64>) -> Option<Starts> {
+        let n = self.capacity.environments as u64;
+        let all = (self.marks.head - self.marks.tail) * n;
+        let count = (steps.end - steps.start) * n;
+        // Where every step is a transition nobody has to count.
+        let live = if self.marks.live == all { count } else { count - self.nones(steps.clone()) };
+        (live > 0).then_some(Starts { first: steps.start * n, count, live })
+    }
+
+    /// The number of one of these transitions, each as likely.
+    pub(super) fn any(&self, starts: &Starts, draw: Draw, i: usize) -> u64 {
+        let Starts { first, count, live } = *starts;
+        if count == live {
+            return first + draw.below(i, 0, count)[0];
+        }
+        let drawn = (0..ATTEMPTS).flat_map(|attempt| draw.below(i, attempt, count));
+        let met = drawn.map(|at| first + at).find(|&number| self.contains(number));
+        met.unwrap_or_else(|| {
+            let which = draw.below(i, ATTEMPTS, live)[0];
+            let mut all = (first..first + count).filter(|&number| self.contains(number));
+            // As many are counted as there are.
+            all.nth(which as usize).unwrap_or(first)
+        })
+    }
+
+    /// What was seen after a step with these flags.
+    #[inline(always)]
+    pub(super) fn next(&self, step: u64, l: usize, flags: u8) -> [T; O] {
+        let apart = self.end_of(step, l, flags);
+        apart.unwrap_or_else(|| self.observation()[self.cell(step + 1, l)])
+    }
+
+    /// Fills what follows from the numbers of a batch.
+    pub(super) fn gather_all(
+        &self,
+        lookahead: Lookahead,
+        batch: &mut Columns<'_, T, O, D>,
+        len: usize,
+        execution: &Execution,
+    ) {
+        let pieces = execution.thread_count().min(len / PIECE).max(1);
+        let piece = len.div_ceil(pieces).max(1);
+        let mut rest = Columns {
+            number: batch.number,
+            observation: batch.observation,
+            action: batch.action,
+            reward: batch.reward,
+            next_observation: batch.next_observation,
+            terminated: batch.terminated,
+            truncated: batch.truncated,
+            discount: batch.discount,
+            weight: batch.weight,
+        };
+        let parts = (0..pieces).map(|_| rest.split_off(piece)).collect();
+        execution.each(parts, |part| self.gather(lookahead, part));
+    }
+
+    /// Fills what follows from the numbers.
+    fn gather(&self, lookahead: Lookahead, batch: Columns<'_, T, O, D>) {
+        let n = self.capacity.environments as u64;
+        let (rows, width) = (self.capacity.rows(), self.capacity.environments);
+        let (seen, done) = (self.observation(), self.action());
+        let (paid, flags) = (self.reward(), self.flags());
+        let gamma = T::from_f64(lookahead.discount);
+        for (i, &number) in batch.number.iter().enumerate() {
+            let (step, l) = (number / n, (number % n) as usize);
+            let mut row = self.row(step);
+            let cell = row * width + l;
+            (batch.observation[i], batch.action[i]) = (seen[cell], done[cell]);
+            let most = (self.marks.head - step).min(lookahead.steps as u64);
+            let (mut reward, mut factor, mut at) = (paid[cell], gamma, cell);
+            let mut taken = 1;
+            row = if row + 1 == rows { 0 } else { row + 1 };
+            while taken < most && flags[at] & END == 0 {
+                let next = row * width + l;
+                // What is no transition is not paid for: the one before led to where it stands.
+                if flags[next] & NONE != 0 {
+                    break;
+                }
+                at = next;
+                reward = reward + factor * paid[at];
+                factor = factor * gamma;
+                taken += 1;
+                row = if row + 1 == rows { 0 } else { row + 1 };
+            }
+            let mark = flags[at];
+            let apart = self.end_of(step + taken - 1, l, mark);
+            batch.next_observation[i] = apart.unwrap_or_else(|| seen[row * width + l]);
+            batch.reward[i] = reward;
+            batch.terminated[i] = mark & OVER;
+            batch.truncated[i] = (mark & CUT) / CUT;
+            batch.discount[i] = if mark & OVER != 0 { T::zero() } else { factor };
+        }
+    }
+}

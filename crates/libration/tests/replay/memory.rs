@@ -1,0 +1,151 @@
+//! What is left in memory when a process ends.
+
+use libration::ensemble::Execution;
+use libration::random::philox4x32;
+use libration::replay::{Batch, Capacity, Draw, Lookahead, Replay, ReplayError};
+use libration::rl::Autoreset;
+use memmap2::MmapMut;
+
+use super::{Replay21, environments, filled, run};
+
+/// Every field of these small buffers is a page; the first is the header.
+const PAGE: usize = 4096;
+
+/// Memory with these bytes.
+fn mapped(bytes: &[u8]) -> MmapMut {
+    let mut map = MmapMut::map_anon(bytes.len()).unwrap();
+    map.copy_from_slice(bytes);
+    map
+}
+
+/// What finds its bytes.
+pub(crate) fn reopened(replay: &Replay21) -> Result<Replay21, ReplayError> {
+    Replay::open(mapped(replay.bytes()))
+}
+
+/// A batch of it.
+fn batch(replay: &Replay21) -> Batch<f32, 2, 1> {
+    numbered(replay, 3)
+}
+
+fn numbered(replay: &Replay21, number: u64) -> Batch<f32, 2, 1> {
+    let mut batch = Batch::new(100);
+    let draw = Draw { seed: 2, number };
+    replay.sample(draw, Lookahead::default(), &mut batch.columns(), &Execution::serial()).unwrap();
+    batch
+}
+
+#[test]
+fn a_process_that_dies_at_any_write_loses_nothing_that_was_inserted_before() {
+    let serial = Execution::serial();
+    let capacity = Capacity::new(9, 3).ends(6).priorities();
+    let mut all = environments(Autoreset::SameStep, 3);
+    let mut replay = Replay21::new(capacity).unwrap();
+    for _ in 0..5 {
+        let (rollout, next) = run(&mut all, 2, Default::default());
+        replay.insert(&rollout, &next, &serial).unwrap();
+    }
+    all.reset(&[true, false, true]).unwrap();
+    let before = replay.bytes().to_vec();
+    let steps = replay.inserted() - replay.steps()..replay.inserted();
+    let there = Replay21::open(mapped(&before)).unwrap();
+    let drawn: Vec<_> = (0..30).map(|number| numbered(&there, number)).collect();
+    let one = |number: u64| {
+        let find = |batch: &Batch<f32, 2, 1>| {
+            batch.number.iter().position(|&i| i == number).map(|i| entry(batch, i))
+        };
+        drawn.iter().find_map(find).unwrap()
+    };
+    let known: Vec<_> = (steps.start * 3..steps.end * 3).map(one).collect();
+    let (rollout, next) = run(&mut all, 2, Default::default());
+    replay.insert(&rollout, &next, &serial).unwrap();
+    let after = replay.bytes();
+    // Of the two records the newer one came last. The older one is that of the room that was made and of what the reset parted; what
+    // it counts, the ends on the last two pages, was written before it. With all else in the pages before, any part may have been.
+    let words = |at: usize| u64::from_le_bytes(after[at..at + 8].try_into().unwrap());
+    let older = if words(512) < words(1024) { 512 } else { 1024 };
+    let mut dead = before.clone();
+    dead[older..older + 64].copy_from_slice(&after[older..older + 64]);
+    dead[6 * PAGE..].copy_from_slice(&after[6 * PAGE..]);
+    // Marks of what the reset parted, in the last row, were set before that row's successor was written.
+    dead[4 * PAGE + 27..][..3].copy_from_slice(&after[4 * PAGE + 27..][..3]);
+    let changed: Vec<usize> = (PAGE..6 * PAGE).filter(|&i| dead[i] != after[i]).collect();
+    assert!(changed.len() > 50, "{}", changed.len());
+    for cut in 0..2 * changed.len() as u32 {
+        let mut torn = dead.clone();
+        for (k, &i) in changed.iter().enumerate() {
+            let random = philox4x32([cut, k as u32, 0, 0], [7, 7])[0].is_multiple_of(2);
+            // Up to somewhere, or scattered.
+            let written = if cut % 2 == 0 { k < cut as usize / 2 } else { random };
+            torn[i] = if written { after[i] } else { dead[i] };
+        }
+        let found = Replay21::open(mapped(&torn)).unwrap();
+        assert_eq!((found.inserted(), found.steps()), (steps.end, replay.steps() - 2));
+        let drawn = batch(&found);
+        for (i, number) in drawn.number.iter().enumerate() {
+            let was = known[(number - steps.start * 3) as usize];
+            assert_eq!(entry(&drawn, i), was, "transition {number}, {cut}");
+        }
+    }
+}
+
+/// What there is of a transition.
+fn entry(batch: &Batch<f32, 2, 1>, i: usize) -> ([f32; 2], [f32; 1], f32, [f32; 2], [u8; 2]) {
+    let flags = [batch.terminated[i], batch.truncated[i]];
+    (batch.observation[i], batch.action[i], batch.reward[i], batch.next_observation[i], flags)
+}
+
+fn sizes(numbers: &[f32]) -> Vec<f32> {
+    numbers.iter().map(|x| x.abs()).collect()
+}
+
+#[test]
+fn what_is_opened_goes_on_as_if_it_had_never_been_closed() {
+    let serial = Execution::serial();
+    let mut all = environments(Autoreset::SameStep, 3);
+    let mut kept = Replay21::new(Capacity::new(9, 3).priorities()).unwrap();
+    let mut opened = reopened(&kept).unwrap();
+    for number in 0..40 {
+        let (rollout, next) = run(&mut all, 2, Default::default());
+        for replay in [&mut kept, &mut opened] {
+            replay.insert(&rollout, &next, &serial).unwrap();
+            let draw = Draw { seed: 1, number };
+            let mut batch = Batch::<f32, 2, 1>::new(8);
+            let columns = &mut batch.columns();
+            replay.sample_prioritised(draw, Lookahead::default(), 0.4, columns, &serial).unwrap();
+            replay.update(&batch.number, &sizes(&batch.reward), 0.6).unwrap();
+        }
+        assert_eq!(batch(&kept), batch(&opened));
+        assert_eq!(kept.total_weight().to_bits(), opened.total_weight().to_bits());
+        opened = reopened(&opened).unwrap();
+        assert_eq!(kept.bytes()[PAGE..], opened.bytes()[PAGE..], "{number}");
+    }
+}
+
+#[test]
+fn memory_of_something_else_and_damaged_memory_are_refused() {
+    let replay = filled(Capacity::new(20, 3), 20);
+    let bytes = replay.bytes();
+    let refused = |change: &dyn Fn(&mut Vec<u8>)| {
+        let mut bytes = bytes.to_vec();
+        change(&mut bytes);
+        Replay21::open(mapped(&bytes)).map(drop).unwrap_err().to_string()
+    };
+    for (said, found) in [
+        ("its beginning is another", refused(&|bytes| bytes[0] ^= 1)),
+        ("its version is 2; it must be 1", refused(&|bytes| bytes[8] ^= 3)),
+        ("its description", refused(&|bytes| bytes[41] ^= 1)),
+        ("neither record", refused(&|bytes| bytes[512..1536].fill(0))),
+        ("bytes of", refused(&|bytes| bytes.truncate(5 * PAGE))),
+        ("its length is 100 bytes", refused(&|bytes| bytes.truncate(100))),
+        ("nothing follows it", refused(&|bytes| bytes[4 * PAGE] |= 4)),
+        ("counts", refused(&|bytes| bytes[4 * PAGE] |= 8)),
+        ("cannot stand where it does", refused(&|bytes| bytes[5 * PAGE..][..8].fill(0xff))),
+    ] {
+        assert!(found.contains(said), "{found}");
+    }
+    let wide = Replay::<f64, 2, 1>::open(mapped(bytes)).map(drop).unwrap_err().to_string();
+    assert!(wide.contains("the float type is f32; it must be f64"), "{wide}");
+    let other = Replay::<f32, 3, 1>::open(mapped(bytes)).map(drop).unwrap_err().to_string();
+    assert!(other.contains("2 numbers seen, 1 done; it must be 3 numbers seen"), "{other}");
+}

@@ -1,0 +1,154 @@
+//! A replay buffer beside a naive one, over random operations.
+
+use libration::ensemble::Execution;
+use libration::random::philox4x32;
+use libration::replay::{Batch, Capacity, Draw, Lookahead, Sequences};
+use libration::rl::{Autoreset, Layout};
+
+use super::naive::Naive;
+use super::{Replay21, environments, run};
+
+const ENVIRONMENTS: usize = 3;
+const BATCH: usize = 4;
+
+/// Numbers below others, one after the other.
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, count: u64) -> u64 {
+        self.0 += 1;
+        let [a, b, ..] = philox4x32([self.0 as u32, (self.0 >> 32) as u32, 0, 0], [1, 2]);
+        (u64::from(a) << 32 | u64::from(b)) % count
+    }
+}
+
+/// Goes through so many operations; what is asked of both must be the same.
+fn compare(autoreset: Autoreset, operations: u64) {
+    let serial = Execution::serial();
+    let capacity = Capacity::new(12, ENVIRONMENTS).ends(8).priorities();
+    let mut all = environments(autoreset, ENVIRONMENTS);
+    let mut replay = Replay21::new(capacity).unwrap();
+    let mut naive = Naive::new(capacity);
+    let mut dice = Dice(autoreset as u64 * operations);
+    let mut batch = Batch::<f32, 2, 1>::new(BATCH);
+    for number in 0..operations {
+        let draw = Draw { seed: 3, number };
+        match dice.below(20) {
+            0 | 1 => {
+                let layout = [Layout::Interleaved, Layout::Planes][dice.below(2) as usize];
+                let steps = 1 + dice.below(3) as usize;
+                let (rollout, next) = run(&mut all, steps, layout);
+                let inserted = replay.insert(&rollout, &next, &serial);
+                // So many ends at once there is no room for.
+                if rollout.finals().len() > capacity.ends {
+                    inserted.unwrap_err();
+                    continue;
+                }
+                inserted.unwrap();
+                naive.insert(&rollout, &next);
+            }
+            2 => {
+                let which: Vec<bool> = (0..ENVIRONMENTS).map(|_| dice.below(2) == 0).collect();
+                all.reset(&which).unwrap();
+            }
+            3 => {
+                // A copy of the bytes is the same buffer.
+                replay = super::memory::reopened(&replay).unwrap();
+            }
+            4..8 => {
+                let mut to = Sequences::new(2, 1 + dice.below(5) as usize);
+                match replay.sample_sequences(draw, &mut to, &serial) {
+                    Ok(()) => same_stretches(&naive, &to),
+                    Err(_) => assert!(!begins(&naive, to.steps)),
+                }
+            }
+            8..12 if !replay.is_empty() => {
+                let drawn = Lookahead::default();
+                let sampled =
+                    replay.sample_prioritised(draw, drawn, 0.5, &mut batch.columns(), &serial);
+                if replay.total_weight() == 0.0 {
+                    sampled.unwrap_err();
+                    continue;
+                }
+                sampled.unwrap();
+                assert!(batch.number.iter().all(|&i| naive.get(i).unwrap().weight > 0.0));
+                let priorities: Vec<f32> = (0..BATCH).map(|_| dice.below(4) as f32).collect();
+                replay.update(&batch.number, &priorities, 2.0).unwrap();
+                for (&i, priority) in batch.number.iter().zip(&priorities) {
+                    naive.weigh(i, f64::from(*priority).powi(2));
+                }
+            }
+            12 => {
+                let total: f64 = naive.all().map(|(_, transition)| transition.weight).sum();
+                // Squares of small whole numbers: sums of them are exact.
+                assert_eq!(replay.total_weight(), total, "operation {number}");
+                assert_eq!([replay.len(), replay.steps()], [naive.len(), naive.steps()]);
+                let [first, end] = [naive.first, naive.first + naive.steps()];
+                let n = ENVIRONMENTS as u64;
+                for number in first.saturating_sub(2) * n..(end + 2) * n {
+                    let there = naive.get(number);
+                    assert_eq!(replay.contains(number), there.is_some());
+                    assert_eq!(replay.weight(number), there.map(|there| there.weight));
+                }
+            }
+            _ => {
+                let ahead = Lookahead { steps: 1 + dice.below(4) as usize, discount: 0.5 };
+                let sampled = replay.sample(draw, ahead, &mut batch.columns(), &serial);
+                assert_eq!(sampled.is_err(), naive.len() == 0);
+                if sampled.is_ok() {
+                    same_batch(&naive, &batch, ahead);
+                }
+            }
+        }
+    }
+    assert!(naive.first > operations / 20, "the ring went round {} times", naive.first / 12);
+}
+
+fn same_batch(naive: &Naive, batch: &Batch<f32, 2, 1>, ahead: Lookahead) {
+    for (i, &number) in batch.number.iter().enumerate() {
+        let there = naive.get(number).unwrap();
+        // Halves: powers of the discount are exact, and sums are formed in the same order.
+        let (paid, last, taken) = naive.ahead(number, ahead.steps, ahead.discount as f32);
+        assert_eq!((batch.observation[i], batch.action[i]), (there.seen, there.done));
+        assert_eq!((batch.reward[i], batch.next_observation[i]), (paid, last.next), "{number}");
+        assert_eq!((batch.terminated[i] == 1, batch.truncated[i] == 1), (last.over, last.cut));
+        let discount = if last.over { 0.0 } else { 0.5_f32.powi(taken as i32) };
+        assert_eq!((batch.discount[i], batch.weight[i]), (discount, 1.0));
+    }
+}
+
+/// Whether a stretch of so many steps begins with a transition.
+fn begins(naive: &Naive, steps: usize) -> bool {
+    let end = (naive.first + naive.steps() + 1).saturating_sub(steps as u64) * ENVIRONMENTS as u64;
+    naive.all().any(|(number, _)| number < end)
+}
+
+fn same_stretches(naive: &Naive, found: &Sequences<f32, 2, 1>) {
+    for (i, &number) in found.number.iter().enumerate() {
+        let (mut goes_on, mut next) = (true, None);
+        for t in 0..found.steps {
+            let (at, number) = (i * found.steps + t, number + (t * ENVIRONMENTS) as u64);
+            let there = naive.get(number);
+            goes_on &= there.is_some();
+            assert_eq!((found.observation[at], found.mask[at] == 1), (naive.seen(number), goes_on));
+            if let Some(there) = there {
+                assert_eq!((found.action[at], found.reward[at]), (there.done, there.paid));
+                let flags = (found.terminated[at] == 1, found.truncated[at] == 1);
+                assert_eq!(flags, (there.over, there.cut));
+                next = if goes_on { Some(there.next) } else { next };
+                goes_on &= !there.parted;
+            }
+        }
+        assert_eq!(Some(found.next_observation[i]), next);
+    }
+}
+
+#[test]
+fn a_million_random_operations_find_what_a_list_of_everything_finds() {
+    let ways = [Autoreset::SameStep, Autoreset::NextStep, Autoreset::Disabled];
+    std::thread::scope(|scope| {
+        for autoreset in ways {
+            scope.spawn(move || compare(autoreset, 334_000));
+        }
+    });
+}
