@@ -2,7 +2,7 @@
 
 use crate::{Outcome, command};
 
-const FORBIDDEN: [&str; 3] = ["serde", "libration-lab", "libration-cli"];
+const FORBIDDEN: [&str; 4] = ["serde", "libration-data", "libration-lab", "libration-cli"];
 
 /// Fails if the engine's dependency tree holds a forbidden crate.
 pub(crate) fn run() -> Outcome {
@@ -12,7 +12,7 @@ pub(crate) fn run() -> Outcome {
         [] => Ok(()),
         found => Err(format!(
             "crates/libration depends on {}. Numbers and physics know no formats and no studies: \
-             serialise and measure in crates/libration-lab, or switch the feature off that \
+             serialise in crates/libration-data, measure in crates/libration-lab, or switch the feature off that \
              brings it in (`cargo tree -p libration -i {}` shows the way)",
             found.join(", "),
             found[0],

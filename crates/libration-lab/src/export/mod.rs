@@ -6,18 +6,15 @@
 mod csv;
 mod error;
 mod json;
-mod npy;
 mod number;
-mod parquet;
-mod table;
+mod series;
 
-pub use self::parquet::{series_to_parquet, write_parquet};
 pub use csv::Csv;
 pub use error::ExportError;
 pub use json::Json;
-pub use npy::write_npy;
+pub use libration_data::{Column, Table, Values, write_npy, write_parquet};
 pub use number::Number;
-pub use table::{Column, Table, Values};
+pub use series::series_to_parquet;
 
 /// Takes the rows of a trajectory in turn.
 pub trait Rows<S> {

@@ -46,7 +46,7 @@ impl<S: Number> Columns<S> {
             unit: Cow::Borrowed(unit),
             values,
         };
-        Table::new(heads.zip(values).map(column).collect())
+        Ok(Table::new(heads.zip(values).map(column).collect())?)
     }
 }
 

@@ -24,7 +24,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::analyze::Timing;
-use crate::export::{Csv, Json, Table, write_npy, write_parquet};
+use crate::export::{Csv, ExportError, Json, Table, write_npy, write_parquet};
 use columns::Columns;
 use many::Many;
 
@@ -162,7 +162,7 @@ fn write_as<S: Many>(
         }
         Format::Npy => {
             let Trajectory { table, ending } = keep::<S>(request, stop)?;
-            write_npy(&table, &mut *out)?;
+            write_npy(&table, &mut *out).map_err(ExportError::from)?;
             ending
         }
         Format::Parquet => {
@@ -172,11 +172,12 @@ fn write_as<S: Many>(
             let (key, value) = ending.told(several);
             about.insert(key.to_owned(), value);
             let about = Value::Object(about).to_string();
-            write_parquet(&table, &[("libration.trajectory", &about)], &mut *out)?;
+            write_parquet(&table, &[("libration.trajectory", &about)], 1, &mut *out)
+                .map_err(ExportError::from)?;
             ending
         }
     };
-    out.flush().map_err(crate::export::ExportError::from)?;
+    out.flush().map_err(ExportError::from)?;
     Ok(ending)
 }
 

@@ -4,8 +4,7 @@ use std::borrow::Cow;
 
 use half::{bf16, f16};
 
-use super::ExportError;
-use crate::record::Series;
+use crate::TableError;
 
 /// Columns of equal length, owned or borrowed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,6 +26,10 @@ pub struct Column<'a> {
 /// The values of a column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values<'a> {
+    /// Flags: 0 or 1.
+    Bool(Cow<'a, [u8]>),
+    /// Counts, as of environments.
+    U32(Cow<'a, [u32]>),
     /// Counts, as of steps.
     U64(Cow<'a, [u64]>),
     /// Double precision.
@@ -43,6 +46,8 @@ impl Values<'_> {
     /// Number of values.
     pub fn len(&self) -> usize {
         match self {
+            Values::Bool(x) => x.len(),
+            Values::U32(x) => x.len(),
             Values::U64(x) => x.len(),
             Values::F64(x) => x.len(),
             Values::F32(x) => x.len(),
@@ -61,13 +66,13 @@ impl<'a> Table<'a> {
     /// The table of these columns.
     ///
     /// # Errors
-    /// [`ExportError::Ragged`] if they differ in length.
-    pub fn new(columns: Vec<Column<'a>>) -> Result<Self, ExportError> {
+    /// [`TableError::Ragged`] if they differ in length.
+    pub fn new(columns: Vec<Column<'a>>) -> Result<Self, TableError> {
         let expected = columns.first().map_or(0, |c| c.values.len());
         match columns.iter().find(|c| c.values.len() != expected) {
             Some(c) => {
                 let (column, found) = (c.name.to_string(), c.values.len());
-                Err(ExportError::Ragged { column, expected, found })
+                Err(TableError::Ragged { column, expected, found })
             }
             None => Ok(Table { columns }),
         }
@@ -86,18 +91,5 @@ impl<'a> Table<'a> {
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, |c| c.values.len())
-    }
-}
-
-impl<'a> TryFrom<&'a Series> for Table<'a> {
-    type Error = ExportError;
-
-    fn try_from(series: &'a Series) -> Result<Self, ExportError> {
-        let column = |c: &'a crate::record::Column| Column {
-            name: Cow::Borrowed(&c.name),
-            unit: Cow::Borrowed(&c.unit),
-            values: Values::F64(Cow::Borrowed(&c.values)),
-        };
-        Table::new(series.columns.iter().map(column).collect())
     }
 }

@@ -1,0 +1,51 @@
+//! Checksums that others can compute too: `b3sum FILE`.
+
+use std::io::{self, Read};
+
+use blake3::Hasher;
+
+/// Bytes that are read at once.
+const PIECE: usize = 1 << 18;
+
+/// BLAKE3 of the pieces of a file, in hexadecimal.
+///
+/// J. O'Connor, J.-P. Aumasson, S. Neves, Z. Wilcox-O'Hearn, *BLAKE3: one function, fast everywhere*, 2020. A single core sums faster
+/// than a disk writes.
+pub fn checksum<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> String {
+    let mut sum = Hasher::new();
+    for piece in pieces {
+        sum.update(piece);
+    }
+    sum.finalize().to_string()
+}
+
+/// The same of what is read to its end, and its length.
+pub(crate) fn checksum_of(mut from: impl Read) -> io::Result<(String, u64)> {
+    let (mut sum, mut len, mut piece) = (Hasher::new(), 0, vec![0; PIECE]);
+    loop {
+        let count = match from.read(&mut piece) {
+            Ok(0) => return Ok((sum.finalize().to_string(), len)),
+            Ok(count) => count,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(error) => return Err(error),
+        };
+        sum.update(&piece[..count]);
+        len += count as u64;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_are_those_of_others() {
+        // Of the empty input, as `b3sum` prints it.
+        let nothing = "af1349b9f5f9a1a6a0404dea36dcc9499bcb25c9adc112b7cc9a93cae41f3262";
+        assert_eq!(checksum([]), nothing);
+        assert_eq!(checksum_of(&b""[..]).unwrap(), (nothing.to_owned(), 0));
+        let abc = "6437b3ac38465133ffb63b75273a8db548c558465d79db03fd359c6cd5bd9d85";
+        assert_eq!(checksum([&b"ab"[..], b"c"]), abc);
+        assert_eq!(checksum_of(&b"abc"[..]).unwrap(), (abc.to_owned(), 3));
+    }
+}

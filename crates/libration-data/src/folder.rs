@@ -1,0 +1,195 @@
+//! A folder into which a data set is written, one chunk after the other.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use serde_json::{Map, Value};
+
+use crate::durable::{remove_parts, sync_folder};
+use crate::manifest::NAME;
+use crate::{Chunk, DataError, Manifest, Stored, write_file};
+
+/// A folder that this process alone writes to.
+#[derive(Debug)]
+pub struct Folder {
+    path: PathBuf,
+    manifest: Manifest,
+    /// The manifest's file, which is locked.
+    log: File,
+}
+
+/// A file of a chunk that is to be written: where, and its bytes.
+#[derive(Clone, Debug)]
+pub struct FileOf<'a> {
+    /// Seen from the folder.
+    pub path: PathBuf,
+    /// One after the other.
+    pub pieces: Vec<&'a [u8]>,
+}
+
+impl Folder {
+    /// Opens a folder for a data set of these settings; with `resume` one that was begun before, of which everything that is in its
+    /// manifest stays.
+    ///
+    /// # Errors
+    /// If another process has it open, or it holds something else, another data set, or one that nobody asked to go on with; if the
+    /// files that its manifest names are not there. Nothing has changed then.
+    pub fn open(
+        path: &Path,
+        settings: &Map<String, Value>,
+        resume: bool,
+    ) -> Result<Self, DataError> {
+        fs::create_dir_all(path).map_err(DataError::io("create", path))?;
+        let name = path.join(NAME);
+        if !name.exists() {
+            // Before anything is made of it.
+            let mut entries = fs::read_dir(path).map_err(DataError::io("read", path))?;
+            if let Some(Ok(entry)) = entries.next() {
+                let found = entry.file_name().to_string_lossy().into_owned();
+                return Err(DataError::Strange { folder: path.to_owned(), found });
+            }
+        }
+        let mut log = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(&name)
+            .map_err(DataError::io("write", &name))?;
+        match log.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(DataError::Locked(path.to_owned())),
+            Err(TryLockError::Error(error)) => return Err(DataError::io("lock", &name)(error)),
+        }
+        let mut text = Vec::new();
+        log.read_to_end(&mut text).map_err(DataError::io("read", &name))?;
+        let (found, len) = Manifest::parse(&text, &name)?;
+        let path = path.to_owned();
+        let Some(manifest) = found else {
+            let manifest = Manifest { settings: settings.clone(), chunks: Vec::new() };
+            let mut folder = Folder { path, manifest, log };
+            folder.cut(0)?;
+            folder.append(&Value::Object(settings.clone()))?;
+            sync_folder(&folder.path)?;
+            return Ok(folder);
+        };
+        if !resume {
+            return Err(DataError::Exists(path));
+        }
+        same(&path, &manifest.settings, settings)?;
+        let mut folder = Folder { path, manifest, log };
+        folder.look()?;
+        folder.cut(len as u64)?;
+        folder.parts()?;
+        Ok(folder)
+    }
+
+    /// What is there so far.
+    pub fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes a chunk. When this returns, it is on the disk, and in the manifest.
+    ///
+    /// # Errors
+    /// If the system refuses, as when the disk is full; what was there before is there still.
+    pub fn commit(
+        &mut self,
+        chunk: &str,
+        holds: Map<String, Value>,
+        files: &[FileOf<'_>],
+    ) -> Result<(), DataError> {
+        let mut stored = Vec::with_capacity(files.len());
+        let mut folders: Vec<PathBuf> = Vec::new();
+        for FileOf { path, pieces } in files {
+            let whole = self.path.join(path);
+            if let Some(parent) =
+                whole.parent().filter(|parent| !folders.iter().any(|f| f == parent))
+            {
+                fs::create_dir_all(parent).map_err(DataError::io("create", parent))?;
+                folders.push(parent.to_owned());
+            }
+            let (blake3, bytes) = write_file(&whole, pieces)?;
+            stored.push(Stored { path: path.clone(), bytes, blake3 });
+        }
+        folders.iter().try_for_each(|folder| sync_folder(folder))?;
+        if self.manifest.chunks.is_empty() {
+            sync_folder(&self.path)?;
+        }
+        let chunk = Chunk { chunk: chunk.to_owned(), holds, files: stored };
+        let line = serde_json::to_value(&chunk)
+            .map_err(|error| DataError::io("write", &self.path.join(NAME))(error.into()))?;
+        self.append(&line)?;
+        self.manifest.chunks.push(chunk);
+        Ok(())
+    }
+
+    /// A line of the manifest.
+    fn append(&mut self, line: &Value) -> Result<(), DataError> {
+        let name = self.path.join(NAME);
+        let text = format!("{line}\n");
+        let written = self.log.write_all(text.as_bytes()).and_then(|()| self.log.sync_data());
+        written.map_err(DataError::io("write", &name))
+    }
+
+    /// What is longer was never whole.
+    fn cut(&mut self, len: u64) -> Result<(), DataError> {
+        let name = self.path.join(NAME);
+        let cut = self.log.set_len(len).and_then(|()| self.log.seek(SeekFrom::End(0)));
+        cut.map(|_| ()).map_err(DataError::io("write", &name))
+    }
+
+    /// Whether every file of the manifest is there, as long as it should be.
+    fn look(&self) -> Result<(), DataError> {
+        for file in self.manifest.chunks.iter().flat_map(|chunk| &chunk.files) {
+            let path = self.path.join(&file.path);
+            let damaged = |what: String| DataError::Damaged { path: path.clone(), what };
+            match fs::metadata(&path) {
+                Ok(found) if found.len() == file.bytes => {}
+                Ok(found) => {
+                    let (found, wanted) = (found.len(), file.bytes);
+                    return Err(damaged(format!(
+                        "it has {found} bytes; the manifest says {wanted}"
+                    )));
+                }
+                Err(error) => return Err(damaged(format!("the manifest names it: {error}"))),
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes what was not whole.
+    fn parts(&self) -> Result<(), DataError> {
+        remove_parts(&self.path)?;
+        let entries = fs::read_dir(&self.path).map_err(DataError::io("read", &self.path))?;
+        let folders = entries.flatten().map(|entry| entry.path()).filter(|path| path.is_dir());
+        folders.into_iter().try_for_each(|folder| remove_parts(&folder))
+    }
+}
+
+/// Nothing, if these are the settings that are asked for.
+pub(crate) fn same(
+    folder: &Path,
+    found: &Map<String, Value>,
+    wanted: &Map<String, Value>,
+) -> Result<(), DataError> {
+    let other = |name: &str, found: Option<&Value>, wanted: Option<&Value>| {
+        let text = |value: Option<&Value>| value.map_or("not told".to_owned(), Value::to_string);
+        let (name, found, wanted) = (name.to_owned(), text(found), text(wanted));
+        Err(DataError::Other { folder: folder.to_owned(), name, found, wanted })
+    };
+    for name in wanted.keys().chain(found.keys()) {
+        match (found.get(name), wanted.get(name)) {
+            (Some(Value::Object(a)), Some(Value::Object(b))) => same(folder, a, b)?,
+            (a, b) if a == b => {}
+            (a, b) => return other(name, a, b),
+        }
+    }
+    Ok(())
+}

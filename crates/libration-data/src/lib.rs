@@ -1,0 +1,29 @@
+//! Numbers in files: formats that others read, data sets that are larger than memory, and states from which to go on.
+//!
+//! A [`Folder`] takes one chunk of a data set after the other. Whatever is in its manifest is on the disk, whole, with a checksum;
+//! whoever is stopped goes on after the last chunk. A state is [kept](keep) in one file, and [taken up](take_up) only if all of it is
+//! as it was.
+//!
+//! Nothing here knows of physics.
+
+mod checksum;
+mod durable;
+mod error;
+mod folder;
+mod manifest;
+mod npy;
+mod parquet;
+mod state;
+mod table;
+mod verify;
+
+pub use checksum::checksum;
+pub use durable::write_file;
+pub use error::{DataError, TableError};
+pub use folder::{FileOf, Folder};
+pub use manifest::{Chunk, Manifest, Stored};
+pub use npy::{npy_array, write_npy};
+pub use parquet::write_parquet;
+pub use state::{keep, take_up};
+pub use table::{Column, Table, Values};
+pub use verify::{Flaw, verify};

@@ -1,0 +1,97 @@
+//! What a data set consists of.
+
+use std::path::{Component, Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use crate::DataError;
+
+/// Its name in the folder.
+pub(crate) const NAME: &str = "manifest.jsonl";
+
+/// What a data set consists of: its settings, and the chunks that are there. In its file each has a line of JSON.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Manifest {
+    /// What the data set is.
+    pub settings: Map<String, Value>,
+    /// Its chunks so far.
+    pub chunks: Vec<Chunk>,
+}
+
+/// A chunk of a data set.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Chunk {
+    /// Its name.
+    pub chunk: String,
+    /// What it holds.
+    pub holds: Map<String, Value>,
+    /// Its files.
+    pub files: Vec<Stored>,
+}
+
+/// A file of a chunk.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stored {
+    /// Where it is, seen from the folder.
+    pub path: PathBuf,
+    /// Its length.
+    pub bytes: u64,
+    /// BLAKE3 of all of it, in hexadecimal.
+    pub blake3: String,
+}
+
+impl Manifest {
+    /// Reads the text of one, and how much of it that is: a last line without its end was never written.
+    pub(crate) fn parse(text: &[u8], path: &Path) -> Result<(Option<Self>, usize), DataError> {
+        let len = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
+        let wrong = |line: usize, what: String| {
+            let path = path.to_owned();
+            DataError::Manifest { path, line: line + 1, what }
+        };
+        let mut lines =
+            text[..len].split(|&byte| byte == b'\n').take_while(|line| !line.is_empty());
+        let Some(first) = lines.next() else { return Ok((None, 0)) };
+        let settings = serde_json::from_slice(first)
+            .map_err(|error| wrong(0, format!("tells no settings: {error}")))?;
+        let mut manifest = Manifest { settings, chunks: Vec::new() };
+        let mut read = first.len() + 1;
+        for (i, line) in lines.enumerate() {
+            let chunk: Chunk = serde_json::from_slice(line)
+                .map_err(|error| wrong(i + 1, format!("is no chunk: {error}")))?;
+            let plain = |path: &Path| path.components().all(|c| matches!(c, Component::Normal(_)));
+            if let Some(file) = chunk.files.iter().find(|file| !plain(&file.path)) {
+                let what = format!("names `{}`, which is not in the folder", file.path.display());
+                return Err(wrong(i + 1, what));
+            }
+            if manifest.chunks.iter().any(|before| before.chunk == chunk.chunk) {
+                return Err(wrong(i + 1, format!("tells of chunk {} again", chunk.chunk)));
+            }
+            manifest.chunks.push(chunk);
+            read += line.len() + 1;
+        }
+        if read != len {
+            return Err(wrong(manifest.chunks.len() + 1, "is empty".to_owned()));
+        }
+        Ok((Some(manifest), len))
+    }
+
+    /// Reads that of a folder.
+    ///
+    /// # Errors
+    /// If there is none, or what there is is none.
+    pub fn read(folder: &Path) -> Result<Self, DataError> {
+        let path = folder.join(NAME);
+        let text = match std::fs::read(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                return Err(DataError::Missing(folder.to_owned()));
+            }
+            Err(error) => return Err(DataError::io("read", &path)(error)),
+        };
+        let (manifest, _) = Manifest::parse(&text, &path)?;
+        manifest.ok_or_else(|| DataError::Missing(folder.to_owned()))
+    }
+}

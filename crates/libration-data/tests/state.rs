@@ -1,0 +1,78 @@
+//! States in files.
+
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+
+use libration::State;
+use libration::checkpoint::Checkpoint;
+use libration::ensemble::{All, Ensemble, Execution};
+use libration::integrator::VelocityVerlet;
+use libration::system::Pendulum;
+use libration_data::{keep, take_up};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+fn swings(count: usize) -> Ensemble<f32, 1> {
+    let start = |n: usize| State { q: [0.01 * n as f32], v: [0.0] };
+    Ensemble::from_fn(count, Execution::serial(), start).unwrap()
+}
+
+#[test]
+fn a_state_goes_through_a_file_with_its_note() {
+    let dir = TempDir::new().unwrap();
+    let path = dir.path().join("swings.state");
+    let mut one = swings(100);
+    one.advance(VelocityVerlet, All(Pendulum { omega2: 9.81 }), All(0.01), 77).unwrap();
+    let note = json!({ "of": "a test" });
+    keep(&path, &one, &note).unwrap();
+    let mut other = swings(100);
+    assert_eq!(take_up(&path, &mut other).unwrap(), note);
+    assert!(other.to_bytes() == one.to_bytes());
+    // Only the file itself stays.
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_file_that_is_cut_off_changed_of_another_version_or_of_something_else_is_refused() {
+    let dir = TempDir::new().unwrap();
+    let path = dir.path().join("swings.state");
+    keep(&path, &swings(100), &Value::Null).unwrap();
+    let good = fs::read(&path).unwrap();
+    let mut other = swings(100);
+    other.advance(VelocityVerlet, All(Pendulum { omega2: 9.81 }), All(0.01), 5).unwrap();
+    let before = other.to_bytes();
+    let mut refused = |bytes: &[u8]| {
+        fs::write(&path, bytes).unwrap();
+        let error = take_up(&path, &mut other).unwrap_err().to_string();
+        assert!(other.to_bytes() == before);
+        assert!(error.contains("swings.state"), "{error}");
+        error
+    };
+    for len in (0..good.len()).step_by(29) {
+        let error = refused(&good[..len]);
+        assert!(["cut off", "no state"].iter().any(|said| error.contains(said)), "{len}: {error}");
+    }
+    for at in (0..good.len()).step_by(13) {
+        let mut bad = good.clone();
+        bad[at] ^= 0x10;
+        let error = refused(&bad);
+        assert!(error.contains("checksum") || error.contains("no state"), "{at}: {error}");
+    }
+    let changed = |from: &str, to: &str| {
+        let at = good.windows(from.len()).position(|bytes| bytes == from.as_bytes()).unwrap();
+        let mut bytes = good[..good.len() - 64].to_vec();
+        bytes[at..at + from.len()].copy_from_slice(to.as_bytes());
+        let sum = libration_data::checksum([&bytes[..]]);
+        [bytes, sum.into_bytes()].concat()
+    };
+    let version = format!("\"version\":\"{}\"", env!("CARGO_PKG_VERSION"));
+    let newer = format!("\"version\":\"9{}\"", &env!("CARGO_PKG_VERSION")[1..]);
+    assert!(refused(&changed(&version, &newer)).contains("it was kept by version 9"));
+    assert!(refused(&changed("\"format\":1", "\"format\":2")).contains("in format 2"));
+    let error = refused(&changed("\"ensemble\"", "\"octopus!\""));
+    assert!(error.contains("its kind is octopus!; it must be ensemble"), "{error}");
+    fs::remove_file(&path).unwrap();
+    let error = take_up(&path, &mut swings(1)).unwrap_err().to_string();
+    assert!(error.contains("cannot read"), "{error}");
+}
