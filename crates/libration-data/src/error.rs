@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use libration::checkpoint::CheckpointError;
+use libration::replay::ReplayError;
 use parquet::errors::ParquetError;
 use thiserror::Error;
 
@@ -21,7 +22,7 @@ pub enum DataError {
         source: io::Error,
     },
     /// Another process writes there.
-    #[error("another process is writing to {}; wait for it, or choose another folder", .0.display())]
+    #[error("another process is using {}; wait for it, or choose another place", .0.display())]
     Locked(PathBuf),
     /// There is a data set, and nobody asked to go on with it.
     #[error("{} holds a data set; --resume goes on with it", .0.display())]
@@ -66,6 +67,14 @@ pub enum DataError {
         path: PathBuf,
         /// What is wrong with it.
         what: String,
+    },
+    /// A file of a replay buffer is none, or damaged.
+    #[error("{}: {source}", path.display())]
+    Replay {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: ReplayError,
     },
     /// A state is of something else.
     #[error("{}: {source}", path.display())]

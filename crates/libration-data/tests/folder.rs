@@ -146,7 +146,7 @@ fn a_folder_with_something_else_in_it_is_refused_and_left_as_it_was() {
     more.insert("limit".into(), json!(3));
     assert!(refused(&path, &more, true).contains("its limit is not told; it must be 3"));
     let open = Folder::open(&path, &settings(), true).unwrap();
-    assert!(refused(&path, &settings(), true).contains("another process is writing"));
+    assert!(refused(&path, &settings(), true).contains("another process is using"));
     drop(open);
     assert!(contents(&path) == before);
 

@@ -1,0 +1,97 @@
+//! Replay buffers in files.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io;
+use std::ops::{Deref, DerefMut};
+use std::path::{Path, PathBuf};
+
+use bytemuck::Pod;
+use libration::Float;
+use libration::replay::{Capacity, Replay, ReplayError};
+use memmap2::MmapMut;
+
+use crate::DataError;
+
+/// A replay buffer whose memory is a file, which this process alone uses: at whatever moment it dies, what was inserted before is
+/// found there again. Against a loss of power so is what was [flushed](Self::flush).
+#[derive(Debug)]
+pub struct ReplayFile<T, const O: usize, const D: usize> {
+    replay: Replay<T, O, D>,
+    path: PathBuf,
+    /// Locked as long as it is open.
+    _file: File,
+}
+
+impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
+    /// An empty one in a new file.
+    ///
+    /// # Errors
+    /// [`DataError::Io`] if the file is there already, or there is no room for it; [`DataError::Replay`].
+    pub fn create(path: &Path, capacity: Capacity) -> Result<Self, DataError> {
+        let bytes = capacity.bytes(O, D, size_of::<T>()).map_err(refused(path))?;
+        let file = OpenOptions::new().read(true).write(true).create_new(true).open(path);
+        let file = file.map_err(DataError::io("create", path))?;
+        lock(&file, path)?;
+        file.set_len(bytes as u64).map_err(DataError::io("write", path))?;
+        let map = map(&file).map_err(DataError::io("map", path))?;
+        let replay = Replay::create(map, capacity).map_err(refused(path))?;
+        Ok(ReplayFile { replay, path: path.to_owned(), _file: file })
+    }
+
+    /// What an earlier process left.
+    ///
+    /// # Errors
+    /// [`DataError::Io`], [`DataError::Locked`] if another process has it, [`DataError::Replay`] if it is none or damaged.
+    pub fn open(path: &Path) -> Result<Self, DataError> {
+        let file = OpenOptions::new().read(true).write(true).open(path);
+        let file = file.map_err(DataError::io("open", path))?;
+        lock(&file, path)?;
+        let map = map(&file).map_err(DataError::io("map", path))?;
+        let replay = Replay::open(map).map_err(refused(path))?;
+        Ok(ReplayFile { replay, path: path.to_owned(), _file: file })
+    }
+
+    /// Waits until all that was inserted is on the disk.
+    ///
+    /// # Errors
+    /// If the system refuses.
+    pub fn flush(&self) -> Result<(), DataError> {
+        self.replay.map().flush().map_err(DataError::io("write", &self.path))
+    }
+}
+
+impl<T, const O: usize, const D: usize> Deref for ReplayFile<T, O, D> {
+    type Target = Replay<T, O, D>;
+
+    fn deref(&self) -> &Replay<T, O, D> {
+        &self.replay
+    }
+}
+
+impl<T, const O: usize, const D: usize> DerefMut for ReplayFile<T, O, D> {
+    fn deref_mut(&mut self) -> &mut Replay<T, O, D> {
+        &mut self.replay
+    }
+}
+
+fn refused(path: &Path) -> impl FnOnce(ReplayError) -> DataError {
+    let path = path.to_owned();
+    move |source| DataError::Replay { path, source }
+}
+
+fn lock(file: &File, path: &Path) -> Result<(), DataError> {
+    match file.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::WouldBlock) => Err(DataError::Locked(path.to_owned())),
+        Err(TryLockError::Error(error)) => Err(DataError::io("lock", path)(error)),
+    }
+}
+
+/// The file as memory.
+#[allow(unsafe_code)]
+fn map(file: &File) -> io::Result<MmapMut> {
+    // SAFETY: the memory must not change but through this map, nor the file get shorter. It is locked, and every process that comes
+    // through here asks for the lock first. One that ignores it can change numbers, of which every pattern of bits is one, or end
+    // this process by making the file shorter.
+    unsafe { MmapMut::map_mut(file) }
+}
