@@ -173,8 +173,11 @@ impl Folder {
     }
 }
 
-/// Nothing, if these are the settings that are asked for.
-pub(crate) fn same(
+/// Nothing, if the settings of a data set are those that are asked for.
+///
+/// # Errors
+/// [`DataError::Other`] with the first that is not.
+pub fn same(
     folder: &Path,
     found: &Map<String, Value>,
     wanted: &Map<String, Value>,

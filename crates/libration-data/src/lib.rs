@@ -21,7 +21,7 @@ mod verify;
 pub use checksum::checksum;
 pub use durable::write_file;
 pub use error::{DataError, TableError};
-pub use folder::{FileOf, Folder};
+pub use folder::{FileOf, Folder, same};
 pub use manifest::{Chunk, Manifest, Stored};
 pub use mapped::ReplayFile;
 pub use npy::{npy_array, write_npy};

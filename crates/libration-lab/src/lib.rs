@@ -6,6 +6,7 @@
 pub mod analyze;
 pub mod bench;
 pub mod config;
+pub mod dataset;
 mod effort;
 pub mod export;
 pub mod figure;

@@ -3,6 +3,7 @@
 mod analyze;
 mod bench;
 mod number;
+mod rollout;
 pub(crate) mod simd;
 mod simulate;
 mod system;
@@ -20,6 +21,7 @@ use crate::error::Failure;
 
 pub(crate) use analyze::AnalyzeArgs;
 pub(crate) use bench::BenchArgs;
+pub(crate) use rollout::{RolloutArgs, VerifyArgs};
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use system::{Setting, StepArgs, SystemArgs};
 
@@ -48,6 +50,8 @@ Examples:
                                              a trajectory as CSV
   libration analyze --system oscillator --integrator rk4 --dt 0.01
                                              what theory says of one step
+  libration rollout --out data --transitions 1e8
+                                             a data set of rollouts, as Parquet
   libration bench                            what this machine can do
   libration list                             what there is
 
@@ -61,6 +65,10 @@ pub(crate) enum Command {
     Analyze(AnalyzeArgs),
     /// Simulate one trajectory and write its rows
     Simulate(SimulateArgs),
+    /// Write a data set of rollouts, larger than memory, and go on where it was interrupted
+    Rollout(RolloutArgs),
+    /// Read a data set again, or compute it again, and compare
+    Verify(VerifyArgs),
     /// Time this machine: how fast trajectories advance, and what limits them
     Bench(BenchArgs),
     /// List studies, systems and integrators

@@ -5,6 +5,7 @@ mod bench;
 mod completions;
 mod lab;
 mod list;
+mod rollout;
 mod simulate;
 
 use crate::args::{Arguments, Command};
@@ -18,6 +19,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Lab(args) => lab::run(&args, arguments.quiet),
         Command::Analyze(args) => analyze::run(&args),
         Command::Simulate(args) => simulate::run(&args, arguments.quiet),
+        Command::Rollout(args) => rollout::run(&args, arguments.quiet),
+        Command::Verify(args) => rollout::verify(&args, arguments.quiet),
         Command::Bench(args) => bench::run(&args, arguments.quiet),
         Command::List(args) => list::run(&args),
         Command::Completions(args) => completions::run(&args),

@@ -36,15 +36,15 @@ impl fmt::Display for Fault {
 impl std::error::Error for Fault {}
 
 impl Fault {
-    pub(super) fn new(key: &'static str, message: impl Into<String>) -> Self {
+    pub(crate) fn new(key: &'static str, message: impl Into<String>) -> Self {
         Fault { key, index: None, message: message.into(), help: None }
     }
 
-    pub(super) fn at(key: &'static str, index: usize, message: impl Into<String>) -> Self {
+    pub(crate) fn at(key: &'static str, index: usize, message: impl Into<String>) -> Self {
         Fault { key, index: Some(index), message: message.into(), help: None }
     }
 
-    pub(super) fn help(mut self, help: String) -> Self {
+    pub(crate) fn help(mut self, help: String) -> Self {
         self.help = Some(help);
         self
     }

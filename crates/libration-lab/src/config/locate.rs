@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue, Error};
 use super::{ConfigError, Fault, names};
 
 /// A TOML file whose syntax is right, and which knows where everything stands.
-pub(super) struct Document<'a> {
+pub(crate) struct Document<'a> {
     file: &'a str,
     text: &'a str,
     table: Spanned<DeTable<'a>>,
@@ -16,7 +16,7 @@ pub(super) struct Document<'a> {
 
 impl<'a> Document<'a> {
     /// Reads `text`.
-    pub(super) fn parse(text: &'a str, file: &'a str) -> Result<Self, ConfigError> {
+    pub(crate) fn parse(text: &'a str, file: &'a str) -> Result<Self, ConfigError> {
         match DeTable::parse(text) {
             Ok(table) => Ok(Document { file, text, table }),
             Err(error) => {
@@ -27,13 +27,13 @@ impl<'a> Document<'a> {
     }
 
     /// The error of a value that is not allowed.
-    pub(super) fn locate(&self, fault: Fault) -> ConfigError {
+    pub(crate) fn locate(&self, fault: Fault) -> ConfigError {
         let span = self.find(fault.key, fault.index);
         ConfigError::new(self.file, self.text, span, fault.message, fault.help)
     }
 
     /// The error of a key that does not exist or a value of the wrong type.
-    pub(super) fn explain(&self, error: &Error) -> ConfigError {
+    pub(crate) fn explain(&self, error: &Error) -> ConfigError {
         let span = error.span().unwrap_or_default();
         let message = error.message();
         let (message, help) = match unknown_key(message) {

@@ -23,7 +23,9 @@ use crate::bench::Implementation;
 pub use check::Fault;
 pub use error::ConfigError;
 pub use file::{DEFAULT, parse, parse_bytes};
+pub(crate) use locate::Document;
 pub use schema::schema;
+pub(crate) use value::{Count, Number};
 
 /// A checked configuration. The default is the setting of the source report (§4.3, §9.1).
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -8,12 +8,12 @@ use serde::{Deserialize, Deserializer, Serialize};
 /// A number; `10` does for `10.0`.
 #[derive(Clone, Copy, Serialize)]
 #[serde(transparent)]
-pub(super) struct Number(pub(super) f64);
+pub(crate) struct Number(pub(crate) f64);
 
 /// A whole number; `1e6` does for `1_000_000`.
 #[derive(Clone, Copy, Serialize)]
 #[serde(transparent)]
-pub(super) struct Count(pub(super) i128);
+pub(crate) struct Count(pub(crate) i128);
 
 impl<'de> Deserialize<'de> for Number {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -27,6 +27,11 @@ impl<'de> Deserialize<'de> for Number {
             }
             fn visit_f64<E: Error>(self, x: f64) -> Result<f64, E> {
                 Ok(x)
+            }
+            /// JSON has no infinite numbers.
+            fn visit_str<E: Error>(self, x: &str) -> Result<f64, E> {
+                let infinite = x.parse().ok().filter(|x: &f64| x.is_infinite());
+                infinite.ok_or_else(|| E::invalid_type(serde::de::Unexpected::Str(x), &self))
             }
             fn visit_i64<E: Error>(self, x: i64) -> Result<f64, E> {
                 Ok(x as f64)

@@ -1,0 +1,152 @@
+//! A data set computed again, to be compared with the one on the disk.
+
+use std::path::Path;
+
+use libration::ensemble::Execution;
+use libration::rl::{Environments, World};
+use libration_data::{Flaw, Manifest, Stored, checksum, verify};
+use serde_json::Value;
+
+use super::actor::Actor;
+use super::stream::{Course, head};
+use super::tables::File;
+use super::world::{Number, Visit};
+use super::{DataFormat, Dataset, DatasetError, Watch};
+
+/// Reads a data set and compares it with its manifest; with `again` computes it anew as well, and compares that. Gives what is wrong.
+///
+/// # Errors
+/// If there is none, its settings cannot be read, or it is stopped.
+pub fn check(
+    folder: &Path,
+    again: Option<&Execution>,
+    watch: &dyn Watch,
+) -> Result<(Manifest, Vec<Flaw>), DatasetError> {
+    let manifest = Manifest::read(folder)?;
+    let mut chunks = manifest.chunks.iter();
+    let mut left = 0;
+    let mut flaws = verify(folder, &manifest, |bytes| {
+        // Its transitions are told with the last of its files.
+        if left == 0 {
+            left = chunks.next().map_or(1, |chunk| chunk.files.len().max(1));
+        }
+        left -= 1;
+        watch.done(0, bytes);
+        !watch.stops()
+    });
+    if watch.stops() {
+        return Err(DatasetError::Interrupted);
+    }
+    if let Some(execution) = again {
+        flaws.extend(computed(folder, &manifest, execution, watch)?);
+    }
+    Ok((manifest, flaws))
+}
+
+/// The settings in a manifest.
+pub(super) fn settings(
+    folder: &Path,
+    manifest: &Manifest,
+) -> Result<(Dataset, DataFormat, [usize; 2]), DatasetError> {
+    let refused = DatasetError::settings(folder);
+    let told = |name: &str| manifest.settings.get(name).cloned().unwrap_or(Value::Null);
+    let version = told("version");
+    if version != env!("CARGO_PKG_VERSION") {
+        let (folder, found) = (folder.to_owned(), version.to_string());
+        return Err(DatasetError::Version { folder, found });
+    }
+    let file: File = serde_json::from_value(told("data")).map_err(|error| refused(&error))?;
+    let dataset = Dataset::try_from(file).map_err(|fault| refused(&fault))?;
+    let format = told("format").as_str().and_then(DataFormat::from_name);
+    let format = format.ok_or_else(|| refused(&"`format` is none"))?;
+    let groups: [usize; 2] =
+        serde_json::from_value(told("groups")).map_err(|error| refused(&error))?;
+    if groups[0] > groups[1] || groups[1] > dataset.groups() {
+        return Err(refused(&format!("`groups` is {groups:?}")));
+    }
+    libration_data::same(folder, &manifest.settings, &head(&dataset, format, groups))?;
+    Ok((dataset, format, groups))
+}
+
+fn computed(
+    folder: &Path,
+    manifest: &Manifest,
+    execution: &Execution,
+    watch: &dyn Watch,
+) -> Result<Vec<Flaw>, DatasetError> {
+    let (dataset, format, [first, end]) = settings(folder, manifest)?;
+    let mut flaws = Vec::new();
+    let mut chunks = manifest.chunks.chunks(dataset.chunks() as usize);
+    for number in first..end {
+        let Some(chunks) = chunks.next() else { break };
+        let compare =
+            Compare { dataset: &dataset, format, chunks, execution, watch, flaws: &mut flaws };
+        let group = dataset.group(number);
+        dataset.with(group, execution, compare)??;
+    }
+    Ok(flaws)
+}
+
+/// The chunks of a group, beside what the manifest says of them.
+struct Compare<'a> {
+    dataset: &'a Dataset,
+    format: DataFormat,
+    chunks: &'a [libration_data::Chunk],
+    execution: &'a Execution,
+    watch: &'a dyn Watch,
+    flaws: &'a mut Vec<Flaw>,
+}
+
+impl Visit for Compare<'_> {
+    type Output = Result<(), DatasetError>;
+
+    fn visit<T: Number, E: World<T, O, 1>, const O: usize>(
+        self,
+        all: Environments<T, E, O, 1>,
+        actor: Actor<O>,
+    ) -> Self::Output {
+        let Compare { dataset, format, chunks, execution, watch, flaws } = self;
+        let group = match chunks.first() {
+            Some(first) => {
+                let number = first.chunk.split('-').next().and_then(|n| n.parse().ok());
+                dataset.group(number.unwrap_or(0).min(dataset.groups() - 1))
+            }
+            None => return Ok(()),
+        };
+        let mut course = Course { dataset, group, all, actor, format };
+        let mut used = None;
+        for chunk in chunks {
+            if watch.stops() {
+                return Err(DatasetError::Interrupted);
+            }
+            let done = course.next(used.take())?;
+            let files = done.files(dataset, format, execution.thread_count())?;
+            let list = files.list();
+            let mut flaw = |path: &Path, what: String| {
+                flaws.push(Flaw { chunk: chunk.chunk.clone(), path: path.to_owned(), what });
+            };
+            for file in &list {
+                let stored = chunk.files.iter().find(|stored| stored.path == file.path);
+                let sum = checksum(file.pieces.iter().copied());
+                match stored {
+                    None => flaw(&file.path, "is missing in the manifest".to_owned()),
+                    Some(Stored { blake3, .. }) if *blake3 != sum => {
+                        flaw(
+                            &file.path,
+                            "holds other numbers than the settings lead to".to_owned(),
+                        );
+                    }
+                    Some(_) => {}
+                }
+            }
+            if done.name() != chunk.chunk || done.holds(dataset.seed) != chunk.holds {
+                flaw(Path::new("manifest.jsonl"), "tells something else of the chunk".to_owned());
+            }
+            watch.done(done.rollout.plan().transitions() as u64, 0);
+            drop(list);
+            drop(files);
+            used = Some(done);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,197 @@
+//! The files of a chunk.
+
+use std::borrow::Cow;
+use std::path::PathBuf;
+
+use libration::rl::{Layout, Rollout};
+use libration_data::{
+    Column, FileOf, Table, TableError, Values, npy_array, write_npy, write_parquet,
+};
+use serde_json::{Map, Value, json};
+
+use super::format::DataFormat;
+use super::settings::Dataset;
+use super::world::{Group, Number};
+
+/// What was done in some steps of a group.
+pub(super) struct Done<T, const O: usize> {
+    pub(super) group: Group,
+    /// Which chunk of the group it is, and its first step.
+    pub(super) chunk: u64,
+    pub(super) first: u64,
+    pub(super) rollout: Rollout<T, O, 1>,
+    /// What is seen after the last step: `[n, i]`.
+    pub(super) next: Vec<T>,
+}
+
+/// Bytes of files, some of which lie in a rollout.
+pub(super) struct Files<'a>(Vec<(PathBuf, Vec<Cow<'a, [u8]>>)>);
+
+impl Files<'_> {
+    /// As a folder takes them.
+    pub(super) fn list(&self) -> Vec<FileOf<'_>> {
+        self.0
+            .iter()
+            .map(|(path, pieces)| FileOf {
+                path: path.clone(),
+                pieces: pieces.iter().map(|piece| &**piece).collect(),
+            })
+            .collect()
+    }
+}
+
+impl<T: Number, const O: usize> Done<T, O> {
+    /// Its name: chunks sort as they were made.
+    pub(super) fn name(&self) -> String {
+        format!("{:06}-{:08}", self.group.number, self.chunk)
+    }
+
+    /// What the manifest says of it.
+    pub(super) fn holds(&self, seed: u64) -> Map<String, Value> {
+        let plan = self.rollout.plan();
+        let value = json!({
+            "seed": seed,
+            "environments": [self.group.first, self.group.first + self.group.len],
+            "steps": [self.first, self.first + plan.horizon as u64],
+            "transitions": plan.horizon * plan.environments,
+            "ends": self.rollout.finals().len(),
+        });
+        match value {
+            Value::Object(map) => map,
+            _ => Map::new(),
+        }
+    }
+
+    /// Its files in a format; so many threads encode them.
+    ///
+    /// # Errors
+    /// If the Parquet library refuses.
+    pub(super) fn files(
+        &self,
+        dataset: &Dataset,
+        format: DataFormat,
+        threads: usize,
+    ) -> Result<Files<'_>, TableError> {
+        let name = self.name();
+        let path = |folder: &str| PathBuf::from(format!("{folder}/{name}.{}", format.name()));
+        let mut files = Vec::new();
+        let ends = self.ends(dataset)?;
+        match format {
+            DataFormat::Npy => {
+                for (folder, kind, wide, bytes) in self.arrays() {
+                    let plan = self.rollout.plan();
+                    let shape = [plan.horizon, plan.environments, wide];
+                    let shape = &shape[..if wide == 0 { 2 } else { 3 }];
+                    let header = Cow::Owned(npy_array(kind, shape));
+                    files.push((path(folder), vec![header, Cow::Borrowed(bytes)]));
+                }
+                let mut bytes = Vec::new();
+                write_npy(&ends, &mut bytes)?;
+                files.push((path("ends"), vec![Cow::Owned(bytes)]));
+            }
+            DataFormat::Parquet => {
+                for (folder, table) in [("transitions", self.transitions(dataset)?), ("ends", ends)]
+                {
+                    let mut bytes = Vec::new();
+                    write_parquet(&table, &[("libration.chunk", &name)], threads, &mut bytes)?;
+                    files.push((path(folder), vec![Cow::Owned(bytes)]));
+                }
+            }
+        }
+        Ok(Files(files))
+    }
+
+    /// Name, type, numbers in each transition (0 for one by itself) and bytes of every tensor.
+    fn arrays(&self) -> [(&'static str, &'static str, usize, &[u8]); 5] {
+        let rollout = &self.rollout;
+        let bytes = |numbers| bytemuck::cast_slice::<T, u8>(numbers);
+        [
+            ("observation", T::NUMPY, O, bytes(rollout.observation())),
+            ("action", T::NUMPY, 1, bytes(rollout.action())),
+            ("reward", T::NUMPY, 0, bytes(rollout.reward())),
+            ("terminated", "|b1", 0, rollout.terminated()),
+            ("truncated", "|b1", 0, rollout.truncated()),
+        ]
+    }
+
+    /// A row for each transition, step by step.
+    fn transitions(&self, dataset: &Dataset) -> Result<Table<'_>, TableError> {
+        let rollout = &self.rollout;
+        let (steps, n) = (rollout.plan().horizon, self.group.len);
+        let all = steps * n;
+        let step = |t: usize| core::iter::repeat_n(self.first + t as u64, n);
+        let environments = self.group.first as u32..(self.group.first + n) as u32;
+        let environments = core::iter::repeat_n(environments, steps).flatten().collect::<Vec<_>>();
+        let mut columns = vec![
+            column("step", "1", Values::U64((0..steps).flat_map(step).collect::<Vec<_>>().into())),
+            column("environment", "1", Values::U32(environments.into())),
+        ];
+        for (i, &(name, unit)) in dataset.task.seen().iter().enumerate() {
+            // One plane after the other, as Parquet is written.
+            debug_assert_eq!(rollout.plan().layout, Layout::Planes);
+            columns.push(column(name, unit, T::view(&rollout.observation()[i * all..][..all])));
+        }
+        columns.extend([
+            column("u0", "m/s²", T::view(rollout.action())),
+            column("reward", "1", T::view(rollout.reward())),
+            column("terminated", "1", Values::Bool(rollout.terminated().into())),
+            column("truncated", "1", Values::Bool(rollout.truncated().into())),
+        ]);
+        Table::new(columns)
+    }
+
+    /// What was seen where an episode ended, and then what is seen after the last step where it goes on.
+    fn ends(&self, dataset: &Dataset) -> Result<Table<'static>, TableError> {
+        let (rollout, n) = (&self.rollout, self.group.len);
+        let last = (rollout.plan().horizon - 1) * n;
+        let flag = |flags: &[u8], at: usize| flags.get(at).copied().unwrap_or(0);
+        let goes_on = |i: &usize| {
+            flag(rollout.terminated(), last + i) | flag(rollout.truncated(), last + i) == 0
+        };
+        let open: Vec<usize> = (0..n).filter(goes_on).collect();
+        let finals = rollout.finals();
+        let at = |end: &libration::rl::Final<T, O>| end.step * n + end.environment;
+        let both = |a: Vec<u8>, b: u8| {
+            Values::Bool(
+                a.into_iter().chain(core::iter::repeat_n(b, open.len())).collect::<Vec<_>>().into(),
+            )
+        };
+        let after = self.first + rollout.plan().horizon as u64;
+        let steps = finals.iter().map(|end| self.first + end.step as u64 + 1);
+        let steps = steps.chain(open.iter().map(|_| after)).collect::<Vec<_>>();
+        let who = finals.iter().map(|end| end.environment).chain(open.iter().copied());
+        let who = who.map(|i| (self.group.first + i) as u32).collect::<Vec<_>>();
+        let mut columns = vec![
+            column("step", "1", Values::U64(steps.into())),
+            column("environment", "1", Values::U32(who.into())),
+        ];
+        for (k, &(name, unit)) in dataset.task.seen().iter().enumerate() {
+            let seen = finals.iter().map(|end| end.observation[k]);
+            let seen = seen.chain(open.iter().map(|&i| self.next[i * O + k])).collect();
+            columns.push(column(name, unit, T::column(seen)));
+        }
+        let paid = finals.iter().map(|end| end.episode_return);
+        let paid = paid.chain(open.iter().map(|_| f64::NAN)).collect::<Vec<_>>();
+        let lengths = finals.iter().map(|end| end.length).chain(open.iter().map(|_| 0));
+        columns.extend([
+            column("return", "1", Values::F64(paid.into())),
+            column("length", "1", Values::U64(lengths.collect::<Vec<_>>().into())),
+            column(
+                "terminated",
+                "1",
+                both(finals.iter().map(|end| flag(rollout.terminated(), at(end))).collect(), 0),
+            ),
+            column(
+                "truncated",
+                "1",
+                both(finals.iter().map(|end| flag(rollout.truncated(), at(end))).collect(), 0),
+            ),
+            column("lost", "1", both(finals.iter().map(|end| end.lost.into()).collect(), 0)),
+        ]);
+        Table::new(columns)
+    }
+}
+
+fn column<'a>(name: &'static str, unit: &'static str, values: Values<'a>) -> Column<'a> {
+    Column { name: name.into(), unit: unit.into(), values }
+}

@@ -1,0 +1,68 @@
+//! What can go wrong with a data set.
+
+use std::path::PathBuf;
+
+use libration::ensemble::EnsembleError;
+use libration::rl::EnvironmentError;
+use libration_data::{DataError, TableError};
+use thiserror::Error;
+
+/// Why a data set cannot be written or trusted.
+#[derive(Debug, Error)]
+pub enum DatasetError {
+    /// A file or folder.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// The environments cannot be so.
+    #[error(transparent)]
+    Environment(#[from] EnvironmentError),
+    /// A table cannot be written.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// More shards than there are groups of environments, or one that is none of them.
+    #[error(
+        "shard {index} of {of}: shards are numbered from 1, and this data set has {groups} groups of environments \
+         to divide (chunk.environments)"
+    )]
+    Shard {
+        /// Which one.
+        index: usize,
+        /// Of how many.
+        of: usize,
+        /// Groups there are.
+        groups: usize,
+    },
+    /// The manifest tells no settings that can be read.
+    #[error("the settings in the manifest of {} cannot be read: {what}", folder.display())]
+    Settings {
+        /// Of which folder.
+        folder: PathBuf,
+        /// Why.
+        what: String,
+    },
+    /// It was written by another version, which may compute otherwise.
+    #[error("{} was written by version {found}; this is {}, which may compute otherwise", folder.display(), env!("CARGO_PKG_VERSION"))]
+    Version {
+        /// Which folder.
+        folder: PathBuf,
+        /// By which version.
+        found: String,
+    },
+    /// The user stopped it.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl From<EnsembleError> for DatasetError {
+    fn from(error: EnsembleError) -> Self {
+        DatasetError::Environment(error.into())
+    }
+}
+
+impl DatasetError {
+    /// Settings that cannot be read.
+    pub(super) fn settings(folder: &std::path::Path) -> impl Fn(&dyn ToString) -> Self {
+        let folder = folder.to_owned();
+        move |what| DatasetError::Settings { folder: folder.clone(), what: what.to_string() }
+    }
+}

@@ -1,0 +1,49 @@
+//! The formats of data sets.
+
+use libration::rl::Layout;
+
+/// How the files of a data set are made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum DataFormat {
+    /// Apache Parquet: a row for each transition, compressed.
+    #[default]
+    Parquet,
+    /// NumPy's own: a tensor `[step, environment, …]` for each field.
+    Npy,
+}
+
+impl DataFormat {
+    /// All of them.
+    pub const ALL: [DataFormat; 2] = [DataFormat::Parquet, DataFormat::Npy];
+
+    /// Its name, which is the extension of files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            DataFormat::Parquet => "parquet",
+            DataFormat::Npy => "npy",
+        }
+    }
+
+    /// What it is, in one line.
+    pub const fn summary(self) -> &'static str {
+        match self {
+            DataFormat::Parquet => {
+                "a row for each transition, compressed; for pandas, pyarrow, polars"
+            }
+            DataFormat::Npy => "a tensor [step, environment, …] for each field; for NumPy",
+        }
+    }
+
+    /// The format of that name, if there is one.
+    pub fn from_name(name: &str) -> Option<DataFormat> {
+        DataFormat::ALL.into_iter().find(|format| format.name() == name)
+    }
+
+    /// How tensors lie in memory, so that nothing has to be turned around.
+    pub(super) fn layout(self) -> Layout {
+        match self {
+            DataFormat::Parquet => Layout::Planes,
+            DataFormat::Npy => Layout::Interleaved,
+        }
+    }
+}

@@ -1,0 +1,22 @@
+//! Data sets of rollouts: what `libration rollout` writes.
+//!
+//! A data set is divided into groups of neighbouring environments, and what each group does into chunks of steps. All of it follows
+//! from its settings, so that whoever was stopped computes again where it was, and whoever doubts computes it again.
+
+mod actor;
+mod again;
+mod chunk;
+mod error;
+mod format;
+mod plant;
+mod settings;
+mod stream;
+mod tables;
+mod world;
+
+pub use again::check;
+pub use error::DatasetError;
+pub use format::DataFormat;
+pub use libration_data::DataError;
+pub use settings::{DEFAULT, Dataset, parse};
+pub use stream::{Job, Watch, write};

@@ -1,0 +1,40 @@
+//! The system of a data set, chosen when the program runs.
+
+use libration::system::{DampedOscillator, Duffing, Oscillator, Pendulum};
+use libration::{AnySystem, Elementary, Model, State, System};
+
+/// A system with one degree of freedom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Plant<T> {
+    Oscillator(Oscillator<T>),
+    Damped(DampedOscillator<T>),
+    Pendulum(Pendulum<T>),
+    Duffing(Duffing<T>),
+}
+
+impl<T: Elementary> Plant<T> {
+    /// The one of this description, if it has one degree of freedom.
+    pub(super) fn new(system: AnySystem) -> Option<Self> {
+        Some(match system {
+            AnySystem::Oscillator(model) => Plant::Oscillator(Model::<1>::on(&model)),
+            AnySystem::DampedOscillator(model) => Plant::Damped(Model::<1>::on(&model)),
+            AnySystem::Pendulum(model) => Plant::Pendulum(Model::<1>::on(&model)),
+            AnySystem::Duffing(model) => Plant::Duffing(Model::<1>::on(&model)),
+            AnySystem::DrivenOscillator(_) | AnySystem::Kepler(_) | AnySystem::HenonHeiles(_) => {
+                return None;
+            }
+        })
+    }
+}
+
+impl<T: Elementary> System<T, 1> for Plant<T> {
+    #[inline]
+    fn acceleration(&self, state: &State<T, 1>) -> [T; 1] {
+        match self {
+            Plant::Oscillator(system) => system.acceleration(state),
+            Plant::Damped(system) => system.acceleration(state),
+            Plant::Pendulum(system) => system.acceleration(state),
+            Plant::Duffing(system) => system.acceleration(state),
+        }
+    }
+}
