@@ -11,6 +11,7 @@ mod report;
 mod scratch;
 mod test;
 mod tidy;
+mod torture;
 mod workspace;
 
 use std::process::ExitCode;
@@ -32,7 +33,7 @@ enum Action {
     With(fn(&[String]) -> Outcome),
 }
 
-const TASKS: [Task; 8] = [
+const TASKS: [Task; 9] = [
     Task {
         name: "ci",
         summary: "all of the below up to `report`, with format, lints and documentation",
@@ -67,6 +68,11 @@ const TASKS: [Task; 8] = [
         name: "report",
         summary: "a quick `libration lab` and its files checked",
         action: Action::Plain(report::run),
+    },
+    Task {
+        name: "torture",
+        summary: "processes that write data sets and replay buffers are killed, fifty times each",
+        action: Action::Plain(torture::run),
     },
     Task {
         name: "instructions",

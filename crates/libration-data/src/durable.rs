@@ -2,11 +2,10 @@
 
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::thread;
 
-use crate::{DataError, checksum};
+use crate::{DataError, checksum, direct};
 
 /// What names end with until a file is whole.
 pub(crate) const PART: &str = ".part";
@@ -22,7 +21,7 @@ pub fn write_file(path: &Path, pieces: &[&[u8]]) -> Result<(String, u64), DataEr
     // To sum takes about as long as to write.
     let (sum, written) = thread::scope(|scope| {
         let sum = scope.spawn(|| checksum(pieces.iter().copied()));
-        let written = write_part(&part, pieces).and_then(|()| fs::rename(&part, path));
+        let written = direct::create(&part, pieces).and_then(|()| fs::rename(&part, path));
         // A thread that only sums does not panic.
         (sum.join().unwrap_or_default(), written)
     });
@@ -32,12 +31,6 @@ pub fn write_file(path: &Path, pieces: &[&[u8]]) -> Result<(String, u64), DataEr
         DataError::io("write", path)(error)
     })?;
     Ok((sum, pieces.iter().map(|piece| piece.len() as u64).sum()))
-}
-
-fn write_part(part: &Path, pieces: &[&[u8]]) -> io::Result<()> {
-    let mut file = File::create(part)?;
-    pieces.iter().try_for_each(|piece| file.write_all(piece))?;
-    file.sync_data()
 }
 
 /// The names in a folder are on the disk.

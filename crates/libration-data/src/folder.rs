@@ -1,8 +1,9 @@
 //! A folder into which a data set is written, one chunk after the other.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::thread;
 
 use serde_json::{Map, Value};
 
@@ -105,20 +106,26 @@ impl Folder {
         holds: Map<String, Value>,
         files: &[FileOf<'_>],
     ) -> Result<(), DataError> {
-        let mut stored = Vec::with_capacity(files.len());
         let mut folders: Vec<PathBuf> = Vec::new();
-        for FileOf { path, pieces } in files {
-            let whole = self.path.join(path);
+        for file in files {
+            let whole = self.path.join(&file.path);
             if let Some(parent) =
-                whole.parent().filter(|parent| !folders.iter().any(|f| f == parent))
+                whole.parent().filter(|&parent| !folders.iter().any(|f| f == parent))
             {
                 fs::create_dir_all(parent).map_err(DataError::io("create", parent))?;
                 folders.push(parent.to_owned());
             }
-            let (blake3, bytes) = write_file(&whole, pieces)?;
-            stored.push(Stored { path: path.clone(), bytes, blake3 });
         }
-        folders.iter().try_for_each(|folder| sync_folder(folder))?;
+        // To wait for the disk takes as long for one as for all at once.
+        let folder = &self.path;
+        let stored = thread::scope(|scope| {
+            let each = files.iter().map(|file| scope.spawn(move || store(folder, file)));
+            let each: Vec<_> = each.collect();
+            let ended = || DataError::io("write", folder)(io::Error::other("a thread ended early"));
+            let written = each.into_iter().map(|file| file.join().unwrap_or_else(|_| Err(ended())));
+            // All have ended before the first that failed is told.
+            written.collect::<Vec<_>>().into_iter().collect::<Result<Vec<_>, _>>()
+        })?;
         if self.manifest.chunks.is_empty() {
             sync_folder(&self.path)?;
         }
@@ -171,6 +178,14 @@ impl Folder {
         let folders = entries.flatten().map(|entry| entry.path()).filter(|path| path.is_dir());
         folders.into_iter().try_for_each(|folder| remove_parts(&folder))
     }
+}
+
+/// Writes a file of a chunk.
+fn store(folder: &Path, file: &FileOf<'_>) -> Result<Stored, DataError> {
+    let path = folder.join(&file.path);
+    let (blake3, bytes) = write_file(&path, &file.pieces)?;
+    path.parent().map_or(Ok(()), sync_folder)?;
+    Ok(Stored { path: file.path.clone(), bytes, blake3 })
 }
 
 /// Nothing, if the settings of a data set are those that are asked for.

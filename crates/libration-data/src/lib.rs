@@ -7,6 +7,7 @@
 //! Nothing here knows of physics.
 
 mod checksum;
+mod direct;
 mod durable;
 mod error;
 mod folder;

@@ -1,15 +1,15 @@
 //! NumPy's own file format.
 //!
 //! The format is that of NumPy Enhancement Proposal 1 and `numpy.lib.format`: the magic string, a version, the length of a header,
-//! the header as a Python dictionary padded to a multiple of 64 bytes, and the numbers without padding, little-endian.
+//! the header as a Python dictionary padded to a multiple of 64 bytes (here of a page), and the numbers without padding, little-endian.
 
 use std::io::{self, Write};
 
 use crate::{Column, Table, Values};
 
 const MAGIC: &[u8] = b"\x93NUMPY";
-/// The numbers begin at a multiple of this.
-const ALIGNMENT: usize = 64;
+/// The numbers begin at a multiple of this: the format asks for 64, and who writes or maps whole pages gains by one.
+const ALIGNMENT: usize = 4096;
 
 /// All bytes before the numbers of an array of one type, as `<f4`, in the order of C.
 pub fn npy_array(kind: &str, shape: &[usize]) -> Vec<u8> {

@@ -6,6 +6,9 @@ mod analyze;
 mod bench;
 #[cfg(unix)]
 mod interrupt;
+#[cfg(unix)]
+mod kills;
 mod lab;
+mod rollout;
 mod simulate;
 mod timing;

@@ -150,7 +150,7 @@ impl Default for File {
 
 impl Default for ChunkTable {
     fn default() -> Self {
-        ChunkTable { environments: Count(4096), steps: Count(256) }
+        ChunkTable { environments: Count(4096), steps: Count(1024) }
     }
 }
 

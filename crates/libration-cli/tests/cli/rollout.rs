@@ -1,0 +1,301 @@
+//! The commands `rollout` and `verify` as a user meets them.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::{contains, is_empty};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Six groups of at most 64 environments with all that can be wrong, in five chunks each.
+const SETTINGS: &str = "\
+seed = 5
+environments = 350
+steps = 450
+limit = 60
+integrator = \"velocity-verlet\"
+dt = 0.02
+substeps = 2
+[chunk]
+environments = 64
+steps = 100
+[system.pendulum]
+omega2 = 9.81
+[task.track]
+amplitude = 0.5
+bound = 2.5
+[start]
+q = [-1.0, 1.0]
+v = [-1.0, 1.0]
+[delays]
+observation = [0, 2]
+action = [1, 4]
+[noise]
+jitter = 0.05
+skew = 0.01
+observation = 0.02
+[policy.random]
+low = -3.0
+high = 3.0
+";
+
+pub(crate) fn libration(words: &str) -> Command {
+    let mut command = Command::cargo_bin("libration").unwrap();
+    command.args(words.split_whitespace());
+    command
+}
+
+/// A folder with a file of settings.
+pub(crate) fn settings(text: &str) -> TempDir {
+    let dir = TempDir::new().unwrap();
+    fs::write(dir.path().join("set.toml"), text).unwrap();
+    dir
+}
+
+/// Writes the data set of the folder's settings.
+fn write(dir: &TempDir, out: &str, more: &str) -> assert_cmd::assert::Assert {
+    let words = format!("--quiet rollout --config set.toml --out {out} {more}");
+    libration(&words).current_dir(dir.path()).assert()
+}
+
+/// All files of a folder with what they hold.
+pub(crate) fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.is_dir() {
+            let within = contents(&path).into_iter();
+            found.extend(within.map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)));
+        } else {
+            found.push((name, fs::read(&path).unwrap()));
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn the_default_settings_are_printed_and_are_those_that_count_without_a_file() {
+    let printed = libration("rollout --print-config").assert().success().stderr(is_empty());
+    let text = String::from_utf8(printed.get_output().stdout.clone()).unwrap();
+    let dir = settings(&text);
+    write(&dir, "one", "--transitions 20000").success().stdout(is_empty()).stderr(is_empty());
+    let words = "--quiet rollout --out two --transitions 20000";
+    libration(words).current_dir(dir.path()).assert().success();
+    let one = contents(&dir.path().join("one"));
+    assert!(one == contents(&dir.path().join("two")));
+    // The source's case: five steps of its 4096 environments are the first whole ones beyond 20 000.
+    let manifest = fs::read_to_string(dir.path().join("one/manifest.jsonl")).unwrap();
+    let head: Value = serde_json::from_str(manifest.lines().next().unwrap()).unwrap();
+    assert_eq!(head["data"]["environments"], 4096);
+    assert_eq!(head["data"]["steps"], 5);
+    assert_eq!(head["data"]["system"]["oscillator"]["omega2"], 10.0);
+    let verified = libration("verify one --replay").current_dir(dir.path()).assert().success();
+    verified.stdout(
+        contains("1 chunks, 2 files").and(contains("as the manifest and the settings say")),
+    );
+}
+
+#[test]
+fn shards_together_are_the_data_set_whatever_their_number_and_the_threads() {
+    for format in ["parquet", "npy"] {
+        let dir = settings(SETTINGS);
+        let flags = format!("--format {format}");
+        write(&dir, "whole", &format!("{flags} --threads 1")).success();
+        let whole = contents(&dir.path().join("whole"));
+        let lines = |out: &str| -> Vec<String> {
+            let text = fs::read_to_string(dir.path().join(out).join("manifest.jsonl")).unwrap();
+            text.lines().skip(1).map(str::to_owned).collect()
+        };
+        for of in [2, 3] {
+            let (mut files, mut told) = (Vec::new(), Vec::new());
+            for shard in 1..=of {
+                let out = format!("part-{shard}-{of}");
+                write(&dir, &out, &format!("{flags} --shard {shard}/{of} --threads 3")).success();
+                let found = contents(&dir.path().join(&out)).into_iter();
+                files.extend(found.filter(|(name, _)| name != "manifest.jsonl"));
+                told.extend(lines(&out));
+                libration(&format!("--quiet verify {out} --replay"))
+                    .current_dir(dir.path())
+                    .assert()
+                    .success();
+            }
+            files.sort();
+            let same = whole.iter().filter(|(name, _)| name != "manifest.jsonl").eq(&files);
+            assert!(same && told == lines("whole"), "{format} {of}");
+        }
+    }
+}
+
+#[test]
+fn a_run_that_is_stopped_by_a_full_disk_says_so_and_goes_on_to_the_same_bytes() {
+    for format in ["parquet", "npy"] {
+        let dir = settings(SETTINGS);
+        let flags = format!("--format {format} --threads 2");
+        write(&dir, "whole", &flags).success();
+        let largest = contents(&dir.path().join("whole/ends"));
+        let largest = largest.iter().map(|(_, bytes)| bytes.len()).max().unwrap();
+        // Files of more than so many blocks of 512 bytes are refused: the first that is large.
+        let blocks = (largest / 512).max(1);
+        let program = assert_cmd::cargo::cargo_bin("libration");
+        let script = format!(
+            "trap '' XFSZ; ulimit -f {blocks}; exec {} rollout --config set.toml --out part {flags}",
+            program.display()
+        );
+        let mut limited = Command::new("bash");
+        let run = limited.args(["-c", &script]).current_dir(dir.path()).assert();
+        run.code(1).stderr(contains("cannot write part/").and(contains("too large")));
+        let refused = write(&dir, "part", &flags).code(2);
+        refused.stderr(contains("holds a data set; --resume goes on with it"));
+        write(&dir, "part", &format!("{flags} --resume")).success();
+        assert!(contents(&dir.path().join("whole")) == contents(&dir.path().join("part")));
+    }
+}
+
+#[test]
+fn a_flipped_bit_and_a_manifest_that_lies_are_found() {
+    let dir = settings(SETTINGS);
+    write(&dir, "set", "--format npy").success();
+    let verify = |more: &str| {
+        let words = format!("verify set {more}");
+        libration(&words).current_dir(dir.path()).assert()
+    };
+    verify("").success();
+    let path = dir.path().join("set/reward/000003-00000002.npy");
+    let mut bytes = fs::read(&path).unwrap();
+    let good = bytes.clone();
+    bytes[5000] ^= 4;
+    fs::write(&path, &bytes).unwrap();
+    let said = contains("chunk 000003-00000002: set/reward/000003-00000002.npy has the checksum");
+    verify("").code(1).stderr(said);
+    // The manifest is made to agree with the wrong bytes: only who computes it again finds out.
+    let manifest = dir.path().join("set/manifest.jsonl");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let sum = |bytes: &[u8]| libration_data::checksum([bytes]);
+    fs::write(&manifest, text.replace(&sum(&good), &sum(&bytes))).unwrap();
+    verify("").success();
+    let lie = contains("holds other numbers than the settings lead to");
+    verify("--replay").code(1).stderr(lie);
+    fs::write(&manifest, text.replace("\"version\":\"0", "\"version\":\"7")).unwrap();
+    verify("--replay").code(2).stderr(contains("was written by version"));
+    fs::write(&manifest, text.replace("\"omega2\":9.81", "\"omega2\":9.8")).unwrap();
+    verify("--replay").code(1).stderr(contains("holds other numbers"));
+    let resumed = write(&dir, "set", "--format npy --resume").code(2);
+    resumed.stderr(contains("its omega2 is 9.8; it must be 9.81"));
+}
+
+#[test]
+fn what_cannot_be_is_refused_before_a_folder_is_made() {
+    let dir = settings("environments = 0\n");
+    let refused = |text: &str, more: &str| {
+        fs::write(dir.path().join("set.toml"), text).unwrap();
+        let run = write(&dir, "out", more).code(2).stdout(is_empty());
+        assert!(!dir.path().join("out").exists());
+        String::from_utf8(run.get_output().stderr.clone()).unwrap()
+    };
+    for (text, said) in [
+        ("environments = 0", "`environments` is 0, but it must be 1 to 1000000000"),
+        ("steps = -3", "`steps` is -3"),
+        ("float = \"f16\"", "`float` is `f16`, but it must be `f32` or `f64`"),
+        ("dt = 0", "`dt` is 0.0, but it must be"),
+        ("integrator = \"verlet\"", "did you mean `velocity-verlet`?"),
+        ("integrater = \"rk4\"", "unknown key `integrater`"),
+        ("[system.kepler]", "has no single degree of freedom"),
+        ("[system.pendulum]\nomega = 3", "unknown parameter `omega`"),
+        ("[system.pendulum]\n[system.oscillator]", "must be one table"),
+        ("[task.regulate]\nbound = -1", "`bound` is -1.0"),
+        ("[task.fly]", "unknown variant `fly`"),
+        ("[start]\nq = [1, 0]", "`start.q` is from 1.0 to 0.0, but it must rise"),
+        ("[delays]\naction = [0, 5000]", "it must be 0 to 4096"),
+        ("[noise]\njitter = -0.1", "`noise.jitter` is -0.1"),
+        ("[policy.linear]\nweights = [1]", "`weights` are 1, but they must be 2"),
+        ("[policy.random]\nlow = 1\nhigh = 1", "that must rise"),
+        ("[chunk]\nsteps = 0", "`chunk.steps` is 0"),
+        ("seed = \"x\"", "seed"),
+        ("[policy.constant]\naction = 1e300", "constant action 0 is 1e300"),
+    ] {
+        let found = refused(text, "");
+        assert!(found.contains(said), "{text}\n{found}");
+    }
+    let found = refused("", "--shard 3/2");
+    assert!(found.contains("as 2/3"), "{found}");
+    let found = refused("", "--shard 2/2");
+    assert!(found.contains("has 1 groups of environments to divide"), "{found}");
+    assert!(refused("", "--transitions 0").contains("from 1 to 1e15"));
+    assert!(refused("", "--format csv").contains("parquet"));
+    fs::write(dir.path().join("set.toml"), b"\xff\xfe").unwrap();
+    write(&dir, "out", "").code(2).stderr(contains("cannot read"));
+    libration("rollout").assert().code(2).stderr(contains("--out"));
+    libration("verify nowhere").assert().code(2).stderr(contains("holds no data set"));
+}
+
+/// A Python with what `tools/requirements.txt` lists: `LIBRATION_PYTHON`, or a virtual environment in `target/python`.
+fn python() -> Option<std::path::PathBuf> {
+    let local = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/python/bin/python");
+    let named = std::env::var_os("LIBRATION_PYTHON").map(Into::into);
+    named.or_else(|| local.exists().then_some(local))
+}
+
+#[test]
+fn numpy_and_pyarrow_read_the_same_transitions_ends_and_units() {
+    let Some(python) = python() else {
+        eprintln!("skipped: set LIBRATION_PYTHON to a Python that has NumPy and pyarrow");
+        return;
+    };
+    let dir = settings(SETTINGS);
+    write(&dir, "arrays", "--format npy").success();
+    write(&dir, "tables", "--format parquet").success();
+    let script = r#"
+import json, numpy as np, pyarrow.parquet as pq
+lines = [json.loads(line) for line in open('arrays/manifest.jsonl')]
+head, chunks = lines[0], lines[1:]
+seen = list(head['observation'])
+assert seen == ['q0', 'v0', 'reference_q0', 'reference_v0'], seen
+rows = 0
+for chunk in chunks:
+    name = chunk['chunk']
+    field = lambda folder: np.load(f'arrays/{folder}/{name}.npy')
+    (first, last), (begin, end) = chunk['holds']['environments'], chunk['holds']['steps']
+    shape = (end - begin, last - first)
+    observation, action, reward = field('observation'), field('action'), field('reward')
+    assert observation.shape == (*shape, 4) and observation.dtype == np.float32
+    assert action.shape == (*shape, 1) and reward.shape == shape
+    table = pq.read_table(f'tables/transitions/{name}.parquet')
+    rows += table.num_rows
+    column = lambda name: table[name].to_numpy().reshape(shape)
+    assert (column('step') == np.arange(begin, end)[:, None]).all()
+    assert (column('environment') == np.arange(first, last)[None, :]).all()
+    bits = lambda x: np.ascontiguousarray(x).view(np.uint32)
+    for i, number in enumerate(seen):
+        assert (bits(column(number)) == bits(observation[..., i])).all(), number
+    assert (bits(column('u0')) == bits(action[..., 0])).all()
+    assert (bits(column('reward')) == bits(reward)).all()
+    for flag in ('terminated', 'truncated'):
+        assert field(flag).dtype == np.bool_ and (column(flag) == field(flag)).all()
+    units = json.loads(table.schema.metadata[b'libration.units'])
+    assert units['q0'] == 'm' and units['v0'] == 'm/s' and units['u0'] == 'm/s\u00b2', units
+    ends, rest = field('ends'), pq.read_table(f'tables/ends/{name}.parquet')
+    assert list(ends.dtype.names) == rest.column_names
+    for column in ends.dtype.names:
+        assert np.array_equal(ends[column], rest[column].to_numpy(), equal_nan=ends[column].dtype.kind == 'f')
+    over = field('terminated') | field('truncated')
+    closed = ends['terminated'] | ends['truncated']
+    assert closed.sum() == over.sum() == chunk['holds']['ends']
+    # Whoever goes on is listed with what it sees next, which is where the next chunk of the group begins.
+    assert (~closed).sum() == (~over[-1]).sum()
+    follower = f"{name[:7]}{int(name[7:]) + 1:08}"
+    if any(other['chunk'] == follower for other in chunks):
+        begins = np.load(f'arrays/observation/{follower}.npy')[0]
+        for end in ends[~closed]:
+            assert end['step'] == begin + shape[0]
+            assert tuple(begins[end['environment'] - first]) == tuple(end[s] for s in seen)
+assert rows == 350 * 450
+whole = pq.read_table('tables/transitions')
+assert whole.num_rows == rows
+"#;
+    let run = Command::new(python).args(["-c", script]).current_dir(dir.path()).assert();
+    run.success();
+}
