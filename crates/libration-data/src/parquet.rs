@@ -91,7 +91,8 @@ fn encoded(
     start: usize,
     end: usize,
 ) -> Result<(Bytes, ColumnCloseResult), ParquetError> {
-    let mut out = TrackedWrite::new(Vec::new());
+    // What is compressed is seldom longer: memory that grows is moved, and touched anew.
+    let mut out = TrackedWrite::new(Vec::with_capacity((end - start) * values.width() / 2));
     let mut writer =
         get_column_writer(column, properties, Box::new(SerializedPageWriter::new(&mut out)));
     write_values(&mut writer, values, start, end)?;

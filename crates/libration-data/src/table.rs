@@ -60,6 +60,16 @@ impl Values<'_> {
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+
+    /// Bytes of a value.
+    pub(crate) fn width(&self) -> usize {
+        match self {
+            Values::Bool(_) => 1,
+            Values::F16(_) | Values::Bf16(_) => 2,
+            Values::U32(_) | Values::F32(_) => 4,
+            Values::U64(_) | Values::F64(_) => 8,
+        }
+    }
 }
 
 impl<'a> Table<'a> {

@@ -10,7 +10,7 @@ use crate::rollout::{contents, libration, settings};
 
 const SETTINGS: &str = "\
 environments = 2000
-steps = 6000
+steps = 3000
 limit = 90
 [chunk]
 environments = 500
@@ -22,7 +22,7 @@ q = [-1.0, 1.0]
 
 #[test]
 fn a_data_set_whose_writer_is_killed_ends_as_one_that_was_left_in_peace_byte_for_byte() {
-    let kills = std::env::var("LIBRATION_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(6);
+    let kills = std::env::var("LIBRATION_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(3);
     let program = assert_cmd::cargo::cargo_bin("libration");
     for format in ["npy", "parquet"] {
         let dir = settings(SETTINGS);

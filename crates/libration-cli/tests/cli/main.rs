@@ -9,6 +9,7 @@ mod interrupt;
 #[cfg(unix)]
 mod kills;
 mod lab;
+mod readers;
 mod rollout;
 mod simulate;
 mod timing;

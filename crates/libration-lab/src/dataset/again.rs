@@ -119,7 +119,8 @@ impl Visit for Compare<'_> {
             if watch.stops() {
                 return Err(DatasetError::Interrupted);
             }
-            let done = course.next(used.take())?;
+            let mut done = course.next(used.take())?;
+            let (name, holds) = (done.name(), done.holds(dataset.seed));
             let files = done.files(dataset, format, execution.thread_count())?;
             let list = files.list();
             let mut flaw = |path: &Path, what: String| {
@@ -139,12 +140,12 @@ impl Visit for Compare<'_> {
                     Some(_) => {}
                 }
             }
-            if done.name() != chunk.chunk || done.holds(dataset.seed) != chunk.holds {
+            if name != chunk.chunk || holds != chunk.holds {
                 flaw(Path::new("manifest.jsonl"), "tells something else of the chunk".to_owned());
             }
-            watch.done(done.rollout.plan().transitions() as u64, 0);
             drop(list);
             drop(files);
+            watch.done(done.rollout.plan().transitions() as u64, 0);
             used = Some(done);
         }
         Ok(())

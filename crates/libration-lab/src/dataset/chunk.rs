@@ -22,6 +22,30 @@ pub(super) struct Done<T, const O: usize> {
     pub(super) rollout: Rollout<T, O, 1>,
     /// What is seen after the last step: `[n, i]`.
     pub(super) next: Vec<T>,
+    /// Which step and environment each row of a table is of, kept for the next chunk.
+    pub(super) rows: Rows,
+}
+
+/// Which step and environment each row of a table is of.
+#[derive(Default)]
+pub(super) struct Rows {
+    steps: Vec<u64>,
+    environments: Vec<u32>,
+}
+
+impl Rows {
+    /// Those of so many steps of a group.
+    fn fill(&mut self, first: u64, steps: usize, group: Group) {
+        let Group { first: from, len, .. } = group;
+        if self.environments.len() != steps * len {
+            let environments = from as u32..(from + len) as u32;
+            self.environments = core::iter::repeat_n(environments, steps).flatten().collect();
+            self.steps = vec![0; steps * len];
+        }
+        for (step, row) in (first..).zip(self.steps.chunks_mut(len.max(1))) {
+            row.fill(step);
+        }
+    }
 }
 
 /// Bytes of files, some of which lie in a rollout.
@@ -67,13 +91,16 @@ impl<T: Number, const O: usize> Done<T, O> {
     /// # Errors
     /// If the Parquet library refuses.
     pub(super) fn files(
-        &self,
+        &mut self,
         dataset: &Dataset,
         format: DataFormat,
         threads: usize,
     ) -> Result<Files<'_>, TableError> {
         let name = self.name();
         let path = |folder: &str| PathBuf::from(format!("{folder}/{name}.{}", format.name()));
+        if format == DataFormat::Parquet {
+            self.rows.fill(self.first, self.rollout.plan().horizon, self.group);
+        }
         let mut files = Vec::new();
         let ends = self.ends(dataset)?;
         match format {
@@ -117,13 +144,10 @@ impl<T: Number, const O: usize> Done<T, O> {
     /// A row for each transition, step by step.
     fn transitions(&self, dataset: &Dataset) -> Result<Table<'_>, TableError> {
         let rollout = &self.rollout;
-        let (steps, n) = (rollout.plan().horizon, self.group.len);
-        let all = steps * n;
-        let step = |t: usize| core::iter::repeat_n(self.first + t as u64, n);
-        let environments = self.group.first as u32..(self.group.first + n) as u32;
-        let environments = core::iter::repeat_n(environments, steps).flatten().collect::<Vec<_>>();
+        let all = rollout.plan().horizon * self.group.len;
+        let Rows { steps: step, environments } = &self.rows;
         let mut columns = vec![
-            column("step", "1", Values::U64((0..steps).flat_map(step).collect::<Vec<_>>().into())),
+            column("step", "1", Values::U64(step.into())),
             column("environment", "1", Values::U32(environments.into())),
         ];
         for (i, &(name, unit)) in dataset.task.seen().iter().enumerate() {

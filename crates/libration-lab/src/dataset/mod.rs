@@ -9,9 +9,11 @@ mod chunk;
 mod error;
 mod format;
 mod plant;
+mod reading;
 mod settings;
 mod stream;
 mod tables;
+mod told;
 mod world;
 
 pub use again::check;

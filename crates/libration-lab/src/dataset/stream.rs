@@ -10,7 +10,7 @@ use libration_data::{Folder, Manifest};
 use serde_json::{Map, Value, json};
 
 use super::actor::Actor;
-use super::chunk::Done;
+use super::chunk::{Done, Rows};
 use super::world::{Group, Number, Visit};
 use super::{DataFormat, Dataset, DatasetError};
 
@@ -161,6 +161,7 @@ impl<T: Number, E: World<T, O, 1>, const O: usize> Course<'_, T, E, O> {
                 first: 0,
                 rollout: Rollout::new(plan)?,
                 next: vec![T::zero(); self.group.len * O],
+                rows: Rows::default(),
             },
         };
         (done.chunk, done.first) = (first / chunk.steps as u64, first);
@@ -192,8 +193,8 @@ impl Visit for Stream<'_> {
         let (give_back, free) = channel();
         thread::scope(|scope| {
             let writer = scope.spawn(move || {
-                for done in full {
-                    let bytes = commit(&done, dataset, format, threads, folder)?;
+                for mut done in full {
+                    let bytes = commit(&mut done, dataset, format, threads, folder)?;
                     watch.done(done.rollout.plan().transitions() as u64, bytes);
                     // Whoever computes may have come to the end.
                     let _ = give_back.send(done);
@@ -237,14 +238,15 @@ fn compute<T: Number, E: World<T, O, 1>, const O: usize>(
 
 /// Writes a chunk; gives how many bytes it has.
 fn commit<T: Number, const O: usize>(
-    done: &Done<T, O>,
+    done: &mut Done<T, O>,
     dataset: &Dataset,
     format: DataFormat,
     threads: usize,
     folder: &mut Folder,
 ) -> Result<u64, DatasetError> {
+    let (name, holds) = (done.name(), done.holds(dataset.seed));
     let files = done.files(dataset, format, threads)?;
     let list = files.list();
-    folder.commit(&done.name(), done.holds(dataset.seed), &list)?;
+    folder.commit(&name, holds, &list)?;
     Ok(list.iter().flat_map(|file| &file.pieces).map(|piece| piece.len() as u64).sum())
 }

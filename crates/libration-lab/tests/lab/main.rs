@@ -8,6 +8,7 @@ mod analyze;
 mod clocks;
 mod config;
 mod config_fuzz;
+mod dataset;
 mod default_run;
 mod export;
 mod interrupted;

@@ -1,0 +1,89 @@
+//! Settings as manifests tell them.
+
+use libration::rl::task::{Regulate, Track};
+use serde_json::{Map, Value, json};
+
+use super::DataFormat;
+use super::settings::{Acting, Dataset, Noise, Task};
+
+/// Version of the contract that manifests keep.
+const SCHEMA: &str = "libration.dataset/1";
+
+impl Dataset {
+    /// What manifests say: the keys of the file of settings, and what belongs to all files.
+    pub(super) fn settings(&self, format: DataFormat) -> Map<String, Value> {
+        // In the order of the tensor.
+        let seen = self.task.seen().iter();
+        let seen: Vec<_> = seen.map(|(name, unit)| json!({ "name": name, "unit": unit })).collect();
+        let value = json!({
+            "schema": SCHEMA,
+            "version": env!("CARGO_PKG_VERSION"),
+            "format": format.name(),
+            "observation": seen,
+            "data": self.data(),
+        });
+        match value {
+            Value::Object(map) => map,
+            _ => Map::new(),
+        }
+    }
+
+    /// As the file of settings has it.
+    fn data(&self) -> Value {
+        // JSON has no infinite numbers.
+        let number = |x: f64| if x.is_finite() { json!(x) } else { json!(x.to_string()) };
+        let parameters = self.system.parameters().into_iter();
+        let parameters: Map<String, Value> =
+            parameters.map(|(name, value)| (name.to_owned(), number(value))).collect();
+        let regulate = |r: &Regulate, mut more: Value| {
+            for (name, value) in [
+                ("position", r.position),
+                ("velocity", r.velocity),
+                ("effort", r.effort),
+                ("bound", r.bound),
+            ] {
+                more[name] = number(value);
+            }
+            more
+        };
+        let task = match &self.task {
+            Task::Regulate(r) => json!({ "regulate": regulate(r, json!({})) }),
+            Task::SwingUp(s) => {
+                json!({ "swing-up": { "velocity": s.velocity, "effort": s.effort } })
+            }
+            Task::Track(Track { reference, regulate: r }) => {
+                let reference = json!({
+                    "amplitude": reference.amplitude,
+                    "angular_frequency": reference.angular_frequency,
+                    "phase": reference.phase,
+                });
+                json!({ "track": regulate(r, reference) })
+            }
+        };
+        let policy = match &self.policy {
+            Acting::Linear { weights, bias } => {
+                json!({ "linear": { "weights": weights, "bias": bias } })
+            }
+            Acting::Random { low, high } => json!({ "random": { "low": low, "high": high } }),
+            Acting::Constant(action) => json!({ "constant": { "action": action } }),
+        };
+        let Noise { jitter, skew, observation } = self.noise;
+        json!({
+            "seed": self.seed,
+            "float": self.float.name(),
+            "environments": self.environments,
+            "steps": self.steps,
+            "integrator": self.method.name(),
+            "dt": self.dt,
+            "substeps": self.substeps,
+            "limit": self.limit.unwrap_or(0),
+            "chunk": { "environments": self.chunk.environments, "steps": self.chunk.steps },
+            "system": { self.system.name(): parameters },
+            "task": task,
+            "start": { "q": self.start[0], "v": self.start[1] },
+            "delays": { "observation": self.delays.observation, "action": self.delays.action },
+            "noise": { "jitter": jitter, "skew": skew, "observation": observation },
+            "policy": policy,
+        })
+    }
+}
