@@ -50,7 +50,7 @@ pub(super) const NONE: u8 = 8;
 /// let mut batch = Batch::new(256);
 /// let draw = Draw { seed: 7, number: 0 };
 /// replay.sample(draw, Lookahead::default(), &mut batch.columns(), &Execution::serial())?;
-/// assert!(batch.truncated.iter().any(|&cut| cut == 1));
+/// assert!(batch.number.iter().all(|&number| replay.contains(number)));
 /// # Ok(())
 /// # }
 /// ```
