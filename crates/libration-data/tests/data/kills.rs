@@ -2,9 +2,6 @@
 //!
 //! `LIBRATION_KILLS` says how often; `cargo xtask torture` asks for 50.
 
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
-
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -86,7 +83,7 @@ fn the_process_that_is_killed() {
 /// Lets a process insert for a while, and kills it; gives the last number that it told.
 fn killed(path: &Path, after: Duration) -> usize {
     let mut child = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "the_process_that_is_killed", "--nocapture"])
+        .args(["--exact", "kills::the_process_that_is_killed", "--nocapture"])
         .env(FILE, path)
         .stdout(Stdio::piped())
         .stderr(Stdio::null())

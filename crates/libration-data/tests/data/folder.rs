@@ -1,7 +1,5 @@
 //! Data sets in folders, and what can happen to them.
 
-#![allow(clippy::unwrap_used)]
-
 use std::fs;
 use std::path::Path;
 

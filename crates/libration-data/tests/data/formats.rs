@@ -1,7 +1,5 @@
 //! Files that others read.
 
-#![allow(clippy::unwrap_used)]
-
 use half::f16;
 use libration_data::{Column, Table, Values, write_npy, write_parquet};
 

@@ -1,7 +1,5 @@
 //! States in files.
 
-#![allow(clippy::unwrap_used)]
-
 use std::fs;
 
 use libration::State;

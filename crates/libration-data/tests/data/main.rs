@@ -1,0 +1,10 @@
+//! Numbers in files, and what can happen to them.
+
+#![allow(clippy::unwrap_used)]
+
+mod folder;
+mod formats;
+#[cfg(unix)]
+mod kills;
+mod mapped;
+mod state;
