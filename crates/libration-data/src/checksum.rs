@@ -1,6 +1,6 @@
 //! Checksums that others can compute too: `b3sum FILE`.
 
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 
 use blake3::Hasher;
 
@@ -34,6 +34,58 @@ pub(crate) fn checksum_of(mut from: impl Read) -> io::Result<(String, u64)> {
     }
 }
 
+/// What is written to a file, and its checksum; large pieces are summed on all threads.
+#[derive(Debug)]
+pub(crate) struct Summed<W> {
+    to: W,
+    sum: Hasher,
+}
+
+impl<W> Summed<W> {
+    pub(crate) fn new(to: W) -> Self {
+        Summed { to, sum: Hasher::new() }
+    }
+
+    /// Of all that was written.
+    pub(crate) fn sum(&self) -> String {
+        self.sum.finalize().to_string()
+    }
+
+    pub(crate) fn into_inner(self) -> W {
+        self.to
+    }
+}
+
+impl<W: Write> Write for Summed<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.to.write(bytes)?;
+        add(&mut self.sum, &bytes[..count]);
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.to.flush()
+    }
+}
+
+/// The checksum of what lies in one piece, on all threads if it is large.
+pub(crate) fn checksum_at_once(bytes: &[u8]) -> String {
+    let mut sum = Hasher::new();
+    add(&mut sum, bytes);
+    sum.finalize().to_string()
+}
+
+/// Bytes that are worth a thread.
+const LARGE: usize = 1 << 20;
+
+fn add(sum: &mut Hasher, bytes: &[u8]) {
+    if bytes.len() < LARGE {
+        sum.update(bytes)
+    } else {
+        sum.update_rayon(bytes)
+    };
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -47,5 +99,13 @@ mod tests {
         let abc = "6437b3ac38465133ffb63b75273a8db548c558465d79db03fd359c6cd5bd9d85";
         assert_eq!(checksum([&b"ab"[..], b"c"]), abc);
         assert_eq!(checksum_of(&b"abc"[..]).unwrap(), (abc.to_owned(), 3));
+        assert_eq!(checksum_at_once(b"abc"), abc);
+        let large = vec![7; 3 * LARGE];
+        let mut written = Summed::new(Vec::new());
+        written.write_all(&large[..5]).unwrap();
+        written.write_all(&large[5..]).unwrap();
+        assert_eq!(written.sum(), checksum([&large[..]]));
+        assert_eq!(checksum_at_once(&large), checksum([&large[..]]));
+        assert!(written.into_inner() == large);
     }
 }

@@ -1,8 +1,8 @@
 //! Writing past the system's cache of pages.
 //!
-//! What is written once and read later, by others, gains nothing there: to copy it in took three quarters of the time.
+//! What is written once and read later, by others, gains nothing there: to copy it in took three fifths of the time.
 
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -31,14 +31,13 @@ pub(crate) fn create(path: &Path, pieces: &[&[u8]]) -> io::Result<()> {
 #[cfg(target_os = "linux")]
 fn open(path: &Path) -> Option<File> {
     use std::os::unix::fs::OpenOptionsExt;
-    let mut options = OpenOptions::new();
+    let mut options = File::options();
     options.write(true).create(true).truncate(true).custom_flags(libc::O_DIRECT);
     options.open(path).ok()
 }
 
 #[cfg(not(target_os = "linux"))]
 fn open(_: &Path) -> Option<File> {
-    let _ = OpenOptions::new();
     None
 }
 

@@ -1,7 +1,7 @@
 //! Files that are there whole, or not at all, whatever happens.
 
-use std::ffi::OsString;
 use std::fs::{self, File};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::thread;
 
@@ -10,27 +10,56 @@ use crate::{DataError, checksum, direct};
 /// What names end with until a file is whole.
 pub(crate) const PART: &str = ".part";
 
+/// Bytes of a file that are summed sooner than another thread begins.
+const SHORT: u64 = 1 << 18;
+
+/// Makes a file under another name, which it loses when all of it is on the disk.
+///
+/// # Errors
+/// If the system refuses; what stood there before stands there still.
+pub(crate) fn make<R>(
+    path: &Path,
+    fill: impl FnOnce(&Path) -> io::Result<R>,
+) -> Result<R, DataError> {
+    let mut part = path.as_os_str().to_owned();
+    part.push(PART);
+    let part = PathBuf::from(part);
+    let made = fill(&part).and_then(|made| fs::rename(&part, path).map(|()| made));
+    made.map_err(|error| {
+        // There is nobody to tell that rubbish stays.
+        let _ = fs::remove_file(&part);
+        DataError::io("write", path)(error)
+    })
+}
+
 /// Writes a file: under another name until all of it is on the disk. Gives the checksum of what was written, and its length.
 ///
 /// # Errors
 /// If the system refuses; what stood there before stands there still.
 pub fn write_file(path: &Path, pieces: &[&[u8]]) -> Result<(String, u64), DataError> {
-    let mut part = path.as_os_str().to_owned();
-    part.push(PART);
-    let part = PathBuf::from(part);
+    let bytes = pieces.iter().map(|piece| piece.len() as u64).sum();
+    let sum = || checksum(pieces.iter().copied());
+    let create = || make(path, |part| direct::create(part, pieces));
+    if bytes < SHORT {
+        create()?;
+        return Ok((sum(), bytes));
+    }
     // To sum takes about as long as to write.
-    let (sum, written) = thread::scope(|scope| {
-        let sum = scope.spawn(|| checksum(pieces.iter().copied()));
-        let written = direct::create(&part, pieces).and_then(|()| fs::rename(&part, path));
+    thread::scope(|scope| {
+        let sum = scope.spawn(sum);
+        create()?;
         // A thread that only sums does not panic.
-        (sum.join().unwrap_or_default(), written)
-    });
-    written.map_err(|error| {
-        // There is nobody to tell that rubbish stays.
-        let _ = fs::remove_file(&part);
-        DataError::io("write", path)(error)
-    })?;
-    Ok((sum, pieces.iter().map(|piece| piece.len() as u64).sum()))
+        Ok((sum.join().unwrap_or_default(), bytes))
+    })
+}
+
+/// Writes a file past the system's cache of pages, where that can be, and nothing more: what is in its way when it is written
+/// [safely](write_file) shows by comparison.
+///
+/// # Errors
+/// If the system refuses.
+pub fn write_past(path: &Path, pieces: &[&[u8]]) -> Result<(), DataError> {
+    direct::create(path, pieces).map_err(DataError::io("write", path))
 }
 
 /// The names in a folder are on the disk.
@@ -43,16 +72,15 @@ pub(crate) fn sync_folder(folder: &Path) -> Result<(), DataError> {
     Ok(())
 }
 
-/// Removes what was not whole when its process ended.
+/// Removes what was not whole when its process ended, in a folder and those in it.
 pub(crate) fn remove_parts(folder: &Path) -> Result<(), DataError> {
     let failed = || DataError::io("read", folder);
     for entry in fs::read_dir(folder).map_err(failed())? {
-        let path = entry.map_err(failed())?.path();
-        let is_part = path
-            .file_name()
-            .map(OsString::from)
-            .is_some_and(|name| name.to_string_lossy().ends_with(PART));
-        if is_part && path.is_file() {
+        let entry = entry.map_err(failed())?;
+        let (path, kind) = (entry.path(), entry.file_type().map_err(failed())?);
+        if kind.is_dir() {
+            remove_parts(&path)?;
+        } else if kind.is_file() && path.to_string_lossy().ends_with(PART) {
             fs::remove_file(&path).map_err(DataError::io("remove", &path))?;
         }
     }

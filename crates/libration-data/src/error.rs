@@ -88,7 +88,7 @@ pub enum DataError {
 
 impl DataError {
     /// What the system says of an action.
-    pub(crate) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> DataError {
+    pub fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> DataError {
         let path = path.to_owned();
         move |source| DataError::Io { action, path, source }
     }

@@ -1,15 +1,19 @@
 //! A folder into which a data set is written, one chunk after the other.
 
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::thread;
 
 use serde_json::{Map, Value};
 
 use crate::durable::{remove_parts, sync_folder};
 use crate::manifest::NAME;
-use crate::{Chunk, DataError, Manifest, Stored, write_file};
+use crate::{Chunk, DataError, Manifest, Stored, on_threads, write_file};
+
+/// Files that are written at once: to wait for the disk takes as long for one as for all of them.
+const AT_ONCE: usize = 16;
 
 /// A folder that this process alone writes to.
 #[derive(Debug)]
@@ -68,6 +72,11 @@ impl Folder {
         let (found, len) = Manifest::parse(&text, &name)?;
         let path = path.to_owned();
         let Some(manifest) = found else {
+            // A first line that was cut off is the beginning of ours, or not ours to overwrite.
+            let line = Value::Object(settings.clone()).to_string();
+            if !line.as_bytes().starts_with(&text) {
+                return Err(DataError::Strange { folder: path, found: format!("another {NAME}") });
+            }
             let manifest = Manifest { settings: settings.clone(), chunks: Vec::new() };
             let mut folder = Folder { path, manifest, log };
             folder.cut(0)?;
@@ -82,7 +91,7 @@ impl Folder {
         let mut folder = Folder { path, manifest, log };
         folder.look()?;
         folder.cut(len as u64)?;
-        folder.parts()?;
+        remove_parts(&folder.path)?;
         Ok(folder)
     }
 
@@ -106,29 +115,21 @@ impl Folder {
         holds: Map<String, Value>,
         files: &[FileOf<'_>],
     ) -> Result<(), DataError> {
-        let mut folders: Vec<PathBuf> = Vec::new();
+        // Every folder that has something new in it, the innermost first.
+        let mut folders = BTreeSet::new();
         for file in files {
-            let whole = self.path.join(&file.path);
-            if let Some(parent) =
-                whole.parent().filter(|&parent| !folders.iter().any(|f| f == parent))
-            {
-                fs::create_dir_all(parent).map_err(DataError::io("create", parent))?;
-                folders.push(parent.to_owned());
-            }
+            let parents = file.path.ancestors().skip(1);
+            folders.extend(parents.map(|parent| Reverse(self.path.join(parent))));
         }
-        // To wait for the disk takes as long for one as for all at once.
-        let folder = &self.path;
-        let stored = thread::scope(|scope| {
-            let each = files.iter().map(|file| scope.spawn(move || store(folder, file)));
-            let each: Vec<_> = each.collect();
-            let ended = || DataError::io("write", folder)(io::Error::other("a thread ended early"));
-            let written = each.into_iter().map(|file| file.join().unwrap_or_else(|_| Err(ended())));
-            // All have ended before the first that failed is told.
-            written.collect::<Vec<_>>().into_iter().collect::<Result<Vec<_>, _>>()
-        })?;
-        if self.manifest.chunks.is_empty() {
-            sync_folder(&self.path)?;
+        for Reverse(folder) in folders.iter().rev() {
+            fs::create_dir_all(folder).map_err(DataError::io("create", folder))?;
         }
+        let at_once = files.len().min(AT_ONCE);
+        let stored = on_threads(at_once, files.len(), |i| store(&self.path, &files[i]));
+        let stored = stored.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let folders: Vec<_> = folders.into_iter().collect();
+        let synced = on_threads(at_once, folders.len(), |i| sync_folder(&folders[i].0));
+        synced.into_iter().collect::<Result<Vec<()>, _>>()?;
         let chunk = Chunk { chunk: chunk.to_owned(), holds, files: stored };
         let line = serde_json::to_value(&chunk)
             .map_err(|error| DataError::io("write", &self.path.join(NAME))(error.into()))?;
@@ -170,21 +171,12 @@ impl Folder {
         }
         Ok(())
     }
-
-    /// Removes what was not whole.
-    fn parts(&self) -> Result<(), DataError> {
-        remove_parts(&self.path)?;
-        let entries = fs::read_dir(&self.path).map_err(DataError::io("read", &self.path))?;
-        let folders = entries.flatten().map(|entry| entry.path()).filter(|path| path.is_dir());
-        folders.into_iter().try_for_each(|folder| remove_parts(&folder))
-    }
 }
 
 /// Writes a file of a chunk.
 fn store(folder: &Path, file: &FileOf<'_>) -> Result<Stored, DataError> {
     let path = folder.join(&file.path);
     let (blake3, bytes) = write_file(&path, &file.pieces)?;
-    path.parent().map_or(Ok(()), sync_folder)?;
     Ok(Stored { path: file.path.clone(), bytes, blake3 })
 }
 

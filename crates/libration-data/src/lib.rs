@@ -17,10 +17,11 @@ mod npy;
 mod parquet;
 mod state;
 mod table;
+mod threads;
 mod verify;
 
 pub use checksum::checksum;
-pub use durable::write_file;
+pub use durable::{write_file, write_past};
 pub use error::{DataError, TableError};
 pub use folder::{FileOf, Folder, same};
 pub use manifest::{Chunk, Manifest, Stored};
@@ -29,4 +30,5 @@ pub use npy::{npy_array, write_npy};
 pub use parquet::write_parquet;
 pub use state::{keep, take_up};
 pub use table::{Column, Table, Values};
+pub use threads::on_threads;
 pub use verify::{Flaw, verify};

@@ -21,7 +21,10 @@ pub fn npy_array(kind: &str, shape: &[usize]) -> Vec<u8> {
 /// # Errors
 /// If `out` refuses.
 pub fn write_npy(table: &Table<'_>, mut out: impl Write) -> io::Result<()> {
-    let field = |c: &Column<'_>| format!("({}, '{}'), ", quoted(&c.name), kind(&c.values));
+    let field = |c: &Column<'_>| match &c.values {
+        Values::Lists(each, of) => format!("({}, '{}', ({each},)), ", quoted(&c.name), kind(of)),
+        values => format!("({}, '{}'), ", quoted(&c.name), kind(values)),
+    };
     let fields: String = table.columns().iter().map(field).collect();
     out.write_all(&npy_header(&format!("[{}]", fields.trim_end()), &[table.rows()]))?;
     let mut record = Vec::new();
@@ -44,10 +47,14 @@ fn append(record: &mut Vec<u8>, values: &Values<'_>, row: usize) {
         Values::F32(x) => record.extend(x[row].to_le_bytes()),
         Values::F16(x) => record.extend(x[row].to_le_bytes()),
         Values::Bf16(x) => record.extend(x[row].to_f32().to_le_bytes()),
+        Values::Lists(each, of) => {
+            (row * each..(row + 1) * each).for_each(|i| append(record, of, i));
+        }
     }
 }
 
-const fn kind(values: &Values<'_>) -> &'static str {
+/// The type of a value, or of those in a list.
+fn kind(values: &Values<'_>) -> &'static str {
     match values {
         Values::Bool(_) => "|b1",
         Values::U32(_) => "<u4",
@@ -55,6 +62,7 @@ const fn kind(values: &Values<'_>) -> &'static str {
         Values::F64(_) => "<f8",
         Values::F32(_) | Values::Bf16(_) => "<f4",
         Values::F16(_) => "<f2",
+        Values::Lists(_, of) => kind(of),
     }
 }
 

@@ -5,10 +5,8 @@
 //! and buys a place for the units that few readers look at.
 
 use std::io::Write;
+use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
-use std::thread;
 
 use bytes::Bytes;
 use parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as Physical, ZstdLevel};
@@ -20,7 +18,7 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterPrope
 use parquet::file::writer::{SerializedFileWriter, SerializedPageWriter, TrackedWrite};
 use parquet::schema::types::{ColumnDescPtr, ColumnPath, Type, TypePtr};
 
-use crate::{Column, Table, TableError, Values};
+use crate::{Column, Table, TableError, Values, on_threads};
 
 /// Rows that are compressed, and can be skipped, together.
 const ROW_GROUP: usize = 1 << 20;
@@ -60,29 +58,6 @@ pub fn write_parquet(
     Ok(())
 }
 
-/// What `work` makes of each number below `count`, in their order.
-fn on_threads<R: Send>(threads: usize, count: usize, work: impl Fn(usize) -> R + Sync) -> Vec<R> {
-    if threads < 2 || count < 2 {
-        return (0..count).map(work).collect();
-    }
-    let results: Vec<Mutex<Option<R>>> = (0..count).map(|_| Mutex::new(None)).collect();
-    let next = AtomicUsize::new(0);
-    let drain = || {
-        while let i = next.fetch_add(1, Ordering::Relaxed)
-            && let Some(result) = results.get(i)
-        {
-            *result.lock().unwrap_or_else(PoisonError::into_inner) = Some(work(i));
-        }
-    };
-    thread::scope(|scope| {
-        (1..threads.min(count)).for_each(|_| drop(scope.spawn(drain)));
-        drain();
-    });
-    let taken =
-        |result: Mutex<Option<R>>| result.into_inner().unwrap_or_else(PoisonError::into_inner);
-    results.into_iter().filter_map(taken).collect()
-}
-
 /// A column of a row group by itself.
 fn encoded(
     column: ColumnDescPtr,
@@ -95,22 +70,49 @@ fn encoded(
     let mut out = TrackedWrite::new(Vec::with_capacity((end - start) * values.width() / 2));
     let mut writer =
         get_column_writer(column, properties, Box::new(SerializedPageWriter::new(&mut out)));
-    write_values(&mut writer, values, start, end)?;
+    match values {
+        Values::Lists(each, of) => {
+            // None is absent, and the first of each list begins it.
+            let count = (end - start) * each;
+            let begins: Vec<i16> = (0..count).map(|i| i16::from(i % each != 0)).collect();
+            let levels = (Some(&vec![1; count][..]), Some(&begins[..]));
+            write_values(&mut writer, of, start * each..end * each, levels)?;
+        }
+        values => write_values(&mut writer, values, start..end, (None, None))?,
+    }
     let close = writer.close()?;
     Ok((out.into_inner()?.into(), close))
 }
 
 fn field(column: &Column<'_>) -> Result<TypePtr, ParquetError> {
+    let Values::Lists(_, of) = &column.values else {
+        return number(&column.name, &column.values);
+    };
+    let [list, element] = LIST;
+    let group = |name, repetition, field| {
+        Type::group_type_builder(name).with_repetition(repetition).with_fields(vec![field])
+    };
+    let list = group(list, Repetition::REPEATED, number(element, of)?).build()?;
+    let column = group(&column.name, Repetition::REQUIRED, Arc::new(list));
+    Ok(Arc::new(column.with_logical_type(Some(LogicalType::List)).build()?))
+}
+
+/// The names that the format gives to what a list consists of.
+const LIST: [&str; 2] = ["list", "element"];
+
+/// A column of numbers, or what its lists consist of.
+fn number(name: &str, values: &Values<'_>) -> Result<TypePtr, ParquetError> {
     let unsigned = |bits| LogicalType::integer(bits, false);
-    let (physical, logical) = match column.values {
+    let (physical, logical) = match values {
         Values::U64(_) => (Physical::INT64, Some(unsigned(64))),
         Values::U32(_) => (Physical::INT32, Some(unsigned(32))),
         Values::Bool(_) => (Physical::BOOLEAN, None),
         Values::F64(_) => (Physical::DOUBLE, None),
         Values::F32(_) | Values::Bf16(_) => (Physical::FLOAT, None),
         Values::F16(_) => (Physical::FIXED_LEN_BYTE_ARRAY, Some(LogicalType::Float16)),
+        Values::Lists(..) => return Err(ParquetError::General("lists of lists".to_owned())),
     };
-    let mut builder = Type::primitive_type_builder(&column.name, physical)
+    let mut builder = Type::primitive_type_builder(name, physical)
         .with_repetition(Repetition::REQUIRED)
         .with_logical_type(logical);
     if physical == Physical::FIXED_LEN_BYTE_ARRAY {
@@ -138,34 +140,40 @@ fn properties(
         ));
     for column in table.columns() {
         // A count rises by the same stride from row to row; a float compresses by its bytes.
-        let encoding = match column.values {
+        let (values, within) = match &column.values {
+            Values::Lists(_, of) => (&**of, &LIST[..]),
+            values => (values, &[][..]),
+        };
+        let encoding = match values {
             Values::U64(_) | Values::U32(_) => Encoding::DELTA_BINARY_PACKED,
             Values::Bool(_) => Encoding::RLE,
             _ => Encoding::BYTE_STREAM_SPLIT,
         };
-        let path = ColumnPath::new(vec![column.name.to_string()]);
+        let path = [&*column.name].into_iter().chain(within.iter().copied());
+        let path = ColumnPath::new(path.map(str::to_owned).collect());
         builder = builder.set_column_encoding(path, encoding);
     }
     Ok(builder.build())
 }
 
+/// Writes some values, with the levels of their lists if they are in any.
 fn write_values(
     writer: &mut ColumnWriter<'_>,
     values: &Values<'_>,
-    start: usize,
-    end: usize,
+    rows: Range<usize>,
+    (there, begins): (Option<&[i16]>, Option<&[i16]>),
 ) -> Result<(), ParquetError> {
-    let rows = start..end;
+    let wanted = rows.len();
     let count = match (values, writer) {
         (Values::F64(x), ColumnWriter::DoubleColumnWriter(to)) => {
-            to.write_batch(&x[rows], None, None)?
+            to.write_batch(&x[rows], there, begins)?
         }
         (Values::F32(x), ColumnWriter::FloatColumnWriter(to)) => {
-            to.write_batch(&x[rows], None, None)?
+            to.write_batch(&x[rows], there, begins)?
         }
         (Values::Bf16(x), ColumnWriter::FloatColumnWriter(to)) => {
             let wide: Vec<_> = x[rows].iter().map(|x| x.to_f32()).collect();
-            to.write_batch(&wide, None, None)?
+            to.write_batch(&wide, there, begins)?
         }
         (Values::F16(x), ColumnWriter::FixedLenByteArrayColumnWriter(to)) => {
             // One piece of memory for all.
@@ -174,20 +182,20 @@ fn write_values(
             let one =
                 |i: usize| FixedLenByteArray::from(ByteArray::from(all.slice(2 * i..2 * i + 2)));
             let each: Vec<_> = (0..all.len() / 2).map(one).collect();
-            to.write_batch(&each, None, None)?
+            to.write_batch(&each, there, begins)?
         }
         (Values::U64(x), ColumnWriter::Int64ColumnWriter(to)) => {
-            to.write_batch(bytemuck::cast_slice(&x[rows]), None, None)?
+            to.write_batch(bytemuck::cast_slice(&x[rows]), there, begins)?
         }
         (Values::U32(x), ColumnWriter::Int32ColumnWriter(to)) => {
-            to.write_batch(bytemuck::cast_slice(&x[rows]), None, None)?
+            to.write_batch(bytemuck::cast_slice(&x[rows]), there, begins)?
         }
         (Values::Bool(x), ColumnWriter::BoolColumnWriter(to)) => {
             let flags: Vec<bool> = x[rows].iter().map(|&flag| flag != 0).collect();
-            to.write_batch(&flags, None, None)?
+            to.write_batch(&flags, there, begins)?
         }
         _ => return Err(ParquetError::General("a column of another type".to_owned())),
     };
-    debug_assert_eq!(count, end - start);
+    debug_assert_eq!(count, wanted);
     Ok(())
 }

@@ -1,12 +1,17 @@
 //! States in files.
 
+use std::convert::Infallible;
+use std::fs::File;
+use std::io::{BufWriter, IntoInnerError, Write};
 use std::path::Path;
 
 use libration::checkpoint::{Checkpoint, CheckpointError, agree};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::{DataError, checksum, write_file};
+use crate::DataError;
+use crate::checksum::{Summed, checksum_at_once};
+use crate::durable::make;
 
 /// The first bytes of such a file.
 const MAGIC: &[u8; 8] = b"LIBRTNCP";
@@ -32,27 +37,43 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Bytes of the checksum at the end, over all before it.
 const SUM: usize = 64;
 
+/// Bytes that are gathered before they are written.
+const GATHERED: usize = 1 << 20;
+
 /// Keeps a state in a file, which is there whole or not at all, with a note.
 ///
 /// # Errors
 /// If the system refuses.
 pub fn keep(path: &Path, of: &impl Checkpoint, note: &Value) -> Result<(), DataError> {
-    let state = of.to_bytes();
+    let mut bytes = 0;
+    let count = |piece: &[u8]| -> Result<(), Infallible> {
+        bytes += piece.len() as u64;
+        Ok(())
+    };
+    let Ok(()) = of.save(count);
     let text = |(name, value): (&'static str, String)| (name.to_owned(), Value::String(value));
     let head = Head {
         format: FORMAT,
         version: VERSION.to_owned(),
         traits: of.traits().into_iter().map(text).collect(),
         note: note.clone(),
-        bytes: state.len() as u64,
+        bytes,
     };
     let head =
         serde_json::to_vec(&head).map_err(|error| DataError::io("write", path)(error.into()))?;
-    let len = (head.len() as u64).to_le_bytes();
-    let pieces = [&MAGIC[..], &len, &head, &state];
-    let sum = checksum(pieces);
-    let [magic, len, head, state] = pieces;
-    write_file(path, &[magic, len, head, state, sum.as_bytes()]).map(|_| ())
+    // Through the system's cache: who goes on from a state often does so soon.
+    make(path, |part| {
+        let mut file = BufWriter::with_capacity(GATHERED, Summed::new(File::create(part)?));
+        for piece in [&MAGIC[..], &(head.len() as u64).to_le_bytes(), &head] {
+            file.write_all(piece)?;
+        }
+        of.save(|piece| file.write_all(piece))?;
+        let file = file.into_inner().map_err(IntoInnerError::into_error)?;
+        let sum = file.sum();
+        let mut file = file.into_inner();
+        file.write_all(sum.as_bytes())?;
+        file.sync_data()
+    })
 }
 
 /// Takes up a state from a file; gives the note that was kept with it.
@@ -67,7 +88,7 @@ pub fn take_up(path: &Path, into: &mut impl Checkpoint) -> Result<Value, DataErr
     }
     let whole = bytes.len().checked_sub(SUM).filter(|&len| len >= MAGIC.len() + 8);
     let (told, sum) = bytes.split_at(whole.ok_or_else(|| damaged("it is cut off"))?);
-    if checksum([told]).as_bytes() != sum {
+    if checksum_at_once(told).as_bytes() != sum {
         return Err(damaged("it does not agree with its checksum: it was cut off or changed"));
     }
     let (len, rest) = told[MAGIC.len()..].split_first_chunk().unwrap_or((&[0; 8], &[]));

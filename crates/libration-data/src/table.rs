@@ -40,6 +40,8 @@ pub enum Values<'a> {
     F16(Cow<'a, [f16]>),
     /// The upper half of an `f32`. Files hold it as `f32`, which is exact.
     Bf16(Cow<'a, [bf16]>),
+    /// Lists of so many values each, none of them lists.
+    Lists(usize, Box<Values<'a>>),
 }
 
 impl Values<'_> {
@@ -53,6 +55,7 @@ impl Values<'_> {
             Values::F32(x) => x.len(),
             Values::F16(x) => x.len(),
             Values::Bf16(x) => x.len(),
+            Values::Lists(each, of) => of.len() / each.max(&1),
         }
     }
 
@@ -68,6 +71,7 @@ impl Values<'_> {
             Values::F16(_) | Values::Bf16(_) => 2,
             Values::U32(_) | Values::F32(_) => 4,
             Values::U64(_) | Values::F64(_) => 8,
+            Values::Lists(each, of) => each * of.width(),
         }
     }
 }

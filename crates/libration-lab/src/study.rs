@@ -1,8 +1,10 @@
 //! A study is a question.
 
 use libration::simulation::SimulationError;
+use libration_data::DataError;
 use thiserror::Error;
 
+use crate::dataset::DatasetError;
 use crate::page::Page;
 use crate::record::RecordError;
 use crate::tried::{self, Tried};
@@ -55,7 +57,28 @@ pub enum StudyError {
     /// Environments could not be made or run.
     #[error(transparent)]
     Environment(#[from] libration::rl::EnvironmentError),
+    /// A replay buffer could not be made or used.
+    #[error(transparent)]
+    Replay(#[from] libration::replay::ReplayError),
+    /// A data set could not be written.
+    #[error(transparent)]
+    Dataset(Box<DatasetError>),
     /// Exact arithmetic ran out of digits.
     #[error("exact arithmetic overflowed while {0}")]
     Exact(String),
+}
+
+impl From<DatasetError> for StudyError {
+    fn from(error: DatasetError) -> Self {
+        match error {
+            DatasetError::Interrupted => StudyError::Interrupted,
+            error => StudyError::Dataset(Box::new(error)),
+        }
+    }
+}
+
+impl From<DataError> for StudyError {
+    fn from(error: DataError) -> Self {
+        DatasetError::from(error).into()
+    }
 }

@@ -107,6 +107,7 @@ pub const TRIED: &[Tried] = &[
     tried("C49", "rollout", &[], &["step-times"]),
     // Of addresses.
     tried("C50", "rollout", &[], &[]),
+    tried("C51", "storage", &[], &["draws"]),
     tried("C52", "memory", &[], &["9.10"]),
     tried("C53", "precision", &[SymplecticEuler, VelocityVerlet, Rk4], &["precision-types"]),
     tried("C53a", "memory", &[], &["9.10"]),

@@ -58,12 +58,6 @@ pub const UNTRIED: &[Untried] = &[
         because: PYTHON,
     },
     Untried {
-        id: "C51",
-        source: "6.4",
-        text: "A replay buffer is circular, of fixed capacity, and sampled in batches.",
-        because: "the source gives no number of one, and none is part of a rollout",
-    },
-    Untried {
         id: "C72",
         source: "8.5",
         text: "Guidelines for large simulations: layout, streaming, single precision, symplectic steps.",

@@ -1,5 +1,7 @@
 //! What `bench` takes.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use libration::ensemble::InstructionSet;
@@ -50,6 +52,12 @@ pub(crate) struct BenchArgs {
         allow_hyphen_values = true
     )]
     pub(crate) case: Vec<RolloutCase>,
+    /// Time replay buffers, data sets and checkpoints, against copies of as many bytes in memory and to the disk
+    #[arg(long, conflicts_with_all = ["implementation", "rollouts"])]
+    pub(crate) storage: bool,
+    /// Where --storage writes [default: the system's folder for temporary files]
+    #[arg(long, value_name = "DIR", requires = "storage")]
+    pub(crate) folder: Option<PathBuf>,
     /// Instruction set [default: the widest of this processor, or LIBRATION_SIMD]
     #[arg(long, value_name = "SET", value_parser = simd::instruction_sets())]
     pub(crate) simd: Option<InstructionSet>,
@@ -67,6 +75,7 @@ Examples:
   libration bench --effort standard --json > machine.json
   libration bench --implementation fused,threads --count 1e3,1e5,1e7 --float f32
   libration bench --rollouts --effort standard     how near to the memory rollouts come
+  libration bench --storage --folder /data         how near to the disk data sets come
 
 All implementations advance harmonic oscillators by symplectic Euler and give the same bits.
 Rates are medians; of each it is said how far the quartiles of its repeats lie apart.";

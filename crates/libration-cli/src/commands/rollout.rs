@@ -52,7 +52,7 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
         let (count, bytes) = watcher.told();
         let seconds = watcher.began.elapsed().as_secs_f64();
         terminal::print(&format!(
-            "{count} transitions in {} chunks, {:.3} GB, in {seconds:.1} s: {}\n",
+            "{count} transitions in {} chunks, {:.3} GB, after {seconds:.1} s of this run: {}\n",
             manifest.chunks.len(),
             bytes as f64 / 1e9,
             out.display()

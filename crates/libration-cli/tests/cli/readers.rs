@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use assert_cmd::Command;
+use tempfile::TempDir;
 
 use crate::rollout::{SETTINGS, settings, write};
 
@@ -13,12 +14,20 @@ fn python() -> Option<std::path::PathBuf> {
     named.or_else(|| local.exists().then_some(local))
 }
 
-#[test]
-fn numpy_and_pyarrow_read_the_same_transitions_ends_and_units() {
+/// Runs a script beside data sets, if there is a Python.
+fn run(dir: &TempDir, script: &str) {
     let Some(python) = python() else {
-        eprintln!("skipped: set LIBRATION_PYTHON to a Python that has NumPy and pyarrow");
+        eprintln!(
+            "skipped: set LIBRATION_PYTHON to a Python with what tools/requirements.txt lists"
+        );
         return;
     };
+    let mut command = Command::new(python);
+    command.args(["-c", script]).current_dir(dir.path()).assert().success();
+}
+
+#[test]
+fn numpy_and_pyarrow_read_the_same_transitions_ends_and_units() {
     let dir = settings(SETTINGS);
     write(&dir, "arrays", "--format npy").success();
     write(&dir, "tables", "--format parquet").success();
@@ -70,6 +79,74 @@ assert rows == 350 * 450
 whole = pq.read_table('tables/transitions')
 assert whole.num_rows == rows
 "#;
-    let run = Command::new(python).args(["-c", script]).current_dir(dir.path()).assert();
-    run.success();
+    run(&dir, script);
+}
+
+/// Two groups; most episodes end by themselves or by the limit, the others with the data set.
+const EPISODES: &str = "\
+seed = 8
+environments = 20
+steps = 130
+limit = 40
+[chunk]
+environments = 12
+steps = 50
+[task.regulate]
+bound = 1.2
+[start]
+q = [-1.0, 1.0]
+v = [-1.0, 1.0]
+[policy.random]
+low = -9.0
+high = 9.0
+";
+
+#[test]
+fn minari_reads_every_episode_with_the_numbers_of_the_tensors() {
+    let dir = settings(EPISODES);
+    write(&dir, "arrays", "--format npy").success();
+    write(&dir, "episodes", "--format minari").success();
+    let script = r#"
+import json, minari, numpy as np
+chunks = [json.loads(line) for line in open('arrays/manifest.jsonl')][1:]
+tensors = {}
+for name in ('observation', 'action', 'reward', 'terminated', 'truncated'):
+    groups = {}
+    for chunk in chunks:
+        group = groups.setdefault(chunk['chunk'].split('-')[0], [])
+        group.append(np.load(f"arrays/{name}/{chunk['chunk']}.npy"))
+    tensors[name] = np.concatenate([np.concatenate(group) for group in groups.values()], axis=1)
+ends = np.concatenate([np.load(f"arrays/ends/{chunk['chunk']}.npy") for chunk in chunks])
+seen_after = {(end['step'], end['environment']): (end['q0'], end['v0']) for end in ends}
+
+data = minari.MinariDataset('episodes/data')
+assert data.spec.dataset_id == 'libration/oscillator-regulate-v0'
+assert data.total_steps == 20 * 130, data.total_steps
+assert data.observation_space.shape == (2,) and data.observation_space.dtype == np.float32
+assert data.action_space.low[0] == -9 and data.action_space.high[0] == 9
+told = list(data.storage.get_episode_metadata(range(data.total_episodes)))
+covered = np.zeros((130, 20), int)
+kinds = set()
+for episode, about in zip(data.iterate_episodes(), told, strict=True):
+    assert episode.id == about['id'] and len(episode) == about['total_steps'] <= 40
+    i, first, last = about['environment'], about['step'], about['step'] + len(episode) - 1
+    covered[first:last + 1, i] += 1
+    there = slice(first, last + 1), i
+    same = lambda a, b: a.dtype == b.dtype and a.tobytes() == b.tobytes()
+    assert same(episode.observations[:-1], tensors['observation'][there])
+    assert same(episode.actions, tensors['action'][there])
+    assert same(episode.rewards, tensors['reward'][there])
+    assert tuple(episode.observations[-1]) == tuple(seen_after[last + 1, i])
+    assert not (episode.terminations[:-1] | episode.truncations[:-1]).any()
+    over, cut = episode.terminations[-1], episode.truncations[-1]
+    assert over == tensors['terminated'][last, i]
+    # A limit cuts off, and so does the end of the data set.
+    assert cut == ((tensors['truncated'][last, i] or last == 129) and not over)
+    kinds.add((bool(over), len(episode) == 40, last == 129))
+    assert episode.observations[0] in data.observation_space
+    assert all(action in data.action_space for action in episode.actions)
+assert (covered == 1).all()
+assert {(True, False, False), (False, True, False), (False, False, True)} <= kinds, kinds
+"#;
+    run(&dir, script);
 }

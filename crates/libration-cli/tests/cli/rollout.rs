@@ -131,6 +131,48 @@ fn shards_together_are_the_data_set_whatever_their_number_and_the_threads() {
 }
 
 #[test]
+fn episodes_for_minari_are_the_same_on_any_threads_and_are_not_sharded() {
+    // Rewards that leave the float type lose an environment, and the action leaves no transition.
+    let text = "\
+environments = 40
+steps = 90
+limit = 25
+[chunk]
+environments = 30
+steps = 40
+[start]
+v = [-1.0, 1.0]
+[task.regulate]
+bound = inf
+effort = 1e38
+[policy.random]
+low = -2.0
+high = 2.0
+";
+    let dir = settings(text);
+    let flags = "--format minari --threads";
+    write(&dir, "one", &format!("{flags} 1")).success();
+    write(&dir, "three", &format!("{flags} 3")).success();
+    let one = contents(&dir.path().join("one"));
+    assert!(one == contents(&dir.path().join("three")));
+    let json = |path: &str| -> Value {
+        serde_json::from_slice(&fs::read(dir.path().join("one").join(path)).unwrap()).unwrap()
+    };
+    let about = json("data/metadata.json");
+    let [episodes, actions] = ["total_episodes", "total_steps"].map(|n| about[n].as_u64().unwrap());
+    assert!(actions > 40 * 40 && actions < 40 * 90, "{actions}");
+    let each: u64 = (0..episodes)
+        .map(|id| json(&format!("data/{id}/metadata.json"))["total_steps"].as_u64().unwrap())
+        .sum();
+    assert_eq!(each, actions);
+    assert_eq!(one.len() as u64, 2 * episodes + 2);
+    libration("--quiet verify one --replay").current_dir(dir.path()).assert().success();
+    let refused = write(&dir, "part", "--format minari --shard 1/2").code(2);
+    refused.stderr(contains("2 shards: Minari numbers the episodes"));
+    assert!(!dir.path().join("part").exists());
+}
+
+#[test]
 fn a_run_that_is_stopped_by_a_full_disk_says_so_and_goes_on_to_the_same_bytes() {
     for format in ["parquet", "npy"] {
         let dir = settings(SETTINGS);

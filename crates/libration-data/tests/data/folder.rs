@@ -153,6 +153,14 @@ fn a_folder_with_something_else_in_it_is_refused_and_left_as_it_was() {
     let found = refused(strange.path(), &settings(), true);
     assert!(found.contains("holds thesis.tex, which is no part of a data set"), "{found}");
     assert_eq!(contents(strange.path()).len(), 1);
+    // A manifest of somebody else, whose only line has no end.
+    let theirs = TempDir::new().unwrap();
+    fs::write(theirs.path().join("manifest.jsonl"), b"{\"mine\": 1}").unwrap();
+    for resume in [false, true] {
+        let found = refused(theirs.path(), &settings(), resume);
+        assert!(found.contains("holds another manifest.jsonl"), "{found}");
+    }
+    assert_eq!(contents(theirs.path())[0].1, b"{\"mine\": 1}");
     let file = strange.path().join("thesis.tex");
     assert!(refused(&file, &settings(), false).contains("cannot create"));
     assert!(matches!(Manifest::read(strange.path()), Err(DataError::Missing(_))));

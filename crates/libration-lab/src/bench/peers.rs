@@ -77,6 +77,27 @@ impl PeerRow for RolloutPeer {
     const PROGRAM: &str = "benches/rollouts.py";
 }
 
+/// Libration over a peer, in batches or rows a second.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+pub(crate) struct StoragePeer {
+    pub(crate) peer: String,
+    /// What both did.
+    pub(crate) what: String,
+    /// Threads of Libration, and of the peer.
+    pub(crate) threads: [u64; 2],
+    /// The median of the ratios of the rounds.
+    pub(crate) ratio: f64,
+    /// Between which half of them lie.
+    pub(crate) quartiles: [f64; 2],
+    /// What is to be reached.
+    pub(crate) wanted: f64,
+}
+
+impl PeerRow for StoragePeer {
+    const SCHEMA: &str = "libration.storage/1";
+    const PROGRAM: &str = "benches/storage.py";
+}
+
 /// How fast a rollout was.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct PeerRate {

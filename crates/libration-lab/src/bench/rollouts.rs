@@ -191,8 +191,13 @@ fn timed(
 
 /// The source's oscillator as an environment.
 pub(crate) fn regulating() -> impl World<f32, 2, 1> + 'static {
+    regulating_from(1.0)
+}
+
+/// The same from another place.
+pub(crate) fn regulating_from(q: f64) -> impl World<f32, 2, 1> + 'static {
     let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
-    let (system, start) = (All(Oscillator { omega2: OMEGA2 }), At(State { q: [1.0], v: [0.0] }));
+    let (system, start) = (All(Oscillator { omega2: OMEGA2 }), At(State { q: [q], v: [0.0] }));
     Environment::new(system, SymplecticEuler, 0.01, task, start)
 }
 

@@ -88,6 +88,11 @@ pub(crate) fn race(
 pub(crate) struct Rates(Vec<f64>);
 
 impl Rates {
+    /// Those of rounds that were timed elsewhere.
+    pub(crate) fn of(rounds: Vec<f64>) -> Self {
+        Rates(rounds)
+    }
+
     /// The middle one.
     pub(crate) fn median(&self) -> f64 {
         self.quantile(0.5)

@@ -10,7 +10,7 @@ use libration::{Hamiltonian, State};
 
 use super::limits::{self, within};
 use super::{Config, Spring, Start, Throughput, names};
-use crate::bench::{Peer, PeerRow, Peers, RolloutPeer};
+use crate::bench::{Peer, PeerRow, Peers, RolloutPeer, StoragePeer};
 use crate::studies;
 
 /// A value of a configuration that is not allowed.
@@ -80,7 +80,9 @@ impl Config {
             return Err(Fault::new("simd", message));
         }
         self.throughput.check()?;
-        peers::<RolloutPeer>("rollout.peers", self.rollout.peers.as_deref())
+        peers::<RolloutPeer>("rollout.peers", self.rollout.peers.as_deref())?;
+        folder("storage.folder", self.storage.folder.as_deref())?;
+        peers::<StoragePeer>("storage.peers", self.storage.peers.as_deref())
     }
 
     fn check_names(&self) -> Result<(), Fault> {
@@ -170,6 +172,17 @@ fn peers<R: PeerRow>(key: &'static str, path: Option<&Path>) -> Result<(), Fault
     match path.map(Peers::<R>::read) {
         Some(Err(message)) => Err(Fault::new(key, message)),
         _ => Ok(()),
+    }
+}
+
+/// A folder is there before any work.
+fn folder(key: &'static str, path: Option<&Path>) -> Result<(), Fault> {
+    match path.filter(|path| !path.is_dir()) {
+        Some(path) => {
+            let message = format!("`{key}` is `{}`, but it must be a folder", path.display());
+            Err(Fault::new(key, message))
+        }
+        None => Ok(()),
     }
 }
 

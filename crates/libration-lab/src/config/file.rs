@@ -10,12 +10,13 @@ use serde::{Deserialize, Serialize};
 use super::locate::Document;
 use super::tables::{
     ConvergenceTable, DriftTable, EfficiencyTable, ErrorTable, NonlinearTable, PrecisionTable,
-    RolloutTable, SpectrumTable, SpringTable, StabilityTable, StartTable, ThroughputTable,
+    RolloutTable, SpectrumTable, SpringTable, StabilityTable, StartTable, StorageTable,
+    ThroughputTable,
 };
 use super::value::{Count, Number};
 use super::{
     Config, ConfigError, Convergence, Drift, Efficiency, Error, Fault, Nonlinear, Precision,
-    Rollout, Spectrum, Spring, Stability, Start, Throughput, check, names, schema,
+    Rollout, Spectrum, Spring, Stability, Start, Storage, Throughput, check, names, schema,
 };
 use crate::Effort;
 use crate::bench::Implementation;
@@ -64,6 +65,8 @@ pub(super) struct File {
     pub(super) throughput: ThroughputTable,
     /// The study of rollouts.
     pub(super) rollout: RolloutTable,
+    /// The study of what is kept.
+    pub(super) storage: StorageTable,
 }
 
 /// Reads a configuration; keys that are not given take their defaults.
@@ -117,6 +120,7 @@ impl Default for File {
             precision,
             throughput,
             rollout,
+            storage,
             ..
         } = config;
         let numbers = |list: Vec<f64>| list.into_iter().map(Number).collect();
@@ -161,6 +165,10 @@ impl Default for File {
                 peers: path_of(throughput.peers),
             },
             rollout: RolloutTable { peers: path_of(rollout.peers) },
+            storage: StorageTable {
+                folder: path_of(storage.folder),
+                peers: path_of(storage.peers),
+            },
         }
     }
 }
@@ -189,6 +197,7 @@ impl TryFrom<File> for Config {
             precision,
             throughput,
             rollout,
+            storage,
             ..
         } = file;
         let effort = Effort::from_name(&effort).ok_or_else(|| {
@@ -239,6 +248,7 @@ impl TryFrom<File> for Config {
                 peers: path(throughput.peers),
             },
             rollout: Rollout { peers: path(rollout.peers) },
+            storage: Storage { folder: path(storage.folder), peers: path(storage.peers) },
         })
     }
 }

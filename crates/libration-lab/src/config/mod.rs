@@ -64,6 +64,8 @@ pub struct Config {
     pub throughput: Throughput,
     /// Settings of the study `rollout`.
     pub rollout: Rollout,
+    /// Settings of the study `storage`.
+    pub storage: Storage,
 }
 
 /// A mass on a spring.
@@ -188,6 +190,17 @@ pub struct Rollout {
     pub peers: Option<PathBuf>,
 }
 
+/// Settings of the study `storage`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Storage {
+    /// Where it writes, in a folder of its own; the system's folder for temporary files if none.
+    #[serde(serialize_with = "path")]
+    pub folder: Option<PathBuf>,
+    /// What `benches/storage.py` wrote on this machine, if its ratios are to be judged.
+    #[serde(serialize_with = "path")]
+    pub peers: Option<PathBuf>,
+}
+
 impl Default for Config {
     fn default() -> Self {
         Config {
@@ -231,6 +244,7 @@ impl Default for Config {
                 peers: None,
             },
             rollout: Rollout::default(),
+            storage: Storage::default(),
         }
     }
 }

@@ -149,6 +149,16 @@ pub(super) struct RolloutTable {
     pub(super) peers: String,
 }
 
+/// Settings of the study `storage`.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct StorageTable {
+    /// The folder in which a folder of its own is written to; that of the system for temporary files if empty.
+    pub(super) folder: String,
+    /// A file that `benches/storage.py` wrote on this machine; none if empty.
+    pub(super) peers: String,
+}
+
 macro_rules! default_of_table {
     ($($table:ident = $key:ident),*) => {
         $(impl Default for $table {
@@ -171,5 +181,6 @@ default_of_table!(
     NonlinearTable = nonlinear,
     PrecisionTable = precision,
     ThroughputTable = throughput,
-    RolloutTable = rollout
+    RolloutTable = rollout,
+    StorageTable = storage
 );

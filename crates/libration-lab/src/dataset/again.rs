@@ -1,16 +1,18 @@
 //! A data set computed again, to be compared with the one on the disk.
 
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 use libration::ensemble::Execution;
 use libration::rl::{Environments, World};
-use libration_data::{Flaw, Manifest, Stored, checksum, verify};
+use libration_data::{Chunk, Flaw, Manifest, checksum, verify};
 use serde_json::Value;
 
 use super::actor::Actor;
 use super::stream::{Course, head};
 use super::tables::File;
-use super::world::{Number, Visit};
+use super::world::{Group, Number, Visit};
 use super::{DataFormat, Dataset, DatasetError, Watch};
 
 /// Reads a data set and compares it with its manifest; with `again` computes it anew as well, and compares that. Gives what is wrong.
@@ -76,12 +78,16 @@ fn computed(
 ) -> Result<Vec<Flaw>, DatasetError> {
     let (dataset, format, [first, end]) = settings(folder, manifest)?;
     let mut flaws = Vec::new();
-    let mut chunks = manifest.chunks.chunks(dataset.chunks() as usize);
-    for number in first..end {
-        let Some(chunks) = chunks.next() else { break };
-        let compare =
-            Compare { dataset: &dataset, format, chunks, execution, watch, flaws: &mut flaws };
-        let group = dataset.group(number);
+    let each = dataset.chunks() as usize;
+    for (i, number) in (first..end).enumerate() {
+        let [begin, end] = [i, i + 1].map(|i| (i * each).min(manifest.chunks.len()));
+        let chunks = begin..end;
+        if chunks.is_empty() {
+            break;
+        }
+        let (all, group, flaws) = (&manifest.chunks, dataset.group(number), &mut flaws);
+        let dataset = &dataset;
+        let compare = Compare { dataset, format, group, all, chunks, execution, watch, flaws };
         dataset.with(group, execution, compare)??;
     }
     Ok(flaws)
@@ -91,7 +97,10 @@ fn computed(
 struct Compare<'a> {
     dataset: &'a Dataset,
     format: DataFormat,
-    chunks: &'a [libration_data::Chunk],
+    group: Group,
+    /// All of the manifest, and which of them are the group's.
+    all: &'a [Chunk],
+    chunks: Range<usize>,
     execution: &'a Execution,
     watch: &'a dyn Watch,
     flaws: &'a mut Vec<Flaw>,
@@ -105,46 +114,40 @@ impl Visit for Compare<'_> {
         all: Environments<T, E, O, 1>,
         actor: Actor<O>,
     ) -> Self::Output {
-        let Compare { dataset, format, chunks, execution, watch, flaws } = self;
-        let group = match chunks.first() {
-            Some(first) => {
-                let number = first.chunk.split('-').next().and_then(|n| n.parse().ok());
-                dataset.group(number.unwrap_or(0).min(dataset.groups() - 1))
-            }
-            None => return Ok(()),
-        };
-        let mut course = Course { dataset, group, all, actor, format };
+        let Compare { dataset, format, group, execution, watch, flaws, .. } = self;
+        let mut course = Course::new(dataset, format, group, all, actor);
         let mut used = None;
-        for chunk in chunks {
+        for i in self.chunks {
             if watch.stops() {
                 return Err(DatasetError::Interrupted);
             }
+            let (before, chunk) = (&self.all[..i], &self.all[i]);
             let mut done = course.next(used.take())?;
-            let (name, holds) = (done.name(), done.holds(dataset.seed));
-            let files = done.files(dataset, format, execution.thread_count())?;
-            let list = files.list();
-            let mut flaw = |path: &Path, what: String| {
-                flaws.push(Flaw { chunk: chunk.chunk.clone(), path: path.to_owned(), what });
+            let (name, holds) = (done.name(), done.holds(dataset, format, before));
+            let files = done.files(dataset, format, execution.thread_count(), before)?;
+            let files = files.list();
+            let mut flaw = |path: &Path, what: &str| {
+                let (chunk, path, what) = (chunk.chunk.clone(), path.to_owned(), what.to_owned());
+                flaws.push(Flaw { chunk, path, what });
             };
-            for file in &list {
-                let stored = chunk.files.iter().find(|stored| stored.path == file.path);
+            let stored = chunk.files.iter().map(|stored| (&stored.path, &stored.blake3));
+            let mut stored: BTreeMap<_, _> = stored.collect();
+            for file in &files {
                 let sum = checksum(file.pieces.iter().copied());
-                match stored {
-                    None => flaw(&file.path, "is missing in the manifest".to_owned()),
-                    Some(Stored { blake3, .. }) if *blake3 != sum => {
-                        flaw(
-                            &file.path,
-                            "holds other numbers than the settings lead to".to_owned(),
-                        );
+                match stored.remove(&file.path) {
+                    None => flaw(&file.path, "is missing in the manifest"),
+                    Some(told) if *told != sum => {
+                        flaw(&file.path, "holds other numbers than the settings lead to");
                     }
                     Some(_) => {}
                 }
             }
-            if name != chunk.chunk || holds != chunk.holds {
-                flaw(Path::new("manifest.jsonl"), "tells something else of the chunk".to_owned());
+            for path in stored.into_keys() {
+                flaw(path, "is no file that the settings lead to");
             }
-            drop(list);
-            drop(files);
+            if name != chunk.chunk || holds != chunk.holds {
+                flaw(Path::new("manifest.jsonl"), "tells something else of the chunk");
+            }
             watch.done(done.rollout.plan().transitions() as u64, 0);
             used = Some(done);
         }

@@ -5,11 +5,13 @@ use std::path::PathBuf;
 
 use libration::rl::{Layout, Rollout};
 use libration_data::{
-    Column, FileOf, Table, TableError, Values, npy_array, write_npy, write_parquet,
+    Chunk, Column, FileOf, Table, TableError, Values, npy_array, write_npy, write_parquet,
 };
 use serde_json::{Map, Value, json};
 
+use super::episodes::Episode;
 use super::format::DataFormat;
+use super::minari::{self, Before};
 use super::settings::Dataset;
 use super::world::{Group, Number};
 
@@ -20,6 +22,8 @@ pub(super) struct Done<T, const O: usize> {
     pub(super) chunk: u64,
     pub(super) first: u64,
     pub(super) rollout: Rollout<T, O, 1>,
+    /// Those that ended, where they are wanted.
+    pub(super) episodes: Vec<Episode<T, O>>,
     /// What is seen after the last step: `[n, i]`.
     pub(super) next: Vec<T>,
     /// Which step and environment each row of a table is of, kept for the next chunk.
@@ -49,7 +53,7 @@ impl Rows {
 }
 
 /// Bytes of files, some of which lie in a rollout.
-pub(super) struct Files<'a>(Vec<(PathBuf, Vec<Cow<'a, [u8]>>)>);
+pub(super) struct Files<'a>(pub(super) Vec<(PathBuf, Vec<Cow<'a, [u8]>>)>);
 
 impl Files<'_> {
     /// As a folder takes them.
@@ -70,23 +74,34 @@ impl<T: Number, const O: usize> Done<T, O> {
         format!("{:06}-{:08}", self.group.number, self.chunk)
     }
 
-    /// What the manifest says of it.
-    pub(super) fn holds(&self, seed: u64) -> Map<String, Value> {
+    /// What the manifest says of it, after the chunks before it.
+    pub(super) fn holds(
+        &self,
+        dataset: &Dataset,
+        format: DataFormat,
+        before: &[Chunk],
+    ) -> Map<String, Value> {
         let plan = self.rollout.plan();
-        let value = json!({
-            "seed": seed,
+        let mut value = json!({
+            "seed": dataset.seed,
             "environments": [self.group.first, self.group.first + self.group.len],
             "steps": [self.first, self.first + plan.horizon as u64],
             "transitions": plan.horizon * plan.environments,
             "ends": self.rollout.finals().len(),
         });
+        if format == DataFormat::Minari {
+            let before = Before::of(before);
+            let with = before.and(&self.episodes);
+            value["episodes"] = json!([before.episodes, with.episodes]);
+            value["actions"] = json!([before.actions, with.actions]);
+        }
         match value {
             Value::Object(map) => map,
             _ => Map::new(),
         }
     }
 
-    /// Its files in a format; so many threads encode them.
+    /// Its files in a format, after the chunks before it; so many threads encode them.
     ///
     /// # Errors
     /// If the Parquet library refuses.
@@ -95,7 +110,11 @@ impl<T: Number, const O: usize> Done<T, O> {
         dataset: &Dataset,
         format: DataFormat,
         threads: usize,
+        before: &[Chunk],
     ) -> Result<Files<'_>, TableError> {
+        if format == DataFormat::Minari {
+            return self.minari(dataset, threads, before);
+        }
         let name = self.name();
         let path = |folder: &str| PathBuf::from(format!("{folder}/{name}.{}", format.name()));
         if format == DataFormat::Parquet {
@@ -104,6 +123,7 @@ impl<T: Number, const O: usize> Done<T, O> {
         let mut files = Vec::new();
         let ends = self.ends(dataset)?;
         match format {
+            DataFormat::Minari => {}
             DataFormat::Npy => {
                 for (folder, kind, wide, bytes) in self.arrays() {
                     let plan = self.rollout.plan();
@@ -126,6 +146,26 @@ impl<T: Number, const O: usize> Done<T, O> {
             }
         }
         Ok(Files(files))
+    }
+
+    /// Those of its episodes, and with the last of the data set what is to be said of all.
+    fn minari(
+        &self,
+        dataset: &Dataset,
+        threads: usize,
+        before: &[Chunk],
+    ) -> Result<Files<'static>, TableError> {
+        let all = Before::of(before);
+        let mut files = minari::files(&self.episodes, all.episodes, threads, dataset)?;
+        if before.len() as u128 + 1 == dataset.groups() as u128 * u128::from(dataset.chunks()) {
+            let old = before.iter().flat_map(|chunk| &chunk.files).map(|file| file.bytes);
+            let new = files.list();
+            let new = new.iter().flat_map(|file| &file.pieces).map(|piece| piece.len() as u64);
+            let bytes = old.chain(new).sum();
+            let about = minari::about(dataset, all.and(&self.episodes), bytes);
+            files.0.push((PathBuf::from("data/metadata.json"), vec![Cow::Owned(about.into())]));
+        }
+        Ok(files)
     }
 
     /// Name, type, numbers in each transition (0 for one by itself) and bytes of every tensor.
@@ -216,6 +256,7 @@ impl<T: Number, const O: usize> Done<T, O> {
     }
 }
 
-fn column<'a>(name: &'static str, unit: &'static str, values: Values<'a>) -> Column<'a> {
+/// A column of a table.
+pub(super) fn column<'a>(name: &'static str, unit: &'static str, values: Values<'a>) -> Column<'a> {
     Column { name: name.into(), unit: unit.into(), values }
 }

@@ -32,6 +32,14 @@ pub enum DatasetError {
         /// Groups there are.
         groups: usize,
     },
+    /// Episodes are numbered through all of a data set.
+    #[error(
+        "{of} shards: Minari numbers the episodes of a data set from first to last, so there can only be one"
+    )]
+    Whole {
+        /// Shards that are asked for.
+        of: usize,
+    },
     /// The manifest tells no settings that can be read.
     #[error("the settings in the manifest of {} cannot be read: {what}", folder.display())]
     Settings {

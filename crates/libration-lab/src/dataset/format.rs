@@ -10,17 +10,20 @@ pub enum DataFormat {
     Parquet,
     /// NumPy's own: a tensor `[step, environment, …]` for each field.
     Npy,
+    /// What the package Minari reads: a folder for each episode, with a Parquet file.
+    Minari,
 }
 
 impl DataFormat {
     /// All of them.
-    pub const ALL: [DataFormat; 2] = [DataFormat::Parquet, DataFormat::Npy];
+    pub const ALL: [DataFormat; 3] = [DataFormat::Parquet, DataFormat::Npy, DataFormat::Minari];
 
-    /// Its name, which is the extension of files.
+    /// Its name, which is the extension of files except for Minari's.
     pub const fn name(self) -> &'static str {
         match self {
             DataFormat::Parquet => "parquet",
             DataFormat::Npy => "npy",
+            DataFormat::Minari => "minari",
         }
     }
 
@@ -31,6 +34,7 @@ impl DataFormat {
                 "a row for each transition, compressed; for pandas, pyarrow, polars"
             }
             DataFormat::Npy => "a tensor [step, environment, …] for each field; for NumPy",
+            DataFormat::Minari => "a folder for each episode; for Minari",
         }
     }
 
@@ -43,7 +47,7 @@ impl DataFormat {
     pub(super) fn layout(self) -> Layout {
         match self {
             DataFormat::Parquet => Layout::Planes,
-            DataFormat::Npy => Layout::Interleaved,
+            DataFormat::Npy | DataFormat::Minari => Layout::Interleaved,
         }
     }
 }

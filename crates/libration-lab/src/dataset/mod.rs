@@ -6,8 +6,10 @@
 mod actor;
 mod again;
 mod chunk;
+mod episodes;
 mod error;
 mod format;
+mod minari;
 mod plant;
 mod reading;
 mod settings;

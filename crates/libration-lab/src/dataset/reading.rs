@@ -4,6 +4,7 @@ use libration::rl::Delays;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::{AnySystem, Method};
 
+use super::plant::Plant;
 use super::settings::{Acting, Chunk, Dataset, Noise, Task};
 use super::tables::{File, PolicyTable, TaskTable};
 use crate::config::limits::{TIME_STEP, within};
@@ -114,7 +115,7 @@ fn system(file: &File) -> Result<AnySystem, Fault> {
     let parameters: Vec<_> = parameters.iter().map(|(name, value)| (name, value.0)).collect();
     let system = AnySystem::build(name, &parameters);
     let system = system.map_err(|error| Fault::new("system", error.to_string()))?;
-    if !system.entry().dimensions.contains(&1) {
+    if Plant::<f64>::new(system).is_none() {
         let message = format!("`{name}` has no single degree of freedom, as a data set needs");
         return Err(Fault::new("system", message));
     }

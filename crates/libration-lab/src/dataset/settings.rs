@@ -63,7 +63,27 @@ pub(super) enum Acting {
     Constant(f64),
 }
 
+impl Acting {
+    /// Its name in the file of settings.
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Acting::Linear { .. } => "linear",
+            Acting::Random { .. } => "random",
+            Acting::Constant(_) => "constant",
+        }
+    }
+}
+
 impl Task {
+    /// Its name in the file of settings.
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Task::Regulate(_) => "regulate",
+            Task::SwingUp(_) => "swing-up",
+            Task::Track(_) => "track",
+        }
+    }
+
     /// Names and units of what is seen.
     pub(super) fn seen(&self) -> &'static [(&'static str, &'static str)] {
         const STATE: [(&str, &str); 4] =

@@ -11,6 +11,7 @@ use serde_json::{Map, Value, json};
 
 use super::actor::Actor;
 use super::chunk::{Done, Rows};
+use super::episodes::Episodes;
 use super::world::{Group, Number, Visit};
 use super::{DataFormat, Dataset, DatasetError};
 
@@ -33,7 +34,7 @@ pub struct Job<'a> {
 
 /// Who watches a data set being written or read.
 pub trait Watch: Sync {
-    /// So many transitions, in so many bytes, are done, of those and that many before.
+    /// So many more transitions, in so many bytes, are done; those that were there before are told first.
     fn done(&self, transitions: u64, bytes: u64);
 
     /// Whether to stop.
@@ -45,11 +46,15 @@ pub trait Watch: Sync {
 /// Groups of a shard.
 pub(super) fn groups(
     dataset: &Dataset,
+    format: DataFormat,
     [index, of]: [usize; 2],
 ) -> Result<[usize; 2], DatasetError> {
     let groups = dataset.groups();
     if index == 0 || index > of || of > groups {
         return Err(DatasetError::Shard { index, of, groups });
+    }
+    if of > 1 && format == DataFormat::Minari {
+        return Err(DatasetError::Whole { of });
     }
     Ok([groups * (index - 1) / of, groups * index / of])
 }
@@ -72,7 +77,7 @@ pub(super) fn head(
 /// after them.
 pub fn write(job: &Job<'_>, watch: &dyn Watch) -> Result<Manifest, DatasetError> {
     let Job { dataset, format, shard, out, resume, ref execution } = *job;
-    let [first, end] = groups(dataset, shard)?;
+    let [first, end] = groups(dataset, format, shard)?;
     // Whatever cannot be is said before a folder is made.
     dataset.with(dataset.group(first), &Execution::serial(), Try)??;
     let mut folder = Folder::open(out, &head(dataset, format, [first, end]), resume)?;
@@ -142,10 +147,25 @@ pub(super) struct Course<'a, T: Number, E: World<T, O, 1>, const O: usize> {
     pub(super) group: Group,
     pub(super) all: Environments<T, E, O, 1>,
     pub(super) actor: Actor<O>,
-    pub(super) format: DataFormat,
+    format: DataFormat,
+    /// Where they are wanted.
+    episodes: Option<Episodes<T, O>>,
 }
 
-impl<T: Number, E: World<T, O, 1>, const O: usize> Course<'_, T, E, O> {
+impl<'a, T: Number, E: World<T, O, 1>, const O: usize> Course<'a, T, E, O> {
+    /// From the first step on.
+    pub(super) fn new(
+        dataset: &'a Dataset,
+        format: DataFormat,
+        group: Group,
+        all: Environments<T, E, O, 1>,
+        actor: Actor<O>,
+    ) -> Self {
+        let episodes = || Episodes::new(group.first, group.len, dataset.longest());
+        let episodes = (format == DataFormat::Minari).then(episodes);
+        Course { dataset, group, all, actor, format, episodes }
+    }
+
     /// The next chunk, in the memory of an older one where that is as large.
     pub(super) fn next(&mut self, used: Option<Done<T, O>>) -> Result<Done<T, O>, DatasetError> {
         let Dataset { chunk, steps, .. } = *self.dataset;
@@ -160,6 +180,7 @@ impl<T: Number, E: World<T, O, 1>, const O: usize> Course<'_, T, E, O> {
                 chunk: 0,
                 first: 0,
                 rollout: Rollout::new(plan)?,
+                episodes: Vec::new(),
                 next: vec![T::zero(); self.group.len * O],
                 rows: Rows::default(),
             },
@@ -167,6 +188,12 @@ impl<T: Number, E: World<T, O, 1>, const O: usize> Course<'_, T, E, O> {
         (done.chunk, done.first) = (first / chunk.steps as u64, first);
         self.all.rollout(self.actor, &mut done.rollout)?;
         self.all.observe(&mut done.next)?;
+        if let Some(episodes) = &mut self.episodes {
+            done.episodes = episodes.take(first, &done.rollout);
+            if self.all.step() == steps {
+                done.episodes.extend(episodes.cut(&done.next));
+            }
+        }
         Ok(done)
     }
 }
@@ -180,7 +207,7 @@ impl Visit for Stream<'_> {
         actor: Actor<O>,
     ) -> Self::Output {
         let Stream { dataset, format, group, from, folder, threads, watch } = self;
-        let mut course = Course { dataset, group, all, actor, format };
+        let mut course = Course::new(dataset, format, group, all, actor);
         // What follows from the settings is computed again faster than it is read.
         let mut used = None;
         for _ in 0..from {
@@ -244,8 +271,9 @@ fn commit<T: Number, const O: usize>(
     threads: usize,
     folder: &mut Folder,
 ) -> Result<u64, DatasetError> {
-    let (name, holds) = (done.name(), done.holds(dataset.seed));
-    let files = done.files(dataset, format, threads)?;
+    let before = &folder.manifest().chunks;
+    let (name, holds) = (done.name(), done.holds(dataset, format, before));
+    let files = done.files(dataset, format, threads, before)?;
     let list = files.list();
     folder.commit(&name, holds, &list)?;
     Ok(list.iter().flat_map(|file| &file.pieces).map(|piece| piece.len() as u64).sum())

@@ -47,25 +47,21 @@ impl Dataset {
             more
         };
         let task = match &self.task {
-            Task::Regulate(r) => json!({ "regulate": regulate(r, json!({})) }),
-            Task::SwingUp(s) => {
-                json!({ "swing-up": { "velocity": s.velocity, "effort": s.effort } })
-            }
+            Task::Regulate(r) => regulate(r, json!({})),
+            Task::SwingUp(s) => json!({ "velocity": s.velocity, "effort": s.effort }),
             Task::Track(Track { reference, regulate: r }) => {
                 let reference = json!({
                     "amplitude": reference.amplitude,
                     "angular_frequency": reference.angular_frequency,
                     "phase": reference.phase,
                 });
-                json!({ "track": regulate(r, reference) })
+                regulate(r, reference)
             }
         };
         let policy = match &self.policy {
-            Acting::Linear { weights, bias } => {
-                json!({ "linear": { "weights": weights, "bias": bias } })
-            }
-            Acting::Random { low, high } => json!({ "random": { "low": low, "high": high } }),
-            Acting::Constant(action) => json!({ "constant": { "action": action } }),
+            Acting::Linear { weights, bias } => json!({ "weights": weights, "bias": bias }),
+            Acting::Random { low, high } => json!({ "low": low, "high": high }),
+            Acting::Constant(action) => json!({ "action": action }),
         };
         let Noise { jitter, skew, observation } = self.noise;
         json!({
@@ -79,11 +75,11 @@ impl Dataset {
             "limit": self.limit.unwrap_or(0),
             "chunk": { "environments": self.chunk.environments, "steps": self.chunk.steps },
             "system": { self.system.name(): parameters },
-            "task": task,
+            "task": { self.task.name(): task },
             "start": { "q": self.start[0], "v": self.start[1] },
             "delays": { "observation": self.delays.observation, "action": self.delays.action },
             "noise": { "jitter": jitter, "skew": skew, "observation": observation },
-            "policy": policy,
+            "policy": { self.policy.name(): policy },
         })
     }
 }

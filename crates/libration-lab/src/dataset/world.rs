@@ -119,9 +119,8 @@ impl Dataset {
     ) -> Result<V::Output, EnvironmentError> {
         let [q, v] = self.start;
         let start = Between(State { q: [q[0]], v: [v[0]] }, State { q: [q[1]], v: [v[1]] });
-        // Another system than those of one degree of freedom was refused with the settings.
         let Some(plant) = Plant::<T>::new(self.system) else {
-            return Err(EnvironmentError::Limit);
+            unreachable!("a system of several degrees of freedom is refused with the settings");
         };
         let method: Method = self.method;
         let mut world = Environment::new(All(plant), method, self.dt, task, start)

@@ -26,6 +26,7 @@ mod sampled;
 mod source;
 mod spectrum;
 mod stability;
+mod storage;
 mod subject;
 mod swarm;
 pub(crate) mod throughput;
@@ -46,6 +47,7 @@ pub use precision::Precision;
 pub use rollout::Rollout;
 pub use spectrum::Spectrum;
 pub use stability::Stability;
+pub use storage::Storage;
 pub use subject::{
     Change, Changes, Errors, Halvings, Horizon, Kind, Law, Orbits, Portrait, Problem, SYSTEMS,
     Subject, Symmetry,
@@ -70,6 +72,7 @@ pub const ALL: &[&dyn Study] = &[
     &Throughput,
     &Memory,
     &Rollout,
+    &Storage,
 ];
 
 /// The study of that name, if there is one.

@@ -245,6 +245,7 @@ fn findings_agree_for_other_springs_starts_methods_and_steps() {
             "throughput",
             "memory",
             "rollout",
+            "storage",
         ];
         let own = studies::ALL.iter().filter(|s| !others.contains(&s.name()));
         let records: Vec<Record> = own.map(|study| study.run(&lab).unwrap()).collect();
@@ -259,8 +260,9 @@ fn a_run_repeats_to_the_bit_on_one_thread_and_on_many() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     for (study, a) in studies::ALL.iter().zip(records()) {
         // That ensembles of loops repeat on any number of threads the engine's tests show, and `determinism`; `throughput`,
-        // `memory` and `rollout` measure time.
-        let others = ["latency", "jitter", "asynchrony", "throughput", "memory", "rollout"];
+        // `memory`, `rollout` and `storage` measure time.
+        let others =
+            ["latency", "jitter", "asynchrony", "throughput", "memory", "rollout", "storage"];
         if others.contains(&study.name()) {
             continue;
         }

@@ -39,12 +39,16 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         }
         let weights = self.weights();
         let part = total / len as f64;
-        let mut importance = vec![0.0; len];
-        for (i, number) in batch.number.iter_mut().enumerate() {
-            let cell = sums.find(weights, (i as f64 + draw.share(i)) * part);
+        let mut targets: Vec<f64> = (0..len).map(|i| (i as f64 + draw.share(i)) * part).collect();
+        let mut cells = vec![0; len];
+        sums.find(weights, &mut targets, &mut cells);
+        let mut importance = targets;
+        for ((importance, number), &cell) in
+            importance.iter_mut().zip(&mut *batch.number).zip(&cells)
+        {
             *number = self.number(cell);
-            importance[i] =
-                libm::pow(self.marks.live as f64 * (weights[cell] / total), -correction);
+            let share = self.marks.live as f64 * (weights[cell] / total);
+            *importance = libm::pow(share, -correction);
         }
         let largest = importance.iter().copied().fold(0.0, f64::max);
         for (to, importance) in batch.weight.iter_mut().zip(&importance) {
@@ -122,12 +126,16 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
     }
 
     /// The number of the transition in a cell.
+    #[inline(always)]
     fn number(&self, cell: usize) -> u64 {
         let n = self.capacity.environments;
         let rows = self.capacity.rows() as u64;
+        let (row, l) = ((cell / n) as u64, (cell % n) as u64);
         let last = self.marks.head - 1;
-        let back = (last % rows + rows - (cell / n) as u64) % rows;
-        (last - back) * n as u64 + (cell % n) as u64
+        // The compiler divides once for a whole batch.
+        let newest = last % rows;
+        let back = if row <= newest { newest - row } else { newest + rows - row };
+        (last - back) * n as u64 + l
     }
 
     /// What is new has the largest weight, and what is gone since then none.
@@ -157,7 +165,10 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         let (cell, n) = (self.cell(step, 0), self.capacity.environments);
         let range = self.memory.fields.weight.clone();
         self.memory.field_mut::<f64>(range)[cell..][..n].fill(weight);
-        let none = |l: &usize| nones && self.flags()[cell + l] & NONE != 0;
+        if !nones {
+            return;
+        }
+        let none = |l: &usize| self.flags()[cell + l] & NONE != 0;
         let none: Vec<usize> = (0..n).filter(none).collect();
         let range = self.memory.fields.weight.clone();
         let weights = &mut self.memory.field_mut::<f64>(range)[cell..][..n];

@@ -54,7 +54,9 @@ impl SumTree {
 
     /// The weight that lies at `target` when all are laid end to end, from 0 on: never one that is zero; none if all are.
     pub fn find(&self, target: f64) -> Option<usize> {
-        (self.total() > 0.0).then(|| self.sums.find(&self.weights, target))
+        let mut found = [0];
+        self.sums.find(&self.weights, &mut [target.max(0.0)], &mut found);
+        (self.total() > 0.0).then_some(found[0])
     }
 }
 
@@ -130,18 +132,18 @@ impl Sums {
         self.levels[level][node] = sum;
     }
 
-    /// Which weight lies at `target`, where one is above zero.
-    pub(super) fn find(&self, weights: &[f64], target: f64) -> usize {
-        let (mut node, mut rest) = (0, target);
+    /// Which weights lie at some targets, where one is above zero; of the targets stays how far into them they are.
+    ///
+    /// All go down a level together: none waits for the memory of another.
+    pub(super) fn find(&self, weights: &[f64], targets: &mut [f64], found: &mut [usize]) {
+        found.fill(0);
         for level in (0..self.levels.len()).rev() {
-            let parts = match level.checked_sub(1) {
-                None => parts(weights, node),
-                Some(below) => parts(&self.levels[below], node),
-            };
-            let (part, left) = choose(&parts, rest);
-            (node, rest) = (node * WIDTH + part, left);
+            let all = level.checked_sub(1).map_or(weights, |below| &self.levels[below]);
+            for (node, target) in found.iter_mut().zip(&mut *targets) {
+                let (part, left) = choose(&parts(all, *node), *target);
+                (*node, *target) = (*node * WIDTH + part, left);
+            }
         }
-        node
     }
 }
 
@@ -162,16 +164,19 @@ fn sum([a, b, c, d, e, f, g, h]: &[f64; WIDTH]) -> f64 {
     ((a + b) + (c + d)) + ((e + f) + (g + h))
 }
 
-/// The last part that is above zero and does not begin beyond `target`, and how far into it that is. The first one begins at 0.
+/// The last part that is above zero and does not begin beyond `target`, and how far into it that is: without branches, which
+/// would be guessed wrong.
 #[inline(always)]
 fn choose(parts: &[f64; WIDTH], target: f64) -> (usize, f64) {
-    let (mut begin, mut chosen, mut left) = (0.0, None, target);
-    for (i, &part) in parts.iter().enumerate() {
-        if part > 0.0 && (chosen.is_none() || target >= begin) {
-            (chosen, left) = (Some(i), target - begin);
-        }
-        begin += part;
+    let mut begins = [0.0; WIDTH];
+    for i in 1..WIDTH {
+        begins[i] = begins[i - 1] + parts[i - 1];
     }
+    let mut able = 0_u32;
+    for i in 0..WIDTH {
+        able |= u32::from((parts[i] > 0.0) & (begins[i] <= target)) << i;
+    }
+    let chosen = (able | 1).ilog2() as usize % WIDTH;
     // Rounding may leave a little more than the part is long.
-    (chosen.unwrap_or(0), left)
+    (chosen, target - begins[chosen])
 }

@@ -1,9 +1,11 @@
 //! `libration bench`.
 
+mod rollouts;
+mod storage;
+
 use std::fmt::Write;
 
-use libration::rl::{Layout, Writes};
-use libration_lab::bench::{self, BenchFloat, Rate, RolloutCase, RolloutRate, Wanted};
+use libration_lab::bench::{self, BenchFloat, Rate, RolloutCase, Wanted};
 use libration_lab::record::{Finding, Record, Relation, Table, Undecided, Verdict};
 use libration_lab::studies::Throughput;
 use libration_lab::study::StudyError;
@@ -29,11 +31,17 @@ pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), Failure> {
     let reporter = Reporter::new(quiet);
     let stop = interrupt::listen()?;
     let lab = Lab::new(&config, args.effort, &reporter, stop);
-    let text = if args.rollouts {
+    let text = if args.storage {
+        let folder = args.folder.clone().unwrap_or_else(std::env::temp_dir);
+        let rates = bench::storage(&lab, &folder);
+        reporter.clear();
+        let rates = rates.map_err(failure)?;
+        if args.json { storage::json(&rates) } else { storage::text(&rates) }
+    } else if args.rollouts {
         let rates = bench::rollouts(&lab, &cases(args));
         reporter.clear();
         let rates = rates.map_err(failure)?;
-        if args.json { rollouts_json(&rates) } else { rollouts_text(&rates) }
+        if args.json { rollouts::json(&rates) } else { rollouts::text(&rates) }
     } else if wanted.is_empty() {
         let record = Throughput.run(&lab);
         reporter.clear();
@@ -156,79 +164,6 @@ fn rates_text(rates: &[Rate]) -> String {
             rate.count.to_string(),
             format!("{:.3}", rate.median / 1e9),
             format!("{:.3}", rate.spread / 1e9),
-        ]
-    };
-    let head = vec![head.map(String::from).to_vec()];
-    columns(&head.into_iter().chain(rates.iter().map(row)).collect::<Vec<_>>())
-}
-
-fn layout(rate: &RolloutRate) -> &'static str {
-    match rate.layout {
-        Layout::Interleaved => "interleaved",
-        Layout::Planes => "planes",
-    }
-}
-
-fn writes(rate: &RolloutRate) -> &'static str {
-    way(rate.writes)
-}
-
-fn way(writes: Writes) -> &'static str {
-    match writes {
-        Writes::Plain => "plain",
-        Writes::Past => "past the caches",
-    }
-}
-
-fn rollouts_json(rates: &[RolloutRate]) -> String {
-    let rate = |rate: &RolloutRate| -> Value {
-        json!({
-            "task": rate.case.task.name(),
-            "environments": rate.case.environments,
-            "horizon": rate.case.horizon,
-            "bytes": rate.case.bytes(),
-            "layout": layout(rate),
-            "writes": writes(rate),
-            "threads": rate.threads,
-            "transitions_per_second": rate.median,
-            "spread": rate.spread,
-            "fill": way(rate.case.against()),
-            "share_of_fill": rate.share,
-            "share_spread": rate.share_spread,
-        })
-    };
-    let rates: Vec<Value> = rates.iter().map(rate).collect();
-    format!("{:#}\n", json!({ "schema": SCHEMA, "machine": Machine::detect(), "rollouts": rates }))
-}
-
-fn rollouts_text(rates: &[RolloutRate]) -> String {
-    let head = [
-        "task",
-        "environments",
-        "horizon",
-        "MiB",
-        "layout",
-        "stores",
-        "threads",
-        "10⁹ transitions/s",
-        "spread",
-        "of a fill",
-        "spread",
-    ];
-    let row = |rate: &RolloutRate| {
-        let case = rate.case;
-        vec![
-            case.task.name().to_owned(),
-            case.environments.to_string(),
-            case.horizon.to_string(),
-            format!("{:.2}", case.bytes() as f64 / f64::from(1 << 20)),
-            layout(rate).to_owned(),
-            writes(rate).to_owned(),
-            rate.threads.to_string(),
-            format!("{:.3}", rate.median / 1e9),
-            format!("{:.3}", rate.spread / 1e9),
-            format!("{:.2}", rate.share),
-            format!("{:.2}", rate.share_spread),
         ]
     };
     let head = vec![head.map(String::from).to_vec()];

@@ -1,0 +1,107 @@
+//! What environments did, episode by episode.
+
+use libration::rl::Rollout;
+
+use super::world::Number;
+
+/// An episode, or a part of a very long one.
+#[derive(Clone, Debug)]
+pub(super) struct Episode<T, const O: usize> {
+    /// Of which environment.
+    pub(super) environment: usize,
+    /// The step of its first action.
+    pub(super) first: u64,
+    /// What was seen before each action, and after the last.
+    pub(super) observation: Vec<T>,
+    pub(super) action: Vec<T>,
+    pub(super) reward: Vec<T>,
+    /// Whether it came to an end of its own; otherwise it was cut off.
+    pub(super) terminated: bool,
+}
+
+impl<T, const O: usize> Episode<T, O> {
+    fn new(environment: usize) -> Self {
+        Episode {
+            environment,
+            first: 0,
+            observation: Vec::new(),
+            action: Vec::new(),
+            reward: Vec::new(),
+            terminated: false,
+        }
+    }
+
+    /// How many actions it has.
+    pub(super) fn len(&self) -> usize {
+        self.action.len()
+    }
+}
+
+/// Episodes that go on, one of each environment of a group.
+#[derive(Debug)]
+pub(super) struct Episodes<T, const O: usize> {
+    open: Vec<Episode<T, O>>,
+    /// The most actions of one: it is cut off there.
+    most: usize,
+}
+
+impl<T: Number, const O: usize> Episodes<T, O> {
+    /// None yet, of so many environments from the first on.
+    pub(super) fn new(first: usize, len: usize, most: usize) -> Self {
+        Episodes { open: (first..first + len).map(Episode::new).collect(), most }
+    }
+
+    /// Takes in a rollout whose first step has this number; gives the episodes that ended there, in the order of their ends.
+    ///
+    /// The action by which an environment was lost led nowhere, and is left out.
+    pub(super) fn take(&mut self, first: u64, rollout: &Rollout<T, O, 1>) -> Vec<Episode<T, O>> {
+        let n = self.open.len();
+        let mut ended = Vec::new();
+        let mut finals = rollout.finals().iter().peekable();
+        let (seen, _) = rollout.observation().as_chunks::<O>();
+        for (t, step) in (first..).zip(0..rollout.plan().horizon) {
+            for (i, open) in self.open.iter_mut().enumerate() {
+                let at = step * n + i;
+                if open.len() == self.most {
+                    ended.extend(close(open, &seen[at], false));
+                }
+                if open.len() == 0 {
+                    open.first = t;
+                }
+                open.observation.extend(&seen[at]);
+                let end = finals.next_if(|end| (end.step, end.environment) == (step, i));
+                if end.is_some_and(|end| end.lost) {
+                    ended.extend(close(open, &[], false));
+                    continue;
+                }
+                open.action.push(rollout.action()[at]);
+                open.reward.push(rollout.reward()[at]);
+                if let Some(end) = end {
+                    let terminated = rollout.terminated()[at] != 0;
+                    ended.extend(close(open, &end.observation, terminated));
+                }
+            }
+        }
+        ended
+    }
+
+    /// Cuts off those that go on; `next` is what each would have seen.
+    pub(super) fn cut(&mut self, next: &[T]) -> Vec<Episode<T, O>> {
+        let (next, _) = next.as_chunks::<O>();
+        let open = self.open.iter_mut().zip(next);
+        open.filter_map(|(open, seen)| close(open, seen, false)).collect()
+    }
+}
+
+/// What an episode was, if anything was done in it; another begins in its place.
+fn close<T: Number, const O: usize>(
+    open: &mut Episode<T, O>,
+    seen: &[T],
+    terminated: bool,
+) -> Option<Episode<T, O>> {
+    let next = Episode::new(open.environment);
+    let mut episode = std::mem::replace(open, next);
+    episode.observation.extend(seen);
+    episode.terminated = terminated;
+    (episode.len() > 0).then_some(episode)
+}

@@ -1,0 +1,57 @@
+//! How fast transitions and states are kept, in memory and on disks, and whether what is kept is what was there.
+
+mod circle;
+mod claims;
+mod draws;
+mod figures;
+mod files;
+mod peers;
+mod render;
+mod speeds;
+
+use crate::page::Page;
+use crate::record::RecordError;
+use crate::study::{Study, StudyError};
+use crate::{Lab, Record};
+
+/// The study `storage`.
+#[derive(Clone, Copy, Debug)]
+pub struct Storage;
+
+impl Study for Storage {
+    fn name(&self) -> &'static str {
+        "storage"
+    }
+
+    fn question(&self) -> &'static str {
+        "How fast are replay buffers, data sets and checkpoints, and is what they keep what was there?"
+    }
+
+    fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
+        let mut record = Record::new(self.name(), self.question());
+        let parts: [(&str, Part); 5] = [
+            ("a circle", circle::measure),
+            ("draws", draws::measure),
+            ("files", files::measure),
+            ("speeds", speeds::measure),
+            ("peers", peers::measure),
+        ];
+        for (what, part) in parts {
+            lab.part(what, || part(lab, &mut record))?;
+        }
+        claims::judge(&mut record);
+        Ok(record)
+    }
+
+    fn render(&self, record: &Record, page: &mut Page) -> Result<(), RecordError> {
+        render::render(record, page)
+    }
+}
+
+/// A part of the study.
+type Part = fn(&Lab<'_>, &mut Record) -> Result<(), StudyError>;
+
+/// The folder in which the study may make one of its own.
+fn folder(lab: &Lab<'_>) -> std::path::PathBuf {
+    lab.config.storage.folder.clone().unwrap_or_else(std::env::temp_dir)
+}

@@ -1,0 +1,65 @@
+//! Speeds of what is kept, as shares of copies.
+
+use super::folder;
+use crate::Lab;
+use crate::bench::{StorageRate, Stored, storage};
+use crate::record::{Cell, Finding, Record, Table};
+use crate::studies::desk::{Ratio, aim};
+use crate::study::StudyError;
+
+/// What a share is to reach.
+fn wanted(stored: Stored) -> Option<f64> {
+    match stored {
+        Stored::Insert | Stored::Npy => Some(0.8),
+        Stored::Checkpoint => Some(0.5),
+        Stored::Sample | Stored::Prioritised | Stored::Parquet => None,
+    }
+}
+
+/// The work, in words.
+fn work(stored: Stored) -> &'static str {
+    match stored {
+        Stored::Sample => "256 transitions drawn uniformly from a million",
+        Stored::Prioritised => "256 drawn by priority from a million, and given other priorities",
+        Stored::Insert => "a rollout of 4096 × 16 inserted into a buffer of a million",
+        Stored::Npy => "a data set of random actions in NumPy’s files",
+        Stored::Parquet => "the same as Parquet",
+        Stored::Checkpoint => "a million trajectories kept in a file, and taken up",
+    }
+}
+
+/// As texts name so many threads.
+fn on(threads: usize) -> String {
+    if threads == 1 { "one core".to_owned() } else { format!("{threads} cores") }
+}
+
+/// Times them, and judges their shares.
+pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
+    let columns = ["what", "threads", "10⁶ a second", "spread", "beside", "share", "wanted"];
+    let mut table = Table::new("speeds", &columns);
+    for rate in storage(lab, &folder(lab))? {
+        let StorageRate { stored, threads, .. } = rate;
+        let suffix = if stored == Stored::Insert && threads > 1 { ".threads" } else { "" };
+        let id = format!("storage.{}{suffix}", stored.name());
+        let text = format!("{}, {}: {}", work(stored), on(threads), stored.unit());
+        record.find(Finding::measured(format!("{id}.rate"), text, "1/s", rate.median));
+        if let Some(([share, spread], against)) = rate.share.zip(stored.against()) {
+            let text = format!("{}, {}: the speed of {against}", work(stored), on(threads));
+            let ratio = Ratio::new(share, spread, rate.rounds);
+            let reason = "what memory and disks do beside a copy is measured";
+            aim(record, id, text, wanted(stored), ratio, reason);
+        }
+        let or_none = |x: Option<f64>| x.map_or_else(|| Cell::absent(""), |x| Cell::rounded(x, 2));
+        table.push([
+            work(stored).into(),
+            (threads as u64).into(),
+            (rate.median / 1e6).into(),
+            Cell::rounded(rate.spread / 1e6, 2),
+            stored.against().unwrap_or_default().into(),
+            or_none(rate.share.map(|[share, _]| share)),
+            or_none(wanted(stored)),
+        ]);
+    }
+    record.tables.push(table);
+    Ok(())
+}
