@@ -9,7 +9,7 @@ A buffer holds a million transitions of the report's oscillator (position, veloc
 an episode; cpprb keeps the next observation besides) in 32-bit floats. A batch has 256 of them; by priority, a
 batch is drawn and each of it is given another priority. pyarrow has the columns of the data set in memory and
 writes them with the same settings: groups of 2^20 rows, Zstandard of level 1, floats as BYTE_STREAM_SPLIT, counts
-as DELTA_BINARY_PACKED, flags as RLE, into files as large as Libration's, waiting for the disk after each.
+as DELTA_BINARY_PACKED with extremes, flags as RLE, into files as large as Libration's, waiting for the disk after each.
 Libration computes them as well. Each takes its turn, several times over; ratios are medians of ratios of the
 same round, with their quartiles.
 Exits with 1 if a bar is missed.
@@ -135,12 +135,13 @@ def parquet(program, folder):
     table = pyarrow.parquet.read_table(path).combine_chunks()
     encodings = {"bool": "RLE", "float": "BYTE_STREAM_SPLIT"}
     encoding = {field.name: encodings.get(str(field.type), "DELTA_BINARY_PACKED") for field in table.schema}
+    counts = [name for name, kind in encoding.items() if kind == "DELTA_BINARY_PACKED"]
     theirs = folder / "theirs.parquet"
 
     def run():
         with open(theirs, "wb") as file:
             pyarrow.parquet.write_table(table, file, row_group_size=1 << 20, compression="zstd", compression_level=1,
-                                        use_dictionary=False, column_encoding=encoding)
+                                        use_dictionary=False, column_encoding=encoding, write_statistics=counts)
             file.flush()
             os.fsync(file.fileno())
 

@@ -115,22 +115,21 @@ impl Folder {
         holds: Map<String, Value>,
         files: &[FileOf<'_>],
     ) -> Result<(), DataError> {
-        // Every folder that has something new in it, the innermost first.
-        let mut folders = BTreeSet::new();
-        for file in files {
-            let parents = file.path.ancestors().skip(1);
-            folders.extend(parents.map(|parent| Reverse(self.path.join(parent))));
-        }
-        for Reverse(folder) in folders.iter().rev() {
-            fs::create_dir_all(folder).map_err(DataError::io("create", folder))?;
-        }
-        let at_once = files.len().min(AT_ONCE);
-        let stored = on_threads(at_once, files.len(), |i| store(&self.path, &files[i]));
-        let stored = stored.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let folders: Vec<_> = folders.into_iter().collect();
-        let synced = on_threads(at_once, folders.len(), |i| sync_folder(&folders[i].0));
-        synced.into_iter().collect::<Result<Vec<()>, _>>()?;
-        let chunk = Chunk { chunk: chunk.to_owned(), holds, files: stored };
+        let stored = store(&self.path, files)?;
+        self.tell(chunk, holds, stored)
+    }
+
+    /// A chunk whose files are [there](store) is in the manifest when this returns.
+    ///
+    /// # Errors
+    /// If the system refuses, as when the disk is full; what was there before is there still.
+    pub fn tell(
+        &mut self,
+        chunk: &str,
+        holds: Map<String, Value>,
+        files: Vec<Stored>,
+    ) -> Result<(), DataError> {
+        let chunk = Chunk { chunk: chunk.to_owned(), holds, files };
         let line = serde_json::to_value(&chunk)
             .map_err(|error| DataError::io("write", &self.path.join(NAME))(error.into()))?;
         self.append(&line)?;
@@ -173,11 +172,32 @@ impl Folder {
     }
 }
 
-/// Writes a file of a chunk.
-fn store(folder: &Path, file: &FileOf<'_>) -> Result<Stored, DataError> {
-    let path = folder.join(&file.path);
-    let (blake3, bytes) = write_file(&path, &file.pieces)?;
-    Ok(Stored { path: file.path.clone(), bytes, blake3 })
+/// Writes the files of a chunk into a folder. When this returns, they are on the disk.
+///
+/// # Errors
+/// If the system refuses, as when the disk is full.
+pub fn store(folder: &Path, files: &[FileOf<'_>]) -> Result<Vec<Stored>, DataError> {
+    // Every folder that has something new in it, the innermost first.
+    let mut folders = BTreeSet::new();
+    for file in files {
+        let parents = file.path.ancestors().skip(1);
+        folders.extend(parents.map(|parent| Reverse(folder.join(parent))));
+    }
+    for Reverse(folder) in folders.iter().rev() {
+        fs::create_dir_all(folder).map_err(DataError::io("create", folder))?;
+    }
+    let at_once = files.len().min(AT_ONCE);
+    let one = |i: usize| -> Result<Stored, DataError> {
+        let path = files[i].path.clone();
+        let (blake3, bytes) = write_file(&folder.join(&path), &files[i].pieces)?;
+        Ok(Stored { path, bytes, blake3 })
+    };
+    let stored = on_threads(at_once, files.len(), one);
+    let stored = stored.into_iter().collect::<Result<_, _>>()?;
+    let folders: Vec<_> = folders.into_iter().collect();
+    let synced = on_threads(at_once, folders.len(), |i| sync_folder(&folders[i].0));
+    synced.into_iter().collect::<Result<Vec<()>, _>>()?;
+    Ok(stored)
 }
 
 /// Nothing, if the settings of a data set are those that are asked for.

@@ -23,7 +23,7 @@ mod verify;
 pub use checksum::checksum;
 pub use durable::{write_file, write_past};
 pub use error::{DataError, TableError};
-pub use folder::{FileOf, Folder, same};
+pub use folder::{FileOf, Folder, same, store};
 pub use manifest::{Chunk, Manifest, Stored};
 pub use mapped::ReplayFile;
 pub use npy::{npy_array, write_npy};

@@ -102,6 +102,11 @@ impl<'a> Table<'a> {
         self.columns.iter().find(|c| c.name == name).map(|c| &c.values)
     }
 
+    /// Bytes of all values.
+    pub fn bytes(&self) -> usize {
+        self.columns.iter().map(|c| c.values.len() * c.values.width()).sum()
+    }
+
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, |c| c.values.len())

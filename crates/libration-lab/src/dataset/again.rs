@@ -10,6 +10,7 @@ use libration_data::{Chunk, Flaw, Manifest, checksum, verify};
 use serde_json::Value;
 
 use super::actor::Actor;
+use super::minari::Before;
 use super::stream::{Course, head};
 use super::tables::File;
 use super::world::{Group, Number, Visit};
@@ -117,14 +118,15 @@ impl Visit for Compare<'_> {
         let Compare { dataset, format, group, execution, watch, flaws, .. } = self;
         let mut course = Course::new(dataset, format, group, all, actor);
         let mut used = None;
-        for i in self.chunks {
+        let mut before = Before::of(&self.all[..self.chunks.start]);
+        for chunk in &self.all[self.chunks] {
             if watch.stops() {
                 return Err(DatasetError::Interrupted);
             }
-            let (before, chunk) = (&self.all[..i], &self.all[i]);
             let mut done = course.next(used.take())?;
             let (name, holds) = (done.name(), done.holds(dataset, format, before));
             let files = done.files(dataset, format, execution.thread_count(), before)?;
+            before = files.after;
             let files = files.list();
             let mut flaw = |path: &Path, what: &str| {
                 let (chunk, path, what) = (chunk.chunk.clone(), path.to_owned(), what.to_owned());

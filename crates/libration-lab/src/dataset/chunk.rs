@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use libration::rl::{Layout, Rollout};
 use libration_data::{
-    Chunk, Column, FileOf, Table, TableError, Values, npy_array, write_npy, write_parquet,
+    Column, FileOf, Table, TableError, Values, npy_array, write_npy, write_parquet,
 };
 use serde_json::{Map, Value, json};
 
@@ -52,13 +52,20 @@ impl Rows {
     }
 }
 
-/// Bytes of files, some of which lie in a rollout.
-pub(super) struct Files<'a>(pub(super) Vec<(PathBuf, Vec<Cow<'a, [u8]>>)>);
+/// A file, seen from the folder, and its bytes, one piece after the other.
+pub(super) type NamedFile<'a> = (PathBuf, Vec<Cow<'a, [u8]>>);
+
+/// The files of a chunk, some bytes of which lie in a rollout.
+pub(super) struct Files<'a> {
+    files: Vec<NamedFile<'a>>,
+    /// What is before the next chunk.
+    pub(super) after: Before,
+}
 
 impl Files<'_> {
     /// As a folder takes them.
     pub(super) fn list(&self) -> Vec<FileOf<'_>> {
-        self.0
+        self.files
             .iter()
             .map(|(path, pieces)| FileOf {
                 path: path.clone(),
@@ -66,6 +73,11 @@ impl Files<'_> {
             })
             .collect()
     }
+}
+
+/// Of all of them.
+fn bytes(files: &[NamedFile<'_>]) -> u64 {
+    files.iter().flat_map(|(_, pieces)| pieces).map(|piece| piece.len() as u64).sum()
 }
 
 impl<T: Number, const O: usize> Done<T, O> {
@@ -79,7 +91,7 @@ impl<T: Number, const O: usize> Done<T, O> {
         &self,
         dataset: &Dataset,
         format: DataFormat,
-        before: &[Chunk],
+        before: Before,
     ) -> Map<String, Value> {
         let plan = self.rollout.plan();
         let mut value = json!({
@@ -90,8 +102,7 @@ impl<T: Number, const O: usize> Done<T, O> {
             "ends": self.rollout.finals().len(),
         });
         if format == DataFormat::Minari {
-            let before = Before::of(before);
-            let with = before.and(&self.episodes);
+            let with = before.and(&self.episodes, 0);
             value["episodes"] = json!([before.episodes, with.episodes]);
             value["actions"] = json!([before.actions, with.actions]);
         }
@@ -110,7 +121,7 @@ impl<T: Number, const O: usize> Done<T, O> {
         dataset: &Dataset,
         format: DataFormat,
         threads: usize,
-        before: &[Chunk],
+        before: Before,
     ) -> Result<Files<'_>, TableError> {
         if format == DataFormat::Minari {
             return self.minari(dataset, threads, before);
@@ -139,13 +150,15 @@ impl<T: Number, const O: usize> Done<T, O> {
             DataFormat::Parquet => {
                 for (folder, table) in [("transitions", self.transitions(dataset)?), ("ends", ends)]
                 {
-                    let mut bytes = Vec::new();
+                    // What is compressed is seldom longer.
+                    let mut bytes = Vec::with_capacity(table.bytes());
                     write_parquet(&table, &[("libration.chunk", &name)], threads, &mut bytes)?;
                     files.push((path(folder), vec![Cow::Owned(bytes)]));
                 }
             }
         }
-        Ok(Files(files))
+        let after = before.and::<T, O>(&[], bytes(&files));
+        Ok(Files { files, after })
     }
 
     /// Those of its episodes, and with the last of the data set what is to be said of all.
@@ -153,19 +166,15 @@ impl<T: Number, const O: usize> Done<T, O> {
         &self,
         dataset: &Dataset,
         threads: usize,
-        before: &[Chunk],
+        before: Before,
     ) -> Result<Files<'static>, TableError> {
-        let all = Before::of(before);
-        let mut files = minari::files(&self.episodes, all.episodes, threads, dataset)?;
-        if before.len() as u128 + 1 == dataset.groups() as u128 * u128::from(dataset.chunks()) {
-            let old = before.iter().flat_map(|chunk| &chunk.files).map(|file| file.bytes);
-            let new = files.list();
-            let new = new.iter().flat_map(|file| &file.pieces).map(|piece| piece.len() as u64);
-            let bytes = old.chain(new).sum();
-            let about = minari::about(dataset, all.and(&self.episodes), bytes);
-            files.0.push((PathBuf::from("data/metadata.json"), vec![Cow::Owned(about.into())]));
+        let mut files = minari::files(&self.episodes, before.episodes, threads, dataset)?;
+        let after = before.and(&self.episodes, bytes(&files));
+        if u128::from(after.chunks) == dataset.groups() as u128 * u128::from(dataset.chunks()) {
+            let about = minari::about(dataset, after);
+            files.push((PathBuf::from("data/metadata.json"), vec![Cow::Owned(about.into())]));
         }
-        Ok(files)
+        Ok(Files { files, after })
     }
 
     /// Name, type, numbers in each transition (0 for one by itself) and bytes of every tensor.

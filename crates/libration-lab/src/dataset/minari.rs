@@ -10,7 +10,7 @@ use libration_data::{Chunk, Table, TableError, Values, on_threads, write_parquet
 use serde_json::{Value, json};
 
 use super::DataFormat;
-use super::chunk::{Files, column};
+use super::chunk::{NamedFile, column};
 use super::episodes::Episode;
 use super::settings::{Acting, Dataset, Task};
 use super::world::Number;
@@ -30,29 +30,47 @@ impl Dataset {
     }
 }
 
-/// What the chunks before this one hold, from the first of the data set on.
+/// What the chunks before another one hold, from the first of the data set on.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Before {
+    /// How many there are.
+    pub(super) chunks: u64,
     /// Episodes.
     pub(super) episodes: u64,
     /// Actions in them.
     pub(super) actions: u64,
+    /// Of all files.
+    pub(super) bytes: u64,
 }
 
 impl Before {
-    /// As the last of them tells.
+    /// As a manifest tells.
     pub(super) fn of(chunks: &[Chunk]) -> Self {
         let told = |name: &str| {
             let held = chunks.last().and_then(|chunk| chunk.holds.get(name));
             held.and_then(|held| held.get(1)).and_then(Value::as_u64).unwrap_or(0)
         };
-        Before { episodes: told("episodes"), actions: told("actions") }
+        Before {
+            chunks: chunks.len() as u64,
+            episodes: told("episodes"),
+            actions: told("actions"),
+            bytes: chunks.iter().flat_map(|chunk| &chunk.files).map(|file| file.bytes).sum(),
+        }
     }
 
-    /// And what is in these as well.
-    pub(super) fn and<T, const O: usize>(self, episodes: &[Episode<T, O>]) -> Self {
+    /// And what a chunk of these episodes holds, in files of so many bytes.
+    pub(super) fn and<T: Number, const O: usize>(
+        self,
+        episodes: &[Episode<T, O>],
+        bytes: u64,
+    ) -> Self {
         let actions: u64 = episodes.iter().map(|episode| episode.len() as u64).sum();
-        Before { episodes: self.episodes + episodes.len() as u64, actions: self.actions + actions }
+        Before {
+            chunks: self.chunks + 1,
+            episodes: self.episodes + episodes.len() as u64,
+            actions: self.actions + actions,
+            bytes: self.bytes + bytes,
+        }
     }
 }
 
@@ -62,7 +80,7 @@ pub(super) fn files<T: Number, const O: usize>(
     first: u64,
     threads: usize,
     dataset: &Dataset,
-) -> Result<Files<'static>, TableError> {
+) -> Result<Vec<NamedFile<'static>>, TableError> {
     let each = on_threads(threads, episodes.len(), |i| {
         let (episode, id) = (&episodes[i], first + i as u64);
         let mut bytes = Vec::new();
@@ -78,7 +96,7 @@ pub(super) fn files<T: Number, const O: usize>(
         Ok([file("part-0.parquet", bytes), file("metadata.json", about.to_string().into_bytes())])
     });
     let each: Vec<_> = each.into_iter().collect::<Result<_, TableError>>()?;
-    Ok(Files(each.into_iter().flatten().collect()))
+    Ok(each.into_iter().flatten().collect())
 }
 
 /// A row for each action, and one more.
@@ -106,8 +124,8 @@ fn rows<'a, T: Number, const O: usize>(
     ])
 }
 
-/// What Minari asks of a data set of so many episodes, actions and bytes.
-pub(super) fn about(dataset: &Dataset, all: Before, bytes: u64) -> String {
+/// What Minari asks of a data set.
+pub(super) fn about(dataset: &Dataset, all: Before) -> String {
     let (system, task) = (dataset.system.name(), dataset.task.name());
     let about = json!({
         "dataset_id": format!("libration/{system}-{task}-v0"),
@@ -117,7 +135,7 @@ pub(super) fn about(dataset: &Dataset, all: Before, bytes: u64) -> String {
         "total_episodes": all.episodes,
         "total_steps": all.actions,
         // In MB, to a tenth.
-        "dataset_size": (bytes as f64 / 1e5).round() / 10.0,
+        "dataset_size": (all.bytes as f64 / 1e5).round() / 10.0,
         "observation_space": space(dataset, &bounds(&dataset.task)),
         "action_space": space(dataset, &[actions(&dataset.policy)]),
         "algorithm_name": dataset.policy.name(),

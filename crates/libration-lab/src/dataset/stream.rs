@@ -1,17 +1,18 @@
 //! A data set on its way to the disk.
 
 use std::path::Path;
-use std::sync::mpsc::{Receiver, channel, sync_channel};
-use std::thread;
+use std::sync::mpsc::{channel, sync_channel};
+use std::thread::{self, ScopedJoinHandle};
 
 use libration::ensemble::Execution;
 use libration::rl::{Environments, Plan, Rollout, World};
-use libration_data::{Folder, Manifest};
+use libration_data::{Folder, Manifest, Stored, store};
 use serde_json::{Map, Value, json};
 
 use super::actor::Actor;
 use super::chunk::{Done, Rows};
 use super::episodes::Episodes;
+use super::minari::Before;
 use super::world::{Group, Number, Visit};
 use super::{DataFormat, Dataset, DatasetError};
 
@@ -216,65 +217,81 @@ impl Visit for Stream<'_> {
                 return Err(DatasetError::Interrupted);
             }
         }
-        let (send, full) = sync_channel::<Done<T, O>>(1);
-        let (give_back, free) = channel();
+        let mut before = Before::of(&folder.manifest().chunks);
+        let path = folder.path().to_owned();
+        let write = |done: Done<T, O>, before: Before| {
+            stored(done, before, dataset, format, threads, &path)
+        };
+        let write = &write;
         thread::scope(|scope| {
-            let writer = scope.spawn(move || {
-                for mut done in full {
-                    let bytes = commit(&mut done, dataset, format, threads, folder)?;
+            // One chunk is waited for, two more may be written, and one is computed: the disk has no time to rest, and a chunk that
+            // is encoded no need to wait for it.
+            let (send, turns) = sync_channel::<Turn<'_, T, O>>(1);
+            let (give_back, free) = channel();
+            let teller = scope.spawn(move || {
+                for turn in turns {
+                    let turn = turn.join().unwrap_or(Err(DatasetError::Interrupted))?;
+                    let Written { done, after, holds, files } = turn;
+                    let bytes = files.iter().map(|file| file.bytes).sum();
+                    folder.tell(&done.name(), holds, files)?;
                     watch.done(done.rollout.plan().transitions() as u64, bytes);
                     // Whoever computes may have come to the end.
-                    let _ = give_back.send(done);
+                    let _ = give_back.send((done, after));
                 }
                 Ok(())
             });
-            let computed = compute(&mut course, from, used, &send, &free, watch);
+            let mut compute = || {
+                for _ in from..dataset.chunks() {
+                    if watch.stops() {
+                        return Err(DatasetError::Interrupted);
+                    }
+                    let done = course.next(used.take())?;
+                    if send.send(scope.spawn(move || write(done, before))).is_err() {
+                        break;
+                    }
+                    if format == DataFormat::Minari {
+                        // Episodes are numbered one chunk after the other.
+                        let Ok((done, after)) = free.recv() else { break };
+                        (used, before) = (Some(done), after);
+                    } else {
+                        used = free.try_recv().ok().map(|(done, _)| done);
+                    }
+                }
+                Ok(())
+            };
+            let computed = compute();
             drop(send);
-            let written = writer.join().unwrap_or(Err(DatasetError::Interrupted));
+            let written = teller.join().unwrap_or(Err(DatasetError::Interrupted));
             // What went wrong first is what the other heard of.
             written.and(computed)
         })
     }
 }
 
-/// Computes chunk after chunk, in two pieces of memory.
-fn compute<T: Number, E: World<T, O, 1>, const O: usize>(
-    course: &mut Course<'_, T, E, O>,
-    from: u64,
-    mut used: Option<Done<T, O>>,
-    send: &std::sync::mpsc::SyncSender<Done<T, O>>,
-    free: &Receiver<Done<T, O>>,
-    watch: &dyn Watch,
-) -> Result<(), DatasetError> {
-    for k in from..course.dataset.chunks() {
-        if watch.stops() {
-            return Err(DatasetError::Interrupted);
-        }
-        if used.is_none() && k >= from + 3 {
-            // One is written, one waits, and one is free soon.
-            used = free.recv().ok();
-        }
-        let done = course.next(used.take())?;
-        if send.send(done).is_err() {
-            break;
-        }
-        used = free.try_recv().ok();
-    }
-    Ok(())
+/// Somebody who writes a chunk.
+type Turn<'scope, T, const O: usize> =
+    ScopedJoinHandle<'scope, Result<Written<T, O>, DatasetError>>;
+
+/// A chunk whose files are on the disk.
+struct Written<T, const O: usize> {
+    done: Done<T, O>,
+    /// What is before the next one.
+    after: Before,
+    holds: Map<String, Value>,
+    files: Vec<Stored>,
 }
 
-/// Writes a chunk; gives how many bytes it has.
-fn commit<T: Number, const O: usize>(
-    done: &mut Done<T, O>,
+/// Writes the files of a chunk.
+fn stored<T: Number, const O: usize>(
+    mut done: Done<T, O>,
+    before: Before,
     dataset: &Dataset,
     format: DataFormat,
     threads: usize,
-    folder: &mut Folder,
-) -> Result<u64, DatasetError> {
-    let before = &folder.manifest().chunks;
-    let (name, holds) = (done.name(), done.holds(dataset, format, before));
+    folder: &Path,
+) -> Result<Written<T, O>, DatasetError> {
+    let holds = done.holds(dataset, format, before);
     let files = done.files(dataset, format, threads, before)?;
-    let list = files.list();
-    folder.commit(&name, holds, &list)?;
-    Ok(list.iter().flat_map(|file| &file.pieces).map(|piece| piece.len() as u64).sum())
+    let (after, files) = (files.after, store(folder, &files.list())?);
+    Ok(Written { done, after, holds, files })
 }

@@ -9,10 +9,12 @@
 mod batch;
 mod capacity;
 mod checkpoint;
+mod divide;
 mod draw;
 mod error;
 mod insert;
 mod memory;
+mod power;
 mod prioritised;
 mod sample;
 mod sequences;

@@ -5,6 +5,7 @@
 use bytemuck::Pod;
 
 use super::memory::Marks;
+use super::power::power;
 use super::store::NONE;
 use super::{Columns, Draw, Lookahead, Replay, ReplayError};
 use crate::Float;
@@ -48,7 +49,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         {
             *number = self.number(cell);
             let share = self.marks.live as f64 * (weights[cell] / total);
-            *importance = libm::pow(share, -correction);
+            *importance = power(share, -correction);
         }
         let largest = importance.iter().copied().fold(0.0, f64::max);
         for (to, importance) in batch.weight.iter_mut().zip(&importance) {
@@ -86,7 +87,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
                 return Err(ReplayError::Index { index, value: number, end });
             }
             let priority = priority.to_f64();
-            let weight = libm::pow(priority, exponent);
+            let weight = power(priority, exponent);
             if !(priority >= 0.0 && weight <= MOST_WEIGHT) {
                 let (name, index) = ("priority", Some(index));
                 let allowed = "at least 0, with a power of at most 1e280";
@@ -94,8 +95,8 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
                 return Err(error.into());
             }
             if self.contains(number) {
-                let n = self.capacity.environments as u64;
-                changes.push((self.cell(number / n, (number % n) as usize), weight));
+                let (step, n) = self.width.divide(number);
+                changes.push((self.cell(step, n as usize), weight));
                 largest = largest.max(weight);
             }
         }
@@ -115,8 +116,8 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
 
     /// The weight of the transition of this number, if it is there and there are priorities.
     pub fn weight(&self, number: u64) -> Option<f64> {
-        let n = self.capacity.environments as u64;
-        let cell = self.contains(number).then(|| self.cell(number / n, (number % n) as usize));
+        let (step, n) = self.width.divide(number);
+        let cell = self.contains(number).then(|| self.cell(step, n as usize));
         cell.and_then(|cell| self.weights().get(cell).copied())
     }
 
@@ -130,7 +131,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
     fn number(&self, cell: usize) -> u64 {
         let n = self.capacity.environments;
         let rows = self.capacity.rows() as u64;
-        let (row, l) = ((cell / n) as u64, (cell % n) as u64);
+        let (row, l) = self.width.divide(cell as u64);
         let last = self.marks.head - 1;
         // The compiler divides once for a whole batch.
         let newest = last % rows;

@@ -140,15 +140,73 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         execution.each(parts, |part| self.gather(lookahead, part));
     }
 
-    /// Fills what follows from the numbers.
+    /// Fills what follows from the numbers: field by field, since a processor waits for more lines of memory at once where
+    /// little is done with each.
     fn gather(&self, lookahead: Lookahead, batch: Columns<'_, T, O, D>) {
-        let n = self.capacity.environments as u64;
+        let (mut steps, mut places) = ([0; BLOCK], [0; BLOCK]);
+        let mut rest = batch;
+        while !rest.number.is_empty() {
+            let mut block = rest.split_off(rest.number.len().min(BLOCK));
+            for (i, &number) in block.number.iter().enumerate() {
+                let (step, l) = self.width.divide(number);
+                (steps[i], places[i]) = (step, l as usize);
+            }
+            let (steps, places) = (&steps[..block.number.len()], &places[..block.number.len()]);
+            if lookahead.steps == 1 {
+                self.gather_next(T::from_f64(lookahead.discount), steps, places, &mut block);
+            } else {
+                self.gather_far(lookahead, steps, places, &mut block);
+            }
+        }
+    }
+
+    /// What a step leads to.
+    fn gather_next(
+        &self,
+        gamma: T,
+        steps: &[u64],
+        places: &[usize],
+        batch: &mut Columns<'_, T, O, D>,
+    ) {
+        let (rows, width) = (self.capacity.rows(), self.capacity.environments);
+        let (mut cells, mut marks) = ([0; BLOCK], [0; BLOCK]);
+        let len = steps.len();
+        for (cell, (&step, &l)) in cells.iter_mut().zip(steps.iter().zip(places)) {
+            *cell = self.row(step) * width + l;
+        }
+        let cells = &mut cells[..len];
+        take(&mut marks[..len], self.flags(), cells);
+        take(batch.observation, self.observation(), cells);
+        take(batch.action, self.action(), cells);
+        take(batch.reward, self.reward(), cells);
+        let last = (rows - 1) * width;
+        cells
+            .iter_mut()
+            .for_each(|cell| *cell = if *cell < last { *cell + width } else { *cell - last });
+        take(batch.next_observation, self.observation(), cells);
+        for (i, &mark) in marks[..len].iter().enumerate() {
+            if let Some(apart) = self.end_of(steps[i], places[i], mark) {
+                batch.next_observation[i] = apart;
+            }
+            batch.terminated[i] = mark & OVER;
+            batch.truncated[i] = (mark & CUT) / CUT;
+            batch.discount[i] = if mark & OVER != 0 { T::zero() } else { gamma };
+        }
+    }
+
+    /// What several steps lead to.
+    fn gather_far(
+        &self,
+        lookahead: Lookahead,
+        steps: &[u64],
+        places: &[usize],
+        batch: &mut Columns<'_, T, O, D>,
+    ) {
         let (rows, width) = (self.capacity.rows(), self.capacity.environments);
         let (seen, done) = (self.observation(), self.action());
         let (paid, flags) = (self.reward(), self.flags());
         let gamma = T::from_f64(lookahead.discount);
-        for (i, &number) in batch.number.iter().enumerate() {
-            let (step, l) = (number / n, (number % n) as usize);
+        for (i, (&step, &l)) in steps.iter().zip(places).enumerate() {
             let mut row = self.row(step);
             let cell = row * width + l;
             (batch.observation[i], batch.action[i]) = (seen[cell], done[cell]);
@@ -177,4 +235,13 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
             batch.discount[i] = if mark & OVER != 0 { T::zero() } else { factor };
         }
     }
+}
+
+/// Transitions that are gathered together.
+const BLOCK: usize = 256;
+
+/// Of all values those in some cells.
+#[inline(always)]
+fn take<X: Copy>(to: &mut [X], from: &[X], cells: &[usize]) {
+    to.iter_mut().zip(cells).for_each(|(to, &cell)| *to = from[cell]);
 }

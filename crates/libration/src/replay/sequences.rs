@@ -125,8 +125,8 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
     }
 
     fn fill(&self, to: Stretch<'_, T, O, D>) {
-        let n = self.capacity.environments as u64;
-        let (step, l) = (to.number / n, (to.number % n) as usize);
+        let (step, l) = self.width.divide(to.number);
+        let l = l as usize;
         let mut goes_on = true;
         for t in 0..to.mask.len() {
             let cell = self.cell(step + t as u64, l);

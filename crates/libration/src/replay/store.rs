@@ -3,6 +3,7 @@
 use bytemuck::Pod;
 use memmap2::MmapMut;
 
+use super::divide::Divisor;
 use super::memory::{Marks, Memory};
 use super::sums::Sums;
 use super::{Capacity, ReplayError};
@@ -57,6 +58,9 @@ pub(super) const NONE: u8 = 8;
 #[derive(Debug)]
 pub struct Replay<T, const O: usize, const D: usize> {
     pub(super) capacity: Capacity,
+    /// Environments, and rows.
+    pub(super) width: Divisor,
+    height: Divisor,
     pub(super) memory: Memory,
     pub(super) marks: Marks,
     /// Where there are priorities.
@@ -84,8 +88,20 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
     fn empty(capacity: Capacity, memory: Memory) -> Self {
         let cells = capacity.rows() * capacity.environments;
         let sums = capacity.priorities.then(|| Sums::zero(cells));
-        let marks = Marks::NONE;
-        Replay { capacity, memory, marks, sums, number: core::marker::PhantomData }
+        Replay { sums, ..Self::of(capacity, memory, Marks::NONE) }
+    }
+
+    /// One without sums.
+    fn of(capacity: Capacity, memory: Memory, marks: Marks) -> Self {
+        Replay {
+            capacity,
+            width: Divisor::new(capacity.environments),
+            height: Divisor::new(capacity.rows()),
+            memory,
+            marks,
+            sums: None,
+            number: core::marker::PhantomData,
+        }
     }
 
     /// What an earlier one left in its memory, as that of a file or a copy of its [`bytes`](Self::bytes): all that was inserted
@@ -95,8 +111,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
     /// [`ReplayError::Other`] if that was none, or one of other numbers; [`ReplayError::Damaged`] if it contradicts itself.
     pub fn open(map: MmapMut) -> Result<Self, ReplayError> {
         let (memory, capacity, marks) = Memory::open::<T>(map, [O, D])?;
-        let mut replay =
-            Replay { capacity, memory, marks, sums: None, number: core::marker::PhantomData };
+        let mut replay = Self::of(capacity, memory, marks);
         replay.verify()?;
         if capacity.priorities {
             replay.weigh_anew();
@@ -132,10 +147,9 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
 
     /// Whether the transition of this number is there.
     pub fn contains(&self, number: u64) -> bool {
-        let n = self.capacity.environments as u64;
-        let step = number / n;
+        let (step, n) = self.width.divide(number);
         (self.marks.tail..self.marks.head).contains(&step)
-            && self.flags()[self.cell(step, (number % n) as usize)] & NONE == 0
+            && self.flags()[self.cell(step, n as usize)] & NONE == 0
     }
 
     /// All of it, as it can be kept and [opened](Self::open) again.
@@ -157,7 +171,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
     /// The row of a step.
     #[inline(always)]
     pub(super) fn row(&self, step: u64) -> usize {
-        (step % self.capacity.rows() as u64) as usize
+        self.height.divide(step).1 as usize
     }
 
     pub(super) fn observation(&self) -> &[[T; O]] {

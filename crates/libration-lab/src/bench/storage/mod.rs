@@ -63,7 +63,7 @@ impl Stored {
         match self {
             Stored::Insert => Some("a copy of as many bytes in memory"),
             Stored::Npy => Some("a write of as many bytes to the disk"),
-            Stored::Checkpoint => Some("a write of its bytes to the disk, once"),
+            Stored::Checkpoint => Some("a write of as many bytes to the disk"),
             Stored::Sample | Stored::Prioritised | Stored::Parquet => None,
         }
     }
