@@ -92,7 +92,7 @@ limit = 40
 environments = 12
 steps = 50
 [task.regulate]
-bound = 1.2
+bound = 0.9
 [start]
 q = [-1.0, 1.0]
 v = [-1.0, 1.0]

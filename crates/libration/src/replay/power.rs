@@ -9,6 +9,10 @@ const MOST: f64 = 100.0;
 /// quarter of the time of the library's, whose last digits no weight needs.
 #[inline(always)]
 pub(super) fn power(base: f64, exponent: f64) -> f64 {
+    // What is exact stays so.
+    if exponent == 1.0 || exponent == 2.0 {
+        return if exponent == 1.0 { base } else { base * base };
+    }
     let twos = exponent * log2(base);
     // Neither zero nor what is subnormal, infinite or not a number.
     if (f64::MIN_POSITIVE..f64::INFINITY).contains(&base) && twos.abs() <= MOST {
@@ -91,5 +95,6 @@ mod tests {
             assert_eq!(power(1.0, exponent), 1.0);
         }
         assert_eq!([power(4.0, 0.5), power(2.0, -3.0)], [2.0, 0.125]);
+        assert_eq!([power(5.3, 1.0), power(5.0, 2.0)], [5.3, 25.0]);
     }
 }

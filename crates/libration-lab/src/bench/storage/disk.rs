@@ -41,7 +41,9 @@ pub(super) fn measure(lab: &Lab<'_>, folder: &Path) -> Result<Vec<StorageRate>, 
     let folder = TempDir::new_in(folder).map_err(DataError::io("write", folder))?;
     let execution = lab.alone()?.threads(0)?;
     let threads = execution.thread_count();
-    let (rounds, transitions) = lab.effort.choose((3, 1 << 22), (5, 1 << 26), (11, 1 << 26));
+    // A build that is not for speed is not to wait for compression.
+    let few = if cfg!(debug_assertions) { 1 << 18 } else { 1 << 22 };
+    let (rounds, transitions) = lab.effort.choose((3, few), (5, 1 << 26), (11, 1 << 26));
     let dataset = dataset::parse(SETTINGS, "settings").unwrap_or_default().transitions(transitions);
     let bench = Disk { lab, folder: folder.path(), execution, dataset };
     let mut seconds = [const { Vec::new() }; 5];

@@ -1,7 +1,5 @@
 //! What the observers of an ensemble tell is what lone trajectories tell, wherever it runs.
 
-#![allow(clippy::unwrap_used)]
-
 use libration::ensemble::{
     All, Copies, Drift, Each, Execution, InstructionSet, MeanSquareError, Moments,
 };

@@ -1,9 +1,7 @@
 //! Libration gives the bits of a plain NumPy script, for every integrator in `f64` and `f32`.
 //!
-//! The script is `numpy/textbook.py`. The Python to run it is the one that the environment
+//! The script is `../numpy/textbook.py`. The Python to run it is the one that the environment
 //! variable `LIBRATION_PYTHON` names, else `target/python/bin/python` of this workspace.
-
-#![allow(clippy::unwrap_used)]
 
 use std::collections::HashMap;
 use std::env;

@@ -1,7 +1,5 @@
 //! The loop: its clock, its count, its observers, and what it does where floats end.
 
-#![allow(clippy::unwrap_used)]
-
 use libration::integrator::{ExplicitEuler, Leapfrog, Rk4, VelocityVerlet};
 use libration::simulation::{EnergyDrift, Every, Sample, SimulationError, Simulator};
 use libration::system::Oscillator;

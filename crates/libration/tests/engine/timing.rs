@@ -1,7 +1,5 @@
 //! What timing does to a loop, beside values computed elsewhere with 30 digits.
 
-#![allow(clippy::unwrap_used)]
-
 use libration::State;
 use libration::analysis::{Feedback, Jitter, Latency, Plant, RandomLatency};
 use libration::integrator::{ExplicitEuler, Rk4, SymplecticEuler, VelocityVerlet};
@@ -12,7 +10,7 @@ use serde_json::Value;
 const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
 
 fn reference(table: &str) -> Vec<(Vec<String>, Value)> {
-    let all: Value = serde_json::from_str(include_str!("reference/timing.json")).unwrap();
+    let all: Value = serde_json::from_str(include_str!("../reference/timing.json")).unwrap();
     let table = all[table].as_object().unwrap();
     let key = |key: &str| key.split('|').map(str::to_owned).collect();
     table.iter().map(|(name, value)| (key(name), value.clone())).collect()

@@ -1,9 +1,7 @@
 //! What is derived from the shipped step, against a 60-digit oracle.
 //!
-//! `reference/oracle.json` was computed with mpmath from textbook matrices; its time steps are the
+//! `../reference/oracle.json` was computed with mpmath from textbook matrices; its time steps are the
 //! decimals written, ours the nearest doubles, which differ by at most a part in 10¹⁶.
-
-#![allow(clippy::unwrap_used)]
 
 use libration::analysis::{Linearisation, Spectrum, SymbolicStep, forecast_drift};
 use libration::number::Wide;
@@ -16,7 +14,7 @@ use serde_json::Value;
 const DIGITS: f64 = 1e-12;
 
 fn oracle() -> Value {
-    serde_json::from_str(include_str!("reference/oracle.json")).unwrap()
+    serde_json::from_str(include_str!("../reference/oracle.json")).unwrap()
 }
 
 fn number(value: &Value) -> f64 {

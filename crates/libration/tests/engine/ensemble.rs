@@ -1,7 +1,5 @@
 //! Every lane of an ensemble is the lone scalar trajectory, bit for bit.
 
-#![allow(clippy::unwrap_used)]
-
 use libration::ensemble::{
     All, BatchFloat, Each, Ensemble, EnsembleError, Execution, InstructionSet, Lanes, Observer,
 };

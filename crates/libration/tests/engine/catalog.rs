@@ -1,7 +1,5 @@
 //! The systems chosen at run time.
 
-#![allow(clippy::unwrap_used)]
-
 use libration::catalog::{self, Allowed, ENTRIES};
 use libration::{AnySystem, CatalogError, Model, State, with_system};
 

@@ -1,7 +1,5 @@
 //! What timing does to loops on the edge, with huge gains, and over long times.
 
-#![allow(clippy::unwrap_used)]
-
 use libration::State;
 use libration::analysis::{Feedback, Jitter, Latency, Plant};
 use libration::integrator::{SymplecticEuler, VelocityVerlet};
