@@ -1,4 +1,4 @@
-//! Ctrl-C: the first asks the run to stop, the second stops it at once.
+//! Signals. Ctrl-C: the first asks the run to stop, the second stops it at once.
 
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,4 +19,15 @@ pub(crate) fn listen() -> Result<&'static AtomicBool, Failure> {
     })
     .map_err(|error| Failure::run(format!("cannot listen for Ctrl-C: {error}")))?;
     Ok(&STOP)
+}
+
+/// A file that may not grow is an error of writing to it from now on, and not the end of the process.
+pub(crate) fn outlive_full_files() {
+    #[cfg(unix)]
+    {
+        use std::sync::Arc;
+        // Where the handler is refused, the system does what it always did.
+        let flag = Arc::new(AtomicBool::new(false));
+        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, flag);
+    }
 }

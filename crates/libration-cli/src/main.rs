@@ -11,6 +11,7 @@ mod terminal;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    interrupt::outlive_full_files();
     let outcome = match args::parse() {
         Ok(args) => commands::run(args),
         Err(failure) => Err(failure),

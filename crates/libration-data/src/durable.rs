@@ -7,13 +7,13 @@ use std::thread;
 
 use crate::{DataError, checksum, direct};
 
-/// What names end with until a file is whole.
-pub(crate) const PART: &str = ".part";
+/// What names end with until a file is whole: those of nobody else.
+pub(crate) const PART: &str = ".libration-part";
 
 /// Bytes of a file that are summed sooner than another thread begins.
 const SHORT: u64 = 1 << 18;
 
-/// Makes a file under another name, which it loses when all of it is on the disk.
+/// Makes a file under another name, which it loses when all of it is on the disk; `fill` waits for that.
 ///
 /// # Errors
 /// If the system refuses; what stood there before stands there still.
@@ -60,6 +60,11 @@ pub fn write_file(path: &Path, pieces: &[&[u8]]) -> Result<(String, u64), DataEr
 /// If the system refuses.
 pub fn write_past(path: &Path, pieces: &[&[u8]]) -> Result<(), DataError> {
     direct::create(path, pieces).map_err(DataError::io("write", path))
+}
+
+/// A folder as it can be opened: that of a bare name is the one where the process is.
+pub(crate) fn named(folder: &Path) -> &Path {
+    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }
 
 /// The names in a folder are on the disk.

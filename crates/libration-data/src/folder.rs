@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value};
 
-use crate::durable::{remove_parts, sync_folder};
+use crate::durable::{named, remove_parts, sync_folder};
 use crate::manifest::NAME;
 use crate::{Chunk, DataError, Manifest, Stored, on_threads, write_file};
 
@@ -81,7 +81,9 @@ impl Folder {
             let mut folder = Folder { path, manifest, log };
             folder.cut(0)?;
             folder.append(&Value::Object(settings.clone()))?;
+            // The folder may be new as well.
             sync_folder(&folder.path)?;
+            folder.path.parent().map_or(Ok(()), |parent| sync_folder(named(parent)))?;
             return Ok(folder);
         };
         if !resume {
@@ -209,17 +211,22 @@ pub fn same(
     found: &Map<String, Value>,
     wanted: &Map<String, Value>,
 ) -> Result<(), DataError> {
-    let other = |name: &str, found: Option<&Value>, wanted: Option<&Value>| {
-        let text = |value: Option<&Value>| value.map_or("not told".to_owned(), Value::to_string);
-        let (name, found, wanted) = (name.to_owned(), text(found), text(wanted));
-        Err(DataError::Other { folder: folder.to_owned(), name, found, wanted })
-    };
-    for name in wanted.keys().chain(found.keys()) {
-        match (found.get(name), wanted.get(name)) {
-            (Some(Value::Object(a)), Some(Value::Object(b))) => same(folder, a, b)?,
-            (a, b) if a == b => {}
-            (a, b) => return other(name, a, b),
+    let Some((name, found, wanted)) = other("", found, wanted) else { return Ok(()) };
+    Err(DataError::Other { folder: folder.to_owned(), name, found, wanted })
+}
+
+/// The first key that is not the same, with all keys above it, and its values.
+fn other(
+    above: &str,
+    found: &Map<String, Value>,
+    wanted: &Map<String, Value>,
+) -> Option<(String, String, String)> {
+    let text = |value: Option<&Value>| value.map_or("not told".to_owned(), Value::to_string);
+    wanted.keys().chain(found.keys()).find_map(|key| {
+        let name = if above.is_empty() { key.clone() } else { format!("{above}.{key}") };
+        match (found.get(key), wanted.get(key)) {
+            (Some(Value::Object(a)), Some(Value::Object(b))) => other(&name, a, b),
+            (a, b) => (a != b).then(|| (name, text(a), text(b))),
         }
-    }
-    Ok(())
+    })
 }

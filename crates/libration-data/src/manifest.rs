@@ -1,5 +1,6 @@
 //! What a data set consists of.
 
+use std::collections::HashSet;
 use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -57,16 +58,20 @@ impl Manifest {
         let settings = serde_json::from_slice(first)
             .map_err(|error| wrong(0, format!("tells no settings: {error}")))?;
         let mut manifest = Manifest { settings, chunks: Vec::new() };
-        let mut read = first.len() + 1;
+        let (mut read, mut names) = (first.len() + 1, HashSet::new());
         for (i, line) in lines.enumerate() {
             let chunk: Chunk = serde_json::from_slice(line)
                 .map_err(|error| wrong(i + 1, format!("is no chunk: {error}")))?;
             let plain = |path: &Path| path.components().all(|c| matches!(c, Component::Normal(_)));
+            let mut paths = HashSet::new();
+            if let Some(file) = chunk.files.iter().find(|file| !paths.insert(&file.path)) {
+                return Err(wrong(i + 1, format!("names `{}` twice", file.path.display())));
+            }
             if let Some(file) = chunk.files.iter().find(|file| !plain(&file.path)) {
                 let what = format!("names `{}`, which is not in the folder", file.path.display());
                 return Err(wrong(i + 1, what));
             }
-            if manifest.chunks.iter().any(|before| before.chunk == chunk.chunk) {
+            if !names.insert(chunk.chunk.clone()) {
                 return Err(wrong(i + 1, format!("tells of chunk {} again", chunk.chunk)));
             }
             manifest.chunks.push(chunk);
@@ -92,6 +97,7 @@ impl Manifest {
             Err(error) => return Err(DataError::io("read", &path)(error)),
         };
         let (manifest, _) = Manifest::parse(&text, &path)?;
-        manifest.ok_or_else(|| DataError::Missing(folder.to_owned()))
+        let what = || "has no end: nothing was ever written".to_owned();
+        manifest.ok_or_else(|| DataError::Manifest { path, line: 1, what: what() })
     }
 }

@@ -1,7 +1,7 @@
 //! Replay buffers in files.
 
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io;
+use std::io::{self, Write};
 use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
 
@@ -11,9 +11,11 @@ use libration::replay::{Capacity, Replay, ReplayError};
 use memmap2::MmapMut;
 
 use crate::DataError;
+use crate::durable::make;
 
 /// A replay buffer whose memory is a file, which this process alone uses: at whatever moment it dies, what was inserted before is
-/// found there again. Against a loss of power so is what was [flushed](Self::flush).
+/// found there again. A loss of power is another matter: the system writes what was changed in no order, so that only a buffer that
+/// was [flushed](Self::flush) after its last change is sure to be found again.
 #[derive(Debug)]
 pub struct ReplayFile<T, const O: usize, const D: usize> {
     replay: Replay<T, O, D>,
@@ -23,18 +25,26 @@ pub struct ReplayFile<T, const O: usize, const D: usize> {
 }
 
 impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
-    /// An empty one in a new file.
+    /// An empty one in a new file, all of whose room on the disk is taken at once: where memory is a file, a full disk ends the process.
     ///
     /// # Errors
     /// [`DataError::Io`] if the file is there already, or there is no room for it; [`DataError::Replay`].
     pub fn create(path: &Path, capacity: Capacity) -> Result<Self, DataError> {
         let bytes = capacity.bytes(O, D, size_of::<T>()).map_err(refused(path))?;
-        let file = OpenOptions::new().read(true).write(true).create_new(true).open(path);
-        let file = file.map_err(DataError::io("create", path))?;
-        lock(&file, path)?;
-        file.set_len(bytes as u64).map_err(DataError::io("write", path))?;
-        let map = map(&file).map_err(DataError::io("map", path))?;
-        let replay = Replay::create(map, capacity).map_err(refused(path))?;
+        if path.exists() {
+            let error = io::Error::from(io::ErrorKind::AlreadyExists);
+            return Err(DataError::io("create", path)(error));
+        }
+        let (file, replay) = make(path, |part| {
+            let file =
+                OpenOptions::new().read(true).write(true).create(true).truncate(true).open(part)?;
+            file.try_lock()?;
+            fill(&file, bytes)?;
+            let map = map(&file)?;
+            let replay = Replay::create(map, capacity).map_err(io::Error::other)?;
+            replay.map().flush()?;
+            Ok((file, replay))
+        })?;
         Ok(ReplayFile { replay, path: path.to_owned(), _file: file })
     }
 
@@ -85,6 +95,18 @@ fn lock(file: &File, path: &Path) -> Result<(), DataError> {
         Err(TryLockError::WouldBlock) => Err(DataError::Locked(path.to_owned())),
         Err(TryLockError::Error(error)) => Err(DataError::io("lock", path)(error)),
     }
+}
+
+/// So many zeros, on the disk.
+fn fill(mut file: &File, bytes: usize) -> io::Result<()> {
+    let zeros = [0; 1 << 16];
+    let mut left = bytes;
+    while left > 0 {
+        let count = left.min(zeros.len());
+        file.write_all(&zeros[..count])?;
+        left -= count;
+    }
+    file.sync_all()
 }
 
 /// The file as memory.

@@ -11,7 +11,7 @@ use serde_json::{Map, Value};
 
 use crate::DataError;
 use crate::checksum::{Summed, checksum_at_once};
-use crate::durable::make;
+use crate::durable::{make, named, sync_folder};
 
 /// The first bytes of such a file.
 const MAGIC: &[u8; 8] = b"LIBRTNCP";
@@ -73,7 +73,8 @@ pub fn keep(path: &Path, of: &impl Checkpoint, note: &Value) -> Result<(), DataE
         let mut file = file.into_inner();
         file.write_all(sum.as_bytes())?;
         file.sync_data()
-    })
+    })?;
+    path.parent().map_or(Ok(()), |folder| sync_folder(named(folder)))
 }
 
 /// Takes up a state from a file; gives the note that was kept with it.

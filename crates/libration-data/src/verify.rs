@@ -1,15 +1,17 @@
 //! Whether a data set is what its manifest says.
 
-use std::fs::File;
+use std::collections::HashSet;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 use crate::checksum::checksum_of;
-use crate::{Manifest, Stored};
+use crate::manifest::NAME;
+use crate::{DataError, Manifest, Stored};
 
 /// A file that is not what the manifest says.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Flaw {
-    /// Of which chunk.
+    /// Of which chunk; empty where it is of none.
     pub chunk: String,
     /// Which file, seen from the folder.
     pub path: PathBuf,
@@ -32,6 +34,31 @@ pub fn verify(folder: &Path, manifest: &Manifest, mut seen: impl FnMut(u64) -> b
         }
     }
     flaws
+}
+
+/// Files of a folder, seen from there, that its manifest does not name.
+///
+/// # Errors
+/// If a folder cannot be read.
+pub fn unlisted(folder: &Path, manifest: &Manifest) -> Result<Vec<PathBuf>, DataError> {
+    let files = manifest.chunks.iter().flat_map(|chunk| &chunk.files);
+    let mut listed: HashSet<&Path> = files.map(|file| &*file.path).collect();
+    listed.insert(Path::new(NAME));
+    let (mut found, mut folders) = (Vec::new(), vec![PathBuf::new()]);
+    while let Some(inner) = folders.pop() {
+        let path = folder.join(&inner);
+        for entry in fs::read_dir(&path).map_err(DataError::io("read", &path))? {
+            let entry = entry.map_err(DataError::io("read", &path))?;
+            let name = inner.join(entry.file_name());
+            if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+                folders.push(name);
+            } else if !listed.contains(&*name) {
+                found.push(name);
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
 }
 
 fn sound(folder: &Path, file: &Stored) -> Result<(), String> {

@@ -26,7 +26,9 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
         None => Dataset::default(),
     };
     let dataset = match args.transitions {
-        Some(count) => dataset.transitions(count),
+        Some(count) => dataset.transitions(count).map_err(|error| {
+            Failure::usage(format!("{count} transitions (--transitions): {error}"))
+        })?,
         None => dataset,
     };
     let job = Job {
@@ -73,7 +75,11 @@ pub(crate) fn verify(args: &VerifyArgs, quiet: bool) -> Result<(), Failure> {
     })?;
     for flaw in &flaws {
         let path = args.folder.join(&flaw.path);
-        terminal::error(&format!("chunk {}: {} {}", flaw.chunk, path.display(), flaw.what));
+        let whose = match &*flaw.chunk {
+            "" => String::new(),
+            chunk => format!("chunk {chunk}: "),
+        };
+        terminal::error(&format!("{whose}{} {}", path.display(), flaw.what));
     }
     if !flaws.is_empty() {
         return Err(Failure::Disagreement);
@@ -125,6 +131,8 @@ struct Watcher {
     bar: Option<ProgressBar>,
     transitions: AtomicU64,
     bytes: AtomicU64,
+    /// Of those what was there before.
+    before: AtomicU64,
     began: Instant,
     stop: &'static AtomicBool,
 }
@@ -145,7 +153,8 @@ impl Watcher {
             bar
         });
         let zero = || AtomicU64::new(0);
-        Watcher { bar, transitions: zero(), bytes: zero(), began: Instant::now(), stop }
+        let (transitions, bytes, before) = (zero(), zero(), zero());
+        Watcher { bar, transitions, bytes, before, began: Instant::now(), stop }
     }
 
     fn told(&self) -> (u64, u64) {
@@ -158,13 +167,25 @@ impl Watcher {
 }
 
 impl Watch for Watcher {
+    fn there(&self, transitions: u64, bytes: u64) {
+        self.transitions.fetch_add(transitions, Ordering::Relaxed);
+        self.bytes.fetch_add(bytes, Ordering::Relaxed);
+        self.before.fetch_add(bytes, Ordering::Relaxed);
+        if let Some(bar) = &self.bar {
+            bar.inc(transitions);
+            // Neither rate nor time left follow from what was there.
+            bar.reset_eta();
+        }
+    }
+
     fn done(&self, transitions: u64, bytes: u64) {
         self.transitions.fetch_add(transitions, Ordering::Relaxed);
         self.bytes.fetch_add(bytes, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
             bar.inc(transitions);
             let bytes = self.told().1 as f64 / 1e9;
-            let rate = bytes / self.began.elapsed().as_secs_f64().max(1e-3);
+            let before = self.before.load(Ordering::Relaxed) as f64 / 1e9;
+            let rate = (bytes - before) / self.began.elapsed().as_secs_f64().max(1e-3);
             bar.set_message(format!("{bytes:.2} GB, {rate:.2} GB/s"));
         }
     }

@@ -20,12 +20,25 @@ q = [-1.0, 1.0]
 [policy.random]
 ";
 
+/// The same with fewer episodes, each of which is two files.
+const EPISODES: &str = "\
+environments = 60
+steps = 400
+limit = 90
+[chunk]
+environments = 20
+steps = 50
+[start]
+q = [-1.0, 1.0]
+[policy.random]
+";
+
 #[test]
 fn a_data_set_whose_writer_is_killed_ends_as_one_that_was_left_in_peace_byte_for_byte() {
     let kills = std::env::var("LIBRATION_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(3);
     let program = assert_cmd::cargo::cargo_bin("libration");
-    for format in ["npy", "parquet"] {
-        let dir = settings(SETTINGS);
+    for (format, settings_of) in [("npy", SETTINGS), ("parquet", SETTINGS), ("minari", EPISODES)] {
+        let dir = settings(settings_of);
         let words =
             |out: &str| format!("--quiet rollout --config set.toml --out {out} --format {format}");
         let began = Instant::now();
@@ -54,7 +67,10 @@ fn a_data_set_whose_writer_is_killed_ends_as_one_that_was_left_in_peace_byte_for
             // What the manifest tells is there, whatever else is.
             let manifest = std::fs::read_to_string(dir.path().join("part/manifest.jsonl"));
             if manifest.is_ok_and(|text| text.contains('\n')) {
-                libration("--quiet verify part").current_dir(dir.path()).assert().success();
+                let verified = libration("--quiet verify part").current_dir(dir.path()).assert();
+                let said = String::from_utf8_lossy(&verified.get_output().stderr).into_owned();
+                let unfinished = said.lines().all(|line| line.contains("is unfinished"));
+                assert!(unfinished, "{said}");
             }
         }
         libration(&(words("part") + " --resume")).current_dir(dir.path()).assert().success();

@@ -13,3 +13,4 @@ mod readers;
 mod rollout;
 mod simulate;
 mod timing;
+mod verify;

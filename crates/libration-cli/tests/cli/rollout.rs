@@ -184,7 +184,7 @@ fn a_run_that_is_stopped_by_a_full_disk_says_so_and_goes_on_to_the_same_bytes() 
         let blocks = (largest / 512).max(1);
         let program = assert_cmd::cargo::cargo_bin("libration");
         let script = format!(
-            "trap '' XFSZ; ulimit -f {blocks}; exec {} rollout --config set.toml --out part {flags}",
+            "ulimit -f {blocks}; exec {} rollout --config set.toml --out part {flags}",
             program.display()
         );
         let mut limited = Command::new("bash");
@@ -195,38 +195,6 @@ fn a_run_that_is_stopped_by_a_full_disk_says_so_and_goes_on_to_the_same_bytes() 
         write(&dir, "part", &format!("{flags} --resume")).success();
         assert!(contents(&dir.path().join("whole")) == contents(&dir.path().join("part")));
     }
-}
-
-#[test]
-fn a_flipped_bit_and_a_manifest_that_lies_are_found() {
-    let dir = settings(SETTINGS);
-    write(&dir, "set", "--format npy").success();
-    let verify = |more: &str| {
-        let words = format!("verify set {more}");
-        libration(&words).current_dir(dir.path()).assert()
-    };
-    verify("").success();
-    let path = dir.path().join("set/reward/000003-00000002.npy");
-    let mut bytes = fs::read(&path).unwrap();
-    let good = bytes.clone();
-    bytes[5000] ^= 4;
-    fs::write(&path, &bytes).unwrap();
-    let said = contains("chunk 000003-00000002: set/reward/000003-00000002.npy has the checksum");
-    verify("").code(1).stderr(said);
-    // The manifest is made to agree with the wrong bytes: only who computes it again finds out.
-    let manifest = dir.path().join("set/manifest.jsonl");
-    let text = fs::read_to_string(&manifest).unwrap();
-    let sum = |bytes: &[u8]| libration_data::checksum([bytes]);
-    fs::write(&manifest, text.replace(&sum(&good), &sum(&bytes))).unwrap();
-    verify("").success();
-    let lie = contains("holds other numbers than the settings lead to");
-    verify("--replay").code(1).stderr(lie);
-    fs::write(&manifest, text.replace("\"version\":\"0", "\"version\":\"7")).unwrap();
-    verify("--replay").code(2).stderr(contains("was written by version"));
-    fs::write(&manifest, text.replace("\"omega2\":9.81", "\"omega2\":9.8")).unwrap();
-    verify("--replay").code(1).stderr(contains("holds other numbers"));
-    let resumed = write(&dir, "set", "--format npy --resume").code(2);
-    resumed.stderr(contains("its omega2 is 9.8; it must be 9.81"));
 }
 
 #[test]
@@ -267,6 +235,13 @@ fn what_cannot_be_is_refused_before_a_folder_is_made() {
     let found = refused("", "--shard 2/2");
     assert!(found.contains("has 1 groups of environments to divide"), "{found}");
     assert!(refused("", "--transitions 0").contains("from 1 to 1e15"));
+    let found = refused("environments = 1", "--transitions 1e15");
+    assert!(found.contains("would take 1000000000000000 steps"), "{found}");
+    let found = refused(
+        "environments = 1000000\n[chunk]\nenvironments = 1000000\nsteps = 1000000\n",
+        "--transitions 1e12",
+    );
+    assert!(found.contains("GB needed") || found.contains("bytes"), "{found}");
     assert!(refused("", "--format csv").contains("parquet"));
     fs::write(dir.path().join("set.toml"), b"\xff\xfe").unwrap();
     write(&dir, "out", "").code(2).stderr(contains("cannot read"));

@@ -68,7 +68,7 @@ fn a_manifest_cut_anywhere_and_parts_of_files_lead_to_the_same_bytes_in_the_end(
         let dir = filled(5);
         let path = dir.path().join("set");
         fs::write(path.join("manifest.jsonl"), &text[..len]).unwrap();
-        fs::write(path.join("one/9.bin.part"), b"half of it").unwrap();
+        fs::write(path.join("one/9.bin.libration-part"), b"half of it").unwrap();
         let mut folder = Folder::open(&path, &settings(), true).unwrap();
         let lines = text[..len].iter().filter(|&&byte| byte == b'\n').count();
         assert_eq!(folder.manifest().chunks.len(), lines.saturating_sub(1));
@@ -79,7 +79,7 @@ fn a_manifest_cut_anywhere_and_parts_of_files_lead_to_the_same_bytes_in_the_end(
         let found = contents(&path);
         // Where not even the settings were told, nobody looks for parts.
         let found: Vec<_> =
-            found.into_iter().filter(|(name, _)| !name.ends_with(".part")).collect();
+            found.into_iter().filter(|(name, _)| !name.ends_with("-part")).collect();
         assert!(found == wanted, "cut at {len}");
         let manifest = Manifest::read(&path).unwrap();
         assert_eq!(verify(&path, &manifest, |_| true), []);

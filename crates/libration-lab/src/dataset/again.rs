@@ -6,7 +6,7 @@ use std::path::Path;
 
 use libration::ensemble::Execution;
 use libration::rl::{Environments, World};
-use libration_data::{Chunk, Flaw, Manifest, checksum, verify};
+use libration_data::{Chunk, Flaw, Manifest, checksum, unlisted, verify};
 use serde_json::Value;
 
 use super::actor::Actor;
@@ -40,10 +40,46 @@ pub fn check(
     if watch.stops() {
         return Err(DatasetError::Interrupted);
     }
-    if let Some(execution) = again {
-        flaws.extend(computed(folder, &manifest, execution, watch)?);
+    match (settings(folder, &manifest), again) {
+        (Ok((dataset, format, groups)), again) => {
+            flaws.extend(whole(folder, &manifest, &dataset, groups)?);
+            if let Some(execution) = again {
+                flaws.extend(computed(&manifest, (&dataset, format, groups), execution, watch)?);
+            }
+        }
+        (Err(error), Some(_)) => return Err(error),
+        // What another version wrote can be compared with its checksums alone.
+        (Err(_), None) => {}
     }
     Ok((manifest, flaws))
+}
+
+/// Whether all chunks are there, and nothing else.
+fn whole(
+    folder: &Path,
+    manifest: &Manifest,
+    dataset: &Dataset,
+    [first, end]: [usize; 2],
+) -> Result<Vec<Flaw>, DatasetError> {
+    let (found, chunks) = (manifest.chunks.len() as u64, dataset.chunks());
+    let wanted = (end - first) as u64 * chunks;
+    let of_all = |path: &Path, what: String| {
+        let (chunk, path) = (String::new(), path.to_owned());
+        Flaw { chunk, path, what }
+    };
+    if found < wanted {
+        let what = format!("is unfinished: {found} of {wanted} chunks; --resume goes on");
+        return Ok(vec![of_all(Path::new("manifest.jsonl"), what)]);
+    }
+    let extra = manifest.chunks.get(wanted as usize..).unwrap_or_default().iter();
+    let extra = extra.map(|chunk| Flaw {
+        chunk: chunk.chunk.clone(),
+        path: "manifest.jsonl".into(),
+        what: "tells of it after the last that the settings lead to".to_owned(),
+    });
+    let unlisted = unlisted(folder, manifest)?;
+    let unlisted = unlisted.iter().map(|path| of_all(path, "is not in the manifest".to_owned()));
+    Ok(extra.chain(unlisted).collect())
 }
 
 /// The settings in a manifest.
@@ -72,12 +108,11 @@ pub(super) fn settings(
 }
 
 fn computed(
-    folder: &Path,
     manifest: &Manifest,
+    (dataset, format, [first, end]): (&Dataset, DataFormat, [usize; 2]),
     execution: &Execution,
     watch: &dyn Watch,
 ) -> Result<Vec<Flaw>, DatasetError> {
-    let (dataset, format, [first, end]) = settings(folder, manifest)?;
     let mut flaws = Vec::new();
     let each = dataset.chunks() as usize;
     for (i, number) in (first..end).enumerate() {
@@ -87,7 +122,6 @@ fn computed(
             break;
         }
         let (all, group, flaws) = (&manifest.chunks, dataset.group(number), &mut flaws);
-        let dataset = &dataset;
         let compare = Compare { dataset, format, group, all, chunks, execution, watch, flaws };
         dataset.with(group, execution, compare)??;
     }

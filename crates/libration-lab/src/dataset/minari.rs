@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use super::DataFormat;
 use super::chunk::{NamedFile, column};
 use super::episodes::Episode;
-use super::settings::{Acting, Dataset, Task};
+use super::settings::{Acting, Dataset};
 use super::world::Number;
 use crate::trajectory::FloatType;
 
@@ -110,14 +110,14 @@ fn rows<'a, T: Number, const O: usize>(
         flags[episode.len() - 1] = u8::from(is);
         Values::Bool(flags.into())
     };
-    let units: Vec<_> = dataset.task.seen().iter().map(|&(_, unit)| unit).collect();
+    let units: Vec<_> = dataset.seen().iter().map(|&(_, unit)| unit).collect();
     let list = |of| Values::Lists(1, Box::new(of));
     let mut seen =
         column("observations", "1", Values::Lists(O, Box::new(T::view(&episode.observation))));
     seen.unit = units.join(", ").into();
     Table::new(vec![
         seen,
-        column("actions", "m/s²", list(with_last(&episode.action))),
+        column("actions", dataset.units()[2], list(with_last(&episode.action))),
         column("rewards", "1", with_last(&episode.reward)),
         column("terminations", "1", end(episode.terminated)),
         column("truncations", "1", end(!episode.terminated)),
@@ -136,7 +136,7 @@ pub(super) fn about(dataset: &Dataset, all: Before) -> String {
         "total_steps": all.actions,
         // In MB, to a tenth.
         "dataset_size": (all.bytes as f64 / 1e5).round() / 10.0,
-        "observation_space": space(dataset, &bounds(&dataset.task)),
+        "observation_space": space(dataset, &bounds(dataset)),
         "action_space": space(dataset, &[actions(&dataset.policy)]),
         "algorithm_name": dataset.policy.name(),
         "libration": dataset.settings(DataFormat::Minari),
@@ -144,11 +144,12 @@ pub(super) fn about(dataset: &Dataset, all: Before) -> String {
     about.to_string()
 }
 
-/// Between which numbers each that is seen lies.
-fn bounds(task: &Task) -> Vec<[f64; 2]> {
-    let circle = |name: &str| name.starts_with("cos_") || name.starts_with("sin_");
+/// Between which numbers each that is seen lies: cosines and sines within one, unless a sensor adds noise.
+fn bounds(dataset: &Dataset) -> Vec<[f64; 2]> {
+    let exact = dataset.noise.observation == 0.0;
+    let circle = |name: &str| exact && (name.starts_with("cos_") || name.starts_with("sin_"));
     let bound = |name| if circle(name) { 1.0 } else { f64::INFINITY };
-    task.seen().iter().map(|&(name, _)| [-bound(name), bound(name)]).collect()
+    dataset.seen().iter().map(|&(name, _)| [-bound(name), bound(name)]).collect()
 }
 
 /// Between which numbers actions lie.

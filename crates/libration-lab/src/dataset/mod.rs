@@ -12,6 +12,7 @@ mod format;
 mod minari;
 mod plant;
 mod reading;
+mod room;
 mod settings;
 mod stream;
 mod tables;

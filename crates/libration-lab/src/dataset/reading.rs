@@ -5,7 +5,7 @@ use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::{AnySystem, Method};
 
 use super::plant::Plant;
-use super::settings::{Acting, Chunk, Dataset, Noise, Task};
+use super::settings::{Acting, Chunk, Dataset, Noise, STEPS, Task};
 use super::tables::{File, PolicyTable, TaskTable};
 use crate::config::limits::{TIME_STEP, within};
 use crate::config::{Count, Fault, Number, names};
@@ -83,7 +83,7 @@ impl TryFrom<File> for Dataset {
             seed: count("seed", file.seed, 0..=u64::MAX)?,
             float,
             environments: count("environments", file.environments, 1..=1_000_000_000)? as usize,
-            steps: count("steps", file.steps, 1..=1_000_000_000_000)?,
+            steps: count("steps", file.steps, 1..=STEPS)?,
             method,
             dt,
             substeps: count("substeps", file.substeps, 1..=1_000_000)? as u32,

@@ -84,15 +84,50 @@ impl Task {
         }
     }
 
-    /// Names and units of what is seen.
-    pub(super) fn seen(&self) -> &'static [(&'static str, &'static str)] {
-        const STATE: [(&str, &str); 4] =
-            [("q0", "m"), ("v0", "m/s"), ("reference_q0", "m"), ("reference_v0", "m/s")];
+    /// Names of what is seen, and whether each is a position, a velocity or neither.
+    pub(super) fn seen(&self) -> &'static [(&'static str, Seen)] {
+        use Seen::{Neither, Position, Velocity};
+        const STATE: [(&str, Seen); 4] = [
+            ("q0", Position),
+            ("v0", Velocity),
+            ("reference_q0", Position),
+            ("reference_v0", Velocity),
+        ];
         match self {
             Task::Regulate(_) => &STATE[..2],
-            Task::SwingUp(_) => &[("cos_q0", "1"), ("sin_q0", "1"), ("v0", "rad/s")],
+            Task::SwingUp(_) => &[("cos_q0", Neither), ("sin_q0", Neither), ("v0", Velocity)],
             Task::Track(_) => &STATE,
         }
+    }
+}
+
+/// What a number is that is seen.
+#[derive(Clone, Copy)]
+pub(super) enum Seen {
+    Position,
+    Velocity,
+    Neither,
+}
+
+impl Dataset {
+    /// Units of positions, velocities and actions, which are accelerations.
+    pub(super) fn units(&self) -> [&'static str; 3] {
+        // That of a swing-up is an angle, whatever the system.
+        match (self.system, &self.task) {
+            (AnySystem::Pendulum(_), _) | (_, Task::SwingUp(_)) => ["rad", "rad/s", "rad/s²"],
+            _ => ["m", "m/s", "m/s²"],
+        }
+    }
+
+    /// Names and units of what is seen.
+    pub(super) fn seen(&self) -> Vec<(&'static str, &'static str)> {
+        let [position, velocity, _] = self.units();
+        let unit = |seen| match seen {
+            Seen::Position => position,
+            Seen::Velocity => velocity,
+            Seen::Neither => "1",
+        };
+        self.task.seen().iter().map(|&(name, seen)| (name, unit(seen))).collect()
     }
 }
 
@@ -106,6 +141,9 @@ impl Noise {
         Jitter::Gaussian(self.skew)
     }
 }
+
+/// The most steps of an environment.
+pub(super) const STEPS: u64 = 1_000_000_000_000;
 
 /// Reads settings; keys that are not given take their defaults.
 ///
@@ -127,8 +165,18 @@ impl Default for Dataset {
 
 impl Dataset {
     /// The same with so many transitions, rounded up to whole steps of all environments.
-    pub fn transitions(self, transitions: u64) -> Self {
-        Dataset { steps: transitions.div_ceil(self.environments as u64).max(1), ..self }
+    ///
+    /// # Errors
+    /// In words, if these are too many.
+    pub fn transitions(self, transitions: u64) -> Result<Self, String> {
+        let steps = transitions.div_ceil(self.environments as u64).max(1);
+        if steps > STEPS {
+            let n = self.environments;
+            return Err(format!(
+                "{n} environments would take {steps} steps; at most {STEPS} are allowed"
+            ));
+        }
+        Ok(Dataset { steps, ..self })
     }
 
     /// How many transitions it has.

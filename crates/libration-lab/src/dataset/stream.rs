@@ -13,6 +13,7 @@ use super::actor::Actor;
 use super::chunk::{Done, Rows};
 use super::episodes::Episodes;
 use super::minari::Before;
+use super::room::Try;
 use super::world::{Group, Number, Visit};
 use super::{DataFormat, Dataset, DatasetError};
 
@@ -35,8 +36,13 @@ pub struct Job<'a> {
 
 /// Who watches a data set being written or read.
 pub trait Watch: Sync {
-    /// So many more transitions, in so many bytes, are done; those that were there before are told first.
+    /// So many more transitions, in so many bytes, are done.
     fn done(&self, transitions: u64, bytes: u64);
+
+    /// So many were there before.
+    fn there(&self, transitions: u64, bytes: u64) {
+        self.done(transitions, bytes);
+    }
 
     /// Whether to stop.
     fn stops(&self) -> bool {
@@ -80,13 +86,13 @@ pub fn write(job: &Job<'_>, watch: &dyn Watch) -> Result<Manifest, DatasetError>
     let Job { dataset, format, shard, out, resume, ref execution } = *job;
     let [first, end] = groups(dataset, format, shard)?;
     // Whatever cannot be is said before a folder is made.
-    dataset.with(dataset.group(first), &Execution::serial(), Try)??;
+    dataset.with(dataset.group(first), &Execution::serial(), Try(dataset))??;
     let mut folder = Folder::open(out, &head(dataset, format, [first, end]), resume)?;
     let chunks = dataset.chunks();
     let mut there = folder.manifest().chunks.len() as u64;
     for (i, chunk) in folder.manifest().chunks.iter().enumerate() {
         let number = |name: &str| chunk.holds.get(name).and_then(Value::as_u64).unwrap_or(0);
-        watch.done(number("transitions"), chunk.files.iter().map(|file| file.bytes).sum());
+        watch.there(number("transitions"), chunk.files.iter().map(|file| file.bytes).sum());
         let (group, k) = (first as u64 + i as u64 / chunks, i as u64 % chunks);
         let wanted = format!("{group:06}-{k:08}");
         if chunk.chunk != wanted || group >= end as u64 {
@@ -113,22 +119,6 @@ pub fn write(job: &Job<'_>, watch: &dyn Watch) -> Result<Manifest, DatasetError>
         there = 0;
     }
     Ok(folder.manifest().clone())
-}
-
-/// Takes a step, if there is memory and the policy fits.
-struct Try;
-
-impl Visit for Try {
-    type Output = Result<(), DatasetError>;
-
-    fn visit<T: Number, E: World<T, O, 1>, const O: usize>(
-        self,
-        mut all: Environments<T, E, O, 1>,
-        actor: Actor<O>,
-    ) -> Self::Output {
-        let mut rollout = Rollout::new(Plan::new(1, all.len()).truncated())?;
-        Ok(all.rollout(actor, &mut rollout)?)
-    }
 }
 
 /// The chunks of a group, from one on.

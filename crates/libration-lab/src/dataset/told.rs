@@ -13,7 +13,7 @@ impl Dataset {
     /// What manifests say: the keys of the file of settings, and what belongs to all files.
     pub(super) fn settings(&self, format: DataFormat) -> Map<String, Value> {
         // In the order of the tensor.
-        let seen = self.task.seen().iter();
+        let seen = self.seen().into_iter();
         let seen: Vec<_> = seen.map(|(name, unit)| json!({ "name": name, "unit": unit })).collect();
         let value = json!({
             "schema": SCHEMA,

@@ -116,7 +116,7 @@ fn settings_are_read_back_from_a_manifest_whatever_they_are() {
         let dir = tempfile::tempdir().unwrap();
         let out = dir.path().join("set");
         let dataset = parse(text, "set.toml").unwrap();
-        let dataset = if text.is_empty() { dataset.transitions(4096) } else { dataset };
+        let dataset = if text.is_empty() { dataset.transitions(4096).unwrap() } else { dataset };
         let job = Job {
             dataset: &dataset,
             format: DataFormat::Parquet,

@@ -12,6 +12,7 @@ mod checkpoint;
 mod divide;
 mod draw;
 mod error;
+mod found;
 mod insert;
 mod memory;
 mod power;

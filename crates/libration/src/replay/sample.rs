@@ -4,6 +4,7 @@ use core::ops::Range;
 
 use bytemuck::Pod;
 
+use super::memory::Marks;
 use super::store::{CUT, END, NONE, OVER};
 use super::{Columns, Draw, Replay, ReplayError};
 use crate::Float;
@@ -85,10 +86,16 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
     /// These steps, if there is a transition among them.
     pub(super) fn drawable(&self, steps: Range<u64>) -> Option<Starts> {
         let n = self.capacity.environments as u64;
-        let all = (self.marks.head - self.marks.tail) * n;
+        let Marks { head, tail, live: all, .. } = self.marks;
         let count = (steps.end - steps.start) * n;
-        // Where every step is a transition nobody has to count.
-        let live = if self.marks.live == all { count } else { count - self.nones(steps.clone()) };
+        let (before, after) = (tail..steps.start, steps.end..head);
+        // Where every step is a transition nobody has to count; else those few that are not among these.
+        let live = if all == (head - tail) * n {
+            count
+        } else {
+            let apart = |range: Range<u64>| (range.end - range.start) * n - self.nones(range);
+            all - apart(before) - apart(after)
+        };
         (live > 0).then_some(Starts { first: steps.start * n, count, live })
     }
 

@@ -113,6 +113,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         let (memory, capacity, marks) = Memory::open::<T>(map, [O, D])?;
         let mut replay = Self::of(capacity, memory, marks);
         replay.verify()?;
+        replay.mark_parted();
         if capacity.priorities {
             replay.weigh_anew();
             replay.sums = Some(Sums::over(replay.weights()));
@@ -203,7 +204,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
     }
 
     /// Where end `i` belongs: [`place_of`](Self::place_of) its transition.
-    fn place(&self, i: u64) -> u64 {
+    pub(super) fn place(&self, i: u64) -> u64 {
         self.end_place()[(i % self.capacity.ends as u64) as usize]
     }
 
@@ -242,48 +243,5 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
     /// The first end that belongs to a step from `step` on.
     pub(super) fn first_end(&self, step: u64) -> u64 {
         self.first_from(self.place_of(step, 0, false))
-    }
-
-    /// Whether what was found in memory can be.
-    fn verify(&self) -> Result<(), ReplayError> {
-        let damaged = |what: String| Err(ReplayError::Damaged(what));
-        let Marks { head, tail, ends, live, largest } = self.marks;
-        let n = self.capacity.environments as u64;
-        let fits = tail <= head
-            && head - tail <= self.capacity.steps as u64
-            && head.checked_mul(2 * n).is_some()
-            && ends.first <= ends.end
-            && ends.end - ends.first <= self.capacity.ends as u64
-            && largest.is_finite()
-            && largest > 0.0;
-        if !fits {
-            return damaged(format!("it cannot be so far: {:?}", self.marks));
-        }
-        let mut before = None;
-        for i in ends.first..ends.end {
-            let place = self.place(i);
-            if before.is_some_and(|before| before >= place)
-                || !(2 * tail * n..2 * head * n).contains(&place)
-            {
-                return damaged(format!("end {i} cannot stand where it does"));
-            }
-            before = Some(place);
-        }
-        let mut count = 0;
-        for step in tail..head {
-            for n in 0..self.capacity.environments {
-                let flags = self.flags()[self.cell(step, n)];
-                count += u64::from(flags & NONE == 0);
-                if flags & END != 0 && self.end_of(step, n, flags).is_none() {
-                    let what = "ends, and nothing follows it";
-                    return damaged(format!("step {step} of environment {n} {what}"));
-                }
-            }
-        }
-        if count != live {
-            return damaged(format!("there are {count} transitions, and it counts {live}"));
-        }
-        let wrong = self.weights().iter().find(|w| !(w.is_finite() && **w >= 0.0));
-        wrong.map_or(Ok(()), |w| damaged(format!("the weight of a transition is {w}")))
     }
 }

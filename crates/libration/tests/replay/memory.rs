@@ -67,8 +67,23 @@ fn a_process_that_dies_at_any_write_loses_nothing_that_was_inserted_before() {
     let mut dead = before.clone();
     dead[older..older + 64].copy_from_slice(&after[older..older + 64]);
     dead[6 * PAGE..].copy_from_slice(&after[6 * PAGE..]);
+    let mut unmarked = dead.clone();
     // Marks of what the reset parted, in the last row, were set before that row's successor was written.
     dead[4 * PAGE + 27..][..3].copy_from_slice(&after[4 * PAGE + 27..][..3]);
+    assert!(unmarked != dead);
+    // Who died before they were set parts nothing twice, and nothing but what it parted before.
+    for _ in 0..2 {
+        let mut again = Replay21::open(mapped(&unmarked)).unwrap();
+        again.insert(&rollout, &next, &serial).unwrap();
+        for number in 0..30 {
+            assert_eq!(numbered(&again, number), numbered(&replay, number));
+        }
+        reopened(&again).unwrap();
+        // Or it died again, with one of the marks.
+        let first =
+            (0..3).find(|i| unmarked[4 * PAGE + 27 + i] != dead[4 * PAGE + 27 + i]).unwrap();
+        unmarked[4 * PAGE + 27 + first] = dead[4 * PAGE + 27 + first];
+    }
     let changed: Vec<usize> = (PAGE..6 * PAGE).filter(|&i| dead[i] != after[i]).collect();
     assert!(changed.len() > 50, "{}", changed.len());
     for cut in 0..2 * changed.len() as u32 {

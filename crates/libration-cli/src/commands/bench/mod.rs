@@ -33,6 +33,12 @@ pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), Failure> {
     let lab = Lab::new(&config, args.effort, &reporter, stop);
     let text = if args.storage {
         let folder = args.folder.clone().unwrap_or_else(std::env::temp_dir);
+        if !folder.is_dir() {
+            let name = folder.display();
+            return Err(Failure::usage(format!(
+                "`{name}` (--folder) must be a folder that is there"
+            )));
+        }
         let rates = bench::storage(&lab, &folder);
         reporter.clear();
         let rates = rates.map_err(failure)?;

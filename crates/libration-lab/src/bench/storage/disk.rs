@@ -44,7 +44,8 @@ pub(super) fn measure(lab: &Lab<'_>, folder: &Path) -> Result<Vec<StorageRate>, 
     // A build that is not for speed is not to wait for compression.
     let few = if cfg!(debug_assertions) { 1 << 18 } else { 1 << 22 };
     let (rounds, transitions) = lab.effort.choose((3, few), (5, 1 << 26), (11, 1 << 26));
-    let dataset = dataset::parse(SETTINGS, "settings").unwrap_or_default().transitions(transitions);
+    let dataset = dataset::parse(SETTINGS, "settings").unwrap_or_default();
+    let dataset = dataset.transitions(transitions).map_err(StudyError::Exact)?;
     let bench = Disk { lab, folder: folder.path(), execution, dataset };
     let mut seconds = [const { Vec::new() }; 5];
     for _ in 0..rounds {

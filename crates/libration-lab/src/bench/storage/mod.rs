@@ -63,7 +63,7 @@ impl Stored {
         match self {
             Stored::Insert => Some("a copy of as many bytes in memory"),
             Stored::Npy => Some("a write of as many bytes to the disk"),
-            Stored::Checkpoint => Some("a write of as many bytes to the disk"),
+            Stored::Checkpoint => Some("a write of as many bytes as are kept and taken up"),
             Stored::Sample | Stored::Prioritised | Stored::Parquet => None,
         }
     }

@@ -25,17 +25,14 @@ const DRAWN: usize = 64;
 /// The source's transitions.
 type Store = Replay<f32, 2, 1>;
 
-/// Times them on one core, and insertion on all as well.
+/// Times them on one core: none of it is worth a second.
 pub(super) fn measure(lab: &Lab<'_>) -> Result<Vec<StorageRate>, StudyError> {
     let serial = lab.alone()?;
-    let parallel = serial.clone().threads(0)?;
     let (rounds, seconds) = lab.effort.choose((5, 5e-3), (15, 20e-3), (31, 40e-3));
     let turns = Turns { rounds, seconds };
     let fault = RefCell::new(Ok(()));
     let mut rates = draws(lab, turns, &serial, &fault)?;
-    for execution in [&serial, &parallel].into_iter().take(parallel.thread_count().min(2)) {
-        rates.push(insertion(lab, turns, execution, &fault)?);
-    }
+    rates.push(insertion(lab, turns, &serial, &fault)?);
     fault.into_inner()?;
     Ok(rates)
 }
@@ -142,20 +139,14 @@ fn insertion(
     let mut to = Buffer::<u8>::new(bytes * places, Pages::Huge)?;
     from.fill(1);
     to.fill(2);
-    let threads = execution.thread_count();
     let mut place = 0;
     let copied = Contestant::new(transitions as f64, |times| {
         for _ in 0..times {
             place = (place + 1) % places;
-            let part = bytes.div_ceil(threads);
-            let parts = to[place * bytes..][..bytes].chunks_mut(part).zip(from.chunks(part));
-            execution.each(parts.collect(), |(to, from): (&mut [u8], &[u8])| {
-                to.copy_from_slice(from);
-            });
+            to[place * bytes..][..bytes].copy_from_slice(black_box(&from));
         }
         black_box(&*from);
     });
     let rates = race(lab, turns, &mut [inserted, copied])?;
-    let threads = execution.thread_count();
-    Ok(StorageRate::new(Stored::Insert, threads, &rates[0], Some(&rates[1])))
+    Ok(StorageRate::new(Stored::Insert, 1, &rates[0], Some(&rates[1])))
 }

@@ -3,11 +3,11 @@
 use std::hint::black_box;
 
 use libration::replay::{Batch, Capacity, Draw, Lookahead, Replay};
-use libration::rl::policy::Random;
+use libration::rl::policy::{Constant, Random};
 use libration::rl::{Environments, Plan, Rollout};
 
 use crate::Lab;
-use crate::bench::{Contestant, regulating};
+use crate::bench::{Contestant, regulating, regulating_from};
 use crate::record::{Finding, Record, Series};
 use crate::studies::desk::Desk;
 use crate::study::StudyError;
@@ -67,8 +67,15 @@ fn times(desk: &Desk<'_>, kept: usize) -> Result<[f64; COLUMNS.len()], StudyErro
         plain.insert(&rollout, &next, execution)?;
         weighed.insert(&rollout, &next, execution)?;
     }
+    // At rest every rollout goes on where the one before ended, also if it is the same again.
+    let mut still = Environments::new(regulating_from(0.0), ENVIRONMENTS, 7, execution.clone())?;
+    let mut rollout = Rollout::new(Plan::new(ROLLOUT, ENVIRONMENTS).truncated())?;
+    still.rollout(Constant([0.0]), &mut rollout)?;
+    still.observe(&mut next)?;
     let mut inserted = Replay::<f32, 2, 1>::new(capacity)?;
-    inserted.insert(&rollout, &next, execution)?;
+    for _ in 0..2 * kept / ENVIRONMENTS / ROLLOUT {
+        inserted.insert(&rollout, &next, execution)?;
+    }
     let [mut one, mut two] = [(); 2].map(|()| Batch::<f32, 2, 1>::new(BATCH));
     let [mut first, mut second] = [0, 0];
     let ahead = Lookahead::default();

@@ -13,7 +13,8 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.paragraph(
         "A learner draws batches from the transitions that were seen last; an engineer keeps more of them than memory holds. \
          Speeds are medians of rounds in which each takes its turn with a copy of as many bytes, in memory or to the same \
-         disk; to the disk means past the system’s cache, and waited for.",
+         disk; to the disk means past the system’s cache, and waited for. A checkpoint is compared with as many bytes as are kept \
+         and taken up; those it takes up come from the system’s cache.",
     );
     page.table(record.table("speeds")?, 3);
     if let Ok(peers) = record.table("peers") {
@@ -26,7 +27,7 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.heading("A circle of transitions");
     page.paragraph(
         "Transitions are kept once: what is seen next is the next row, or stands apart where an episode ended. So a buffer \
-         takes the 17 bytes of a transition, where the usual way takes 25.",
+         takes the 17 bytes of a transition, where the usual way takes 25, and room for as many ends as it is given.",
     );
     page.figure(figures::draws(record)?);
     page.heading("What changes no byte");

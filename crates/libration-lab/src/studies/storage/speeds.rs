@@ -39,8 +39,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     let mut table = Table::new("speeds", &columns);
     for rate in storage(lab, &folder(lab))? {
         let StorageRate { stored, threads, .. } = rate;
-        let suffix = if stored == Stored::Insert && threads > 1 { ".threads" } else { "" };
-        let id = format!("storage.{}{suffix}", stored.name());
+        let id = format!("storage.{}", stored.name());
         let text = format!("{}, {}: {}", work(stored), on(threads), stored.unit());
         record.find(Finding::measured(format!("{id}.rate"), text, "1/s", rate.median));
         if let Some(([share, spread], against)) = rate.share.zip(stored.against()) {
