@@ -21,9 +21,10 @@ const SHORT: usize = 1 << 18;
 pub(crate) fn create(path: &Path, pieces: &[&[u8]]) -> io::Result<()> {
     let len: usize = pieces.iter().map(|piece| piece.len()).sum();
     let file = if len >= SHORT { open(path) } else { None };
-    match file {
-        Some(file) => direct(file, pieces, len),
-        // Not every system and not every file system knows the way.
+    // Not every system and not every file system knows the way, and some say so late.
+    match file.map(|file| direct(file, pieces, len)) {
+        Some(Err(error)) if error.kind() == io::ErrorKind::InvalidInput => plain(path, pieces),
+        Some(written) => written,
         None => plain(path, pieces),
     }
 }

@@ -59,7 +59,7 @@ for chunk in chunks:
     for flag in ('terminated', 'truncated'):
         assert field(flag).dtype == np.bool_ and (column(flag) == field(flag)).all()
     units = json.loads(table.schema.metadata[b'libration.units'])
-    assert units['q0'] == 'm' and units['v0'] == 'm/s' and units['u0'] == 'm/s\u00b2', units
+    assert units['q0'] == 'rad' and units['v0'] == 'rad/s' and units['u0'] == 'rad/s\u00b2', units
     ends, rest = field('ends'), pq.read_table(f'tables/ends/{name}.parquet')
     assert list(ends.dtype.names) == rest.column_names
     for column in ends.dtype.names:

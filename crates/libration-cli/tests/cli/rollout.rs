@@ -241,7 +241,7 @@ fn what_cannot_be_is_refused_before_a_folder_is_made() {
         "environments = 1000000\n[chunk]\nenvironments = 1000000\nsteps = 1000000\n",
         "--transitions 1e12",
     );
-    assert!(found.contains("GB needed") || found.contains("bytes"), "{found}");
+    assert!(found.contains("GB of memory are needed"), "{found}");
     assert!(refused("", "--format csv").contains("parquet"));
     fs::write(dir.path().join("set.toml"), b"\xff\xfe").unwrap();
     write(&dir, "out", "").code(2).stderr(contains("cannot read"));
