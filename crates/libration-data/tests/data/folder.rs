@@ -139,7 +139,7 @@ fn a_folder_with_something_else_in_it_is_refused_and_left_as_it_was() {
     let mut other = settings();
     other["system"]["mass"] = json!(2.0);
     let found = refused(&path, &other, true);
-    assert!(found.contains("its mass is 1.0; it must be 2.0"), "{found}");
+    assert!(found.contains("its system.mass is 1.0; it must be 2.0"), "{found}");
     let mut more = settings();
     more.insert("limit".into(), json!(3));
     assert!(refused(&path, &more, true).contains("its limit is not told; it must be 3"));

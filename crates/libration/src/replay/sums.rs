@@ -126,8 +126,8 @@ impl Sums {
     #[inline(always)]
     fn renew_one(&mut self, weights: &[f64], level: usize, node: usize) {
         let sum = match level.checked_sub(1) {
-            None => sum(&parts(weights, node)),
-            Some(below) => sum(&parts(&self.levels[below], node)),
+            None => sum(&parts_of(weights, node)),
+            Some(below) => sum(&parts_of(&self.levels[below], node)),
         };
         self.levels[level][node] = sum;
     }
@@ -139,8 +139,13 @@ impl Sums {
         found.fill(0);
         for level in (0..self.levels.len()).rev() {
             let all = level.checked_sub(1).map_or(weights, |below| &self.levels[below]);
+            let (mut before, mut parts) = (usize::MAX, Parts::default());
             for (node, target) in found.iter_mut().zip(&mut *targets) {
-                let (part, left) = choose(&parts(all, *node), *target);
+                // Of targets in order many neighbours meet in the upper nodes.
+                if *node != before {
+                    (before, parts) = (*node, Parts::of(&parts_of(all, *node)));
+                }
+                let (part, left) = parts.choose(*target);
                 (*node, *target) = (*node * WIDTH + part, left);
             }
         }
@@ -149,7 +154,7 @@ impl Sums {
 
 /// The parts of a node; beyond the last there is nothing.
 #[inline(always)]
-fn parts(all: &[f64], node: usize) -> [f64; WIDTH] {
+fn parts_of(all: &[f64], node: usize) -> [f64; WIDTH] {
     let from = &all[(node * WIDTH).min(all.len())..];
     from.first_chunk().copied().unwrap_or_else(|| {
         let mut parts = [0.0; WIDTH];
@@ -164,19 +169,33 @@ fn sum([a, b, c, d, e, f, g, h]: &[f64; WIDTH]) -> f64 {
     ((a + b) + (c + d)) + ((e + f) + (g + h))
 }
 
-/// The last part that is above zero and does not begin beyond `target`, and how far into it that is: without branches, which
-/// would be guessed wrong.
-#[inline(always)]
-fn choose(parts: &[f64; WIDTH], target: f64) -> (usize, f64) {
-    let mut begins = [0.0; WIDTH];
-    for i in 1..WIDTH {
-        begins[i] = begins[i - 1] + parts[i - 1];
+/// The parts of a node laid end to end.
+#[derive(Clone, Copy, Default)]
+struct Parts {
+    begins: [f64; WIDTH],
+    /// A bit for each that is above zero.
+    there: u32,
+}
+
+impl Parts {
+    #[inline(always)]
+    fn of(parts: &[f64; WIDTH]) -> Self {
+        let (mut begins, mut there) = ([0.0; WIDTH], u32::from(parts[0] > 0.0));
+        for i in 1..WIDTH {
+            begins[i] = begins[i - 1] + parts[i - 1];
+            there |= u32::from(parts[i] > 0.0) << i;
+        }
+        Parts { begins, there }
     }
-    let mut able = 0_u32;
-    for i in 0..WIDTH {
-        able |= u32::from((parts[i] > 0.0) & (begins[i] <= target)) << i;
+
+    /// The last part that is above zero and does not begin beyond `target`, and how far into it that is: without branches, which
+    /// would be guessed wrong.
+    #[inline(always)]
+    fn choose(&self, target: f64) -> (usize, f64) {
+        let begun = self.begins.iter().enumerate();
+        let begun = begun.fold(0, |mask, (i, &begin)| mask | u32::from(begin <= target) << i);
+        let chosen = (begun & self.there | 1).ilog2() as usize % WIDTH;
+        // Rounding may leave a little more than the part is long.
+        (chosen, target - self.begins[chosen])
     }
-    let chosen = (able | 1).ilog2() as usize % WIDTH;
-    // Rounding may leave a little more than the part is long.
-    (chosen, target - begins[chosen])
 }

@@ -24,7 +24,7 @@ pub(super) const COLUMNS: [(&str, &str); 3] =
 /// Times buffers of more and more transitions.
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
     let desk = Desk::new(lab)?;
-    let most = lab.effort.choose(20, 22, 24);
+    let most = lab.effort.choose(18, 22, 24);
     let kept: Vec<usize> = (12..=most).step_by(2).map(|power| 1 << power).collect();
     let mut columns = [const { Vec::new() }; COLUMNS.len()];
     for &kept in &kept {

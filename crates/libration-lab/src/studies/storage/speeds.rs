@@ -28,6 +28,18 @@ fn work(stored: Stored) -> &'static str {
     }
 }
 
+/// The same as tables have it, and what it is compared with.
+fn briefly(stored: Stored) -> [&'static str; 2] {
+    match stored {
+        Stored::Sample => ["256 drawn uniformly", ""],
+        Stored::Prioritised => ["256 drawn by priority, and changed", ""],
+        Stored::Insert => ["4096 × 16 inserted", "a copy"],
+        Stored::Npy => ["data set, npy", "a write"],
+        Stored::Parquet => ["data set, Parquet", ""],
+        Stored::Checkpoint => ["10⁶ trajectories kept, taken up", "two writes"],
+    }
+}
+
 /// As texts name so many threads.
 fn on(threads: usize) -> String {
     if threads == 1 { "one core".to_owned() } else { format!("{threads} cores") }
@@ -35,7 +47,7 @@ fn on(threads: usize) -> String {
 
 /// Times them, and judges their shares.
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let columns = ["what", "threads", "10⁶ a second", "spread", "beside", "share", "wanted"];
+    let columns = ["what", "threads", "10⁶ a second", "spread", "share", "wanted", "of"];
     let mut table = Table::new("speeds", &columns);
     for rate in storage(lab, &folder(lab))? {
         let StorageRate { stored, threads, .. } = rate;
@@ -49,14 +61,15 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
             aim(record, id, text, wanted(stored), ratio, reason);
         }
         let or_none = |x: Option<f64>| x.map_or_else(|| Cell::absent(""), |x| Cell::rounded(x, 2));
+        let [what, of] = briefly(stored);
         table.push([
-            work(stored).into(),
+            what.into(),
             (threads as u64).into(),
             (rate.median / 1e6).into(),
             Cell::rounded(rate.spread / 1e6, 2),
-            stored.against().unwrap_or_default().into(),
             or_none(rate.share.map(|[share, _]| share)),
             or_none(wanted(stored)),
+            of.into(),
         ]);
     }
     record.tables.push(table);
