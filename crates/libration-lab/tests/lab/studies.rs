@@ -131,6 +131,7 @@ fn verdicts_on_the_source_are_these() {
         ("C48", Confirmed),
         ("C49", Refuted),
         ("C50", Refuted),
+        ("C51", Conditional),
         ("C52", Conditional),
         ("C53", Conditional),
         ("C53a", Refuted),

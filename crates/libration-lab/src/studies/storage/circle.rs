@@ -45,7 +45,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     let newest = inserted - (STEPS * ENVIRONMENTS) as u64;
     let kept = (0..inserted).filter(|&number| plain.contains(number));
     let (old, new): (Vec<u64>, Vec<u64>) = kept.partition(|&number| number < newest);
-    let exact = || Tolerance::exact("counted");
+    let exact = || Tolerance::exact("they are counted");
     let steps = format!("{STEPS} steps of {ENVIRONMENTS} environments");
     for (id, text, unit, predicted, measured) in [
         (

@@ -69,7 +69,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
             Cell::rounded(rate.spread / 1e6, 2),
             or_none(rate.share.map(|[share, _]| share)),
             or_none(wanted(stored)),
-            of.into(),
+            if of.is_empty() { Cell::absent("") } else { of.into() },
         ]);
     }
     record.tables.push(table);
