@@ -44,8 +44,9 @@ pub use spectrum::{Eigenvalues, Spectrum};
 pub use symbolic::{SymbolicStep, UnknownStep};
 pub use tableau::{Letter, Tableau};
 pub use timing::{
-    Feedback, HeldStep, HiddenLatency, Jitter, JitterMargin, Latency, LatencyTableError, LqrError,
-    LqrWeights, MeanSquare, Plant, RandomLatency, Regulator, Resonance, StepNoise, Switching,
+    CostError, Feedback, HeldStep, HiddenLatency, Imperfections, Jitter, JitterMargin, Latency,
+    LatencyTableError, LinearController, LqrError, LqrWeights, MeanSquare, NotLinear,
+    ObserverNoise, Plant, RandomLatency, Regulator, Resonance, StateObserver, StepNoise, Switching,
     SwitchingError, Windows,
 };
 pub use window::StabilityWindow;

@@ -4,7 +4,7 @@ use bytemuck::Pod;
 
 use super::{Assign, Ensemble, GRAIN, Loops};
 use crate::checkpoint::{Checkpoint, CheckpointError, Reader, Trait};
-use crate::control::{Clock, Controller, Delay};
+use crate::control::{Clock, Controller, Delay, Disturbance};
 use crate::{Float, Integrator, System};
 
 impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
@@ -42,7 +42,7 @@ impl<T: Float + Pod, const D: usize> Checkpoint for Ensemble<T, D> {
     }
 }
 
-impl<T, Sys, A, M, K, C, L, const D: usize> Checkpoint for Loops<T, Sys, A, M, K, C, L, D>
+impl<T, Sys, A, M, K, C, L, N, const D: usize> Checkpoint for Loops<T, Sys, A, M, K, C, L, D, N>
 where
     T: Float + Pod,
     A: Assign<Sys>,
@@ -50,6 +50,7 @@ where
     K: Controller<T, D>,
     C: Clock<T>,
     L: Delay<T>,
+    N: Disturbance,
     Sys: System<T, D> + Copy + Send + Sync,
 {
     fn traits(&self) -> Vec<Trait> {

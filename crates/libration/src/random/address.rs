@@ -32,6 +32,8 @@ pub enum Purpose {
     Action,
     /// What is drawn from a replay buffer.
     Replay,
+    /// What pushes a plant besides its command.
+    Disturbance,
 }
 
 /// The place of a draw.

@@ -2,7 +2,7 @@
 
 use super::jitter::MOST_TURN;
 use super::waiting::{Matrix, Waiting, growth, symmetric_square};
-use super::{Feedback, Jitter, Latency, Plant};
+use super::{Feedback, Jitter, Latency, LinearController, Plant};
 use crate::Scalar;
 use crate::number::Wide;
 
@@ -23,7 +23,8 @@ impl Plant<'_> {
         jitter: Jitter,
     ) -> Option<f64> {
         let (whole, part) = (latency.whole() as usize, latency.part());
-        let waiting = Waiting { commands: whole, splits: part > 0.0 };
+        let waiting = Waiting { memory: 0, commands: whole, acting: part > 0.0 };
+        let controller = LinearController::from(feedback);
         let n = waiting.size();
         let moments = n * (n + 1) / 2;
         let turn = 2.0 * self.turn(jitter);
@@ -33,7 +34,7 @@ impl Plant<'_> {
         let mut mean: Matrix = vec![vec![0.0; moments]; moments];
         for (weight, epsilon) in jitter.nodes(turn) {
             let dt = self.dt * (Wide::one() + Wide::from_f64(epsilon));
-            let step = waiting.step(&self.split(part, dt), feedback, whole);
+            let step = waiting.step(&self.split(part, dt), &controller, Some(whole));
             for (row, square) in mean.iter_mut().zip(symmetric_square(&step)) {
                 row.iter_mut().zip(square).for_each(|(sum, x)| *sum += weight * x);
             }

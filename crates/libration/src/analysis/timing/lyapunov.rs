@@ -6,6 +6,7 @@ use num_complex::Complex;
 
 use super::circle::{Circle, Matrix, norm};
 use super::jitter::MOST_TURN;
+use super::linear::solved;
 use super::{Feedback, Jitter, Plant};
 use crate::Scalar;
 use crate::analysis::QuadraticForm;
@@ -113,26 +114,6 @@ fn mean_growth(steps: &[(f64, Matrix)]) -> f64 {
         }
         row[i] -= Complex::ONE;
     }
-    let means = solved(rows);
+    let means = solved(rows, |x: Complex<f64>| x.norm());
     means.iter().enumerate().map(|(j, f)| (coefficient(&growth, order(j)) * f).re).sum()
-}
-
-/// The solution of linear equations, by elimination with the largest pivot; the right side is the last column.
-fn solved(mut rows: Vec<Vec<Complex<f64>>>) -> Vec<Complex<f64>> {
-    let n = rows.len();
-    for k in 0..n {
-        let largest = (k..n).max_by(|&a, &b| rows[a][k].norm().total_cmp(&rows[b][k].norm()));
-        rows.swap(k, largest.unwrap_or(k));
-        let pivot = rows[k].clone();
-        for row in &mut rows[k + 1..] {
-            let factor = row[k] / pivot[k];
-            row.iter_mut().zip(&pivot).skip(k).for_each(|(x, p)| *x -= factor * p);
-        }
-    }
-    let mut solution = vec![Complex::ZERO; n];
-    for k in (0..n).rev() {
-        let known: Complex<f64> = (k + 1..n).map(|j| rows[k][j] * solution[j]).sum();
-        solution[k] = (rows[k][n] - known) / rows[k][k];
-    }
-    solution
 }

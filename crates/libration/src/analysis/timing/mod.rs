@@ -4,16 +4,21 @@
 //! beginning of a step, arrives later, and is held until the next one arrives.
 
 mod circle;
+mod cost;
 mod held_step;
 mod hidden_latency;
+mod imperfections;
 mod jitter;
 mod jitter_late;
 mod jitter_margin;
 mod latency;
+mod linear;
+mod linear_controller;
 mod lqr;
 mod lyapunov;
 mod margin;
 mod mean_square;
+mod observer;
 mod periodic;
 mod plant;
 mod quasi;
@@ -22,18 +27,23 @@ mod resonance;
 mod riccati;
 #[cfg(test)]
 mod sample;
+mod sampled;
 mod skew;
+mod stage;
 mod switching;
 mod waiting;
 mod windows;
 
 pub use held_step::HeldStep;
 pub use hidden_latency::HiddenLatency;
+pub use imperfections::{CostError, Imperfections};
 pub use jitter::Jitter;
 pub use jitter_margin::JitterMargin;
 pub use latency::Latency;
+pub use linear_controller::{LinearController, NotLinear};
 pub use lqr::{LqrError, LqrWeights, Regulator};
 pub use mean_square::MeanSquare;
+pub use observer::{ObserverNoise, StateObserver};
 pub use plant::{Feedback, Plant};
 pub use random_latency::{LatencyTableError, RandomLatency};
 pub use resonance::{Resonance, StepNoise};

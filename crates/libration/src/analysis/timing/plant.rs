@@ -29,6 +29,8 @@ pub struct Plant<'a> {
     pub(super) generator: UpdateMatrix<Wide, 1>,
     /// The time step in seconds.
     pub(super) dt: Wide,
+    /// Whether steps have no error, so that all is known of what lies between their ends.
+    pub(super) exact: bool,
 }
 
 impl<'a> Plant<'a> {
@@ -41,14 +43,14 @@ impl<'a> Plant<'a> {
     ) -> Self {
         let generator = Linearisation::generator_of(model, &at);
         let step = Box::new(move |h| HeldStep::of(integrator, model, &at, h));
-        Plant { step, generator, dt: Wide::from_f64(dt) }
+        Plant { step, generator, dt: Wide::from_f64(dt), exact: false }
     }
 
     /// The same without an integrator: each step is exact.
     pub fn exact(model: impl Model<1> + 'a, at: State<f64, 1>, dt: f64) -> Self {
         let generator = Linearisation::generator_of(model, &at);
         let step = Box::new(move |h| HeldStep::exact(model, &at, h));
-        Plant { step, generator, dt: Wide::from_f64(dt) }
+        Plant { step, generator, dt: Wide::from_f64(dt), exact: true }
     }
 
     /// A step of the loop that `feedback` closes at once, of `dt` seconds.

@@ -1,7 +1,7 @@
 //! Commands whose latency is random.
 
 use super::waiting::{Matrix, Waiting, growth, product, symmetric_square, transposed};
-use super::{Feedback, Latency, Plant};
+use super::{Feedback, Latency, LinearController, Plant};
 use crate::State;
 
 /// Latencies, each with its probability, drawn for every step: with the hold probability the last one stays, otherwise
@@ -99,7 +99,7 @@ impl RandomLatency {
     /// What a step has to know.
     fn waiting(&self) -> Waiting {
         let splits = self.table.iter().any(|(latency, _)| latency.part() > 0.0);
-        Waiting { commands: self.longest(), splits }
+        Waiting { memory: 0, commands: self.longest(), acting: splits }
     }
 
     /// The probability that entry `next` follows entry `now`.
@@ -163,9 +163,10 @@ impl Plant<'_> {
 
     /// The step with each latency of the table.
     fn steps_late(&self, feedback: Feedback, latency: &RandomLatency) -> Vec<Matrix> {
+        let controller = LinearController::from(feedback);
         let of = |&(late, _): &(Latency, f64)| {
             let step = self.split(late.part(), self.dt);
-            latency.waiting().step(&step, feedback, late.whole() as usize)
+            latency.waiting().step(&step, &controller, Some(late.whole() as usize))
         };
         latency.table.iter().map(of).collect()
     }

@@ -1,6 +1,6 @@
 //! A step of a loop with all that it has to know, and how its second moments grow.
 
-use super::Feedback;
+use super::LinearController;
 use super::latency::SplitStep;
 use crate::State;
 use crate::number::Wide;
@@ -8,49 +8,70 @@ use crate::number::Wide;
 /// A square matrix, row by row.
 pub(super) type Matrix = Vec<Vec<f64>>;
 
-/// What a step has to know, `(q, v, u₋₁, u₋₂, …, u)`: the state, the commands that wait and, where steps split, the one that
-/// acts.
+/// What a step has to know, `(q, v, m, u₋₁, u₋₂, …, u)`: the state, what the controller remembers, the commands that wait and, where
+/// steps split or commands may be lost, the one that acts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Waiting {
+    pub(super) memory: usize,
     pub(super) commands: usize,
-    pub(super) splits: bool,
+    pub(super) acting: bool,
 }
 
 impl Waiting {
     /// The number of its coordinates.
     pub(super) fn size(self) -> usize {
-        2 + self.commands + usize::from(self.splits)
+        2 + self.memory + self.commands + usize::from(self.acting)
     }
 
-    /// A step in which the command of `d` steps ago takes over.
-    pub(super) fn step(self, step: &SplitStep, feedback: Feedback, d: usize) -> Matrix {
+    /// The command that takes over, as what it is made of: that of `d` steps ago, or none, where it was lost and the one that acts
+    /// goes on.
+    pub(super) fn arriving(self, controller: &LinearController, d: Option<usize>) -> Vec<f64> {
+        let mut row = vec![0.0; self.size()];
+        match d {
+            Some(0) => controller.command_row(&mut row),
+            Some(d) => row[1 + self.memory + d] = 1.0,
+            None => row = self.held(),
+        }
+        row
+    }
+
+    /// The command that acts before, as what it is made of.
+    pub(super) fn held(self) -> Vec<f64> {
+        let mut row = vec![0.0; self.size()];
+        if let Some(last) = row.last_mut().filter(|_| self.acting) {
+            *last = 1.0;
+        }
+        row
+    }
+
+    /// A step in which that command takes over.
+    pub(super) fn step(
+        self,
+        step: &SplitStep,
+        controller: &LinearController,
+        d: Option<usize>,
+    ) -> Matrix {
         let n = self.size();
-        let gains = [feedback.position, feedback.velocity];
         let numbers = |of: &State<Wide, 1>| [of.q[0], of.v[0]].map(Wide::to_f64);
         let (old, new) = (numbers(&step.old), numbers(&step.new));
+        let (arriving, held) = (self.arriving(controller, d), self.held());
         let mut matrix = vec![vec![0.0; n]; n];
-        for i in 0..2 {
-            for j in 0..2 {
-                let now = if d == 0 { -new[i] * gains[j] } else { 0.0 };
-                matrix[i][j] = step.phi.entry(i, j).to_f64() + now;
+        for (i, row) in matrix.iter_mut().enumerate().take(2) {
+            for (x, (arriving, held)) in row.iter_mut().zip(arriving.iter().zip(&held)) {
+                *x = new[i] * arriving + old[i] * held;
             }
-            if d > 0 {
-                matrix[i][1 + d] = new[i];
-            }
+            (0..2).for_each(|j| row[j] += step.phi.entry(i, j).to_f64());
         }
-        for i in 3..2 + self.commands {
+        let first = 2 + self.memory;
+        controller.memory_rows(&mut matrix[2..first]);
+        if self.commands > 0 {
+            controller.command_row(&mut matrix[first]);
+        }
+        for i in first + 1..first + self.commands {
             matrix[i][i - 1] = 1.0;
         }
-        let command = gains.map(|gain| -gain);
-        if self.commands > 0 {
-            matrix[2][..2].copy_from_slice(&command);
-        }
-        if self.splits {
-            (0..2).for_each(|i| matrix[i][n - 1] += old[i]);
-            match d {
-                0 => matrix[n - 1][..2].copy_from_slice(&command),
-                _ => matrix[n - 1][1 + d] = 1.0,
-            }
+        if self.acting {
+            matrix[n - 1] = arriving;
         }
         matrix
     }

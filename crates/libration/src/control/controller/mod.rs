@@ -1,12 +1,14 @@
 //! What a loop decides.
 
 mod force;
+mod luenberger;
 mod open;
 mod pid;
 mod saturated;
 mod state_feedback;
 
 pub use force::Force;
+pub use luenberger::Luenberger;
 pub use open::Open;
 pub use pid::{Pid, PidGains};
 pub use saturated::Saturated;

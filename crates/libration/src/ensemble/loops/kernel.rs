@@ -6,10 +6,11 @@ use core::ops::Range;
 use bytemuck::Pod;
 use pulp::{Simd, WithSimd};
 
+use super::lane::{ratio, stepped};
 use super::rows::Block;
 use super::setup::{Layout, Setup};
 use crate::control::delay::Event;
-use crate::control::{Clock, Controller, Delay, Memory};
+use crate::control::{Clock, Controller, Delay, Disturbance, Memory};
 use crate::ensemble::Assign;
 use crate::ensemble::kernel::{Lines, at, put};
 use crate::ensemble::planes::Share;
@@ -18,8 +19,8 @@ use crate::system::Held;
 use crate::{Float, Integrator, State, System};
 
 /// What is the same for all blocks.
-pub(super) struct Common<'s, T, A, M, K, C, L> {
-    pub(super) setup: &'s Setup<A, M, K, C, L>,
+pub(super) struct Common<'s, T, A, M, K, C, L, N> {
+    pub(super) setup: &'s Setup<A, M, K, C, L, N>,
     pub(super) layout: Layout,
     pub(super) dt: T,
     pub(super) seed: u64,
@@ -33,19 +34,19 @@ const SCANNED: usize = 8;
 const NONE: u32 = u32::MAX;
 
 /// Takes the steps of a range with all trajectories of a block.
-pub(super) struct Steps<'b, 'a, T, A, M, K, C, L, Sys, const D: usize, const W: usize>
+pub(super) struct Steps<'b, 'a, T, A, M, K, C, L, N, Sys, const D: usize, const W: usize>
 where
     A: Assign<Sys>,
 {
-    pub(super) common: &'b Common<'b, T, A, M, K, C, L>,
+    pub(super) common: &'b Common<'b, T, A, M, K, C, L, N>,
     pub(super) block: &'b mut Share<'a, T, D>,
     pub(super) memory: Block<'b, T, W>,
     pub(super) systems: A::Lanes<W>,
     pub(super) steps: Range<u64>,
 }
 
-impl<T, A, M, K, C, L, Sys, const D: usize, const W: usize> WithSimd
-    for Steps<'_, '_, T, A, M, K, C, L, Sys, D, W>
+impl<T, A, M, K, C, L, N, Sys, const D: usize, const W: usize> WithSimd
+    for Steps<'_, '_, T, A, M, K, C, L, N, Sys, D, W>
 where
     T: Float + Pod,
     A: Assign<Sys>,
@@ -53,6 +54,7 @@ where
     K: Controller<T, D>,
     C: Clock<T>,
     L: Delay<T>,
+    N: Disturbance,
     Sys: System<T, D>,
 {
     type Output = ();
@@ -61,11 +63,11 @@ where
     fn with_simd<S: Simd>(self, _: S) {
         let Steps { common, block, mut memory, systems, steps } = self;
         let Common { setup, layout, dt, seed } = *common;
-        let Setup { method, clock, controller, delay, .. } = *setup;
+        let Setup { method, clock, controller, delay, disturbance, .. } = *setup;
         let schedule = delay.schedule();
         let (first, zero) = (block.first as u64, T::zero());
         let period = dt * T::from_f64(schedule.period());
-        let words = [clock.words(), delay.words()];
+        let words = [clock.words(), delay.words(), D * disturbance.words()];
 
         // Locals, each by itself: what the compiler can keep in registers.
         let (q, v) = block.load::<W>();
@@ -74,6 +76,7 @@ where
         if K::ACTS {
             held = Lines(from_fn(|i| memory.get(layout.held + i, zero)));
         }
+        let mut pushed = Lines([[zero; W]; D]);
         let mut clocks = C::Memory::load(&|i| memory.get(layout.clock + i, zero));
         let mut delays = L::Memory::load(&|i| memory.get(layout.delay + i, zero));
         let mut controllers = K::Memory::load(&|i| memory.get(layout.controller + i, zero));
@@ -114,11 +117,25 @@ where
                 held.0 = from_fn(|i| memory.get(place + i, zero));
             }};
         }
+        // All that acts on a lane besides the system's own forces.
         macro_rules! under_command {
             ($l:expr, $dt:expr) => {{
-                let system = Held { system: A::lane(&systems, $l), command: at(&held.0, $l) };
+                let mut command = at(&held.0, $l);
+                if const { N::ACTS } {
+                    (0..D).for_each(|i| command[i] = command[i] + pushed.0[i][$l]);
+                }
+                let system = Held { system: A::lane(&systems, $l), command };
                 stepped(method, &system, &mut q, &mut v, $l, $dt);
             }};
+        }
+        macro_rules! push {
+            ($pushes:ident, $l:expr, $dt:expr) => {
+                if const { N::ACTS } {
+                    for row in &mut pushed.0 {
+                        row[$l] = disturbance.acceleration($dt, &mut || $pushes.next($l));
+                    }
+                }
+            };
         }
 
         let mut begin = steps.start;
@@ -127,12 +144,23 @@ where
             let mut times = Streams::resumed(seed, first, begin, Purpose::StepTime, words[0]);
             let mut latencies =
                 Streams::<W>::resumed(seed, first, begin, Purpose::Latency, words[1]);
-            if const { !K::ACTS } {
+            let mut pushes =
+                Streams::<W>::resumed(seed, first, begin, Purpose::Disturbance, words[2]);
+            if const { !K::ACTS && !N::ACTS } {
                 for step in begin..end {
                     let beat = clock.beat(step);
                     for l in 0..W {
                         let h = dt * ratio::<T, C, W>(&clock, &mut clocks, beat, &mut times, l);
                         stepped(method, &A::lane(&systems, l), &mut q, &mut v, l, h);
+                    }
+                }
+            } else if const { !K::ACTS } {
+                for step in begin..end {
+                    let beat = clock.beat(step);
+                    for l in 0..W {
+                        let h = dt * ratio::<T, C, W>(&clock, &mut clocks, beat, &mut times, l);
+                        push!(pushes, l, h);
+                        under_command!(l, h);
                     }
                 }
             } else if const { L::SHARED } && schedule.whole_steps().is_some() {
@@ -146,6 +174,7 @@ where
                     let beat = clock.beat(step);
                     for l in 0..W {
                         let h = dt * ratio::<T, C, W>(&clock, &mut clocks, beat, &mut times, l);
+                        push!(pushes, l, h);
                         under_command!(l, h);
                     }
                 }
@@ -155,6 +184,7 @@ where
                     let mut length = [zero; W];
                     for (l, length) in length.iter_mut().enumerate() {
                         *length = dt * ratio::<T, C, W>(&clock, &mut clocks, beat, &mut times, l);
+                        push!(pushes, l, *length);
                     }
                     // Seconds of the step that are gone.
                     let (mut part, mut gone) = (0.0, [zero; W]);
@@ -184,6 +214,7 @@ where
                     let mut length = [zero; W];
                     for l in 0..W {
                         length[l] = dt * ratio::<T, C, W>(&clock, &mut clocks, beat, &mut times, l);
+                        push!(pushes, l, length[l]);
                         let mut own = L::Memory::lane(&delays, l);
                         let arrival = delay.arrival(&mut own, late, &mut || latencies.next(l));
                         L::Memory::set_lane(&mut delays, l, own);
@@ -255,34 +286,4 @@ where
             (0..D).for_each(|i| memory.set(layout.held + i, &held.0[i]));
         }
     }
-}
-
-/// How many `dt` a step is long in lane `l`.
-#[inline(always)]
-fn ratio<T: Float, C: Clock<T>, const W: usize>(
-    clock: &C,
-    clocks: &mut <C::Memory as Memory<T>>::Lanes<W>,
-    beat: C::Beat,
-    times: &mut Streams<W>,
-    l: usize,
-) -> T {
-    let mut memory = C::Memory::lane(clocks, l);
-    let ratio = clock.ratio(&mut memory, beat, &mut || times.next(l));
-    C::Memory::set_lane(clocks, l, memory);
-    ratio
-}
-
-/// A step of lane `l`.
-#[inline(always)]
-fn stepped<T: Float, Sys: System<T, D>, const D: usize, const W: usize>(
-    method: impl Integrator,
-    system: &Sys,
-    q: &mut Lines<[[T; W]; D]>,
-    v: &mut Lines<[[T; W]; D]>,
-    l: usize,
-    dt: T,
-) {
-    let state = method.step(system, State { q: at(&q.0, l), v: at(&v.0, l) }, dt);
-    put(&mut q.0, l, state.q);
-    put(&mut v.0, l, state.v);
 }

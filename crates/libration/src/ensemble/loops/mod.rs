@@ -1,6 +1,7 @@
 //! Many control loops, each with its clock, its delays and its controller.
 
 mod kernel;
+mod lane;
 mod rows;
 mod run;
 mod setup;
@@ -14,7 +15,7 @@ pub use setup::Setup;
 
 use super::{Assign, Ensemble, EnsembleError, Execution, GRAIN, Nobody, Observer, chunk, shares};
 use crate::control::error::finite;
-use crate::control::{Begin, Clock, Controller, Delay, Memory};
+use crate::control::{Begin, Clock, Controller, Delay, Disturbance, Memory, Undisturbed};
 use crate::{Float, Integrator, State, System};
 use kernel::Common;
 use rows::Memories;
@@ -53,8 +54,8 @@ use setup::Layout;
 /// # }
 /// ```
 #[derive(Debug)]
-pub struct Loops<T, Sys, A, M, K, C, L, const D: usize> {
-    setup: Setup<A, M, K, C, L>,
+pub struct Loops<T, Sys, A, M, K, C, L, const D: usize, N = Undisturbed> {
+    setup: Setup<A, M, K, C, L, N>,
     layout: Layout,
     dt: T,
     seed: u64,
@@ -64,7 +65,7 @@ pub struct Loops<T, Sys, A, M, K, C, L, const D: usize> {
     system: PhantomData<Sys>,
 }
 
-impl<T, Sys, A, M, K, C, L, const D: usize> Loops<T, Sys, A, M, K, C, L, D>
+impl<T, Sys, A, M, K, C, L, const D: usize, N> Loops<T, Sys, A, M, K, C, L, D, N>
 where
     T: Float + Pod,
     A: Assign<Sys>,
@@ -72,6 +73,7 @@ where
     K: Controller<T, D>,
     C: Clock<T>,
     L: Delay<T>,
+    N: Disturbance,
     Sys: System<T, D> + Copy + Send + Sync,
 {
     /// Loops in steps of `dt` seconds that start from `states`; all that is random is drawn from `seed`. Until a first command
@@ -82,7 +84,7 @@ where
     /// systems, rates or latencies than trajectories; [`EnsembleError::Control`] if a number of the setup, or `before`, cannot
     /// be; [`EnsembleError::Memory`].
     pub fn new(
-        setup: Setup<A, M, K, C, L>,
+        setup: Setup<A, M, K, C, L, N>,
         dt: T,
         seed: u64,
         before: [T; D],
@@ -94,6 +96,7 @@ where
         }
         setup.clock.check()?;
         setup.delay.check()?;
+        setup.disturbance.check::<T>()?;
         let period = dt.to_f64() * setup.delay.schedule().period();
         setup.controller.check(period)?;
         before.iter().try_for_each(|x| finite::<T>("the command before the first", x.to_f64()))?;
@@ -107,7 +110,7 @@ where
                 return Err(EnsembleError::Length { what, values, len });
             }
         }
-        let layout = Layout::of::<T, A, M, K, C, L, D>(&setup);
+        let layout = Layout::of::<T, A, M, K, C, L, N, D>(&setup);
         let trajectories = Ensemble::new(states, execution)?;
         let memories = Memories::new(len, layout.rows)?;
         let system = PhantomData;

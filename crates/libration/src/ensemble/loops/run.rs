@@ -7,7 +7,7 @@ use bytemuck::Pod;
 
 use super::kernel::{Common, Steps};
 use super::rows::Rows;
-use crate::control::{Clock, Controller, Delay, Memory};
+use crate::control::{Clock, Controller, Delay, Disturbance, Memory};
 use crate::ensemble::instructions::{Baseline, Target, Targeted};
 use crate::ensemble::planes::Share;
 use crate::ensemble::run::{Observe, widest};
@@ -15,8 +15,8 @@ use crate::ensemble::{Assign, Observer};
 use crate::{Float, Integrator, System};
 
 /// What is done with the loops of a share.
-pub(super) struct Run<'a, 's, T, A, M, K, C, L, Sys, O, const D: usize> {
-    pub(super) common: &'s Common<'s, T, A, M, K, C, L>,
+pub(super) struct Run<'a, 's, T, A, M, K, C, L, N, Sys, O, const D: usize> {
+    pub(super) common: &'s Common<'s, T, A, M, K, C, L, N>,
     pub(super) share: Share<'a, T, D>,
     pub(super) rows: Rows<'a, T>,
     pub(super) steps: Range<u64>,
@@ -34,7 +34,8 @@ const fn width<I: Target, T>(rows: usize) -> usize {
     widest::<I, T>(if fit < 2 { 2 } else { fit }, &WIDTHS)
 }
 
-impl<T, A, M, K, C, L, Sys, O, const D: usize> Targeted for Run<'_, '_, T, A, M, K, C, L, Sys, O, D>
+impl<T, A, M, K, C, L, N, Sys, O, const D: usize> Targeted
+    for Run<'_, '_, T, A, M, K, C, L, N, Sys, O, D>
 where
     T: Float + Pod,
     A: Assign<Sys>,
@@ -42,6 +43,7 @@ where
     K: Controller<T, D>,
     C: Clock<T>,
     L: Delay<T>,
+    N: Disturbance,
     Sys: System<T, D>,
     O: Observer<T, D>,
 {
@@ -60,7 +62,7 @@ where
     }
 }
 
-impl<'a, T, A, M, K, C, L, Sys, O, const D: usize> Run<'a, '_, T, A, M, K, C, L, Sys, O, D>
+impl<'a, T, A, M, K, C, L, N, Sys, O, const D: usize> Run<'a, '_, T, A, M, K, C, L, N, Sys, O, D>
 where
     T: Float + Pod,
     A: Assign<Sys>,
@@ -68,6 +70,7 @@ where
     K: Controller<T, D>,
     C: Clock<T>,
     L: Delay<T>,
+    N: Disturbance,
     Sys: System<T, D>,
     O: Observer<T, D>,
 {
@@ -75,7 +78,8 @@ where
     const ROWS: usize = {
         let held = if K::ACTS { D } else { 0 };
         let streams = if C::DRAWS { 2 } else { 0 };
-        2 * D + held + streams + C::Memory::LEN + K::Memory::LEN + L::Memory::LEN
+        let pushed = if N::ACTS { 2 + D } else { 0 };
+        2 * D + held + streams + pushed + C::Memory::LEN + K::Memory::LEN + L::Memory::LEN
     };
 
     /// Block after block, each from the first step to the last.
@@ -112,7 +116,7 @@ where
                 None => self.steps.end,
             };
             let memory = self.rows.of::<W>(block.first - first);
-            target.run(Steps::<T, A, M, K, C, L, Sys, D, W> {
+            target.run(Steps::<T, A, M, K, C, L, N, Sys, D, W> {
                 common: self.common,
                 block: &mut block,
                 memory,

@@ -3,11 +3,11 @@
 use crate::Float;
 use crate::control::clock::Fixed;
 use crate::control::controller::Open;
-use crate::control::{Clock, Controller, Delay, Memory, Schedule};
+use crate::control::{Clock, Controller, Delay, Memory, Schedule, Undisturbed};
 
 /// A plant with its integrator, and what drives and disturbs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Setup<A, M, K = Open, C = Fixed, L = Schedule> {
+pub struct Setup<A, M, K = Open, C = Fixed, L = Schedule, N = Undisturbed> {
     /// The plant of every trajectory: [`All`](super::super::All) or [`Each`](super::super::Each).
     pub systems: A,
     /// The integrator.
@@ -18,33 +18,41 @@ pub struct Setup<A, M, K = Open, C = Fixed, L = Schedule> {
     pub clock: C,
     /// When commands arrive.
     pub delay: L,
+    /// What pushes the plant besides.
+    pub disturbance: N,
 }
 
 impl<A, M> Setup<A, M> {
     /// A plant that nothing drives or disturbs.
     pub fn new(systems: A, method: M) -> Self {
         let (controller, clock, delay) = (Open, Fixed, Schedule::EVERY_STEP);
-        Setup { systems, method, controller, clock, delay }
+        Setup { systems, method, controller, clock, delay, disturbance: Undisturbed }
     }
 }
 
-impl<A, M, K, C, L> Setup<A, M, K, C, L> {
+impl<A, M, K, C, L, N> Setup<A, M, K, C, L, N> {
     /// This, under a controller.
-    pub fn controller<Other>(self, controller: Other) -> Setup<A, M, Other, C, L> {
-        let Setup { systems, method, clock, delay, .. } = self;
-        Setup { systems, method, controller, clock, delay }
+    pub fn controller<Other>(self, controller: Other) -> Setup<A, M, Other, C, L, N> {
+        let Setup { systems, method, clock, delay, disturbance, .. } = self;
+        Setup { systems, method, controller, clock, delay, disturbance }
     }
 
     /// This, with steps of another clock.
-    pub fn clock<Other>(self, clock: Other) -> Setup<A, M, K, Other, L> {
-        let Setup { systems, method, controller, delay, .. } = self;
-        Setup { systems, method, controller, clock, delay }
+    pub fn clock<Other>(self, clock: Other) -> Setup<A, M, K, Other, L, N> {
+        let Setup { systems, method, controller, delay, disturbance, .. } = self;
+        Setup { systems, method, controller, clock, delay, disturbance }
     }
 
     /// This, with commands that arrive so.
-    pub fn delay<Other>(self, delay: Other) -> Setup<A, M, K, C, Other> {
-        let Setup { systems, method, controller, clock, .. } = self;
-        Setup { systems, method, controller, clock, delay }
+    pub fn delay<Other>(self, delay: Other) -> Setup<A, M, K, C, Other, N> {
+        let Setup { systems, method, controller, clock, disturbance, .. } = self;
+        Setup { systems, method, controller, clock, delay, disturbance }
+    }
+
+    /// This, pushed by something else besides.
+    pub fn disturbance<Other>(self, disturbance: Other) -> Setup<A, M, K, C, L, Other> {
+        let Setup { systems, method, controller, clock, delay, .. } = self;
+        Setup { systems, method, controller, clock, delay, disturbance }
     }
 }
 
@@ -65,7 +73,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    pub(super) fn of<T, A, M, K, C, L, const D: usize>(setup: &Setup<A, M, K, C, L>) -> Self
+    pub(super) fn of<T, A, M, K, C, L, N, const D: usize>(setup: &Setup<A, M, K, C, L, N>) -> Self
     where
         T: Float,
         K: Controller<T, D>,
