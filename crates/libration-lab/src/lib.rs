@@ -25,6 +25,7 @@ mod text;
 pub mod trajectory;
 pub mod tried;
 pub mod untried;
+pub mod wakeups;
 
 pub use config::Config;
 pub use effort::Effort;

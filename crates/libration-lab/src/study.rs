@@ -54,6 +54,9 @@ pub enum StudyError {
     /// Trajectories could not be made or run together.
     #[error(transparent)]
     Ensemble(#[from] libration::ensemble::EnsembleError),
+    /// The cost of a loop could not be found.
+    #[error(transparent)]
+    Cost(#[from] libration::analysis::CostError),
     /// Environments could not be made or run.
     #[error(transparent)]
     Environment(#[from] libration::rl::EnvironmentError),

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::number::{criterion, forecast_steps};
-use super::timing::TimingArgs;
+use super::timing::{CostArgs, TimingArgs};
 use super::{StepArgs, SystemArgs};
 
 /// What theory says of one step.
@@ -16,6 +16,8 @@ pub(crate) struct AnalyzeArgs {
     pub(crate) step: StepArgs,
     #[command(flatten)]
     pub(crate) timing: TimingArgs,
+    #[command(flatten)]
+    pub(crate) cost: CostArgs,
     /// Number of steps over which the largest energy drift is taken; of a linear system up to 1e15
     #[arg(
         long,
@@ -53,5 +55,7 @@ Examples:
 Of a nonlinear system, matrix and eigenvalues are those of one step linearised about --q, --v.
 Between whole steps critical latency and stable latencies follow the textbook's λᵈ; the end of
 split steps is where a command that arrives within a step splits it, as the spectral radius and
-simulations have it. With a latency second moments are known up to 17 steps, and the exponent of
+simulations have it. The cost is the stationary mean under white noise of the acceleration of unit
+intensity: of exact steps over continuous time, of an integrator over its steps, with the noise
+held through each; half the clocks of --skew are slow by its rms, half fast. With a latency second moments are known up to 17 steps, and the exponent of
 a typical run is not.";

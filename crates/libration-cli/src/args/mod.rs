@@ -2,6 +2,7 @@
 
 mod analyze;
 mod bench;
+mod measure_jitter;
 mod number;
 mod rollout;
 pub(crate) mod simd;
@@ -21,9 +22,11 @@ use crate::error::Failure;
 
 pub(crate) use analyze::AnalyzeArgs;
 pub(crate) use bench::BenchArgs;
+pub(crate) use measure_jitter::MeasureJitterArgs;
 pub(crate) use rollout::{RolloutArgs, VerifyArgs};
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use system::{Setting, StepArgs, SystemArgs};
+pub(crate) use timing::CostArgs;
 
 /// A laboratory for the stability of simulations: what theory predicts beside what was measured.
 #[derive(Debug, Parser)]
@@ -53,6 +56,7 @@ Examples:
   libration rollout --out data --transitions 1e8
                                              a data set of rollouts, as Parquet
   libration bench                            what this machine can do
+  libration measure-jitter --rate 500        how punctual it is
   libration list                             what there is
 
 Exit codes: 0 success, 1 a failed run or a finding that disagrees, 2 wrong input, 130 interrupted";
@@ -71,6 +75,8 @@ pub(crate) enum Command {
     Verify(VerifyArgs),
     /// Time this machine: how fast trajectories advance, and what limits them
     Bench(BenchArgs),
+    /// Measure how punctual this machine is: when a real loop wakes up
+    MeasureJitter(MeasureJitterArgs),
     /// List studies, systems and integrators
     List(ListArgs),
     /// Print a completion script for a shell

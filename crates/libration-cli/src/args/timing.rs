@@ -1,7 +1,7 @@
 //! What is asked of the timing of a loop.
 
 use clap::Args;
-use libration::analysis::{Feedback, Jitter};
+use libration::analysis::{Feedback, Jitter, LqrWeights};
 use libration_lab::analyze::{Late, Timing};
 
 /// The loop, and what happens to its clock and its commands.
@@ -33,8 +33,32 @@ impl TimingArgs {
     /// As the laboratory takes it.
     pub(crate) fn timing(self) -> Timing {
         let TimingArgs { feedback, latency, jitter, skew } = self;
-        Timing { feedback, latency, jitter, skew }
+        Timing { feedback, latency, jitter, skew, ..Timing::default() }
     }
+}
+
+/// What else is asked of a loop that is not simulated.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct CostArgs {
+    /// The probability that a command is lost on its way, each for itself: the last one goes on then; at least 0 and below 1
+    #[arg(
+        long,
+        value_name = "P",
+        value_parser = loss,
+        requires = "feedback",
+        allow_hyphen_values = true
+    )]
+    pub(crate) loss: Option<f64>,
+    /// What the loop costs under noise: the mean of QQ·q² + VV·v² + UU·u². If nothing is said that of its energy,
+    /// ½(ω²q² + v²)
+    #[arg(
+        long,
+        value_name = "QQ,VV,UU",
+        value_parser = weights,
+        requires = "feedback",
+        allow_hyphen_values = true
+    )]
+    pub(crate) cost_weights: Option<LqrWeights>,
 }
 
 /// Products of gains must stay far within the range of floats.
@@ -53,6 +77,18 @@ fn feedback(text: &str) -> Result<Feedback, String> {
     let (position, velocity) =
         gains.ok_or("it must be two finite numbers, of at most 1e50 in size, as 10,2")?;
     Ok(Feedback { position, velocity })
+}
+
+fn loss(text: &str) -> Result<f64, String> {
+    let number = finite(text).filter(|x| (0.0..1.0).contains(x));
+    number.ok_or_else(|| "it must be a number that is at least 0 and below 1".to_owned())
+}
+
+fn weights(text: &str) -> Result<LqrWeights, String> {
+    let rule = "it must be three numbers from 0 to 1e50, of the squares of position, velocity and command, as 5,0.5,0";
+    let weight = |text| finite(text).filter(|x| (0.0..=MOST_GAIN).contains(x)).ok_or(rule);
+    let [q, v, u]: [&str; 3] = text.split(',').collect::<Vec<_>>().try_into().map_err(|_| rule)?;
+    Ok(LqrWeights { position: weight(q)?, velocity: weight(v)?, command: weight(u)? })
 }
 
 fn latency(text: &str) -> Result<Late, String> {

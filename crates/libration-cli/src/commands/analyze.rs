@@ -4,17 +4,19 @@ use std::fmt::Write as _;
 use std::io::{self, Write as _};
 
 use libration_lab::analyze::{
-    self, Analysis, Criteria, ModifiedHamiltonian, Request, Stepping, TimingAnswer,
+    self, Analysis, Criteria, ModifiedHamiltonian, Request, Stepping, Timing, TimingAnswer,
 };
 use libration_lab::config::limits;
 
-use crate::args::{AnalyzeArgs, Setting};
+use crate::args::{AnalyzeArgs, CostArgs, Setting};
 use crate::error::Failure;
 
 /// Analyses one step and prints what theory says of it.
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     let Setting { system, q, v } = args.system.resolve()?;
-    let (stepping, dt, timing) = (args.step.integrator, args.step.dt, args.timing.timing());
+    let (stepping, dt) = (args.step.integrator, args.step.dt);
+    let CostArgs { loss, cost_weights: weights } = args.cost;
+    let timing = Timing { loss, weights, ..args.timing.timing() };
     if !system.is_linear() {
         // What cannot be forecast is simulated.
         limits::steps("--steps", args.steps.into()).map_err(Failure::usage)?;
@@ -185,6 +187,22 @@ fn describe_timing(timing: &TimingAnswer, text: &mut String) {
         let late = timing.latency_steps.is_some_and(|steps| steps > 0.0);
         let shown = if late { LATE.into() } else { number(exponent, "a step") };
         line("a typical run grows", shown);
+    }
+    if let Some(cost) = &timing.cost {
+        let [q, v, u] = cost.cost_weights;
+        let command = if u == 0.0 { String::new() } else { format!(" {u:+?} u²") };
+        let of = format!("{q:?} q² {v:+?} v²{command} under unit noise");
+        line(
+            "cost",
+            match (cost.cost, cost.cost_infinite) {
+                (Some(cost), _) => format!("{cost:?}, the mean of {of}"),
+                (None, Some(_)) => "infinite: second moments grow".into(),
+                (None, None) => "not known: the loop has to know too many numbers".into(),
+            },
+        );
+        if let Some(increase) = cost.cost_increase {
+            line("", format!("{:+e} of that of an ideal clock and link", increase));
+        }
     }
     if let Some(steps) = timing.dephasing_steps {
         line("mean falls to 1/e in", number(steps, "steps"));

@@ -5,8 +5,10 @@ mod bench;
 mod completions;
 mod lab;
 mod list;
+mod measure_jitter;
 mod rollout;
 mod simulate;
+mod time_stamps;
 
 use crate::args::{Arguments, Command};
 use crate::error::Failure;
@@ -22,6 +24,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Rollout(args) => rollout::run(&args, arguments.quiet),
         Command::Verify(args) => rollout::verify(&args, arguments.quiet),
         Command::Bench(args) => bench::run(&args, arguments.quiet),
+        Command::MeasureJitter(args) => measure_jitter::run(&args, arguments.quiet),
         Command::List(args) => list::run(&args),
         Command::Completions(args) => completions::run(&args),
     }

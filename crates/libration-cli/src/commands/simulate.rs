@@ -1,7 +1,6 @@
 //! `libration simulate`.
 
-use std::fs::File;
-use std::io::{self, BufWriter, ErrorKind, IsTerminal, Read, Write};
+use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -9,6 +8,7 @@ use libration::control::clock::Recorded;
 use libration_lab::export::ExportError;
 use libration_lab::trajectory::{self, Copies, Ending, Format, Request, Stopped, TrajectoryError};
 
+use super::time_stamps;
 use crate::args::{Setting, SimulateArgs, simd};
 use crate::error::Failure;
 use crate::output_file::OutputFile;
@@ -94,23 +94,9 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
     })
 }
 
-/// Bytes of the largest file of time stamps.
-const MOST_TEXT: u64 = 256_000_000;
-
 /// The steps between the time stamps of a file, in multiples of `dt` seconds.
 fn recorded(path: &Path, dt: f64) -> Result<Vec<f64>, Failure> {
-    let wrong = |reason: String| {
-        Failure::usage(format!("cannot use `{}` (--time-stamps): {reason}", path.display()))
-    };
-    let mut text = String::new();
-    let file = File::open(path).map_err(|error| wrong(error.to_string()))?;
-    // A device may have no end.
-    let read = file.take(MOST_TEXT + 1).read_to_string(&mut text);
-    if read.map_err(|error| wrong(error.to_string()))? as u64 > MOST_TEXT {
-        return Err(wrong(format!("it is longer than {} MB", MOST_TEXT / 1_000_000)));
-    }
-    let steps = Recorded::stamps_in(&text).and_then(|stamps| Recorded::steps_in(&stamps, dt));
-    steps.map_err(|error| wrong(error.to_string()))
+    time_stamps::read(path, "--time-stamps", |stamps| Recorded::steps_in(&stamps, dt))
 }
 
 fn into_file(

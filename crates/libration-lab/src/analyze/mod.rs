@@ -19,7 +19,7 @@ pub use error::AnalyzeError;
 pub use limits::{LargestDt, OrderOfWord};
 use modes::Modes;
 pub use request::{Request, Stepping};
-pub use timing::{Critical, Late, Timing, TimingAnswer};
+pub use timing::{CostAnswer, Critical, Late, Timing, TimingAnswer};
 
 /// Analyses one step.
 ///

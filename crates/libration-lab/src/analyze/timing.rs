@@ -1,6 +1,6 @@
 //! What timing does to the loop that a request describes.
 
-use libration::analysis::{Feedback, Jitter, Latency, Plant};
+use libration::analysis::{CostError, Feedback, Imperfections, Jitter, Latency, LqrWeights, Plant};
 use libration::number::Wide;
 use libration::{AnySystem, Model, Scalar, State};
 use serde::Serialize;
@@ -18,6 +18,10 @@ pub struct Timing {
     pub jitter: Option<Jitter>,
     /// The law of clock rates over an ensemble.
     pub skew: Option<Jitter>,
+    /// The probability that a command is lost on its way.
+    pub loss: Option<f64>,
+    /// The weights of what the loop costs; of its energy if nothing is said.
+    pub weights: Option<LqrWeights>,
 }
 
 /// A latency as it is given.
@@ -37,6 +41,8 @@ impl Timing {
             (self.latency.is_some(), "latency"),
             (self.jitter.is_some(), "jitter"),
             (self.skew.is_some(), "skew"),
+            (self.loss.is_some(), "loss"),
+            (self.weights.is_some(), "cost-weights"),
         ];
         given.into_iter().find_map(|(given, name)| given.then_some(name))
     }
@@ -88,6 +94,9 @@ pub struct TimingAnswer {
     /// Steps after which the mean of an ensemble of clocks has fallen to 1/e; none where nothing turns.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dephasing_steps: Option<Option<f64>>,
+    /// What the loop costs under noise, and what timing adds to that.
+    #[serde(flatten)]
+    pub cost: Option<CostAnswer>,
     /// The spectral radius of the loop with its latency.
     #[serde(skip)]
     pub(super) radius: Option<Wide>,
@@ -108,6 +117,46 @@ pub struct Critical {
     pub latency_windows: Vec<(f64, Option<f64>)>,
     /// The delay margin of the continuous loop, in s; none if it has none.
     pub delay_margin_seconds: Option<f64>,
+}
+
+/// The stationary cost of a loop under white noise of the acceleration of unit intensity.
+#[derive(Debug, Serialize)]
+pub struct CostAnswer {
+    /// The weights `[q, v, u]` of the squares of which the cost is the mean.
+    pub cost_weights: [f64; 3],
+    /// The cost with all that is asked: latency, jitter, skew (half the clocks slow by its rms, half fast) and loss; none where
+    /// it is infinite, or not known.
+    pub cost: Option<f64>,
+    /// Whether it is infinite: the loop is not stable in the mean square. Unknown where the loop is too large.
+    pub cost_infinite: Option<bool>,
+    /// `J/J₀ − 1`, with the cost `J₀` of the same loop with nothing of that; none where one of them is none.
+    pub cost_increase: Option<f64>,
+}
+
+impl CostAnswer {
+    fn of(plant: &Plant<'_>, feedback: Feedback, latency: Latency, timing: &Timing) -> Self {
+        let weights = timing.weights.unwrap_or_else(|| plant.energy());
+        let cost = |imperfections: &Imperfections| -> Result<f64, CostError> {
+            plant.cost(&feedback.into(), imperfections, weights)
+        };
+        let none = Imperfections::NONE;
+        let jitter = timing.jitter.unwrap_or(none.jitter);
+        let loss = timing.loss.unwrap_or(0.0);
+        let with = |skew| cost(&Imperfections { latency, jitter, skew, loss });
+        let all = match timing.skew.map(Jitter::rms).filter(|&rms| rms > 0.0) {
+            Some(rms) => with(rms).and_then(|slow| Ok(0.5 * (slow + with(-rms)?))),
+            None => with(0.0),
+        };
+        let all = all.ok();
+        let finite = |cost: Option<f64>| cost.filter(|cost| cost.is_finite());
+        let increase = finite(all).zip(finite(cost(&none).ok()));
+        CostAnswer {
+            cost_weights: [weights.position, weights.velocity, weights.command],
+            cost: finite(all),
+            cost_infinite: all.map(f64::is_infinite),
+            cost_increase: increase.map(|(all, ideal)| all / ideal - 1.0),
+        }
+    }
 }
 
 /// Answers what `request` asks of timing; none if it asks nothing.
@@ -173,6 +222,7 @@ fn of_model(model: impl Model<1>, latency: Latency, request: &Request) -> Timing
         mean_square_growth: mean_square.map(|found| found.map(|[_, growth]| growth)),
         lyapunov_exponent: timing.jitter.map(exponent),
         dephasing_steps: timing.skew.map(|law| plant.dephasing_steps(law).map(Wide::to_f64)),
+        cost: timing.feedback.map(|_| CostAnswer::of(&plant, feedback, latency, timing)),
         radius: timing.feedback.map(|_| plant.spectral_radius(feedback, latency)),
     }
 }

@@ -38,7 +38,7 @@ pub use execution::{Execution, MOST_THREADS};
 pub use instructions::{InstructionSet, Loop};
 pub use loops::{Loops, Setup};
 pub use memory::{NoRoom, available_memory, installed_memory};
-pub use observer::{Copies, Drift, Lanes, MeanSquareError, Moments, Observer, Summary};
+pub use observer::{Copies, Drift, Lanes, MeanCost, MeanSquareError, Moments, Observer, Summary};
 pub use stream::{stream, stream_again};
 
 use crate::{Float, Integrator, State, System};

@@ -5,6 +5,7 @@
 mod bits;
 mod clocks;
 mod controllers;
+mod cost;
 mod delays;
 mod growth;
 mod moments;

@@ -1,6 +1,7 @@
 //! Latency, jitter, asynchrony and precision side by side: a profile, and never one list.
 
 mod claims;
+mod cost;
 mod figures;
 mod imperfection;
 mod predicted;
@@ -39,16 +40,20 @@ impl Study for Hierarchy {
         let margins = Kind::ALL.map(predicted::critical);
         let steps = checkpoints(horizon(lab));
         for profile in PROFILES {
-            let effects = lab
-                .sweep(profile.title, &Kind::ALL, |&kind| trial::run(lab, kind, profile, &steps))?;
+            let effects = lab.sweep(profile.title, &Kind::ALL, |&kind| {
+                Ok((trial::run(lab, kind, profile, &steps)?, cost::measured(lab, kind, profile)?))
+            })?;
             let mut series = Series::new(format!("profile-{}", profile.tag)).with(
                 "step",
                 "1",
                 steps.iter().map(|&n| n as f64).collect(),
             );
             for ((kind, margin), effect) in Kind::ALL.into_iter().zip(margins).zip(effects) {
+                let (effect, rise) = effect;
                 let found = profile::find(&mut record, kind, profile, &steps, &effect);
-                whole.push(profile::row(kind, profile, found, margin));
+                let dearer = cost::predicted(kind, profile)?;
+                cost::find(&mut record, kind, profile, rise, dearer);
+                whole.push(profile::row(kind, profile, found, [Some(rise[0]), dearer], margin));
                 let measured = effect.distance;
                 let expected: Vec<f64> = steps
                     .iter()

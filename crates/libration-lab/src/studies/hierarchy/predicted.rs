@@ -8,7 +8,7 @@ use libration::system::Oscillator;
 use super::imperfection::{Kind, Profile};
 use super::trial::{COUNT, DT, SPRING};
 
-const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
+pub(super) const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
 
 /// Nobody commands.
 const FREE: Feedback = Feedback { position: 0.0, velocity: 0.0 };

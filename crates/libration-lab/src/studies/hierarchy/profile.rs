@@ -20,6 +20,8 @@ pub(super) fn table(horizon: u64) -> Table {
         "predicted",
         &energy,
         "predicted",
+        "ΔJ/J₀",
+        "predicted",
         "critical size",
         "margin used",
     ];
@@ -68,11 +70,17 @@ pub(super) fn find(
 }
 
 /// A row of the table.
-pub(super) fn row(kind: Kind, profile: &Profile, found: Found, margin: Option<f64>) -> Vec<Cell> {
+pub(super) fn row(
+    kind: Kind,
+    profile: &Profile,
+    found: Found,
+    cost: [Option<f64>; 2],
+    margin: Option<f64>,
+) -> Vec<Cell> {
     let size = kind.size(profile);
     let known = |x: Option<f64>| x.map_or_else(|| Cell::absent(""), Cell::from);
     let words: [Cell; 3] = [profile.title.into(), kind.title().into(), size.into()];
-    let all = found.steps.into_iter().chain(found.energy).map(known);
+    let all = found.steps.into_iter().chain(found.energy).chain(cost).map(known);
     let margins = match (margin, kind) {
         (Some(margin), _) => [Cell::from(margin), Cell::from(size / margin)],
         // Beyond it steps would be negative, and none is tried.

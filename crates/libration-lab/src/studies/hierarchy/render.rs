@@ -20,8 +20,9 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     );
     page.paragraph(
         "The profile has, for each imperfection alone: the steps until trajectories are a tenth of the orbit apart; the rms \
-         of ln E/E₀ at the end, of the energy that undisturbed steps conserve; and how much of the size at which a \
-         loop with the gains (10, 2) on the same spring becomes unstable is used. Asynchrony changes no energy and \
+         of ln E/E₀ at the end, of the energy that undisturbed steps conserve; by how much a loop with the gains (10, 2) on \
+         the same spring costs more under white noise, ΔJ/J₀, where the cost J is its mean energy and J₀ that of the ideal \
+         loop; and how much of the size at which this loop becomes unstable is used. Asynchrony changes no energy and \
          uses hardly any margin, and yet takes trajectories apart sooner than jitter of the same size.",
     );
     page.table(record.table("profile")?, 3);

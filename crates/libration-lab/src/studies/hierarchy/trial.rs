@@ -24,7 +24,7 @@ pub(super) const DT: f64 = 0.01;
 pub(super) const COUNT: usize = 128;
 
 /// Of all that is random.
-const SEED: u64 = 20;
+pub(super) const SEED: u64 = 20;
 
 /// What an imperfection does to trajectories, after each of some numbers of steps.
 pub(super) struct Effect {

@@ -10,6 +10,12 @@ use crate::Scalar;
 use crate::number::Wide;
 
 impl Plant<'_> {
+    /// The weights of the energy of what moves, `½(ω²q² + v²)`, where a spring with `ω²` pulls back; those of `½v²` where none does.
+    pub fn energy(&self) -> LqrWeights {
+        let stiffness = -self.generator.entry(1, 0).to_f64();
+        LqrWeights { position: stiffness.max(0.0) / 2.0, velocity: 0.5, command: 0.0 }
+    }
+
     /// The stationary cost of the loop that `controller` closes, per second, under white noise of the acceleration of unit
     /// intensity: the mean of `position·q² + velocity·v² + command·u²` with the weights. Infinite where second moments grow.
     ///

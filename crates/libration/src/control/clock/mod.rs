@@ -6,6 +6,7 @@ mod jittered;
 mod late;
 mod noise;
 mod recorded;
+mod stamps;
 mod steady;
 mod wandering;
 mod waving;

@@ -24,7 +24,9 @@ pub enum RecordedError {
         count: usize,
     },
     /// A line of a file is no time stamp.
-    #[error("line {line} is `{text}`; it must begin with a number, the time in seconds")]
+    #[error(
+        "line {line} is `{text}`; it must begin with a number, the time in seconds or nanoseconds"
+    )]
     Line {
         /// Which, from 1 on.
         line: usize,
@@ -58,31 +60,15 @@ pub enum RecordedError {
 }
 
 impl<'a> Recorded<'a> {
-    /// The time stamps, in seconds, of a file: one on each line, of which columns after a comma do not count. Empty lines and those
-    /// that begin with `#` are passed over, and so is the first line if it is the name of a column: letters without a digit.
+    /// The time stamps of a file, in seconds from the first on: one on each line, at its beginning, in seconds or in nanoseconds; of
+    /// which a first line with the name of a column tells (`time_ns`), or else their size, where they are whole numbers that lie more
+    /// than 1000 apart. Lines of `candump -L` and of `rostopic echo -p` are such lines, and so are rows of CSV. Empty lines and those
+    /// that begin with `#` are passed over.
     ///
     /// # Errors
     /// The first line that is no time stamp.
     pub fn stamps_in(text: &str) -> Result<Vec<f64>, RecordedError> {
-        // Some programs mark a file as Unicode.
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
-        let told = lines.filter(|(_, line)| !(line.is_empty() || line.starts_with('#')));
-        let mut stamps = Vec::new();
-        for (nth, (line, text)) in told.enumerate() {
-            let first = text.split(',').next().unwrap_or(text).trim();
-            let letters = first.contains(char::is_alphabetic) && !first.contains(char::is_numeric);
-            let named = nth == 0 && letters;
-            match first.parse() {
-                Ok(stamp) => stamps.push(stamp),
-                Err(_) if named => {}
-                Err(_) => {
-                    let text = text.chars().take(40).collect();
-                    return Err(RecordedError::Line { line, text });
-                }
-            }
-        }
-        Ok(stamps)
+        super::stamps::read(text)
     }
 
     /// The steps between `stamps`, which are in seconds, as multiples of `dt` seconds.

@@ -1,17 +1,19 @@
 //! What is seen of an ensemble while it runs.
 //!
 //! [`Copies`] of states, the largest [`Drift`] of the energy, the [`MeanSquareError`] against a known
-//! solution and [`Moments`] over the trajectories come with the engine; any [`Observer`] may be a
+//! solution, the [`MeanCost`] and [`Moments`] over the trajectories come with the engine; any [`Observer`] may be a
 //! user's own.
 
 mod copies;
 mod drift;
 mod error;
+mod mean_cost;
 mod moments;
 
 pub use copies::Copies;
 pub use drift::Drift;
 pub use error::MeanSquareError;
+pub use mean_cost::MeanCost;
 pub use moments::{Moments, Summary};
 
 use crate::State;

@@ -1,0 +1,200 @@
+//! `libration measure-jitter`.
+
+use std::fmt::Write as _;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+use libration::control::clock::Recorded;
+use libration_lab::wakeups::{Plan, Priority, Quantile, Statistics, WakeupError, Wakeups};
+use serde_json::{Value, json};
+
+use super::time_stamps;
+use crate::args::MeasureJitterArgs;
+use crate::error::Failure;
+use crate::output_file::OutputFile;
+use crate::{interrupt, terminal};
+
+/// Measures, or reads what was measured, and tells.
+pub(crate) fn run(args: &MeasureJitterArgs, quiet: bool) -> Result<(), Failure> {
+    if let Some(path) = &args.from {
+        let stamps = time_stamps::read(path, "--from", |stamps| {
+            // What is no clock is refused as a replay would refuse it.
+            Recorded::steps_between(&stamps).map(|_| stamps)
+        })?;
+        let statistics = Statistics::of(&stamps, None);
+        return match args.json {
+            true => print_json(&json!(statistics)),
+            false => Ok(terminal::print(&told(&path.display().to_string(), &statistics))?),
+        };
+    }
+    let plan = args.plan();
+    plan.check().map_err(|error| Failure::usage(format!("--{error}")))?;
+    // Before anything is measured, so that nothing is measured in vain.
+    let mut file = args.output.as_deref().map(create).transpose()?;
+    let stop = interrupt::listen()?;
+    let mut told_json = Vec::new();
+    let mut interrupted = false;
+    for &priority in args.priorities() {
+        let name = named(priority);
+        if !quiet {
+            let load = if plan.load { ", with all cores busy" } else { "" };
+            terminal::say(&format!("measuring for {} s, {name}{load}", plan.seconds));
+        }
+        let wakeups = match plan.measure(priority, stop) {
+            Err(error @ WakeupError::NotAllowed(_)) if args.priorities().len() > 1 => {
+                terminal::say(&format!("note: {error}"));
+                continue;
+            }
+            Err(WakeupError::Interrupted) => {
+                interrupted = true;
+                break;
+            }
+            outcome => outcome.map_err(Failure::run)?,
+        };
+        let statistics = Statistics::of_loop(&wakeups);
+        if let Some((path, file)) = file.take() {
+            write(file, &plan, name, &wakeups)
+                .map_err(|error| Failure::run(unwritable(path, &error)))?;
+        }
+        match args.json {
+            true => told_json.push(json!({
+                "rate": plan.rate,
+                "load": plan.load,
+                "priority": name,
+                "statistics": statistics,
+            })),
+            false => {
+                let head = format!("{} Hz, {name}: {} wake-ups", plan.rate, wakeups.times.len());
+                terminal::print(&told(&head, &statistics))?;
+            }
+        }
+        if wakeups.stopped {
+            interrupted = true;
+            break;
+        }
+    }
+    if args.json {
+        print_json(&json!(told_json))?;
+    }
+    match interrupted {
+        true => Err(Failure::Interrupted("interrupted: that is all that was measured".into())),
+        false => Ok(()),
+    }
+}
+
+fn named(priority: Priority) -> &'static str {
+    match priority {
+        Priority::Ordinary => "ordinary priority",
+        Priority::Raised => "raised priority",
+    }
+}
+
+fn print_json(value: &Value) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(value).map_err(Failure::run)?;
+    Ok(terminal::print(&(text + "\n"))?)
+}
+
+fn unwritable(path: &Path, error: &std::io::Error) -> String {
+    format!("cannot write `{}` (--output): {error}", path.display())
+}
+
+fn create(path: &Path) -> Result<(&Path, OutputFile), Failure> {
+    let file = OutputFile::create(path);
+    Ok((path, file.map_err(|error| Failure::usage(unwritable(path, &error)))?))
+}
+
+/// Writes the time stamps.
+fn write(file: OutputFile, plan: &Plan, name: &str, wakeups: &Wakeups) -> std::io::Result<()> {
+    let mut out = BufWriter::new(file);
+    let load = if plan.load { "all cores busy" } else { "no load" };
+    writeln!(out, "# wake-ups of a loop of {} Hz, {name}, {load}", plan.rate)?;
+    writeln!(out, "time_ns")?;
+    wakeups.times.iter().try_for_each(|time| writeln!(out, "{time}"))?;
+    out.into_inner().map_err(|error| error.into_error())?.keep()
+}
+
+/// All of it for a reader at a terminal.
+fn told(head: &str, statistics: &Statistics) -> String {
+    let mut text = format!("{head}\n");
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<22} {value}");
+    };
+    if let Some(lateness) = &statistics.lateness {
+        line("late by", listed(&lateness.quantiles));
+        line("slept through", format!("{} deadlines", lateness.overruns));
+    }
+    line("intervals", listed(&statistics.lengths));
+    line("mean interval", format!("{}, wanted {}", time(statistics.mean), time(statistics.period)));
+    let rms = statistics.jitter_rms;
+    line("jitter, relative rms", format!("{rms:.3e}, as in --jitter gaussian:{rms:.3}"));
+    line("gaps above 1.5 periods", statistics.gaps.to_string());
+    if statistics.repeats > 0 {
+        line("repeated time stamps", format!("{}: steps of length zero", statistics.repeats));
+    }
+    if !statistics.correlation.is_empty() {
+        let shown: Vec<String> =
+            statistics.correlation.iter().map(|c| format!("{c:+.2}")).collect();
+        line("correlation, 1 apart on", shown.join(" "));
+        line("", meaning(statistics.correlation[0]).into());
+    }
+    if let Some(spectrum) = &statistics.spectrum {
+        line(
+            "spectrum",
+            match spectrum.peak() {
+                Some(peak) => format!(
+                    "highest at {:.4} Hz: {:.1} times white noise",
+                    peak.frequency, peak.density
+                ),
+                None => "no line stands out".into(),
+            },
+        );
+    }
+    if let Some(lateness) = &statistics.lateness {
+        let most = lateness.histogram.iter().map(|&(_, count)| count).max().unwrap_or(1).max(1);
+        for &(from, count) in &lateness.histogram {
+            // A bar for every few; what occurs at all is seen.
+            let bar = (40 * count).div_ceil(most);
+            line(
+                &format!("{:>10} and more", time(from)),
+                format!("{count:>9} {}", "█".repeat(bar)),
+            );
+        }
+    }
+    text
+}
+
+/// What the first correlation says of the cause.
+fn meaning(first: f64) -> &'static str {
+    match first {
+        c if c < -0.35 => "each wake-up is late for itself: time does not drift",
+        c if c > 0.35 => "the rate wanders: neighbouring intervals are alike",
+        _ => "intervals vary each for itself",
+    }
+}
+
+fn listed(quantiles: &[Quantile]) -> String {
+    let one = |q: &Quantile| match q.part {
+        0.0 => format!("least {}", time(q.value)),
+        1.0 => format!("most {}", time(q.value)),
+        part => format!("{} % {}", 100.0 * part, time(q.value)),
+    };
+    quantiles.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// A time with three digits.
+fn time(seconds: f64) -> String {
+    let (value, unit) = match seconds {
+        s if s >= 1.0 => (s, "s"),
+        s if s >= 1e-3 => (s * 1e3, "ms"),
+        s if s >= 1e-6 => (s * 1e6, "µs"),
+        s => (s * 1e9, "ns"),
+    };
+    let digits = if value >= 100.0 {
+        0
+    } else if value >= 10.0 {
+        1
+    } else {
+        2
+    };
+    format!("{value:.digits$} {unit}")
+}

@@ -1,0 +1,38 @@
+//! How punctual a machine is: when a real loop wakes up, and what that makes of a clock.
+
+mod load;
+mod periodic;
+mod spectrum;
+mod statistics;
+
+use std::io;
+
+use thiserror::Error;
+
+pub use periodic::{Plan, Priority, Wakeups};
+pub use spectrum::{Band, Spectrum};
+pub use statistics::{Lateness, Quantile, Statistics};
+
+/// Why no wake-ups were measured.
+#[derive(Debug, Error)]
+pub enum WakeupError {
+    /// A number is none.
+    #[error("{name} is {value}; it must be {allowed}")]
+    Value {
+        /// Which.
+        name: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it may be.
+        allowed: String,
+    },
+    /// The system does not let this user raise a priority.
+    #[error("the system does not allow a raised priority: {0}")]
+    NotAllowed(String),
+    /// There is no timer, or no thread.
+    #[error("the timer cannot be used: {0}")]
+    Timer(#[from] io::Error),
+    /// The user asked for it to stop before there was anything to tell.
+    #[error("interrupted")]
+    Interrupted,
+}
