@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use libration::integrator::Exact;
 use libration::simulation::{Sample, SimulationError, Simulator};
+use libration::system::Chosen;
 use libration::{
     Float, Hamiltonian, Integrator, Model, Scalar, State, System, with_method, with_system,
 };
@@ -52,6 +53,9 @@ fn on_model<S: Many, const D: usize, M: Model<D>>(
     let start = State { q: coordinates(&request.q), v: coordinates(&request.v) };
     let dt = S::from_f64(request.dt);
     let energy = |state: &State<S, D>| system.energy(state);
+    // The model, which threads can share, says it anew for every step.
+    let acceleration = |state: &State<S, D>| model.on::<S>().acceleration(state);
+    let chosen = Chosen(&acceleration);
     // A loop of its own for each method, where it is worth its compilation.
     let mut simulation: Box<dyn Simulation<S, D> + '_> = match request.stepping {
         Stepping::Method(method) if const { S::WIDE && D <= 2 } => {
@@ -59,7 +63,7 @@ fn on_model<S: Many, const D: usize, M: Model<D>>(
                 Box::new(Simulator::new(system, integrator, start, dt)?)
             })
         }
-        Stepping::Method(method) => Box::new(Simulator::new(system, method, start, dt)?),
+        Stepping::Method(method) => Box::new(Simulator::new(chosen, method, start, dt)?),
         Stepping::Exact => Box::new(Simulator::new(system, exact(model, request)?, start, dt)?),
     };
     advance(&mut *simulation, &energy, request, rows, stop)

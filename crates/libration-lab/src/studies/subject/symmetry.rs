@@ -3,7 +3,7 @@
 use libration::analysis::{Linearisation, UpdateMatrix};
 use libration::number::{TwoFloat, Wide};
 use libration::system::Oscillator;
-use libration::{Elementary, Float, Method, Model, Scalar, State, with_method};
+use libration::{Elementary, Float, Integrator, Method, Model, Scalar, State};
 
 use super::Problem;
 
@@ -54,17 +54,15 @@ pub(super) fn measure<M: Model<D>, const D: usize>(
     let mut sums = [0.0_f64; 3];
     for &&at in &at {
         let rounded = at.map(Float::to_f64);
-        let defects = with_method!(method, |m| {
-            let linear = Linearisation::new(m, problem.model, &rounded, dt);
-            let (step, back) = (in_turns(&linear.step, omega), in_turns(&linear.back, omega));
-            let there = libration::Integrator::step(m, &system, at, h);
-            let missed = libration::Integrator::step(m, &system, there, -h).plus(-one, at);
-            [
-                step.symplecticity_defect().to_f64(),
-                back.after(&step).distance_from_identity().to_f64(),
-                size(&missed, omega) / size(&at, omega),
-            ]
-        });
+        let linear = Linearisation::new(method, problem.model, &rounded, dt);
+        let (step, back) = (in_turns(&linear.step, omega), in_turns(&linear.back, omega));
+        let there = method.step(&system, at, h);
+        let missed = method.step(&system, there, -h).plus(-one, at);
+        let defects = [
+            step.symplecticity_defect().to_f64(),
+            back.after(&step).distance_from_identity().to_f64(),
+            size(&missed, omega) / size(&at, omega),
+        ];
         // A defect of 10⁻³⁰⁰ has no square.
         sums.iter_mut().zip(defects).for_each(|(sum, x)| *sum = sum.hypot(x));
     }
