@@ -3,6 +3,7 @@
 //! A [`Study`] asks a question; its run leaves a [`Record`] of numbers, each a prediction beside
 //! a measurement; the page is rendered from the record and from nothing else.
 
+pub mod advise;
 pub mod analyze;
 pub mod bench;
 pub mod config;

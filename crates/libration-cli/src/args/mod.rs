@@ -1,5 +1,6 @@
 //! The command line as types: what can be asked, and in which words.
 
+mod advise;
 mod analyze;
 mod bench;
 mod measure_jitter;
@@ -20,6 +21,7 @@ use libration_lab::{Effort, studies};
 
 use crate::error::Failure;
 
+pub(crate) use advise::AdviseArgs;
 pub(crate) use analyze::AnalyzeArgs;
 pub(crate) use bench::BenchArgs;
 pub(crate) use measure_jitter::MeasureJitterArgs;
@@ -53,6 +55,8 @@ Examples:
                                              a trajectory as CSV
   libration analyze --system oscillator --integrator rk4 --dt 0.01
                                              what theory says of one step
+  libration advise --system oscillator --feedback 10,2 --period 0.01 --latency 0.02
+                                             what a loop can afford
   libration rollout --out data --transitions 1e8
                                              a data set of rollouts, as Parquet
   libration bench                            what this machine can do
@@ -67,6 +71,8 @@ pub(crate) enum Command {
     Lab(LabArgs),
     /// Say what theory makes of one step of an integrator on a system
     Analyze(AnalyzeArgs),
+    /// Say what can be afforded: integrator, step, float type, latency, jitter, skew and losses
+    Advise(AdviseArgs),
     /// Simulate one trajectory and write its rows
     Simulate(SimulateArgs),
     /// Write a data set of rollouts, larger than memory, and go on where it was interrupted

@@ -8,6 +8,13 @@ use libration_lab::config::limits;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Coordinates(pub(super) Vec<f64>);
 
+impl Coordinates {
+    /// Of one degree of freedom.
+    pub(super) fn origin() -> Self {
+        Coordinates(vec![0.0])
+    }
+}
+
 impl fmt::Display for Coordinates {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let words: Vec<String> = self.0.iter().map(f64::to_string).collect();

@@ -67,11 +67,11 @@ const MOST_GAIN: f64 = 1e50;
 /// Nobody's clock is worse.
 const MOST_RMS: f64 = 100.0;
 
-fn finite(text: &str) -> Option<f64> {
+pub(super) fn finite(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|x: &f64| x.is_finite())
 }
 
-fn feedback(text: &str) -> Result<Feedback, String> {
+pub(super) fn feedback(text: &str) -> Result<Feedback, String> {
     let gain = |text| finite(text).filter(|x| x.abs() <= MOST_GAIN);
     let gains = text.split_once(',').and_then(|(kp, kd)| Some((gain(kp)?, gain(kd)?)));
     let (position, velocity) =
@@ -102,7 +102,7 @@ fn latency(text: &str) -> Result<Late, String> {
     })
 }
 
-fn law(text: &str) -> Result<Jitter, String> {
+pub(super) fn law(text: &str) -> Result<Jitter, String> {
     let rule = "it must be one of the laws gaussian and uniform, and an rms from 0 to 100, as gaussian:0.1";
     let (name, rms) = text.split_once(':').ok_or(rule)?;
     let rms = finite(rms).filter(|x| (0.0..=MOST_RMS).contains(x)).ok_or(rule)?;

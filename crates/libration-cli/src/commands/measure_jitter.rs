@@ -127,6 +127,9 @@ fn told(head: &str, statistics: &Statistics) -> String {
     line("mean interval", format!("{}, wanted {}", time(statistics.mean), time(statistics.period)));
     let rms = statistics.jitter_rms;
     line("jitter, relative rms", format!("{rms:.3e}, as in --jitter gaussian:{rms:.3}"));
+    if statistics.gaps > 0 && statistics.heavy_tailed() {
+        line("", "a few long gaps make most of that: replay the time stamps instead".into());
+    }
     line("gaps above 1.5 periods", statistics.gaps.to_string());
     if statistics.repeats > 0 {
         line("repeated time stamps", format!("{}: steps of length zero", statistics.repeats));
@@ -151,7 +154,8 @@ fn told(head: &str, statistics: &Statistics) -> String {
     }
     if let Some(lateness) = &statistics.lateness {
         let most = lateness.histogram.iter().map(|&(_, count)| count).max().unwrap_or(1).max(1);
-        for &(from, count) in &lateness.histogram {
+        let told = lateness.histogram.iter().skip_while(|(_, count)| *count == 0);
+        for &(from, count) in told {
             // A bar for every few; what occurs at all is seen.
             let bar = (40 * count).div_ceil(most);
             line(
@@ -184,9 +188,9 @@ fn listed(quantiles: &[Quantile]) -> String {
 /// A time with three digits.
 fn time(seconds: f64) -> String {
     let (value, unit) = match seconds {
-        s if s >= 1.0 => (s, "s"),
-        s if s >= 1e-3 => (s * 1e3, "ms"),
-        s if s >= 1e-6 => (s * 1e6, "µs"),
+        s if s >= 0.9995 => (s, "s"),
+        s if s >= 0.9995e-3 => (s * 1e3, "ms"),
+        s if s >= 0.9995e-6 => (s * 1e6, "µs"),
         s => (s * 1e9, "ns"),
     };
     let digits = if value >= 100.0 {

@@ -1,5 +1,6 @@
 //! One module for each subcommand.
 
+mod advise;
 mod analyze;
 mod bench;
 mod completions;
@@ -19,6 +20,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
     terminal::set_color(arguments.color);
     match arguments.command {
         Command::Lab(args) => lab::run(&args, arguments.quiet),
+        Command::Advise(args) => advise::run(&args, arguments.quiet),
         Command::Analyze(args) => analyze::run(&args),
         Command::Simulate(args) => simulate::run(&args, arguments.quiet),
         Command::Rollout(args) => rollout::run(&args, arguments.quiet),

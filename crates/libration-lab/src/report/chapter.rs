@@ -31,7 +31,7 @@ pub(super) fn render(chapter: &Chapter) -> String {
     )
 }
 
-fn block(block: &Block) -> String {
+pub(super) fn block(block: &Block) -> String {
     match block {
         Block::Heading(heading) => format!("<h3>{}</h3>\n", prose(heading)),
         Block::Paragraph(paragraph) => format!("<p>{}</p>\n", prose(paragraph)),

@@ -5,7 +5,7 @@ mod ledger;
 
 use crate::figure;
 use crate::notation::{number, plural, seconds};
-use crate::page::Chapter;
+use crate::page::{Chapter, Page};
 use crate::results::Results;
 use crate::text::{escape, plain, prose};
 
@@ -42,6 +42,23 @@ pub fn render(results: &Results, chapters: &[Chapter]) -> String {
         numbers = numbers(chapters),
         ledger = ledger::render(results, chapters),
         machine = machine(results),
+        scripts = figure::scripts(),
+    )
+}
+
+/// A page by itself, which says its answer first.
+pub fn sheet(page: &Page, sub: &str) -> String {
+    format!(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
+         <title>{name}</title>\n<style>{STYLE}</style></head><body>\n<main id=\"top\">\n\
+         <h1>{title}</h1>\n<p class=\"sub\">{sub}</p>\n<p class=\"lead\">{answer}</p>\n{blocks}</main>\n\
+         {scripts}<script>{SCRIPT}</script>\n</body></html>\n",
+        name = escape(&plain(&page.title)),
+        title = prose(&page.title),
+        sub = prose(sub),
+        answer = prose(&page.answer),
+        blocks = page.blocks.iter().map(chapter::block).collect::<String>(),
         scripts = figure::scripts(),
     )
 }

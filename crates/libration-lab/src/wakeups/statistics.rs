@@ -94,6 +94,16 @@ impl Statistics {
     }
 }
 
+impl Statistics {
+    /// Whether nearly all intervals vary far less than the rms says: a Gaussian law has 98 % within a width of 4.65 deviations; half of
+    /// that is taken as the edge.
+    pub fn heavy_tailed(&self) -> bool {
+        let at = |part: f64| self.lengths.iter().find(|q| q.part == part).map(|q| q.value);
+        let (Some(low), Some(high)) = (at(0.01), at(0.99)) else { return false };
+        high - low < 2.33 * self.jitter_rms * self.mean
+    }
+}
+
 /// The mean product of deviations `lag` apart.
 fn covariance(deviations: &[f64], lag: usize) -> f64 {
     let pairs = deviations.iter().zip(deviations.iter().skip(lag));

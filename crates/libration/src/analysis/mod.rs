@@ -45,7 +45,7 @@ pub use symbolic::{SymbolicStep, UnknownStep};
 pub use tableau::{Letter, Tableau};
 pub use timing::{
     CostError, Feedback, HeldStep, HiddenLatency, Imperfections, Jitter, JitterMargin, Latency,
-    LatencyTableError, LinearController, LqrError, LqrWeights, MeanSquare, NotLinear,
+    LatencyTableError, LinearController, LqrError, LqrWeights, MeanSquare, Mode, NotLinear,
     ObserverNoise, Plant, RandomLatency, Regulator, Resonance, StateObserver, StepNoise, Switching,
     SwitchingError, Windows,
 };

@@ -69,7 +69,7 @@ impl Plant<'_> {
     }
 
     /// The steps that the loop may take.
-    fn stages(
+    pub(super) fn stages(
         &self,
         controller: &LinearController,
         imperfections: &Imperfections,

@@ -83,6 +83,12 @@ impl LinearController {
         Feedback { position: -self.command[0], velocity: -self.command[1] }
     }
 
+    /// This, with a command that is so many times as large; what it remembers stays.
+    pub fn amplified(&self, factor: f64) -> Self {
+        let command = self.command.iter().map(|x| factor * x).collect();
+        LinearController { command, ..self.clone() }
+    }
+
     /// Writes what the command is made of into the row of a step, whose coordinates begin with `q`, `v` and the memory.
     pub(super) fn command_row(&self, row: &mut [f64]) {
         row[..self.command.len()].copy_from_slice(&self.command);

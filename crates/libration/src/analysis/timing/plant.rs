@@ -53,6 +53,25 @@ impl<'a> Plant<'a> {
         Plant { step, generator, dt: Wide::from_f64(dt), exact: true }
     }
 
+    /// This, with steps that are so many of its own, each as long: what a simulation does within the period of a loop.
+    pub fn substeps(self, count: u64) -> Self {
+        let Plant { step, generator, dt, exact } = self;
+        let many = move |h: Wide| {
+            let HeldStep { phi, gamma } = step(h / Wide::from_f64(count as f64));
+            let mut all = HeldStep { phi: UpdateMatrix::identity(), gamma: State::origin() };
+            for _ in 0..count {
+                all = HeldStep { phi: phi.after(&all.phi), gamma: phi.apply(&all.gamma) + gamma };
+            }
+            all
+        };
+        Plant { step: Box::new(many), generator, dt, exact }
+    }
+
+    /// This, with noise and cost as a simulation has them though its steps be exact: see [`Plant::cost`].
+    pub fn held(self) -> Self {
+        Plant { exact: false, ..self }
+    }
+
     /// A step of the loop that `feedback` closes at once, of `dt` seconds.
     pub(super) fn closed(&self, feedback: Feedback, dt: Wide) -> UpdateMatrix<Wide, 1> {
         let HeldStep { phi, gamma } = (self.step)(dt);

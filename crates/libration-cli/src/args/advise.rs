@@ -1,0 +1,203 @@
+//! What `advise` takes.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use libration::analysis::{Feedback, Jitter};
+use libration_lab::advise::{Control, Law, Measure, Request, Tolerance};
+
+use super::SystemArgs;
+use super::timing::{feedback, finite, law};
+use crate::args::Setting;
+use crate::error::Failure;
+
+/// What `advise` takes.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct AdviseArgs {
+    /// File of what is asked; it has more than the flags, such as controllers that remember
+    #[arg(long, value_name = "FILE", conflicts_with_all = ASKED)]
+    pub(crate) config: Option<PathBuf>,
+    #[command(flatten)]
+    system: Option<SystemArgs>,
+    /// Close the loop: the command is −KP·q − KD·v; without it the system is simulated as it is
+    #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
+    feedback: Option<Feedback>,
+    /// Between two samples of the loop, in s
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        value_parser = number,
+        default_value = "0.01",
+        allow_hyphen_values = true
+    )]
+    period: f64,
+    /// How late a command arrives, in s
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        value_parser = number,
+        requires = "feedback",
+        default_value = "0",
+        allow_hyphen_values = true
+    )]
+    latency: f64,
+    /// The law of sample times with its relative rms, as gaussian:0.05 or uniform:0.05
+    #[arg(
+        long,
+        value_name = "LAW:RMS",
+        value_parser = law,
+        requires = "feedback",
+        allow_hyphen_values = true
+    )]
+    jitter: Option<Jitter>,
+    /// Time stamps that were measured, in place of --jitter: what `measure-jitter --output` writes, or a log
+    #[arg(long, value_name = "FILE", conflicts_with = "jitter")]
+    pub(crate) jitter_file: Option<PathBuf>,
+    /// The part by which the clock is slow, as 1e-4; negative where it is fast
+    #[arg(
+        long,
+        value_name = "PART",
+        value_parser = number,
+        requires = "feedback",
+        default_value = "0",
+        allow_hyphen_values = true
+    )]
+    skew: f64,
+    /// The probability that a command is lost
+    #[arg(
+        long,
+        value_name = "P",
+        value_parser = number,
+        requires = "feedback",
+        default_value = "0",
+        allow_hyphen_values = true
+    )]
+    loss: f64,
+    /// From so far off the operating point --q the loop must return, in m or rad
+    #[arg(
+        long,
+        value_name = "FAR",
+        value_parser = number,
+        requires = "feedback",
+        default_value = "0.1",
+        allow_hyphen_values = true
+    )]
+    deviation: f64,
+    /// What is tolerated, of energy, phase, trajectory or cost
+    #[arg(
+        long,
+        value_name = "OF=MOST",
+        value_parser = tolerance,
+        default_value = "trajectory=1e-3",
+        allow_hyphen_values = true
+    )]
+    tolerance: ToleranceArg,
+    /// For how long, in s
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        value_parser = number,
+        default_value = "10",
+        allow_hyphen_values = true
+    )]
+    horizon: f64,
+    /// File for a page with all of it and a map of stability, as HTML
+    #[arg(long, value_name = "FILE")]
+    pub(crate) page: Option<PathBuf>,
+    /// Print JSON, with all digits
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print a file of what can be asked, with comments, and stop
+    #[arg(long, conflicts_with_all = ["config", "page", "json", "jitter_file"], conflicts_with_all = ASKED)]
+    pub(crate) print_config: bool,
+}
+
+/// The flags that a file takes the place of.
+const ASKED: [&str; 13] = [
+    "system",
+    "set",
+    "q",
+    "v",
+    "feedback",
+    "period",
+    "latency",
+    "jitter",
+    "skew",
+    "loss",
+    "deviation",
+    "tolerance",
+    "horizon",
+];
+
+const EXAMPLES: &str = "\
+Examples:
+  libration advise --system oscillator --set omega2=10 --feedback 10,2 --period 0.01 --latency 0.02 \
+                   --jitter gaussian:0.05 --loss 0.01
+  libration advise --system kepler --tolerance energy=1e-6 --horizon 100
+  libration advise --print-config > mine.toml
+  libration advise --config mine.toml --jitter-file robot.csv --page budget.html
+
+Limits are those of the loop in exact steps of its period, linearised at --q; what acts together is simulated as well.
+Exit code 1 if the loop does not stand what is stated.";
+
+/// What is tolerated.
+#[derive(Clone, Copy, Debug)]
+struct ToleranceArg(Tolerance);
+
+impl AdviseArgs {
+    /// What is asked by flags.
+    pub(crate) fn request(&self) -> Result<Request, Failure> {
+        let Some(system) = &self.system else {
+            return Err(Failure::usage(
+                "nothing is asked: it must be --config FILE, or --system NAME with what else is to be said of it",
+            ));
+        };
+        let Setting { system, mut q, mut v } = {
+            let mut given = system.clone();
+            // A loop is held where it is: at the origin, if nothing is said.
+            if self.feedback.is_some() && given.q.is_none() {
+                given.q = Some(super::number::Coordinates::origin());
+            }
+            given.resolve()?
+        };
+        if self.feedback.is_some() && self.system.as_ref().is_some_and(|given| given.v.is_none()) {
+            v = vec![0.0; q.len()];
+        }
+        let control = self.feedback.map(|gains| Control {
+            law: Law::Pd(gains),
+            period: self.period,
+            latency: self.latency,
+            jitter: self.jitter.unwrap_or(Jitter::Gaussian(0.0)),
+            skew: self.skew,
+            loss: self.loss,
+            record: None,
+            weights: None,
+            deviation: self.deviation,
+        });
+        q.truncate(v.len());
+        Ok(Request {
+            system,
+            q,
+            v,
+            control,
+            tolerance: self.tolerance.0,
+            horizon: self.horizon,
+            rollout: [4096, 1024],
+            map: false,
+        })
+    }
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    finite(text).ok_or_else(|| "it must be a finite number".to_owned())
+}
+
+fn tolerance(text: &str) -> Result<ToleranceArg, String> {
+    let rule =
+        "it must be one of energy, phase, trajectory and cost, and how much of it, as energy=1e-6";
+    let (name, most) = text.split_once('=').ok_or(rule)?;
+    let of = Measure::ALL.into_iter().find(|measure| measure.name() == name.trim()).ok_or(rule)?;
+    let most = finite(most).filter(|most| *most > 0.0).ok_or(rule)?;
+    Ok(ToleranceArg(Tolerance { of, most }))
+}

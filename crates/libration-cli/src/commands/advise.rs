@@ -1,0 +1,206 @@
+//! `libration advise`.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::Path;
+
+use libration_lab::advise::{self, Advice, AdviseError, Budget, LoopAdvice, Request};
+use libration_lab::study::StudyError;
+use libration_lab::{Config, Lab};
+
+use super::time_stamps;
+use crate::args::AdviseArgs;
+use crate::error::Failure;
+use crate::output_file::OutputFile;
+use crate::progress::Reporter;
+use crate::{interrupt, terminal};
+
+/// Says what can be afforded.
+pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
+    if args.print_config {
+        return Ok(terminal::print(advise::DEFAULT)?);
+    }
+    let request = asked(args)?;
+    let unwritable = |path: &Path, error: &std::io::Error| {
+        format!("cannot write `{}` (--page): {error}", path.display())
+    };
+    // Before any work.
+    let file = args.page.as_deref().map(|path| match OutputFile::create(path) {
+        Ok(file) => Ok((path, file)),
+        Err(error) => Err(Failure::usage(unwritable(path, &error))),
+    });
+    let file = file.transpose()?;
+    let config = Config::default();
+    let reporter = Reporter::new(quiet);
+    let lab = Lab::new(&config, config.effort, &reporter, interrupt::listen()?);
+    let advice = advise::advise(&lab, &request);
+    reporter.clear();
+    let advice = advice.map_err(failure)?;
+    let text = match args.json {
+        true => serde_json::to_string_pretty(&advice).map_err(Failure::run)? + "\n",
+        false => told(&advice),
+    };
+    terminal::print(&text)?;
+    if let Some((path, mut file)) = file {
+        let written = file.write_all(advise::page(&advice).as_bytes()).and_then(|()| file.keep());
+        written.map_err(|error| Failure::run(unwritable(path, &error)))?;
+    }
+    let stands = advice.looped.as_ref().is_none_or(|looped| looped.together.growth < 0.0);
+    if stands { Ok(()) } else { Err(Failure::Disagreement) }
+}
+
+fn asked(args: &AdviseArgs) -> Result<Request, Failure> {
+    let mut request = match &args.config {
+        Some(path) => read(path)?,
+        None => args.request()?,
+    };
+    request.map = args.page.is_some();
+    if let Some(path) = &args.jitter_file {
+        let Some(control) = request.control.take() else {
+            return Err(Failure::usage(
+                "--jitter-file is given, but there is no loop whose clock it could be",
+            ));
+        };
+        let replaying =
+            time_stamps::read(path, "--jitter-file", |stamps| control.replaying(&stamps))?;
+        request.control = Some(replaying);
+    }
+    Ok(request)
+}
+
+fn read(path: &Path) -> Result<Request, Failure> {
+    let wrong = |why: &dyn std::fmt::Display| {
+        Failure::usage(format!("cannot read `{}` (--config): {why}", path.display()))
+    };
+    let bytes = std::fs::read(path).map_err(|error| wrong(&error))?;
+    let text = String::from_utf8(bytes).map_err(|error| wrong(&error.utf8_error()))?;
+    advise::parse(&text, &path.to_string_lossy())
+        .map_err(|error| Failure::Shown(error.render_styled()))
+}
+
+fn failure(error: AdviseError) -> Failure {
+    match error {
+        AdviseError::Study(StudyError::Interrupted) => {
+            Failure::Interrupted("interrupted".to_owned())
+        }
+        AdviseError::Value { name, value, allowed } => {
+            let flag = name.rsplit('.').next().unwrap_or(name);
+            Failure::usage(format!("--{flag} is {value}, but it must be {allowed}"))
+        }
+        AdviseError::Study(error) => Failure::run(error),
+        error @ (AdviseError::Unstable { .. } | AdviseError::Ensemble(_)) => Failure::run(error),
+        error => Failure::usage(error),
+    }
+}
+
+/// The answer for a reader at a terminal.
+fn told(advice: &Advice) -> String {
+    let mut text = format!("{}\n", advice.answer);
+    for warning in &advice.warnings {
+        let _ = writeln!(text, "MIND: {warning}");
+    }
+    if let Some(looped) = &advice.looped {
+        of_loop(looped, &mut text);
+    }
+    let _ = writeln!(
+        text,
+        "\n{:<30} {:>12} {:>9} {:>12} {:>12} {:>14}",
+        "integrator", "largest dt/s", "a period", "lost", "with longer", "evaluations/s"
+    );
+    let shown = |x: Option<f64>| x.map_or_else(|| "none".into(), |x| format!("{x:.4e}"));
+    for choice in &advice.integrators {
+        let _ = writeln!(
+            text,
+            "{:<30} {:>12} {:>9} {:>12.3e} {:>12} {:>14}",
+            choice.integrator,
+            shown(choice.dt),
+            choice.substeps.map_or_else(String::new, |count| count.to_string()),
+            choice.lost,
+            shown(choice.lost_beyond),
+            shown(choice.evaluations)
+        );
+    }
+    if let Some(why) = &advice.runner_up {
+        let _ = writeln!(text, "runner-up: {why}");
+    }
+    for float in &advice.floats {
+        let meets = if float.meets { "tolerated" } else { "too much" };
+        let _ = writeln!(text, "in {}: {:.3e} lost, {meets} (simulated)", float.float, float.lost);
+    }
+    if let Some(t) = &advice.throughput {
+        let _ = writeln!(
+            text,
+            "one core takes {:.3e} such steps a second with {} trajectories (measured now); {} steps of each are {:.1} MB of \
+             rollouts in f32",
+            t.steps_a_second,
+            t.environments,
+            t.steps,
+            t.bytes as f64 / 1e6
+        );
+    }
+    text
+}
+
+fn of_loop(looped: &LoopAdvice, text: &mut String) {
+    let _ = writeln!(text, "\n{}; a sample every {} s", looped.controller, looped.period);
+    if looped.held_command != 0.0 {
+        let _ = writeln!(
+            text,
+            "a command of {:.6} m/s² holds the operating point",
+            looped.held_command
+        );
+    }
+    let _ = writeln!(
+        text,
+        "\n{:<14} {:>12} {:>14} {:>14} {:>8}  {:<17} how",
+        "alone", "stated", "stable up to", "tolerated", "used", "unit"
+    );
+    let of = |budget: &Budget, limit: Option<f64>| match limit {
+        Some(limit) => format!("{limit:.6}"),
+        None => format!("above {:.3}", budget.tried_up_to),
+    };
+    for budget in &looped.budgets {
+        let _ = writeln!(
+            text,
+            "{:<14} {:>12.6} {:>14} {:>14} {:>8}  {:<17} {}",
+            budget.kind.name(),
+            budget.stated,
+            of(budget, budget.stable_up_to),
+            budget.tolerated_up_to.map_or_else(String::new, |limit| of(budget, limit)),
+            budget.used.map_or_else(String::new, |used| format!("{:.1} %", 100.0 * used)),
+            budget.unit,
+            budget.how
+        );
+    }
+    for budget in &looped.budgets {
+        let _ = writeln!(text, "  {}", budget.command);
+    }
+    let together = &looped.together;
+    let _ = writeln!(
+        text,
+        "\ntogether: second moments change by {:+.4e} a period (exact)",
+        together.growth.exp_m1()
+    );
+    if let Some(cost) = together.cost {
+        let _ = writeln!(
+            text,
+            "it costs {cost:.6e} under unit noise, {:.6e} without any of it (exact: Lyapunov equation)",
+            together.ideal_cost
+        );
+    }
+    if let Some(s) = &together.simulated {
+        let _ = writeln!(
+            text,
+            "simulated, {} loops, {} periods, noise held for a period: {:.5e} ± {:.1e}, predicted {:.5e}",
+            s.loops, s.periods, s.cost, s.error, s.predicted
+        );
+    }
+    if let Some(r) = &together.returns {
+        let [back, all] = r.of_asked;
+        let _ = writeln!(
+            text,
+            "of {all} starts {} off {back} return; all do from up to {:.4} (simulated)",
+            r.asked, r.up_to
+        );
+    }
+}

@@ -1,0 +1,101 @@
+//! Which integrator, with which step: the cheapest that loses no more than is tolerated.
+
+use libration::{AnySystem, Method};
+
+use super::AdviseError;
+use crate::Lab;
+use crate::analyze::{Criteria, Request, Stepping, Timing, analyze};
+
+/// What an integrator would take.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Choice {
+    /// Its name.
+    pub integrator: &'static str,
+    /// The largest step that meets the tolerance, in s; none where none that is tried does.
+    pub dt: Option<f64>,
+    /// What is lost with it, in the measure of the tolerance; where no step meets it, the least that was found.
+    pub lost: f64,
+    /// What is lost with a step 1.2 times as long; none where steps are parts of a period, and the next longer is more than that.
+    pub lost_beyond: Option<f64>,
+    /// Of a loop: steps in a period.
+    pub substeps: Option<u64>,
+    /// Force evaluations in a second of simulated time; none where no step meets the tolerance.
+    pub evaluations: Option<f64>,
+}
+
+/// What a search knows of a step.
+pub(super) trait Trial: Sync {
+    /// What is lost by `method` in steps of `dt` seconds; more than `most` need not be found exactly.
+    fn lost(&self, lab: &Lab<'_>, method: Method, dt: f64, most: f64) -> Result<f64, AdviseError>;
+}
+
+/// The ratio of neighbouring steps that are tried.
+const RATIO: f64 = 1.09;
+
+/// To such a part the largest step is found.
+const SHARP: f64 = 0.002;
+
+/// What is tried beyond the step that is chosen.
+pub(super) const BEYOND: f64 = 1.2;
+
+/// The largest step between `least` and `most` that loses no more than `tolerance`, going down from above.
+pub(super) fn largest_step(
+    lab: &Lab<'_>,
+    trial: &impl Trial,
+    method: Method,
+    tolerance: f64,
+    [least, most]: [f64; 2],
+) -> Result<Choice, AdviseError> {
+    let lost = |dt: f64| trial.lost(lab, method, dt, tolerance);
+    let mut choice = Choice {
+        integrator: method.name(),
+        dt: None,
+        lost: f64::INFINITY,
+        lost_beyond: None,
+        substeps: None,
+        evaluations: None,
+    };
+    let (mut above, mut dt) = (most, most);
+    loop {
+        let here = lost(dt)?;
+        choice.lost = choice.lost.min(here);
+        if here <= tolerance {
+            break;
+        }
+        above = dt;
+        dt /= RATIO;
+        if dt < least {
+            return Ok(choice);
+        }
+    }
+    let (mut low, mut at) = (dt, choice.lost);
+    while above / low > 1.0 + SHARP {
+        let middle = (low * above).sqrt();
+        let here = lost(middle)?;
+        if here <= tolerance { (low, at) = (middle, here) } else { above = middle }
+    }
+    // What is lost may fall again for a while; what is chosen is the longest of all that are tried.
+    (choice.dt, choice.lost, choice.lost_beyond) = (Some(low), at, Some(lost(BEYOND * low)?));
+    Ok(choice)
+}
+
+/// Force evaluations of a step, counted.
+pub(super) fn evaluations(system: AnySystem, q: &[f64], v: &[f64], method: Method) -> Option<u64> {
+    let request = Request {
+        system,
+        stepping: Stepping::Method(method),
+        dt: 1e-6,
+        q: q.to_vec(),
+        v: v.to_vec(),
+        steps: 1,
+        criteria: Criteria::default(),
+        timing: Timing::default(),
+    };
+    analyze(&request).ok().map(|analysis| analysis.force_evaluations_per_step)
+}
+
+/// The cheapest first; those that never meet the tolerance last.
+pub(super) fn by_cost(choices: &mut [Choice]) {
+    let cost = |choice: &Choice| choice.evaluations.unwrap_or(f64::INFINITY);
+    choices.sort_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.lost.total_cmp(&b.lost)));
+}

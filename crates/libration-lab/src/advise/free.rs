@@ -1,0 +1,199 @@
+//! What a simulation without a loop loses.
+
+use std::ops::ControlFlow;
+
+use libration::analysis::Linearisation;
+use libration::integrator::{Exact, SUZUKI4};
+use libration::system::Chosen;
+use libration::{Float, Hamiltonian, Integrator, Method, Model, State, System};
+
+use super::AdviseError;
+use super::choice::Trial;
+use super::request::{Measure, Request};
+use crate::Lab;
+
+/// A system from its start, over a horizon.
+pub(super) struct Free<M, const D: usize> {
+    model: M,
+    start: State<f64, D>,
+    horizon: f64,
+    of: Measure,
+    /// What makes a velocity comparable with a length, in rad/s.
+    omega: f64,
+}
+
+/// Steps of a run: a search takes hundreds of such runs.
+const MOST_STEPS: f64 = 2e7;
+
+/// The same where each has to be compared with finer ones.
+const MOST_COMPARED: f64 = 1e6;
+
+/// Finer steps of order four beside each that is compared: their error is a four-thousandth of that of a step of such a method.
+const FINER: u32 = 8;
+
+/// Steps between two looks at whether to stop.
+const LOOK: u64 = 1 << 16;
+
+impl<M: Model<D>, const D: usize> Free<M, D> {
+    /// What `request` asks of it.
+    pub(super) fn new(model: M, request: &Request) -> Result<Self, AdviseError> {
+        let start = State {
+            q: core::array::from_fn(|i| request.q[i]),
+            v: core::array::from_fn(|i| request.v[i]),
+        };
+        let generator = Linearisation::exact(model, &start, 1e-3).generator;
+        let stiffest = (0..D)
+            .flat_map(|i| (0..D).map(move |j| (D + i, j)))
+            .map(|(i, j)| generator.entry(i, j).abs().to_f64())
+            .fold(0.0, f64::max);
+        let of = request.tolerance.of;
+        let wrong = |why: &str| Err(AdviseError::Tolerance { of, why: why.into() });
+        if of == Measure::Cost {
+            return wrong(
+                "only a loop costs; give a controller, or tolerate energy, phase or trajectory",
+            );
+        }
+        if of == Measure::Phase && (D > 1 || stiffest <= 0.0) {
+            return wrong("a phase is told of one degree of freedom that oscillates");
+        }
+        if of == Measure::Energy && model.on::<f64>().energy(&start) == 0.0 {
+            return wrong("the energy at the start is zero, so that no error is a part of it");
+        }
+        let omega = stiffest.sqrt();
+        // Without a spring the horizon is the only time that there is.
+        let omega = if omega > 0.0 { omega } else { request.horizon.recip() };
+        Ok(Free { model, start, horizon: request.horizon, of, omega })
+    }
+
+    /// The shortest and the longest step that are tried.
+    pub(super) fn steps(&self) -> [f64; 2] {
+        let compared = self.of != Measure::Energy && !M::LINEAR;
+        let most = if compared { MOST_COMPARED } else { MOST_STEPS };
+        let longest = (4.0 / self.omega).min(self.horizon);
+        [(self.horizon / most).min(longest), longest]
+    }
+
+    /// What is lost in numbers of type `S`.
+    pub(super) fn lost_in<S: Float>(
+        &self,
+        lab: &Lab<'_>,
+        method: Method,
+        dt: f64,
+        most: f64,
+    ) -> Result<f64, AdviseError> {
+        let acceleration = |state: &State<S, D>| self.model.on::<S>().acceleration(state);
+        let true_acceleration = |state: &State<f64, D>| self.model.on::<f64>().acceleration(state);
+        let steps = (self.horizon / dt).round().max(1.0) as u64;
+        let follow = Follow {
+            system: Chosen(&acceleration),
+            method,
+            start: self.start.map(S::from_f64),
+            dt: S::from_f64(dt),
+            steps,
+        };
+        match self.of {
+            Measure::Energy => {
+                let model = self.model.on::<f64>();
+                let first = model.energy(&self.start);
+                let energy = |state: &State<f64, D>| ((model.energy(state) - first) / first).abs();
+                follow.largest(lab, most, &mut |state| energy(state))
+            }
+            _ => {
+                let system = Chosen(&true_acceleration);
+                match Exact::new(self.model, dt) {
+                    Some(exact) => {
+                        self.beside(lab, &follow, most, &|state| exact.step(&system, state, dt))
+                    }
+                    None => {
+                        let fine = dt / f64::from(FINER);
+                        let step = |state| {
+                            (0..FINER).fold(state, |state, _| SUZUKI4.step(&system, state, fine))
+                        };
+                        self.beside(lab, &follow, most, &step)
+                    }
+                }
+            }
+        }
+    }
+
+    /// The distance from what is true, or the angle between the two in the end.
+    fn beside<S: Float>(
+        &self,
+        lab: &Lab<'_>,
+        follow: &Follow<'_, S, D>,
+        most: f64,
+        step: &dyn Fn(State<f64, D>) -> State<f64, D>,
+    ) -> Result<f64, AdviseError> {
+        let mut truth = self.start;
+        let mut size = self.size(&truth);
+        let mut phase = 0.0;
+        let lost = follow.largest(lab, most, &mut |state| {
+            truth = step(truth);
+            size = size.max(self.size(&truth));
+            if self.of == Measure::Phase {
+                phase = self.angle(state, &truth);
+                return 0.0;
+            }
+            self.size(&State {
+                q: core::array::from_fn(|i| state.q[i] - truth.q[i]),
+                v: core::array::from_fn(|i| state.v[i] - truth.v[i]),
+            }) / size
+        })?;
+        Ok(if self.of == Measure::Phase && lost == 0.0 { phase } else { lost })
+    }
+
+    /// With velocities in units of lengths.
+    fn size(&self, state: &State<f64, D>) -> f64 {
+        let squares = |x: &[f64; D]| x.iter().map(|x| x * x).sum::<f64>();
+        (squares(&state.q) + squares(&state.v) / self.omega.powi(2)).sqrt()
+    }
+
+    /// The angle between two states in the plane of position and velocity.
+    fn angle(&self, a: &State<f64, D>, b: &State<f64, D>) -> f64 {
+        let (aq, av) = (a.q[0], a.v[0] / self.omega);
+        let (bq, bv) = (b.q[0], b.v[0] / self.omega);
+        (aq * bv - av * bq).atan2(aq * bq + av * bv).abs()
+    }
+}
+
+impl<M: Model<D>, const D: usize> Trial for Free<M, D> {
+    fn lost(&self, lab: &Lab<'_>, method: Method, dt: f64, most: f64) -> Result<f64, AdviseError> {
+        self.lost_in::<f64>(lab, method, dt, most)
+    }
+}
+
+/// A trajectory to be followed.
+struct Follow<'a, S, const D: usize> {
+    system: Chosen<'a, S, D>,
+    method: Method,
+    start: State<S, D>,
+    dt: S,
+    steps: u64,
+}
+
+impl<S: Float, const D: usize> Follow<'_, S, D> {
+    /// The largest of what is seen after each step, or the first that is more than `most`; infinite where the state is lost.
+    fn largest(
+        &self,
+        lab: &Lab<'_>,
+        most: f64,
+        see: &mut dyn FnMut(&State<f64, D>) -> f64,
+    ) -> Result<f64, AdviseError> {
+        let (mut state, mut largest) = (self.start, 0.0_f64);
+        let mut one = |step: u64| -> Result<ControlFlow<()>, AdviseError> {
+            if step.is_multiple_of(LOOK) {
+                lab.check()?;
+            }
+            state = self.method.step(&self.system, state, self.dt);
+            let here = see(&state.map(S::to_f64));
+            largest = if here.is_finite() { largest.max(here) } else { f64::INFINITY };
+            Ok(if largest > most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        };
+        for step in 1..=self.steps {
+            if one(step)?.is_break() {
+                break;
+            }
+        }
+        Ok(largest)
+    }
+}

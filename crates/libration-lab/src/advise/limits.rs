@@ -1,0 +1,160 @@
+//! How much of each imperfection a loop stands alone.
+
+use libration::Model;
+use libration::analysis::{CostError, Imperfections, Jitter, Plant};
+
+use super::loops::{Loop, LoopError};
+use super::request::{Measure, Tolerance};
+
+/// What may be wrong with a loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// Commands arrive late; in periods of the loop.
+    Latency,
+    /// Sample times vary, each for itself; relative rms.
+    Jitter,
+    /// The clock is slow; the part by which steps are longer.
+    Skew,
+    /// Commands are lost; probability.
+    Loss,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Kind; 4] = [Kind::Latency, Kind::Jitter, Kind::Skew, Kind::Loss];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Latency => "latency",
+            Kind::Jitter => "jitter",
+            Kind::Skew => "slow clock",
+            Kind::Loss => "lost commands",
+        }
+    }
+}
+
+/// Up to where a loop stands something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Limit {
+    /// Not even without it.
+    None,
+    /// Up to here.
+    At(f64),
+    /// Beyond this, the largest that is tried or makes sense.
+    Beyond(f64),
+}
+
+/// Periods of latency that are tried.
+const MOST_PERIODS: f64 = 64.0;
+
+/// Sizes that are tried one by one before the first that is too large is narrowed down.
+const TRIED: u32 = 64;
+
+/// How often it is halved: to the digits of a float.
+const HALVINGS: u32 = 48;
+
+impl<M: Model<1>> Loop<M> {
+    /// This of it, and nothing else.
+    pub(super) fn only(&self, kind: Kind, size: f64) -> Result<Imperfections, LoopError> {
+        let none = Imperfections::NONE;
+        Ok(match kind {
+            Kind::Latency => Imperfections { latency: self.latency(size)?, ..none },
+            Kind::Jitter => Imperfections { jitter: self.control.jitter.with_rms(size), ..none },
+            Kind::Skew => Imperfections { skew: size, ..none },
+            Kind::Loss => Imperfections { loss: size, ..none },
+        })
+    }
+
+    /// The largest that makes sense, or is tried.
+    fn largest(&self, kind: Kind) -> f64 {
+        match kind {
+            Kind::Latency => MOST_PERIODS,
+            Kind::Jitter => self.control.jitter.largest_rms(),
+            Kind::Skew => 8.0,
+            Kind::Loss => 1.0 - 1e-9,
+        }
+    }
+
+    /// Up to where the loop is stable; in the mean square where something is drawn.
+    pub(super) fn stable_up_to(&self, plant: &Plant<'_>, kind: Kind) -> Result<Limit, LoopError> {
+        self.holds_up_to(kind, |imperfections| {
+            Ok(plant.mean_square_growth(&self.linear, imperfections)? < 0.0)
+        })
+    }
+
+    /// Up to where its cost is tolerated, if a cost is.
+    pub(super) fn cheap_up_to(
+        &self,
+        plant: &Plant<'_>,
+        kind: Kind,
+        tolerance: Tolerance,
+    ) -> Result<Option<Limit>, LoopError> {
+        if tolerance.of != Measure::Cost {
+            return Ok(None);
+        }
+        let ideal = plant.cost(&self.linear, &Imperfections::NONE, self.weights)?;
+        let limit = self.holds_up_to(kind, |imperfections| {
+            let cost = plant.cost(&self.linear, imperfections, self.weights)?;
+            Ok(cost <= (1.0 + tolerance.most) * ideal)
+        })?;
+        Ok(Some(limit))
+    }
+
+    fn holds_up_to(
+        &self,
+        kind: Kind,
+        holds: impl Fn(&Imperfections) -> Result<bool, CostError>,
+    ) -> Result<Limit, LoopError> {
+        let at = |size: f64| -> Result<bool, LoopError> {
+            match holds(&self.only(kind, size)?) {
+                Ok(holds) => Ok(holds),
+                Err(error) => Err(error.into()),
+            }
+        };
+        if !at(0.0)? {
+            return Ok(Limit::None);
+        }
+        let largest = self.largest(kind);
+        let tried = |i: u32| match kind {
+            // Quarters of a period, then more and more.
+            Kind::Latency if i <= 32 => 0.25 * f64::from(i),
+            Kind::Latency => 8.0 * (largest / 8.0).powf(f64::from(i - 32) / f64::from(TRIED - 32)),
+            _ => largest * f64::from(i) / f64::from(TRIED),
+        };
+        let mut low = 0.0;
+        for i in 1..=TRIED {
+            if at(tried(i))? {
+                low = tried(i);
+                continue;
+            }
+            let mut high = tried(i);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                if at(middle)? { low = middle } else { high = middle }
+            }
+            return Ok(Limit::At(low));
+        }
+        Ok(Limit::Beyond(largest))
+    }
+}
+
+/// A law with another rms.
+pub(super) trait Scaled {
+    fn with_rms(self, rms: f64) -> Self;
+    fn scaled(self, share: f64) -> Self;
+}
+
+impl Scaled for Jitter {
+    fn with_rms(self, rms: f64) -> Self {
+        match self {
+            Jitter::Gaussian(_) => Jitter::Gaussian(rms),
+            Jitter::Uniform(_) => Jitter::Uniform(rms),
+        }
+    }
+
+    fn scaled(self, share: f64) -> Self {
+        self.with_rms(share * self.rms())
+    }
+}

@@ -1,0 +1,180 @@
+//! The loop that is advised on: its controller, designed and as the linear map that it is.
+
+use libration::analysis::{
+    CostError, Feedback, Imperfections, Latency, LinearController, LqrError, LqrWeights, NotLinear,
+    Plant,
+};
+use libration::control::controller::{Luenberger, Pid, StateFeedback};
+use libration::control::{ControlError, Controller};
+use libration::{Float, Model, State};
+
+use super::about::About;
+use super::limits::Scaled;
+use super::request::{Control, Law};
+
+/// A controller, chosen when the program runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum AnyController {
+    Feedback(StateFeedback<1>),
+    Pid(Pid<1>),
+    Observer(Luenberger<1>),
+}
+
+impl<T: Float> Controller<T, 1> for AnyController {
+    /// That of the one that remembers most.
+    type Memory = ([T; 1], ([T; 1], [T; 1]));
+
+    fn check(&self, period: f64) -> Result<(), ControlError> {
+        match self {
+            AnyController::Feedback(own) => Controller::<T, 1>::check(own, period),
+            AnyController::Pid(own) => Controller::<T, 1>::check(own, period),
+            AnyController::Observer(own) => Controller::<T, 1>::check(own, period),
+        }
+    }
+
+    fn start(&self, state: &State<T, 1>) -> Self::Memory {
+        let none = [T::zero()];
+        match self {
+            AnyController::Feedback(_) => (none, (none, none)),
+            AnyController::Pid(own) => own.start(state),
+            AnyController::Observer(own) => {
+                let (far, speed) = own.start(state);
+                (far, (speed, none))
+            }
+        }
+    }
+
+    fn command(&self, memory: &mut Self::Memory, observed: &State<T, 1>, period: T) -> [T; 1] {
+        match self {
+            AnyController::Feedback(own) => own.command(&mut [], observed, period),
+            AnyController::Pid(own) => own.command(memory, observed, period),
+            AnyController::Observer(own) => {
+                let mut estimated = (memory.0, memory.1.0);
+                let command = own.command(&mut estimated, observed, period);
+                (memory.0, memory.1.0) = estimated;
+                command
+            }
+        }
+    }
+}
+
+/// A loop about its operating point.
+pub(super) struct Loop<M> {
+    pub(super) model: About<M, 1>,
+    pub(super) controller: AnyController,
+    pub(super) linear: LinearController,
+    pub(super) control: Control,
+    pub(super) weights: LqrWeights,
+}
+
+/// Why a loop cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum LoopError {
+    /// There is no regulator.
+    #[error(transparent)]
+    Lqr(#[from] LqrError),
+    /// A controller has a number that cannot be.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// It is not linear where it is to be.
+    #[error(transparent)]
+    NotLinear(#[from] NotLinear),
+    /// The loop is too large, or a number of its timing cannot be.
+    #[error(transparent)]
+    Cost(#[from] CostError),
+    /// The latency cannot be.
+    #[error(
+        "the latency is {steps} periods of the loop; it must be at least 0 and at most {} periods",
+        Latency::MOST_STEPS
+    )]
+    Latency {
+        /// In periods.
+        steps: f64,
+    },
+}
+
+pub(super) const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
+
+impl<M: Model<1>> Loop<M> {
+    /// Designs what is to be designed.
+    pub(super) fn new(model: M, at: f64, control: &Control) -> Result<Self, LoopError> {
+        let model = About { model, at: [at] };
+        let plant = Plant::exact(model, ORIGIN, control.period);
+        let feedback = |gains: Feedback| AnyController::Feedback(StateFeedback::to_origin(gains));
+        let controller = match control.law {
+            Law::Pd(gains) => feedback(gains),
+            Law::Pid(gains) => AnyController::Pid(Pid::new(gains)?),
+            Law::Lqr(weights) => feedback(plant.lqr(weights)?),
+            Law::Observer { weights, noise } => {
+                let observer = plant.observer(noise)?;
+                AnyController::Observer(Luenberger::to_origin(plant.lqr(weights)?, observer))
+            }
+        };
+        Controller::<f64, 1>::check(&controller, control.period)?;
+        let linear = match &controller {
+            AnyController::Feedback(own) => LinearController::of(own, control.period)?,
+            AnyController::Pid(own) => LinearController::of(own, control.period)?,
+            AnyController::Observer(own) => LinearController::of(own, control.period)?,
+        };
+        let weights = control.weights.unwrap_or_else(|| plant.energy());
+        Ok(Loop { model, controller, linear, control: control.clone(), weights })
+    }
+
+    /// The plant in exact steps of a period, linearised.
+    pub(super) fn plant(&self) -> Plant<'_> {
+        Plant::exact(self.model, ORIGIN, self.control.period)
+    }
+
+    /// What is wrong with it, as it is stated.
+    pub(super) fn stated(&self) -> Result<Imperfections, LoopError> {
+        self.scaled(1.0)
+    }
+
+    /// All of that, so many times as large.
+    pub(super) fn scaled(&self, share: f64) -> Result<Imperfections, LoopError> {
+        let Control { latency, period, jitter, skew, loss, .. } = self.control;
+        Ok(Imperfections {
+            latency: self.latency(share * latency / period)?,
+            jitter: jitter.scaled(share),
+            skew: share * skew,
+            loss: share * loss,
+        })
+    }
+
+    /// A latency in periods.
+    pub(super) fn latency(&self, periods: f64) -> Result<Latency, LoopError> {
+        // As seconds are turned into steps everywhere.
+        let period = self.control.period;
+        Latency::of_seconds(periods * period, period).ok_or(LoopError::Latency { steps: periods })
+    }
+}
+
+impl<M> Loop<M> {
+    /// The gains of position and velocity.
+    pub(super) fn gains(&self) -> Feedback {
+        match &self.controller {
+            AnyController::Feedback(own) => own.gains,
+            AnyController::Observer(own) => own.gains,
+            AnyController::Pid(_) => self.linear.gains(),
+        }
+    }
+
+    /// Who commands, in words.
+    pub(super) fn told(&self) -> String {
+        let Feedback { position, velocity } = self.gains();
+        let gains = format!("K_p = {position:.6} s⁻², K_d = {velocity:.6} s⁻¹");
+        match (self.control.law, &self.controller) {
+            (Law::Pd(_), _) => format!("PD, {gains}"),
+            (Law::Lqr(_), _) => format!("LQR, designed: {gains}"),
+            (Law::Pid(g), _) => format!(
+                "PID, K_p = {} s⁻², K_i = {} s⁻³, K_d = {} s⁻¹, filter {} s, limit {} m/s²",
+                g.proportional, g.integral, g.derivative, g.filter, g.most
+            ),
+            (Law::Observer { .. }, AnyController::Observer(own)) => {
+                let [q, v] = own.observer.correction;
+                format!("LQR of an estimate, designed: {gains}; observer L = ({q:.6}, {v:.6} s⁻¹)")
+            }
+            (Law::Observer { .. }, _) => gains,
+        }
+    }
+}

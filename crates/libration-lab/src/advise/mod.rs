@@ -1,0 +1,122 @@
+//! What can be afforded: the budget of a simulation or a loop.
+
+mod about;
+mod answer;
+mod choice;
+mod file;
+mod free;
+mod limits;
+mod loops;
+mod map;
+mod page;
+mod request;
+mod stepped;
+mod throughput;
+mod together;
+
+use libration::ensemble::EnsembleError;
+use libration::{AnySystem, with_system};
+use thiserror::Error;
+
+pub use answer::{Advice, Budget, Failing, FloatChoice, LoopAdvice};
+pub use choice::Choice;
+pub use file::{DEFAULT, parse};
+pub use limits::Kind;
+pub use loops::LoopError;
+pub use map::Map;
+pub use page::page;
+pub use request::{Control, Law, Measure, Request, Tolerance};
+pub use throughput::Throughput;
+pub use together::{Returns, Simulated, Together};
+
+use crate::Lab;
+use crate::study::StudyError;
+
+/// Why there is no advice.
+#[derive(Debug, Error)]
+pub enum AdviseError {
+    /// A number cannot be.
+    #[error("{name} is {value}; it must be {allowed}")]
+    Value {
+        /// Which.
+        name: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it may be.
+        allowed: &'static str,
+    },
+    /// The tolerance does not fit what is asked.
+    #[error("{} cannot be tolerated here: {why}", of.name())]
+    Tolerance {
+        /// Of what.
+        of: Measure,
+        /// Why not.
+        why: String,
+    },
+    /// The system has too many degrees of freedom.
+    #[error("{system} in {dimension} degrees of freedom: {allowed}")]
+    Dimension {
+        /// Which.
+        system: &'static str,
+        /// How many.
+        dimension: usize,
+        /// How many there may be.
+        allowed: &'static str,
+    },
+    /// The loop is unstable without anything wrong with it.
+    #[error(
+        "the loop is unstable even without latency, jitter, skew or loss: a motion grows by {growth:.4} a period ({how}); \
+         choose other gains, or a shorter period"
+    )]
+    Unstable {
+        /// The factor.
+        growth: f64,
+        /// How it looks.
+        how: String,
+    },
+    /// The loop cannot be made.
+    #[error(transparent)]
+    Loop(#[from] LoopError),
+    /// Loops could not be simulated.
+    #[error(transparent)]
+    Ensemble(#[from] EnsembleError),
+    /// The laboratory stopped.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+}
+
+/// Advises on `request`.
+///
+/// # Errors
+/// [`AdviseError`], and those that are about the request before any work.
+pub fn advise(lab: &Lab<'_>, request: &Request) -> Result<Advice, AdviseError> {
+    request.check()?;
+    match (&request.control, request.system) {
+        (None, system) => with_system!(
+            system,
+            request.q.len(),
+            |model, D| {
+                if const { D <= 2 } {
+                    answer::free::<_, D>(lab, model, request)
+                } else {
+                    too_many(request, "there may be two")
+                }
+            },
+            too_many(request, "the system has another number of them")
+        ),
+        (Some(control), AnySystem::Oscillator(model)) if request.q.len() == 1 => {
+            answer::looped(lab, model, control, request)
+        }
+        (Some(control), AnySystem::DampedOscillator(model)) => {
+            answer::looped(lab, model, control, request)
+        }
+        (Some(control), AnySystem::Pendulum(model)) => answer::looped(lab, model, control, request),
+        (Some(control), AnySystem::Duffing(model)) => answer::looped(lab, model, control, request),
+        _ => too_many(request, "a loop is advised on in one"),
+    }
+}
+
+fn too_many<T>(request: &Request, allowed: &'static str) -> Result<T, AdviseError> {
+    let (system, dimension) = (request.system.name(), request.q.len());
+    Err(AdviseError::Dimension { system, dimension, allowed })
+}

@@ -1,0 +1,151 @@
+//! What a simulated loop loses by its integrator.
+
+use bytemuck::Pod;
+use libration::analysis::{Imperfections, LqrWeights, Plant};
+use libration::control::Schedule;
+use libration::ensemble::{All, Loops, Setup};
+use libration::system::Chosen;
+use libration::{Float, Method, Model, State, System};
+
+use super::AdviseError;
+use super::choice::Choice;
+use super::loops::{Loop, LoopError, ORIGIN};
+use super::request::{Measure, Tolerance};
+use crate::Lab;
+
+/// A loop that is simulated over a horizon.
+pub(super) struct Stepped<'l, M> {
+    pub(super) one: &'l Loop<M>,
+    pub(super) horizon: f64,
+    pub(super) tolerance: Tolerance,
+}
+
+/// Steps in a period that are tried.
+const SUBSTEPS: [u64; 17] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384];
+
+/// Steps of order four in a period that stand for the truth.
+const TRUE: u64 = 512;
+
+/// Periods of a run that are compared.
+const MOST_PERIODS: u64 = 20_000;
+
+impl<M: Model<1>> Stepped<'_, M> {
+    /// The fewest steps in a period with which `method` loses no more than is tolerated.
+    pub(super) fn choose(
+        &self,
+        lab: &Lab<'_>,
+        method: Method,
+        truth: &[State<f64, 1>],
+    ) -> Result<Choice, AdviseError> {
+        let period = self.one.control.period;
+        let most = self.tolerance.most;
+        let lost = |substeps: u64| self.lost::<f64>(lab, method, substeps, truth);
+        let mut choice = Choice {
+            integrator: method.name(),
+            dt: None,
+            lost: f64::INFINITY,
+            lost_beyond: None,
+            substeps: None,
+            evaluations: None,
+        };
+        let (mut fewer, mut met) = (0, None);
+        for substeps in SUBSTEPS {
+            let here = lost(substeps)?;
+            choice.lost = choice.lost.min(here);
+            if here <= most {
+                met = Some((substeps, here));
+                break;
+            }
+            (fewer, choice.lost_beyond) = (substeps, Some(here));
+        }
+        let Some((mut enough, mut at)) = met else {
+            return Ok(Choice { lost_beyond: None, ..choice });
+        };
+        while enough - fewer > 1 {
+            let middle = fewer + (enough - fewer) / 2;
+            let here = lost(middle)?;
+            match here <= most {
+                true => (enough, at) = (middle, here),
+                false => (fewer, choice.lost_beyond) = (middle, Some(here)),
+            }
+        }
+        choice.lost = at;
+        (choice.dt, choice.substeps) = (Some(period / enough as f64), Some(enough));
+        Ok(choice)
+    }
+
+    /// The true course.
+    pub(super) fn truth(&self, lab: &Lab<'_>) -> Result<Vec<State<f64, 1>>, AdviseError> {
+        match self.tolerance.of {
+            Measure::Trajectory => self.course::<f64>(lab, Method::Suzuki4, TRUE),
+            _ => Ok(Vec::new()),
+        }
+    }
+
+    /// What is lost in numbers of type `S`.
+    pub(super) fn lost<S: Float + Pod>(
+        &self,
+        lab: &Lab<'_>,
+        method: Method,
+        substeps: u64,
+        truth: &[State<f64, 1>],
+    ) -> Result<f64, AdviseError> {
+        match self.tolerance.of {
+            Measure::Trajectory => {
+                let course = self.course::<S>(lab, method, substeps)?;
+                let omega = self.one.plant().energy().position.mul_add(2.0, 0.0).max(1.0).sqrt();
+                let size = |q: f64, v: f64| q.hypot(v / omega);
+                let largest = truth.iter().map(|y| size(y.q[0], y.v[0])).fold(0.0, f64::max);
+                let off =
+                    course.iter().zip(truth).map(|(a, b)| size(a.q[0] - b.q[0], a.v[0] - b.v[0]));
+                let off = off
+                    .fold(0.0, |most: f64, x| if x.is_nan() { f64::INFINITY } else { most.max(x) });
+                Ok(off / largest)
+            }
+            Measure::Cost => {
+                let (one, period) = (self.one, self.one.control.period);
+                let weights = LqrWeights { command: 0.0, ..one.weights };
+                let late = Imperfections { latency: one.stated()?.latency, ..Imperfections::NONE };
+                let cost = |plant: Plant<'_>| {
+                    plant.held().cost(&one.linear, &late, weights).map_err(LoopError::from)
+                };
+                let truth = cost(one.plant())?;
+                let plant = Plant::new(method, one.model, ORIGIN, period).substeps(substeps);
+                Ok((cost(plant)? / truth - 1.0).abs())
+            }
+            of => Err(AdviseError::Tolerance {
+                of,
+                why: "a loop does not conserve it; tolerate trajectory or cost".into(),
+            }),
+        }
+    }
+
+    /// The states at the samples of a loop that starts from the deviation that was asked for, with the latency that is stated.
+    fn course<S: Float + Pod>(
+        &self,
+        lab: &Lab<'_>,
+        method: Method,
+        substeps: u64,
+    ) -> Result<Vec<State<f64, 1>>, AdviseError> {
+        let one = self.one;
+        let (model, period) = (one.model, one.control.period);
+        let acceleration = |state: &State<S, 1>| model.on::<S>().acceleration(state);
+        let latency = one.stated()?.latency.steps();
+        let schedule = Schedule::new(substeps as f64, 0.0, latency * substeps as f64);
+        let schedule = schedule.map_err(|_| LoopError::Latency { steps: latency })?;
+        let setup = Setup::new(All(Chosen(&acceleration)), method)
+            .controller(one.controller)
+            .delay(schedule);
+        let start = [State { q: [S::from_f64(one.control.deviation)], v: [S::zero()] }];
+        let dt = S::from_f64(period / substeps as f64);
+        let mut loops = Loops::new(setup, dt, 0, [S::zero()], &start, lab.alone()?)?;
+        let periods = ((self.horizon / period).round().max(1.0) as u64).min(MOST_PERIODS);
+        let mut course = Vec::with_capacity(periods as usize);
+        for _ in 0..periods {
+            lab.check()?;
+            loops.advance(substeps)?;
+            course.extend(loops.state(0).map(|state| state.map(S::to_f64)));
+        }
+        Ok(course)
+    }
+}

@@ -1,0 +1,318 @@
+//! All that is stated at once: by theory, and simulated.
+
+use libration::analysis::{Imperfections, Plant};
+use libration::control::clock::{Jittered, Rates, Recorded};
+use libration::control::delay::{Order, Packets};
+use libration::control::{Delay, Schedule, WhiteNoise};
+use libration::ensemble::{All, EnsembleError, Loops, MeanCost, Setup};
+use libration::integrator::{Exact, Rk4};
+use libration::system::Chosen;
+use libration::{Integrator, Model, State, System};
+
+use super::AdviseError;
+use super::loops::{Loop, LoopError};
+use crate::Lab;
+
+/// What is left where all imperfections act together.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Together {
+    /// The logarithm of the factor by which second moments grow in a period; below zero the loop is stable.
+    pub growth: f64,
+    /// So many times as large all of them may be before it is not; none beyond 16 times, or where it is not stable.
+    pub room: Option<f64>,
+    /// The cost of the loop without any of it, per second under unit noise.
+    pub ideal_cost: f64,
+    /// The cost with all of it; none where it is infinite.
+    pub cost: Option<f64>,
+    /// `ΔJ/J₀`.
+    pub cost_increase: Option<f64>,
+    /// What an ensemble measures; none where it would have to run for too long, or where the loop is not stable.
+    pub simulated: Option<Simulated>,
+    /// Of a nonlinear plant, or one with a limit: from how far it returns.
+    pub returns: Option<Returns>,
+}
+
+/// What an ensemble of loops under noise measures.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Simulated {
+    /// Loops.
+    pub loops: usize,
+    /// Periods that count.
+    pub periods: u64,
+    /// The mean cost at samples under noise that is held for a period.
+    pub cost: f64,
+    /// Its standard error.
+    pub error: f64,
+    /// What theory says of just that.
+    pub predicted: f64,
+}
+
+/// From how far a loop comes back.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Returns {
+    /// The distance that was asked, in m or rad.
+    pub asked: f64,
+    /// How many of the starts at that distance come back.
+    pub of_asked: [usize; 2],
+    /// The largest distance from which all do, up to four times what was asked.
+    pub up_to: f64,
+}
+
+/// Loops that are simulated.
+const COUNT: usize = 256;
+
+/// Periods that may be simulated.
+const MOST_PERIODS: f64 = 100_000.0;
+
+/// Of a growth: within so many times its inverse everything is forgotten.
+const MEMORIES: f64 = 20.0;
+
+/// The seed of all that is random.
+const SEED: u64 = 8;
+
+/// Directions from which a loop has to return.
+const STARTS: usize = 8;
+
+impl<M: Model<1>> Loop<M> {
+    /// What all of it does.
+    pub(super) fn together(
+        &self,
+        lab: &Lab<'_>,
+        plant: &Plant<'_>,
+    ) -> Result<Together, AdviseError> {
+        let stated = self.stated()?;
+        let growth = plant.mean_square_growth(&self.linear, &stated).map_err(LoopError::from)?;
+        let cost = |imperfections: &Imperfections| {
+            plant.cost(&self.linear, imperfections, self.weights).map_err(LoopError::from)
+        };
+        let (ideal_cost, all) = (cost(&Imperfections::NONE)?, cost(&stated)?);
+        let finite = Some(all).filter(|cost| cost.is_finite());
+        let stable = growth < 0.0;
+        let simulated = if stable { self.simulated(lab, growth, &stated)? } else { None };
+        let returns = if stable { self.returns(lab, growth)? } else { None };
+        Ok(Together {
+            growth,
+            room: if stable { self.room(plant)? } else { None },
+            ideal_cost,
+            cost: finite,
+            cost_increase: finite.map(|cost| cost / ideal_cost - 1.0),
+            simulated,
+            returns,
+        })
+    }
+
+    /// How many times as large all of it may be.
+    fn room(&self, plant: &Plant<'_>) -> Result<Option<f64>, AdviseError> {
+        const MOST: f64 = 16.0;
+        if self.stated()? == Imperfections::NONE {
+            return Ok(None);
+        }
+        let stable = |share: f64| -> Result<bool, AdviseError> {
+            let imperfections = self.scaled(share)?;
+            if imperfections.loss >= 1.0 || imperfections.skew <= -1.0 {
+                return Ok(false);
+            }
+            let growth = plant.mean_square_growth(&self.linear, &imperfections);
+            Ok(growth.map_err(LoopError::from)? < 0.0)
+        };
+        let mut low = 1.0;
+        // Each time an eighth more.
+        while low < MOST {
+            let mut high = low * 1.125;
+            if stable(high)? {
+                low = high;
+                continue;
+            }
+            for _ in 0..40 {
+                let middle = 0.5 * (low + high);
+                if stable(middle)? { low = middle } else { high = middle }
+            }
+            return Ok(Some(low));
+        }
+        Ok(None)
+    }
+
+    /// An ensemble under noise.
+    fn simulated(
+        &self,
+        lab: &Lab<'_>,
+        growth: f64,
+        stated: &Imperfections,
+    ) -> Result<Option<Simulated>, AdviseError> {
+        let memory = MEMORIES / -growth;
+        // Of what is not linear small noise is asked for, and what it costs is in proportion.
+        let intensity = if M::LINEAR { 1.0 } else { self.small_noise(growth)? };
+        if !(memory < MOST_PERIODS && intensity > 0.0) {
+            return Ok(None);
+        }
+        let before = memory.ceil() as u64;
+        let periods = (20.0 * memory).clamp(2000.0, MOST_PERIODS) as u64;
+        let starts = [State { q: [0.0], v: [0.0] }; COUNT];
+        let run = Run { before, periods, starts: &starts, intensity };
+        let Some(Ran { costs, .. }) = self.run(lab, run)? else { return Ok(None) };
+        let costs: Vec<f64> = costs.into_iter().map(|cost| cost / intensity).collect();
+        let count = costs.len() as f64;
+        let cost = costs.iter().sum::<f64>() / count;
+        let squares: f64 = costs.iter().map(|x| (x - cost).powi(2)).sum();
+        let error = (squares / (count - 1.0) / count).sqrt();
+        let held = self.plant().held();
+        let weights = libration::analysis::LqrWeights { command: 0.0, ..self.weights };
+        let predicted = held.cost(&self.linear, stated, weights).map_err(LoopError::from)?;
+        Ok(Some(Simulated { loops: COUNT, periods, cost, error, predicted }))
+    }
+
+    /// Noise that moves the plant by a hundredth of the deviation that was asked for.
+    fn small_noise(&self, growth: f64) -> Result<f64, AdviseError> {
+        let stated = self.stated()?;
+        let position =
+            libration::analysis::LqrWeights { position: 1.0, velocity: 0.0, command: 0.0 };
+        let square = self.plant().cost(&self.linear, &stated, position).map_err(LoopError::from)?;
+        let _ = growth;
+        Ok((0.01 * self.control.deviation).powi(2) / square)
+    }
+
+    /// From how far it returns without noise.
+    fn returns(&self, lab: &Lab<'_>, growth: f64) -> Result<Option<Returns>, AdviseError> {
+        let periods = (MEMORIES / -growth).ceil();
+        if M::LINEAR && !self.limited() || periods > MOST_PERIODS {
+            return Ok(None);
+        }
+        let stiffness = self.plant().energy().position.max(0.5);
+        let back = |distance: f64| -> Result<usize, AdviseError> {
+            let start = |i: usize| {
+                let (sine, cosine) = (std::f64::consts::TAU * i as f64 / STARTS as f64).sin_cos();
+                let speed = (2.0 * stiffness).sqrt();
+                State { q: [distance * cosine], v: [distance * speed * sine] }
+            };
+            let starts: Vec<State<f64, 1>> = (0..STARTS).map(start).collect();
+            let run = Run { before: periods as u64, periods: 0, starts: &starts, intensity: 0.0 };
+            let Some(ran) = self.run(lab, run)? else { return Ok(0) };
+            let near = |state: &State<f64, 1>| {
+                state.q[0].abs() < 0.05 * distance && state.q[0].is_finite()
+            };
+            Ok(ran.last.iter().filter(|state| near(state)).count())
+        };
+        let asked = self.control.deviation;
+        let of_asked = [back(asked)?, STARTS];
+        let (mut low, mut high) = (0.0, 4.0 * asked);
+        if back(high)? == STARTS {
+            low = high;
+        }
+        for _ in 0..16 {
+            if low == high {
+                break;
+            }
+            let middle = 0.5 * (low + high);
+            if back(middle)? == STARTS { low = middle } else { high = middle }
+        }
+        Ok(Some(Returns { asked, of_asked, up_to: low }))
+    }
+
+    /// Runs loops with all that is stated.
+    fn run(&self, lab: &Lab<'_>, run: Run<'_>) -> Result<Option<Ran>, AdviseError> {
+        let stated = self.stated()?;
+        let latency = stated.latency;
+        if stated.loss == 0.0 {
+            return self.run_with(lab, run, Schedule::late(latency)).map(Some);
+        }
+        let whole = latency.steps().trunc() as usize;
+        let mut travels = vec![0.0; whole + 1];
+        travels[whole] = 1.0 - stated.loss;
+        let Ok(packets) = Packets::new(&travels, Order::NewestActs) else { return Ok(None) };
+        let Ok(packets) = packets.longer_by(latency.steps().fract()) else { return Ok(None) };
+        self.run_with(lab, run, packets).map(Some)
+    }
+
+    fn run_with(
+        &self,
+        lab: &Lab<'_>,
+        run: Run<'_>,
+        delay: impl Delay<f64>,
+    ) -> Result<Ran, AdviseError> {
+        let longest = (1.0 + self.control.jitter.largest()) * (1.0 + self.control.skew.abs());
+        match Exact::new(self.model, self.control.period * longest) {
+            Some(exact) => self.run_by(lab, run, delay, exact),
+            None => self.run_by(lab, run, delay, Rk4),
+        }
+    }
+
+    fn run_by(
+        &self,
+        lab: &Lab<'_>,
+        run: Run<'_>,
+        delay: impl Delay<f64>,
+        method: impl Integrator,
+    ) -> Result<Ran, AdviseError> {
+        let acceleration = |state: &State<f64, 1>| self.model.on::<f64>().acceleration(state);
+        let even = [1.0];
+        let recorded = self.control.record.as_deref().unwrap_or(&even);
+        let jitter = match self.control.record {
+            Some(_) => libration::analysis::Jitter::Gaussian(0.0),
+            None => self.control.jitter,
+        };
+        let rates = vec![1.0 + self.control.skew; run.starts.len()];
+        let setup = Setup::new(All(Chosen(&acceleration)), method)
+            .controller(self.controller)
+            .clock((Rates(&rates), (Recorded::repeated(recorded), Jittered(jitter))))
+            .delay(delay)
+            .disturbance(WhiteNoise(run.intensity));
+        let period = self.control.period;
+        let mut loops = Loops::new(setup, period, SEED, [0.0], run.starts, lab.alone()?)?;
+        advance(lab, run.before, |steps| loops.advance(steps))?;
+        let mut sums = vec![0.0; run.starts.len()];
+        let mut counted = 0;
+        while counted < run.periods {
+            lab.check()?;
+            let steps = LEG.min(run.periods - counted);
+            let seen = loops.observe(steps, 1, |range| MeanCost::new(range, self.weights))?;
+            let means = seen.iter().flat_map(MeanCost::means);
+            sums.iter_mut().zip(means).for_each(|(sum, mean)| *sum += mean * steps as f64);
+            counted += steps;
+        }
+        let costs = sums.into_iter().map(|sum| sum / run.periods as f64).collect();
+        let last = (0..run.starts.len()).filter_map(|n| loops.state(n)).collect();
+        Ok(Ran { costs, last })
+    }
+
+    /// Whether its command has a limit.
+    fn limited(&self) -> bool {
+        match self.control.law {
+            super::Law::Pid(gains) => gains.most.is_finite(),
+            _ => false,
+        }
+    }
+}
+
+/// Steps between two looks at whether to stop.
+const LEG: u64 = 4096;
+
+fn advance(
+    lab: &Lab<'_>,
+    steps: u64,
+    mut by: impl FnMut(u64) -> Result<(), EnsembleError>,
+) -> Result<(), AdviseError> {
+    let mut left = steps;
+    while left > 0 {
+        lab.check()?;
+        let leg = LEG.min(left);
+        by(leg)?;
+        left -= leg;
+    }
+    Ok(())
+}
+
+/// What is run.
+#[derive(Clone, Copy)]
+struct Run<'a> {
+    before: u64,
+    periods: u64,
+    starts: &'a [State<f64, 1>],
+    /// Of the noise.
+    intensity: f64,
+}
+
+/// What came of it.
+struct Ran {
+    costs: Vec<f64>,
+    last: Vec<State<f64, 1>>,
+}
