@@ -6,154 +6,15 @@ use libration::AnySystem;
 use libration::analysis::{Feedback, Jitter, LqrWeights, ObserverNoise};
 use libration::control::clock::Recorded;
 use libration::control::controller::PidGains;
-use serde::Deserialize;
 
 use super::AdviseError;
 use super::limits::Scaled;
 use super::request::{Control, Law, Measure, Request, Tolerance};
+use super::tables::{ControllerTable, File, LoopTable};
 use crate::config::{ConfigError, Count, Document, Fault, Number, names};
 
 /// The default request, as a file with comments.
 pub const DEFAULT: &str = include_str!("default.toml");
-
-/// A request as it stands in a file.
-#[derive(Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct File {
-    tolerance: BTreeMap<String, Number>,
-    asked: AskedTable,
-    system: BTreeMap<String, BTreeMap<String, Number>>,
-    start: StartTable,
-    controller: Option<ControllerTable>,
-    #[serde(rename = "loop")]
-    looped: LoopTable,
-}
-
-#[derive(Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct AskedTable {
-    horizon: Number,
-    rollout: [Count; 2],
-}
-
-#[derive(Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct StartTable {
-    q: Vec<Number>,
-    v: Vec<Number>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum ControllerTable {
-    Pd(PdTable),
-    Pid(PidTable),
-    Lqr(LqrTable),
-    Observer(ObserverTable),
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PdTable {
-    position: Number,
-    velocity: Number,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PidTable {
-    proportional: Number,
-    integral: Number,
-    derivative: Number,
-    #[serde(default = "zero")]
-    filter: Number,
-    #[serde(default = "infinite")]
-    most: Number,
-    #[serde(default = "one")]
-    tracking: Number,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct LqrTable {
-    weights: [Number; 3],
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ObserverTable {
-    weights: [Number; 3],
-    acceleration: Number,
-    position: Number,
-}
-
-#[derive(Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct LoopTable {
-    period: Number,
-    latency: Number,
-    jitter: Number,
-    law: String,
-    skew: Number,
-    loss: Number,
-    time_stamps: String,
-    cost: Vec<Number>,
-    deviation: Number,
-}
-
-fn zero() -> Number {
-    Number(0.0)
-}
-
-fn one() -> Number {
-    Number(1.0)
-}
-
-fn infinite() -> Number {
-    Number(f64::INFINITY)
-}
-
-impl Default for File {
-    fn default() -> Self {
-        File {
-            tolerance: [("trajectory".to_owned(), Number(1e-3))].into(),
-            asked: AskedTable::default(),
-            system: [("oscillator".to_owned(), [("omega2".to_owned(), Number(10.0))].into())]
-                .into(),
-            start: StartTable::default(),
-            controller: None,
-            looped: LoopTable::default(),
-        }
-    }
-}
-
-impl Default for AskedTable {
-    fn default() -> Self {
-        AskedTable { horizon: Number(10.0), rollout: [Count(4096), Count(1024)] }
-    }
-}
-
-impl Default for StartTable {
-    fn default() -> Self {
-        StartTable { q: vec![Number(0.0)], v: vec![Number(0.0)] }
-    }
-}
-
-impl Default for LoopTable {
-    fn default() -> Self {
-        LoopTable {
-            period: Number(0.01),
-            latency: zero(),
-            jitter: zero(),
-            law: "gaussian".into(),
-            skew: zero(),
-            loss: zero(),
-            time_stamps: String::new(),
-            cost: Vec::new(),
-            deviation: Number(0.1),
-        }
-    }
-}
 
 /// Reads a request; `file_name` is only for messages.
 ///
@@ -297,6 +158,7 @@ fn control(law: Law, table: LoopTable) -> Result<Control, Fault> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tables::PdTable;
     use super::*;
 
     #[test]

@@ -2,23 +2,29 @@
 
 mod about;
 mod answer;
+mod budget;
 mod choice;
+mod ensemble;
 mod file;
 mod free;
 mod limits;
 mod loops;
+mod making;
 mod map;
 mod page;
 mod request;
 mod stepped;
+mod tables;
 mod throughput;
 mod together;
+mod words;
 
 use libration::ensemble::EnsembleError;
 use libration::{AnySystem, with_system};
 use thiserror::Error;
 
-pub use answer::{Advice, Budget, Failing, FloatChoice, LoopAdvice};
+pub use answer::{Advice, FloatChoice, LoopAdvice, ToleranceAnswer};
+pub use budget::{Budget, Failing};
 pub use choice::Choice;
 pub use file::{DEFAULT, parse};
 pub use limits::Kind;
@@ -97,7 +103,7 @@ pub fn advise(lab: &Lab<'_>, request: &Request) -> Result<Advice, AdviseError> {
             request.q.len(),
             |model, D| {
                 if const { D <= 2 } {
-                    answer::free::<_, D>(lab, model, request)
+                    making::free::<_, D>(lab, model, request)
                 } else {
                     too_many(request, "there may be two")
                 }
@@ -105,13 +111,34 @@ pub fn advise(lab: &Lab<'_>, request: &Request) -> Result<Advice, AdviseError> {
             too_many(request, "the system has another number of them")
         ),
         (Some(control), AnySystem::Oscillator(model)) if request.q.len() == 1 => {
-            answer::looped(lab, model, control, request)
+            making::looped(lab, model, control, request)
         }
         (Some(control), AnySystem::DampedOscillator(model)) => {
-            answer::looped(lab, model, control, request)
+            making::looped(lab, model, control, request)
         }
-        (Some(control), AnySystem::Pendulum(model)) => answer::looped(lab, model, control, request),
-        (Some(control), AnySystem::Duffing(model)) => answer::looped(lab, model, control, request),
+        (Some(control), AnySystem::Pendulum(model)) => making::looped(lab, model, control, request),
+        (Some(control), AnySystem::Duffing(model)) => making::looped(lab, model, control, request),
+        _ => too_many(request, "a loop is advised on in one"),
+    }
+}
+
+/// What the loop of `request` stands of each imperfection alone: the part of [`advise`] that simulates nothing.
+///
+/// # Errors
+/// As of [`advise`].
+pub fn budgets(lab: &Lab<'_>, request: &Request) -> Result<Vec<Budget>, AdviseError> {
+    request.check()?;
+    match (&request.control, request.system) {
+        (Some(control), AnySystem::Oscillator(model)) if request.q.len() == 1 => {
+            making::budgets(lab, model, control, request)
+        }
+        (Some(control), AnySystem::DampedOscillator(model)) => {
+            making::budgets(lab, model, control, request)
+        }
+        (Some(control), AnySystem::Pendulum(model)) => {
+            making::budgets(lab, model, control, request)
+        }
+        (Some(control), AnySystem::Duffing(model)) => making::budgets(lab, model, control, request),
         _ => too_many(request, "a loop is advised on in one"),
     }
 }

@@ -1,6 +1,7 @@
 //! The answer as a page.
 
-use super::answer::{Advice, Budget, LoopAdvice};
+use super::answer::{Advice, LoopAdvice};
+use super::budget::Budget;
 use super::map::Map;
 use crate::figure::{Axis, ColorMap, Colors, Dash, Figure, Ink, Mark, Marker, Panel};
 use crate::notation::number;

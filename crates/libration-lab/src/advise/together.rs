@@ -1,15 +1,10 @@
 //! All that is stated at once: by theory, and simulated.
 
-use libration::analysis::{Imperfections, Plant};
-use libration::control::clock::{Jittered, Rates, Recorded};
-use libration::control::delay::{Order, Packets};
-use libration::control::{Delay, Schedule, WhiteNoise};
-use libration::ensemble::{All, EnsembleError, Loops, MeanCost, Setup};
-use libration::integrator::{Exact, Rk4};
-use libration::system::Chosen;
-use libration::{Integrator, Model, State, System};
+use libration::analysis::{Imperfections, LqrWeights, Plant};
+use libration::{Model, State};
 
 use super::AdviseError;
+use super::ensemble::{Ran, Run};
 use super::loops::{Loop, LoopError};
 use crate::Lab;
 
@@ -66,9 +61,6 @@ const MOST_PERIODS: f64 = 100_000.0;
 
 /// Of a growth: within so many times its inverse everything is forgotten.
 const MEMORIES: f64 = 20.0;
-
-/// The seed of all that is random.
-const SEED: u64 = 8;
 
 /// Directions from which a loop has to return.
 const STARTS: usize = 8;
@@ -156,7 +148,7 @@ impl<M: Model<1>> Loop<M> {
         let squares: f64 = costs.iter().map(|x| (x - cost).powi(2)).sum();
         let error = (squares / (count - 1.0) / count).sqrt();
         let held = self.plant().held();
-        let weights = libration::analysis::LqrWeights { command: 0.0, ..self.weights };
+        let weights = LqrWeights { command: 0.0, ..self.weights };
         let predicted = held.cost(&self.linear, stated, weights).map_err(LoopError::from)?;
         Ok(Some(Simulated { loops: COUNT, periods, cost, error, predicted }))
     }
@@ -164,8 +156,7 @@ impl<M: Model<1>> Loop<M> {
     /// Noise that moves the plant by a hundredth of the deviation that was asked for.
     fn small_noise(&self, growth: f64) -> Result<f64, AdviseError> {
         let stated = self.stated()?;
-        let position =
-            libration::analysis::LqrWeights { position: 1.0, velocity: 0.0, command: 0.0 };
+        let position = LqrWeights { position: 1.0, velocity: 0.0, command: 0.0 };
         let square = self.plant().cost(&self.linear, &stated, position).map_err(LoopError::from)?;
         let _ = growth;
         Ok((0.01 * self.control.deviation).powi(2) / square)
@@ -208,72 +199,6 @@ impl<M: Model<1>> Loop<M> {
         Ok(Some(Returns { asked, of_asked, up_to: low }))
     }
 
-    /// Runs loops with all that is stated.
-    fn run(&self, lab: &Lab<'_>, run: Run<'_>) -> Result<Option<Ran>, AdviseError> {
-        let stated = self.stated()?;
-        let latency = stated.latency;
-        if stated.loss == 0.0 {
-            return self.run_with(lab, run, Schedule::late(latency)).map(Some);
-        }
-        let whole = latency.steps().trunc() as usize;
-        let mut travels = vec![0.0; whole + 1];
-        travels[whole] = 1.0 - stated.loss;
-        let Ok(packets) = Packets::new(&travels, Order::NewestActs) else { return Ok(None) };
-        let Ok(packets) = packets.longer_by(latency.steps().fract()) else { return Ok(None) };
-        self.run_with(lab, run, packets).map(Some)
-    }
-
-    fn run_with(
-        &self,
-        lab: &Lab<'_>,
-        run: Run<'_>,
-        delay: impl Delay<f64>,
-    ) -> Result<Ran, AdviseError> {
-        let longest = (1.0 + self.control.jitter.largest()) * (1.0 + self.control.skew.abs());
-        match Exact::new(self.model, self.control.period * longest) {
-            Some(exact) => self.run_by(lab, run, delay, exact),
-            None => self.run_by(lab, run, delay, Rk4),
-        }
-    }
-
-    fn run_by(
-        &self,
-        lab: &Lab<'_>,
-        run: Run<'_>,
-        delay: impl Delay<f64>,
-        method: impl Integrator,
-    ) -> Result<Ran, AdviseError> {
-        let acceleration = |state: &State<f64, 1>| self.model.on::<f64>().acceleration(state);
-        let even = [1.0];
-        let recorded = self.control.record.as_deref().unwrap_or(&even);
-        let jitter = match self.control.record {
-            Some(_) => libration::analysis::Jitter::Gaussian(0.0),
-            None => self.control.jitter,
-        };
-        let rates = vec![1.0 + self.control.skew; run.starts.len()];
-        let setup = Setup::new(All(Chosen(&acceleration)), method)
-            .controller(self.controller)
-            .clock((Rates(&rates), (Recorded::repeated(recorded), Jittered(jitter))))
-            .delay(delay)
-            .disturbance(WhiteNoise(run.intensity));
-        let period = self.control.period;
-        let mut loops = Loops::new(setup, period, SEED, [0.0], run.starts, lab.alone()?)?;
-        advance(lab, run.before, |steps| loops.advance(steps))?;
-        let mut sums = vec![0.0; run.starts.len()];
-        let mut counted = 0;
-        while counted < run.periods {
-            lab.check()?;
-            let steps = LEG.min(run.periods - counted);
-            let seen = loops.observe(steps, 1, |range| MeanCost::new(range, self.weights))?;
-            let means = seen.iter().flat_map(MeanCost::means);
-            sums.iter_mut().zip(means).for_each(|(sum, mean)| *sum += mean * steps as f64);
-            counted += steps;
-        }
-        let costs = sums.into_iter().map(|sum| sum / run.periods as f64).collect();
-        let last = (0..run.starts.len()).filter_map(|n| loops.state(n)).collect();
-        Ok(Ran { costs, last })
-    }
-
     /// Whether its command has a limit.
     fn limited(&self) -> bool {
         match self.control.law {
@@ -281,38 +206,4 @@ impl<M: Model<1>> Loop<M> {
             _ => false,
         }
     }
-}
-
-/// Steps between two looks at whether to stop.
-const LEG: u64 = 4096;
-
-fn advance(
-    lab: &Lab<'_>,
-    steps: u64,
-    mut by: impl FnMut(u64) -> Result<(), EnsembleError>,
-) -> Result<(), AdviseError> {
-    let mut left = steps;
-    while left > 0 {
-        lab.check()?;
-        let leg = LEG.min(left);
-        by(leg)?;
-        left -= leg;
-    }
-    Ok(())
-}
-
-/// What is run.
-#[derive(Clone, Copy)]
-struct Run<'a> {
-    before: u64,
-    periods: u64,
-    starts: &'a [State<f64, 1>],
-    /// Of the noise.
-    intensity: f64,
-}
-
-/// What came of it.
-struct Ran {
-    costs: Vec<f64>,
-    last: Vec<State<f64, 1>>,
 }

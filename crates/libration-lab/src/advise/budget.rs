@@ -1,0 +1,173 @@
+//! What a loop stands of each imperfection alone, and which fails first.
+
+use libration::Model;
+use libration::analysis::{Imperfections, Jitter};
+use serde::Serialize;
+
+use super::AdviseError;
+use super::limits::{Kind, Limit};
+use super::loops::{Loop, LoopError};
+use super::making::unwrapped;
+use super::request::{Control, Law, Request};
+use super::words::swings;
+use crate::Lab;
+
+/// What a loop stands of an imperfection alone.
+#[derive(Clone, Debug, Serialize)]
+pub struct Budget {
+    /// Which.
+    pub kind: Kind,
+    /// The unit of its sizes.
+    pub unit: &'static str,
+    /// How much of it is stated.
+    pub stated: f64,
+    /// Up to here the loop is stable; none where no end was found.
+    pub stable_up_to: Option<f64>,
+    /// Up to here the cost is tolerated, if a cost is; none where no end was found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerated_up_to: Option<Option<f64>>,
+    /// The largest that was tried.
+    pub tried_up_to: f64,
+    /// What is stated over the smaller of the two limits; none without one.
+    pub used: Option<f64>,
+    /// How it was obtained.
+    pub how: &'static str,
+    /// A command that shows it.
+    pub command: String,
+}
+
+/// What fails first, and how that looks.
+#[derive(Clone, Debug, Serialize)]
+pub struct Failing {
+    /// Which.
+    pub kind: Kind,
+    /// The part of its budget that is used.
+    pub used: f64,
+    /// With which frequency the loop swings at the limit, in Hz; none where it does not, or where nothing is told of it.
+    pub frequency: Option<f64>,
+    /// In words.
+    pub how: String,
+}
+
+impl<M: Model<1>> Loop<M> {
+    /// Fails where nothing can be advised.
+    pub(super) fn check_stable(&self) -> Result<(), AdviseError> {
+        let (plant, none) = (self.plant(), Imperfections::NONE);
+        let growth = plant.mean_square_growth(&self.linear, &none).map_err(LoopError::from)?;
+        if growth < 0.0 {
+            return Ok(());
+        }
+        let mode = plant.slowest_mode(&self.linear, &none).map_err(LoopError::from)?;
+        let how = swings(mode.angle, self.control.period).1;
+        Err(AdviseError::Unstable { growth: mode.radius, how })
+    }
+
+    pub(super) fn budgets(
+        &self,
+        lab: &Lab<'_>,
+        request: &Request,
+    ) -> Result<Vec<Budget>, AdviseError> {
+        let budgets = lab.sweep("what the loop stands", &Kind::ALL, |&kind| {
+            self.budget(kind, request).map_err(unwrapped)
+        })?;
+        Ok(budgets)
+    }
+
+    fn budget(&self, kind: Kind, request: &Request) -> Result<Budget, AdviseError> {
+        let plant = self.plant();
+        let Control { period, latency, jitter, skew, loss, .. } = self.control;
+        let (unit, scale, stated) = match kind {
+            Kind::Latency => ("s", period, latency),
+            Kind::Jitter => ("relative rms", 1.0, jitter.rms()),
+            Kind::Skew => ("part of a period", 1.0, skew.max(0.0)),
+            Kind::Loss => ("probability", 1.0, loss),
+        };
+        let end = |limit: Limit| match limit {
+            Limit::None => (Some(0.0), 0.0),
+            Limit::At(size) => (Some(scale * size), scale * size),
+            Limit::Beyond(size) => (None, scale * size),
+        };
+        let (stable, tried) = end(self.stable_up_to(&plant, kind)?);
+        let tolerated =
+            self.cheap_up_to(&plant, kind, request.tolerance)?.map(|limit| end(limit).0);
+        let limit = [stable, tolerated.flatten()].into_iter().flatten().reduce(f64::min);
+        Ok(Budget {
+            kind,
+            unit,
+            stated,
+            stable_up_to: stable,
+            tolerated_up_to: tolerated,
+            tried_up_to: tried,
+            used: limit.filter(|&limit| limit > 0.0).map(|limit| stated / limit),
+            how: match kind {
+                Kind::Latency | Kind::Skew => {
+                    "exact: the spectral radius of the sampled loop passes 1"
+                }
+                Kind::Jitter | Kind::Loss => "exact: second moments, E[M ⊗ M], begin to grow",
+            },
+            command: self.command(kind, limit, request),
+        })
+    }
+
+    /// A command that shows a limit.
+    fn command(&self, kind: Kind, limit: Option<f64>, request: &Request) -> String {
+        let gains = match self.control.law {
+            Law::Pd(gains) => gains,
+            Law::Lqr(_) => self.gains(),
+            _ => return "libration advise --config FILE --json".to_owned(),
+        };
+        let set: String = request
+            .system
+            .parameters()
+            .into_iter()
+            .map(|(name, value)| format!(" --set {name}={value}"))
+            .collect();
+        let law = match self.control.jitter {
+            Jitter::Gaussian(_) => "gaussian",
+            Jitter::Uniform(_) => "uniform",
+        };
+        let period = self.control.period;
+        let (dt, flag) = match (kind, limit) {
+            (Kind::Skew, Some(limit)) => (period * (1.0 + limit), String::new()),
+            (Kind::Latency, Some(limit)) => (period, format!(" --latency {limit}")),
+            (Kind::Jitter, Some(limit)) => (period, format!(" --jitter {law}:{limit}")),
+            (Kind::Loss, Some(limit)) => (period, format!(" --loss {limit}")),
+            (_, None) => (period, String::new()),
+        };
+        let integrator = if M::LINEAR { "exact" } else { "rk4" };
+        format!(
+            "libration analyze --system {}{set} --q {} --integrator {integrator} --dt {dt} --feedback {},{}{flag}",
+            request.system.name(),
+            request.q[0],
+            gains.position,
+            gains.velocity
+        )
+    }
+
+    pub(super) fn fails_first(&self, budgets: &[Budget]) -> Result<Option<Failing>, AdviseError> {
+        let used = |budget: &&Budget| budget.used.is_some_and(|used| used > 0.0);
+        let most =
+            |a: &&Budget, b: &&Budget| a.used.unwrap_or(0.0).total_cmp(&b.used.unwrap_or(0.0));
+        let Some(first) = budgets.iter().filter(used).max_by(most) else { return Ok(None) };
+        let period = self.control.period;
+        let (frequency, how) = match (first.kind, first.stable_up_to) {
+            (Kind::Latency | Kind::Skew, Some(limit)) => {
+                let size = if first.kind == Kind::Latency { limit / period } else { limit };
+                let at = self.only(first.kind, size)?;
+                let mode = self.plant().slowest_mode(&self.linear, &at).map_err(LoopError::from)?;
+                let longer = 1.0 + at.skew;
+                let (frequency, how) = swings(mode.angle, period * longer);
+                (frequency, format!("at its limit {how}"))
+            }
+            (Kind::Jitter | Kind::Loss, Some(_)) => (
+                None,
+                "beyond its limit rare outbursts become so large that the mean square grows, while a typical run may still \
+                 decay"
+                    .to_owned(),
+            ),
+            _ => (None, "it costs too much before it becomes unstable".to_owned()),
+        };
+        let used = first.used.unwrap_or(0.0);
+        Ok(Some(Failing { kind: first.kind, used, frequency, how }))
+    }
+}

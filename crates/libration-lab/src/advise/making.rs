@@ -1,0 +1,128 @@
+//! How advice is made.
+
+use libration::{Float, Method, Model, State, System};
+
+use super::answer::{Advice, FloatChoice, LoopAdvice};
+use super::choice::largest_step;
+use super::free::Free;
+use super::loops::Loop;
+use super::request::{Control, Measure, Request, Tolerance};
+use super::stepped::Stepped;
+use super::words::{advised, stands, warnings};
+use super::{AdviseError, Budget, Throughput};
+use crate::Lab;
+use crate::study::StudyError;
+
+/// The advice on a system that nobody controls.
+pub(super) fn free<M: Model<D>, const D: usize>(
+    lab: &Lab<'_>,
+    model: M,
+    request: &Request,
+) -> Result<Advice, AdviseError> {
+    let free = Free::new(model, request)?;
+    let mut advice = Advice::new(request);
+    let most = request.tolerance.most;
+    let choices = lab.sweep("the largest step of each integrator", &Method::ALL, |&method| {
+        largest_step(lab, &free, method, most, free.steps()).map_err(unwrapped)
+    })?;
+    advice.choose(request, choices);
+    if let Some((choice, dt)) = advice.chosen() {
+        let method = Method::from_name(choice.integrator).unwrap_or(Method::Rk4);
+        let narrow = free.lost_in::<f32>(lab, method, dt, f64::INFINITY)?;
+        let wide = free.lost_in::<f64>(lab, method, dt, f64::INFINITY)?;
+        advice.floats = floats([narrow, wide], most);
+        let narrow = advice.float().is_some_and(|float| float.float == f32::NAME);
+        advice.throughput = Some(Throughput::measure(lab, request, method, dt, narrow)?);
+    }
+    advice.answer = advised(&advice, request);
+    Ok(advice)
+}
+
+/// Errors of a search, as a sweep hands them on.
+pub(super) fn unwrapped(error: AdviseError) -> StudyError {
+    match error {
+        AdviseError::Study(error) => error,
+        error => StudyError::Exact(format!("searching for a step: {error}")),
+    }
+}
+
+fn floats(lost: [f64; 2], most: f64) -> Vec<FloatChoice> {
+    let all = [f32::NAME, f64::NAME].into_iter().zip(lost);
+    all.map(|(float, lost)| FloatChoice { float, lost, meets: lost <= most }).collect()
+}
+
+/// The advice on a loop.
+pub(super) fn looped<M: Model<1>>(
+    lab: &Lab<'_>,
+    model: M,
+    control: &Control,
+    request: &Request,
+) -> Result<Advice, AdviseError> {
+    let one = Loop::new(model, request.q[0], control)?;
+    one.check_stable()?;
+    let plant = one.plant();
+    let mut advice = Advice::new(request);
+    let stepped = Stepped { one: &one, horizon: request.horizon, tolerance: request.tolerance };
+    let truth = stepped.truth(lab)?;
+    let choices = lab.sweep("the largest step of each integrator", &Method::ALL, |&method| {
+        stepped.choose(lab, method, &truth).map_err(unwrapped)
+    })?;
+    advice.choose(request, choices);
+    if let Some((choice, dt)) = advice.chosen() {
+        let method = Method::from_name(choice.integrator).unwrap_or(Method::Rk4);
+        let substeps = choice.substeps.unwrap_or(1);
+        // A cost follows from steps alone; what rounding does is seen in the course.
+        let tolerance = Tolerance { of: Measure::Trajectory, ..request.tolerance };
+        let course = Stepped { tolerance, ..stepped };
+        let truth = course.truth(lab)?;
+        let lost = [
+            course.lost::<f32>(lab, method, substeps, &truth)?,
+            course.lost::<f64>(lab, method, substeps, &truth)?,
+        ];
+        advice.floats = floats(lost, request.tolerance.most);
+        if request.tolerance.of == Measure::Cost {
+            // The integrator's own error of the course is no part of what is tolerated.
+            for float in &mut advice.floats {
+                float.meets = float.lost <= lost[1] + request.tolerance.most;
+            }
+        }
+        let narrow = advice.float().is_some_and(|float| float.float == f32::NAME);
+        advice.throughput = Some(Throughput::measure(lab, request, method, dt, narrow)?);
+    }
+    let budgets = one.budgets(lab, request)?;
+    let together = one.together(lab, &plant)?;
+    let fails_first = one.fails_first(&budgets)?;
+    let rest = State { q: [request.q[0]], v: [0.0] };
+    let [held] = model.on::<f64>().acceleration(&rest);
+    advice.warnings.splice(0..0, warnings(&one, request, &together));
+    let looped = LoopAdvice {
+        controller: one.told(),
+        gains: {
+            let gains = one.gains();
+            [gains.position, gains.velocity]
+        },
+        held_command: -held,
+        period: control.period,
+        budgets,
+        together,
+        fails_first,
+    };
+    advice.answer = format!("{} {}", stands(&looped, request), advised(&advice, request));
+    if request.map {
+        advice.map = Some(one.map(lab, looped.budgets[0].stable_up_to)?);
+    }
+    advice.looped = Some(looped);
+    Ok(advice)
+}
+
+/// What a loop stands of each imperfection alone.
+pub(super) fn budgets<M: Model<1>>(
+    lab: &Lab<'_>,
+    model: M,
+    control: &Control,
+    request: &Request,
+) -> Result<Vec<Budget>, AdviseError> {
+    let one = Loop::new(model, request.q[0], control)?;
+    one.check_stable()?;
+    one.budgets(lab, request)
+}

@@ -1,0 +1,137 @@
+//! The answer in sentences.
+
+use libration::Model;
+
+use super::answer::{Advice, LoopAdvice};
+use super::loops::Loop;
+use super::request::{Control, Measure, Request, Tolerance};
+use super::together::Together;
+
+/// Which integrator is advised, in a sentence.
+pub(super) fn advised(advice: &Advice, request: &Request) -> String {
+    let Tolerance { of, most } = request.tolerance;
+    match advice.chosen() {
+        None => format!(
+            "No integrator keeps the {} below {most:e} over {} s.",
+            of.title(),
+            request.horizon
+        ),
+        Some((choice, dt)) => {
+            let float = advice.float().map_or("no float type", |float| float.float);
+            format!(
+                "{} in steps of {dt:.4e} s, in {float}: the cheapest that keeps the {} below {most:e} over {} s.",
+                choice.integrator,
+                of.title(),
+                request.horizon
+            )
+        }
+    }
+}
+
+/// Whether a loop stands what is stated, in a sentence or two.
+pub(super) fn stands(looped: &LoopAdvice, request: &Request) -> String {
+    let Together { growth, room, cost_increase, .. } = looped.together;
+    if growth >= 0.0 {
+        return format!(
+            "The loop does not stand what is stated: its second moments grow by {:.3} % a period.",
+            100.0 * growth.exp_m1()
+        );
+    }
+    let mut text = match (room, &looped.fails_first) {
+        (Some(room), _) => {
+            format!(
+                "The loop stands what is stated, and all of it may become {room:.3} times as large."
+            )
+        }
+        (None, Some(_)) => "The loop stands what is stated, and sixteen times as much.".to_owned(),
+        (None, None) => {
+            "The loop stands; nothing is stated that could be wrong with it.".to_owned()
+        }
+    };
+    if let Some(failing) = &looped.fails_first {
+        text += &format!(
+            " {} fails first, of whose budget {:.1} % is used; {}.",
+            capital(failing.kind.name()),
+            100.0 * failing.used,
+            failing.how
+        );
+    }
+    if let Some(increase) = cost_increase {
+        let tolerated = match request.tolerance {
+            Tolerance { of: Measure::Cost, most } if increase > most => {
+                format!(", more than the {:.3} % that are tolerated", 100.0 * most)
+            }
+            _ => String::new(),
+        };
+        text +=
+            &format!(" It costs {:.3} % more than the ideal loop{tolerated}.", 100.0 * increase);
+    }
+    text
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// What must be said loudly.
+pub(super) fn warnings<M: Model<1>>(
+    one: &Loop<M>,
+    request: &Request,
+    together: &Together,
+) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if let Some(returns) = &together.returns {
+        let [back, all] = returns.of_asked;
+        if back < all {
+            warnings.push(format!(
+                "the simulation contradicts the linearisation: of {all} starts {} from the operating point only {back} return; \
+                 all do from up to {:.4}",
+                returns.asked, returns.up_to
+            ));
+        }
+    }
+    if let Some(simulated) = &together.simulated {
+        let off = (simulated.cost - simulated.predicted) / simulated.error;
+        if off.abs() > 4.0 {
+            warnings.push(format!(
+                "the simulation contradicts the theory: it costs {:.5e} ± {:.1e}, and {:.5e} is predicted",
+                simulated.cost, simulated.error, simulated.predicted
+            ));
+        }
+    } else if together.growth < 0.0 {
+        warnings.push(
+            "the loop decays too slowly to be simulated: what is said follows from theory alone"
+                .into(),
+        );
+    }
+    let Control { period, .. } = one.control;
+    let turn = (2.0 * one.plant().energy().position).sqrt() * period;
+    if turn > 1.0 {
+        warnings.push(format!(
+            "the plant turns by {turn:.2} rad in a period: the loop samples it sparsely"
+        ));
+    }
+    if one.control.record.is_some() {
+        warnings.push(
+            "the budget of jitter is that of a law with the rms of the time stamps, drawn anew for each step; the simulation \
+             replays them as they are"
+                .into(),
+        );
+    }
+    let _ = request;
+    warnings
+}
+
+/// The frequency of a motion that turns by `angle` in a period, and how it looks.
+pub(super) fn swings(angle: f64, period: f64) -> (Option<f64>, String) {
+    let frequency = angle / (std::f64::consts::TAU * period);
+    match angle {
+        0.0 => (None, "it runs away without a swing".into()),
+        angle if angle > 3.1 => (
+            Some(frequency),
+            format!("it changes its sign with every period, at {frequency:.4} Hz"),
+        ),
+        _ => (Some(frequency), format!("it swings at {frequency:.4} Hz with growing amplitude")),
+    }
+}
