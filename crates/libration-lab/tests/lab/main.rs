@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod advise;
 mod analyze;
 mod clocks;
 mod config;

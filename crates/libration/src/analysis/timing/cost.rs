@@ -34,7 +34,7 @@ impl Plant<'_> {
         imperfections: &Imperfections,
         weights: LqrWeights,
     ) -> Result<f64, CostError> {
-        let stages = self.stages(controller, imperfections, weights)?;
+        let stages = self.stages(controller, imperfections, Some(weights))?;
         if stable_growth(&stages) >= 0.0 {
             return Ok(f64::INFINITY);
         }
@@ -64,8 +64,7 @@ impl Plant<'_> {
         controller: &LinearController,
         imperfections: &Imperfections,
     ) -> Result<f64, CostError> {
-        let nothing = LqrWeights { position: 0.0, velocity: 0.0, command: 0.0 };
-        Ok(stable_growth(&self.stages(controller, imperfections, nothing)?))
+        Ok(stable_growth(&self.stages(controller, imperfections, None)?))
     }
 
     /// The steps that the loop may take.
@@ -73,12 +72,13 @@ impl Plant<'_> {
         &self,
         controller: &LinearController,
         imperfections: &Imperfections,
-        weights: LqrWeights,
+        weights: Option<LqrWeights>,
     ) -> Result<Vec<Stage>, CostError> {
         let Imperfections { latency, jitter, skew, loss } = *imperfections;
-        let LqrWeights { position, velocity, command } = weights;
-        for (of, weight) in [("position", position), ("velocity", velocity), ("command", command)] {
-            if !(weight.is_finite() && weight >= 0.0) {
+        if let Some(LqrWeights { position, velocity, command }) = weights {
+            let all = [("position", position), ("velocity", velocity), ("command", command)];
+            if let Some((of, weight)) = all.into_iter().find(|(_, x)| !(x.is_finite() && *x >= 0.0))
+            {
                 return Err(CostError::Weight { of, weight });
             }
         }

@@ -34,7 +34,7 @@ impl Plant<'_> {
         let mut mean: Matrix = vec![vec![0.0; moments]; moments];
         for (weight, epsilon) in jitter.nodes(turn) {
             let dt = self.dt * (Wide::one() + Wide::from_f64(epsilon));
-            let step = waiting.step(&self.split(part, dt), &controller, Some(whole));
+            let step = waiting.step(&self.split_in_floats(part, dt), &controller, Some(whole));
             for (row, square) in mean.iter_mut().zip(symmetric_square(&step)) {
                 row.iter_mut().zip(square).for_each(|(sum, x)| *sum += weight * x);
             }

@@ -30,6 +30,7 @@ mod riccati;
 mod sample;
 mod sampled;
 mod skew;
+mod split;
 mod stage;
 mod switching;
 mod waiting;

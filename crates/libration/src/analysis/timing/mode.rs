@@ -1,7 +1,7 @@
 //! The motion of a loop that decays last.
 
 use super::waiting::{Matrix, growth};
-use super::{CostError, Imperfections, LinearController, LqrWeights, Plant};
+use super::{CostError, Imperfections, LinearController, Plant};
 
 /// The motion of a loop that decays last, or grows fastest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,8 +32,7 @@ impl Plant<'_> {
     ) -> Result<Mode, CostError> {
         let none = Imperfections::NONE;
         let alone = Imperfections { jitter: none.jitter, loss: 0.0, ..*imperfections };
-        let nothing = LqrWeights { position: 0.0, velocity: 0.0, command: 0.0 };
-        let stages = self.stages(controller, &alone, nothing)?;
+        let stages = self.stages(controller, &alone, None)?;
         let step = &stages[0].step;
         let mut state: Vec<f64> = (0..step.len()).map(|i| 1.0 / (1.0 + i as f64)).collect();
         for _ in 0..STEPS {

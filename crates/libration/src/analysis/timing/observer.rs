@@ -42,8 +42,9 @@ impl Plant<'_> {
         if !(position.is_finite() && position > 0.0) {
             return Err(LqrError::CommandWeight(position));
         }
-        let step @ HeldStep { phi, gamma } = (self.step)(self.dt);
-        let entries = self.noise_of(&step).map(|row| row.map(|x| Wide::from_f64(x * acceleration)));
+        let HeldStep { phi, gamma } = (self.step)(self.dt);
+        let gamma = [gamma.q[0], gamma.v[0]].map(Wide::to_f64);
+        let entries = self.noise_of(gamma).map(|row| row.map(|x| Wide::from_f64(x * acceleration)));
         let covariance = super::riccati::Matrix {
             dq: [State { q: [entries[0][0]], v: [entries[1][0]] }],
             dv: [State { q: [entries[0][1]], v: [entries[1][1]] }],
@@ -55,19 +56,18 @@ impl Plant<'_> {
         let [qq, vq] = [0, 1].map(|i| foretold.entry(i, 0));
         let correction = [qq, vq].map(|x| (x / (qq + variance)).to_f64());
         let phi = [0, 1].map(|i| [0, 1].map(|j| phi.entry(i, j).to_f64()));
-        let gamma = [gamma.q[0], gamma.v[0]].map(Wide::to_f64);
         Ok(StateObserver { phi, gamma, correction })
     }
 
     /// The covariance of what noise of unit intensity adds in a step.
-    fn noise_of(&self, step: &HeldStep) -> [[f64; 2]; 2] {
+    fn noise_of(&self, gain: [f64; 2]) -> [[f64; 2]; 2] {
         let dt = self.dt.to_f64();
         match self.exact {
             true => {
                 let nothing = LqrWeights { position: 0.0, velocity: 0.0, command: 0.0 };
                 self.sampled(nothing, dt).noise
             }
-            false => Plant::held_noise([step.gamma.q[0], step.gamma.v[0]], dt),
+            false => Plant::held_noise(gain, dt),
         }
     }
 }

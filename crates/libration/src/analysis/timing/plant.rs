@@ -31,6 +31,8 @@ pub struct Plant<'a> {
     pub(super) dt: Wide,
     /// Whether steps have no error, so that all is known of what lies between their ends.
     pub(super) exact: bool,
+    /// Whether steps are those of the flow of the generator.
+    pub(super) flows: bool,
 }
 
 impl<'a> Plant<'a> {
@@ -43,19 +45,19 @@ impl<'a> Plant<'a> {
     ) -> Self {
         let generator = Linearisation::generator_of(model, &at);
         let step = Box::new(move |h| HeldStep::of(integrator, model, &at, h));
-        Plant { step, generator, dt: Wide::from_f64(dt), exact: false }
+        Plant { step, generator, dt: Wide::from_f64(dt), exact: false, flows: false }
     }
 
     /// The same without an integrator: each step is exact.
     pub fn exact(model: impl Model<1> + 'a, at: State<f64, 1>, dt: f64) -> Self {
         let generator = Linearisation::generator_of(model, &at);
         let step = Box::new(move |h| HeldStep::exact(model, &at, h));
-        Plant { step, generator, dt: Wide::from_f64(dt), exact: true }
+        Plant { step, generator, dt: Wide::from_f64(dt), exact: true, flows: true }
     }
 
     /// This, with steps that are so many of its own, each as long: what a simulation does within the period of a loop.
     pub fn substeps(self, count: u64) -> Self {
-        let Plant { step, generator, dt, exact } = self;
+        let Plant { step, generator, dt, exact, flows } = self;
         let many = move |h: Wide| {
             let HeldStep { phi, gamma } = step(h / Wide::from_f64(count as f64));
             let mut all = HeldStep { phi: UpdateMatrix::identity(), gamma: State::origin() };
@@ -64,7 +66,7 @@ impl<'a> Plant<'a> {
             }
             all
         };
-        Plant { step: Box::new(many), generator, dt, exact }
+        Plant { step: Box::new(many), generator, dt, exact, flows }
     }
 
     /// This, with noise and cost as a simulation has them though its steps be exact: see [`Plant::cost`].

@@ -165,7 +165,7 @@ impl Plant<'_> {
     fn steps_late(&self, feedback: Feedback, latency: &RandomLatency) -> Vec<Matrix> {
         let controller = LinearController::from(feedback);
         let of = |&(late, _): &(Latency, f64)| {
-            let step = self.split(late.part(), self.dt);
+            let step = self.split_in_floats(late.part(), self.dt);
             latency.waiting().step(&step, &controller, Some(late.whole() as usize))
         };
         latency.table.iter().map(of).collect()

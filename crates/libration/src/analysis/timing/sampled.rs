@@ -2,7 +2,6 @@
 
 use super::waiting::{Matrix, product};
 use super::{LqrWeights, Plant};
-use crate::number::Wide;
 
 /// An exact step of `h` seconds under white noise of unit intensity.
 #[derive(Clone, Copy, Debug)]
@@ -57,8 +56,7 @@ impl Plant<'_> {
     }
 
     /// The noise of a step of an integrator, in which a constant acceleration of variance `1/h` adds `gain` for each unit of it.
-    pub(super) fn held_noise(gain: [Wide; 2], h: f64) -> [[f64; 2]; 2] {
-        let gain = gain.map(Wide::to_f64);
+    pub(super) fn held_noise(gain: [f64; 2], h: f64) -> [[f64; 2]; 2] {
         // A step of length zero moves nothing.
         let share = if h > 0.0 { h.recip() } else { 0.0 };
         gain.map(|a| gain.map(|b| a * b * share))
@@ -71,8 +69,8 @@ fn last_column<const N: usize>(a: &[[f64; N]; N], h: f64) -> [f64; N] {
     core::array::from_fn(|i| power[i][N - 1])
 }
 
-/// By Taylor's series of a small part, squared as often as it takes.
-fn exponential(a: Matrix) -> Matrix {
+/// `exp(a)`, by Taylor's series of a small part, squared as often as it takes.
+pub(super) fn exponential(a: Matrix) -> Matrix {
     // A part of norm below ½ has terms that fall by a half and a factorial: 2⁻²⁰/20! is 4·10⁻²⁵.
     const TERMS: u32 = 20;
     let n = a.len();
@@ -98,6 +96,7 @@ mod tests {
     use super::super::sample::ORIGIN;
     use super::*;
     use crate::Scalar;
+    use crate::number::Wide;
     use crate::system::{DampedOscillator, Oscillator};
 
     const WEIGHTS: LqrWeights = LqrWeights { position: 5.0, velocity: 0.5, command: 0.2 };

@@ -26,19 +26,24 @@ pub(super) struct Making<'a> {
     pub(super) waiting: Waiting,
     pub(super) controller: &'a LinearController,
     pub(super) latency: Latency,
-    pub(super) weights: LqrWeights,
+    /// Of what it costs, if that is asked.
+    pub(super) weights: Option<LqrWeights>,
 }
 
 impl Plant<'_> {
     /// A step of `h` seconds in which the command arrives, or is lost.
     pub(super) fn stage(&self, making: Making<'_>, weight: f64, h: Wide, lost: bool) -> Stage {
         let Making { waiting, controller, latency, weights } = making;
-        let split = self.split(latency.part(), h);
+        let split = self.split_in_floats(latency.part(), h);
         let d = (!lost).then_some(latency.whole() as usize);
         let step = waiting.step(&split, controller, d);
-        let (held, arriving) = (waiting.held(), waiting.arriving(controller, d));
         let n = waiting.size();
         let mut cost = vec![vec![0.0; n]; n];
+        let Some(weights) = weights else {
+            let noise = [[0.0; 2]; 2];
+            return Stage { weight, step, noise, cost, constant: 0.0, length: 1.0 };
+        };
+        let (held, arriving) = (waiting.held(), waiting.arriving(controller, d));
         let coordinate = |i: usize| {
             let mut row = vec![0.0; n];
             row[i] = 1.0;
@@ -53,15 +58,14 @@ impl Plant<'_> {
             add_square(&mut cost, velocity, &coordinate(1));
             add_square(&mut cost, command * part, &held);
             add_square(&mut cost, command * (1.0 - part), &arriving);
-            let gain = split.old + split.new;
-            let noise = Plant::held_noise([gain.q[0], gain.v[0]], seconds);
+            let gain = [0, 1].map(|i| split.old[i] + split.new[i]);
+            let noise = Plant::held_noise(gain, seconds);
             return Stage { weight, step, noise, cost, constant: 0.0, length: 1.0 };
         }
-        let before = (self.step)(h * Wide::from_f64(part));
+        let before = self.whole(h * Wide::from_f64(part));
         let moved: [Vec<f64>; 2] = core::array::from_fn(|i| {
-            let gain = [before.gamma.q[0], before.gamma.v[0]][i].to_f64();
-            let mut row: Vec<f64> = held.iter().map(|x| gain * x).collect();
-            (0..2).for_each(|j| row[j] += before.phi.entry(i, j).to_f64());
+            let mut row: Vec<f64> = held.iter().map(|x| before.gamma[i] * x).collect();
+            (0..2).for_each(|j| row[j] += before.phi[i][j]);
             row
         });
         let [q, v] = moved;

@@ -1,9 +1,7 @@
 //! A step of a loop with all that it has to know, and how its second moments grow.
 
 use super::LinearController;
-use super::latency::SplitStep;
-use crate::State;
-use crate::number::Wide;
+use super::split::Split;
 
 /// A square matrix, row by row.
 pub(super) type Matrix = Vec<Vec<f64>>;
@@ -47,20 +45,19 @@ impl Waiting {
     /// A step in which that command takes over.
     pub(super) fn step(
         self,
-        step: &SplitStep,
+        step: &Split,
         controller: &LinearController,
         d: Option<usize>,
     ) -> Matrix {
         let n = self.size();
-        let numbers = |of: &State<Wide, 1>| [of.q[0], of.v[0]].map(Wide::to_f64);
-        let (old, new) = (numbers(&step.old), numbers(&step.new));
+        let Split { phi, old, new } = step;
         let (arriving, held) = (self.arriving(controller, d), self.held());
         let mut matrix = vec![vec![0.0; n]; n];
         for (i, row) in matrix.iter_mut().enumerate().take(2) {
             for (x, (arriving, held)) in row.iter_mut().zip(arriving.iter().zip(&held)) {
                 *x = new[i] * arriving + old[i] * held;
             }
-            (0..2).for_each(|j| row[j] += step.phi.entry(i, j).to_f64());
+            (0..2).for_each(|j| row[j] += phi[i][j]);
         }
         let first = 2 + self.memory;
         controller.memory_rows(&mut matrix[2..first]);

@@ -1,0 +1,88 @@
+//! A robot's joint at 500 Hz whose commands are 3 ms late: does it hold, and what fails first?
+//!
+//! ```text
+//! cargo run --release -p libration-lab --example robot_joint [PAGE.html]
+//! ```
+
+use std::error::Error;
+use std::sync::atomic::AtomicBool;
+
+use libration::analysis::{Latency, Plant};
+use libration::control::Schedule;
+use libration::control::controller::Luenberger;
+use libration::ensemble::{All, Execution, Loops, Setup};
+use libration::integrator::Rk4;
+use libration::system::Pendulum;
+use libration::{State, System};
+use libration_lab::advise::{self, Kind, Law};
+use libration_lab::{Config, Effort, Lab, Silent};
+
+/// The arm about the angle at which it is held: what is left of its weight there.
+#[derive(Clone, Copy)]
+struct Arm {
+    pendulum: Pendulum<f64>,
+    angle: f64,
+}
+
+impl System<f64, 1> for Arm {
+    fn acceleration(&self, state: &State<f64, 1>) -> [f64; 1] {
+        let at = |q: f64| self.pendulum.acceleration(&State { q: [q], v: [0.0] })[0];
+        [at(self.angle + state.q[0]) - at(self.angle)]
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut request = advise::parse(include_str!("robot_joint.toml"), "robot_joint.toml")?;
+    let page = std::env::args().nth(1);
+    request.map = page.is_some();
+    let (config, stop) = (Config::default(), AtomicBool::new(false));
+    let lab = Lab::new(&config, Effort::Standard, &Silent, &stop);
+    let advice = advise::advise(&lab, &request)?;
+    println!("{}", advice.answer);
+    if let Some(page) = page {
+        std::fs::write(page, advise::page(&advice))?;
+    }
+
+    // The same loop by hand: an arm of its own, with the controller that was designed.
+    let looped = advice.looped.as_ref().ok_or("there is a loop")?;
+    let control = request.control.as_ref().ok_or("there is a loop")?;
+    let arm = Arm { pendulum: Pendulum { omega2: 19.6 }, angle: 0.8 };
+    // Near this angle the arm is an oscillator.
+    let near = libration::system::Oscillator { omega2: 19.6 * 0.8_f64.cos() };
+    let plant = Plant::exact(near, State { q: [0.0], v: [0.0] }, control.period);
+    let Law::Observer { weights, noise } = control.law else { return Err("an observer".into()) };
+    let controller = Luenberger::to_origin(plant.lqr(weights)?, plant.observer(noise)?);
+    let limit = looped.budgets.iter().find(|budget| budget.kind == Kind::Latency);
+    let limit = limit.and_then(|budget| budget.stable_up_to).ok_or("a limit of latency")?;
+    let frequency = looped.fails_first.as_ref().and_then(|failing| failing.frequency);
+    for (latency, holds) in [(control.latency, true), (0.98 * limit, true), (1.02 * limit, false)] {
+        let late = Latency::of_seconds(latency, control.period).ok_or("no latency")?;
+        let setup = Setup::new(All(arm), Rk4).controller(controller).delay(Schedule::late(late));
+        let start = [State { q: [1e-6], v: [0.0] }];
+        let mut one = Loops::new(setup, control.period, 0, [0.0], &start, Execution::serial())?;
+        let (mut before, mut after, mut turns) = (0.0_f64, 0.0_f64, 0);
+        let mut last = 1.0_f64;
+        for step in 0..2000 {
+            one.advance(1)?;
+            let angle = one.state(0).map_or(f64::NAN, |state| state.q[0]);
+            let largest = if step < 1000 { &mut before } else { &mut after };
+            *largest = largest.max(angle.abs());
+            turns += u32::from(step >= 1000 && angle.signum() != last.signum());
+            last = angle;
+        }
+        let swings = f64::from(turns) / 2.0 / (1000.0 * control.period);
+        println!(
+            "{:.3} ms late: {before:.2e} rad, then {after:.2e} rad, at {swings:.1} Hz",
+            1e3 * latency
+        );
+        if (after < before) != holds {
+            return Err("the simulation does not do what was said".into());
+        }
+        // At the limit it swings as was foretold.
+        let foretold = frequency.filter(|_| latency > 0.9 * limit);
+        if foretold.is_some_and(|hz| (swings / hz - 1.0).abs() > 0.1) {
+            return Err(format!("it swings at {swings} Hz, not at {frequency:?}").into());
+        }
+    }
+    Ok(())
+}
