@@ -9,12 +9,15 @@ use crate::{Outcome, command, workspace};
 /// Folders of examples that run without arguments.
 const PLAIN: [&str; 2] = ["examples", "crates/libration/examples"];
 
-/// Examples of the laboratory that draw into the file named by their first argument.
-const DRAWING: [&str; 1] = ["gallery"];
+/// Examples of the laboratory that write a page into the file named by their first argument.
+const DRAWING: [&str; 2] = ["gallery", "robot_joint"];
 
 /// Examples of the laboratory that study something at the effort of their own configuration and
 /// report into the folder named by their second argument.
 const STUDYING: [&str; 1] = ["own_system"];
+
+/// Examples of the laboratory that follow what is advised, with an argument that makes them short enough.
+const ADVISING: [(&str, &str); 2] = [("satellite", "30"), ("stiff_spring", "")];
 
 /// Builds all examples of the workspace, then runs them.
 ///
@@ -39,6 +42,11 @@ pub(crate) fn run() -> Outcome {
         if !report.join("report.html").exists() {
             return Err(format!("example {name} wrote no report"));
         }
+    }
+    for (name, argument) in ADVISING {
+        println!("example {name}");
+        let mut example = command::program(built(name));
+        command::run(example.args(Some(argument).filter(|argument| !argument.is_empty())))?;
     }
     for name in drawing.iter().filter(|name| DRAWING.contains(&name.as_str())) {
         println!("example {name}");

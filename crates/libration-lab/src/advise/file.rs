@@ -1,10 +1,10 @@
 //! Requests as files.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use libration::AnySystem;
 use libration::analysis::{Feedback, Jitter, LqrWeights, ObserverNoise};
-use libration::control::clock::Recorded;
 use libration::control::controller::PidGains;
 
 use super::AdviseError;
@@ -12,6 +12,7 @@ use super::limits::Scaled;
 use super::request::{Control, Law, Measure, Request, Tolerance};
 use super::tables::{ControllerTable, File, LoopTable};
 use crate::config::{ConfigError, Count, Document, Fault, Number, names};
+use crate::wakeups;
 
 /// The default request, as a file with comments.
 pub const DEFAULT: &str = include_str!("default.toml");
@@ -149,8 +150,7 @@ fn control(law: Law, table: LoopTable) -> Result<Control, Fault> {
         let path = &table.time_stamps;
         let wrong =
             |why: String| Fault::new("loop.time_stamps", format!("cannot use `{path}`: {why}"));
-        let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
-        let stamps = Recorded::stamps_in(&text).map_err(|error| wrong(error.to_string()))?;
+        let stamps = wakeups::time_stamps(Path::new(path)).map_err(wrong)?;
         control = control.replaying(&stamps).map_err(|error| wrong(error.to_string()))?;
     }
     Ok(control)

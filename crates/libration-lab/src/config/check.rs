@@ -11,7 +11,7 @@ use libration::{Hamiltonian, State};
 use super::limits::{self, within};
 use super::{Config, Spring, Start, Throughput, names};
 use crate::bench::{Peer, PeerRow, Peers, RolloutPeer, StoragePeer};
-use crate::studies;
+use crate::{studies, wakeups};
 
 /// A value of a configuration that is not allowed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -80,6 +80,7 @@ impl Config {
             return Err(Fault::new("simd", message));
         }
         self.throughput.check()?;
+        time_stamps("jitter.time_stamps", self.jitter.time_stamps.as_deref())?;
         peers::<RolloutPeer>("rollout.peers", self.rollout.peers.as_deref())?;
         folder("storage.folder", self.storage.folder.as_deref())?;
         peers::<StoragePeer>("storage.peers", self.storage.peers.as_deref())
@@ -173,6 +174,13 @@ fn peers<R: PeerRow>(key: &'static str, path: Option<&Path>) -> Result<(), Fault
         Some(Err(message)) => Err(Fault::new(key, message)),
         _ => Ok(()),
     }
+}
+
+/// A file of time stamps is there, and is the record of a clock.
+fn time_stamps(key: &'static str, path: Option<&Path>) -> Result<(), Fault> {
+    let Some(path) = path else { return Ok(()) };
+    let wrong = |why| Fault::new(key, format!("cannot use `{}`: {why}", path.display()));
+    wakeups::time_stamps(path).map(|_| ()).map_err(wrong)
 }
 
 /// A folder is there before any work.

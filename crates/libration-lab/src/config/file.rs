@@ -9,14 +9,15 @@ use serde::{Deserialize, Serialize};
 
 use super::locate::Document;
 use super::tables::{
-    ConvergenceTable, DriftTable, EfficiencyTable, ErrorTable, NonlinearTable, PrecisionTable,
-    RolloutTable, SpectrumTable, SpringTable, StabilityTable, StartTable, StorageTable,
-    ThroughputTable,
+    ConvergenceTable, DriftTable, EfficiencyTable, ErrorTable, JitterTable, NonlinearTable,
+    PrecisionTable, RolloutTable, SpectrumTable, SpringTable, StabilityTable, StartTable,
+    StorageTable, ThroughputTable,
 };
 use super::value::{Count, Number};
 use super::{
-    Config, ConfigError, Convergence, Drift, Efficiency, Error, Fault, Nonlinear, Precision,
-    Rollout, Spectrum, Spring, Stability, Start, Storage, Throughput, check, names, schema,
+    Config, ConfigError, Convergence, Drift, Efficiency, Error, Fault, Jitter, Nonlinear,
+    Precision, Rollout, Spectrum, Spring, Stability, Start, Storage, Throughput, check, names,
+    schema,
 };
 use crate::Effort;
 use crate::bench::Implementation;
@@ -61,6 +62,8 @@ pub(super) struct File {
     pub(super) nonlinear: NonlinearTable,
     /// The study of float types.
     pub(super) precision: PrecisionTable,
+    /// The study of uneven clocks.
+    pub(super) jitter: JitterTable,
     /// The study of speed.
     pub(super) throughput: ThroughputTable,
     /// The study of rollouts.
@@ -118,6 +121,7 @@ impl Default for File {
             convergence,
             nonlinear,
             precision,
+            jitter,
             throughput,
             rollout,
             storage,
@@ -159,6 +163,7 @@ impl Default for File {
                 dt: numbers(precision.dt),
                 steps: Count(precision.steps.into()),
             },
+            jitter: JitterTable { time_stamps: path_of(jitter.time_stamps) },
             throughput: ThroughputTable {
                 implementations: names_of(&throughput.implementations),
                 counts: counts(throughput.counts),
@@ -195,6 +200,7 @@ impl TryFrom<File> for Config {
             convergence,
             nonlinear,
             precision,
+            jitter,
             throughput,
             rollout,
             storage,
@@ -242,6 +248,7 @@ impl TryFrom<File> for Config {
                 dt: numbers(precision.dt),
                 steps: check::steps("precision.steps", precision.steps.0)?,
             },
+            jitter: Jitter { time_stamps: path(jitter.time_stamps) },
             throughput: Throughput {
                 implementations: implementations(&throughput.implementations)?,
                 counts: counts("throughput.counts", throughput.counts)?,

@@ -60,6 +60,8 @@ pub struct Config {
     pub nonlinear: Nonlinear,
     /// Settings of the study `precision`.
     pub precision: Precision,
+    /// Settings of the study `jitter`.
+    pub jitter: Jitter,
     /// Settings of the study `throughput`.
     pub throughput: Throughput,
     /// Settings of the study `rollout`.
@@ -182,6 +184,14 @@ pub struct Throughput {
     pub peers: Option<PathBuf>,
 }
 
+/// Settings of the study `jitter`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Jitter {
+    /// Time stamps of a loop that ran on this host, if its clock is to be judged.
+    #[serde(serialize_with = "path")]
+    pub time_stamps: Option<PathBuf>,
+}
+
 /// Settings of the study `rollout`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Rollout {
@@ -238,6 +248,7 @@ impl Default for Config {
                 turns: 1000,
             },
             precision: Precision { dt: vec![1e-3, 1e-2], steps: 1_000_000 },
+            jitter: Jitter::default(),
             throughput: Throughput {
                 implementations: Implementation::ALL.to_vec(),
                 counts: (0..=8).map(|power| 10u64.pow(power)).collect(),

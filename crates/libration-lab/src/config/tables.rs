@@ -127,6 +127,14 @@ pub(super) struct PrecisionTable {
     pub(super) steps: Count,
 }
 
+/// Settings of the study `jitter`.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct JitterTable {
+    /// A file of time stamps, as `libration measure-jitter --output` writes it; none if empty.
+    pub(super) time_stamps: String,
+}
+
 /// Settings of the study `throughput`.
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
@@ -180,6 +188,7 @@ default_of_table!(
     ConvergenceTable = convergence,
     NonlinearTable = nonlinear,
     PrecisionTable = precision,
+    JitterTable = jitter,
     ThroughputTable = throughput,
     RolloutTable = rollout,
     StorageTable = storage

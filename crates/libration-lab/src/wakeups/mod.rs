@@ -6,12 +6,27 @@ mod spectrum;
 mod statistics;
 
 use std::io;
+use std::path::Path;
 
+use libration::control::clock::{Recorded, RecordedError};
 use thiserror::Error;
 
 pub use periodic::{Plan, Priority, Wakeups};
 pub use spectrum::{Band, Spectrum};
 pub use statistics::{Lateness, Quantile, Statistics};
+
+/// The time stamps of a file, in s, if they are the record of a clock.
+///
+/// # Errors
+/// In words: what cannot be read, and what is none.
+pub fn time_stamps(path: &Path) -> Result<Vec<f64>, String> {
+    let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
+    let checked = |stamps: Vec<f64>| {
+        Recorded::steps_between(&stamps)?;
+        Ok::<_, RecordedError>(stamps)
+    };
+    Recorded::stamps_in(&text).and_then(checked).map_err(|error| error.to_string())
+}
 
 /// Why no wake-ups were measured.
 #[derive(Debug, Error)]

@@ -3,6 +3,7 @@
 mod claims;
 mod energy;
 mod figures;
+mod host;
 mod map;
 mod maps;
 mod margin;
@@ -46,6 +47,7 @@ impl Study for Jitter {
         switching::measure(lab, &mut record)?;
         margin::measure(lab, &mut record)?;
         map::measure(lab, &mut record)?;
+        host::measure(lab, &mut record)?;
         claims::judge(&mut record, energy::horizon(lab));
         Ok(record)
     }

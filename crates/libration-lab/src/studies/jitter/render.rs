@@ -1,6 +1,6 @@
 //! The chapter on jitter.
 
-use super::{figures, maps};
+use super::{figures, host, maps};
 use crate::notation::number;
 use crate::page::{Highlight, Page};
 use crate::record::{Record, RecordError};
@@ -51,7 +51,7 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.figure(figures::switching(record)?);
     page.heading("Maps");
     page.figure(maps::maps(record)?);
-    Ok(())
+    host::render(record, page)
 }
 
 fn summary(record: &Record, page: &mut Page) {

@@ -3,8 +3,8 @@
 use super::imperfections::{MOST_RANDOM, MOST_REPEATED};
 use super::jitter::MOST_TURN;
 use super::linear::solved;
-use super::stage::{Making, Stage};
-use super::waiting::{Matrix, Waiting, growth, product, symmetric_square, transposed};
+use super::stage::{Making, Stage, mean_square, stable_growth};
+use super::waiting::{Matrix, Waiting, product, transposed};
 use super::{CostError, Imperfections, LinearController, LqrWeights, Plant};
 use crate::Scalar;
 use crate::number::Wide;
@@ -115,29 +115,6 @@ impl Plant<'_> {
         }
         Ok(stages)
     }
-}
-
-/// The logarithm of the factor by which second moments grow in a step.
-fn stable_growth(stages: &[Stage]) -> f64 {
-    match stages {
-        [stage] => 2.0 * growth(stage.step.clone()),
-        stages => growth(mean_square(stages)),
-    }
-}
-
-/// `E[M ⊗ M]` on what is symmetric.
-fn mean_square(stages: &[Stage]) -> Matrix {
-    let mut mean: Matrix = Vec::new();
-    for stage in stages {
-        let square = symmetric_square(&stage.step);
-        if mean.is_empty() {
-            mean = vec![vec![0.0; square.len()]; square.len()];
-        }
-        for (row, square) in mean.iter_mut().zip(square) {
-            row.iter_mut().zip(square).for_each(|(sum, x)| *sum += stage.weight * x);
-        }
-    }
-    mean
 }
 
 /// `P = M P Mᵀ + W` as the sum of all that ever came in, doubled again and again (R. A. Smith, *Matrix equation XA + BX = C*, SIAM
