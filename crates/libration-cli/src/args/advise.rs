@@ -185,6 +185,7 @@ impl AdviseArgs {
             horizon: self.horizon,
             rollout: [4096, 1024],
             map: false,
+            asked_by: again(),
         })
     }
 }
@@ -200,4 +201,10 @@ fn tolerance(text: &str) -> Result<ToleranceArg, String> {
     let of = Measure::ALL.into_iter().find(|measure| measure.name() == name.trim()).ok_or(rule)?;
     let most = finite(most).filter(|most| *most > 0.0).ok_or(rule)?;
     Ok(ToleranceArg(Tolerance { of, most }))
+}
+
+/// The command that asks this again, whatever the program is called, and wherever it writes.
+fn again() -> String {
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--json").collect();
+    format!("libration {}", words.join(" "))
 }

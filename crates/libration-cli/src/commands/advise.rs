@@ -120,6 +120,9 @@ fn told(advice: &Advice) -> String {
             shown(choice.evaluations)
         );
     }
+    if let Some(command) = &advice.command {
+        let _ = writeln!(text, "  {command}");
+    }
     if let Some(why) = &advice.runner_up {
         let _ = writeln!(text, "runner-up: {why}");
     }

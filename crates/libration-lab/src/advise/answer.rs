@@ -36,6 +36,8 @@ pub struct Advice {
     pub looped: Option<LoopAdvice>,
     /// Every integrator with its largest step, the cheapest first.
     pub integrators: Vec<Choice>,
+    /// A command that takes the steps that are advised; none where none are.
+    pub command: Option<String>,
     /// Why the second of them lost; none where there is no second.
     pub runner_up: Option<String>,
     /// What the float types lose with the first of them.
@@ -100,6 +102,7 @@ impl Advice {
             horizon: request.horizon,
             looped: None,
             integrators: Vec::new(),
+            command: None,
             runner_up: None,
             floats: Vec::new(),
             throughput: None,
@@ -110,6 +113,14 @@ impl Advice {
     /// The integrator and the step that are advised, if any meet the tolerance.
     pub fn chosen(&self) -> Option<(&Choice, f64)> {
         self.integrators.first().and_then(|choice| Some((choice, choice.dt?)))
+    }
+
+    /// Says the answer, and how to take the steps that are advised.
+    pub(super) fn conclude(&mut self, request: &Request, answer: String) {
+        self.answer = answer;
+        let float = self.float().map_or("f64", |float| float.float);
+        self.command =
+            self.chosen().map(|(choice, dt)| request.command(choice.integrator, dt, float));
     }
 
     /// Sets the integrators in order, and says why the second lost.

@@ -114,14 +114,10 @@ impl<M: Model<1>> Loop<M> {
         let gains = match self.control.law {
             Law::Pd(gains) => gains,
             Law::Lqr(_) => self.gains(),
-            _ => return "libration advise --config FILE --json".to_owned(),
+            // No other command takes a controller that remembers.
+            _ => return format!("{} --json", request.asked_by),
         };
-        let set: String = request
-            .system
-            .parameters()
-            .into_iter()
-            .map(|(name, value)| format!(" --set {name}={value}"))
-            .collect();
+        let set = request.parameters();
         let law = match self.control.jitter {
             Jitter::Gaussian(_) => "gaussian",
             Jitter::Uniform(_) => "uniform",

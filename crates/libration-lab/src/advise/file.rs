@@ -25,7 +25,8 @@ pub fn parse(text: &str, file_name: &str) -> Result<Request, ConfigError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let document = Document::parse(text, file_name)?;
     let file: File = toml::from_str(text).map_err(|error| document.explain(&error))?;
-    Request::try_from(file).map_err(|fault| document.locate(fault))
+    let request = Request::try_from(file).map_err(|fault| document.locate(fault))?;
+    Ok(Request { asked_by: format!("libration advise --config {file_name}"), ..request })
 }
 
 impl TryFrom<File> for Request {
@@ -47,6 +48,7 @@ impl TryFrom<File> for Request {
             horizon: file.asked.horizon.0,
             rollout: file.asked.rollout.map(|Count(n)| usize::try_from(n).unwrap_or(0)),
             map: false,
+            asked_by: "libration advise --config FILE".into(),
         };
         if !system.entry().dimensions.contains(&request.q.len()) {
             let message = system.entry().wrong_dimension(request.q.len()).to_string();

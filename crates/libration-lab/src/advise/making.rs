@@ -34,7 +34,8 @@ pub(super) fn free<M: Model<D>, const D: usize>(
         let narrow = advice.float().is_some_and(|float| float.float == f32::NAME);
         advice.throughput = Some(Throughput::measure(lab, request, method, dt, narrow)?);
     }
-    advice.answer = advised(&advice, request);
+    let answer = advised(&advice, request);
+    advice.conclude(request, answer);
     Ok(advice)
 }
 
@@ -107,7 +108,8 @@ pub(super) fn looped<M: Model<1>>(
         together,
         fails_first,
     };
-    advice.answer = format!("{} {}", stands(&looped, request), advised(&advice, request));
+    let answer = format!("{} {}", stands(&looped, request), advised(&advice, request));
+    advice.conclude(request, answer);
     if request.map {
         advice.map = Some(one.map(lab, looped.budgets[0].stable_up_to)?);
     }

@@ -165,6 +165,9 @@ fn integrators(page: &mut Page, advice: &Advice) {
     if let Some(why) = &advice.runner_up {
         page.paragraph(format!("Runner-up: {why}."));
     }
+    if let Some(command) = &advice.command {
+        page.paragraph(format!("To take these steps: `{command}`"));
+    }
     let columns = [
         "integrator",
         "largest step (s)",

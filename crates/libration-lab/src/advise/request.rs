@@ -27,6 +27,8 @@ pub struct Request {
     pub rollout: [usize; 2],
     /// Whether a map of stability is wanted.
     pub map: bool,
+    /// The command that asks this again.
+    pub asked_by: String,
 }
 
 /// A loop and what is wrong with it.
@@ -132,6 +134,30 @@ impl Measure {
 }
 
 impl Request {
+    /// The parameters of the system, as flags.
+    pub(super) fn parameters(&self) -> String {
+        let each = self.system.parameters().into_iter();
+        each.map(|(name, value)| format!(" --set {name}={value}")).collect()
+    }
+
+    /// The command that takes the steps that are advised.
+    pub(super) fn command(&self, integrator: &str, dt: f64, float: &str) -> String {
+        let list = |x: &[f64]| x.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        let steps = (self.horizon / dt).round().max(1.0) as u64;
+        let (name, set) = (self.system.name(), self.parameters());
+        let start = format!("--q {} --v {}", list(&self.q), list(&self.v));
+        match (&self.control, self.tolerance.of) {
+            (Some(_), _) => format!("{} --json", self.asked_by),
+            (None, Measure::Energy) => format!(
+                "libration analyze --system {name}{set} {start} --integrator {integrator} --dt {dt} --steps {steps}"
+            ),
+            (None, _) => format!(
+                "libration simulate --system {name}{set} {start} --integrator {integrator} --dt {dt} --steps {steps} \
+                 --every {steps} --float {float}"
+            ),
+        }
+    }
+
     /// Checks all numbers.
     ///
     /// # Errors

@@ -23,6 +23,7 @@ pub(crate) fn free(
         horizon,
         rollout: [64, 64],
         map: false,
+        asked_by: String::new(),
     }
 }
 

@@ -1,0 +1,238 @@
+//! `libration advise`, `libration measure-jitter` and the cost in `libration analyze`, through the binary.
+
+use std::fs;
+
+use assert_cmd::Command;
+use assert_cmd::assert::Assert;
+use predicates::prelude::*;
+use serde_json::Value;
+
+fn libration(words: &[&str]) -> Assert {
+    Command::cargo_bin("libration").unwrap().args(words).assert()
+}
+
+fn json(words: &[&str]) -> Value {
+    let output = libration(&[words, &["--json"]].concat()).success().get_output().stdout.clone();
+    serde_json::from_slice(&output).unwrap()
+}
+
+const LOOP: [&str; 7] =
+    ["analyze", "--system", "oscillator", "--set", "omega2=10", "--feedback", "10,2"];
+
+#[test]
+fn the_cost_of_an_exact_loop_is_that_of_the_reference() {
+    let of = |rest: &[&str]| json(&[&LOOP[..], &["--integrator", "exact"], rest].concat());
+    let ideal = of(&["--dt", "0.01"]);
+    let close = |x: &Value, wanted: f64, off: f64| {
+        let x = x.as_f64().unwrap();
+        assert!((x - wanted).abs() < off, "{x} {wanted}");
+    };
+    close(&ideal["cost"], 0.193623221394, 1e-12);
+    close(&ideal["cost_increase"], 0.0, 1e-15);
+    assert_eq!(ideal["cost_weights"], serde_json::json!([5.0, 0.5, 0.0]));
+    close(&of(&["--dt", "0.1"])["cost"], 0.271766741205, 1e-12);
+    close(&of(&["--dt", "0.01", "--latency", "1steps"])["cost_increase"], 0.069875502, 1e-9);
+    let lost = of(&[
+        "--dt",
+        "0.01",
+        "--loss",
+        "0.5",
+        "--jitter",
+        "gaussian:0.1",
+        "--skew",
+        "gaussian:0.01",
+    ]);
+    assert!(lost["cost"].as_f64().unwrap() > 0.195, "{}", lost["cost"]);
+    let unstable = of(&["--dt", "0.01", "--latency", "0.2"]);
+    assert_eq!(unstable["cost"], Value::Null);
+    assert_eq!(unstable["cost_infinite"], Value::Bool(true));
+    let words =
+        [&LOOP[..], &["--integrator", "exact", "--dt", "0.01", "--latency", "0.2"]].concat();
+    libration(&words).success().stdout(predicate::str::contains("infinite: second moments grow"));
+}
+
+#[test]
+fn costs_that_cannot_be_asked_are_usage_errors() {
+    let method = ["--integrator", "rk4", "--dt", "0.01"];
+    for (rest, wanted) in [
+        (&["--loss", "1"][..], "at least 0 and below 1"),
+        (&["--loss", "-0.1"], "at least 0 and below 1"),
+        (&["--cost-weights", "1,2"], "three numbers"),
+        (&["--cost-weights", "1,-2,0"], "three numbers"),
+    ] {
+        libration(&[&LOOP[..], &method, rest].concat())
+            .code(2)
+            .stderr(predicate::str::contains(wanted));
+    }
+    let alone = [
+        "analyze",
+        "--system",
+        "oscillator",
+        "--integrator",
+        "rk4",
+        "--dt",
+        "0.01",
+        "--loss",
+        "0.1",
+    ];
+    libration(&alone).code(2).stderr(predicate::str::contains("--feedback"));
+}
+
+const ADVISE: [&str; 9] = [
+    "advise",
+    "--quiet",
+    "--system",
+    "oscillator",
+    "--set",
+    "omega2=10",
+    "--horizon",
+    "2",
+    "--feedback",
+];
+
+#[test]
+fn advice_is_given_from_flags_and_its_command_shows_the_limit() {
+    let words = [&ADVISE[..], &["10,2", "--period", "0.02", "--latency", "0.02"]].concat();
+    libration(&words)
+        .success()
+        .stdout(predicate::str::starts_with("The loop stands what is stated"));
+    let found = json(&words);
+    let latency = &found["loop"]["budgets"][0];
+    let command = latency["command"].as_str().unwrap();
+    let mut again: Vec<&str> = command.split(' ').collect();
+    assert_eq!(again.remove(0), "libration");
+    let radius = json(&again)["spectral_radius"].as_f64().unwrap();
+    // The limit has the digits of a float, and the radius changes by less than a tenth in a period.
+    assert!((radius - 1.0).abs() < 1e-9, "{radius} by {command}");
+    assert_eq!(found["loop"]["fails_first"]["kind"], "latency");
+}
+
+#[test]
+fn a_loop_that_does_not_stand_what_is_stated_ends_with_1_and_an_unstable_one_says_how() {
+    let late = [&ADVISE[..], &["10,2", "--period", "0.02", "--latency", "0.2"]].concat();
+    libration(&late).code(1).stdout(predicate::str::contains("does not stand what is stated"));
+    let unstable = [&ADVISE[..], &["10,-2", "--period", "0.02"]].concat();
+    libration(&unstable).code(1).stderr(
+        predicate::str::contains("unstable even without")
+            .and(predicate::str::contains("it swings at")),
+    );
+}
+
+#[test]
+fn what_cannot_be_advised_on_is_a_usage_error_and_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("page.html");
+    let page = page.to_str().unwrap();
+    for (rest, wanted) in [
+        (&["10,2", "--period", "0"][..], "--period is 0"),
+        (&["10,2", "--latency", "-1"], "--latency is -1"),
+        (&["10,2", "--loss", "2"], "--loss is 2"),
+        (&["10,2", "--tolerance", "energy=1e-3"], "a loop does not conserve it"),
+        (&["10,2", "--tolerance", "speed=1"], "one of energy, phase, trajectory and cost"),
+        (&["10,2", "--jitter-file", "none.csv"], "none.csv"),
+    ] {
+        let words = [&ADVISE[..], rest, &["--page", page]].concat();
+        libration(&words).code(2).stderr(predicate::str::contains(wanted));
+    }
+    libration(&["advise"]).code(2).stderr(predicate::str::contains("nothing is asked"));
+    libration(&["advise", "--config", "a.toml", "--period", "1"]).code(2);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn a_file_that_is_printed_is_a_file_that_can_be_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let (config, page) = (folder.path().join("mine.toml"), folder.path().join("page.html"));
+    let printed = libration(&["advise", "--print-config"]).success().get_output().stdout.clone();
+    fs::write(&config, printed).unwrap();
+    let [config, page] = [&config, &page].map(|path| path.to_str().unwrap());
+    libration(&["advise", "-q", "--config", config, "--page", page]).success();
+    let text = fs::read_to_string(page).unwrap();
+    assert!(text.contains("What can be afforded") && text.contains("<svg"));
+    fs::write(config, "[loop]\nlatency = \"late\"\n").unwrap();
+    libration(&["advise", "--config", config]).code(2).stderr(
+        predicate::str::contains("loop.latency").and(predicate::str::contains("mine.toml")),
+    );
+}
+
+#[test]
+fn a_clock_that_was_measured_can_be_replayed_and_advised_with() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("clock.csv");
+    let path = file.to_str().unwrap();
+    let measured = json(&[
+        "measure-jitter",
+        "-q",
+        "--rate",
+        "500",
+        "--seconds",
+        "0.4",
+        "--priority",
+        "ordinary",
+        "--output",
+        path,
+    ]);
+    let statistics = &measured[0]["statistics"];
+    assert_eq!(statistics["intervals"], 199);
+    // Whatever the machine did meanwhile, deadlines lie on a grid.
+    let mean = statistics["mean"].as_f64().unwrap();
+    assert!((mean / 2e-3 - 1.0).abs() < 0.5, "{mean}");
+    let text = fs::read_to_string(&file).unwrap();
+    assert_eq!(text.lines().nth(1), Some("time_ns"));
+    assert_eq!(text.lines().count(), 202);
+    let again = json(&["measure-jitter", "--from", path]);
+    let [a, b] = [&again["jitter_rms"], &statistics["jitter_rms"]].map(|x| x.as_f64().unwrap());
+    assert!((a - b).abs() < 1e-6, "{a} {b}");
+    libration(&[
+        "simulate",
+        "--system",
+        "oscillator",
+        "--integrator",
+        "velocity-verlet",
+        "--dt",
+        "0.002",
+        "--steps",
+        "199",
+        "--every",
+        "199",
+        "--time-stamps",
+        path,
+    ])
+    .success();
+    let words = [&ADVISE[..], &["10,2", "--period", "0.002", "--jitter-file", path]].concat();
+    let advised = json(&words);
+    let stated = advised["loop"]["budgets"][1]["stated"].as_f64().unwrap();
+    assert!((stated - a).abs() < 1e-9, "{stated} {a}");
+}
+
+#[test]
+fn clocks_that_are_none_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("log.csv");
+    for (text, wanted) in [
+        ("0\n1\n0.5\n", "time stamp 3"),
+        ("time_ns\n5\n", "at least 2"),
+        ("0\nfoo\n", "line 2 is `foo`"),
+        ("0\n0\n", "mean step is 0"),
+        ("0\nnan\n", "time stamp 2 is NaN"),
+    ] {
+        fs::write(&file, text).unwrap();
+        libration(&["measure-jitter", "--from", file.to_str().unwrap()])
+            .code(2)
+            .stderr(predicate::str::contains(wanted));
+    }
+    for (rest, wanted) in [
+        (["--rate", "0"], "--rate is 0"),
+        (["--rate", "nan"], "--rate is NaN"),
+        (["--seconds", "0.001"], "--seconds is 0.001"),
+        (["--priority", "highest"], "possible values"),
+    ] {
+        let words = [&["measure-jitter"][..], &rest].concat();
+        libration(&words).code(2).stderr(predicate::str::contains(wanted));
+    }
+    // Repeats and gaps are told.
+    fs::write(&file, "0\n1\n1\n2\n5\n").unwrap();
+    libration(&["measure-jitter", "--from", file.to_str().unwrap()]).success().stdout(
+        predicate::str::contains("repeated time stamps   1").and(predicate::str::contains("gaps")),
+    );
+}
