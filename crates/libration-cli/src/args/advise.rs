@@ -139,7 +139,8 @@ Examples:
   libration advise --config mine.toml --jitter-file robot.csv --page budget.html
 
 Limits are those of the loop in exact steps of its period, linearised at --q; what acts together is simulated as well.
-Exit code 1 if the loop does not stand what is stated.";
+Exit code 1 if the loop does not stand what is stated, costs more than is tolerated, or no integrator is
+accurate enough.";
 
 /// What is tolerated.
 #[derive(Clone, Copy, Debug)]

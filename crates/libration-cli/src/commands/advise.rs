@@ -45,8 +45,7 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
         let written = file.write_all(advise::page(&advice).as_bytes()).and_then(|()| file.keep());
         written.map_err(|error| Failure::run(unwritable(path, &error)))?;
     }
-    let stands = advice.looped.as_ref().is_none_or(|looped| looped.together.growth < 0.0);
-    if stands { Ok(()) } else { Err(Failure::Disagreement) }
+    if advice.holds() { Ok(()) } else { Err(Failure::Disagreement) }
 }
 
 fn asked(args: &AdviseArgs) -> Result<Request, Failure> {

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::budget::{Budget, Failing};
 use super::choice::{Choice, by_cost, evaluations};
 use super::map::Map;
-use super::request::{Request, Tolerance};
+use super::request::{Measure, Request, Tolerance};
 use super::throughput::Throughput;
 use super::together::Together;
 
@@ -88,7 +88,24 @@ pub struct FloatChoice {
     pub meets: bool,
 }
 
+impl LoopAdvice {
+    /// Whether it costs more than is tolerated, if a cost is.
+    pub(super) fn too_dear(&self, tolerance: &ToleranceAnswer) -> bool {
+        let rise = self.together.cost_increase;
+        tolerance.of == Measure::Cost.name() && rise.is_none_or(|rise| rise > tolerance.most)
+    }
+}
+
 impl Advice {
+    /// Whether all that is stated is stood and tolerated, and an integrator found.
+    pub fn holds(&self) -> bool {
+        let loop_holds = self
+            .looped
+            .as_ref()
+            .is_none_or(|looped| looped.together.growth < 0.0 && !looped.too_dear(&self.tolerance));
+        loop_holds && self.chosen().is_some()
+    }
+
     pub(super) fn new(request: &Request) -> Self {
         let Tolerance { of, most } = request.tolerance;
         Advice {

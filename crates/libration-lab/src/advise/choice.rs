@@ -74,8 +74,13 @@ pub(super) fn largest_step(
         let here = lost(middle)?;
         if here <= tolerance { (low, at) = (middle, here) } else { above = middle }
     }
-    // What is lost may fall again for a while; what is chosen is the longest of all that are tried.
-    (choice.dt, choice.lost, choice.lost_beyond) = (Some(low), at, Some(lost(BEYOND * low)?));
+    // What is lost may fall again for a while beyond.
+    let mut beyond = lost(BEYOND * low)?;
+    while beyond <= tolerance && BEYOND * low < most {
+        (low, at) = (BEYOND * low, beyond);
+        beyond = lost(BEYOND * low)?;
+    }
+    (choice.dt, choice.lost, choice.lost_beyond) = (Some(low), at, Some(beyond));
     Ok(choice)
 }
 

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use libration::analysis::Linearisation;
 use libration::integrator::{Exact, SUZUKI4};
 use libration::system::Chosen;
-use libration::{Float, Hamiltonian, Integrator, Method, Model, State, System};
+use libration::{AnySystem, Float, Hamiltonian, Integrator, Method, Model, State, System};
 
 use super::AdviseError;
 use super::choice::Trial;
@@ -52,6 +52,13 @@ impl<M: Model<D>, const D: usize> Free<M, D> {
             return wrong(
                 "only a loop costs; give a controller, or tolerate energy, phase or trajectory",
             );
+        }
+        let loses = matches!(
+            request.system,
+            AnySystem::DampedOscillator(_) | AnySystem::DrivenOscillator(_)
+        );
+        if of == Measure::Energy && loses {
+            return wrong("its true motion does not conserve it; tolerate trajectory or phase");
         }
         if of == Measure::Phase && (D > 1 || stiffest <= 0.0) {
             return wrong("a phase is told of one degree of freedom that oscillates");

@@ -95,7 +95,7 @@ pub(super) fn looped<M: Model<1>>(
     let fails_first = one.fails_first(&budgets)?;
     let rest = State { q: [request.q[0]], v: [0.0] };
     let [held] = model.on::<f64>().acceleration(&rest);
-    advice.warnings.splice(0..0, warnings(&one, request, &together));
+    advice.warnings.splice(0..0, warnings(&one, &together));
     let looped = LoopAdvice {
         controller: one.told(),
         gains: {
@@ -108,7 +108,7 @@ pub(super) fn looped<M: Model<1>>(
         together,
         fails_first,
     };
-    let answer = format!("{} {}", stands(&looped, request), advised(&advice, request));
+    let answer = format!("{} {}", stands(&looped, &advice.tolerance), advised(&advice, request));
     advice.conclude(request, answer);
     if request.map {
         advice.map = Some(one.map(lab, looped.budgets[0].stable_up_to)?);

@@ -133,7 +133,7 @@ impl<M: Model<1>> Loop<M> {
     ) -> Result<Option<Simulated>, AdviseError> {
         let memory = MEMORIES / -growth;
         // Of what is not linear small noise is asked for, and what it costs is in proportion.
-        let intensity = if M::LINEAR { 1.0 } else { self.small_noise(growth)? };
+        let intensity = if M::LINEAR { 1.0 } else { self.small_noise()? };
         if !(memory < MOST_PERIODS && intensity > 0.0) {
             return Ok(None);
         }
@@ -154,11 +154,10 @@ impl<M: Model<1>> Loop<M> {
     }
 
     /// Noise that moves the plant by a hundredth of the deviation that was asked for.
-    fn small_noise(&self, growth: f64) -> Result<f64, AdviseError> {
+    fn small_noise(&self) -> Result<f64, AdviseError> {
         let stated = self.stated()?;
         let position = LqrWeights { position: 1.0, velocity: 0.0, command: 0.0 };
         let square = self.plant().cost(&self.linear, &stated, position).map_err(LoopError::from)?;
-        let _ = growth;
         Ok((0.01 * self.control.deviation).powi(2) / square)
     }
 

@@ -2,9 +2,9 @@
 
 use libration::Model;
 
-use super::answer::{Advice, LoopAdvice};
+use super::answer::{Advice, LoopAdvice, ToleranceAnswer};
 use super::loops::Loop;
-use super::request::{Control, Measure, Request, Tolerance};
+use super::request::{Control, Request, Tolerance};
 use super::together::Together;
 
 /// Which integrator is advised, in a sentence.
@@ -29,7 +29,7 @@ pub(super) fn advised(advice: &Advice, request: &Request) -> String {
 }
 
 /// Whether a loop stands what is stated, in a sentence or two.
-pub(super) fn stands(looped: &LoopAdvice, request: &Request) -> String {
+pub(super) fn stands(looped: &LoopAdvice, tolerance: &ToleranceAnswer) -> String {
     let Together { growth, room, cost_increase, .. } = looped.together;
     if growth >= 0.0 {
         return format!(
@@ -38,6 +38,9 @@ pub(super) fn stands(looped: &LoopAdvice, request: &Request) -> String {
         );
     }
     let mut text = match (room, &looped.fails_first) {
+        _ if looped.too_dear(tolerance) => {
+            "The loop is stable with what is stated, but costs more than is tolerated.".to_owned()
+        }
         (Some(room), _) => {
             format!(
                 "The loop stands what is stated, and all of it may become {room:.3} times as large."
@@ -57,11 +60,9 @@ pub(super) fn stands(looped: &LoopAdvice, request: &Request) -> String {
         );
     }
     if let Some(increase) = cost_increase {
-        let tolerated = match request.tolerance {
-            Tolerance { of: Measure::Cost, most } if increase > most => {
-                format!(", more than the {:.3} % that are tolerated", 100.0 * most)
-            }
-            _ => String::new(),
+        let tolerated = match looped.too_dear(tolerance) {
+            true => format!(", more than the {:.3} % that are tolerated", 100.0 * tolerance.most),
+            false => String::new(),
         };
         text +=
             &format!(" It costs {:.3} % more than the ideal loop{tolerated}.", 100.0 * increase);
@@ -75,11 +76,7 @@ fn capital(text: &str) -> String {
 }
 
 /// What must be said loudly.
-pub(super) fn warnings<M: Model<1>>(
-    one: &Loop<M>,
-    request: &Request,
-    together: &Together,
-) -> Vec<String> {
+pub(super) fn warnings<M: Model<1>>(one: &Loop<M>, together: &Together) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Some(returns) = &together.returns {
         let [back, all] = returns.of_asked;
@@ -93,7 +90,8 @@ pub(super) fn warnings<M: Model<1>>(
     }
     if let Some(simulated) = &together.simulated {
         let off = (simulated.cost - simulated.predicted) / simulated.error;
-        if off.abs() > 4.0 {
+        // Time stamps are no law: what they do is seen, and not foretold.
+        if off.abs() > 4.0 && one.control.record.is_none() {
             warnings.push(format!(
                 "the simulation contradicts the theory: it costs {:.5e} ± {:.1e}, and {:.5e} is predicted",
                 simulated.cost, simulated.error, simulated.predicted
@@ -119,7 +117,6 @@ pub(super) fn warnings<M: Model<1>>(
                 .into(),
         );
     }
-    let _ = request;
     warnings
 }
 

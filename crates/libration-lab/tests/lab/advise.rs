@@ -144,7 +144,7 @@ fn of_a_hundred_random_loops_each_budget_ends_where_simulations_become_unstable(
             position: drawn(1001 + 4 * i, 0.0, 30.0),
             velocity: drawn(1002 + 4 * i, 0.3, 8.0),
         },
-        period: drawn(1003 + 4 * i, 0.01, 0.2),
+        period: drawn(1003 + 4 * i, 0.02, 0.4),
     });
     let (mut loops, mut skipped) = (0, 0);
     for case in cases {
@@ -175,8 +175,8 @@ fn of_a_hundred_random_loops_each_budget_ends_where_simulations_become_unstable(
             break;
         }
     }
-    // Late and slow enough every loop fails; of jitter most bear all that there is.
-    assert!(tried[0] == 100 && tried[2] > 90 && tried[1] > 10, "{tried:?}, {skipped} unstable");
+    // Late enough every loop fails, and slow enough most; of jitter many bear all that there is.
+    assert!(tried[0] == 100 && tried[2] > 60 && tried[1] > 15, "{tried:?}, {skipped} unstable");
 }
 
 #[test]

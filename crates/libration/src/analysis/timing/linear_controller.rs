@@ -70,7 +70,31 @@ impl LinearController {
             // A rounding for each term.
             (terms().sum::<f64>() - found).abs() <= 8.0 * size as f64 * f64::EPSILON * most
         });
-        if straight { Ok(linear) } else { Err(NotLinear::Curved) }
+        if straight { Ok(linear.fed()) } else { Err(NotLinear::Curved) }
+    }
+
+    /// Without what nothing ever reaches, such as the integral of a controller that has none: it stays zero for ever, and would look like
+    /// a motion that does not decay.
+    fn fed(self) -> Self {
+        let LinearController { memory, command } = self;
+        let mut fed = vec![false; memory.len()];
+        // A chain is no longer than the memory.
+        for _ in 0..memory.len() {
+            for (i, row) in memory.iter().enumerate() {
+                let seen = row[..2].iter().any(|x| *x != 0.0);
+                let told = (0..fed.len()).any(|j| j != i && fed[j] && row[2 + j] != 0.0);
+                fed[i] |= seen || told;
+            }
+        }
+        let kept = |row: Vec<f64>| -> Vec<f64> {
+            let all = row.into_iter().enumerate();
+            all.filter(|(j, _)| *j < 2 || fed[j - 2]).map(|(_, x)| x).collect()
+        };
+        let rows = memory.into_iter().zip(&fed).filter(|(_, fed)| **fed);
+        LinearController {
+            memory: rows.map(|(row, _)| kept(row)).collect(),
+            command: kept(command),
+        }
     }
 
     /// How many numbers it remembers.
@@ -154,6 +178,24 @@ mod tests {
         close(&found.memory[2], [-10.0, 0.0, 0.0, 10.0, 0.0]);
         // Its limit is far away.
         assert_eq!(LinearController::of(&pid(3.0, 0.0), 0.5).unwrap(), found);
+    }
+
+    #[test]
+    fn what_nothing_reaches_is_left_out() {
+        let gains = PidGains {
+            proportional: 30.0,
+            integral: 0.0,
+            derivative: 5.0,
+            filter: 0.1,
+            most: f64::INFINITY,
+            tracking: 1.0,
+            target: [0.0],
+        };
+        let of = |gains| LinearController::of(&Pid::<1>::new(gains).unwrap(), 0.5).unwrap();
+        // The last position and the filtered slope, but no integral.
+        assert_eq!(of(gains).remembers(), 2);
+        assert_eq!(of(PidGains { derivative: 0.0, ..gains }).remembers(), 1);
+        assert_eq!(of(PidGains { integral: 1.0, ..gains }).remembers(), 3);
     }
 
     #[test]
