@@ -196,7 +196,7 @@ fn a_loop_is_stepped_by_the_time_stamps_of_another() {
     let text = path("text", "1\n2\nthree\n");
     for (steps, file, told) in [
         (4, stamps.as_str(), "--steps is 4, but it must be at most 3"),
-        (1, &back, "time stamp 2 is 0.5 s; it must be at least the 1 s"),
+        (1, &back, "time stamp 2 is -0.5 s; it must be at least the 0 s"),
         (1, &text, "line 3 is `three`"),
         (1, "/nowhere/at/all", "/nowhere/at/all"),
     ] {

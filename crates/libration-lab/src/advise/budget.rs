@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::AdviseError;
 use super::limits::{Kind, Limit};
 use super::loops::{Loop, LoopError};
-use super::making::unwrapped;
+use super::making::sweep;
 use super::request::{Control, Law, Request};
 use super::words::swings;
 use crate::Lab;
@@ -67,10 +67,7 @@ impl<M: Model<1>> Loop<M> {
         lab: &Lab<'_>,
         request: &Request,
     ) -> Result<Vec<Budget>, AdviseError> {
-        let budgets = lab.sweep("what the loop stands", &Kind::ALL, |&kind| {
-            self.budget(kind, request).map_err(unwrapped)
-        })?;
-        Ok(budgets)
+        sweep(lab, "what the loop stands", &Kind::ALL, |&kind| self.budget(kind, request))
     }
 
     fn budget(&self, kind: Kind, request: &Request) -> Result<Budget, AdviseError> {

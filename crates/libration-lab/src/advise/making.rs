@@ -11,7 +11,6 @@ use super::stepped::Stepped;
 use super::words::{advised, stands, warnings};
 use super::{AdviseError, Budget, Throughput};
 use crate::Lab;
-use crate::study::StudyError;
 
 /// The advice on a system that nobody controls.
 pub(super) fn free<M: Model<D>, const D: usize>(
@@ -22,8 +21,8 @@ pub(super) fn free<M: Model<D>, const D: usize>(
     let free = Free::new(model, request)?;
     let mut advice = Advice::new(request);
     let most = request.tolerance.most;
-    let choices = lab.sweep("the largest step of each integrator", &Method::ALL, |&method| {
-        largest_step(lab, &free, method, most, free.steps()).map_err(unwrapped)
+    let choices = sweep(lab, "the largest step of each integrator", &Method::ALL, |&method| {
+        largest_step(lab, &free, method, most, free.steps())
     })?;
     advice.choose(request, choices);
     if let Some((choice, dt)) = advice.chosen() {
@@ -39,12 +38,14 @@ pub(super) fn free<M: Model<D>, const D: usize>(
     Ok(advice)
 }
 
-/// Errors of a search, as a sweep hands them on.
-pub(super) fn unwrapped(error: AdviseError) -> StudyError {
-    match error {
-        AdviseError::Study(error) => error,
-        error => StudyError::Exact(format!("searching for a step: {error}")),
-    }
+/// [`Lab::sweep`] for work that fails in its own way.
+pub(super) fn sweep<T: Sync, R: Send>(
+    lab: &Lab<'_>,
+    what: &str,
+    items: &[T],
+    job: impl Fn(&T) -> Result<R, AdviseError> + Sync,
+) -> Result<Vec<R>, AdviseError> {
+    lab.sweep(what, items, |item| Ok(job(item)))?.into_iter().collect()
 }
 
 fn floats(lost: [f64; 2], most: f64) -> Vec<FloatChoice> {
@@ -59,14 +60,19 @@ pub(super) fn looped<M: Model<1>>(
     control: &Control,
     request: &Request,
 ) -> Result<Advice, AdviseError> {
+    let of = request.tolerance.of;
+    if !matches!(of, Measure::Trajectory | Measure::Cost) {
+        let why = "a loop does not conserve it; tolerate trajectory or cost".into();
+        return Err(AdviseError::Tolerance { of, why });
+    }
     let one = Loop::new(model, request.q[0], control)?;
     one.check_stable()?;
     let plant = one.plant();
     let mut advice = Advice::new(request);
     let stepped = Stepped { one: &one, horizon: request.horizon, tolerance: request.tolerance };
     let truth = stepped.truth(lab)?;
-    let choices = lab.sweep("the largest step of each integrator", &Method::ALL, |&method| {
-        stepped.choose(lab, method, &truth).map_err(unwrapped)
+    let choices = sweep(lab, "the largest step of each integrator", &Method::ALL, |&method| {
+        stepped.choose(lab, method, &truth)
     })?;
     advice.choose(request, choices);
     if let Some((choice, dt)) = advice.chosen() {

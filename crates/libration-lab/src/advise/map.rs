@@ -5,6 +5,7 @@ use libration::analysis::Imperfections;
 
 use super::AdviseError;
 use super::loops::{Loop, LoopError};
+use super::making::sweep;
 use crate::Lab;
 use crate::figure::Grid;
 
@@ -34,7 +35,7 @@ impl<M: Model<1>> Loop<M> {
         let even = |i: usize, of: usize| i as f64 / (of - 1) as f64;
         let x: Vec<f64> = (0..columns).map(|i| reach * even(i, columns)).collect();
         let y: Vec<f64> = (0..rows).map(|i| 4.0_f64.powf(2.0 * even(i, rows) - 1.0)).collect();
-        let lines = lab.sweep("the map of stability", &y, |&factor| {
+        let lines = sweep(lab, "the map of stability", &y, |&factor| {
             let linear = self.linear.amplified(factor);
             let plant = self.plant();
             let at = |latency: &f64| -> Result<f64, LoopError> {
@@ -42,8 +43,7 @@ impl<M: Model<1>> Loop<M> {
                 let late = Imperfections { latency, ..Imperfections::NONE };
                 Ok(plant.mean_square_growth(&linear, &late)? / 2.0)
             };
-            let line: Result<Vec<f64>, LoopError> = x.iter().map(at).collect();
-            line.map_err(|error| crate::study::StudyError::Exact(format!("drawing a map: {error}")))
+            Ok(x.iter().map(at).collect::<Result<Vec<f64>, LoopError>>()?)
         })?;
         Ok(Map { growth: Grid { x, y, z: lines.concat() }, latency: stated })
     }

@@ -51,7 +51,8 @@ pub fn sheet(page: &Page, sub: &str) -> String {
     format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
-         <title>{name}</title>\n<style>{STYLE}</style></head><body>\n<main id=\"top\">\n\
+         <title>{name}</title>\n<style>{STYLE}</style></head><body>\n\
+         <nav aria-label=\"Chapters\"><b>Libration</b><a href=\"#top\">The answer</a></nav>\n<main id=\"top\">\n\
          <h1>{title}</h1>\n<p class=\"sub\">{sub}</p>\n<p class=\"lead\">{answer}</p>\n{blocks}</main>\n\
          {scripts}<script>{SCRIPT}</script>\n</body></html>\n",
         name = escape(&plain(&page.title)),

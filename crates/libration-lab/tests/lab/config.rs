@@ -263,6 +263,6 @@ fn the_schema_describes_every_key() {
         }
     }
     let schema = schema();
-    assert_eq!(schema["properties"].as_object().unwrap().len(), 17);
+    assert_eq!(schema["properties"].as_object().unwrap().len(), 18);
     assert_described(&schema);
 }

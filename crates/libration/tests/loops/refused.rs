@@ -66,7 +66,8 @@ fn a_clock_does_not_go_back() {
     let error = |stamps: &[f64]| Recorded::steps_between(stamps).unwrap_err().to_string();
     assert_eq!(
         error(&[0.0, 2.0, 1.0]),
-        "time stamp 3 is 1 s; it must be at least the 2 s of the one in front of it"
+        "time stamp 3 is 1 s; it must be at least the 2 s of the one in front of it, \
+         counted from the first"
     );
     assert_eq!(error(&[0.0, f64::NAN]), "time stamp 2 is NaN; it must be a finite number");
     assert_eq!(error(&[1.0]), "the number of time stamps is 1; it must be at least 2");

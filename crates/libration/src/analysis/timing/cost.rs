@@ -4,7 +4,7 @@ use super::imperfections::{MOST_RANDOM, MOST_REPEATED};
 use super::jitter::MOST_TURN;
 use super::linear::solved;
 use super::stage::{Making, Stage, mean_square, stable_growth};
-use super::waiting::{Matrix, Waiting, product, transposed};
+use super::waiting::{Matrix, Waiting, product, scale, transposed};
 use super::{CostError, Imperfections, LinearController, LqrWeights, Plant};
 use crate::Scalar;
 use crate::number::Wide;
@@ -131,6 +131,7 @@ fn repeated(stage: &Stage) -> Matrix {
             row.iter_mut().zip(more).for_each(|(x, more)| *x += more);
         }
         power = product(&power, &power);
+        scale(&mut power, 1.0);
     }
     sum
 }

@@ -95,10 +95,20 @@ pub(super) fn growth(mut power: Matrix) -> f64 {
         }
         logarithm += share * norm.ln();
         share /= 2.0;
-        power.iter_mut().flatten().for_each(|x| *x /= norm);
+        scale(&mut power, norm);
         power = product(&power, &power);
     }
     logarithm
+}
+
+/// Divides all entries; those that are nothing beside the largest become zero, since products of them would be numbers with which
+/// processors take a hundred times as long.
+pub(super) fn scale(power: &mut Matrix, norm: f64) {
+    const NOTHING: f64 = 1e-150;
+    for x in power.iter_mut().flatten() {
+        *x /= norm;
+        *x = if x.abs() < NOTHING { 0.0 } else { *x };
+    }
 }
 
 /// What a matrix makes of the products `xᵢxⱼ`, `i ≤ j`.
