@@ -67,7 +67,7 @@ impl Case {
 
     /// By how much `ln |y|` of a simulated loop changes in a period, between two long windows.
     fn growth(self, latency: f64, skew: f64) -> f64 {
-        const PERIODS: u64 = 16_000;
+        const PERIODS: u64 = 6_000;
         let model = Oscillator { omega2: self.omega2 };
         let latency = Latency::of_steps(latency / self.period).unwrap();
         let rates = [1.0 + skew];

@@ -105,8 +105,10 @@ impl Plant<'_> {
         let making = Making { waiting, controller, latency, weights };
         let one = Wide::one();
         let dt = self.dt * (one + Wide::from_f64(skew));
+        // One step, where all are alike: second moments of a large loop would take minutes.
+        let nodes = if jitter.rms() > 0.0 { jitter.nodes(turn) } else { vec![(1.0, 0.0)] };
         let mut stages = Vec::new();
-        for (weight, epsilon) in jitter.nodes(turn) {
+        for (weight, epsilon) in nodes {
             let h = dt * (one + Wide::from_f64(epsilon));
             let arrives = [(1.0 - loss, false), (loss, true)];
             for (share, lost) in arrives.into_iter().filter(|(share, _)| *share > 0.0) {
