@@ -31,6 +31,9 @@ impl System<f64, 1> for Arm {
     }
 }
 
+/// Periods that are compared with as many before.
+const WINDOW: u32 = 2000;
+
 fn main() -> Result<(), Box<dyn Error>> {
     let mut request = advise::parse(include_str!("robot_joint.toml"), "robot_joint.toml")?;
     let page = std::env::args().nth(1);
@@ -62,15 +65,21 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut one = Loops::new(setup, control.period, 0, [0.0], &start, Execution::serial())?;
         let (mut before, mut after, mut turns) = (0.0_f64, 0.0_f64, 0);
         let mut last = 1.0_f64;
-        for step in 0..2000 {
+        // What it begins with has to be forgotten first.
+        for step in 0..3 * WINDOW {
             one.advance(1)?;
             let angle = one.state(0).map_or(f64::NAN, |state| state.q[0]);
-            let largest = if step < 1000 { &mut before } else { &mut after };
-            *largest = largest.max(angle.abs());
-            turns += u32::from(step >= 1000 && angle.signum() != last.signum());
+            match step / WINDOW {
+                0 => {}
+                1 => before = before.max(angle.abs()),
+                _ => {
+                    after = after.max(angle.abs());
+                    turns += u32::from(angle.signum() != last.signum());
+                }
+            }
             last = angle;
         }
-        let swings = f64::from(turns) / 2.0 / (1000.0 * control.period);
+        let swings = f64::from(turns) / 2.0 / (f64::from(WINDOW) * control.period);
         println!(
             "{:.3} ms late: {before:.2e} rad, then {after:.2e} rad, at {swings:.1} Hz",
             1e3 * latency
