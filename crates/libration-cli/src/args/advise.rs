@@ -154,7 +154,7 @@ impl AdviseArgs {
                 "nothing is asked: it must be --config FILE, or --system NAME with what else is to be said of it",
             ));
         };
-        let Setting { system, mut q, mut v } = {
+        let Setting { system, q, mut v } = {
             let mut given = system.clone();
             // A loop is held where it is: at the origin, if nothing is said.
             if self.feedback.is_some() && given.q.is_none() {
@@ -176,7 +176,6 @@ impl AdviseArgs {
             weights: None,
             deviation: self.deviation,
         });
-        q.truncate(v.len());
         Ok(Request {
             system,
             q,

@@ -8,7 +8,7 @@ use libration_lab::advise::{self, Advice, AdviseError, Budget, LoopAdvice, Reque
 use libration_lab::study::StudyError;
 use libration_lab::{Config, Lab};
 
-use super::time_stamps;
+use super::{config_file, time_stamps};
 use crate::args::AdviseArgs;
 use crate::error::Failure;
 use crate::output_file::OutputFile;
@@ -50,7 +50,7 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
 
 fn asked(args: &AdviseArgs) -> Result<Request, Failure> {
     let mut request = match &args.config {
-        Some(path) => read(path)?,
+        Some(path) => config_file::read(path, advise::parse)?,
         None => args.request()?,
     };
     request.map = args.page.is_some();
@@ -65,16 +65,6 @@ fn asked(args: &AdviseArgs) -> Result<Request, Failure> {
         request.control = Some(replaying);
     }
     Ok(request)
-}
-
-fn read(path: &Path) -> Result<Request, Failure> {
-    let wrong = |why: &dyn std::fmt::Display| {
-        Failure::usage(format!("cannot read `{}` (--config): {why}", path.display()))
-    };
-    let bytes = std::fs::read(path).map_err(|error| wrong(&error))?;
-    let text = String::from_utf8(bytes).map_err(|error| wrong(&error.utf8_error()))?;
-    advise::parse(&text, &path.to_string_lossy())
-        .map_err(|error| Failure::Shown(error.render_styled()))
 }
 
 fn failure(error: AdviseError) -> Failure {

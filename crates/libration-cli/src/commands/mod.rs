@@ -4,6 +4,7 @@ mod advise;
 mod analyze;
 mod bench;
 mod completions;
+mod config_file;
 mod lab;
 mod list;
 mod measure_jitter;

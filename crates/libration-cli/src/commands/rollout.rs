@@ -1,7 +1,6 @@
 //! `libration rollout` and `libration verify`.
 
 use std::io::{IsTerminal, stderr};
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
@@ -9,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use libration::ensemble::Execution;
 use libration_lab::dataset::{self, Dataset, DatasetError, Job, Watch};
 
+use super::config_file;
 use crate::args::{RolloutArgs, VerifyArgs};
 use crate::error::Failure;
 use crate::{interrupt, terminal};
@@ -22,7 +22,7 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
         return Err(Failure::usage("--out is missing; it must be a folder"));
     };
     let dataset = match &args.config {
-        Some(path) => read(path)?,
+        Some(path) => config_file::read(path, dataset::parse)?,
         None => Dataset::default(),
     };
     let dataset = match args.transitions {
@@ -101,16 +101,6 @@ pub(crate) fn verify(args: &VerifyArgs, quiet: bool) -> Result<(), Failure> {
         ))?;
     }
     Ok(())
-}
-
-fn read(path: &Path) -> Result<Dataset, Failure> {
-    let wrong = |why: &dyn std::fmt::Display| {
-        Failure::usage(format!("cannot read `{}` (--config): {why}", path.display()))
-    };
-    let bytes = std::fs::read(path).map_err(|error| wrong(&error))?;
-    let text = String::from_utf8(bytes).map_err(|error| wrong(&error.utf8_error()))?;
-    dataset::parse(&text, &path.to_string_lossy())
-        .map_err(|error| Failure::Shown(error.render_styled()))
 }
 
 fn threads(threads: usize) -> Result<Execution, Failure> {

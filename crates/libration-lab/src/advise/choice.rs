@@ -23,6 +23,20 @@ pub struct Choice {
     pub evaluations: Option<f64>,
 }
 
+impl Choice {
+    /// Of `method` nothing is found yet.
+    pub(super) fn none(method: Method) -> Self {
+        Choice {
+            integrator: method.name(),
+            dt: None,
+            lost: f64::INFINITY,
+            lost_beyond: None,
+            substeps: None,
+            evaluations: None,
+        }
+    }
+}
+
 /// What a search knows of a step.
 pub(super) trait Trial: Sync {
     /// What is lost by `method` in steps of `dt` seconds; more than `most` need not be found exactly.
@@ -47,14 +61,7 @@ pub(super) fn largest_step(
     [least, most]: [f64; 2],
 ) -> Result<Choice, AdviseError> {
     let lost = |dt: f64| trial.lost(lab, method, dt, tolerance);
-    let mut choice = Choice {
-        integrator: method.name(),
-        dt: None,
-        lost: f64::INFINITY,
-        lost_beyond: None,
-        substeps: None,
-        evaluations: None,
-    };
+    let mut choice = Choice::none(method);
     let (mut above, mut dt) = (most, most);
     loop {
         let here = lost(dt)?;

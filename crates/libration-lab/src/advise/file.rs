@@ -8,7 +8,6 @@ use libration::analysis::{Feedback, Jitter, LqrWeights, ObserverNoise};
 use libration::control::controller::PidGains;
 
 use super::AdviseError;
-use super::limits::Scaled;
 use super::request::{Control, Law, Measure, Request, Tolerance};
 use super::tables::{ControllerTable, File, LoopTable};
 use crate::config::{ConfigError, Count, Document, Fault, Number, names};

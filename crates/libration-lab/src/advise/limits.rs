@@ -1,7 +1,7 @@
 //! How much of each imperfection a loop stands alone.
 
 use libration::Model;
-use libration::analysis::{CostError, Imperfections, Jitter, Plant};
+use libration::analysis::{CostError, Imperfections, Plant};
 
 use super::loops::{Loop, LoopError};
 use super::request::{Measure, Tolerance};
@@ -137,24 +137,5 @@ impl<M: Model<1>> Loop<M> {
             return Ok(Limit::At(low));
         }
         Ok(Limit::Beyond(largest))
-    }
-}
-
-/// A law with another rms.
-pub(super) trait Scaled {
-    fn with_rms(self, rms: f64) -> Self;
-    fn scaled(self, share: f64) -> Self;
-}
-
-impl Scaled for Jitter {
-    fn with_rms(self, rms: f64) -> Self {
-        match self {
-            Jitter::Gaussian(_) => Jitter::Gaussian(rms),
-            Jitter::Uniform(_) => Jitter::Uniform(rms),
-        }
-    }
-
-    fn scaled(self, share: f64) -> Self {
-        self.with_rms(share * self.rms())
     }
 }

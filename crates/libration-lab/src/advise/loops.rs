@@ -9,7 +9,6 @@ use libration::control::{ControlError, Controller};
 use libration::{Float, Model, State};
 
 use super::about::About;
-use super::limits::Scaled;
 use super::request::{Control, Law};
 
 /// A controller, chosen when the program runs.
@@ -135,7 +134,7 @@ impl<M: Model<1>> Loop<M> {
         let Control { latency, period, jitter, skew, loss, .. } = self.control;
         Ok(Imperfections {
             latency: self.latency(share * latency / period)?,
-            jitter: jitter.scaled(share),
+            jitter: jitter.with_rms(share * jitter.rms()),
             skew: share * skew,
             loss: share * loss,
         })

@@ -6,7 +6,6 @@ use libration::control::clock::{Recorded, RecordedError};
 use libration::control::controller::PidGains;
 
 use super::AdviseError;
-use super::limits::Scaled;
 
 /// A plant, who controls it, what it may lose and what its surroundings are.
 #[derive(Clone, Debug, PartialEq)]

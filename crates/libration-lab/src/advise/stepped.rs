@@ -40,14 +40,7 @@ impl<M: Model<1>> Stepped<'_, M> {
         let period = self.one.control.period;
         let most = self.tolerance.most;
         let lost = |substeps: u64| self.lost::<f64>(lab, method, substeps, truth);
-        let mut choice = Choice {
-            integrator: method.name(),
-            dt: None,
-            lost: f64::INFINITY,
-            lost_beyond: None,
-            substeps: None,
-            evaluations: None,
-        };
+        let mut choice = Choice::none(method);
         let (mut fewer, mut met) = (0, None);
         // What stands for the truth is no candidate.
         for substeps in SUBSTEPS.into_iter().filter(|&count| count < self.most_substeps()) {

@@ -22,6 +22,14 @@ impl Jitter {
         }
     }
 
+    /// The same law with another standard deviation.
+    pub fn with_rms(self, rms: f64) -> Self {
+        match self {
+            Jitter::Gaussian(_) => Jitter::Gaussian(rms),
+            Jitter::Uniform(_) => Jitter::Uniform(rms),
+        }
+    }
+
     /// The largest `|ε|` that is drawn in a simulation, whose Gaussian numbers end at [`LARGEST`] deviations.
     pub fn largest(self) -> f64 {
         match self {
