@@ -125,7 +125,7 @@ fn told(advice: &Advice) -> String {
             "one core takes {:.3e} such steps a second with {} trajectories (measured now); {} steps of each are {:.1} MB of \
              rollouts in f32",
             t.steps_a_second,
-            t.environments,
+            t.trajectories,
             t.steps,
             t.bytes as f64 / 1e6
         );

@@ -69,6 +69,8 @@ pub struct LoopAdvice {
     pub held_command: f64,
     /// Between two samples, in s.
     pub period: f64,
+    /// Whether anything is stated that is wrong with it.
+    pub stated: bool,
     /// What it stands of each imperfection alone.
     pub budgets: Vec<Budget>,
     /// What is left where all that is stated acts together.
@@ -99,10 +101,10 @@ impl LoopAdvice {
 impl Advice {
     /// Whether all that is stated is stood and tolerated, and an integrator found.
     pub fn holds(&self) -> bool {
-        let loop_holds = self
-            .looped
-            .as_ref()
-            .is_none_or(|looped| looped.together.growth < 0.0 && !looped.too_dear(&self.tolerance));
+        let loop_holds = self.looped.as_ref().is_none_or(|looped| {
+            let together = &looped.together;
+            together.growth < 0.0 && !together.contradicted() && !looped.too_dear(&self.tolerance)
+        });
         loop_holds && self.chosen().is_some()
     }
 

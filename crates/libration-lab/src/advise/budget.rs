@@ -76,7 +76,7 @@ impl<M: Model<1>> Loop<M> {
         let (unit, scale, stated) = match kind {
             Kind::Latency => ("s", period, latency),
             Kind::Jitter => ("relative rms", 1.0, jitter.rms()),
-            Kind::Skew => ("part of a period", 1.0, skew.max(0.0)),
+            Kind::Skew => ("part of a period", 1.0, skew.abs()),
             Kind::Loss => ("probability", 1.0, loss),
         };
         let end = |limit: Limit| match limit {
@@ -109,9 +109,9 @@ impl<M: Model<1>> Loop<M> {
     /// A command that shows a limit.
     fn command(&self, kind: Kind, limit: Option<f64>, request: &Request) -> String {
         let gains = match self.control.law {
-            Law::Pd(gains) => gains,
-            Law::Lqr(_) => self.gains(),
-            // No other command takes a controller that remembers.
+            Law::Pd(gains) if M::LINEAR => gains,
+            Law::Lqr(_) if M::LINEAR => self.gains(),
+            // No other command takes a controller that remembers, or exact steps of what is linearised.
             _ => return format!("{} --json", request.asked_by),
         };
         let set = request.parameters();
@@ -119,22 +119,23 @@ impl<M: Model<1>> Loop<M> {
             Jitter::Gaussian(_) => "gaussian",
             Jitter::Uniform(_) => "uniform",
         };
-        let period = self.control.period;
+        let Control { period, skew, .. } = self.control;
         let (dt, flag) = match (kind, limit) {
-            (Kind::Skew, Some(limit)) => (period * (1.0 + limit), String::new()),
+            (Kind::Skew, Some(limit)) => (period * (1.0 + limit.copysign(skew)), String::new()),
             (Kind::Latency, Some(limit)) => (period, format!(" --latency {limit}")),
             (Kind::Jitter, Some(limit)) => (period, format!(" --jitter {law}:{limit}")),
             (Kind::Loss, Some(limit)) => (period, format!(" --loss {limit}")),
             (_, None) => (period, String::new()),
         };
-        let integrator = if M::LINEAR { "exact" } else { "rk4" };
         format!(
-            "libration analyze --system {}{set} --q {} --integrator {integrator} --dt {dt} --feedback {},{}{flag}",
+            "libration analyze --system {}{set} --q {} --integrator exact --dt {dt} --feedback {},{}{flag}",
             request.system.name(),
             request.q[0],
             gains.position,
             gains.velocity
-        )
+        ) + &self.control.weights.map_or_else(String::new, |w| {
+            format!(" --cost-weights {},{},{}", w.position, w.velocity, w.command)
+        })
     }
 
     pub(super) fn fails_first(&self, budgets: &[Budget]) -> Result<Option<Failing>, AdviseError> {
@@ -143,7 +144,10 @@ impl<M: Model<1>> Loop<M> {
             |a: &&Budget, b: &&Budget| a.used.unwrap_or(0.0).total_cmp(&b.used.unwrap_or(0.0));
         let Some(first) = budgets.iter().filter(used).max_by(most) else { return Ok(None) };
         let period = self.control.period;
-        let (frequency, how) = match (first.kind, first.stable_up_to) {
+        // Where the cost ends a budget, nothing grows there yet.
+        let dear = first.tolerated_up_to.flatten();
+        let grows = first.stable_up_to.filter(|limit| dear.is_none_or(|dear| *limit <= dear));
+        let (frequency, how) = match (first.kind, grows) {
             (Kind::Latency | Kind::Skew, Some(limit)) => {
                 let size = if first.kind == Kind::Latency { limit / period } else { limit };
                 let at = self.only(first.kind, size)?;

@@ -5,7 +5,7 @@ use libration::control::clock::{Jittered, Rates, Recorded};
 use libration::control::delay::{Order, Packets};
 use libration::control::{Delay, Schedule, WhiteNoise};
 use libration::ensemble::{All, EnsembleError, Loops, MeanCost, Setup};
-use libration::integrator::{Exact, Rk4};
+use libration::integrator::{Exact, Repeated, Rk4};
 use libration::system::Chosen;
 use libration::{Integrator, Model, State, System};
 
@@ -38,10 +38,19 @@ impl<M: Model<1>> Loop<M> {
         run: Run<'_>,
         delay: impl Delay<f64>,
     ) -> Result<Ran, AdviseError> {
-        let longest = (1.0 + self.control.jitter.largest()) * (1.0 + self.control.skew.abs());
+        let varied = match &self.control.record {
+            Some(record) => record.iter().copied().fold(1.0, f64::max),
+            None => 1.0 + self.control.jitter.largest(),
+        };
+        let longest = varied * (1.0 + self.control.skew.abs());
         match Exact::new(self.model, self.control.period * longest) {
             Some(exact) => self.run_by(lab, run, delay, exact),
-            None => self.run_by(lab, run, delay, Rk4),
+            // Parts of a radian, of which the error of order four is a part in 10⁶.
+            None => {
+                let turn = self.plant().rate() * self.control.period * longest;
+                let count = (turn / 0.05).ceil().clamp(4.0, 256.0) as i32;
+                self.run_by(lab, run, delay, Repeated { method: Rk4, count })
+            }
         }
     }
 
@@ -59,30 +68,40 @@ impl<M: Model<1>> Loop<M> {
             Some(_) => Jitter::Gaussian(0.0),
             None => self.control.jitter,
         };
-        let rates = vec![1.0 + self.control.skew; run.starts.len()];
-        let setup = Setup::new(All(Chosen(&acceleration)), method)
-            .controller(self.controller)
-            .clock((Rates(&rates), (Recorded::repeated(recorded), Jittered(jitter))))
-            .delay(delay)
-            .disturbance(WhiteNoise(run.intensity));
-        let period = self.control.period;
-        let mut loops = Loops::new(setup, period, SEED, [0.0], run.starts, lab.alone()?)?;
-        advance(lab, run.before, |steps| loops.advance(steps))?;
-        let mut sums = vec![0.0; run.starts.len()];
-        let mut counted = 0;
-        while counted < run.periods {
-            lab.check()?;
-            let steps = LEG.min(run.periods - counted);
-            let seen = loops.observe(steps, 1, |range| MeanCost::new(range, self.weights))?;
-            let means = seen.iter().flat_map(MeanCost::means);
-            sums.iter_mut().zip(means).for_each(|(sum, mean)| *sum += mean * steps as f64);
-            counted += steps;
+        // Loops under one record begin at different places of it: else all would have the same clock.
+        let groups = if recorded.len() > 1 { GROUPS } else { 1 };
+        let mut all = Ran { costs: Vec::new(), last: Vec::new() };
+        for (group, starts) in run.starts.chunks(run.starts.len().div_ceil(groups)).enumerate() {
+            let rates = vec![1.0 + self.control.skew; starts.len()];
+            let mut own = recorded.to_vec();
+            own.rotate_left(group * recorded.len() / groups);
+            let setup = Setup::new(All(Chosen(&acceleration)), method)
+                .controller(self.controller)
+                .clock((Rates(&rates), (Recorded::repeated(&own), Jittered(jitter))))
+                .delay(delay)
+                .disturbance(WhiteNoise(run.intensity));
+            let (period, seed) = (self.control.period, SEED + group as u64);
+            let mut loops = Loops::new(setup, period, seed, [0.0], starts, lab.alone()?)?;
+            advance(lab, run.before, |steps| loops.advance(steps))?;
+            let mut sums = vec![0.0; starts.len()];
+            let mut counted = 0;
+            while counted < run.periods {
+                lab.check()?;
+                let steps = LEG.min(run.periods - counted);
+                let seen = loops.observe(steps, 1, |range| MeanCost::new(range, self.weights))?;
+                let means = seen.iter().flat_map(MeanCost::means);
+                sums.iter_mut().zip(means).for_each(|(sum, mean)| *sum += mean * steps as f64);
+                counted += steps;
+            }
+            all.costs.extend(sums.into_iter().map(|sum| sum / run.periods as f64));
+            all.last.extend((0..starts.len()).filter_map(|n| loops.state(n)));
         }
-        let costs = sums.into_iter().map(|sum| sum / run.periods as f64).collect();
-        let last = (0..run.starts.len()).filter_map(|n| loops.state(n)).collect();
-        Ok(Ran { costs, last })
+        Ok(all)
     }
 }
+
+/// Places in a record at which loops begin.
+const GROUPS: usize = 8;
 
 /// Steps between two looks at whether to stop.
 const LEG: u64 = 4096;

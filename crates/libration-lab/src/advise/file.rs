@@ -35,8 +35,13 @@ impl TryFrom<File> for Request {
         let numbers = |list: Vec<Number>| -> Vec<f64> { list.into_iter().map(|x| x.0).collect() };
         let system = system(file.system)?;
         let control = match file.controller {
+            None if file.looped.is_some() => {
+                let message =
+                    "`[loop]` is given, but no controller that closes it, as [controller.pd]";
+                return Err(Fault::new("loop", message));
+            }
             None => None,
-            Some(table) => Some(control(law(table), file.looped)?),
+            Some(table) => Some(control(law(table), file.looped.unwrap_or_default())?),
         };
         let request = Request {
             system,

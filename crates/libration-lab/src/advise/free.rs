@@ -1,8 +1,8 @@
 //! What a simulation without a loop loses.
 
+use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-use libration::analysis::Linearisation;
 use libration::integrator::{Exact, SUZUKI4};
 use libration::system::Chosen;
 use libration::{AnySystem, Float, Hamiltonian, Integrator, Method, Model, State, System};
@@ -36,16 +36,11 @@ const LOOK: u64 = 1 << 16;
 
 impl<M: Model<D>, const D: usize> Free<M, D> {
     /// What `request` asks of it.
-    pub(super) fn new(model: M, request: &Request) -> Result<Self, AdviseError> {
+    pub(super) fn new(lab: &Lab<'_>, model: M, request: &Request) -> Result<Self, AdviseError> {
         let start = State {
             q: core::array::from_fn(|i| request.q[i]),
             v: core::array::from_fn(|i| request.v[i]),
         };
-        let generator = Linearisation::exact(model, &start, 1e-3).generator;
-        let stiffest = (0..D)
-            .flat_map(|i| (0..D).map(move |j| (D + i, j)))
-            .map(|(i, j)| generator.entry(i, j).abs().to_f64())
-            .fold(0.0, f64::max);
         let of = request.tolerance.of;
         let wrong = |why: &str| Err(AdviseError::Tolerance { of, why: why.into() });
         if of == Measure::Cost {
@@ -60,16 +55,60 @@ impl<M: Model<D>, const D: usize> Free<M, D> {
         if of == Measure::Energy && loses {
             return wrong("its true motion does not conserve it; tolerate trajectory or phase");
         }
-        if of == Measure::Phase && (D > 1 || stiffest <= 0.0) {
-            return wrong("a phase is told of one degree of freedom that oscillates");
+        if of == Measure::Phase && D > 1 {
+            return wrong("a phase is told of one degree of freedom");
         }
         if of == Measure::Energy && model.on::<f64>().energy(&start) == 0.0 {
             return wrong("the energy at the start is zero, so that no error is a part of it");
         }
-        let omega = stiffest.sqrt();
-        // Without a spring the horizon is the only time that there is.
-        let omega = if omega > 0.0 { omega } else { request.horizon.recip() };
-        Ok(Free { model, start, horizon: request.horizon, of, omega })
+        let free = Free { model, start, horizon: request.horizon, of, omega: 1.0 };
+        let free = Free { omega: free.fastest(lab)?, ..free };
+        let [least, longest] = free.steps();
+        if least > longest {
+            let why = format!(
+                "its motion needs steps of at most {longest:.3e} s, of which the horizon has {:.1e}, and a search can take {:.0e} of \
+                 them; give a shorter horizon",
+                free.horizon / longest,
+                free.horizon / least
+            );
+            return wrong(&why);
+        }
+        Ok(free)
+    }
+
+    /// How fast the true motion is over the horizon, in rad/s: its largest velocity over its largest distance from where it is in the
+    /// mean. Steps of order four are halved until that no longer changes by more than a part of it.
+    fn fastest(&self, lab: &Lab<'_>) -> Result<f64, AdviseError> {
+        const SETTLED: f64 = 0.1;
+        let acceleration = |state: &State<f64, D>| self.model.on::<f64>().acceleration(state);
+        let system = Chosen(&acceleration);
+        // A motion that repeats is known long before the horizon.
+        let mut before = f64::NAN;
+        let mut steps = 1_u64 << 10;
+        loop {
+            lab.check()?;
+            let dt = self.horizon / steps as f64;
+            let mut state = self.start;
+            let (mut low, mut high, mut speed) = (state.q, state.q, 0.0_f64);
+            for _ in 0..steps {
+                state = SUZUKI4.step(&system, state, dt);
+                for i in 0..D {
+                    (low[i], high[i]) = (low[i].min(state.q[i]), high[i].max(state.q[i]));
+                    speed = speed.max(state.v[i].abs());
+                }
+            }
+            let far = (0..D).map(|i| 0.5 * (high[i] - low[i])).fold(0.0, f64::max);
+            let found = speed / far;
+            if (found / before - 1.0).abs() < SETTLED || steps as f64 > MOST_COMPARED {
+                // What does not move at all has the horizon as its only time.
+                return Ok(if found.is_finite() && found > 0.0 {
+                    found
+                } else {
+                    self.horizon.recip()
+                });
+            }
+            (before, steps) = (found, 2 * steps);
+        }
     }
 
     /// The shortest and the longest step that are tried.
@@ -77,7 +116,7 @@ impl<M: Model<D>, const D: usize> Free<M, D> {
         let compared = self.of != Measure::Energy && !M::LINEAR;
         let most = if compared { MOST_COMPARED } else { MOST_STEPS };
         let longest = (4.0 / self.omega).min(self.horizon);
-        [(self.horizon / most).min(longest), longest]
+        [self.horizon / most, longest]
     }
 
     /// What is lost in numbers of type `S`.
@@ -133,20 +172,24 @@ impl<M: Model<D>, const D: usize> Free<M, D> {
     ) -> Result<f64, AdviseError> {
         let mut truth = self.start;
         let mut size = self.size(&truth);
-        let mut phase = 0.0;
+        // The angle that the state is ahead, with all its turns: a whole turn is no agreement.
+        let mut ahead = 0.0_f64;
         let lost = follow.largest(lab, most, &mut |state| {
             truth = step(truth);
             size = size.max(self.size(&truth));
             if self.of == Measure::Phase {
-                phase = self.angle(state, &truth);
-                return 0.0;
+                let share = self.size(state) / self.size(&truth);
+                let turn = self.angle(state, &truth) - ahead;
+                ahead += turn - TAU * (turn / TAU).round();
+                // What is twice as large or half has no phase to speak of.
+                return if (0.5..2.0).contains(&share) { 0.0 } else { f64::INFINITY };
             }
             self.size(&State {
                 q: core::array::from_fn(|i| state.q[i] - truth.q[i]),
                 v: core::array::from_fn(|i| state.v[i] - truth.v[i]),
             }) / size
         })?;
-        Ok(if self.of == Measure::Phase && lost == 0.0 { phase } else { lost })
+        Ok(if self.of == Measure::Phase && lost == 0.0 { ahead.abs() } else { lost })
     }
 
     /// With velocities in units of lengths.
@@ -155,11 +198,11 @@ impl<M: Model<D>, const D: usize> Free<M, D> {
         (squares(&state.q) + squares(&state.v) / self.omega.powi(2)).sqrt()
     }
 
-    /// The angle between two states in the plane of position and velocity.
+    /// The angle from one state to another in the plane of position and velocity.
     fn angle(&self, a: &State<f64, D>, b: &State<f64, D>) -> f64 {
         let (aq, av) = (a.q[0], a.v[0] / self.omega);
         let (bq, bv) = (b.q[0], b.v[0] / self.omega);
-        (aq * bv - av * bq).atan2(aq * bq + av * bv).abs()
+        (aq * bv - av * bq).atan2(aq * bq + av * bv)
     }
 }
 

@@ -14,7 +14,7 @@ pub enum Kind {
     Latency,
     /// Sample times vary, each for itself; relative rms.
     Jitter,
-    /// The clock is slow; the part by which steps are longer.
+    /// The clock is slow, or fast if that is stated; the part by which steps are longer or shorter.
     Skew,
     /// Commands are lost; probability.
     Loss,
@@ -29,7 +29,7 @@ impl Kind {
         match self {
             Kind::Latency => "latency",
             Kind::Jitter => "jitter",
-            Kind::Skew => "slow clock",
+            Kind::Skew => "clock",
             Kind::Loss => "lost commands",
         }
     }
@@ -62,7 +62,8 @@ impl<M: Model<1>> Loop<M> {
         Ok(match kind {
             Kind::Latency => Imperfections { latency: self.latency(size)?, ..none },
             Kind::Jitter => Imperfections { jitter: self.control.jitter.with_rms(size), ..none },
-            Kind::Skew => Imperfections { skew: size, ..none },
+            // To the side that is stated; a slow clock if none is.
+            Kind::Skew => Imperfections { skew: size.copysign(self.control.skew), ..none },
             Kind::Loss => Imperfections { loss: size, ..none },
         })
     }
@@ -71,7 +72,9 @@ impl<M: Model<1>> Loop<M> {
     fn largest(&self, kind: Kind) -> f64 {
         match kind {
             Kind::Latency => MOST_PERIODS,
-            Kind::Jitter => self.control.jitter.largest_rms(),
+            // Beyond, most steps of a Gaussian law are of length zero or twice too long.
+            Kind::Jitter => 1.0,
+            Kind::Skew if self.control.skew < 0.0 => 0.999,
             Kind::Skew => 8.0,
             Kind::Loss => 1.0 - 1e-9,
         }
@@ -117,14 +120,20 @@ impl<M: Model<1>> Loop<M> {
             return Ok(Limit::None);
         }
         let largest = self.largest(kind);
+        // Fine enough that the plant turns by a part of a radian between two: a window of instability is wider.
+        let turn = self.plant().rate() * self.control.period * largest;
+        let count = match kind {
+            Kind::Skew => ((turn / 0.25).ceil() as u32).clamp(TRIED, 32 * TRIED),
+            _ => TRIED,
+        };
         let tried = |i: u32| match kind {
             // Quarters of a period, then more and more.
             Kind::Latency if i <= 32 => 0.25 * f64::from(i),
             Kind::Latency => 8.0 * (largest / 8.0).powf(f64::from(i - 32) / f64::from(TRIED - 32)),
-            _ => largest * f64::from(i) / f64::from(TRIED),
+            _ => largest * f64::from(i) / f64::from(count),
         };
         let mut low = 0.0;
-        for i in 1..=TRIED {
+        for i in 1..=count {
             if at(tried(i))? {
                 low = tried(i);
                 continue;

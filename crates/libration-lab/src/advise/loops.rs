@@ -4,9 +4,9 @@ use libration::analysis::{
     CostError, Feedback, Imperfections, Latency, LinearController, LqrError, LqrWeights, NotLinear,
     Plant,
 };
-use libration::control::controller::{Luenberger, Pid, StateFeedback};
+use libration::control::controller::{Luenberger, Pid, PidGains, StateFeedback};
 use libration::control::{ControlError, Controller};
-use libration::{Float, Model, State};
+use libration::{Float, Model, State, System};
 
 use super::about::About;
 use super::request::{Control, Law};
@@ -81,6 +81,14 @@ pub enum LoopError {
     /// The loop is too large, or a number of its timing cannot be.
     #[error(transparent)]
     Cost(#[from] CostError),
+    /// The limit of the command is too low.
+    #[error("a command of {} m/s² holds the operating point, and the limit is {most} m/s²", -held)]
+    Weak {
+        /// The limit.
+        most: f64,
+        /// What pulls away from there.
+        held: f64,
+    },
     /// The latency cannot be.
     #[error(
         "the latency is {steps} periods of the loop; it must be at least 0 and at most {} periods",
@@ -99,10 +107,18 @@ impl<M: Model<1>> Loop<M> {
     pub(super) fn new(model: M, at: f64, control: &Control) -> Result<Self, LoopError> {
         let model = About { model, at: [at] };
         let plant = Plant::exact(model, ORIGIN, control.period);
+        let [held] = model.model.on::<f64>().acceleration(&State { q: [at], v: [0.0] });
         let feedback = |gains: Feedback| AnyController::Feedback(StateFeedback::to_origin(gains));
         let controller = match control.law {
             Law::Pd(gains) => feedback(gains),
-            Law::Pid(gains) => AnyController::Pid(Pid::new(gains)?),
+            Law::Pid(gains) => {
+                // The command that holds the operating point takes its part of what the motor can do.
+                let most = gains.most - held.abs();
+                if most <= 0.0 {
+                    return Err(LoopError::Weak { most: gains.most, held });
+                }
+                AnyController::Pid(Pid::new(PidGains { most, ..gains })?)
+            }
             Law::Lqr(weights) => feedback(plant.lqr(weights)?),
             Law::Observer { weights, noise } => {
                 let observer = plant.observer(noise)?;

@@ -1,5 +1,6 @@
 //! How advice is made.
 
+use libration::analysis::Imperfections;
 use libration::{Float, Method, Model, State, System};
 
 use super::answer::{Advice, FloatChoice, LoopAdvice};
@@ -18,7 +19,7 @@ pub(super) fn free<M: Model<D>, const D: usize>(
     model: M,
     request: &Request,
 ) -> Result<Advice, AdviseError> {
-    let free = Free::new(model, request)?;
+    let free = Free::new(lab, model, request)?;
     let mut advice = Advice::new(request);
     let most = request.tolerance.most;
     let choices = sweep(lab, "the largest step of each integrator", &Method::ALL, |&method| {
@@ -97,7 +98,7 @@ pub(super) fn looped<M: Model<1>>(
         advice.throughput = Some(Throughput::measure(lab, request, method, dt, narrow)?);
     }
     let budgets = one.budgets(lab, request)?;
-    let together = one.together(lab, &plant)?;
+    let together = one.together(lab, &plant, request.tolerance)?;
     let fails_first = one.fails_first(&budgets)?;
     let rest = State { q: [request.q[0]], v: [0.0] };
     let [held] = model.on::<f64>().acceleration(&rest);
@@ -110,6 +111,7 @@ pub(super) fn looped<M: Model<1>>(
         },
         held_command: -held,
         period: control.period,
+        stated: one.stated()? != Imperfections::NONE || control.record.is_some(),
         budgets,
         together,
         fails_first,

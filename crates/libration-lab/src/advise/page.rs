@@ -141,7 +141,7 @@ fn figure(map: &Map) -> Figure {
     let last = grid.x.last().copied().unwrap_or(1.0);
     let panel = Panel::new(
         Axis::linear("latency of the command").unit("s").range(0.0, last),
-        Axis::log("all gains, times").range(0.25, 4.0),
+        Axis::log("gain of the command, times").range(0.25, 4.0),
     )
     .mark(Mark::raster(shown, colors))
     .mark(Mark::contour(grid, [0.0]).ink(Ink::Theory).dash(Dash::Solid).label("edge of stability"))
@@ -202,7 +202,7 @@ fn integrators(page: &mut Page, advice: &Advice) {
             "On this machine one core takes {} such steps a second with {} trajectories at a time, measured now; a rollout of {} \
              steps of each takes {} MB in `f32`.",
             number(throughput.steps_a_second, 3),
-            throughput.environments,
+            throughput.trajectories,
             throughput.steps,
             number(throughput.bytes as f64 / 1e6, 4)
         ));

@@ -54,15 +54,17 @@ pub struct Control {
 }
 
 impl Control {
-    /// This with a clock that was measured, whose time stamps are in seconds.
+    /// This with a clock that was measured, whose time stamps are in seconds: where their mean is not the period, the clock is slow or
+    /// fast by that.
     ///
     /// # Errors
     /// If they are no record of a clock.
     pub fn replaying(self, stamps: &[f64]) -> Result<Self, RecordedError> {
-        let (steps, _) = Recorded::steps_between(stamps)?;
+        let (steps, mean) = Recorded::steps_between(stamps)?;
         let square = steps.iter().map(|step| (step - 1.0).powi(2)).sum::<f64>();
         let rms = (square / steps.len() as f64).sqrt();
-        Ok(Control { jitter: self.jitter.with_rms(rms), record: Some(steps), ..self })
+        let skew = mean / self.period - 1.0;
+        Ok(Control { jitter: self.jitter.with_rms(rms), record: Some(steps), skew, ..self })
     }
 }
 
@@ -190,12 +192,28 @@ impl Request {
             "a finite number of at least 0",
             (0.0..f64::INFINITY).contains(&latency),
         )?;
+        if let Some(LqrWeights { position, velocity, command }) = control.weights {
+            let all = [position, velocity, command];
+            for weight in all {
+                ensure(
+                    "loop.cost",
+                    weight,
+                    "finite and at least 0",
+                    weight >= 0.0 && weight.is_finite(),
+                )?;
+            }
+            let none = all.iter().all(|weight| *weight == 0.0);
+            ensure("loop.cost", 0.0, "above 0 for one of the three", !none)?;
+        }
         ensure(
             "loop.jitter",
             jitter.rms(),
             "a relative rms from 0 to 1",
-            (0.0..=1.0).contains(&jitter.rms()),
+            control.record.is_some() || (0.0..=1.0).contains(&jitter.rms()),
         )?;
+        let near = control.record.is_none() || (-0.5..=1.0).contains(&skew);
+        let wanted = "time stamps a period apart, or at most twice and at least half of that";
+        ensure("loop.time_stamps", period * (1.0 + skew), wanted, near)?;
         ensure("loop.skew", skew, "above -1 and below 8", skew > -1.0 && skew < 8.0)?;
         ensure(
             "loop.loss",

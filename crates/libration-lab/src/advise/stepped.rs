@@ -1,7 +1,7 @@
 //! What a simulated loop loses by its integrator.
 
 use bytemuck::Pod;
-use libration::analysis::{Imperfections, Latency, LqrWeights, Plant};
+use libration::analysis::{Imperfections, Latency, Plant};
 use libration::control::Schedule;
 use libration::ensemble::{All, Loops, Setup};
 use libration::system::Chosen;
@@ -27,7 +27,7 @@ const SUBSTEPS: [u64; 17] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 
 const TRUE: u64 = 512;
 
 /// Periods of a run that are compared.
-const MOST_PERIODS: u64 = 20_000;
+pub(super) const MOST_PERIODS: u64 = 20_000;
 
 impl<M: Model<1>> Stepped<'_, M> {
     /// The fewest steps in a period with which `method` loses no more than is tolerated.
@@ -93,21 +93,23 @@ impl<M: Model<1>> Stepped<'_, M> {
         match self.tolerance.of {
             Measure::Trajectory => {
                 let course = self.course::<S>(lab, method, substeps)?;
-                let omega = self.one.plant().energy().position.mul_add(2.0, 0.0).max(1.0).sqrt();
+                // It starts at rest, as far off as was asked.
+                let begins = self.one.control.deviation;
+                let far = truth.iter().fold(begins, |far: f64, y| far.max(y.q[0].abs()));
+                let fast = truth.iter().fold(0.0, |fast: f64, y| fast.max(y.v[0].abs()));
+                let omega = if fast > 0.0 { fast / far } else { 1.0 };
                 let size = |q: f64, v: f64| q.hypot(v / omega);
-                let largest = truth.iter().map(|y| size(y.q[0], y.v[0])).fold(0.0, f64::max);
                 let off =
                     course.iter().zip(truth).map(|(a, b)| size(a.q[0] - b.q[0], a.v[0] - b.v[0]));
                 let off = off
                     .fold(0.0, |most: f64, x| if x.is_nan() { f64::INFINITY } else { most.max(x) });
-                Ok(off / largest)
+                Ok(off / far)
             }
             Measure::Cost => {
                 let (one, period) = (self.one, self.one.control.period);
-                let weights = LqrWeights { command: 0.0, ..one.weights };
                 let late = Imperfections { latency: one.stated()?.latency, ..Imperfections::NONE };
                 let cost = |plant: Plant<'_>| {
-                    plant.held().cost(&one.linear, &late, weights).map_err(LoopError::from)
+                    plant.held().cost(&one.linear, &late, one.weights).map_err(LoopError::from)
                 };
                 let truth = cost(one.plant())?;
                 let plant = Plant::new(method, one.model, ORIGIN, period).substeps(substeps);

@@ -16,7 +16,7 @@ pub(super) struct File {
     pub(super) start: StartTable,
     pub(super) controller: Option<ControllerTable>,
     #[serde(rename = "loop")]
-    pub(super) looped: LoopTable,
+    pub(super) looped: Option<LoopTable>,
 }
 
 #[derive(Deserialize)]
@@ -112,7 +112,7 @@ impl Default for File {
                 .into(),
             start: StartTable::default(),
             controller: None,
-            looped: LoopTable::default(),
+            looped: None,
         }
     }
 }

@@ -15,6 +15,8 @@ use crate::Lab;
 pub struct Throughput {
     /// Environments.
     pub environments: usize,
+    /// Trajectories of which the speed was measured.
+    pub trajectories: usize,
     /// Steps of each.
     pub steps: usize,
     /// Bytes of the tensors of a rollout in `f32`.
@@ -25,6 +27,9 @@ pub struct Throughput {
     /// Seconds of simulated time that it goes through in a second, of all trajectories together.
     pub simulated_a_second: f64,
 }
+
+/// Trajectories that are measured.
+const MOST: usize = 1 << 16;
 
 /// How long it is measured, in s.
 const LONG: f64 = 0.05;
@@ -48,6 +53,7 @@ impl Throughput {
             Plan::new(steps, environments).bytes(2 * dimension, dimension, size_of::<f32>());
         Ok(Throughput {
             environments,
+            trajectories: environments.min(MOST),
             steps,
             bytes,
             steps_a_second: speed,
@@ -63,7 +69,7 @@ fn speed<T: BatchFloat>(
     dt: T,
 ) -> Result<f64, AdviseError> {
     let Request { system, q, v, rollout: [count, _], .. } = request;
-    let count = (*count).clamp(1, 1 << 16);
+    let count = (*count).clamp(1, MOST);
     let start = |_: usize, i: usize| {
         let coordinate = q.iter().chain(v).nth(i).copied().unwrap_or(0.0);
         T::from_f64(coordinate)

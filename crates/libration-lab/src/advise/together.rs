@@ -1,11 +1,12 @@
 //! All that is stated at once: by theory, and simulated.
 
-use libration::analysis::{Imperfections, LqrWeights, Plant};
+use libration::analysis::{CostError, Imperfections, LqrWeights, Plant};
 use libration::{Model, State};
 
 use super::AdviseError;
 use super::ensemble::{Ran, Run};
 use super::loops::{Loop, LoopError};
+use super::request::{Measure, Tolerance};
 use crate::Lab;
 
 /// What is left where all imperfections act together.
@@ -27,6 +28,24 @@ pub struct Together {
     pub returns: Option<Returns>,
 }
 
+impl Together {
+    /// Whether a simulation does otherwise than theory says.
+    pub fn contradicted(&self) -> bool {
+        let returns = self.returns.is_none_or(|r| r.of_asked[0] == r.of_asked[1]);
+        !(returns && self.simulated.is_none_or(|s| s.agrees()))
+    }
+}
+
+impl Simulated {
+    /// Whether that is what was predicted, to four standard errors; of time stamps, whether they do hardly worse than a law.
+    pub fn agrees(&self) -> bool {
+        match self.replayed {
+            true => self.cost <= 1.5 * self.predicted,
+            false => (self.cost - self.predicted).abs() <= 4.0 * self.error,
+        }
+    }
+}
+
 /// What an ensemble of loops under noise measures.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Simulated {
@@ -38,8 +57,10 @@ pub struct Simulated {
     pub cost: f64,
     /// Its standard error.
     pub error: f64,
-    /// What theory says of just that.
+    /// What theory says of just that; of time stamps that are replayed, what it says of a law with their rms.
     pub predicted: f64,
+    /// Whether time stamps were replayed.
+    pub replayed: bool,
 }
 
 /// From how far a loop comes back.
@@ -71,6 +92,7 @@ impl<M: Model<1>> Loop<M> {
         &self,
         lab: &Lab<'_>,
         plant: &Plant<'_>,
+        tolerance: Tolerance,
     ) -> Result<Together, AdviseError> {
         let stated = self.stated()?;
         let growth = plant.mean_square_growth(&self.linear, &stated).map_err(LoopError::from)?;
@@ -84,7 +106,7 @@ impl<M: Model<1>> Loop<M> {
         let returns = if stable { self.returns(lab, growth)? } else { None };
         Ok(Together {
             growth,
-            room: if stable { self.room(plant)? } else { None },
+            room: if stable { self.room(plant, ideal_cost, tolerance)? } else { None },
             ideal_cost,
             cost: finite,
             cost_increase: finite.map(|cost| cost / ideal_cost - 1.0),
@@ -93,33 +115,60 @@ impl<M: Model<1>> Loop<M> {
         })
     }
 
-    /// How many times as large all of it may be.
-    fn room(&self, plant: &Plant<'_>) -> Result<Option<f64>, AdviseError> {
+    /// How many times as large all of it may be, until it is unstable or, if a cost is tolerated, costs more; none beyond 16 times, and
+    /// where the loop becomes too large before.
+    fn room(
+        &self,
+        plant: &Plant<'_>,
+        ideal_cost: f64,
+        tolerance: Tolerance,
+    ) -> Result<Option<f64>, AdviseError> {
         const MOST: f64 = 16.0;
         if self.stated()? == Imperfections::NONE {
             return Ok(None);
         }
-        let stable = |share: f64| -> Result<bool, AdviseError> {
+        let holds = |share: f64| -> Result<bool, LoopError> {
             let imperfections = self.scaled(share)?;
-            if imperfections.loss >= 1.0 || imperfections.skew <= -1.0 {
+            if imperfections.loss >= 1.0 {
                 return Ok(false);
             }
-            let growth = plant.mean_square_growth(&self.linear, &imperfections);
-            Ok(growth.map_err(LoopError::from)? < 0.0)
+            // A clock cannot be faster than that all happens at once.
+            let skew = imperfections.skew.max(-0.999);
+            let imperfections = Imperfections { skew, ..imperfections };
+            Ok(match tolerance {
+                Tolerance { of: Measure::Cost, most } => {
+                    let cost = plant.cost(&self.linear, &imperfections, self.weights)?;
+                    cost <= (1.0 + most) * ideal_cost
+                }
+                _ => plant.mean_square_growth(&self.linear, &imperfections)? < 0.0,
+            })
         };
+        let narrowed = |mut low: f64, mut high: f64| -> Result<Option<f64>, AdviseError> {
+            for _ in 0..40 {
+                let middle = 0.5 * (low + high);
+                if holds(middle)? { low = middle } else { high = middle }
+            }
+            Ok(Some(low))
+        };
+        if !holds(1.0)? {
+            return narrowed(0.0, 1.0);
+        }
         let mut low = 1.0;
         // Each time an eighth more.
         while low < MOST {
-            let mut high = low * 1.125;
-            if stable(high)? {
-                low = high;
-                continue;
+            let high = low * 1.125;
+            match holds(high) {
+                Ok(true) => {
+                    low = high;
+                    continue;
+                }
+                Ok(false) => {}
+                Err(LoopError::Cost(CostError::Size { .. }) | LoopError::Latency { .. }) => {
+                    return Ok(None);
+                }
+                Err(error) => return Err(error.into()),
             }
-            for _ in 0..40 {
-                let middle = 0.5 * (low + high);
-                if stable(middle)? { low = middle } else { high = middle }
-            }
-            return Ok(Some(low));
+            return narrowed(low, high);
         }
         Ok(None)
     }
@@ -150,7 +199,8 @@ impl<M: Model<1>> Loop<M> {
         let held = self.plant().held();
         let weights = LqrWeights { command: 0.0, ..self.weights };
         let predicted = held.cost(&self.linear, stated, weights).map_err(LoopError::from)?;
-        Ok(Some(Simulated { loops: COUNT, periods, cost, error, predicted }))
+        let replayed = self.control.record.is_some();
+        Ok(Some(Simulated { loops: COUNT, periods, cost, error, predicted, replayed }))
     }
 
     /// Noise that moves the plant by a hundredth of the deviation that was asked for.

@@ -4,25 +4,30 @@ use libration::Model;
 
 use super::answer::{Advice, LoopAdvice, ToleranceAnswer};
 use super::loops::Loop;
-use super::request::{Control, Request, Tolerance};
+use super::request::{Control, Measure, Request, Tolerance};
+use super::stepped::MOST_PERIODS;
 use super::together::Together;
 
 /// Which integrator is advised, in a sentence.
 pub(super) fn advised(advice: &Advice, request: &Request) -> String {
     let Tolerance { of, most } = request.tolerance;
+    // A loop is followed for so many periods; its cost is that of for ever.
+    let horizon = match &request.control {
+        Some(control) => request.horizon.min(MOST_PERIODS as f64 * control.period),
+        None => request.horizon,
+    };
+    let over = match of {
+        Measure::Cost => String::new(),
+        _ => format!(" over {horizon} s"),
+    };
     match advice.chosen() {
-        None => format!(
-            "No integrator keeps the {} below {most:e} over {} s.",
-            of.title(),
-            request.horizon
-        ),
+        None => format!("No integrator keeps the {} below {most:e}{over}.", of.title()),
         Some((choice, dt)) => {
             let float = advice.float().map_or("no float type", |float| float.float);
             format!(
-                "{} in steps of {dt:.4e} s, in {float}: the cheapest that keeps the {} below {most:e} over {} s.",
+                "{} in steps of {dt:.4e} s, in {float}: the cheapest that keeps the {} below {most:e}{over}.",
                 choice.integrator,
-                of.title(),
-                request.horizon
+                of.title()
             )
         }
     }
@@ -38,6 +43,9 @@ pub(super) fn stands(looped: &LoopAdvice, tolerance: &ToleranceAnswer) -> String
         );
     }
     let mut text = match (room, &looped.fails_first) {
+        _ if looped.together.contradicted() => {
+            "The simulation contradicts what theory says of the loop: see below.".to_owned()
+        }
         _ if looped.too_dear(tolerance) => {
             "The loop is stable with what is stated, but costs more than is tolerated.".to_owned()
         }
@@ -46,10 +54,10 @@ pub(super) fn stands(looped: &LoopAdvice, tolerance: &ToleranceAnswer) -> String
                 "The loop stands what is stated, and all of it may become {room:.3} times as large."
             )
         }
-        (None, Some(_)) => "The loop stands what is stated, and sixteen times as much.".to_owned(),
-        (None, None) => {
-            "The loop stands; nothing is stated that could be wrong with it.".to_owned()
+        (None, _) if looped.stated => {
+            "The loop stands what is stated, and sixteen times as much.".to_owned()
         }
+        (None, _) => "The loop stands; nothing is stated that could be wrong with it.".to_owned(),
     };
     if let Some(failing) = &looped.fails_first {
         text += &format!(
@@ -89,11 +97,13 @@ pub(super) fn warnings<M: Model<1>>(one: &Loop<M>, together: &Together) -> Vec<S
         }
     }
     if let Some(simulated) = &together.simulated {
-        let off = (simulated.cost - simulated.predicted) / simulated.error;
-        // Time stamps are no law: what they do is seen, and not foretold.
-        if off.abs() > 4.0 && one.control.record.is_none() {
+        if !simulated.agrees() {
+            let what = match simulated.replayed {
+                true => "the time stamps do worse than a law with their rms",
+                false => "the simulation contradicts the theory",
+            };
             warnings.push(format!(
-                "the simulation contradicts the theory: it costs {:.5e} ± {:.1e}, and {:.5e} is predicted",
+                "{what}: it costs {:.5e} ± {:.1e}, and {:.5e} is predicted",
                 simulated.cost, simulated.error, simulated.predicted
             ));
         }
@@ -110,12 +120,21 @@ pub(super) fn warnings<M: Model<1>>(one: &Loop<M>, together: &Together) -> Vec<S
             "the plant turns by {turn:.2} rad in a period: the loop samples it sparsely"
         ));
     }
-    if one.control.record.is_some() {
-        warnings.push(
-            "the budget of jitter is that of a law with the rms of the time stamps, drawn anew for each step; the simulation \
-             replays them as they are"
-                .into(),
-        );
+    if let Some(record) = &one.control.record {
+        let gaps = record.iter().filter(|step| **step > 1.5).count();
+        let repeats = record.iter().filter(|step| **step == 0.0).count();
+        warnings.push(format!(
+            "the budget of jitter is that of a law with the rms of the {} time stamps, drawn anew for each step; the simulation replays them \
+             as they are, with {gaps} gaps and {repeats} repeats",
+            record.len() + 1
+        ));
+        let skew = one.control.skew;
+        if skew.abs() > 1e-3 {
+            warnings.push(format!(
+                "the time stamps are {:.3} % apart from the period: counted as skew",
+                100.0 * skew
+            ));
+        }
     }
     warnings
 }

@@ -62,6 +62,12 @@ impl Plan {
         Ok(())
     }
 
+    /// How often it wakes up.
+    fn count(&self) -> usize {
+        // A product of decimals may be a rounding short of a whole number.
+        (self.seconds * self.rate * (1.0 + 4.0 * f64::EPSILON)) as usize
+    }
+
     /// Runs the loop, on a thread of its own.
     ///
     /// All memory is there before it begins, and between wake-ups it does nothing but read the clock. Deadlines lie on a grid: who is
@@ -72,7 +78,7 @@ impl Plan {
     pub fn measure(&self, priority: Priority, stop: &AtomicBool) -> Result<Wakeups, WakeupError> {
         self.check()?;
         let period = (1e9 / self.rate).round() as u64;
-        let count = (self.seconds * self.rate) as usize;
+        let count = self.count();
         // Pages that are written once are there.
         let mut times = vec![u64::MAX; count];
         let _load = self.load.then(Load::begin);

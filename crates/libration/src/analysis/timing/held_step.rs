@@ -16,6 +16,11 @@ pub struct HeldStep {
 }
 
 impl HeldStep {
+    /// This step and then another, under the same command.
+    pub(super) fn then(&self, next: &HeldStep) -> HeldStep {
+        HeldStep { phi: next.phi.after(&self.phi), gamma: next.phi.apply(&self.gamma) + next.gamma }
+    }
+
     /// A step of `integrator`, of `dt` seconds, linearised about the state `at` without a command.
     pub fn of(
         integrator: impl Integrator,

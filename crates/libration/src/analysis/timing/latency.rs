@@ -1,5 +1,6 @@
 //! A loop whose command arrives late.
 
+use super::plant::repeated;
 use super::quasi::Quasi;
 use super::{Feedback, HeldStep, Plant};
 use crate::analysis::UpdateMatrix;
@@ -72,14 +73,33 @@ impl Plant<'_> {
         }
     }
 
+    /// What comes before a part of a step of `dt` seconds, and what after. Of steps on a grid only the one splits in which that is.
+    fn pieces(&self, part: f64, dt: Wide) -> (HeldStep, HeldStep) {
+        let Some((count, fine)) = &self.grid else {
+            let part = dt * Wide::from_f64(part);
+            return ((self.step)(part), (self.step)(dt - part));
+        };
+        let places = part * *count as f64;
+        let (whole, rest) = (places.trunc(), places.fract());
+        let h = dt / Wide::from_f64(*count as f64);
+        let one = fine(h);
+        let first = repeated(&one, whole as u64);
+        if rest == 0.0 {
+            return (first, repeated(&one, count - whole as u64));
+        }
+        let cut = h * Wide::from_f64(rest);
+        let before = first.then(&fine(cut));
+        let after = fine(h - cut).then(&repeated(&one, count - whole as u64 - 1));
+        (before, after)
+    }
+
     /// A step of `dt` seconds that splits after a part of it.
     pub(super) fn split(&self, part: f64, dt: Wide) -> SplitStep {
         if part == 0.0 {
             let HeldStep { phi, gamma } = (self.step)(dt);
             return SplitStep { phi, old: State::origin(), new: gamma };
         }
-        let part = dt * Wide::from_f64(part);
-        let (before, after) = ((self.step)(part), (self.step)(dt - part));
+        let (before, after) = self.pieces(part, dt);
         SplitStep {
             phi: after.phi.after(&before.phi),
             old: after.phi.apply(&before.gamma),

@@ -1,5 +1,7 @@
 //! A plant, how its steps are taken, and the feedback that closes the loop.
 
+use std::rc::Rc;
+
 use super::HeldStep;
 use crate::analysis::{Linearisation, UpdateMatrix};
 use crate::number::Wide;
@@ -21,10 +23,15 @@ impl Feedback {
     }
 }
 
+/// Steps of any size.
+type Steps<'a> = Rc<dyn Fn(Wide) -> HeldStep + 'a>;
+
 /// A plant with one degree of freedom, linear or linearised, with the step that is taken on it.
 pub struct Plant<'a> {
     /// A step of any size.
-    pub(super) step: Box<dyn Fn(Wide) -> HeldStep + 'a>,
+    pub(super) step: Steps<'a>,
+    /// What that consists of: so many steps of this kind, each as long.
+    pub(super) grid: Option<(u64, Steps<'a>)>,
     /// The Jacobian of the rate of change.
     pub(super) generator: UpdateMatrix<Wide, 1>,
     /// The time step in seconds.
@@ -44,29 +51,29 @@ impl<'a> Plant<'a> {
         dt: f64,
     ) -> Self {
         let generator = Linearisation::generator_of(model, &at);
-        let step = Box::new(move |h| HeldStep::of(integrator, model, &at, h));
-        Plant { step, generator, dt: Wide::from_f64(dt), exact: false, flows: false }
+        let step = Rc::new(move |h| HeldStep::of(integrator, model, &at, h));
+        Plant { step, generator, dt: Wide::from_f64(dt), exact: false, flows: false, grid: None }
     }
 
     /// The same without an integrator: each step is exact.
     pub fn exact(model: impl Model<1> + 'a, at: State<f64, 1>, dt: f64) -> Self {
         let generator = Linearisation::generator_of(model, &at);
-        let step = Box::new(move |h| HeldStep::exact(model, &at, h));
-        Plant { step, generator, dt: Wide::from_f64(dt), exact: true, flows: true }
+        let step = Rc::new(move |h| HeldStep::exact(model, &at, h));
+        Plant { step, generator, dt: Wide::from_f64(dt), exact: true, flows: true, grid: None }
     }
 
     /// This, with steps that are so many of its own, each as long: what a simulation does within the period of a loop.
     pub fn substeps(self, count: u64) -> Self {
-        let Plant { step, generator, dt, exact, flows } = self;
-        let many = move |h: Wide| {
-            let HeldStep { phi, gamma } = step(h / Wide::from_f64(count as f64));
-            let mut all = HeldStep { phi: UpdateMatrix::identity(), gamma: State::origin() };
-            for _ in 0..count {
-                all = HeldStep { phi: phi.after(&all.phi), gamma: phi.apply(&all.gamma) + gamma };
-            }
-            all
-        };
-        Plant { step: Box::new(many), generator, dt, exact, flows }
+        let fine = Rc::clone(&self.step);
+        let one = Rc::clone(&fine);
+        let many = move |h: Wide| repeated(&one(h / Wide::from_f64(count as f64)), count);
+        Plant { step: Rc::new(many), grid: Some((count, fine)), ..self }
+    }
+
+    /// How fast the plant moves by itself, or runs away, in rad/s.
+    pub fn rate(&self) -> f64 {
+        let [aq, av] = [0, 1].map(|j| self.generator.entry(1, j).to_f64().abs());
+        aq.sqrt().max(av)
     }
 
     /// This, with noise and cost as a simulation has them though its steps be exact: see [`Plant::cost`].
@@ -79,4 +86,10 @@ impl<'a> Plant<'a> {
         let HeldStep { phi, gamma } = (self.step)(dt);
         UpdateMatrix::from_map(|e| phi.apply(&e).plus(-feedback.of(&e), gamma))
     }
+}
+
+/// So many of a step.
+pub(super) fn repeated(step: &HeldStep, count: u64) -> HeldStep {
+    let none = HeldStep { phi: UpdateMatrix::identity(), gamma: State::origin() };
+    (0..count).fold(none, |all, _| all.then(step))
 }
