@@ -14,7 +14,7 @@ use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::Rk4;
 use libration::system::Pendulum;
 use libration::{State, System};
-use libration_lab::advise::{self, Kind, Law};
+use libration_lab::advise::{self, Correction, Kind, Law, Regulator};
 use libration_lab::{Config, Effort, Lab, Silent};
 
 /// The arm about the angle at which it is held: what is left of its weight there.
@@ -53,7 +53,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Near this angle the arm is an oscillator.
     let near = libration::system::Oscillator { omega2: 19.6 * 0.8_f64.cos() };
     let plant = Plant::exact(near, State { q: [0.0], v: [0.0] }, control.period);
-    let Law::Observer { weights, noise } = control.law else { return Err("an observer".into()) };
+    let Law::Observer { feedback: Regulator::Lqr(weights), correction: Correction::Kalman(noise) } =
+        control.law
+    else {
+        return Err("a designed observer".into());
+    };
     let controller = Luenberger::to_origin(plant.lqr(weights)?, plant.observer(noise)?);
     let limit = looped.budgets.iter().find(|budget| budget.kind == Kind::Latency);
     let limit = limit.and_then(|budget| budget.stable_up_to).ok_or("a limit of latency")?;

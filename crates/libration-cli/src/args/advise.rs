@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use libration::analysis::{Feedback, Jitter};
+use libration::analysis::{Feedback, Jitter, LqrWeights};
 use libration_lab::advise::{Control, Law, Measure, Request, Tolerance};
+use libration_lab::analyze::Late;
 
 use super::SystemArgs;
-use super::timing::{feedback, finite, law};
+use super::timing::{feedback, finite, latency, law, weights};
 use crate::args::Setting;
 use crate::error::Failure;
 
@@ -32,16 +33,16 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     period: f64,
-    /// How late a command arrives, in s
+    /// How late a command arrives, as 0.015 (in s) or 1.5steps, of --period
     #[arg(
         long,
-        value_name = "SECONDS",
-        value_parser = number,
+        value_name = "TIME",
+        value_parser = latency,
         requires = "feedback",
         default_value = "0",
         allow_hyphen_values = true
     )]
-    latency: f64,
+    latency: Late,
     /// The law of sample times with its relative rms, as gaussian:0.05 or uniform:0.05
     #[arg(
         long,
@@ -74,6 +75,15 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     loss: f64,
+    /// What the loop costs under noise: the mean of QQ·q² + VV·v² + UU·u². If nothing is said that of its energy, ½(ω²q² + v²)
+    #[arg(
+        long,
+        value_name = "QQ,VV,UU",
+        value_parser = weights,
+        requires = "feedback",
+        allow_hyphen_values = true
+    )]
+    cost_weights: Option<LqrWeights>,
     /// From so far off the operating point --q the loop must return, in m or rad
     #[arg(
         long,
@@ -114,7 +124,7 @@ pub(crate) struct AdviseArgs {
 }
 
 /// The flags that a file takes the place of.
-const ASKED: [&str; 13] = [
+const ASKED: [&str; 14] = [
     "system",
     "set",
     "q",
@@ -125,6 +135,7 @@ const ASKED: [&str; 13] = [
     "jitter",
     "skew",
     "loss",
+    "cost_weights",
     "deviation",
     "tolerance",
     "horizon",
@@ -168,12 +179,15 @@ impl AdviseArgs {
         let control = self.feedback.map(|gains| Control {
             law: Law::Pd(gains),
             period: self.period,
-            latency: self.latency,
+            latency: match self.latency {
+                Late::Seconds(seconds) => seconds,
+                Late::Steps(steps) => steps * self.period,
+            },
             jitter: self.jitter.unwrap_or(Jitter::Gaussian(0.0)),
             skew: self.skew,
             loss: self.loss,
             record: None,
-            weights: None,
+            weights: self.cost_weights,
             deviation: self.deviation,
         });
         Ok(Request {
@@ -185,7 +199,7 @@ impl AdviseArgs {
             horizon: self.horizon,
             rollout: [4096, 1024],
             map: false,
-            asked_by: again(),
+            asked_by: String::new(),
         })
     }
 }
@@ -201,10 +215,4 @@ fn tolerance(text: &str) -> Result<ToleranceArg, String> {
     let of = Measure::ALL.into_iter().find(|measure| measure.name() == name.trim()).ok_or(rule)?;
     let most = finite(most).filter(|most| *most > 0.0).ok_or(rule)?;
     Ok(ToleranceArg(Tolerance { of, most }))
-}
-
-/// The command that asks this again, whatever the program is called, and wherever it writes.
-fn again() -> String {
-    let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--json").collect();
-    format!("libration {}", words.join(" "))
 }

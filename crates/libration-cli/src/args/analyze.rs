@@ -57,5 +57,5 @@ Between whole steps critical latency and stable latencies follow the textbook's 
 split steps is where a command that arrives within a step splits it, as the spectral radius and
 simulations have it. The cost is the stationary mean under white noise of the acceleration of unit
 intensity: of exact steps over continuous time, of an integrator over its steps, with the noise
-held through each; half the clocks of --skew are slow by its rms, half fast. With a latency second moments are known up to 17 steps, and the exponent of
+held through each; half the clocks of --skew are slow by its rms, half fast. With a latency second moments are known up to 90 steps, and the exponent of
 a typical run is not.";

@@ -84,14 +84,14 @@ fn loss(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "it must be a number that is at least 0 and below 1".to_owned())
 }
 
-fn weights(text: &str) -> Result<LqrWeights, String> {
+pub(super) fn weights(text: &str) -> Result<LqrWeights, String> {
     let rule = "it must be three numbers from 0 to 1e50, of the squares of position, velocity and command, as 5,0.5,0";
     let weight = |text| finite(text).filter(|x| (0.0..=MOST_GAIN).contains(x)).ok_or(rule);
     let [q, v, u]: [&str; 3] = text.split(',').collect::<Vec<_>>().try_into().map_err(|_| rule)?;
     Ok(LqrWeights { position: weight(q)?, velocity: weight(v)?, command: weight(u)? })
 }
 
-fn latency(text: &str) -> Result<Late, String> {
+pub(super) fn latency(text: &str) -> Result<Late, String> {
     let (number, make): (&str, fn(f64) -> Late) = match text.trim().strip_suffix("steps") {
         Some(steps) => (steps, Late::Steps),
         None => (text, Late::Seconds),

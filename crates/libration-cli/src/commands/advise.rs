@@ -54,6 +54,7 @@ fn asked(args: &AdviseArgs) -> Result<Request, Failure> {
         None => args.request()?,
     };
     request.map = args.page.is_some();
+    request.asked_by = again();
     if let Some(path) = &args.jitter_file {
         let Some(control) = request.control.take() else {
             return Err(Failure::usage(
@@ -80,6 +81,22 @@ fn failure(error: AdviseError) -> Failure {
         error @ (AdviseError::Unstable { .. } | AdviseError::Ensemble(_)) => Failure::run(error),
         error => Failure::usage(error),
     }
+}
+
+/// The command that asks this again, whatever the program is called, wherever it writes and however it tells it.
+fn again() -> String {
+    let mut words = vec!["libration".to_owned()];
+    let mut given = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
+    while let Some(word) = given.next() {
+        match &*word {
+            "--json" => {}
+            "--page" => drop(given.next()),
+            page if page.starts_with("--page=") => {}
+            _ => words.push(word),
+        }
+    }
+    // No argument of a process has a NUL in it.
+    shlex::try_join(words.iter().map(String::as_str)).unwrap_or_default()
 }
 
 /// The answer for a reader at a terminal.
@@ -118,6 +135,9 @@ fn told(advice: &Advice) -> String {
     for float in &advice.floats {
         let meets = if float.meets { "tolerated" } else { "too much" };
         let _ = writeln!(text, "in {}: {:.3e} lost, {meets} (simulated)", float.float, float.lost);
+        if float.command != format!("{} --json", advice.again) {
+            let _ = writeln!(text, "  {}", float.command);
+        }
     }
     if let Some(t) = &advice.throughput {
         let _ = writeln!(
@@ -130,6 +150,7 @@ fn told(advice: &Advice) -> String {
             t.bytes as f64 / 1e6
         );
     }
+    let _ = writeln!(text, "what is simulated or measured, again: {}", advice.again);
     text
 }
 
@@ -180,6 +201,7 @@ fn of_loop(looped: &LoopAdvice, text: &mut String) {
             together.ideal_cost
         );
     }
+    let _ = writeln!(text, "  {}", together.command);
     if let Some(s) = &together.simulated {
         let _ = writeln!(
             text,

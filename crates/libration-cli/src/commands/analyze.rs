@@ -211,7 +211,7 @@ fn describe_timing(timing: &TimingAnswer, text: &mut String) {
 
 /// Why there are no second moments.
 const TOO_FAR: &str =
-    "not known: steps turn too far in a deviation, or the latency is above 17 steps";
+    "not known: steps turn too far in a deviation, or the latency is above 90 steps";
 
 /// Why there is no exponent.
 const LATE: &str = "not known with a latency";

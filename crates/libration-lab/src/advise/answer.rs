@@ -44,6 +44,8 @@ pub struct Advice {
     pub floats: Vec<FloatChoice>,
     /// What rollouts take with it.
     pub throughput: Option<Throughput>,
+    /// A command that says all of this again: what was simulated and measured, too.
+    pub again: String,
     /// Where a loop is stable, if that was asked for.
     #[serde(skip)]
     pub map: Option<Map>,
@@ -88,6 +90,8 @@ pub struct FloatChoice {
     pub lost: f64,
     /// Whether that is tolerated.
     pub meets: bool,
+    /// A command that takes the steps in it.
+    pub command: String,
 }
 
 impl LoopAdvice {
@@ -125,6 +129,7 @@ impl Advice {
             runner_up: None,
             floats: Vec::new(),
             throughput: None,
+            again: request.asked_by.clone(),
             map: None,
         }
     }

@@ -1,7 +1,7 @@
 //! What a loop stands of each imperfection alone, and which fails first.
 
 use libration::Model;
-use libration::analysis::{Imperfections, Jitter};
+use libration::analysis::{Imperfections, Jitter, Latency, Mode};
 use serde::Serialize;
 
 use super::AdviseError;
@@ -50,16 +50,23 @@ pub struct Failing {
 }
 
 impl<M: Model<1>> Loop<M> {
-    /// Fails where nothing can be advised.
-    pub(super) fn check_stable(&self) -> Result<(), AdviseError> {
+    /// Fails where nothing can be advised, before any work.
+    pub(super) fn check(&self) -> Result<(), AdviseError> {
         let (plant, none) = (self.plant(), Imperfections::NONE);
-        let growth = plant.mean_square_growth(&self.linear, &none).map_err(LoopError::from)?;
-        if growth < 0.0 {
+        self.decays(&plant, &self.stated()?).map_err(LoopError::from)?;
+        if plant.mean_square_stable(&self.linear, &none).map_err(LoopError::from)? {
             return Ok(());
         }
-        let mode = plant.slowest_mode(&self.linear, &none).map_err(LoopError::from)?;
-        let how = swings(mode.angle, self.control.period).1;
-        Err(AdviseError::Unstable { growth: mode.radius, how })
+        let mut modes = plant.unstable_modes(&self.linear).map_err(LoopError::from)?;
+        if modes.is_empty() {
+            // By less than a rounding.
+            modes.push(plant.slowest_mode(&self.linear, &none).map_err(LoopError::from)?);
+        }
+        let told = |mode: &Mode| {
+            let how = swings(mode.angle, self.control.period).1;
+            format!("a motion grows by the factor {:.6} a period ({how})", mode.radius)
+        };
+        Err(AdviseError::Unstable { modes: modes.iter().map(told).collect() })
     }
 
     pub(super) fn budgets(
@@ -100,42 +107,54 @@ impl<M: Model<1>> Loop<M> {
                 Kind::Latency | Kind::Skew => {
                     "exact: the spectral radius of the sampled loop passes 1"
                 }
+                Kind::Jitter if self.control.record.is_some() => {
+                    "exact: the loop begins to grow through the record, whose deviations are stretched"
+                }
                 Kind::Jitter | Kind::Loss => "exact: second moments, E[M ⊗ M], begin to grow",
             },
-            command: self.command(kind, limit, request),
+            command: match limit {
+                Some(limit) => self.command(&self.only(kind, limit / scale)?, request),
+                None => self.command(&Imperfections::NONE, request),
+            },
         })
     }
 
-    /// A command that shows a limit.
-    fn command(&self, kind: Kind, limit: Option<f64>, request: &Request) -> String {
+    /// A command that shows the loop with `imperfections`.
+    pub(super) fn command(&self, imperfections: &Imperfections, request: &Request) -> String {
         let gains = match self.control.law {
+            _ if self.control.record.is_some() && imperfections.jitter.rms() > 0.0 => {
+                return format!("{} --json", request.asked_by);
+            }
             Law::Pd(gains) if M::LINEAR => gains,
             Law::Lqr(_) if M::LINEAR => self.gains(),
             // No other command takes a controller that remembers, or exact steps of what is linearised.
             _ => return format!("{} --json", request.asked_by),
         };
-        let set = request.parameters();
-        let law = match self.control.jitter {
-            Jitter::Gaussian(_) => "gaussian",
-            Jitter::Uniform(_) => "uniform",
+        let Imperfections { latency, jitter, skew, loss } = *imperfections;
+        // Commands are late by parts of steps, which the clock makes longer.
+        let latency = match (latency == Latency::NONE, skew == 0.0) {
+            (true, _) => String::new(),
+            (_, true) => format!(" --latency {}", latency.steps() * self.control.period),
+            (_, false) => format!(" --latency {}steps", latency.steps()),
         };
-        let Control { period, skew, .. } = self.control;
-        let (dt, flag) = match (kind, limit) {
-            (Kind::Skew, Some(limit)) => (period * (1.0 + limit.copysign(skew)), String::new()),
-            (Kind::Latency, Some(limit)) => (period, format!(" --latency {limit}")),
-            (Kind::Jitter, Some(limit)) => (period, format!(" --jitter {law}:{limit}")),
-            (Kind::Loss, Some(limit)) => (period, format!(" --loss {limit}")),
-            (_, None) => (period, String::new()),
+        let jitter = match jitter {
+            law if law.rms() == 0.0 => String::new(),
+            Jitter::Gaussian(rms) => format!(" --jitter gaussian:{rms}"),
+            Jitter::Uniform(rms) => format!(" --jitter uniform:{rms}"),
         };
+        let loss = if loss == 0.0 { String::new() } else { format!(" --loss {loss}") };
+        let weights = self.control.weights.map_or_else(String::new, |w| {
+            format!(" --cost-weights {},{},{}", w.position, w.velocity, w.command)
+        });
         format!(
-            "libration analyze --system {}{set} --q {} --integrator exact --dt {dt} --feedback {},{}{flag}",
+            "libration analyze --system {}{} --q {} --integrator exact --dt {} --feedback {},{}{latency}{jitter}{loss}{weights}",
             request.system.name(),
+            request.parameters(),
             request.q[0],
+            self.control.period * (1.0 + skew),
             gains.position,
             gains.velocity
-        ) + &self.control.weights.map_or_else(String::new, |w| {
-            format!(" --cost-weights {},{},{}", w.position, w.velocity, w.command)
-        })
+        )
     }
 
     pub(super) fn fails_first(&self, budgets: &[Budget]) -> Result<Option<Failing>, AdviseError> {
@@ -155,6 +174,9 @@ impl<M: Model<1>> Loop<M> {
                 let longer = 1.0 + at.skew;
                 let (frequency, how) = swings(mode.angle, period * longer);
                 (frequency, format!("at its limit {how}"))
+            }
+            (Kind::Jitter, Some(_)) if self.control.record.is_some() => {
+                (None, "at its limit the loop grows as often as it goes through the record".to_owned())
             }
             (Kind::Jitter | Kind::Loss, Some(_)) => (
                 None,

@@ -101,7 +101,7 @@ impl<M: Model<1>> Loop<M> {
 }
 
 /// Places in a record at which loops begin.
-const GROUPS: usize = 8;
+pub(super) const GROUPS: usize = 8;
 
 /// Steps between two looks at whether to stop.
 const LEG: u64 = 4096;

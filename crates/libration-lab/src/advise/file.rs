@@ -8,8 +8,8 @@ use libration::analysis::{Feedback, Jitter, LqrWeights, ObserverNoise};
 use libration::control::controller::PidGains;
 
 use super::AdviseError;
-use super::request::{Control, Law, Measure, Request, Tolerance};
-use super::tables::{ControllerTable, File, LoopTable};
+use super::request::{Control, Correction, Law, Measure, Regulator, Request, Tolerance};
+use super::tables::{ControllerTable, File, LoopTable, ObserverTable};
 use crate::config::{ConfigError, Count, Document, Fault, Number, names};
 use crate::wakeups;
 
@@ -41,7 +41,7 @@ impl TryFrom<File> for Request {
                 return Err(Fault::new("loop", message));
             }
             None => None,
-            Some(table) => Some(control(law(table), file.looped.unwrap_or_default())?),
+            Some(table) => Some(control(law(table)?, file.looped.unwrap_or_default())?),
         };
         let request = Request {
             system,
@@ -101,8 +101,8 @@ fn weights([position, velocity, command]: [Number; 3]) -> LqrWeights {
     LqrWeights { position: position.0, velocity: velocity.0, command: command.0 }
 }
 
-fn law(table: ControllerTable) -> Law {
-    match table {
+fn law(table: ControllerTable) -> Result<Law, Fault> {
+    Ok(match table {
         ControllerTable::Pd(t) => {
             Law::Pd(Feedback { position: t.position.0, velocity: t.velocity.0 })
         }
@@ -116,11 +116,31 @@ fn law(table: ControllerTable) -> Law {
             target: [0.0],
         }),
         ControllerTable::Lqr(t) => Law::Lqr(weights(t.weights)),
-        ControllerTable::Observer(t) => Law::Observer {
-            weights: weights(t.weights),
-            noise: ObserverNoise { acceleration: t.acceleration.0, position: t.position.0 },
-        },
-    }
+        ControllerTable::Observer(t) => observer(t)?,
+    })
+}
+
+fn observer(t: ObserverTable) -> Result<Law, Fault> {
+    let fault = |message: &str| Fault::new("controller.observer", message.to_owned());
+    let feedback = match (t.gains, t.weights) {
+        (Some([position, velocity]), None) => {
+            Regulator::Gains(Feedback { position: position.0, velocity: velocity.0 })
+        }
+        (None, Some(table)) => Regulator::Lqr(weights(table)),
+        _ => return Err(fault("it must have either `gains` or `weights`")),
+    };
+    let correction = match (t.correction, t.acceleration, t.position) {
+        (Some(gains), None, None) => Correction::Gains(gains.map(|x| x.0)),
+        (None, Some(acceleration), Some(position)) => {
+            Correction::Kalman(ObserverNoise { acceleration: acceleration.0, position: position.0 })
+        }
+        _ => {
+            return Err(fault(
+                "it must have either `correction`, or both `acceleration` and `position`",
+            ));
+        }
+    };
+    Ok(Law::Observer { feedback, correction })
 }
 
 fn control(law: Law, table: LoopTable) -> Result<Control, Fault> {
@@ -193,6 +213,8 @@ mod tests {
             ("[tolerance]\nenergy = 1e-3\nphase = 1\n", "must be of one thing"),
             ("[asked]\nhorizon = nan\n", "`asked.horizon` is NaN"),
             ("[controller.pd]\nposition = 1\n", "missing field `velocity`"),
+            ("[controller.observer]\ngains = [1, 1]\nposition = 1\n", "either `correction`"),
+            ("[controller.observer]\ncorrection = [1, 1]\n", "either `gains` or `weights`"),
             (
                 "[controller.pd]\nposition = 1\nvelocity = 1\n[loop]\nlatency = -0.1\n",
                 "`loop.latency` is -0.1",

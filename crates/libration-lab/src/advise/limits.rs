@@ -72,8 +72,8 @@ impl<M: Model<1>> Loop<M> {
     fn largest(&self, kind: Kind) -> f64 {
         match kind {
             Kind::Latency => MOST_PERIODS,
-            // Beyond, most steps of a Gaussian law are of length zero or twice too long.
-            Kind::Jitter => 1.0,
+            // Beyond, most steps of a Gaussian law are of length zero or twice too long. A record may be worse.
+            Kind::Jitter => (2.0 * self.control.jitter.rms()).max(1.0),
             Kind::Skew if self.control.skew < 0.0 => 0.999,
             Kind::Skew => 8.0,
             Kind::Loss => 1.0 - 1e-9,
@@ -82,9 +82,7 @@ impl<M: Model<1>> Loop<M> {
 
     /// Up to where the loop is stable; in the mean square where something is drawn.
     pub(super) fn stable_up_to(&self, plant: &Plant<'_>, kind: Kind) -> Result<Limit, LoopError> {
-        self.holds_up_to(kind, |imperfections| {
-            Ok(plant.mean_square_growth(&self.linear, imperfections)? < 0.0)
-        })
+        self.holds_up_to(kind, |with| self.decays(plant, with))
     }
 
     /// Up to where its cost is tolerated, if a cost is.
@@ -97,10 +95,9 @@ impl<M: Model<1>> Loop<M> {
         if tolerance.of != Measure::Cost {
             return Ok(None);
         }
-        let ideal = plant.cost(&self.linear, &Imperfections::NONE, self.weights)?;
-        let limit = self.holds_up_to(kind, |imperfections| {
-            let cost = plant.cost(&self.linear, imperfections, self.weights)?;
-            Ok(cost <= (1.0 + tolerance.most) * ideal)
+        let ideal = self.cost(plant, &Imperfections::NONE, self.weights)?;
+        let limit = self.holds_up_to(kind, |with| {
+            Ok(self.cost(plant, with, self.weights)? <= (1.0 + tolerance.most) * ideal)
         })?;
         Ok(Some(limit))
     }
@@ -110,12 +107,7 @@ impl<M: Model<1>> Loop<M> {
         kind: Kind,
         holds: impl Fn(&Imperfections) -> Result<bool, CostError>,
     ) -> Result<Limit, LoopError> {
-        let at = |size: f64| -> Result<bool, LoopError> {
-            match holds(&self.only(kind, size)?) {
-                Ok(holds) => Ok(holds),
-                Err(error) => Err(error.into()),
-            }
-        };
+        let at = |size: f64| -> Result<bool, LoopError> { Ok(holds(&self.only(kind, size)?)?) };
         if !at(0.0)? {
             return Ok(Limit::None);
         }
@@ -124,6 +116,8 @@ impl<M: Model<1>> Loop<M> {
         let turn = self.plant().rate() * self.control.period * largest;
         let count = match kind {
             Kind::Skew => ((turn / 0.25).ceil() as u32).clamp(TRIED, 32 * TRIED),
+            // Each goes through all of the record.
+            Kind::Jitter if self.control.record.is_some() => TRIED / 2,
             _ => TRIED,
         };
         let tried = |i: u32| match kind {

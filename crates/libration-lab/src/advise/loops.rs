@@ -9,7 +9,7 @@ use libration::control::{ControlError, Controller};
 use libration::{Float, Model, State, System};
 
 use super::about::About;
-use super::request::{Control, Law};
+use super::request::{Control, Correction, Law, Regulator};
 
 /// A controller, chosen when the program runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,9 +120,16 @@ impl<M: Model<1>> Loop<M> {
                 AnyController::Pid(Pid::new(PidGains { most, ..gains })?)
             }
             Law::Lqr(weights) => feedback(plant.lqr(weights)?),
-            Law::Observer { weights, noise } => {
-                let observer = plant.observer(noise)?;
-                AnyController::Observer(Luenberger::to_origin(plant.lqr(weights)?, observer))
+            Law::Observer { feedback, correction } => {
+                let gains = match feedback {
+                    Regulator::Gains(gains) => gains,
+                    Regulator::Lqr(weights) => plant.lqr(weights)?,
+                };
+                let observer = match correction {
+                    Correction::Gains(correction) => plant.observer_with(correction),
+                    Correction::Kalman(noise) => plant.observer(noise)?,
+                };
+                AnyController::Observer(Luenberger::to_origin(gains, observer))
             }
         };
         Controller::<f64, 1>::check(&controller, control.period)?;
@@ -156,6 +163,47 @@ impl<M: Model<1>> Loop<M> {
         })
     }
 
+    /// The steps of the record, their deviations stretched to another rms; none without a record, or without jitter. Those that
+    /// would be negative are of length zero, as those of a law are.
+    fn replayed(&self, rms: f64) -> Option<Vec<f64>> {
+        let record = self.control.record.as_ref().filter(|_| rms > 0.0)?;
+        let share = rms / self.control.jitter.rms();
+        Some(record.iter().map(|step| (1.0 + share * (step - 1.0)).max(0.0)).collect())
+    }
+
+    /// The rate at which second moments grow in a period: by the law of steps, or through the record.
+    pub(super) fn growth(&self, plant: &Plant<'_>, with: &Imperfections) -> Result<f64, CostError> {
+        match self.replayed(with.jitter.rms()) {
+            Some(steps) => plant.replayed_growth(&self.linear, with, &steps),
+            None => plant.mean_square_growth(&self.linear, with),
+        }
+    }
+
+    /// Whether they decay.
+    pub(super) fn decays(
+        &self,
+        plant: &Plant<'_>,
+        with: &Imperfections,
+    ) -> Result<bool, CostError> {
+        match self.control.record {
+            Some(_) => Ok(self.growth(plant, with)? < 0.0),
+            None => plant.mean_square_stable(&self.linear, with),
+        }
+    }
+
+    /// What the loop costs.
+    pub(super) fn cost(
+        &self,
+        plant: &Plant<'_>,
+        with: &Imperfections,
+        weights: LqrWeights,
+    ) -> Result<f64, CostError> {
+        match self.replayed(with.jitter.rms()) {
+            Some(steps) => plant.replayed_cost(&self.linear, with, &steps, weights),
+            None => plant.cost(&self.linear, with, weights),
+        }
+    }
+
     /// A latency in periods.
     pub(super) fn latency(&self, periods: f64) -> Result<Latency, LoopError> {
         // As seconds are turned into steps everywhere.
@@ -185,9 +233,14 @@ impl<M> Loop<M> {
                 "PID, K_p = {} s⁻², K_i = {} s⁻³, K_d = {} s⁻¹, filter {} s, limit {} m/s²",
                 g.proportional, g.integral, g.derivative, g.filter, g.most
             ),
-            (Law::Observer { .. }, AnyController::Observer(own)) => {
+            (Law::Observer { feedback, correction }, AnyController::Observer(own)) => {
                 let [q, v] = own.observer.correction;
-                format!("LQR of an estimate, designed: {gains}; observer L = ({q:.6}, {v:.6} s⁻¹)")
+                let designed = |is: bool| if is { ", designed" } else { "" };
+                format!(
+                    "feedback of an estimate{}: {gains}; observer{}: L = ({q:.6}, {v:.6} s⁻¹)",
+                    designed(matches!(feedback, Regulator::Lqr(_))),
+                    designed(matches!(correction, Correction::Kalman(_)))
+                )
             }
             (Law::Observer { .. }, _) => gains,
         }

@@ -30,7 +30,7 @@ pub(super) fn free<M: Model<D>, const D: usize>(
         let method = Method::from_name(choice.integrator).unwrap_or(Method::Rk4);
         let narrow = free.lost_in::<f32>(lab, method, dt, f64::INFINITY)?;
         let wide = free.lost_in::<f64>(lab, method, dt, f64::INFINITY)?;
-        advice.floats = floats([narrow, wide], most);
+        advice.floats = floats(request, method, dt, [narrow, wide]);
         let narrow = advice.float().is_some_and(|float| float.float == f32::NAME);
         advice.throughput = Some(Throughput::measure(lab, request, method, dt, narrow)?);
     }
@@ -49,9 +49,13 @@ pub(super) fn sweep<T: Sync, R: Send>(
     lab.sweep(what, items, |item| Ok(job(item)))?.into_iter().collect()
 }
 
-fn floats(lost: [f64; 2], most: f64) -> Vec<FloatChoice> {
-    let all = [f32::NAME, f64::NAME].into_iter().zip(lost);
-    all.map(|(float, lost)| FloatChoice { float, lost, meets: lost <= most }).collect()
+fn floats(request: &Request, method: Method, dt: f64, lost: [f64; 2]) -> Vec<FloatChoice> {
+    let most = request.tolerance.most;
+    let of = |(float, lost): (&'static str, f64)| {
+        let command = request.simulation(method.name(), dt, float);
+        FloatChoice { float, lost, meets: lost <= most, command }
+    };
+    [f32::NAME, f64::NAME].into_iter().zip(lost).map(of).collect()
 }
 
 /// The advice on a loop.
@@ -67,7 +71,7 @@ pub(super) fn looped<M: Model<1>>(
         return Err(AdviseError::Tolerance { of, why });
     }
     let one = Loop::new(model, request.q[0], control)?;
-    one.check_stable()?;
+    one.check()?;
     let plant = one.plant();
     let mut advice = Advice::new(request);
     let stepped = Stepped { one: &one, horizon: request.horizon, tolerance: request.tolerance };
@@ -87,7 +91,7 @@ pub(super) fn looped<M: Model<1>>(
             course.lost::<f32>(lab, method, substeps, &truth)?,
             course.lost::<f64>(lab, method, substeps, &truth)?,
         ];
-        advice.floats = floats(lost, request.tolerance.most);
+        advice.floats = floats(request, method, dt, lost);
         if request.tolerance.of == Measure::Cost {
             // The integrator's own error of the course is no part of what is tolerated.
             for float in &mut advice.floats {
@@ -98,7 +102,7 @@ pub(super) fn looped<M: Model<1>>(
         advice.throughput = Some(Throughput::measure(lab, request, method, dt, narrow)?);
     }
     let budgets = one.budgets(lab, request)?;
-    let together = one.together(lab, &plant, request.tolerance)?;
+    let together = one.together(lab, &plant, request)?;
     let fails_first = one.fails_first(&budgets)?;
     let rest = State { q: [request.q[0]], v: [0.0] };
     let [held] = model.on::<f64>().acceleration(&rest);
@@ -133,6 +137,6 @@ pub(super) fn budgets<M: Model<1>>(
     request: &Request,
 ) -> Result<Vec<Budget>, AdviseError> {
     let one = Loop::new(model, request.q[0], control)?;
-    one.check_stable()?;
+    one.check()?;
     one.budgets(lab, request)
 }

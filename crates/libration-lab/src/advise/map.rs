@@ -19,9 +19,9 @@ pub struct Map {
 }
 
 /// Latencies and gains that are tried.
-const SIZE: [usize; 2] = [49, 33];
+const SIZE: [usize; 2] = [48, 32];
 
-/// Periods of latency beyond which a map would take minutes.
+/// Periods of latency that are drawn, unless more are stated.
 const MOST_PERIODS: f64 = 24.0;
 
 impl<M: Model<1>> Loop<M> {
@@ -31,7 +31,9 @@ impl<M: Model<1>> Loop<M> {
         let stated = self.control.latency;
         let reach = limit.unwrap_or(8.0 * period).max(1.2 * stated).max(0.5 * period);
         let reach = (1.5 * reach).min(MOST_PERIODS * period).max(1.2 * stated);
-        let [columns, rows] = SIZE;
+        // Long queues are costly: of those every second line is enough.
+        let coarser = if reach > 1.5 * MOST_PERIODS * period { 2 } else { 1 };
+        let [columns, rows] = SIZE.map(|size| size / coarser + 1);
         let even = |i: usize, of: usize| i as f64 / (of - 1) as f64;
         let x: Vec<f64> = (0..columns).map(|i| reach * even(i, columns)).collect();
         let y: Vec<f64> = (0..rows).map(|i| 4.0_f64.powf(2.0 * even(i, rows) - 1.0)).collect();

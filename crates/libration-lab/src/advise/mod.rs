@@ -31,7 +31,7 @@ pub use limits::Kind;
 pub use loops::LoopError;
 pub use map::Map;
 pub use page::page;
-pub use request::{Control, Law, Measure, Request, Tolerance};
+pub use request::{Control, Correction, Law, Measure, Regulator, Request, Tolerance};
 pub use throughput::Throughput;
 pub use together::{Returns, Simulated, Together};
 
@@ -71,14 +71,12 @@ pub enum AdviseError {
     },
     /// The loop is unstable without anything wrong with it.
     #[error(
-        "the loop is unstable even without latency, jitter, skew or loss: a motion grows by {growth:.4} a period ({how}); \
-         choose other gains, or a shorter period"
+        "the loop is unstable even without latency, jitter, skew or loss: {}; choose other gains, or a shorter period",
+        modes.join("; ")
     )]
     Unstable {
-        /// The factor.
-        growth: f64,
-        /// How it looks.
-        how: String,
+        /// What does not decay, in words, the fastest first.
+        modes: Vec<String>,
     },
     /// The loop cannot be made.
     #[error(transparent)]

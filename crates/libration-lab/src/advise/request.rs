@@ -26,7 +26,7 @@ pub struct Request {
     pub rollout: [usize; 2],
     /// Whether a map of stability is wanted.
     pub map: bool,
-    /// The command that asks this again.
+    /// The command that asks this again, without where it writes and how.
     pub asked_by: String,
 }
 
@@ -77,13 +77,31 @@ pub enum Law {
     Pid(PidGains<1>),
     /// The feedback that costs least, designed from the model.
     Lqr(LqrWeights),
-    /// The same, of a state that is estimated from the position.
+    /// Feedback of a state that is estimated from the position.
     Observer {
-        /// What the feedback weighs.
-        weights: LqrWeights,
-        /// What the observer weighs.
-        noise: ObserverNoise,
+        /// What is fed back.
+        feedback: Regulator,
+        /// How the estimate is corrected.
+        correction: Correction,
     },
+}
+
+/// Gains, or what they are designed for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Regulator {
+    /// These.
+    Gains(Feedback),
+    /// The feedback that costs least.
+    Lqr(LqrWeights),
+}
+
+/// How an estimate is corrected by what is seen, or what that is designed for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Correction {
+    /// By so much of what the position is off: the position, and the velocity in 1/s.
+    Gains([f64; 2]),
+    /// As varies least: a stationary Kalman filter.
+    Kalman(ObserverNoise),
 }
 
 /// What may be lost.
@@ -141,22 +159,38 @@ impl Request {
         each.map(|(name, value)| format!(" --set {name}={value}")).collect()
     }
 
-    /// The command that takes the steps that are advised.
+    /// The command that takes the steps that are advised, and says what they lose where that can be said.
     pub(super) fn command(&self, integrator: &str, dt: f64, float: &str) -> String {
-        let list = |x: &[f64]| x.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
-        let steps = (self.horizon / dt).round().max(1.0) as u64;
-        let (name, set) = (self.system.name(), self.parameters());
-        let start = format!("--q {} --v {}", list(&self.q), list(&self.v));
         match (&self.control, self.tolerance.of) {
-            (Some(_), _) => format!("{} --json", self.asked_by),
-            (None, Measure::Energy) => format!(
-                "libration analyze --system {name}{set} {start} --integrator {integrator} --dt {dt} --steps {steps}"
-            ),
-            (None, _) => format!(
-                "libration simulate --system {name}{set} {start} --integrator {integrator} --dt {dt} --steps {steps} \
-                 --every {steps} --float {float}"
-            ),
+            (None, Measure::Energy) => {
+                format!("libration analyze {}", self.steps(integrator, dt))
+            }
+            _ => self.simulation(integrator, dt, float),
         }
+    }
+
+    /// The command that takes steps in a float type; of a loop the one that asks again.
+    pub(super) fn simulation(&self, integrator: &str, dt: f64, float: &str) -> String {
+        match &self.control {
+            Some(_) => format!("{} --json", self.asked_by),
+            None => {
+                let every = (self.horizon / dt).round().max(1.0);
+                let steps = self.steps(integrator, dt);
+                format!("libration simulate {steps} --every {every} --float {float}")
+            }
+        }
+    }
+
+    fn steps(&self, integrator: &str, dt: f64) -> String {
+        let list = |x: &[f64]| x.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        format!(
+            "--system {}{} --q {} --v {} --integrator {integrator} --dt {dt} --steps {}",
+            self.system.name(),
+            self.parameters(),
+            list(&self.q),
+            list(&self.v),
+            (self.horizon / dt).round().max(1.0)
+        )
     }
 
     /// Checks all numbers.

@@ -72,9 +72,11 @@ pub(super) struct LqrTable {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ObserverTable {
-    pub(super) weights: [Number; 3],
-    pub(super) acceleration: Number,
-    pub(super) position: Number,
+    pub(super) weights: Option<[Number; 3]>,
+    pub(super) gains: Option<[Number; 2]>,
+    pub(super) acceleration: Option<Number>,
+    pub(super) position: Option<Number>,
+    pub(super) correction: Option<[Number; 2]>,
 }
 
 #[derive(Deserialize)]

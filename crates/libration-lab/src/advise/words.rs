@@ -98,12 +98,8 @@ pub(super) fn warnings<M: Model<1>>(one: &Loop<M>, together: &Together) -> Vec<S
     }
     if let Some(simulated) = &together.simulated {
         if !simulated.agrees() {
-            let what = match simulated.replayed {
-                true => "the time stamps do worse than a law with their rms",
-                false => "the simulation contradicts the theory",
-            };
             warnings.push(format!(
-                "{what}: it costs {:.5e} ± {:.1e}, and {:.5e} is predicted",
+                "the simulation contradicts the theory: it costs {:.5e} ± {:.1e}, and {:.5e} is predicted",
                 simulated.cost, simulated.error, simulated.predicted
             ));
         }
@@ -123,11 +119,12 @@ pub(super) fn warnings<M: Model<1>>(one: &Loop<M>, together: &Together) -> Vec<S
     if let Some(record) = &one.control.record {
         let gaps = record.iter().filter(|step| **step > 1.5).count();
         let repeats = record.iter().filter(|step| **step == 0.0).count();
-        warnings.push(format!(
-            "the budget of jitter is that of a law with the rms of the {} time stamps, drawn anew for each step; the simulation replays them \
-             as they are, with {gaps} gaps and {repeats} repeats",
-            record.len() + 1
-        ));
+        if gaps + repeats > 0 {
+            warnings.push(format!(
+                "the {} time stamps have {gaps} gaps of more than one and a half periods and {repeats} repeats; they are replayed as they are",
+                record.len() + 1
+            ));
+        }
         let skew = one.control.skew;
         if skew.abs() > 1e-3 {
             warnings.push(format!(

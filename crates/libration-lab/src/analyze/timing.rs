@@ -81,7 +81,7 @@ pub struct TimingAnswer {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub jitter_clips: Option<bool>,
     /// `ρ(E[M ⊗ M])`: the factor by which second moments grow in a step; none where steps turn by more than 2048 rad in a
-    /// deviation, or with a latency of more than 17 steps.
+    /// deviation, or with a latency of more than 90 steps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_square_radius: Option<Option<f64>>,
     /// The same minus one, without cancellation.
@@ -194,7 +194,8 @@ fn of_model(model: impl Model<1>, latency: Latency, request: &Request) -> Timing
             let radius = plant.mean_square(feedback, law).radius;
             finite([radius, radius - Wide::one()].map(Wide::to_f64))
         } else {
-            let rate = plant.mean_square_rate_late(feedback, latency, law)?;
+            let drawn = Imperfections { latency, jitter: law, ..Imperfections::NONE };
+            let rate = plant.mean_square_growth(&feedback.into(), &drawn).ok()?;
             finite([rate.exp(), rate.exp_m1()])
         }
     });

@@ -5,7 +5,8 @@ mod periodic;
 mod spectrum;
 mod statistics;
 
-use std::io;
+use std::fs::File;
+use std::io::{self, Read as _};
 use std::path::Path;
 
 use libration::control::clock::{Recorded, RecordedError};
@@ -15,12 +16,21 @@ pub use periodic::{Plan, Priority, Wakeups};
 pub use spectrum::{Band, Spectrum};
 pub use statistics::{Lateness, Quantile, Statistics};
 
+/// Bytes of the largest file of time stamps.
+const MOST_TEXT: u64 = 256_000_000;
+
 /// The time stamps of a file, in s, if they are the record of a clock.
 ///
 /// # Errors
 /// In words: what cannot be read, and what is none.
 pub fn time_stamps(path: &Path) -> Result<Vec<f64>, String> {
-    let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
+    let mut text = String::new();
+    // A device may have no end.
+    let file = File::open(path).map_err(|error| error.to_string())?;
+    let read = file.take(MOST_TEXT + 1).read_to_string(&mut text);
+    if read.map_err(|error| error.to_string())? as u64 > MOST_TEXT {
+        return Err(format!("it is longer than {} MB", MOST_TEXT / 1_000_000));
+    }
     let checked = |stamps: Vec<f64>| {
         Recorded::steps_between(&stamps)?;
         Ok::<_, RecordedError>(stamps)

@@ -16,7 +16,7 @@ const SETTLED: i64 = 600;
 
 /// All eigenvalues of `matrix`, multiple ones repeated, by falling real part.
 pub fn eigenvalues<const D: usize>(matrix: &UpdateMatrix<Wide, D>) -> Vec<Complex> {
-    let mut roots = roots(&characteristic_polynomial(matrix));
+    let mut roots = roots(&characteristic_polynomial(&matrix.rows()));
     roots.sort_by(|a, b| b.re.partial_cmp(&a.re).unwrap_or(core::cmp::Ordering::Equal));
     roots
 }
@@ -24,7 +24,7 @@ pub fn eigenvalues<const D: usize>(matrix: &UpdateMatrix<Wide, D>) -> Vec<Comple
 /// The determinant of `matrix`.
 pub fn determinant<const D: usize>(matrix: &UpdateMatrix<Wide, D>) -> Wide {
     // The dimension 2D is even, so the constant term carries the sign of the determinant.
-    characteristic_polynomial(matrix)[0]
+    characteristic_polynomial(&matrix.rows())[0]
 }
 
 /// The largest absolute value among the roots of the monic polynomial with these lower coefficients.
@@ -34,22 +34,26 @@ pub(super) fn largest_root(coefficients: &[Wide]) -> Wide {
 }
 
 /// The coefficients of `det(λ − A)` from the constant term up; the leading 1 is left out.
-fn characteristic_polynomial<const D: usize>(a: &UpdateMatrix<Wide, D>) -> Vec<Wide> {
-    let n = 2 * D;
+pub(super) fn characteristic_polynomial(a: &[Vec<Wide>]) -> Vec<Wide> {
+    let n = a.len();
     let mut coefficients = vec![Wide::one(); n + 1];
-    let mut m = UpdateMatrix::<Wide, D>::from_map(|e| e.map(|_| Wide::ZERO));
+    let mut m = vec![vec![Wide::ZERO; n]; n];
+    let moved = |m: &[Vec<Wide>], i: usize, j: usize| {
+        (0..n).fold(Wide::ZERO, |sum, k| sum + a[i][k] * m[k][j])
+    };
     for k in 1..=n {
         let c = coefficients[n + 1 - k];
-        let image = a.after(&m);
-        m = UpdateMatrix::from_map(|e| image.apply(&e).plus(c, e));
-        coefficients[n - k] = -a.after(&m).trace().ratio(1, k as i32);
+        let next = |i: usize, j: usize| moved(&m, i, j) + if i == j { c } else { Wide::ZERO };
+        m = (0..n).map(|i| (0..n).map(|j| next(i, j)).collect()).collect();
+        let trace = (0..n).fold(Wide::ZERO, |sum, i| sum + moved(&m, i, i));
+        coefficients[n - k] = -trace.ratio(1, k as i32);
     }
     coefficients.pop();
     coefficients
 }
 
 /// The roots of the monic polynomial with these lower coefficients.
-fn roots(coefficients: &[Wide]) -> Vec<Complex> {
+pub(super) fn roots(coefficients: &[Wide]) -> Vec<Complex> {
     let real = |re| Complex { re, im: Wide::ZERO };
     let value = |z: Complex| {
         coefficients.iter().rev().fold(real(Wide::one()), |sum, &c| sum.times(z).plus(real(c)))

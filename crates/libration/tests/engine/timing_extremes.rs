@@ -1,7 +1,7 @@
 //! What timing does to loops on the edge, with huge gains, and over long times.
 
 use libration::State;
-use libration::analysis::{Feedback, Jitter, Latency, Plant};
+use libration::analysis::{Feedback, Imperfections, Jitter, Latency, Plant};
 use libration::integrator::{SymplecticEuler, VelocityVerlet};
 use libration::system::Oscillator;
 
@@ -87,7 +87,8 @@ fn second_moments_of_exact_steps_are_those_of_a_quadrature_where_powers_do_not_s
         let law = Jitter::Gaussian(rms);
         let found = plant.mean_square(feedback, law).radius.to_f64();
         assert!((found / wanted - 1.0).abs() < 1e-6, "{rms} {found}");
-        let late = plant.mean_square_rate_late(feedback, Latency::NONE, law).unwrap().exp();
+        let drawn = Imperfections { jitter: law, ..Imperfections::NONE };
+        let late = plant.mean_square_growth(&feedback.into(), &drawn).unwrap().exp();
         assert!((late / found - 1.0).abs() < 1e-10, "{rms} {late} {found}");
     }
     // And where an interpolation misses whole turns.

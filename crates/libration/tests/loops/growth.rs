@@ -1,6 +1,6 @@
 //! How simulated loops grow, beside their spectral radii.
 
-use libration::analysis::{Feedback, Jitter, Latency, Plant};
+use libration::analysis::{Feedback, Imperfections, Jitter, Latency, Plant};
 use libration::control::controller::StateFeedback;
 use libration::control::delay::Schedule;
 use libration::ensemble::{All, Execution, Loops, Setup};
@@ -174,7 +174,8 @@ fn second_moments_of_a_late_loop_under_jitter_grow_as_those_of_its_simulated_ste
             let model = Oscillator { omega2: 10.0 };
             let plant = Plant::new(method, model, ORIGIN, 0.1);
             let law = Jitter::Uniform(rms);
-            let wanted = plant.mean_square_rate_late(feedback, latency, law).unwrap();
+            let drawn = Imperfections { latency, jitter: law, ..Imperfections::NONE };
+            let wanted = plant.mean_square_growth(&feedback.into(), &drawn).unwrap();
             let found = rate(DMatrix(sum));
             assert!((found - wanted).abs() < 1e-6, "{method:?} {steps} {rms}: {found} {wanted}");
         }

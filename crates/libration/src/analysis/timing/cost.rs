@@ -1,10 +1,10 @@
 //! What timing costs: the stationary cost of a loop under noise.
 
+use super::drawn::Drawn;
 use super::imperfections::{MOST_RANDOM, MOST_REPEATED};
 use super::jitter::MOST_TURN;
-use super::linear::solved;
-use super::stage::{Making, Stage, mean_square, stable_growth};
-use super::waiting::{Matrix, Waiting, product, scale, transposed};
+use super::stage::{Making, Stage};
+use super::waiting::{Matrix, Waiting};
 use super::{CostError, Imperfections, LinearController, LqrWeights, Plant};
 use crate::Scalar;
 use crate::number::Wide;
@@ -35,18 +35,14 @@ impl Plant<'_> {
         weights: LqrWeights,
     ) -> Result<f64, CostError> {
         let stages = self.stages(controller, imperfections, Some(weights))?;
-        if stable_growth(&stages) >= 0.0 {
+        let drawn = Drawn::new(&stages);
+        if !drawn.is_stable() {
             return Ok(f64::INFINITY);
         }
-        let moments = match &stages[..] {
-            [stage] => repeated(stage),
-            stages => random(stages),
-        };
+        let moments = drawn.moments(noise(&stages));
         let (mut cost, mut length) = (0.0, 0.0);
         for stage in &stages {
-            let of = stage.cost.iter().zip(&moments);
-            let form: f64 = of.flat_map(|(a, b)| a.iter().zip(b)).map(|(a, b)| a * b).sum();
-            cost += stage.weight * (form + stage.constant);
+            cost += stage.weight * stage.expected(&moments);
             length += stage.weight * stage.length;
         }
         let cost = cost / length;
@@ -54,8 +50,8 @@ impl Plant<'_> {
         Ok(if cost >= 0.0 { cost } else { f64::INFINITY })
     }
 
-    /// The rate at which second moments grow in a step of the loop that `controller` closes: below zero it is stable in the mean
-    /// square, and its cost is finite.
+    /// The rate at which second moments grow in a step of the loop that `controller` closes: the logarithm of the spectral radius of
+    /// `E[M ⊗ M]`. Some 13 digits are right, but only 3 where the largest eigenvalues meet, as at critical damping.
     ///
     /// # Errors
     /// [`CostError`], as for [`Plant::cost`].
@@ -64,7 +60,19 @@ impl Plant<'_> {
         controller: &LinearController,
         imperfections: &Imperfections,
     ) -> Result<f64, CostError> {
-        Ok(stable_growth(&self.stages(controller, imperfections, None)?))
+        Ok(Drawn::new(&self.stages(controller, imperfections, None)?).growth())
+    }
+
+    /// Whether that is below zero, which is known sooner: the loop is stable in the mean square, and its cost is finite.
+    ///
+    /// # Errors
+    /// [`CostError`], as for [`Plant::cost`].
+    pub fn mean_square_stable(
+        &self,
+        controller: &LinearController,
+        imperfections: &Imperfections,
+    ) -> Result<bool, CostError> {
+        Ok(Drawn::new(&self.stages(controller, imperfections, None)?).is_stable())
     }
 
     /// The steps that the loop may take.
@@ -74,6 +82,32 @@ impl Plant<'_> {
         imperfections: &Imperfections,
         weights: Option<LqrWeights>,
     ) -> Result<Vec<Stage>, CostError> {
+        let Imperfections { latency, jitter, skew, loss } = *imperfections;
+        let waiting = self.waiting(controller, imperfections, weights)?;
+        let turn = 2.0 * self.turn(jitter) * (1.0 + skew);
+        let making = Making { waiting, controller, latency, weights };
+        let one = Wide::one();
+        let dt = self.dt * (one + Wide::from_f64(skew));
+        // One step, where all are alike: second moments of a large loop would take minutes.
+        let nodes = if jitter.rms() > 0.0 { jitter.nodes(turn) } else { vec![(1.0, 0.0)] };
+        let mut stages = Vec::new();
+        for (weight, epsilon) in nodes {
+            let h = dt * (one + Wide::from_f64(epsilon));
+            let arrives = [(1.0 - loss, false), (loss, true)];
+            for (share, lost) in arrives.into_iter().filter(|(share, _)| *share > 0.0) {
+                stages.push(self.stage(making, weight * share, h, lost));
+            }
+        }
+        Ok(stages)
+    }
+
+    /// What the loop has to know, once all numbers are checked.
+    pub(super) fn waiting(
+        &self,
+        controller: &LinearController,
+        imperfections: &Imperfections,
+        weights: Option<LqrWeights>,
+    ) -> Result<Waiting, CostError> {
         let Imperfections { latency, jitter, skew, loss } = *imperfections;
         if let Some(LqrWeights { position, velocity, command }) = weights {
             let all = [("position", position), ("velocity", velocity), ("command", command)];
@@ -102,67 +136,20 @@ impl Plant<'_> {
         if turn.is_nan() || turn > MOST_TURN {
             return Err(CostError::Turn);
         }
-        let making = Making { waiting, controller, latency, weights };
-        let one = Wide::one();
-        let dt = self.dt * (one + Wide::from_f64(skew));
-        // One step, where all are alike: second moments of a large loop would take minutes.
-        let nodes = if jitter.rms() > 0.0 { jitter.nodes(turn) } else { vec![(1.0, 0.0)] };
-        let mut stages = Vec::new();
-        for (weight, epsilon) in nodes {
-            let h = dt * (one + Wide::from_f64(epsilon));
-            let arrives = [(1.0 - loss, false), (loss, true)];
-            for (share, lost) in arrives.into_iter().filter(|(share, _)| *share > 0.0) {
-                stages.push(self.stage(making, weight * share, h, lost));
-            }
-        }
-        Ok(stages)
+        Ok(waiting)
     }
 }
 
-/// `P = M P Mᵀ + W` as the sum of all that ever came in, doubled again and again (R. A. Smith, *Matrix equation XA + BX = C*, SIAM
-/// Journal on Applied Mathematics 16, 1968).
-fn repeated(stage: &Stage) -> Matrix {
-    let n = stage.step.len();
-    let mut sum = vec![vec![0.0; n]; n];
-    (0..2).for_each(|i| sum[i][..2].copy_from_slice(&stage.noise[i]));
-    let mut power = stage.step.clone();
-    // A loop whose moments fall by 10⁻¹⁵ a step has forgotten after 2⁵⁶.
-    for _ in 0..56 {
-        let more = product(&product(&power, &sum), &transposed(&power));
-        for (row, more) in sum.iter_mut().zip(more) {
-            row.iter_mut().zip(more).for_each(|(x, more)| *x += more);
-        }
-        power = product(&power, &power);
-        scale(&mut power, 1.0);
-    }
-    sum
-}
-
-/// `P = E[M P Mᵀ] + W` as linear equations for what is symmetric.
-fn random(stages: &[Stage]) -> Matrix {
+/// The covariance of what noise adds in a step.
+fn noise(stages: &[Stage]) -> Matrix {
     let n = stages.first().map_or(0, |stage| stage.step.len());
-    let mut rows = mean_square(stages);
-    for (i, row) in rows.iter_mut().enumerate() {
-        row.iter_mut().for_each(|x| *x = -*x);
-        row[i] += 1.0;
-        row.push(0.0);
-    }
-    let pairs: Vec<(usize, usize)> = (0..n).flat_map(|i| (i..n).map(move |j| (i, j))).collect();
-    for (row, &(i, j)) in rows.iter_mut().zip(&pairs) {
-        let noise = stages.iter().map(|stage| {
-            let known = stage.noise.get(i).and_then(|row| row.get(j)).copied().unwrap_or(0.0);
-            stage.weight * known
-        });
-        if let Some(last) = row.last_mut() {
-            *last = noise.sum();
+    let mut noise = vec![vec![0.0; n]; n];
+    for stage in stages {
+        for (row, added) in noise.iter_mut().zip(&stage.noise) {
+            row.iter_mut().zip(added).for_each(|(x, added)| *x += stage.weight * added);
         }
     }
-    let solution = solved(rows, f64::abs);
-    let mut moments = vec![vec![0.0; n]; n];
-    for (&(i, j), x) in pairs.iter().zip(solution) {
-        (moments[i][j], moments[j][i]) = (x, x);
-    }
-    moments
+    noise
 }
 
 #[cfg(test)]

@@ -58,13 +58,18 @@ pub enum CostError {
         /// State, controller and waiting commands.
         size: usize,
     },
+    /// A step of a record is none.
+    #[error(
+        "a step of the record is {0} periods long; it must be finite and at least 0, and one of them above 0"
+    )]
+    Step(f64),
     /// Steps turn too far.
     #[error("steps turn by more than 2048 rad in a standard deviation of the jitter")]
     Turn,
 }
 
-/// Coordinates of a loop whose steps are random: 465 second moments.
-pub(super) const MOST_RANDOM: usize = 30;
+/// Coordinates of a loop whose steps are drawn: a growth takes a second.
+pub(super) const MOST_RANDOM: usize = 100;
 
 /// Coordinates of a loop whose steps are all the same.
 pub(super) const MOST_REPEATED: usize = 300;

@@ -5,11 +5,11 @@
 
 mod circle;
 mod cost;
+mod drawn;
 mod held_step;
 mod hidden_latency;
 mod imperfections;
 mod jitter;
-mod jitter_late;
 mod jitter_margin;
 mod latency;
 mod linear;
@@ -24,6 +24,7 @@ mod periodic;
 mod plant;
 mod quasi;
 mod random_latency;
+mod replayed;
 mod resonance;
 mod riccati;
 #[cfg(test)]

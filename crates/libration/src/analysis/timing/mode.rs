@@ -2,6 +2,10 @@
 
 use super::waiting::{Matrix, growth};
 use super::{CostError, Imperfections, LinearController, Plant};
+use crate::Scalar;
+use crate::analysis::Complex;
+use crate::analysis::eigenvalues::{characteristic_polynomial, roots};
+use crate::number::Wide;
 
 /// The motion of a loop that decays last, or grows fastest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +21,25 @@ pub struct Mode {
 const STEPS: u32 = 4096;
 
 impl Plant<'_> {
+    /// The motions of the loop that `controller` closes, with nothing wrong with it, that do not decay: the fastest first, and of a pair
+    /// one.
+    ///
+    /// # Errors
+    /// [`CostError`], as for [`Plant::cost`].
+    pub fn unstable_modes(&self, controller: &LinearController) -> Result<Vec<Mode>, CostError> {
+        let stages = self.stages(controller, &Imperfections::NONE, None)?;
+        let mode = |root: Complex| {
+            let (radius, angle) = (root.abs().to_f64(), root.arg().to_f64());
+            (radius >= 1.0 && angle >= 0.0).then_some(Mode { radius, angle })
+        };
+        let wide = |row: &Vec<f64>| row.iter().map(|&x| Wide::from_f64(x)).collect();
+        let step: Vec<Vec<Wide>> = stages[0].step.iter().map(wide).collect();
+        let all = roots(&characteristic_polynomial(&step));
+        let mut modes: Vec<Mode> = all.into_iter().filter_map(mode).collect();
+        modes.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+        Ok(modes)
+    }
+
     /// The motion that decays last in the loop that `controller` closes with this latency and this skew; without jitter and losses,
     /// where there are no motions.
     ///
@@ -104,6 +127,26 @@ mod tests {
         };
         assert_eq!(one(0.1, 2.0, 0.1), 0.0);
         assert_eq!(one(0.1, 25.0, 0.1), core::f64::consts::PI);
+    }
+
+    #[test]
+    fn all_motions_that_grow_are_told_and_no_other() {
+        // Upside down, (λ − e^{ωΔt})(λ − e^{−ωΔt}): one grows.
+        let upright = Plant::exact(Oscillator { omega2: -9.0 }, ORIGIN, 0.1);
+        let [one] = upright.unstable_modes(&Feedback::default().into()).unwrap()[..] else {
+            panic!("one motion falls");
+        };
+        assert!((one.radius - 0.3_f64.exp()).abs() < 1e-12 && one.angle == 0.0, "{one:?}");
+        // With velocities that are fed back the wrong way both do, and slowly enough they swing.
+        let spring = Plant::exact(Oscillator { omega2: 10.0 }, ORIGIN, 0.01);
+        let push = |velocity| Feedback { position: 0.0, velocity }.into();
+        let swing = spring.unstable_modes(&push(-1.0)).unwrap();
+        let slowest = spring.slowest_mode(&push(-1.0), &Imperfections::NONE).unwrap();
+        assert!(swing.len() == 1 && (swing[0].radius - slowest.radius).abs() < 1e-9, "{swing:?}");
+        assert!((swing[0].angle - slowest.angle).abs() < 1e-6, "{swing:?} {slowest:?}");
+        let both = spring.unstable_modes(&push(-10.0)).unwrap();
+        assert!(both.len() == 2 && both.iter().all(|mode| mode.angle == 0.0), "{both:?}");
+        assert_eq!(spring.unstable_modes(&push(1.0)), Ok(Vec::new()));
     }
 
     #[test]

@@ -55,8 +55,15 @@ impl Plant<'_> {
         let foretold = foretold.ok_or(LqrError::Unsettled)?;
         let [qq, vq] = [0, 1].map(|i| foretold.entry(i, 0));
         let correction = [qq, vq].map(|x| (x / (qq + variance)).to_f64());
+        Ok(self.observer_with(correction))
+    }
+
+    /// The observer that corrects what was foretold by so much of what the position is off.
+    pub fn observer_with(&self, correction: [f64; 2]) -> StateObserver {
+        let HeldStep { phi, gamma } = (self.step)(self.dt);
+        let gamma = [gamma.q[0], gamma.v[0]].map(Wide::to_f64);
         let phi = [0, 1].map(|i| [0, 1].map(|j| phi.entry(i, j).to_f64()));
-        Ok(StateObserver { phi, gamma, correction })
+        StateObserver { phi, gamma, correction }
     }
 
     /// The covariance of what noise of unit intensity adds in a step.

@@ -1,6 +1,6 @@
 //! A step of a loop under noise, with what it costs.
 
-use super::waiting::{Matrix, Waiting, growth, symmetric_square};
+use super::waiting::{Matrix, Waiting};
 use super::{Latency, LinearController, LqrWeights, Plant};
 use crate::Scalar;
 use crate::number::Wide;
@@ -18,6 +18,15 @@ pub(super) struct Stage {
     pub(super) constant: f64,
     /// Of the cost: seconds, or one where a step counts once.
     pub(super) length: f64,
+}
+
+impl Stage {
+    /// What it costs in the mean, of such second moments at its beginning.
+    pub(super) fn expected(&self, moments: &Matrix) -> f64 {
+        let rows = self.cost.iter().zip(moments);
+        let form: f64 = rows.flat_map(|(a, b)| a.iter().zip(b)).map(|(a, b)| a * b).sum();
+        form + self.constant
+    }
 }
 
 /// What a step is to be made of.
@@ -76,29 +85,6 @@ impl Plant<'_> {
         let whole = self.sampled(weights, seconds);
         Stage { weight, step, noise: whole.noise, cost, constant: whole.constant, length: seconds }
     }
-}
-
-/// The logarithm of the factor by which second moments grow in a step.
-pub(super) fn stable_growth(stages: &[Stage]) -> f64 {
-    match stages {
-        [stage] => 2.0 * growth(stage.step.clone()),
-        stages => growth(mean_square(stages)),
-    }
-}
-
-/// `E[M ⊗ M]` on what is symmetric.
-pub(super) fn mean_square(stages: &[Stage]) -> Matrix {
-    let mut mean: Matrix = Vec::new();
-    for stage in stages {
-        let square = symmetric_square(&stage.step);
-        if mean.is_empty() {
-            mean = vec![vec![0.0; square.len()]; square.len()];
-        }
-        for (row, square) in mean.iter_mut().zip(square) {
-            row.iter_mut().zip(square).for_each(|(sum, x)| *sum += stage.weight * x);
-        }
-    }
-    mean
 }
 
 /// Adds `weight·(row·x)²`.
