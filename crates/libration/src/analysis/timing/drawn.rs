@@ -184,7 +184,7 @@ fn root(f: impl Fn(f64) -> f64, mut low: (f64, f64), mut high: (f64, f64)) -> f6
 #[cfg(test)]
 mod tests {
     use super::super::sample::textbook;
-    use super::super::waiting::symmetric_square;
+    use super::super::stage::mean_square;
     use super::super::{
         Feedback, Imperfections, Jitter, Latency, LinearController, LqrWeights, Plant,
     };
@@ -197,18 +197,6 @@ mod tests {
     fn stages(plant: &Plant<'_>, imperfections: &Imperfections) -> Vec<Stage> {
         let weights = LqrWeights { position: 5.0, velocity: 0.5, command: 0.1 };
         plant.stages(&LinearController::from(GAINS), imperfections, Some(weights)).unwrap()
-    }
-
-    /// `E[M ⊗ M]` on what is symmetric, in full.
-    fn operator(stages: &[Stage]) -> Matrix {
-        let squares = stages.iter().map(|stage| (stage.weight, symmetric_square(&stage.step)));
-        squares.fold(Matrix::new(), |mut sum, (weight, square)| {
-            sum.resize(square.len(), vec![0.0; square.len()]);
-            for (row, square) in sum.iter_mut().zip(square) {
-                row.iter_mut().zip(square).for_each(|(x, y)| *x += weight * y);
-            }
-            sum
-        })
     }
 
     #[test]
@@ -225,7 +213,7 @@ mod tests {
                     let stages =
                         stages(&plant, &Imperfections { latency, jitter, skew: 0.1, loss });
                     let drawn = Drawn::new(&stages);
-                    let wanted = growth(operator(&stages));
+                    let wanted = growth(mean_square(&stages));
                     let found = drawn.growth();
                     // Both are right to some 13 digits, where no eigenvalues meet.
                     let what = format!("{name} {steps} {jitter:?} {loss}: {found} {wanted}");

@@ -51,8 +51,8 @@ pub enum CostError {
     Skew(f64),
     /// The matrix would be too large.
     #[error(
-        "a loop that has to know {size} numbers is too large: with jitter or losses there may be {MOST_RANDOM}, without \
-         {MOST_REPEATED}"
+        "a loop that has to know {size} numbers is too large: with jitter or losses there may be {MOST_RANDOM}, with a record and \
+         losses {MOST_REPLAYED}, with none of them {MOST_REPEATED}"
     )]
     Size {
         /// State, controller and waiting commands.
@@ -70,6 +70,9 @@ pub enum CostError {
 
 /// Coordinates of a loop whose steps are drawn: a growth takes a second.
 pub(super) const MOST_RANDOM: usize = 100;
+
+/// Coordinates of a loop whose clock is replayed and whose commands may be lost: 300 second moments.
+pub(super) const MOST_REPLAYED: usize = 24;
 
 /// Coordinates of a loop whose steps are all the same.
 pub(super) const MOST_REPEATED: usize = 300;

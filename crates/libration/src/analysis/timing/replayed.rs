@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use super::drawn::accumulated;
-use super::imperfections::MOST_RANDOM;
-use super::stage::{Making, Stage};
+use super::imperfections::{MOST_RANDOM, MOST_REPLAYED};
+use super::stage::{Making, Stage, mean_square};
 use super::waiting::{Matrix, growth, product, scale, transposed};
 use super::{CostError, Imperfections, Jitter, LinearController, LqrWeights, Plant};
 use crate::Scalar;
@@ -64,7 +64,8 @@ impl Plant<'_> {
         let even = Imperfections { jitter: Jitter::Gaussian(0.0), ..*imperfections };
         let waiting = self.waiting(controller, &even, weights)?;
         let Imperfections { latency, skew, loss, .. } = even;
-        if waiting.size() > MOST_RANDOM {
+        let most = if loss > 0.0 { MOST_REPLAYED } else { MOST_RANDOM };
+        if waiting.size() > most {
             return Err(CostError::Size { size: waiting.size() });
         }
         let making = Making { waiting, controller, latency, weights };
@@ -103,37 +104,27 @@ impl Replayed {
         self.order.iter().map(|&kind| &self.kinds[kind])
     }
 
-    /// The product of all steps, where nothing is drawn, divided by a factor whose logarithm comes with it.
+    /// The product of all steps, where nothing is drawn; else of what they make of second moments. It is divided by a factor whose
+    /// logarithm comes with it.
     fn product(&self) -> (Matrix, f64) {
-        let mut all = unit(self.size);
+        let of = |stages: &Vec<Stage>| match self.draws {
+            true => mean_square(stages),
+            false => stages[0].step.clone(),
+        };
+        let kinds: Vec<Matrix> = self.kinds.iter().map(of).collect();
+        let mut all = unit(kinds[0].len());
         let mut logarithm = 0.0;
-        for stages in self.steps() {
-            all = product(&stages[0].step, &all);
+        for &kind in &self.order {
+            all = product(&kinds[kind], &all);
             logarithm += normalise(&mut all);
         }
         (all, logarithm)
     }
 
     fn growth(&self) -> f64 {
-        let count = self.order.len() as f64;
-        if !self.draws {
-            let (product, logarithm) = self.product();
-            return 2.0 * (growth(product) + logarithm) / count;
-        }
-        // What losses draw parts the fastest motion from all others.
-        let (mut moments, mut before) = (unit(self.size), f64::NAN);
-        for _ in 0..(MOST_STEPS / self.order.len()).max(2) {
-            let mut logarithm = 0.0;
-            for stages in self.steps() {
-                moments = moved(stages, &moments);
-                logarithm += normalise(&mut moments);
-            }
-            if (logarithm - before).abs() <= 1e-13 * count || logarithm.is_nan() {
-                return logarithm / count;
-            }
-            before = logarithm;
-        }
-        before / count
+        let (product, logarithm) = self.product();
+        let power = if self.draws { 1.0 } else { 2.0 };
+        power * (growth(product) + logarithm) / self.order.len() as f64
     }
 
     fn cost(&self) -> f64 {
@@ -266,15 +257,16 @@ mod tests {
         let found = plant.replayed_growth(&gains, &late, &record).unwrap();
         // Three steps after each other, each as a law of its own that draws nothing but the loss.
         let mut moments = unit(4);
-        let mut logarithm = 0.0;
-        for i in 0..3000 {
+        let mut logarithms = vec![0.0];
+        for i in 0..30_000 {
             let skew = record[i % 3] - 1.0;
             let stages = plant.stages(&gains, &Imperfections { skew, ..late }, None).unwrap();
             moments = moved(&stages, &moments);
-            let grown = normalise(&mut moments);
-            logarithm += if i < 1500 { 0.0 } else { grown };
+            logarithms.push(logarithms[i] + normalise(&mut moments));
         }
-        assert!((found - logarithm / 1500.0).abs() < 1e-10, "{found} {}", logarithm / 1500.0);
+        // What turns beside the fastest motion has died out after half of them.
+        let wanted = (logarithms[30_000] - logarithms[15_000]) / 15_000.0;
+        assert!((found - wanted).abs() < 1e-9, "{found} {wanted}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! A step of a loop under noise, with what it costs.
 
-use super::waiting::{Matrix, Waiting};
+use super::waiting::{Matrix, Waiting, symmetric_square};
 use super::{Latency, LinearController, LqrWeights, Plant};
 use crate::Scalar;
 use crate::number::Wide;
@@ -85,6 +85,19 @@ impl Plant<'_> {
         let whole = self.sampled(weights, seconds);
         Stage { weight, step, noise: whole.noise, cost, constant: whole.constant, length: seconds }
     }
+}
+
+/// `E[M ⊗ M]` on what is symmetric.
+pub(super) fn mean_square(stages: &[Stage]) -> Matrix {
+    let mut mean: Matrix = Vec::new();
+    for stage in stages {
+        let square = symmetric_square(&stage.step);
+        mean.resize(square.len(), vec![0.0; square.len()]);
+        for (row, square) in mean.iter_mut().zip(square) {
+            row.iter_mut().zip(square).for_each(|(sum, x)| *sum += stage.weight * x);
+        }
+    }
+    mean
 }
 
 /// Adds `weight·(row·x)²`.
