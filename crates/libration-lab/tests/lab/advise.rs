@@ -2,212 +2,22 @@
 
 use std::sync::atomic::AtomicBool;
 
-use libration::analysis::{Feedback, Jitter, Latency};
-use libration::control::Schedule;
-use libration::control::clock::Rates;
-use libration::control::controller::StateFeedback;
-use libration::ensemble::{All, Execution, Loops, Setup};
-use libration::integrator::Exact;
-use libration::random::{Address, Purpose};
+use libration::AnySystem;
+use libration::analysis::{Feedback, Jitter};
 use libration::system::{Oscillator, Pendulum};
-use libration::{AnySystem, State};
-use libration_lab::advise::{
-    self, Advice, AdviseError, Budget, Control, Kind, Law, Measure, Request, Tolerance,
-};
+use libration_lab::advise::{self, Advice, AdviseError, Kind, Law, Measure, Request};
 use libration_lab::{Config, Effort, Lab, Silent};
 
+use super::advise_budgets::Case;
 use super::advise_steps::free;
 
-fn with_lab<R>(work: impl FnOnce(&Lab<'_>) -> R) -> R {
+pub(crate) fn with_lab<R>(work: impl FnOnce(&Lab<'_>) -> R) -> R {
     let (config, stop) = (Config::default(), AtomicBool::new(false));
     work(&Lab::new(&config, Effort::Quick, &Silent, &stop))
 }
 
 pub(crate) fn advice(request: &Request) -> Result<Advice, AdviseError> {
     with_lab(|lab| advise::advise(lab, request))
-}
-
-/// A number from `low` to `high`.
-fn drawn(step: u64, low: f64, high: f64) -> f64 {
-    let [u, _] = Address { seed: 3, trajectory: 0, step, purpose: Purpose::Variation }.uniform();
-    low + (high - low) * u
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Case {
-    omega2: f64,
-    gains: Feedback,
-    period: f64,
-}
-
-impl Case {
-    fn request(self) -> Request {
-        Request {
-            system: AnySystem::Oscillator(Oscillator { omega2: self.omega2 }),
-            q: vec![0.0],
-            v: vec![0.0],
-            control: Some(Control {
-                law: Law::Pd(self.gains),
-                period: self.period,
-                latency: 0.0,
-                jitter: Jitter::Uniform(0.0),
-                skew: 0.0,
-                loss: 0.0,
-                record: None,
-                weights: None,
-                deviation: 0.1,
-            }),
-            tolerance: Tolerance { of: Measure::Trajectory, most: 1e-3 },
-            horizon: 5.0,
-            rollout: [64, 64],
-            map: false,
-            asked_by: String::new(),
-        }
-    }
-
-    /// By how much `ln |y|` of a simulated loop changes in a period, between two long windows.
-    fn growth(self, latency: f64, skew: f64) -> f64 {
-        const PERIODS: u64 = 6_000;
-        let model = Oscillator { omega2: self.omega2 };
-        let latency = Latency::of_steps(latency / self.period).unwrap();
-        let rates = [1.0 + skew];
-        let exact = Exact::new::<1>(model, self.period * (1.0 + skew)).unwrap();
-        let setup = Setup::new(All(model), exact)
-            .controller(StateFeedback::to_origin(self.gains))
-            .clock(Rates(&rates))
-            .delay(Schedule::late(latency));
-        let start = [State { q: [1.0], v: [0.3] }];
-        let mut one =
-            Loops::new(setup, self.period, 0, [0.0], &start, Execution::serial()).unwrap();
-        let mut means = [0.0; 2];
-        one.advance(PERIODS / 4).unwrap();
-        for mean in &mut means {
-            for _ in 0..PERIODS {
-                one.advance(1).unwrap();
-                let State { q: [q], v: [v] } = one.state(0).unwrap();
-                let size = (self.omega2.max(1.0) * q * q + v * v).ln() / 2.0;
-                // Beyond the floats it is plain what it does.
-                if !size.is_finite() || size.abs() > 300.0 {
-                    return if size > 0.0 || size.is_nan() { 1.0 } else { -1.0 };
-                }
-                *mean += size / PERIODS as f64;
-            }
-        }
-        (means[1] - means[0]) / PERIODS as f64
-    }
-
-    /// The factor by which second moments grow in a period, of steps that are drawn: an oscillator in closed form, each
-    /// deviation with its mirror image.
-    fn mean_square(self, rms: f64) -> f64 {
-        const DRAWS: u64 = 200_000;
-        let omega = self.omega2.sqrt();
-        let mut operator = [[0.0; 3]; 3];
-        for step in 0..DRAWS / 2 {
-            let width = rms * 3.0_f64.sqrt();
-            let epsilon = drawn(step, -width, width);
-            for epsilon in [epsilon, -epsilon] {
-                let h = self.period * (1.0 + epsilon).max(0.0);
-                let (sine, cosine) = (omega * h).sin_cos();
-                let gamma = [(1.0 - cosine) / self.omega2, sine / omega];
-                let Feedback { position, velocity } = self.gains;
-                let a = cosine - gamma[0] * position;
-                let b = sine / omega - gamma[0] * velocity;
-                let c = -omega * sine - gamma[1] * position;
-                let d = cosine - gamma[1] * velocity;
-                let square = [
-                    [a * a, 2.0 * a * b, b * b],
-                    [a * c, a * d + b * c, b * d],
-                    [c * c, 2.0 * c * d, d * d],
-                ];
-                for (row, square) in operator.iter_mut().zip(square) {
-                    row.iter_mut().zip(square).for_each(|(sum, x)| *sum += x / DRAWS as f64);
-                }
-            }
-        }
-        let mut state = [1.0, 0.1, 1.0];
-        let mut growth = 1.0;
-        for _ in 0..20_000 {
-            let moved = operator.map(|row| row.iter().zip(state).map(|(a, x)| a * x).sum::<f64>());
-            growth = moved.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
-            state = moved.map(|x| x / growth);
-        }
-        growth
-    }
-}
-
-#[test]
-fn of_a_hundred_random_loops_each_budget_ends_where_simulations_become_unstable() {
-    let mut tried = [0; 3];
-    let cases = (0..).map(|i| Case {
-        omega2: drawn(1000 + 4 * i, 0.5, 30.0),
-        gains: Feedback {
-            position: drawn(1001 + 4 * i, 0.0, 30.0),
-            velocity: drawn(1002 + 4 * i, 0.3, 8.0),
-        },
-        period: drawn(1003 + 4 * i, 0.02, 0.4),
-    });
-    let (mut loops, mut skipped) = (0, 0);
-    for case in cases {
-        let budgets = with_lab(|lab| advise::budgets(lab, &case.request()));
-        let budgets: Vec<Budget> = match budgets {
-            Ok(budgets) => budgets,
-            Err(AdviseError::Unstable { .. }) => {
-                skipped += 1;
-                assert!(case.growth(0.0, 0.0) > 0.0, "{case:?}");
-                continue;
-            }
-            Err(error) => panic!("{case:?}: {error}"),
-        };
-        for (i, kind) in [Kind::Latency, Kind::Jitter, Kind::Skew].into_iter().enumerate() {
-            let budget = budgets.iter().find(|budget| budget.kind == kind).unwrap();
-            let Some(limit) = budget.stable_up_to else { continue };
-            tried[i] += 1;
-            let grows = |share: f64| match kind {
-                Kind::Latency => case.growth(share * limit, 0.0) > 0.0,
-                Kind::Skew => case.growth(0.0, share * limit) > 0.0,
-                _ => case.mean_square(share * limit) > 1.0,
-            };
-            assert!(!grows(0.98), "{case:?}: {kind:?} {limit}");
-            assert!(grows(1.02), "{case:?}: {kind:?} {limit}");
-        }
-        loops += 1;
-        if loops == 100 {
-            break;
-        }
-    }
-    // Late enough every loop fails, and slow enough most; of jitter many bear all that there is.
-    assert!(tried[0] == 100 && tried[2] > 60 && tried[1] > 15, "{tried:?}, {skipped} unstable");
-}
-
-#[test]
-fn the_cost_is_finite_below_a_budget_and_infinite_above() {
-    use libration::analysis::{Imperfections, LqrWeights, Plant};
-    let case =
-        Case { omega2: 10.0, gains: Feedback { position: 10.0, velocity: 2.0 }, period: 0.05 };
-    let budgets = with_lab(|lab| advise::budgets(lab, &case.request())).unwrap();
-    let model = Oscillator { omega2: case.omega2 };
-    let plant = Plant::exact(model, State { q: [0.0], v: [0.0] }, case.period);
-    let weights = LqrWeights { position: 5.0, velocity: 0.5, command: 0.0 };
-    let mut tried = 0;
-    for budget in budgets {
-        let Some(limit) = budget.stable_up_to else { continue };
-        for (share, finite) in [(0.98, true), (1.02, false)] {
-            let (size, none) = (share * limit, Imperfections::NONE);
-            let imperfections = match budget.kind {
-                Kind::Latency => Imperfections {
-                    latency: Latency::of_seconds(size, case.period).unwrap(),
-                    ..none
-                },
-                Kind::Jitter => Imperfections { jitter: Jitter::Uniform(size), ..none },
-                Kind::Skew => Imperfections { skew: size, ..none },
-                Kind::Loss => Imperfections { loss: size, ..none },
-            };
-            let cost = plant.cost(&case.gains.into(), &imperfections, weights).unwrap();
-            assert_eq!(cost.is_finite(), finite, "{budget:?} {share}: {cost}");
-            tried += 1;
-        }
-    }
-    assert!(tried >= 4, "{tried}");
 }
 
 #[test]

@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod advise;
+mod advise_budgets;
 mod advise_page;
 mod advise_steps;
 mod analyze;
