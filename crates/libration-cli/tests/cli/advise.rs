@@ -108,6 +108,51 @@ fn advice_is_given_from_flags_and_its_command_shows_the_limit() {
 }
 
 #[test]
+fn commands_say_again_what_was_said_of_all_together() {
+    let rest = [
+        "10,2",
+        "--period",
+        "0.02",
+        "--latency",
+        "1.5steps",
+        "--jitter",
+        "gaussian:0.1",
+        "--skew",
+        "0.01",
+        "--loss",
+        "0.05",
+        "--cost-weights",
+        "5,0.5,0.1",
+    ];
+    let words = [&ADVISE[..], &rest].concat();
+    let found = json(&words);
+    let together = &found["loop"]["together"];
+    let command = together["command"].as_str().unwrap();
+    let again: Vec<&str> = command.split(' ').skip(1).collect();
+    let shown = json(&again);
+    let [said, shown] = [&together["cost"], &shown["cost"]].map(|x| x.as_f64().unwrap());
+    assert!((said / shown - 1.0).abs() < 1e-10, "{said} {shown} by {command}");
+    assert_eq!(found["again"].as_str().unwrap(), format!("libration {}", words.join(" ")));
+}
+
+#[test]
+fn a_command_names_files_as_a_shell_takes_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("my loop.toml");
+    fs::write(&file, "[asked]\nhorizon = 1.0\n").unwrap();
+    let path = file.to_str().unwrap();
+    let found = json(&[
+        "advise",
+        "-q",
+        "--config",
+        path,
+        "--page",
+        folder.path().join("p.html").to_str().unwrap(),
+    ]);
+    assert_eq!(found["again"].as_str().unwrap(), format!("libration advise -q --config '{path}'"));
+}
+
+#[test]
 fn a_loop_that_does_not_stand_what_is_stated_ends_with_1_and_an_unstable_one_says_how() {
     let late = [&ADVISE[..], &["10,2", "--period", "0.02", "--latency", "0.2"]].concat();
     libration(&late).code(1).stdout(predicate::str::contains("does not stand what is stated"));
@@ -125,7 +170,8 @@ fn what_cannot_be_advised_on_is_a_usage_error_and_writes_nothing() {
     let page = page.to_str().unwrap();
     for (rest, wanted) in [
         (&["10,2", "--period", "0"][..], "--period is 0"),
-        (&["10,2", "--latency", "-1"], "--latency is -1"),
+        (&["10,2", "--latency", "-1"], "a finite number of at least 0"),
+        (&["10,2", "--cost-weights", "0,0,0"], "above 0 for one of the three"),
         (&["10,2", "--loss", "2"], "--loss is 2"),
         (&["10,2", "--tolerance", "energy=1e-3"], "a loop does not conserve it"),
         (&["10,2", "--tolerance", "speed=1"], "one of energy, phase, trajectory and cost"),
@@ -203,6 +249,10 @@ fn a_clock_that_was_measured_can_be_replayed_and_advised_with() {
     let advised = json(&words);
     let stated = advised["loop"]["budgets"][1]["stated"].as_f64().unwrap();
     assert!((stated - a).abs() < 1e-9, "{stated} {a}");
+    // What only that record shows is asked again with it.
+    for command in [&advised["again"], &advised["loop"]["together"]["command"]] {
+        assert!(command.as_str().unwrap().contains("--jitter-file"), "{command}");
+    }
 }
 
 #[test]
