@@ -8,9 +8,11 @@ use std::error::Error;
 use std::sync::atomic::AtomicBool;
 
 use libration::analysis::{Latency, Plant};
-use libration::control::Schedule;
+use libration::control::clock::Jittered;
 use libration::control::controller::Luenberger;
-use libration::ensemble::{All, Execution, Loops, Setup};
+use libration::control::delay::{Order, Packets};
+use libration::control::{Schedule, WhiteNoise};
+use libration::ensemble::{All, Execution, Loops, MeanCost, Setup};
 use libration::integrator::Rk4;
 use libration::system::Pendulum;
 use libration::{State, System};
@@ -33,6 +35,9 @@ impl System<f64, 1> for Arm {
 
 /// Periods that are compared with as many before.
 const WINDOW: u32 = 2000;
+
+/// Of the acceleration, in (m/s²)²·s.
+const NOISE: f64 = 1e-6;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut request = advise::parse(include_str!("robot_joint.toml"), "robot_joint.toml")?;
@@ -97,5 +102,33 @@ fn main() -> Result<(), Box<dyn Error>> {
             return Err(format!("it swings at {swings} Hz, not at {frequency:?}").into());
         }
     }
-    Ok(())
+    // All at once: a clock that jitters, frames that are lost, and noise that is small enough for the arm to stay where it is linear.
+    let simulated = looped.together.simulated.ok_or("a simulation")?;
+    let late = control.latency / control.period;
+    let mut arrives = vec![0.0; late as usize + 1];
+    arrives[late as usize] = 1.0 - control.loss;
+    let packets = Packets::new(&arrives, Order::NewestActs)?.longer_by(late.fract())?;
+    let setup = Setup::new(All(arm), Rk4)
+        .controller(controller)
+        .clock(Jittered(control.jitter))
+        .delay(packets)
+        .disturbance(WhiteNoise(NOISE));
+    let starts = [State { q: [0.0], v: [0.0] }; 64];
+    let mut all = Loops::new(setup, control.period, 1, [0.0], &starts, Execution::serial())?;
+    all.advance(u64::from(WINDOW))?;
+    let energy = plant.energy();
+    let seen = all.observe(20_000, 1, |range| MeanCost::new(range, energy))?;
+    let costs: Vec<f64> = seen.iter().flat_map(MeanCost::means).map(|cost| cost / NOISE).collect();
+    let count = costs.len() as f64;
+    let mean = costs.iter().sum::<f64>() / count;
+    let variance = costs.iter().map(|cost| (cost - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    let error = (variance / count).sqrt();
+    println!(
+        "with all of it: a cost of {mean:.5} ± {error:.5}; {:.5} was said",
+        simulated.predicted
+    );
+    match (mean - simulated.predicted).abs() <= 4.0 * error {
+        true => Ok(()),
+        false => Err("it does not cost what was said".into()),
+    }
 }

@@ -105,7 +105,8 @@ pub(super) fn warnings<M: Model<1>>(one: &Loop<M>, together: &Together) -> Vec<S
         }
     } else if together.growth < 0.0 {
         warnings.push(
-            "the loop decays too slowly to be simulated: what is said follows from theory alone"
+            "the loop decays too slowly to be simulated, or its commands are too late for losses to be: what is said follows from theory \
+             alone"
                 .into(),
         );
     }
