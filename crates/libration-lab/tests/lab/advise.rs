@@ -8,7 +8,7 @@ use libration::system::{Oscillator, Pendulum};
 use libration_lab::advise::{self, Advice, AdviseError, Kind, Law, Measure, Request};
 use libration_lab::{Config, Effort, Lab, Silent};
 
-use super::advise_budgets::Case;
+use super::advise_case::Case;
 use super::advise_steps::free;
 
 pub(crate) fn with_lab<R>(work: impl FnOnce(&Lab<'_>) -> R) -> R {

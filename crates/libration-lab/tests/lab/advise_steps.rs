@@ -8,7 +8,7 @@ use libration::{AnySystem, Hamiltonian, Integrator, Method, State, System};
 use libration_lab::advise::{Measure, Request, Tolerance};
 
 use super::advise::advice;
-use super::advise_budgets::Case;
+use super::advise_case::Case;
 
 pub(crate) fn free(
     system: AnySystem,
@@ -235,6 +235,6 @@ fn a_loop_gets_the_fewest_steps_in_a_period_that_meet_the_tolerance() {
                 assert!(fewer > 2e-3 * 0.999, "{name}: {fewer} with one less");
             }
         }
-        assert!(narrow >= 5, "{narrow} of {:?}", found.integrators);
+        assert!(narrow >= 3, "{narrow} of {:?}", found.integrators);
     }
 }

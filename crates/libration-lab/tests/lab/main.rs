@@ -6,6 +6,7 @@
 
 mod advise;
 mod advise_budgets;
+mod advise_case;
 mod advise_page;
 mod advise_steps;
 mod analyze;
