@@ -14,7 +14,7 @@ use crate::error::Failure;
 
 /// What `advise` takes.
 #[derive(Args, Debug)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, override_usage = USAGE)]
 pub(crate) struct AdviseArgs {
     /// File of what is asked; it has more than the flags, such as controllers that remember
     #[arg(long, value_name = "FILE", conflicts_with_all = ASKED)]
@@ -140,6 +140,11 @@ const ASKED: [&str; 14] = [
     "tolerance",
     "horizon",
 ];
+
+const USAGE: &str = "\
+libration advise --system <NAME> [OPTIONS]
+       libration advise --config <FILE> [--jitter-file <FILE>] [--page <FILE>] [--json]
+       libration advise --print-config";
 
 const EXAMPLES: &str = "\
 Examples:

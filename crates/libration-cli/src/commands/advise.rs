@@ -95,8 +95,14 @@ fn again() -> String {
             _ => words.push(word),
         }
     }
-    // No argument of a process has a NUL in it.
-    shlex::try_join(words.iter().map(String::as_str)).unwrap_or_default()
+    let plain =
+        |word: &str| word.chars().all(|c| c.is_ascii_alphanumeric() || "_-+=:,./@%".contains(c));
+    let quoted = words.into_iter().map(|word| match plain(&word) && !word.is_empty() {
+        true => word,
+        // No argument of a process has a NUL in it.
+        false => shlex::try_quote(&word).map(Into::into).unwrap_or_default(),
+    });
+    quoted.collect::<Vec<String>>().join(" ")
 }
 
 /// The answer for a reader at a terminal.
@@ -126,7 +132,7 @@ fn told(advice: &Advice) -> String {
             shown(choice.evaluations)
         );
     }
-    if let Some(command) = &advice.command {
+    if let Some(command) = advice.command.as_ref().filter(|_| advice.looped.is_none()) {
         let _ = writeln!(text, "  {command}");
     }
     if let Some(why) = &advice.runner_up {
@@ -135,7 +141,7 @@ fn told(advice: &Advice) -> String {
     for float in &advice.floats {
         let meets = if float.meets { "tolerated" } else { "too much" };
         let _ = writeln!(text, "in {}: {:.3e} lost, {meets} (simulated)", float.float, float.lost);
-        if float.command != format!("{} --json", advice.again) {
+        if advice.looped.is_none() {
             let _ = writeln!(text, "  {}", float.command);
         }
     }

@@ -104,18 +104,13 @@ impl<M: Model<1>> Loop<M> {
             tried_up_to: tried,
             used: limit.filter(|&limit| limit > 0.0).map(|limit| stated / limit),
             how: match kind {
-                Kind::Latency | Kind::Skew => {
-                    "exact: the spectral radius of the sampled loop passes 1"
-                }
+                Kind::Latency | Kind::Skew => "exact: the spectral radius passes 1",
                 Kind::Jitter if self.control.record.is_some() => {
-                    "exact: the loop begins to grow through the record, whose deviations are stretched"
+                    "exact: growth through the stretched record"
                 }
-                Kind::Jitter | Kind::Loss => "exact: second moments, E[M ⊗ M], begin to grow",
+                Kind::Jitter | Kind::Loss => "exact: second moments grow",
             },
-            command: match limit {
-                Some(limit) => self.command(&self.only(kind, limit / scale)?, request),
-                None => self.command(&Imperfections::NONE, request),
-            },
+            command: self.command(&self.only(kind, limit.unwrap_or(tried) / scale)?, request),
         })
     }
 

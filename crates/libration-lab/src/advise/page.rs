@@ -53,7 +53,7 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&Map>) {
     }
     page.table(&table, 4);
     page.paragraph(
-        "To see it again: the commands print the growth at the limit, which is zero there.",
+        "To see it again: the commands print the growth at the limit, which is zero there, or at the largest size that was tried.",
     );
     for budget in &looped.budgets {
         page.paragraph(format!("`{}`", budget.command));
@@ -96,20 +96,21 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&Map>) {
             "cost of the simulation, noise held for a period",
             Cell::rounded(simulated.cost, 6),
             &format!(
-                "simulated: {} loops, {} periods, ± {}; predicted {}",
-                simulated.loops,
-                simulated.periods,
+                "± {}, simulated: {} loops, {} periods",
                 number(simulated.error, 2),
-                number(simulated.predicted, 6)
+                simulated.loops,
+                simulated.periods
             ),
         );
+        line("what theory says of just that", Cell::rounded(simulated.predicted, 6), "exact");
     }
     if let Some(returns) = &together.returns {
         line(
             "returns from up to",
             Cell::rounded(returns.up_to, 4),
             &format!(
-                "simulated with what is stated: of 8 starts {} off, {} return",
+                "simulated: of {} starts {} off, {} return",
+                returns.of_asked[1],
                 number(returns.asked, 3),
                 returns.of_asked[0]
             ),
@@ -134,7 +135,9 @@ fn row(budget: &Budget) -> [Cell; 7] {
 
 fn figure(map: &Map) -> Figure {
     let grid = map.growth.clone();
-    let reach = 0.1;
+    // Strong colours for what is three times as strong as most.
+    let sizes = grid.z.iter().filter(|z| z.is_finite()).map(|z| z.abs());
+    let reach = (3.0 * sizes.sum::<f64>() / grid.z.len() as f64).clamp(1e-6, 1.0);
     let mut shown = grid.clone();
     shown.z.iter_mut().for_each(|z| *z = z.clamp(-reach, reach));
     let colors = Colors::new("growth a period, ln ρ").map(ColorMap::Diverging).range(-reach, reach);
@@ -166,7 +169,9 @@ fn integrators(page: &mut Page, advice: &Advice) {
         page.paragraph(format!("Runner-up: {why}."));
     }
     if let Some(command) = &advice.command {
-        page.paragraph(format!("To take these steps: `{command}`"));
+        let what =
+            if advice.looped.is_some() { "To see all of it again" } else { "To take these steps" };
+        page.paragraph(format!("{what}: `{command}`"));
     }
     let columns = [
         "integrator",
