@@ -1,6 +1,7 @@
 //! What a study may use: the configuration, the cores, and a way to say how far it is.
 
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use libration::ensemble::{EnsembleError, Execution, InstructionSet};
 use rayon::prelude::*;
@@ -79,17 +80,21 @@ impl<'a> Lab<'a> {
         job: impl Fn(&T) -> Result<R, StudyError> + Sync,
     ) -> Result<Vec<R>, StudyError> {
         self.progress.begin(what, items.len());
-        let results = items
-            .par_iter()
-            .map(|item| {
-                self.check()?;
-                let result = job(item);
-                self.progress.advance();
-                result
-            })
-            .collect();
+        let results: Vec<Mutex<Option<Result<R, StudyError>>>> =
+            items.iter().map(|_| Mutex::new(None)).collect();
+        let failed = AtomicBool::new(false);
+        in_parallel(items.len(), &|i| {
+            if failed.load(Ordering::Relaxed) {
+                return;
+            }
+            let result = self.check().and_then(|()| job(&items[i]));
+            self.progress.advance();
+            failed.fetch_or(result.is_err(), Ordering::Relaxed);
+            *results[i].lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
+        });
         self.progress.end();
-        results
+        let done = |one: Mutex<_>| one.into_inner().unwrap_or_else(PoisonError::into_inner);
+        results.into_iter().filter_map(done).collect()
     }
 
     /// Does one piece of work that has all of the machine to itself.
@@ -115,4 +120,10 @@ impl<'a> Lab<'a> {
     pub fn check(&self) -> Result<(), StudyError> {
         if self.stop.load(Ordering::Relaxed) { Err(StudyError::Interrupted) } else { Ok(()) }
     }
+}
+
+/// Runs the numbers from zero to `count`, on all cores. Nothing here is generic: what it is compiled to is large, and there are many
+/// sweeps.
+fn in_parallel(count: usize, run: &(dyn Fn(usize) + Sync)) {
+    (0..count).into_par_iter().for_each(run);
 }

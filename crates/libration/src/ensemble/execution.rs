@@ -99,40 +99,44 @@ impl Execution {
         let Some(pool) = self.pool.as_ref().filter(|_| parts.len() > 1) else {
             return parts.into_iter().map(work).collect();
         };
-        let (count, threads) = (parts.len(), self.thread_count());
         let mut results: Vec<Option<R>> = parts.iter().map(|_| None).collect();
         let pairs = parts.into_iter().zip(&mut results);
         let pairs: Vec<_> = pairs.map(|pair| Mutex::new(Some(pair))).collect();
-        let run = |i: usize| {
+        share_out(pool, pairs.len(), self.thread_count(), &|i| {
             let Some(pair) = pairs.get(i) else { return };
             if let Some((part, result)) = pair.lock().unwrap_or_else(PoisonError::into_inner).take()
             {
                 *result = Some(work(part));
             }
-        };
-        let next = AtomicUsize::new(0);
-        let drain = || {
-            // Each number is taken by one thread.
-            while let i = next.fetch_add(1, Ordering::Relaxed)
-                && i < count
-            {
-                run(i);
-            }
-        };
-        pool.in_place_scope(|scope| {
-            if count == threads {
-                scope.spawn_broadcast(|_, thread| run(1 + thread.index()));
-                run(0);
-            } else {
-                for _ in 1..count.min(threads) {
-                    scope.spawn(|_| drain());
-                }
-                drain();
-            }
         });
         drop(pairs);
         results.into_iter().flatten().collect()
     }
+}
+
+/// Runs the numbers from zero to `count` on the threads of `pool` and the one that calls. Nothing here is generic: what a scope is
+/// compiled to is large, and there are hundreds of callers.
+fn share_out(pool: &ThreadPool, count: usize, threads: usize, run: &(dyn Fn(usize) + Sync)) {
+    let next = AtomicUsize::new(0);
+    let drain = || {
+        // Each number is taken by one thread.
+        while let i = next.fetch_add(1, Ordering::Relaxed)
+            && i < count
+        {
+            run(i);
+        }
+    };
+    pool.in_place_scope(|scope| {
+        if count == threads {
+            scope.spawn_broadcast(|_, thread| run(1 + thread.index()));
+            run(0);
+        } else {
+            for _ in 1..count.min(threads) {
+                scope.spawn(|_| drain());
+            }
+            drain();
+        }
+    });
 }
 
 /// The cores that this process may use.
