@@ -102,6 +102,11 @@ pub(super) fn warnings<M: Model<1>>(one: &Loop<M>, together: &Together) -> Vec<S
                 "the simulation contradicts the theory: it costs {:.5e} ± {:.1e}, and {:.5e} is predicted",
                 simulated.cost, simulated.error, simulated.predicted
             ));
+        } else if simulated.outbursts {
+            warnings.push(
+                "rare outbursts make up much of the cost: a simulation meets too few of them, and a typical run costs less"
+                    .into(),
+            );
         }
     } else if together.growth < 0.0 {
         warnings.push(
