@@ -139,7 +139,7 @@ fn commands_say_again_what_was_said_of_all_together() {
 fn a_command_names_files_as_a_shell_takes_them() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("my loop.toml");
-    fs::write(&file, "[asked]\nhorizon = 1.0\n").unwrap();
+    fs::write(&file, "[start]\nq = [1.0]\n[asked]\nhorizon = 1.0\n").unwrap();
     let path = file.to_str().unwrap();
     let found = json(&[
         "advise",

@@ -101,6 +101,10 @@ impl<M: Model<D>, const D: usize> Free<M, D> {
                 }
             }
             let far = (0..D).map(|i| 0.5 * (high[i] - low[i])).fold(0.0, f64::max);
+            if speed == 0.0 && far == 0.0 {
+                let why = "nothing moves from this start; give another `q` or `v`".into();
+                return Err(AdviseError::Tolerance { of: self.of, why });
+            }
             let found = speed / far;
             if (found / before - 1.0).abs() < SETTLED || steps as f64 > MOST_COMPARED {
                 // What does not move at all has the horizon as its only time.

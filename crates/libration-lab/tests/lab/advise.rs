@@ -96,6 +96,8 @@ fn what_cannot_be_advised_on_is_refused_before_any_work() {
     assert!(told(&cost).contains("only a loop costs"));
     let rest = free(oscillator, &[0.0], &[0.0], Measure::Energy, 0.1, 10.0);
     assert!(told(&rest).contains("the energy at the start is zero"));
+    let still = free(oscillator, &[0.0], &[0.0], Measure::Trajectory, 0.1, 10.0);
+    assert!(told(&still).contains("nothing moves from this start"));
     let many = free(oscillator, &[1.0; 3], &[0.0; 3], Measure::Energy, 0.1, 10.0);
     assert!(told(&many).contains("3 degrees of freedom"));
 }
