@@ -14,7 +14,7 @@ use crate::error::Failure;
 
 /// What `advise` takes.
 #[derive(Args, Debug)]
-#[command(after_help = EXAMPLES, override_usage = USAGE)]
+#[command(after_help = EXAMPLES, override_usage = USAGE, args_override_self = true)]
 pub(crate) struct AdviseArgs {
     /// File of what is asked; it has more than the flags, such as controllers that remember
     #[arg(long, value_name = "FILE", conflicts_with_all = ASKED)]
@@ -38,17 +38,14 @@ pub(crate) struct AdviseArgs {
         long,
         value_name = "TIME",
         value_parser = latency,
-        requires = "feedback",
-        default_value = "0",
         allow_hyphen_values = true
     )]
-    latency: Late,
-    /// The law of sample times with its relative rms, as gaussian:0.05 or uniform:0.05
+    latency: Option<Late>,
+    /// The law of sample times with its relative rms up to 1, as gaussian:0.05 or uniform:0.05
     #[arg(
         long,
         value_name = "LAW:RMS",
         value_parser = law,
-        requires = "feedback",
         allow_hyphen_values = true
     )]
     jitter: Option<Jitter>,
@@ -60,21 +57,17 @@ pub(crate) struct AdviseArgs {
         long,
         value_name = "PART",
         value_parser = number,
-        requires = "feedback",
-        default_value = "0",
         allow_hyphen_values = true
     )]
-    skew: f64,
+    skew: Option<f64>,
     /// The probability that a command is lost
     #[arg(
         long,
         value_name = "P",
         value_parser = number,
-        requires = "feedback",
-        default_value = "0",
         allow_hyphen_values = true
     )]
-    loss: f64,
+    loss: Option<f64>,
     /// What the loop costs under noise: the mean of QQ·q² + VV·v² + UU·u². If nothing is said that of its energy, ½(ω²q² + v²)
     #[arg(
         long,
@@ -124,17 +117,13 @@ pub(crate) struct AdviseArgs {
 }
 
 /// The flags that a file takes the place of.
-const ASKED: [&str; 14] = [
+const ASKED: [&str; 10] = [
     "system",
     "set",
     "q",
     "v",
     "feedback",
     "period",
-    "latency",
-    "jitter",
-    "skew",
-    "loss",
     "cost_weights",
     "deviation",
     "tolerance",
@@ -143,7 +132,7 @@ const ASKED: [&str; 14] = [
 
 const USAGE: &str = "\
 libration advise --system <NAME> [OPTIONS]
-       libration advise --config <FILE> [--jitter-file <FILE>] [--page <FILE>] [--json]
+       libration advise --config <FILE> [OPTIONS]
        libration advise --print-config";
 
 const EXAMPLES: &str = "\
@@ -184,18 +173,15 @@ impl AdviseArgs {
         let control = self.feedback.map(|gains| Control {
             law: Law::Pd(gains),
             period: self.period,
-            latency: match self.latency {
-                Late::Seconds(seconds) => seconds,
-                Late::Steps(steps) => steps * self.period,
-            },
-            jitter: self.jitter.unwrap_or(Jitter::Gaussian(0.0)),
-            skew: self.skew,
-            loss: self.loss,
+            latency: 0.0,
+            jitter: Jitter::Gaussian(0.0),
+            skew: 0.0,
+            loss: 0.0,
             record: None,
             weights: self.cost_weights,
             deviation: self.deviation,
         });
-        Ok(Request {
+        self.instead(Request {
             system,
             q,
             v,
@@ -206,6 +192,35 @@ impl AdviseArgs {
             map: false,
             asked_by: String::new(),
         })
+    }
+
+    /// What is asked, with that in place of it which flags say is wrong with the loop.
+    pub(crate) fn instead(&self, mut request: Request) -> Result<Request, Failure> {
+        let Some(control) = &mut request.control else {
+            let given = [
+                (self.latency.is_some(), "latency"),
+                (self.jitter.is_some(), "jitter"),
+                (self.skew.is_some(), "skew"),
+                (self.loss.is_some(), "loss"),
+            ];
+            return match given.into_iter().find(|(given, _)| *given) {
+                Some((_, flag)) => Err(Failure::usage(format!(
+                    "--{flag} is given, but there is no loop: it needs --feedback, or a controller in the file"
+                ))),
+                None => Ok(request),
+            };
+        };
+        control.latency = match self.latency {
+            Some(Late::Seconds(seconds)) => seconds,
+            Some(Late::Steps(steps)) => steps * control.period,
+            None => control.latency,
+        };
+        if let Some(jitter) = self.jitter {
+            (control.jitter, control.record) = (jitter, None);
+        }
+        control.skew = self.skew.unwrap_or(control.skew);
+        control.loss = self.loss.unwrap_or(control.loss);
+        Ok(request)
     }
 }
 

@@ -50,7 +50,7 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
 
 fn asked(args: &AdviseArgs) -> Result<Request, Failure> {
     let mut request = match &args.config {
-        Some(path) => config_file::read(path, advise::parse)?,
+        Some(path) => args.instead(config_file::read(path, advise::parse)?)?,
         None => args.request()?,
     };
     request.map = args.page.is_some();
@@ -74,11 +74,17 @@ fn failure(error: AdviseError) -> Failure {
             Failure::Interrupted("interrupted".to_owned())
         }
         AdviseError::Value { name, value, allowed } => {
-            let flag = name.rsplit('.').next().unwrap_or(name);
+            let flag = match name.rsplit('.').next().unwrap_or(name) {
+                "cost" => "cost-weights",
+                flag => flag,
+            };
             Failure::usage(format!("--{flag} is {value}, but it must be {allowed}"))
         }
         AdviseError::Study(error) => Failure::run(error),
-        error @ (AdviseError::Unstable { .. } | AdviseError::Ensemble(_)) => Failure::run(error),
+        error
+        @ (AdviseError::Unstable { .. } | AdviseError::Late(_) | AdviseError::Ensemble(_)) => {
+            Failure::run(error)
+        }
         error => Failure::usage(error),
     }
 }
@@ -119,15 +125,23 @@ fn told(advice: &Advice) -> String {
         "\n{:<30} {:>12} {:>9} {:>12} {:>12} {:>14}",
         "integrator", "largest dt/s", "a period", "lost", "with longer", "evaluations/s"
     );
-    let shown = |x: Option<f64>| x.map_or_else(|| "none".into(), |x| format!("{x:.4e}"));
+    let shown = |x: Option<f64>| match x {
+        Some(x) if x.is_finite() => format!("{x:.4e}"),
+        Some(_) => "lost".into(),
+        None => "none".into(),
+    };
     for choice in &advice.integrators {
         let _ = writeln!(
             text,
-            "{:<30} {:>12} {:>9} {:>12.3e} {:>12} {:>14}",
+            "{:<30} {:>12} {:>9} {:>12} {:>12} {:>14}",
             choice.integrator,
             shown(choice.dt),
             choice.substeps.map_or_else(String::new, |count| count.to_string()),
-            choice.lost,
+            if choice.lost.is_finite() {
+                format!("{:.3e}", choice.lost)
+            } else {
+                "too much".into()
+            },
             shown(choice.lost_beyond),
             shown(choice.evaluations)
         );
@@ -148,8 +162,8 @@ fn told(advice: &Advice) -> String {
     if let Some(t) = &advice.throughput {
         let _ = writeln!(
             text,
-            "one core takes {:.3e} such steps a second with {} trajectories (measured now); {} steps of each are {:.1} MB of \
-             rollouts in f32",
+            "one core takes {:.3e} such steps of the plant alone a second with {} trajectories (measured now); {} steps of each are \
+             {:.1} MB of rollouts in f32",
             t.steps_a_second,
             t.trajectories,
             t.steps,
@@ -211,7 +225,7 @@ fn of_loop(looped: &LoopAdvice, text: &mut String) {
     if let Some(s) = &together.simulated {
         let _ = writeln!(
             text,
-            "simulated, {} loops, {} periods, noise held for a period: {:.5e} ± {:.1e}, predicted {:.5e}",
+            "simulated, {} loops, {} periods, noise held for a period, without what commands cost: {:.5e} ± {:.1e}, predicted {:.5e}",
             s.loops, s.periods, s.cost, s.error, s.predicted
         );
     }

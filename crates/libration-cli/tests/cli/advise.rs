@@ -150,6 +150,25 @@ fn a_command_names_files_as_a_shell_takes_them() {
         folder.path().join("p.html").to_str().unwrap(),
     ]);
     assert_eq!(found["again"].as_str().unwrap(), format!("libration advise -q --config '{path}'"));
+    // Flags say what else is wrong with a loop than the file does; without a loop they cannot.
+    libration(&["advise", "-q", "--config", path, "--loss", "0.1"])
+        .code(2)
+        .stderr(predicate::str::contains("--loss is given, but there is no loop"));
+    fs::write(
+        &file,
+        "[asked]\nhorizon = 1.0\n[controller.observer]\ngains = [10, 2]\ncorrection = [0.1, 1]\n",
+    )
+    .unwrap();
+    let found = json(&["advise", "-q", "--config", path]);
+    let latency = &found["loop"]["budgets"][0];
+    let command = latency["command"].as_str().unwrap();
+    let (_, flags) = command.split_once("--latency").unwrap();
+    let at: Vec<&str> = flags.split_whitespace().collect();
+    // At the limit, where the last digit decides whether it stands.
+    let shown = libration(&[&["advise", "-q", "--config", path, "--latency"], &at[..]].concat());
+    let there: Value = serde_json::from_slice(&shown.get_output().stdout).unwrap();
+    let growth = there["loop"]["together"]["growth"].as_f64().unwrap();
+    assert!(growth.abs() < 1e-6, "{growth} by {command}");
 }
 
 #[test]

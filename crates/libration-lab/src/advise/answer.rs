@@ -171,8 +171,11 @@ impl Advice {
             if let Some(least) = least {
                 self.warnings.push(format!(
                     "no integrator meets the tolerance of {:e} with any step that was tried; the best possible is {:.3e}, \
-                     with {}",
-                    request.tolerance.most, least.lost, least.integrator
+                     with {} in steps of {:.4e} s",
+                    request.tolerance.most,
+                    least.lost,
+                    least.integrator,
+                    least.best_dt.unwrap_or(f64::NAN)
                 ));
             }
         }

@@ -19,7 +19,7 @@ pub struct Budget {
     pub kind: Kind,
     /// The unit of its sizes.
     pub unit: &'static str,
-    /// How much of it is stated.
+    /// How much of it is stated; of a clock that is fast a negative number, as its limits are.
     pub stated: f64,
     /// Up to here the loop is stable; none where no end was found.
     pub stable_up_to: Option<f64>,
@@ -53,7 +53,15 @@ impl<M: Model<1>> Loop<M> {
     /// Fails where nothing can be advised, before any work.
     pub(super) fn check(&self) -> Result<(), AdviseError> {
         let (plant, none) = (self.plant(), Imperfections::NONE);
-        self.decays(&plant, &self.stated()?).map_err(LoopError::from)?;
+        let stated = self.stated()?;
+        if let Err(error) = self.decays(&plant, &stated) {
+            // What is too large with jitter or losses may be told of without.
+            let late = Imperfections { latency: stated.latency, ..none };
+            if plant.mean_square_stable(&self.linear, &late) == Ok(false) {
+                return Err(AdviseError::Late(self.control.latency));
+            }
+            return Err(LoopError::from(error).into());
+        }
         if plant.mean_square_stable(&self.linear, &none).map_err(LoopError::from)? {
             return Ok(());
         }
@@ -83,7 +91,7 @@ impl<M: Model<1>> Loop<M> {
         let (unit, scale, stated) = match kind {
             Kind::Latency => ("s", period, latency),
             Kind::Jitter => ("relative rms", 1.0, jitter.rms()),
-            Kind::Skew => ("part of a period", 1.0, skew.abs()),
+            Kind::Skew => ("part of a period", 1.0_f64.copysign(skew), skew),
             Kind::Loss => ("probability", 1.0, loss),
         };
         let end = |limit: Limit| match limit {
@@ -94,7 +102,8 @@ impl<M: Model<1>> Loop<M> {
         let (stable, tried) = end(self.stable_up_to(&plant, kind)?);
         let tolerated =
             self.cheap_up_to(&plant, kind, request.tolerance)?.map(|limit| end(limit).0);
-        let limit = [stable, tolerated.flatten()].into_iter().flatten().reduce(f64::min);
+        let smaller = |a: f64, b: f64| if a.abs() < b.abs() { a } else { b };
+        let limit = [stable, tolerated.flatten()].into_iter().flatten().reduce(smaller);
         Ok(Budget {
             kind,
             unit,
@@ -102,7 +111,7 @@ impl<M: Model<1>> Loop<M> {
             stable_up_to: stable,
             tolerated_up_to: tolerated,
             tried_up_to: tried,
-            used: limit.filter(|&limit| limit > 0.0).map(|limit| stated / limit),
+            used: limit.filter(|&limit| limit != 0.0).map(|limit| stated / limit),
             how: match kind {
                 Kind::Latency | Kind::Skew => "exact: the spectral radius passes 1",
                 Kind::Jitter if self.control.record.is_some() => {
@@ -123,7 +132,7 @@ impl<M: Model<1>> Loop<M> {
             Law::Pd(gains) if M::LINEAR => gains,
             Law::Lqr(_) if M::LINEAR => self.gains(),
             // No other command takes a controller that remembers, or exact steps of what is linearised.
-            _ => return format!("{} --json", request.asked_by),
+            _ => return self.asked_again(imperfections, request),
         };
         let Imperfections { latency, jitter, skew, loss } = *imperfections;
         // Commands are late by parts of steps, which the clock makes longer.
@@ -152,6 +161,23 @@ impl<M: Model<1>> Loop<M> {
         )
     }
 
+    /// The command that asked, for the loop with `imperfections`.
+    fn asked_again(&self, imperfections: &Imperfections, request: &Request) -> String {
+        if self.control.record.is_some() {
+            return format!("{} --json", request.asked_by);
+        }
+        let Imperfections { latency, jitter, skew, loss } = *imperfections;
+        let law = match jitter {
+            Jitter::Gaussian(rms) => format!("gaussian:{rms}"),
+            Jitter::Uniform(rms) => format!("uniform:{rms}"),
+        };
+        let seconds = latency.steps() * self.control.period * (1.0 + skew);
+        format!(
+            "{} --latency {seconds} --jitter {law} --skew {skew} --loss {loss} --json",
+            request.asked_by
+        )
+    }
+
     pub(super) fn fails_first(&self, budgets: &[Budget]) -> Result<Option<Failing>, AdviseError> {
         let used = |budget: &&Budget| budget.used.is_some_and(|used| used > 0.0);
         let most =
@@ -160,7 +186,8 @@ impl<M: Model<1>> Loop<M> {
         let period = self.control.period;
         // Where the cost ends a budget, nothing grows there yet.
         let dear = first.tolerated_up_to.flatten();
-        let grows = first.stable_up_to.filter(|limit| dear.is_none_or(|dear| *limit <= dear));
+        let grows =
+            first.stable_up_to.filter(|limit| dear.is_none_or(|dear| limit.abs() <= dear.abs()));
         let (frequency, how) = match (first.kind, grows) {
             (Kind::Latency | Kind::Skew, Some(limit)) => {
                 let size = if first.kind == Kind::Latency { limit / period } else { limit };

@@ -13,8 +13,12 @@ pub struct Choice {
     pub integrator: &'static str,
     /// The largest step that meets the tolerance, in s; none where none that is tried does.
     pub dt: Option<f64>,
-    /// What is lost with it, in the measure of the tolerance; where no step meets it, the least that was found.
+    /// What is lost with it, in the measure of the tolerance; where no integrator meets it, the least that was found, and else
+    /// infinite.
     pub lost: f64,
+    /// The step with which that least is lost, in s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub best_dt: Option<f64>,
     /// What is lost with a step 1.2 times as long; none where steps are parts of a period, and the next longer is more than that.
     pub lost_beyond: Option<f64>,
     /// Of a loop: steps in a period.
@@ -30,6 +34,7 @@ impl Choice {
             integrator: method.name(),
             dt: None,
             lost: f64::INFINITY,
+            best_dt: None,
             lost_beyond: None,
             substeps: None,
             evaluations: None,
@@ -62,20 +67,15 @@ pub(super) fn largest_step(
 ) -> Result<Choice, AdviseError> {
     let lost = |dt: f64| trial.lost(lab, method, dt, tolerance);
     let mut choice = Choice::none(method);
-    let (mut above, mut dt) = (most, most);
-    loop {
-        let here = lost(dt)?;
-        choice.lost = choice.lost.min(here);
-        if here <= tolerance {
-            break;
-        }
-        above = dt;
-        dt /= RATIO;
-        if dt < least {
+    let (mut above, mut low) = (most, most);
+    let mut at = lost(low)?;
+    while at > tolerance {
+        (above, low) = (low, low / RATIO);
+        if low < least {
             return Ok(choice);
         }
+        at = lost(low)?;
     }
-    let (mut low, mut at) = (dt, choice.lost);
     while above / low > 1.0 + SHARP {
         let middle = (low * above).sqrt();
         let here = lost(middle)?;
@@ -87,7 +87,28 @@ pub(super) fn largest_step(
         (low, at) = (BEYOND * low, beyond);
         beyond = lost(BEYOND * low)?;
     }
+    // All of it, beyond what is tolerated.
+    beyond = trial.lost(lab, method, BEYOND * low, f64::INFINITY)?;
     (choice.dt, choice.lost, choice.lost_beyond) = (Some(low), at, Some(beyond));
+    Ok(choice)
+}
+
+/// The least that is lost with steps between `least` and `most`, each half of the one before.
+pub(super) fn best_possible(
+    lab: &Lab<'_>,
+    trial: &impl Trial,
+    method: Method,
+    [least, most]: [f64; 2],
+) -> Result<Choice, AdviseError> {
+    let mut choice = Choice::none(method);
+    let mut dt = most;
+    while dt >= least {
+        let here = trial.lost(lab, method, dt, f64::INFINITY)?;
+        if here < choice.lost {
+            (choice.lost, choice.best_dt) = (here, Some(dt));
+        }
+        dt /= 2.0;
+    }
     Ok(choice)
 }
 

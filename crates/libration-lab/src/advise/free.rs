@@ -14,19 +14,21 @@ use crate::Lab;
 
 /// A system from its start, over a horizon.
 pub(super) struct Free<M, const D: usize> {
-    model: M,
-    start: State<f64, D>,
-    horizon: f64,
-    of: Measure,
+    pub(super) model: M,
+    pub(super) start: State<f64, D>,
+    pub(super) horizon: f64,
+    pub(super) of: Measure,
     /// What makes a velocity comparable with a length, in rad/s.
     omega: f64,
+    /// At most, in rad/s.
+    fastest: f64,
 }
 
 /// Steps of a run: a search takes hundreds of such runs.
 const MOST_STEPS: f64 = 2e7;
 
 /// The same where each has to be compared with finer ones.
-const MOST_COMPARED: f64 = 1e6;
+pub(super) const MOST_COMPARED: f64 = 1e6;
 
 /// Finer steps of order four beside each that is compared: their error is a four-thousandth of that of a step of such a method.
 const FINER: u32 = 8;
@@ -64,8 +66,9 @@ impl<M: Model<D>, const D: usize> Free<M, D> {
         if of == Measure::Energy && model.on::<f64>().energy(&start) == 0.0 {
             return wrong("the energy at the start is zero, so that no error is a part of it");
         }
-        let free = Free { model, start, horizon: request.horizon, of, omega: 1.0 };
-        let free = Free { omega: free.fastest(lab)?, ..free };
+        let free = Free { model, start, horizon: request.horizon, of, omega: 1.0, fastest: 1.0 };
+        let [omega, fastest] = free.rates(lab)?;
+        let free = Free { omega, fastest, ..free };
         let [least, longest] = free.steps();
         if least > longest {
             let why = format!(
@@ -79,50 +82,16 @@ impl<M: Model<D>, const D: usize> Free<M, D> {
         Ok(free)
     }
 
-    /// How fast the true motion is over the horizon, in rad/s: its largest velocity over its largest distance from where it is in the
-    /// mean. Steps of order four are halved until that no longer changes by more than a part of it.
-    fn fastest(&self, lab: &Lab<'_>) -> Result<f64, AdviseError> {
-        const SETTLED: f64 = 0.1;
-        let acceleration = |state: &State<f64, D>| self.model.on::<f64>().acceleration(state);
-        let system = Chosen(&acceleration);
-        // A motion that repeats is known long before the horizon.
-        let mut before = f64::NAN;
-        let mut steps = 1_u64 << 10;
-        loop {
-            lab.check()?;
-            let dt = self.horizon / steps as f64;
-            let mut state = self.start;
-            let (mut low, mut high, mut speed) = (state.q, state.q, 0.0_f64);
-            for _ in 0..steps {
-                state = SUZUKI4.step(&system, state, dt);
-                for i in 0..D {
-                    (low[i], high[i]) = (low[i].min(state.q[i]), high[i].max(state.q[i]));
-                    speed = speed.max(state.v[i].abs());
-                }
-            }
-            let far = (0..D).map(|i| 0.5 * (high[i] - low[i])).fold(0.0, f64::max);
-            if speed == 0.0 && far == 0.0 {
-                let why = "nothing moves from this start; give another `q` or `v`".into();
-                return Err(AdviseError::Tolerance { of: self.of, why });
-            }
-            let found = speed / far;
-            if (found / before - 1.0).abs() < SETTLED || steps as f64 > MOST_COMPARED {
-                // What does not move at all has the horizon as its only time.
-                return Ok(if found.is_finite() && found > 0.0 {
-                    found
-                } else {
-                    self.horizon.recip()
-                });
-            }
-            (before, steps) = (found, 2 * steps);
-        }
+    /// Of a step of `dt` seconds: by how many radians the fastest motion turns in it.
+    pub(super) fn turn(&self, dt: f64) -> f64 {
+        self.fastest * dt
     }
 
     /// The shortest and the longest step that are tried.
     pub(super) fn steps(&self) -> [f64; 2] {
         let compared = self.of != Measure::Energy && !M::LINEAR;
         let most = if compared { MOST_COMPARED } else { MOST_STEPS };
-        let longest = (4.0 / self.omega).min(self.horizon);
+        let longest = (4.0 / self.fastest).min(self.horizon);
         [self.horizon / most, longest]
     }
 
@@ -188,8 +157,9 @@ impl<M: Model<D>, const D: usize> Free<M, D> {
                 let share = self.size(state) / self.size(&truth);
                 let turn = self.angle(state, &truth) - ahead;
                 ahead += turn - TAU * (turn / TAU).round();
-                // What is twice as large or half has no phase to speak of.
-                return if (0.5..2.0).contains(&share) { 0.0 } else { f64::INFINITY };
+                // What is twice as large or half has no phase to speak of, and what is off by turns does not come back.
+                let lost = !(0.5..2.0).contains(&share) || ahead.abs() > 4.0 * most + TAU;
+                return if lost { f64::INFINITY } else { 0.0 };
             }
             self.size(&State {
                 q: core::array::from_fn(|i| state.q[i] - truth.q[i]),
@@ -244,7 +214,10 @@ impl<S: Float, const D: usize> Follow<'_, S, D> {
             state = self.method.step(&self.system, state, self.dt);
             let here = see(&state.map(S::to_f64));
             largest = if here.is_finite() { largest.max(here) } else { f64::INFINITY };
-            Ok(if largest > most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+            Ok(match largest > most || largest.is_infinite() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            })
         };
         for step in 1..=self.steps {
             if one(step)?.is_break() {

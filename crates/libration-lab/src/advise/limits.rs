@@ -46,8 +46,11 @@ pub(super) enum Limit {
     Beyond(f64),
 }
 
-/// Periods of latency that are tried.
+/// Periods of latency that are tried at least.
 const MOST_PERIODS: f64 = 64.0;
+
+/// And at most, unless more are stated.
+const TRIED_PERIODS: f64 = 240.0;
 
 /// Sizes that are tried one by one before the first that is too large is narrowed down.
 const TRIED: u32 = 64;
@@ -63,7 +66,7 @@ impl<M: Model<1>> Loop<M> {
             Kind::Latency => Imperfections { latency: self.latency(size)?, ..none },
             Kind::Jitter => Imperfections { jitter: self.control.jitter.with_rms(size), ..none },
             // To the side that is stated; a slow clock if none is.
-            Kind::Skew => Imperfections { skew: size.copysign(self.control.skew), ..none },
+            Kind::Skew => Imperfections { skew: size.abs().copysign(self.control.skew), ..none },
             Kind::Loss => Imperfections { loss: size, ..none },
         })
     }
@@ -71,7 +74,11 @@ impl<M: Model<1>> Loop<M> {
     /// The largest that makes sense, or is tried.
     fn largest(&self, kind: Kind) -> f64 {
         match kind {
-            Kind::Latency => MOST_PERIODS,
+            // What is stated, and some more.
+            Kind::Latency => {
+                let stated = self.control.latency / self.control.period;
+                (1.5 * stated).clamp(MOST_PERIODS, TRIED_PERIODS.max(stated))
+            }
             // Beyond, most steps of a Gaussian law are of length zero or twice too long. A record may be worse.
             Kind::Jitter => (2.0 * self.control.jitter.rms()).max(1.0),
             Kind::Skew if self.control.skew < 0.0 => 0.999,
@@ -117,7 +124,7 @@ impl<M: Model<1>> Loop<M> {
         let count = match kind {
             Kind::Skew => ((turn / 0.25).ceil() as u32).clamp(TRIED, 32 * TRIED),
             // Each goes through all of the record.
-            Kind::Jitter if self.control.record.is_some() => TRIED / 2,
+            Kind::Jitter if self.control.record.is_some() => TRIED / 4,
             _ => TRIED,
         };
         let tried = |i: u32| match kind {
@@ -133,7 +140,8 @@ impl<M: Model<1>> Loop<M> {
                 continue;
             }
             let mut high = tried(i);
-            for _ in 0..HALVINGS {
+            let replays = kind == Kind::Jitter && self.control.record.is_some();
+            for _ in 0..if replays { HALVINGS / 2 } else { HALVINGS } {
                 let middle = 0.5 * (low + high);
                 if at(middle)? { low = middle } else { high = middle }
             }

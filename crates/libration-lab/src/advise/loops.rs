@@ -155,8 +155,10 @@ impl<M: Model<1>> Loop<M> {
     /// All of that, so many times as large.
     pub(super) fn scaled(&self, share: f64) -> Result<Imperfections, LoopError> {
         let Control { latency, period, jitter, skew, loss, .. } = self.control;
+        // Seconds are fewer periods of a slow clock, and more of a fast one.
+        let periods = share * latency / (period * (1.0 + share * skew));
         Ok(Imperfections {
-            latency: self.latency(share * latency / period)?,
+            latency: self.latency(periods)?,
             jitter: jitter.with_rms(share * jitter.rms()),
             skew: share * skew,
             loss: share * loss,
@@ -202,6 +204,11 @@ impl<M: Model<1>> Loop<M> {
             Some(steps) => plant.replayed_cost(&self.linear, with, &steps, weights),
             None => plant.cost(&self.linear, with, weights),
         }
+    }
+
+    /// The latency that is stated, of an even clock.
+    pub(super) fn late(&self) -> Result<Latency, LoopError> {
+        self.latency(self.control.latency / self.control.period)
     }
 
     /// A latency in periods.

@@ -4,11 +4,11 @@ use libration::analysis::Imperfections;
 use libration::{Float, Method, Model, State, System};
 
 use super::answer::{Advice, FloatChoice, LoopAdvice};
-use super::choice::largest_step;
+use super::choice::{best_possible, largest_step};
 use super::free::Free;
 use super::loops::Loop;
 use super::request::{Control, Measure, Request, Tolerance};
-use super::stepped::Stepped;
+use super::stepped::{MOST_PERIODS, Stepped};
 use super::words::{advised, stands, warnings};
 use super::{AdviseError, Budget, Throughput};
 use crate::Lab;
@@ -22,10 +22,23 @@ pub(super) fn free<M: Model<D>, const D: usize>(
     let free = Free::new(lab, model, request)?;
     let mut advice = Advice::new(request);
     let most = request.tolerance.most;
-    let choices = sweep(lab, "the largest step of each integrator", &Method::ALL, |&method| {
+    let mut choices = sweep(lab, "the largest step of each integrator", &Method::ALL, |&method| {
         largest_step(lab, &free, method, most, free.steps())
     })?;
+    if choices.iter().all(|choice| choice.dt.is_none()) {
+        choices = sweep(lab, "the least that each integrator loses", &Method::ALL, |&method| {
+            best_possible(lab, &free, method, free.steps())
+        })?;
+    }
     advice.choose(request, choices);
+    if let Some((_, dt)) = advice.chosen()
+        && free.turn(dt) > 1.0
+    {
+        let turn = free.turn(dt);
+        advice.warnings.push(format!(
+            "a step is {turn:.2} rad of the fastest motion: what is tolerated is kept, the course between is not followed"
+        ));
+    }
     if let Some((choice, dt)) = advice.chosen() {
         let method = Method::from_name(choice.integrator).unwrap_or(Method::Rk4);
         let narrow = free.lost_in::<f32>(lab, method, dt, f64::INFINITY)?;
@@ -76,7 +89,9 @@ pub(super) fn looped<M: Model<1>>(
     let mut advice = Advice::new(request);
     let stepped = Stepped { one: &one, horizon: request.horizon, tolerance: request.tolerance };
     let truth = stepped.truth(lab)?;
-    let choices = sweep(lab, "the largest step of each integrator", &Method::ALL, |&method| {
+    // Of a loop whose cost is infinite with its latency alone no integrator's is off.
+    let methods = if stepped.costs()? { &Method::ALL[..] } else { &[] };
+    let choices = sweep(lab, "the largest step of each integrator", methods, |&method| {
         stepped.choose(lab, method, &truth)
     })?;
     advice.choose(request, choices);
@@ -120,7 +135,17 @@ pub(super) fn looped<M: Model<1>>(
         together,
         fails_first,
     };
-    let answer = format!("{} {}", stands(&looped, &advice.tolerance), advised(&advice, request));
+    let mut answer = stands(&looped, &advice.tolerance);
+    if !advice.integrators.is_empty() {
+        answer += &format!(" {}", advised(&advice, request));
+    }
+    let followed = MOST_PERIODS as f64 * control.period;
+    if request.tolerance.of == Measure::Trajectory && request.horizon > followed {
+        advice.warnings.push(format!(
+            "the course of the loop was followed for {followed} s, not for the {} s that were asked for",
+            request.horizon
+        ));
+    }
     advice.conclude(request, answer);
     if request.map {
         advice.map = Some(one.map(lab, looped.budgets[0].stable_up_to)?);

@@ -11,6 +11,7 @@ mod limits;
 mod loops;
 mod making;
 mod map;
+mod pace;
 mod page;
 mod request;
 mod stepped;
@@ -78,6 +79,11 @@ pub enum AdviseError {
         /// What does not decay, in words, the fastest first.
         modes: Vec<String>,
     },
+    /// The loop does not stand its latency, and with what else is stated it is too large to be told of.
+    #[error(
+        "the loop does not stand its latency of {0} s alone; with jitter or losses it is too long to be told of"
+    )]
+    Late(f64),
     /// The loop cannot be made.
     #[error(transparent)]
     Loop(#[from] LoopError),

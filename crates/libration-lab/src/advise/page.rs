@@ -93,7 +93,7 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&Map>) {
     );
     if let Some(simulated) = &together.simulated {
         line(
-            "cost of the simulation, noise held for a period",
+            "cost of the simulation, noise held for a period, without commands",
             Cell::rounded(simulated.cost, 6),
             &format!(
                 "± {}, simulated: {} loops, {} periods",
@@ -204,7 +204,7 @@ fn integrators(page: &mut Page, advice: &Advice) {
     }
     if let Some(throughput) = &advice.throughput {
         page.paragraph(format!(
-            "On this machine one core takes {} such steps a second with {} trajectories at a time, measured now; a rollout of {} \
+            "On this machine one core takes {} such steps of the plant alone a second with {} trajectories at a time, measured now; a rollout of {} \
              steps of each takes {} MB in `f32`.",
             number(throughput.steps_a_second, 3),
             throughput.trajectories,

@@ -45,7 +45,9 @@ impl<M: Model<1>> Stepped<'_, M> {
         // What stands for the truth is no candidate.
         for substeps in SUBSTEPS.into_iter().filter(|&count| count < self.most_substeps()) {
             let here = lost(substeps)?;
-            choice.lost = choice.lost.min(here);
+            if here < choice.lost {
+                (choice.lost, choice.best_dt) = (here, Some(period / substeps as f64));
+            }
             if here <= most {
                 met = Some((substeps, here));
                 break;
@@ -63,7 +65,7 @@ impl<M: Model<1>> Stepped<'_, M> {
                 false => (fewer, choice.lost_beyond) = (middle, Some(here)),
             }
         }
-        choice.lost = at;
+        (choice.lost, choice.best_dt) = (at, None);
         (choice.dt, choice.substeps) = (Some(period / enough as f64), Some(enough));
         Ok(choice)
     }
@@ -107,17 +109,24 @@ impl<M: Model<1>> Stepped<'_, M> {
             }
             Measure::Cost => {
                 let (one, period) = (self.one, self.one.control.period);
-                let late = Imperfections { latency: one.stated()?.latency, ..Imperfections::NONE };
-                let cost = |plant: Plant<'_>| {
-                    plant.held().cost(&one.linear, &late, one.weights).map_err(LoopError::from)
-                };
-                let truth = cost(one.plant())?;
                 let plant = Plant::new(method, one.model, ORIGIN, period).substeps(substeps);
-                Ok((cost(plant)? / truth - 1.0).abs())
+                Ok((self.cost(plant)? / self.cost(one.plant())? - 1.0).abs())
             }
             // Refused before.
             Measure::Energy | Measure::Phase => Ok(f64::INFINITY),
         }
+    }
+
+    /// What the loop costs with its latency alone.
+    fn cost(&self, plant: Plant<'_>) -> Result<f64, LoopError> {
+        let one = self.one;
+        let late = Imperfections { latency: one.late()?, ..Imperfections::NONE };
+        Ok(plant.held().cost(&one.linear, &late, one.weights)?)
+    }
+
+    /// Whether that is finite, where it is what is tolerated.
+    pub(super) fn costs(&self) -> Result<bool, LoopError> {
+        Ok(self.tolerance.of != Measure::Cost || self.cost(self.one.plant())?.is_finite())
     }
 
     /// The states at the samples of a loop that starts from the deviation that was asked for, with the latency that is stated.
@@ -130,7 +139,7 @@ impl<M: Model<1>> Stepped<'_, M> {
         let one = self.one;
         let (model, period) = (one.model, one.control.period);
         let acceleration = |state: &State<S, 1>| model.on::<S>().acceleration(state);
-        let latency = one.stated()?.latency.steps();
+        let latency = one.late()?.steps();
         let schedule = Schedule::new(substeps as f64, 0.0, latency * substeps as f64);
         let schedule = schedule.map_err(|_| LoopError::Latency { steps: latency })?;
         let setup = Setup::new(All(Chosen(&acceleration)), method)

@@ -5,7 +5,7 @@ use libration::{Model, State};
 
 use super::AdviseError;
 use super::ensemble::{GROUPS, Ran, Run};
-use super::loops::{Loop, LoopError};
+use super::loops::{AnyController, Loop, LoopError};
 use super::request::{Measure, Request, Tolerance};
 use crate::Lab;
 
@@ -14,8 +14,10 @@ use crate::Lab;
 pub struct Together {
     /// The logarithm of the factor by which second moments grow in a period; below zero the loop is stable.
     pub growth: f64,
-    /// So many times as large all of them may be before it is not; none beyond 16 times, or where it is not stable.
+    /// So many times as large all of them may be before it is not; none where no end was found.
     pub room: Option<f64>,
+    /// So many times as large all of them were tried; none where nothing is stated, or where it is not stable.
+    pub room_tried: Option<f64>,
     /// The cost of the loop without any of it, per second under unit noise.
     pub ideal_cost: f64,
     /// The cost with all of it; none where it is infinite.
@@ -31,6 +33,11 @@ pub struct Together {
 }
 
 impl Together {
+    /// Whether it forgets too slowly to be simulated.
+    pub(super) fn slow(&self) -> bool {
+        MEMORIES / -self.growth >= MOST_PERIODS
+    }
+
     /// Whether a simulation does otherwise than theory says.
     pub fn contradicted(&self) -> bool {
         let returns = self.returns.is_none_or(|r| r.of_asked[0] == r.of_asked[1]);
@@ -108,9 +115,17 @@ impl<M: Model<1>> Loop<M> {
         let stable = growth < 0.0;
         let simulated = if stable { self.simulated(lab, growth, &stated)? } else { None };
         let returns = if stable { self.returns(lab, growth)? } else { None };
+        let (room, room_tried) = match stable && stated != Imperfections::NONE {
+            true => {
+                let (room, tried) = self.room(plant, ideal_cost, request.tolerance)?;
+                (room, Some(tried))
+            }
+            false => (None, None),
+        };
         Ok(Together {
             growth,
-            room: if stable { self.room(plant, ideal_cost, request.tolerance)? } else { None },
+            room,
+            room_tried,
             ideal_cost,
             cost: finite,
             cost_increase: finite.map(|cost| cost / ideal_cost - 1.0),
@@ -120,26 +135,20 @@ impl<M: Model<1>> Loop<M> {
         })
     }
 
-    /// How many times as large all of it may be, until it is unstable or, if a cost is tolerated, costs more; none beyond 16 times, and
-    /// where the loop becomes too large before.
+    /// How many times as large all of it may be, until it is unstable or, if a cost is tolerated, costs more; and how many times as large
+    /// was tried: up to 16 times, or where the loop becomes too large to be told of.
     fn room(
         &self,
         plant: &Plant<'_>,
         ideal_cost: f64,
         tolerance: Tolerance,
-    ) -> Result<Option<f64>, AdviseError> {
+    ) -> Result<(Option<f64>, f64), AdviseError> {
         const MOST: f64 = 16.0;
-        if self.stated()? == Imperfections::NONE {
-            return Ok(None);
-        }
         let holds = |share: f64| -> Result<bool, LoopError> {
             let imperfections = self.scaled(share)?;
             if imperfections.loss >= 1.0 {
                 return Ok(false);
             }
-            // A clock cannot be faster than that all happens at once.
-            let skew = imperfections.skew.max(-0.999);
-            let imperfections = Imperfections { skew, ..imperfections };
             Ok(match tolerance {
                 Tolerance { of: Measure::Cost, most } => {
                     self.cost(plant, &imperfections, self.weights)? <= (1.0 + most) * ideal_cost
@@ -147,34 +156,36 @@ impl<M: Model<1>> Loop<M> {
                 _ => self.decays(plant, &imperfections)?,
             })
         };
-        let narrowed = |mut low: f64, mut high: f64| -> Result<Option<f64>, AdviseError> {
-            for _ in 0..if self.control.record.is_some() { 20 } else { 40 } {
+        // Through a record each is costly.
+        let (ratio, halvings) = if self.control.record.is_some() { (1.5, 20) } else { (1.125, 40) };
+        let narrowed = |mut low: f64, mut high: f64| -> Result<(Option<f64>, f64), AdviseError> {
+            for _ in 0..halvings {
                 let middle = 0.5 * (low + high);
                 if holds(middle)? { low = middle } else { high = middle }
             }
-            Ok(Some(low))
+            Ok((Some(low), low))
         };
         if !holds(1.0)? {
             return narrowed(0.0, 1.0);
         }
         let mut low = 1.0;
-        // Each time an eighth more.
         while low < MOST {
-            let high = low * 1.125;
+            let high = (low * ratio).min(MOST);
+            // A clock that is a thousand times as fast is none.
+            if 1.0 + high * self.control.skew < 1e-3 {
+                return Ok((None, low));
+            }
             match holds(high) {
-                Ok(true) => {
-                    low = high;
-                    continue;
-                }
-                Ok(false) => {}
-                Err(LoopError::Cost(CostError::Size { .. }) | LoopError::Latency { .. }) => {
-                    return Ok(None);
-                }
+                Ok(true) => low = high,
+                Ok(false) => return narrowed(low, high),
+                Err(
+                    LoopError::Cost(CostError::Size { .. } | CostError::Turn)
+                    | LoopError::Latency { .. },
+                ) => return Ok((None, low)),
                 Err(error) => return Err(error.into()),
             }
-            return narrowed(low, high);
         }
-        Ok(None)
+        Ok((None, low))
     }
 
     /// An ensemble under noise.
@@ -186,7 +197,8 @@ impl<M: Model<1>> Loop<M> {
     ) -> Result<Option<Simulated>, AdviseError> {
         let memory = MEMORIES / -growth;
         // Of what is not linear small noise is asked for, and what it costs is in proportion.
-        let intensity = if M::LINEAR { 1.0 } else { self.small_noise()? };
+        let linear = M::LINEAR && !self.limited();
+        let intensity = if linear { 1.0 } else { self.small_noise()? };
         if !(memory < MOST_PERIODS && intensity > 0.0) {
             return Ok(None);
         }
@@ -221,12 +233,20 @@ impl<M: Model<1>> Loop<M> {
         Ok(Some(Simulated { loops: COUNT, periods, cost, error, predicted, outbursts }))
     }
 
-    /// Noise that moves the plant by a hundredth of the deviation that was asked for.
+    /// Noise that moves the plant by a hundredth of the deviation that was asked for, and asks for a tenth of the command that there is.
     fn small_noise(&self) -> Result<f64, AdviseError> {
         let stated = self.stated()?;
-        let position = LqrWeights { position: 1.0, velocity: 0.0, command: 0.0 };
-        let square = self.cost(&self.plant(), &stated, position).map_err(LoopError::from)?;
-        Ok((0.01 * self.control.deviation).powi(2) / square)
+        let square = |position, command| {
+            let weights = LqrWeights { position, velocity: 0.0, command };
+            self.cost(&self.plant(), &stated, weights).map_err(LoopError::from)
+        };
+        let moves = (0.01 * self.control.deviation).powi(2) / square(1.0, 0.0)?;
+        Ok(match self.controller {
+            AnyController::Pid(pid) if pid.gains().most.is_finite() => {
+                moves.min((0.1 * pid.gains().most).powi(2) / square(0.0, 1.0)?)
+            }
+            _ => moves,
+        })
     }
 
     /// From how far it returns without noise.
@@ -236,7 +256,7 @@ impl<M: Model<1>> Loop<M> {
             return Ok(None);
         }
         let stiffness = self.plant().energy().position.max(0.5);
-        let back = |distance: f64| -> Result<usize, AdviseError> {
+        let back = |distance: f64| -> Result<Option<usize>, AdviseError> {
             let start = |i: usize| {
                 let (sine, cosine) = (std::f64::consts::TAU * i as f64 / STARTS as f64).sin_cos();
                 let speed = (2.0 * stiffness).sqrt();
@@ -244,16 +264,18 @@ impl<M: Model<1>> Loop<M> {
             };
             let starts: Vec<State<f64, 1>> = (0..STARTS).map(start).collect();
             let run = Run { before: periods as u64, periods: 0, starts: &starts, intensity: 0.0 };
-            let Some(ran) = self.run(lab, run)? else { return Ok(0) };
+            let Some(ran) = self.run(lab, run)? else { return Ok(None) };
             let near = |state: &State<f64, 1>| {
                 state.q[0].abs() < 0.05 * distance && state.q[0].is_finite()
             };
-            Ok(ran.last.iter().filter(|state| near(state)).count())
+            Ok(Some(ran.last.iter().filter(|state| near(state)).count()))
         };
         let asked = self.control.deviation;
-        let of_asked = [back(asked)?, STARTS];
+        // Losses with long latencies cannot be simulated.
+        let Some(count) = back(asked)? else { return Ok(None) };
+        let of_asked = [count, STARTS];
         let (mut low, mut high) = (0.0, 4.0 * asked);
-        if back(high)? == STARTS {
+        if back(high)? == Some(STARTS) {
             low = high;
         }
         for _ in 0..16 {
@@ -261,7 +283,7 @@ impl<M: Model<1>> Loop<M> {
                 break;
             }
             let middle = 0.5 * (low + high);
-            if back(middle)? == STARTS { low = middle } else { high = middle }
+            if back(middle)? == Some(STARTS) { low = middle } else { high = middle }
         }
         Ok(Some(Returns { asked, of_asked, up_to: low }))
     }

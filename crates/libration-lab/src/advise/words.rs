@@ -35,14 +35,14 @@ pub(super) fn advised(advice: &Advice, request: &Request) -> String {
 
 /// Whether a loop stands what is stated, in a sentence or two.
 pub(super) fn stands(looped: &LoopAdvice, tolerance: &ToleranceAnswer) -> String {
-    let Together { growth, room, cost_increase, .. } = looped.together;
+    let Together { growth, room, room_tried, cost_increase, .. } = looped.together;
     if growth >= 0.0 {
         return format!(
             "The loop does not stand what is stated: its second moments grow by {:.3} % a period.",
             100.0 * growth.exp_m1()
         );
     }
-    let mut text = match (room, &looped.fails_first) {
+    let mut text = match (room, room_tried) {
         _ if looped.together.contradicted() => {
             "The simulation contradicts what theory says of the loop: see below.".to_owned()
         }
@@ -54,10 +54,12 @@ pub(super) fn stands(looped: &LoopAdvice, tolerance: &ToleranceAnswer) -> String
                 "The loop stands what is stated, and all of it may become {room:.3} times as large."
             )
         }
-        (None, _) if looped.stated => {
-            "The loop stands what is stated, and sixteen times as much.".to_owned()
+        (None, Some(tried)) => format!(
+            "The loop stands what is stated, and all of it may become at least {tried:.3} times as large, as far as was tried."
+        ),
+        (None, None) => {
+            "The loop stands; nothing is stated that could be wrong with it.".to_owned()
         }
-        (None, _) => "The loop stands; nothing is stated that could be wrong with it.".to_owned(),
     };
     if let Some(failing) = &looped.fails_first {
         text += &format!(
@@ -109,11 +111,13 @@ pub(super) fn warnings<M: Model<1>>(one: &Loop<M>, together: &Together) -> Vec<S
             );
         }
     } else if together.growth < 0.0 {
-        warnings.push(
-            "the loop decays too slowly to be simulated, or its commands are too late for losses to be: what is said follows from theory \
-             alone"
-                .into(),
-        );
+        let why = match together.slow() {
+            true => "it decays too slowly",
+            false => "its commands are too late for losses",
+        };
+        warnings.push(format!(
+            "the loop was not simulated, for {why}: what is said follows from theory alone"
+        ));
     }
     let Control { period, .. } = one.control;
     let turn = (2.0 * one.plant().energy().position).sqrt() * period;
@@ -123,11 +127,12 @@ pub(super) fn warnings<M: Model<1>>(one: &Loop<M>, together: &Together) -> Vec<S
         ));
     }
     if let Some(record) = &one.control.record {
-        let gaps = record.iter().filter(|step| **step > 1.5).count();
+        let gaps = record.iter().filter(|step| **step * (1.0 + one.control.skew) > 1.5).count();
         let repeats = record.iter().filter(|step| **step == 0.0).count();
         if gaps + repeats > 0 {
             warnings.push(format!(
-                "the {} time stamps have {gaps} gaps of more than one and a half periods and {repeats} repeats; they are replayed as they are",
+                "of the {} time stamps, which are replayed as they are, {gaps} come after a gap of more than one and a half periods, and \
+                 {repeats} repeat",
                 record.len() + 1
             ));
         }

@@ -7,6 +7,7 @@
 mod advise;
 mod advise_budgets;
 mod advise_case;
+mod advise_edges;
 mod advise_page;
 mod advise_steps;
 mod analyze;

@@ -2,7 +2,7 @@
 
 use super::linear::solved;
 use super::stage::Stage;
-use super::waiting::{Matrix, growth, product, scale, transposed};
+use super::waiting::{Matrix, decays, growth, product, scale, transposed};
 
 /// The steps of a loop, each drawn for itself: their mean, and in which few rows and how far each is off.
 ///
@@ -63,7 +63,7 @@ impl Drawn {
 
     /// Whether second moments decay.
     pub(super) fn is_stable(&self) -> bool {
-        growth(self.mean.clone()) < 0.0 && (self.rows.is_empty() || self.returned(0.0) < 0.0)
+        decays(&self.mean) && (self.rows.is_empty() || decays(&self.feedback(&self.mean)))
     }
 
     /// Of all that is drawn: the logarithm of the factor with which it comes back, of moments that are divided by `e^λ` a step.

@@ -51,8 +51,8 @@ pub enum CostError {
     Skew(f64),
     /// The matrix would be too large.
     #[error(
-        "a loop that has to know {size} numbers is too large: with jitter or losses there may be {MOST_RANDOM}, with a record and \
-         losses {MOST_REPLAYED}, with none of them {MOST_REPEATED}"
+        "the latency is too many periods long: a loop that has to know {size} numbers, of which most are commands on their way, is too \
+         large; with jitter or losses there may be {MOST_RANDOM}, with a record and losses {MOST_REPLAYED}, with none of them {MOST_REPEATED}"
     )]
     Size {
         /// State, controller and waiting commands.

@@ -111,11 +111,23 @@ impl Replayed {
             true => mean_square(stages),
             false => stages[0].step.clone(),
         };
-        let kinds: Vec<Matrix> = self.kinds.iter().map(of).collect();
+        // Most entries are zero, of steps that hand commands on.
+        let sparse = |row: &Vec<f64>| -> Vec<(usize, f64)> {
+            row.iter().copied().enumerate().filter(|(_, x)| *x != 0.0).collect()
+        };
+        let kinds: Vec<Vec<Vec<(usize, f64)>>> =
+            self.kinds.iter().map(|stages| of(stages).iter().map(sparse).collect()).collect();
         let mut all = unit(kinds[0].len());
+        let mut next = all.clone();
         let mut logarithm = 0.0;
         for &kind in &self.order {
-            all = product(&kinds[kind], &all);
+            for (row, entries) in next.iter_mut().zip(&kinds[kind]) {
+                row.fill(0.0);
+                for (column, entry) in entries {
+                    row.iter_mut().zip(&all[*column]).for_each(|(x, y)| *x += entry * y);
+                }
+            }
+            core::mem::swap(&mut all, &mut next);
             logarithm += normalise(&mut all);
         }
         (all, logarithm)

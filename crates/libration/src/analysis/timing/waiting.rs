@@ -101,6 +101,31 @@ pub(super) fn growth(mut power: Matrix) -> f64 {
     logarithm
 }
 
+/// Whether the spectral radius is below 1, which is known sooner than what it is: a power of norm below 1 says yes, and one whose
+/// eigenvalues add up to more than there are of them says no.
+pub(super) fn decays(matrix: &Matrix) -> bool {
+    let (mut power, mut logarithm) = (matrix.clone(), 0.0);
+    for _ in 0..50 {
+        let row_sum = |row: &Vec<f64>| row.iter().map(|x| x.abs()).sum::<f64>();
+        let norm = power.iter().map(row_sum).fold(0.0, |most: f64, x| match x.is_nan() {
+            true => x,
+            false => most.max(x),
+        });
+        if norm == 0.0 || norm.ln() + logarithm < 0.0 {
+            return true;
+        }
+        let trace: f64 = power.iter().enumerate().map(|(i, row)| row[i]).sum();
+        if norm.is_nan() || trace.abs().ln() + logarithm > (power.len() as f64).ln() {
+            return false;
+        }
+        scale(&mut power, norm);
+        logarithm = 2.0 * (logarithm + norm.ln());
+        power = product(&power, &power);
+    }
+    // Within a part of 10⁻¹⁵ of the edge.
+    growth(matrix.clone()) < 0.0
+}
+
 /// Divides all entries; those that are nothing beside the largest become zero, since products of them would be numbers with which
 /// processors take a hundred times as long.
 pub(super) fn scale(power: &mut Matrix, norm: f64) {

@@ -61,6 +61,11 @@ impl<const D: usize> Pid<D> {
         ensure("the tracking time", gains.tracking, "above 0", positive)?;
         Ok(Pid { gains })
     }
+
+    /// Its gains.
+    pub fn gains(&self) -> &PidGains<D> {
+        &self.gains
+    }
 }
 
 impl<T: Float, const D: usize> Controller<T, D> for Pid<D> {
