@@ -121,7 +121,7 @@ impl Case {
     pub(crate) fn simulated_operator(self, rms: f64) -> [[f64; 3]; 3] {
         // At 0.98 and 1.02 of a limit the growth is off by a 25th of what jitter adds, which is as the square of its rms; what a
         // draw adds is as its rms.
-        let count = ((150.0 / rms).powi(2) as usize).clamp(100_000, 1_000_000);
+        let count = ((90.0 / rms).powi(2) as usize).clamp(50_000, 400_000);
         let model = Oscillator { omega2: self.omega2 };
         let exact = Exact::new::<1>(model, self.period).unwrap();
         let setup = Setup::new(All(model), exact)
