@@ -72,9 +72,10 @@ impl<M: Model<D>, const D: usize> Free<M, D> {
     fn stiffness(&self, state: &State<f64, D>) -> f64 {
         let model = self.model.on::<f64>();
         let here = model.acceleration(state);
+        let size = state.q.iter().fold(0.0, |size: f64, x| size.hypot(*x));
+        let far = 1e-6 * size.max(1e-3);
         let slope = |i: usize| {
             let mut beside = *state;
-            let far = 1e-6 * state.q[i].abs().max(1e-3);
             beside.q[i] += far;
             let there = model.acceleration(&beside);
             here.iter().zip(there).map(|(a, b)| ((b - a) / far).powi(2)).sum::<f64>()
