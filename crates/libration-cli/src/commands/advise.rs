@@ -118,7 +118,7 @@ fn told(advice: &Advice) -> String {
         let _ = writeln!(text, "MIND: {warning}");
     }
     if let Some(looped) = &advice.looped {
-        of_loop(looped, &mut text);
+        of_loop(looped, &advice.again, &mut text);
     }
     let _ = writeln!(
         text,
@@ -174,7 +174,7 @@ fn told(advice: &Advice) -> String {
     text
 }
 
-fn of_loop(looped: &LoopAdvice, text: &mut String) {
+fn of_loop(looped: &LoopAdvice, again: &str, text: &mut String) {
     let _ = writeln!(text, "\n{}; a sample every {} s", looped.controller, looped.period);
     if looped.held_command != 0.0 {
         let _ = writeln!(
@@ -205,7 +205,8 @@ fn of_loop(looped: &LoopAdvice, text: &mut String) {
             budget.how
         );
     }
-    for budget in &looped.budgets {
+    let ours = format!("{again} --json");
+    for budget in looped.budgets.iter().filter(|budget| budget.command != ours) {
         let _ = writeln!(text, "  {}", budget.command);
     }
     let together = &looped.together;
@@ -221,7 +222,9 @@ fn of_loop(looped: &LoopAdvice, text: &mut String) {
             together.ideal_cost
         );
     }
-    let _ = writeln!(text, "  {}", together.command);
+    if together.command != ours {
+        let _ = writeln!(text, "  {}", together.command);
+    }
     if let Some(s) = &together.simulated {
         let _ = writeln!(
             text,

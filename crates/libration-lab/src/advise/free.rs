@@ -157,8 +157,8 @@ impl<M: Model<D>, const D: usize> Free<M, D> {
                 let share = self.size(state) / self.size(&truth);
                 let turn = self.angle(state, &truth) - ahead;
                 ahead += turn - TAU * (turn / TAU).round();
-                // What is twice as large or half has no phase to speak of, and what is off by turns does not come back.
-                let lost = !(0.5..2.0).contains(&share) || ahead.abs() > 4.0 * most + TAU;
+                // What is twice as large or half has no phase to speak of, and what is far off does not come back.
+                let lost = !(0.5..2.0).contains(&share) || ahead.abs() > 4.0 * most + 2.0;
                 return if lost { f64::INFINITY } else { 0.0 };
             }
             self.size(&State {

@@ -47,7 +47,7 @@ pub(super) enum Limit {
 }
 
 /// Periods of latency that are tried at least.
-const MOST_PERIODS: f64 = 64.0;
+const MOST_PERIODS: f64 = 160.0;
 
 /// And at most, unless more are stated.
 const TRIED_PERIODS: f64 = 240.0;

@@ -53,6 +53,9 @@ pub struct Control {
     pub deviation: f64,
 }
 
+/// A clock that is off by less does nothing to a loop.
+const ON_TIME: f64 = 1e-6;
+
 /// The relative rms of steps that only rounding tells apart.
 const EVEN: f64 = 1e-9;
 
@@ -67,6 +70,7 @@ impl Control {
         let square = steps.iter().map(|step| (step - 1.0).powi(2)).sum::<f64>();
         let rms = (square / steps.len() as f64).sqrt();
         let skew = mean / self.period - 1.0;
+        let skew = if skew.abs() < ON_TIME { 0.0 } else { skew };
         // Steps that differ by their last digits alone are even.
         let (rms, record) = if rms < EVEN { (0.0, None) } else { (rms, Some(steps)) };
         Ok(Control { jitter: self.jitter.with_rms(rms), record, skew, ..self })

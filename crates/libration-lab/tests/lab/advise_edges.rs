@@ -39,9 +39,9 @@ fn a_budget_of_latency_reaches_what_is_stated() {
     let late = request(0.001, |control| control.latency = 0.09);
     let found = advice(&late).unwrap();
     let looped = found.looped.as_ref().unwrap();
-    let limit = looped.budgets[0].stable_up_to;
-    assert!(limit.is_none_or(|limit| (limit / 0.1575 - 1.0).abs() < 0.01), "{limit:?}");
-    assert!(looped.budgets[0].tried_up_to >= 0.09 && found.holds());
+    // Of exact steps, by a program that knows nothing of this one: stable at 157 periods and not at 158.
+    let limit = looped.budgets[0].stable_up_to.unwrap();
+    assert!((0.157..0.158).contains(&limit) && found.holds(), "{limit}");
 }
 
 #[test]
