@@ -93,7 +93,7 @@ pub(super) fn largest_step(
     Ok(choice)
 }
 
-/// The least that is lost with steps between `least` and `most`, each half of the one before.
+/// The least that is lost with steps between `least` and `most`, each half of the one before, until rounding makes it more again.
 pub(super) fn best_possible(
     lab: &Lab<'_>,
     trial: &impl Trial,
@@ -106,6 +106,8 @@ pub(super) fn best_possible(
         let here = trial.lost(lab, method, dt, f64::INFINITY)?;
         if here < choice.lost {
             (choice.lost, choice.best_dt) = (here, Some(dt));
+        } else if here > 2.0 * choice.lost && here.is_finite() {
+            break;
         }
         dt /= 2.0;
     }

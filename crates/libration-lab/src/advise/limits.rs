@@ -55,6 +55,9 @@ const TRIED_PERIODS: f64 = 240.0;
 /// Sizes that are tried one by one before the first that is too large is narrowed down.
 const TRIED: u32 = 64;
 
+/// Periods of latency from which on nine digits are enough.
+const LONG: f64 = 32.0;
+
 /// How often it is halved: to the digits of a float.
 const HALVINGS: u32 = 48;
 
@@ -142,6 +145,10 @@ impl<M: Model<1>> Loop<M> {
             let mut high = tried(i);
             let replays = kind == Kind::Jitter && self.control.record.is_some();
             for _ in 0..if replays { HALVINGS / 2 } else { HALVINGS } {
+                // Long queues are costly.
+                if kind == Kind::Latency && high > LONG && high - low < 1e-9 * high {
+                    break;
+                }
                 let middle = 0.5 * (low + high);
                 if at(middle)? { low = middle } else { high = middle }
             }

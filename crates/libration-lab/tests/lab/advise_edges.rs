@@ -23,14 +23,14 @@ fn request(period: f64, change: impl FnOnce(&mut Control)) -> Request {
 
 #[test]
 fn what_was_not_tried_is_not_said_to_stand() {
-    // At 0.158 s it is unstable with its latency alone: 2.6 times as much as 0.06 s, of which a queue of 100 commands shows 1.6.
+    // At 0.158 s it is unstable with its latency alone: 2.1 times as much as 0.075 s, of which a queue of 100 commands shows 1.3.
     let late = request(0.001, |control| {
-        (control.latency, control.jitter) = (0.06, Jitter::Gaussian(0.05));
+        (control.latency, control.jitter) = (0.075, Jitter::Gaussian(0.05));
     });
     let found = advice(&late).unwrap();
     let together = &found.looped.as_ref().unwrap().together;
     let tried = together.room_tried.unwrap();
-    assert!(together.room.is_none() && tried > 1.4 && tried < 2.6, "{together:?}");
+    assert!(together.room.is_none() && tried > 1.1 && tried < 2.1, "{together:?}");
     assert!(found.answer.contains("at least"), "{}", found.answer);
 }
 
@@ -59,7 +59,7 @@ fn a_fast_clock_makes_no_command_arrive_sooner() {
 fn noise_that_a_limit_would_feel_is_no_contradiction() {
     let gains = PidGains {
         proportional: 10.0,
-        integral: 1.0,
+        integral: 5.0,
         derivative: 2.0,
         filter: 0.0,
         most: 1.0,
@@ -77,8 +77,8 @@ fn noise_that_a_limit_would_feel_is_no_contradiction() {
 
 #[test]
 fn rare_outbursts_are_told_and_no_contradiction() {
-    // The limit of losses is 0.9324.
-    let lossy = request(0.01, |control| control.loss = 0.93);
+    // The limit of losses is 0.7032.
+    let lossy = request(0.05, |control| control.loss = 0.68);
     let found = advice(&lossy).unwrap();
     let simulated = found.looped.as_ref().unwrap().together.simulated.unwrap();
     assert!(simulated.outbursts && simulated.agrees(), "{simulated:?}");
