@@ -1,4 +1,4 @@
-//! `libration advise`, `libration measure-jitter` and the cost in `libration analyze`, through the binary.
+//! `libration advise` and the cost in `libration analyze`, through the binary.
 
 use std::fs;
 
@@ -7,11 +7,11 @@ use assert_cmd::assert::Assert;
 use predicates::prelude::*;
 use serde_json::Value;
 
-fn libration(words: &[&str]) -> Assert {
+pub(crate) fn libration(words: &[&str]) -> Assert {
     Command::cargo_bin("libration").unwrap().args(words).assert()
 }
 
-fn json(words: &[&str]) -> Value {
+pub(crate) fn json(words: &[&str]) -> Value {
     let output = libration(&[words, &["--json"]].concat()).success().get_output().stdout.clone();
     serde_json::from_slice(&output).unwrap()
 }
@@ -78,7 +78,7 @@ fn costs_that_cannot_be_asked_are_usage_errors() {
     libration(&alone).code(2).stderr(predicate::str::contains("--feedback"));
 }
 
-const ADVISE: [&str; 9] = [
+pub(crate) const ADVISE: [&str; 9] = [
     "advise",
     "--quiet",
     "--system",
@@ -217,91 +217,5 @@ fn a_file_that_is_printed_is_a_file_that_can_be_asked() {
     fs::write(config, "[loop]\nlatency = \"late\"\n").unwrap();
     libration(&["advise", "--config", config]).code(2).stderr(
         predicate::str::contains("loop.latency").and(predicate::str::contains("mine.toml")),
-    );
-}
-
-#[test]
-fn a_clock_that_was_measured_can_be_replayed_and_advised_with() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("clock.csv");
-    let path = file.to_str().unwrap();
-    let measured = json(&[
-        "measure-jitter",
-        "-q",
-        "--rate",
-        "500",
-        "--seconds",
-        "0.4",
-        "--priority",
-        "ordinary",
-        "--output",
-        path,
-    ]);
-    let statistics = &measured[0]["statistics"];
-    assert_eq!(statistics["intervals"], 199);
-    // Whatever the machine did meanwhile, deadlines lie on a grid.
-    let mean = statistics["mean"].as_f64().unwrap();
-    assert!((mean / 2e-3 - 1.0).abs() < 0.5, "{mean}");
-    let text = fs::read_to_string(&file).unwrap();
-    assert_eq!(text.lines().nth(1), Some("time_ns"));
-    assert_eq!(text.lines().count(), 202);
-    let again = json(&["measure-jitter", "--from", path]);
-    let [a, b] = [&again["jitter_rms"], &statistics["jitter_rms"]].map(|x| x.as_f64().unwrap());
-    assert!((a - b).abs() < 1e-6, "{a} {b}");
-    libration(&[
-        "simulate",
-        "--system",
-        "oscillator",
-        "--integrator",
-        "velocity-verlet",
-        "--dt",
-        "0.002",
-        "--steps",
-        "199",
-        "--every",
-        "199",
-        "--time-stamps",
-        path,
-    ])
-    .success();
-    let words = [&ADVISE[..], &["10,2", "--period", "0.002", "--jitter-file", path]].concat();
-    let advised = json(&words);
-    let stated = advised["loop"]["budgets"][1]["stated"].as_f64().unwrap();
-    assert!((stated - a).abs() < 1e-9, "{stated} {a}");
-    // What only that record shows is asked again with it.
-    for command in [&advised["again"], &advised["loop"]["together"]["command"]] {
-        assert!(command.as_str().unwrap().contains("--jitter-file"), "{command}");
-    }
-}
-
-#[test]
-fn clocks_that_are_none_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("log.csv");
-    for (text, wanted) in [
-        ("0\n1\n0.5\n", "time stamp 3"),
-        ("time_ns\n5\n", "at least 2"),
-        ("0\nfoo\n", "line 2 is `foo`"),
-        ("0\n0\n", "mean step is 0"),
-        ("0\nnan\n", "time stamp 2 is NaN"),
-    ] {
-        fs::write(&file, text).unwrap();
-        libration(&["measure-jitter", "--from", file.to_str().unwrap()])
-            .code(2)
-            .stderr(predicate::str::contains(wanted));
-    }
-    for (rest, wanted) in [
-        (["--rate", "0"], "--rate is 0"),
-        (["--rate", "nan"], "--rate is NaN"),
-        (["--seconds", "0.001"], "--seconds is 0.001"),
-        (["--priority", "highest"], "possible values"),
-    ] {
-        let words = [&["measure-jitter"][..], &rest].concat();
-        libration(&words).code(2).stderr(predicate::str::contains(wanted));
-    }
-    // Repeats and gaps are told.
-    fs::write(&file, "0\n1\n1\n2\n5\n").unwrap();
-    libration(&["measure-jitter", "--from", file.to_str().unwrap()]).success().stdout(
-        predicate::str::contains("repeated time stamps   1").and(predicate::str::contains("gaps")),
     );
 }

@@ -5,6 +5,7 @@
 mod advise;
 mod analyze;
 mod bench;
+mod clocks;
 #[cfg(unix)]
 mod interrupt;
 #[cfg(unix)]

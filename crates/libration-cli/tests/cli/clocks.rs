@@ -1,0 +1,93 @@
+//! `libration measure-jitter`, and what replays it, through the binary.
+
+use std::fs;
+
+use predicates::prelude::*;
+
+use super::advise::{ADVISE, json, libration};
+
+#[test]
+fn a_clock_that_was_measured_can_be_replayed_and_advised_with() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("clock.csv");
+    let path = file.to_str().unwrap();
+    let measured = json(&[
+        "measure-jitter",
+        "-q",
+        "--rate",
+        "500",
+        "--seconds",
+        "0.4",
+        "--priority",
+        "ordinary",
+        "--output",
+        path,
+    ]);
+    let statistics = &measured[0]["statistics"];
+    assert_eq!(statistics["intervals"], 199);
+    // Whatever the machine did meanwhile, deadlines lie on a grid.
+    let mean = statistics["mean"].as_f64().unwrap();
+    assert!((mean / 2e-3 - 1.0).abs() < 0.5, "{mean}");
+    let text = fs::read_to_string(&file).unwrap();
+    assert_eq!(text.lines().nth(1), Some("time_ns"));
+    assert_eq!(text.lines().count(), 202);
+    let again = json(&["measure-jitter", "--from", path]);
+    let [a, b] = [&again["jitter_rms"], &statistics["jitter_rms"]].map(|x| x.as_f64().unwrap());
+    assert!((a - b).abs() < 1e-6, "{a} {b}");
+    libration(&[
+        "simulate",
+        "--system",
+        "oscillator",
+        "--integrator",
+        "velocity-verlet",
+        "--dt",
+        "0.002",
+        "--steps",
+        "199",
+        "--every",
+        "199",
+        "--time-stamps",
+        path,
+    ])
+    .success();
+    let words = [&ADVISE[..], &["10,2", "--period", "0.002", "--jitter-file", path]].concat();
+    let advised = json(&words);
+    let stated = advised["loop"]["budgets"][1]["stated"].as_f64().unwrap();
+    assert!((stated - a).abs() < 1e-9, "{stated} {a}");
+    // What only that record shows is asked again with it.
+    for command in [&advised["again"], &advised["loop"]["together"]["command"]] {
+        assert!(command.as_str().unwrap().contains("--jitter-file"), "{command}");
+    }
+}
+
+#[test]
+fn clocks_that_are_none_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("log.csv");
+    for (text, wanted) in [
+        ("0\n1\n0.5\n", "time stamp 3"),
+        ("time_ns\n5\n", "at least 2"),
+        ("0\nfoo\n", "line 2 is `foo`"),
+        ("0\n0\n", "mean step is 0"),
+        ("0\nnan\n", "time stamp 2 is NaN"),
+    ] {
+        fs::write(&file, text).unwrap();
+        libration(&["measure-jitter", "--from", file.to_str().unwrap()])
+            .code(2)
+            .stderr(predicate::str::contains(wanted));
+    }
+    for (rest, wanted) in [
+        (["--rate", "0"], "--rate is 0"),
+        (["--rate", "nan"], "--rate is NaN"),
+        (["--seconds", "0.001"], "--seconds is 0.001"),
+        (["--priority", "highest"], "possible values"),
+    ] {
+        let words = [&["measure-jitter"][..], &rest].concat();
+        libration(&words).code(2).stderr(predicate::str::contains(wanted));
+    }
+    // Repeats and gaps are told.
+    fs::write(&file, "0\n1\n1\n2\n5\n").unwrap();
+    libration(&["measure-jitter", "--from", file.to_str().unwrap()]).success().stdout(
+        predicate::str::contains("repeated time stamps   1").and(predicate::str::contains("gaps")),
+    );
+}
