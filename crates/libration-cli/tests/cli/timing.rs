@@ -69,7 +69,9 @@ fn jitter_and_skew_are_told_with_and_without_feedback() {
     let exact = format!("{LOOP} --integrator exact --jitter uniform:0");
     let radius = |words: &str| json(&format!("{exact} {words}"))["mean_square_radius"].clone();
     close(&radius("--latency 5steps"), 0.992_337_179_288_081_f64.powi(2));
-    assert_eq!(radius("--latency 18steps"), Value::Null);
+    let long = json(&format!("{exact} --latency 40steps"));
+    close(&long["mean_square_radius"], long["spectral_radius"].as_f64().unwrap().powi(2));
+    assert_eq!(radius("--latency 400steps"), Value::Null);
     assert!(json(&format!("{exact} --latency 1steps"))["lyapunov_exponent"].is_null());
     let text =
         libration(&format!("{LOOP} --integrator rk4 --latency 1.5steps --jitter uniform:0.1"));

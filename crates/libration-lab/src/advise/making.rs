@@ -71,6 +71,35 @@ fn floats(request: &Request, method: Method, dt: f64, lost: [f64; 2]) -> Vec<Flo
     [f32::NAME, f64::NAME].into_iter().zip(lost).map(of).collect()
 }
 
+impl<M: Model<1>> Stepped<'_, M> {
+    /// What the float types lose in so many steps a period.
+    fn floats(
+        &self,
+        lab: &Lab<'_>,
+        request: &Request,
+        method: Method,
+        substeps: u64,
+    ) -> Result<Vec<FloatChoice>, AdviseError> {
+        // A cost follows from steps alone; what rounding does is seen in the course.
+        let tolerance = Tolerance { of: Measure::Trajectory, ..request.tolerance };
+        let course = Stepped { tolerance, ..*self };
+        let truth = course.truth(lab)?;
+        let lost = [
+            course.lost::<f32>(lab, method, substeps, &truth)?,
+            course.lost::<f64>(lab, method, substeps, &truth)?,
+        ];
+        let dt = self.one.control.period / substeps as f64;
+        let mut all = floats(request, method, dt, lost);
+        if request.tolerance.of == Measure::Cost {
+            // The integrator's own error of the course is no part of what is tolerated.
+            for float in &mut all {
+                float.meets = float.lost <= lost[1] + request.tolerance.most;
+            }
+        }
+        Ok(all)
+    }
+}
+
 /// The advice on a loop.
 pub(super) fn looped<M: Model<1>>(
     lab: &Lab<'_>,
@@ -97,22 +126,7 @@ pub(super) fn looped<M: Model<1>>(
     advice.choose(request, choices);
     if let Some((choice, dt)) = advice.chosen() {
         let method = Method::from_name(choice.integrator).unwrap_or(Method::Rk4);
-        let substeps = choice.substeps.unwrap_or(1);
-        // A cost follows from steps alone; what rounding does is seen in the course.
-        let tolerance = Tolerance { of: Measure::Trajectory, ..request.tolerance };
-        let course = Stepped { tolerance, ..stepped };
-        let truth = course.truth(lab)?;
-        let lost = [
-            course.lost::<f32>(lab, method, substeps, &truth)?,
-            course.lost::<f64>(lab, method, substeps, &truth)?,
-        ];
-        advice.floats = floats(request, method, dt, lost);
-        if request.tolerance.of == Measure::Cost {
-            // The integrator's own error of the course is no part of what is tolerated.
-            for float in &mut advice.floats {
-                float.meets = float.lost <= lost[1] + request.tolerance.most;
-            }
-        }
+        advice.floats = stepped.floats(lab, request, method, choice.substeps.unwrap_or(1))?;
         let narrow = advice.float().is_some_and(|float| float.float == f32::NAME);
         advice.throughput = Some(Throughput::measure(lab, request, method, dt, narrow)?);
     }
