@@ -50,7 +50,7 @@ pub(crate) struct AdviseArgs {
     )]
     jitter: Option<Jitter>,
     /// Time stamps that were measured, in place of --jitter: what `measure-jitter --output` writes, or a log
-    #[arg(long, value_name = "FILE", conflicts_with = "jitter")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["jitter", "skew"])]
     pub(crate) jitter_file: Option<PathBuf>,
     /// The part by which the clock is slow, as 1e-4; negative where it is fast
     #[arg(
@@ -215,8 +215,17 @@ impl AdviseArgs {
             Some(Late::Steps(steps)) => steps * control.period,
             None => control.latency,
         };
-        if let Some(jitter) = self.jitter {
-            (control.jitter, control.record) = (jitter, None);
+        match (self.jitter, &control.record) {
+            (Some(jitter), Some(_)) => {
+                (control.jitter, control.record, control.skew) = (jitter, None, 0.0);
+            }
+            (Some(jitter), None) => control.jitter = jitter,
+            (None, Some(_)) if self.skew.is_some() => {
+                return Err(Failure::usage(
+                    "--skew is given, but the time stamps of the file say how far the clock is off",
+                ));
+            }
+            (None, _) => {}
         }
         control.skew = self.skew.unwrap_or(control.skew);
         control.loss = self.loss.unwrap_or(control.loss);

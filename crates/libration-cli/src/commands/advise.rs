@@ -154,7 +154,11 @@ fn told(advice: &Advice) -> String {
     }
     for float in &advice.floats {
         let meets = if float.meets { "tolerated" } else { "too much" };
-        let _ = writeln!(text, "in {}: {:.3e} lost, {meets} (simulated)", float.float, float.lost);
+        let _ = writeln!(
+            text,
+            "in {}: {:.3e} of the {} lost, {meets} (simulated)",
+            float.float, float.lost, float.of
+        );
         if advice.looped.is_none() {
             let _ = writeln!(text, "  {}", float.command);
         }
@@ -236,8 +240,10 @@ fn of_loop(looped: &LoopAdvice, again: &str, text: &mut String) {
         let [back, all] = r.of_asked;
         let _ = writeln!(
             text,
-            "of {all} starts {} off {back} return; all do from up to {:.4} (simulated)",
-            r.asked, r.up_to
+            "of {all} starts {} off {back} return; all do from {}{:.4} (simulated)",
+            r.asked,
+            if r.up_to < r.tried_up_to { "up to " } else { "as far as was tried, " },
+            r.up_to
         );
     }
 }

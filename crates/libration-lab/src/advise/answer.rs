@@ -38,6 +38,8 @@ pub struct Advice {
     pub integrators: Vec<Choice>,
     /// A command that takes the steps that are advised; none where none are.
     pub command: Option<String>,
+    /// The shortest step that was tried, in s, where none meets the tolerance and a shorter one might.
+    pub tried_down_to: Option<f64>,
     /// Why the second of them lost; none where there is no second.
     pub runner_up: Option<String>,
     /// What the float types lose with the first of them.
@@ -86,8 +88,10 @@ pub struct LoopAdvice {
 pub struct FloatChoice {
     /// Which.
     pub float: &'static str,
-    /// What is lost with it, in the measure of the tolerance.
+    /// What is lost with it.
     pub lost: f64,
+    /// Of what: of what is tolerated, and of the trajectory where that is a cost.
+    pub of: &'static str,
     /// Whether that is tolerated.
     pub meets: bool,
     /// A command that takes the steps in it.
@@ -126,6 +130,7 @@ impl Advice {
             looped: None,
             integrators: Vec::new(),
             command: None,
+            tried_down_to: None,
             runner_up: None,
             floats: Vec::new(),
             throughput: None,
@@ -168,7 +173,20 @@ impl Advice {
         };
         if choices.first().is_some_and(|best| best.dt.is_none()) {
             let least = choices.iter().min_by(|a, b| a.lost.total_cmp(&b.lost));
-            if let Some(least) = least {
+            if let (Some(least), Some(shortest)) = (least, self.tried_down_to) {
+                let loses = match least.lost.is_finite() {
+                    true => format!(
+                        "{} still loses less with each: {:.3e}",
+                        least.integrator, least.lost
+                    ),
+                    false => "all lose the motion".to_owned(),
+                };
+                self.warnings.push(format!(
+                    "over this horizon a search goes down to steps of {shortest:.4e} s, where {loses}; shorter ones may meet the \
+                     tolerance of {:e}",
+                    request.tolerance.most
+                ));
+            } else if let Some(least) = least {
                 self.warnings.push(format!(
                     "no integrator meets the tolerance of {:e} with any step that was tried; the best possible is {:.3e}, \
                      with {} in steps of {:.4e} s",

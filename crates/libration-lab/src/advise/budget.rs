@@ -1,7 +1,7 @@
 //! What a loop stands of each imperfection alone, and which fails first.
 
 use libration::Model;
-use libration::analysis::{Imperfections, Jitter, Latency, Mode};
+use libration::analysis::{CostError, Imperfections, Jitter, Latency, Mode};
 use serde::Serialize;
 
 use super::AdviseError;
@@ -59,6 +59,11 @@ impl<M: Model<1>> Loop<M> {
             let late = Imperfections { latency: stated.latency, ..none };
             if plant.mean_square_stable(&self.linear, &late) == Ok(false) {
                 return Err(AdviseError::Late(self.control.latency));
+            }
+            if let CostError::Size { .. } = error {
+                let (name, value) = ("loop.latency", self.control.latency);
+                let allowed = "at most 290 periods, 90 with jitter or losses, and 20 with a record and losses";
+                return Err(AdviseError::Value { name, value, allowed });
             }
             return Err(LoopError::from(error).into());
         }
@@ -163,7 +168,8 @@ impl<M: Model<1>> Loop<M> {
 
     /// The command that asked, for the loop with `imperfections`.
     fn asked_again(&self, imperfections: &Imperfections, request: &Request) -> String {
-        if self.control.record.is_some() {
+        // A flag cannot take back a record.
+        if self.control.record.is_some() || request.asked_by.contains("--jitter-file") {
             return format!("{} --json", request.asked_by);
         }
         let Imperfections { latency, jitter, skew, loss } = *imperfections;

@@ -173,6 +173,10 @@ fn control(law: Law, table: LoopTable) -> Result<Control, Fault> {
         deviation: table.deviation.0,
     };
     if !table.time_stamps.is_empty() {
+        if control.skew != 0.0 {
+            let message = "`skew` is given, but `time_stamps` say how far the clock is off";
+            return Err(Fault::new("loop.skew", message));
+        }
         let path = &table.time_stamps;
         let wrong =
             |why: String| Fault::new("loop.time_stamps", format!("cannot use `{path}`: {why}"));

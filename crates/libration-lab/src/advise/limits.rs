@@ -4,7 +4,7 @@ use libration::Model;
 use libration::analysis::{CostError, Imperfections, Plant};
 
 use super::loops::{Loop, LoopError};
-use super::request::{Measure, Tolerance};
+use super::request::{Law, Measure, Tolerance};
 
 /// What may be wrong with a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -52,7 +52,7 @@ const MOST_PERIODS: f64 = 160.0;
 /// And at most, unless more are stated.
 const TRIED_PERIODS: f64 = 240.0;
 
-/// Sizes that are tried one by one before the first that is too large is narrowed down.
+/// Sizes that are tried one by one, at least, before the first that is too large is narrowed down.
 const TRIED: u32 = 64;
 
 /// Periods of latency from which on nine digits are enough.
@@ -92,6 +92,15 @@ impl<M: Model<1>> Loop<M> {
 
     /// Up to where the loop is stable; in the mean square where something is drawn.
     pub(super) fn stable_up_to(&self, plant: &Plant<'_>, kind: Kind) -> Result<Limit, LoopError> {
+        // Where a command is fed back from the state the crossings of the unit circle are known.
+        if let (Kind::Latency, Law::Pd(_) | Law::Lqr(_)) = (kind, self.control.law) {
+            let largest = self.largest(kind);
+            let critical = plant.split_critical_latency(self.gains());
+            return Ok(match critical.filter(|critical| *critical <= largest) {
+                Some(critical) => Limit::At(critical),
+                None => Limit::Beyond(largest),
+            });
+        }
         self.holds_up_to(kind, |with| self.decays(plant, with))
     }
 
@@ -112,6 +121,36 @@ impl<M: Model<1>> Loop<M> {
         Ok(Some(limit))
     }
 
+    /// The sizes that are tried, upward; what is stated is one of them.
+    fn tried(&self, kind: Kind, largest: f64) -> Result<Vec<f64>, LoopError> {
+        // Fine enough that the plant turns by a part of a radian between two: most windows of instability are wider.
+        const PART: f64 = 0.25;
+        let turn = self.plant().rate() * self.control.period;
+        let even = |count: u32| (1..=count).map(move |i| largest * f64::from(i) / f64::from(count));
+        let fine = ((turn * largest / PART).ceil() as u32).clamp(TRIED, 32 * TRIED);
+        let mut sizes: Vec<f64> = match kind {
+            Kind::Skew => even(fine).collect(),
+            // Each goes through all of the record.
+            Kind::Jitter if self.control.record.is_some() => even(TRIED / 4).collect(),
+            Kind::Jitter | Kind::Loss => even(TRIED).collect(),
+            // Quarters of a period, then whole ones.
+            Kind::Latency => {
+                let step = |at: f64| (PART / turn).clamp(0.01, if at < 8.0 { 0.25 } else { 1.0 });
+                let next = |at: &f64| Some(at + step(*at)).filter(|next| *next < largest);
+                core::iter::successors(Some(step(0.0)), next).chain([largest]).collect()
+            }
+        };
+        let stated = match kind {
+            Kind::Latency => self.late()?.steps(),
+            Kind::Jitter => self.control.jitter.rms(),
+            Kind::Skew => self.control.skew.abs(),
+            Kind::Loss => self.control.loss,
+        };
+        sizes.extend(Some(stated).filter(|size| (0.0..largest).contains(size)));
+        sizes.sort_by(f64::total_cmp);
+        Ok(sizes)
+    }
+
     fn holds_up_to(
         &self,
         kind: Kind,
@@ -122,27 +161,13 @@ impl<M: Model<1>> Loop<M> {
             return Ok(Limit::None);
         }
         let largest = self.largest(kind);
-        // Fine enough that the plant turns by a part of a radian between two: a window of instability is wider.
-        let turn = self.plant().rate() * self.control.period * largest;
-        let count = match kind {
-            Kind::Skew => ((turn / 0.25).ceil() as u32).clamp(TRIED, 32 * TRIED),
-            // Each goes through all of the record.
-            Kind::Jitter if self.control.record.is_some() => TRIED / 4,
-            _ => TRIED,
-        };
-        let tried = |i: u32| match kind {
-            // Quarters of a period, then more and more.
-            Kind::Latency if i <= 32 => 0.25 * f64::from(i),
-            Kind::Latency => 8.0 * (largest / 8.0).powf(f64::from(i - 32) / f64::from(TRIED - 32)),
-            _ => largest * f64::from(i) / f64::from(count),
-        };
         let mut low = 0.0;
-        for i in 1..=count {
-            if at(tried(i))? {
-                low = tried(i);
+        for size in self.tried(kind, largest)? {
+            if at(size)? {
+                low = size;
                 continue;
             }
-            let mut high = tried(i);
+            let mut high = size;
             let replays = kind == Kind::Jitter && self.control.record.is_some();
             for _ in 0..if replays { HALVINGS / 2 } else { HALVINGS } {
                 // Long queues are costly.

@@ -29,6 +29,11 @@ pub(super) fn free<M: Model<D>, const D: usize>(
         choices = sweep(lab, "the least that each integrator loses", &Method::ALL, |&method| {
             best_possible(lab, &free, method, free.steps())
         })?;
+        // Where rounding is not what ends it, shorter steps would lose less.
+        let [shortest, _] = free.steps();
+        let best = choices.iter().min_by(|a, b| a.lost.total_cmp(&b.lost));
+        let ends = best.and_then(|best| best.best_dt).is_none_or(|dt| dt < 2.0 * shortest);
+        advice.tried_down_to = Some(shortest).filter(|_| ends);
     }
     advice.choose(request, choices);
     if let Some((_, dt)) = advice.chosen()
@@ -66,7 +71,11 @@ fn floats(request: &Request, method: Method, dt: f64, lost: [f64; 2]) -> Vec<Flo
     let most = request.tolerance.most;
     let of = |(float, lost): (&'static str, f64)| {
         let command = request.simulation(method.name(), dt, float);
-        FloatChoice { float, lost, meets: lost <= most, command }
+        let of = match request.tolerance.of {
+            Measure::Cost => Measure::Trajectory,
+            of => of,
+        };
+        FloatChoice { float, lost, of: of.name(), meets: lost <= most, command }
     };
     [f32::NAME, f64::NAME].into_iter().zip(lost).map(of).collect()
 }
@@ -131,7 +140,7 @@ pub(super) fn looped<M: Model<1>>(
         advice.throughput = Some(Throughput::measure(lab, request, method, dt, narrow)?);
     }
     let budgets = one.budgets(lab, request)?;
-    let together = one.together(lab, &plant, request)?;
+    let together = one.together(lab, &plant, request, &budgets)?;
     let fails_first = one.fails_first(&budgets)?;
     let rest = State { q: [request.q[0]], v: [0.0] };
     let [held] = model.on::<f64>().acceleration(&rest);

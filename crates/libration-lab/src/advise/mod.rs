@@ -14,6 +14,7 @@ mod map;
 mod pace;
 mod page;
 mod request;
+mod returns;
 mod stepped;
 mod tables;
 mod throughput;
@@ -33,8 +34,9 @@ pub use loops::LoopError;
 pub use map::Map;
 pub use page::page;
 pub use request::{Control, Correction, Law, Measure, Regulator, Request, Tolerance};
+pub use returns::Returns;
 pub use throughput::Throughput;
-pub use together::{Returns, Simulated, Together};
+pub use together::{Simulated, Together};
 
 use crate::Lab;
 use crate::study::StudyError;

@@ -109,7 +109,8 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&Map>) {
             "returns from up to",
             Cell::rounded(returns.up_to, 4),
             &format!(
-                "simulated: of {} starts {} off, {} return",
+                "simulated, up to {}: of {} starts {} off, {} return",
+                number(returns.tried_up_to, 3),
                 returns.of_asked[1],
                 number(returns.asked, 3),
                 returns.of_asked[0]

@@ -4,9 +4,11 @@ use libration::analysis::{CostError, Imperfections, LqrWeights, Plant};
 use libration::{Model, State};
 
 use super::AdviseError;
+use super::budget::Budget;
 use super::ensemble::{GROUPS, Ran, Run};
 use super::loops::{AnyController, Loop, LoopError};
 use super::request::{Measure, Request, Tolerance};
+use super::returns::Returns;
 use crate::Lab;
 
 /// What is left where all imperfections act together.
@@ -70,17 +72,6 @@ pub struct Simulated {
     pub outbursts: bool,
 }
 
-/// From how far a loop comes back.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct Returns {
-    /// The distance that was asked, in m or rad.
-    pub asked: f64,
-    /// How many of the starts at that distance come back.
-    pub of_asked: [usize; 2],
-    /// The largest distance from which all do, up to four times what was asked.
-    pub up_to: f64,
-}
-
 /// Loops that are simulated.
 const COUNT: usize = 256;
 
@@ -89,13 +80,10 @@ const COUNT: usize = 256;
 const OUTBURSTS: f64 = 6.0;
 
 /// Periods that may be simulated.
-const MOST_PERIODS: f64 = 100_000.0;
+pub(super) const MOST_PERIODS: f64 = 100_000.0;
 
 /// Of a growth: within so many times its inverse everything is forgotten.
-const MEMORIES: f64 = 20.0;
-
-/// Directions from which a loop has to return.
-const STARTS: usize = 8;
+pub(super) const MEMORIES: f64 = 20.0;
 
 impl<M: Model<1>> Loop<M> {
     /// What all of it does.
@@ -104,7 +92,11 @@ impl<M: Model<1>> Loop<M> {
         lab: &Lab<'_>,
         plant: &Plant<'_>,
         request: &Request,
+        budgets: &[Budget],
     ) -> Result<Together, AdviseError> {
+        // A hair beyond each end.
+        let ends = budgets.iter().filter_map(|budget| budget.used.filter(|used| *used > 0.0));
+        let ends: Vec<f64> = ends.map(|used| (1.0 + 1e-6) / used).collect();
         let stated = self.stated()?;
         let growth = self.growth(plant, &stated).map_err(LoopError::from)?;
         let cost = |imperfections: &Imperfections| {
@@ -117,7 +109,7 @@ impl<M: Model<1>> Loop<M> {
         let returns = if stable { self.returns(lab, growth)? } else { None };
         let (room, room_tried) = match stable && stated != Imperfections::NONE {
             true => {
-                let (room, tried) = self.room(plant, ideal_cost, request.tolerance)?;
+                let (room, tried) = self.room(plant, ideal_cost, request.tolerance, &ends)?;
                 (room, Some(tried))
             }
             false => (None, None),
@@ -142,6 +134,7 @@ impl<M: Model<1>> Loop<M> {
         plant: &Plant<'_>,
         ideal_cost: f64,
         tolerance: Tolerance,
+        ends: &[f64],
     ) -> Result<(Option<f64>, f64), AdviseError> {
         const MOST: f64 = 16.0;
         let holds = |share: f64| -> Result<bool, LoopError> {
@@ -168,9 +161,13 @@ impl<M: Model<1>> Loop<M> {
         if !holds(1.0)? {
             return narrowed(0.0, 1.0);
         }
+        // The ends of the budgets are among what is tried, and latencies between which the plant turns by a part of a radian.
+        let turn = (self.control.latency * plant.rate()).max(f64::MIN_POSITIVE);
+        let step = (0.25 / turn).max((MOST - 1.0) / 128.0);
         let mut low = 1.0;
         while low < MOST {
-            let high = (low * ratio).min(MOST);
+            let high = (low * ratio).min(low + step).min(MOST);
+            let high = ends.iter().copied().filter(|end| *end > low).fold(high, f64::min);
             // A clock that is a thousand times as fast is none.
             if 1.0 + high * self.control.skew < 1e-3 {
                 return Ok((None, low));
@@ -249,47 +246,8 @@ impl<M: Model<1>> Loop<M> {
         })
     }
 
-    /// From how far it returns without noise.
-    fn returns(&self, lab: &Lab<'_>, growth: f64) -> Result<Option<Returns>, AdviseError> {
-        let periods = (MEMORIES / -growth).ceil();
-        if M::LINEAR && !self.limited() || periods > MOST_PERIODS {
-            return Ok(None);
-        }
-        let stiffness = self.plant().energy().position.max(0.5);
-        let back = |distance: f64| -> Result<Option<usize>, AdviseError> {
-            let start = |i: usize| {
-                let (sine, cosine) = (std::f64::consts::TAU * i as f64 / STARTS as f64).sin_cos();
-                let speed = (2.0 * stiffness).sqrt();
-                State { q: [distance * cosine], v: [distance * speed * sine] }
-            };
-            let starts: Vec<State<f64, 1>> = (0..STARTS).map(start).collect();
-            let run = Run { before: periods as u64, periods: 0, starts: &starts, intensity: 0.0 };
-            let Some(ran) = self.run(lab, run)? else { return Ok(None) };
-            let near = |state: &State<f64, 1>| {
-                state.q[0].abs() < 0.05 * distance && state.q[0].is_finite()
-            };
-            Ok(Some(ran.last.iter().filter(|state| near(state)).count()))
-        };
-        let asked = self.control.deviation;
-        // Losses with long latencies cannot be simulated.
-        let Some(count) = back(asked)? else { return Ok(None) };
-        let of_asked = [count, STARTS];
-        let (mut low, mut high) = (0.0, 4.0 * asked);
-        if back(high)? == Some(STARTS) {
-            low = high;
-        }
-        for _ in 0..16 {
-            if low == high {
-                break;
-            }
-            let middle = 0.5 * (low + high);
-            if back(middle)? == Some(STARTS) { low = middle } else { high = middle }
-        }
-        Ok(Some(Returns { asked, of_asked, up_to: low }))
-    }
-
     /// Whether its command has a limit.
-    fn limited(&self) -> bool {
+    pub(super) fn limited(&self) -> bool {
         match self.control.law {
             super::Law::Pid(gains) => gains.most.is_finite(),
             _ => false,

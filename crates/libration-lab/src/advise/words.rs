@@ -21,7 +21,12 @@ pub(super) fn advised(advice: &Advice, request: &Request) -> String {
         _ => format!(" over {horizon} s"),
     };
     match advice.chosen() {
-        None => format!("No integrator keeps the {} below {most:e}{over}.", of.title()),
+        None => {
+            let steps = advice.tried_down_to.map_or_else(String::new, |shortest| {
+                format!(" with steps of {shortest:.4e} s or more, and shorter ones were not tried")
+            });
+            format!("No integrator keeps the {} below {most:e}{over}{steps}.", of.title())
+        }
         Some((choice, dt)) => {
             let float = advice.float().map_or("no float type", |float| float.float);
             format!(

@@ -3,7 +3,7 @@
 use libration::AnySystem;
 use libration::analysis::{Feedback, Jitter};
 use libration::control::controller::PidGains;
-use libration::system::{Kepler, Pendulum};
+use libration::system::{DampedOscillator, Kepler, Pendulum};
 use libration_lab::advise::{Control, Kind, Law, Measure, Request};
 
 use super::advise::advice;
@@ -143,4 +143,44 @@ fn a_cost_that_is_infinite_is_no_fault_of_integrators() {
         (control.latency, control.jitter) = (0.2, Jitter::Gaussian(0.1));
     });
     assert!(advice(&longer).unwrap_err().to_string().contains("does not stand its latency"));
+}
+
+#[test]
+fn a_narrow_window_of_instability_ends_a_budget_of_latency() {
+    // Damped, and fed back so weakly that it is unstable between 1.785 and 1.791 s alone, and stable again up to 3.7 s.
+    let mut weak = request(0.4, |control| {
+        control.law = Law::Pd(Feedback { position: 0.0, velocity: -0.2139 });
+        control.latency = 1.7;
+    });
+    weak.system = AnySystem::DampedOscillator(DampedOscillator { omega2: 10.0, gamma: 0.2 });
+    let found = advice(&weak).unwrap();
+    let looped = found.looped.as_ref().unwrap();
+    let limit = looped.budgets[0].stable_up_to.unwrap();
+    assert!((1.784..1.787).contains(&limit), "{limit}");
+    let room = looped.together.room.unwrap();
+    assert!((room - limit / 1.7).abs() < 1e-3, "{room} {limit}");
+    // What is stated is tried, whoever commands.
+    let stated = request(0.4, |control| control.latency = 1.788);
+    let law = |law: Law| {
+        let mut stated = stated.clone();
+        stated.system = weak.system;
+        stated.control.as_mut().unwrap().law = law;
+        let found = advice(&stated).unwrap();
+        assert!(!found.holds());
+        let limit = found.looped.unwrap().budgets[0].stable_up_to.unwrap();
+        assert!(limit < 1.788, "{limit}");
+    };
+    law(Law::Pd(Feedback { position: 0.0, velocity: -0.2139 }));
+}
+
+#[test]
+fn a_search_that_ends_before_its_steps_are_short_enough_says_so() {
+    let kepler = AnySystem::Kepler(Kepler { mu: 1.0 });
+    let long = free(kepler, &[1.0, 0.0], &[0.0, 1.0], Measure::Phase, 1e-3, 1e7);
+    assert!(advice(&long).is_err());
+    let pendulum = AnySystem::Pendulum(Pendulum { omega2: 9.81 });
+    let long = free(pendulum, &[1.0], &[0.0], Measure::Phase, 1e-3, 1e6);
+    let found = advice(&long).unwrap();
+    assert!(found.tried_down_to.is_some() && found.chosen().is_none());
+    assert!(found.answer.contains("shorter ones were not tried"), "{}", found.answer);
 }

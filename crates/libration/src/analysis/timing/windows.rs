@@ -54,6 +54,9 @@ const SPLIT: f64 = 256.0;
 /// Halvings of a step.
 const HALVINGS: u32 = 44;
 
+/// Golden sections of a step: to a part of 10⁻⁸.
+const SECTIONS: u32 = 40;
+
 /// So many crossings are followed at most.
 const MOST: usize = 100_000;
 
@@ -121,17 +124,40 @@ impl Plant<'_> {
     /// The latency in steps at which the loop that `feedback` closes becomes unstable, where a command that arrives within
     /// a step splits it, as it does in a simulation: where the spectral radius passes 1.
     ///
-    /// It lies within the same step as that of [`Plant::latency_windows`]. None where that has none, and beyond 256 steps.
+    /// It lies within the same step as an end of [`Plant::latency_windows`]. None where there is none, and beyond 256 steps.
     pub fn split_critical_latency(&self, feedback: Feedback) -> Option<f64> {
-        let mut low = self.latency_windows(feedback).critical().filter(|&d| d < SPLIT)?.floor();
-        let mut high = low + 1.0;
+        let ends = self.latency_windows(feedback).stable.into_iter().filter_map(|(_, end)| end);
+        ends.take_while(|&d| d < SPLIT).find_map(|d| self.crossing(feedback, d.floor()))
+    }
+
+    /// Where the spectral radius passes 1 between a latency of whole steps at which it is below and the next.
+    fn crossing(&self, feedback: Feedback, whole: f64) -> Option<f64> {
+        let above = |d: f64| {
+            let latency = Latency::of_steps(d).unwrap_or(Latency::NONE);
+            self.spectral_radius(feedback, latency) - Wide::one()
+        };
+        let mut high = whole + 1.0;
+        if !positive(above(high)) {
+            // It may be above for a while between: the largest of what has one maximum (J. Kiefer, *Sequential minimax search for a
+            // maximum*, Proceedings of the American Mathematical Society 4, 1953).
+            const PART: f64 = 0.618_033_988_749_894_9;
+            let (mut from, mut to) = (whole, high);
+            for _ in 0..SECTIONS {
+                let [left, right] = [to - PART * (to - from), from + PART * (to - from)];
+                match positive(above(left) - above(right)) {
+                    true => to = right,
+                    false => from = left,
+                }
+            }
+            high = 0.5 * (from + to);
+            if !positive(above(high)) {
+                return None;
+            }
+        }
+        let mut low = whole;
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            let radius = self.spectral_radius(feedback, Latency::of_steps(middle)?);
-            match positive(radius - Wide::one()) {
-                true => high = middle,
-                false => low = middle,
-            }
+            if positive(above(middle)) { high = middle } else { low = middle }
         }
         Some(low)
     }
