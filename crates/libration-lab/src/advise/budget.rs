@@ -146,10 +146,9 @@ impl<M: Model<1>> Loop<M> {
             (_, true) => format!(" --latency {}", latency.steps() * self.control.period),
             (_, false) => format!(" --latency {}steps", latency.steps()),
         };
-        let jitter = match jitter {
-            law if law.rms() == 0.0 => String::new(),
-            Jitter::Gaussian(rms) => format!(" --jitter gaussian:{rms}"),
-            Jitter::Uniform(rms) => format!(" --jitter uniform:{rms}"),
+        let jitter = match jitter.rms() {
+            0.0 => String::new(),
+            _ => format!(" --jitter {}", flag(jitter)),
         };
         let loss = if loss == 0.0 { String::new() } else { format!(" --loss {loss}") };
         let weights = self.control.weights.map_or_else(String::new, |w| {
@@ -173,10 +172,7 @@ impl<M: Model<1>> Loop<M> {
             return format!("{} --json", request.asked_by);
         }
         let Imperfections { latency, jitter, skew, loss } = *imperfections;
-        let law = match jitter {
-            Jitter::Gaussian(rms) => format!("gaussian:{rms}"),
-            Jitter::Uniform(rms) => format!("uniform:{rms}"),
-        };
+        let law = flag(jitter);
         let seconds = latency.steps() * self.control.period * (1.0 + skew);
         format!(
             "{} --latency {seconds} --jitter {law} --skew {skew} --loss {loss} --json",
@@ -216,5 +212,13 @@ impl<M: Model<1>> Loop<M> {
         };
         let used = first.used.unwrap_or(0.0);
         Ok(Some(Failing { kind: first.kind, used, frequency, how }))
+    }
+}
+
+/// A law of step times as flags take it.
+fn flag(law: Jitter) -> String {
+    match law {
+        Jitter::Gaussian(rms) => format!("gaussian:{rms}"),
+        Jitter::Uniform(rms) => format!("uniform:{rms}"),
     }
 }

@@ -187,8 +187,8 @@ impl<M: Model<1>> Loop<M> {
         plant: &Plant<'_>,
         with: &Imperfections,
     ) -> Result<bool, CostError> {
-        match self.control.record {
-            Some(_) => Ok(self.growth(plant, with)? < 0.0),
+        match self.replayed(with.jitter.rms()) {
+            Some(steps) => Ok(plant.replayed_growth(&self.linear, with, &steps)? < 0.0),
             None => plant.mean_square_stable(&self.linear, with),
         }
     }
