@@ -26,11 +26,23 @@ impl<const W: usize> Streams<W> {
         let mut streams = Streams { low: [0; W], high: [0; W] };
         for l in 0..W {
             let trajectory = first + l as u64;
-            let [low, high, ..] = Address { seed, trajectory, step: epoch, purpose }.bits();
-            // A state of zeros would stay one.
-            (streams.low[l], streams.high[l]) = (low, high | 1);
+            streams.seat(l, Address { seed, trajectory, step: epoch, purpose });
         }
         streams
+    }
+
+    /// The `l`-th of them begins an epoch that has an address of its own.
+    #[inline(always)]
+    pub fn seat(&mut self, l: usize, epoch: Address) {
+        let [low, high, ..] = epoch.bits();
+        // A state of zeros would stay one.
+        (self.low[l], self.high[l]) = (low, high | 1);
+    }
+
+    /// The `l`-th of them goes on as it does there.
+    #[inline(always)]
+    pub fn take_up(&mut self, l: usize, from: &Self) {
+        (self.low[l], self.high[l]) = (from.low[l], from.high[l]);
     }
 
     /// Generators of which nothing is asked.

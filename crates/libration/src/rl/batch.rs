@@ -136,12 +136,13 @@ where
         let count = len.div_ceil(LANES);
         let blocks = room(count, &block::empty::<T, E, O, D>())?;
         let past = room(count.saturating_mul(history.len()), &T::zero())?;
-        let draws = [Purpose::StepTime, Purpose::Observation, Purpose::Action]
-            .map(|purpose| Draws::new(purpose, first));
+        let draws = [Purpose::StepTime, Purpose::Observation, Purpose::Action].map(Draws::new);
         let step = 0;
         let mut all =
             Environments { world, seed, first, step, len, execution, blocks, history, past, draws };
-        (0..len).for_each(|n| all.begin(n, 0));
+        for n in 0..len {
+            all.begin(n, Episode { seed, environment: (first + n) as u64, number: 0 });
+        }
         Ok(all)
     }
 
@@ -177,17 +178,35 @@ where
     pub fn reset(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
         EnvironmentError::shape("marks of the reset", which.len(), self.len)?;
         for n in (0..self.len).filter(|&n| which[n]) {
-            self.begin(n, self.blocks[n / LANES].episode[n % LANES] + 1);
+            let next = self.blocks[n / LANES].next(n % LANES);
+            self.begin(n, next);
+        }
+        Ok(())
+    }
+
+    /// Begins a first episode in every environment for which there is a seed: it is then what the only environment of a batch of that
+    /// seed is, at the start of its first episode.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] if there is not one or none for each; [`EnvironmentError::Seeded`] if rates of clocks are listed.
+    pub fn seed(&mut self, seeds: &[Option<u64>]) -> Result<(), EnvironmentError> {
+        EnvironmentError::shape("seeds", seeds.len(), self.len)?;
+        if self.world.parts().clock.trajectories().is_some() {
+            return Err(EnvironmentError::Seeded);
+        }
+        for (n, seed) in seeds.iter().enumerate() {
+            if let &Some(seed) = seed {
+                self.begin(n, Episode { seed, environment: 0, number: 0 });
+            }
         }
         Ok(())
     }
 
     /// Begins an episode of environment `n`.
-    fn begin(&mut self, n: usize, number: u64) {
-        let Environments { world, history, seed, first, step, .. } = *self;
+    fn begin(&mut self, n: usize, episode: Episode) {
+        let Environments { world, history, step, .. } = *self;
         let (b, l) = (n / LANES, n % LANES);
         let past = &mut self.past[b * history.len()..][..history.len()];
-        let episode = Episode { seed, environment: (first + n) as u64, number };
         block::begin(&mut self.blocks[b], history, past, &world, l, episode, step);
         self.blocks[b].settle();
     }

@@ -6,6 +6,7 @@ use super::start::Episode;
 use super::{Start, Variation, World};
 use crate::control::{Begin, Clock, Memory};
 use crate::ensemble::kernel::{at, put};
+use crate::random::Streams;
 use crate::{Float, State};
 
 /// Neighbouring environments, of which each has a lane.
@@ -32,6 +33,10 @@ pub(super) struct Block<T, C, V, const D: usize> {
     pub(super) oldest: u64,
     /// Its number.
     pub(super) episode: [u64; LANES],
+    /// From which all that is random is drawn.
+    pub(super) seed: [u64; LANES],
+    /// And the number of the environment there.
+    pub(super) environment: [u64; LANES],
     /// How it ended, if it did and no other has begun: [`OVER`] and [`CUT`].
     pub(super) ended: [u8; LANES],
 }
@@ -84,6 +89,8 @@ pub(super) fn empty<T: Float, E: World<T, O, D>, const O: usize, const D: usize>
         began: [0; LANES],
         oldest: 0,
         episode: [0; LANES],
+        seed: [0; LANES],
+        environment: [0; LANES],
         ended: [0; LANES],
     }
 }
@@ -111,6 +118,7 @@ pub(super) fn begin<T: Float, E: World<T, O, D>, const O: usize, const D: usize>
     (0..2).for_each(|i| block.severity[i][l] = T::from_f64(severity[i]));
     (block.paid[l], block.banked[l], block.ended[l]) = (T::zero(), 0.0, 0);
     (block.began[l], block.episode[l]) = (now, episode.number);
+    (block.seed[l], block.environment[l]) = (episode.seed, episode.environment);
     history.begin(past, l, &state);
 }
 
@@ -119,6 +127,18 @@ impl<T: Copy, C: Copy, V, const D: usize> Block<T, C, V, D> {
     #[inline(always)]
     pub(super) fn state(&self, l: usize) -> State<T, D> {
         State { q: at(&self.q, l), v: at(&self.v, l) }
+    }
+
+    /// The episode of lane `l`.
+    pub(super) fn episode(&self, l: usize) -> Episode {
+        let (seed, environment) = (self.seed[l], self.environment[l]);
+        Episode { seed, environment, number: self.episode[l] }
+    }
+
+    /// The one that follows it.
+    pub(super) fn next(&self, l: usize) -> Episode {
+        let episode = self.episode(l);
+        Episode { number: episode.number + 1, ..episode }
     }
 
     /// Lane `l`, which is no environment, is at rest from the step `now` on.
@@ -151,6 +171,13 @@ impl<T: Copy, C: Copy, V, const D: usize> Block<T, C, V, D> {
         T: Float,
     {
         self.banked[l] + self.paid[l].to_f64()
+    }
+
+    /// What stands still takes no words of these.
+    pub(super) fn keep_words(&self, words: [&mut Streams<LANES>; 3], before: &[Streams<LANES>; 3]) {
+        for (words, before) in words.into_iter().zip(before) {
+            (0..LANES).filter(|&l| self.ended[l] != 0).for_each(|l| words.take_up(l, before));
+        }
     }
 
     /// Episodes have begun.

@@ -3,6 +3,7 @@
 use bytemuck::Pod;
 
 use super::block::BlockOf;
+use super::draws::renew;
 use super::kernel::LANES;
 use super::row::{Records, Row, Writer};
 use super::stage::{Site, Stage, judged, lane};
@@ -11,7 +12,7 @@ use super::{Parts, Policy, Sensor, Task, World};
 use crate::control::Clock;
 use crate::ensemble::instructions::Target;
 use crate::ensemble::kernel::put;
-use crate::random::Streams;
+use crate::random::{Purpose, Streams};
 use crate::system::Held;
 use crate::{Float, Integrator};
 
@@ -45,7 +46,9 @@ where
         writer: &Writer<I>,
         records: &mut Records<T, O, D>,
     ) -> u8 {
-        self.renew(site.place, words);
+        if const { P::DRAWS } {
+            renew(words, block, [site.place.step, 1, 0], Purpose::Action);
+        }
         let (policy, dt) = (self.policy, self.dt);
         let mut ended = 0;
         let mut out = Step {

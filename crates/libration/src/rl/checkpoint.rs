@@ -3,6 +3,7 @@
 use bytemuck::Pod;
 
 use super::block::{self, BlockOf, CUT, ClockMemory, Numbers, OVER};
+use super::draws::Draws;
 use super::kernel::LANES;
 use super::{Environments, World};
 use crate::Float;
@@ -18,7 +19,7 @@ where
     const NUMBERS: usize = 2 * D + 3 + ClockMemory::<T, E, O, D>::LEN + Numbers::<T, E, O, D>::LEN;
 
     /// Bytes of a block.
-    const BLOCK: usize = LANES * (Self::NUMBERS * size_of::<T>() + 8 + 2 * 4 + 2 * 8 + 1);
+    const BLOCK: usize = LANES * (Self::NUMBERS * size_of::<T>() + 8 + 2 * 4 + 4 * 8 + 1);
 
     fn save_block<X>(
         block: &BlockOf<T, E, O, D>,
@@ -34,7 +35,9 @@ where
         sink(bytemuck::cast_slice(&block.banked))?;
         block.delays.iter().try_for_each(|row| sink(bytemuck::cast_slice(row)))?;
         sink(bytemuck::cast_slice(&block.began))?;
-        sink(bytemuck::cast_slice(&block.episode))?;
+        for row in [&block.episode, &block.seed, &block.environment] {
+            sink(bytemuck::cast_slice(row))?;
+        }
         sink(&block.ended)
     }
 
@@ -57,6 +60,8 @@ where
         block.delays.iter_mut().for_each(|row| from.fill(row));
         from.fill(&mut block.began);
         from.fill(&mut block.episode);
+        from.fill(&mut block.seed);
+        from.fill(&mut block.environment);
         from.fill(&mut block.ended);
         block.settle();
     }
@@ -122,6 +127,7 @@ where
             }
         }
         (self.step, self.blocks) = (step, blocks);
+        self.draws.iter_mut().for_each(Draws::forget);
         from.fill(&mut self.past);
         Ok(())
     }
@@ -142,4 +148,5 @@ fn clear<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
     block.severity.iter_mut().for_each(|row| row[l] = T::one());
     block.delays.iter_mut().for_each(|row| row[l] = 0);
     (block.banked[l], block.began[l], block.episode[l], block.ended[l]) = (0.0, 0, 0, 0);
+    (block.seed[l], block.environment[l]) = (0, 0);
 }

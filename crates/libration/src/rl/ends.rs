@@ -3,7 +3,6 @@
 use super::block::{self, BlockOf, CUT, LOST, OVER};
 use super::kernel::LANES;
 use super::stage::{Site, Stage};
-use super::start::Episode;
 use super::yields::Yield;
 use super::{Autoreset, Place, Policy, World};
 use crate::Float;
@@ -62,9 +61,7 @@ where
         }
         for l in 0..count {
             let environment = place.environment + l;
-            let number = block.episode[l] + 1;
-            let address = self.first + environment as u64;
-            let episode = Episode { seed: self.seed, environment: address, number };
+            let episode = block.next(l);
             if let Some(stood) = stood.filter(|stood| stood.ended[l] != 0) {
                 out.step.rewards[l] = T::zero();
                 let flags = if self.autoreset == Autoreset::Disabled { stood.ended[l] } else { 0 };

@@ -48,6 +48,12 @@ pub enum EnvironmentError {
         /// What is missing.
         room: NoRoom,
     },
+    /// What is listed by number is asked for where numbers are no more.
+    #[error(
+        "rates of clocks are listed by the numbers of environments, and a seed of its own makes every environment the first of a batch: \
+         draw the rates from a law, or give the batch one seed"
+    )]
+    Seeded,
     /// A time limit of nothing.
     #[error("the time limit is 0 actions; it must be at least 1, or there must be none")]
     Limit,

@@ -38,8 +38,6 @@ pub(super) struct Horizon<'a, 's, T, E, P, B, const O: usize, const D: usize> {
     pub(super) world: &'s E,
     pub(super) policy: P,
     pub(super) history: History,
-    /// The seed, and the number of the first environment.
-    pub(super) draws: [u64; 2],
     /// All environments.
     pub(super) environments: usize,
     /// Steps taken before.
@@ -79,11 +77,11 @@ where
     #[inline(always)]
     fn with_simd<V: Simd>(self, _: V) -> Vec<Final<T, O>> {
         let On(horizon, target) = self;
-        let Horizon { world, policy, history, draws, environments, step, .. } = horizon;
+        let Horizon { world, policy, history, environments, step, .. } = horizon;
         let Horizon { share, mut strip, writes, .. } = horizon;
         let writer = Writer { streaming: Streaming::on(target), layout: strip.layout, writes };
         let parts = *world.parts();
-        let stage = Stage::<T, E, P, O, D>::new(world, policy, history, draws);
+        let stage = Stage::<T, E, P, O, D>::new(world, policy, history);
         let brief = stage.is_brief();
         let [times, looks, acts] = share.words;
         let mut none = [Streams::<LANES>::none(); 3];
@@ -110,21 +108,25 @@ where
                         };
                     }
                     let acts = acts.get_mut(b).unwrap_or(no_acts);
+                    let looks = looks.get_mut(b).unwrap_or(no_looks);
+                    let times = times.get_mut(b).unwrap_or(no_times);
+                    // And so are its words.
+                    let spoken = stood.is_some().then_some([*times, *looks, *acts]);
                     let swift = brief && count == LANES && stood.is_none();
                     let mut ended = if swift {
                         let overs = &mut out.overs;
                         stage.brief(parts, &site, block, acts, overs, b, row, &writer, &mut records)
                     } else {
-                        let looks = looks.get_mut(b).unwrap_or(no_looks);
                         stage.look(&site, block, past!(), looks, &mut out.step.seen);
-                        stage.act(place, acts, &mut out.step);
-                        let times = times.get_mut(b).unwrap_or(no_times);
+                        stage.act(place, block, acts, &mut out.step);
                         stage.advance(&site, block, past!(), times, &mut out)
                     };
                     ended |= stage.limit(now, block, ended != 0 || stood.is_some(), &mut out.cuts);
                     let whole = ended == 0 && stood.is_none();
                     if !whole {
-                        let looks = looks.get(b).unwrap_or(no_looks);
+                        if let Some((stood, spoken)) = stood.as_ref().zip(spoken.as_ref()) {
+                            stood.keep_words([times, looks, acts], spoken);
+                        }
                         stage.end(&site, block, stood.as_ref(), past!(), looks, &mut out);
                     }
                     if count < LANES {

@@ -21,12 +21,12 @@ where
     /// [`EnvironmentError::Shape`] if that is not the length of `to`.
     pub fn observe(&mut self, mut to: &mut [T]) -> Result<(), EnvironmentError> {
         EnvironmentError::shape("numbers to be observed", to.len(), self.len.saturating_mul(O))?;
-        let Environments { world, history, seed, first, step, len, .. } = *self;
+        let Environments { world, history, step, len, .. } = *self;
         let (sensor, systems) = (world.parts().sensor, world.parts().systems);
-        let words = self.draws[1].prepare(seed, step, 0, sensor.words(), self.blocks.len());
+        let words = self.draws[1].prepare(&self.blocks, [step, 1], 0, sensor.words());
         // A look needs no policy.
         let nobody = policy::Constant([0.0; D]);
-        let stage = Stage::<T, E, _, O, D>::new(&world, nobody, history, [seed, first as u64]);
+        let stage = Stage::<T, E, _, O, D>::new(&world, nobody, history);
         let threads = self.execution.threads_for(len as u64);
         let share = self.blocks.len().div_ceil(threads).max(1);
         let mut past = &mut self.past[..];

@@ -65,20 +65,14 @@ where
         rollout.pauses = parts.autoreset != Autoreset::SameStep;
         rollout.idle = if rollout.pauses { self.standing() } else { Vec::new() };
 
-        let Environments { world, history, seed, first: shard, step, .. } = *self;
-        let blocks = self.blocks.len();
+        let Environments { world, history, step, .. } = *self;
         let [times, looks, acts] = &mut self.draws;
+        let blocks = &self.blocks[..];
         let words = world.parts().clock.words();
-        let times = times.prepare(
-            seed,
-            step.saturating_mul(substeps),
-            steps.saturating_mul(substeps),
-            words,
-            blocks,
-        );
+        let times = times.prepare(blocks, [step, substeps], steps, words);
         let words = world.parts().sensor.words();
-        let looks = looks.prepare(seed, step, steps, words, blocks);
-        let acts = acts.prepare(seed, step, steps, policy.words(), blocks);
+        let looks = looks.prepare(blocks, [step, 1], steps, words);
+        let acts = acts.prepare(blocks, [step, 1], steps, policy.words());
         let mut rest = (&mut self.blocks[..], &mut self.past[..], [times, looks, acts]);
         let mut first = 0;
         let mut shares = Vec::with_capacity(counts.len());
@@ -101,7 +95,6 @@ where
                 world: &world,
                 policy,
                 history,
-                draws: [seed, shard as u64],
                 environments: len,
                 step,
                 share,

@@ -1,6 +1,7 @@
 //! What a step of a block consists of: scalar functions in loops over lanes.
 
 use super::block::{self, BlockOf, ClockMemory, LOST, NumberLanes};
+use super::draws::renew;
 use super::history::History;
 use super::kernel::LANES;
 use super::yields::{Step, Yield};
@@ -8,7 +9,7 @@ use super::{Autoreset, Parts, Place, Policy, Sensor, Task, Variation, World};
 use crate::control::{Clock, Memory};
 use crate::ensemble::Assign;
 use crate::ensemble::kernel::{Lines, at, put};
-use crate::random::{EPOCH, Purpose, Streams};
+use crate::random::{Purpose, Streams};
 use crate::system::Held;
 use crate::{Float, Integrator, State};
 
@@ -18,9 +19,6 @@ pub(super) struct Stage<'s, T, E, P, const O: usize, const D: usize> {
     pub(super) world: &'s E,
     pub(super) policy: P,
     pub(super) history: History,
-    pub(super) seed: u64,
-    /// The number of the first environment.
-    pub(super) first: u64,
     pub(super) dt: T,
     /// From action to action.
     span: f64,
@@ -48,14 +46,12 @@ where
     E: World<T, O, D>,
     P: Policy<T, O, D>,
 {
-    pub(super) fn new(world: &'s E, policy: P, history: History, draws: [u64; 2]) -> Self {
+    pub(super) fn new(world: &'s E, policy: P, history: History) -> Self {
         let parts = world.parts();
         Stage {
             world,
             policy,
             history,
-            seed: draws[0],
-            first: draws[1],
             dt: T::from_f64(parts.dt),
             span: parts.dt * f64::from(parts.substeps),
             substeps: parts.substeps.into(),
@@ -92,9 +88,8 @@ where
         words: &mut Streams<LANES>,
         seen: &mut [[T; LANES]; O],
     ) {
-        if const { E::Sensor::DRAWS } && site.place.step.is_multiple_of(EPOCH) {
-            let first = self.first + site.place.environment as u64;
-            *words = Streams::at(self.seed, first, site.place.step / EPOCH, Purpose::Observation);
+        if const { E::Sensor::DRAWS } {
+            renew(words, block, [site.place.step, 1, 0], Purpose::Observation);
         }
         let (mut q, mut v) = (Lines(block.q), Lines(block.v));
         if self.history.sees_late() {
@@ -117,19 +112,18 @@ where
         }
     }
 
-    /// The words of actions, before those of a step.
-    #[inline(always)]
-    pub(super) fn renew(&self, place: Place, words: &mut Streams<LANES>) {
-        if const { P::DRAWS } && place.step.is_multiple_of(EPOCH) {
-            let first = self.first + place.environment as u64;
-            *words = Streams::at(self.seed, first, place.step / EPOCH, Purpose::Action);
-        }
-    }
-
     /// What is done about it.
     #[inline(always)]
-    pub(super) fn act(&self, place: Place, words: &mut Streams<LANES>, out: &mut Step<T, O, D>) {
-        self.renew(place, words);
+    pub(super) fn act(
+        &self,
+        place: Place,
+        block: &BlockOf<T, E, O, D>,
+        words: &mut Streams<LANES>,
+        out: &mut Step<T, O, D>,
+    ) {
+        if const { P::DRAWS } {
+            renew(words, block, [place.step, 1, 0], Purpose::Action);
+        }
         let Step { seen, actions, log_probabilities, .. } = out;
         let policy = self.policy;
         policy.act_all(place, seen, words, actions, log_probabilities);
@@ -159,9 +153,9 @@ where
             if substep > 0 && self.history.sees_late() {
                 self.history.pass(past, step, &q.0, &v.0);
             }
-            if const { E::Clock::DRAWS } && step.is_multiple_of(EPOCH) {
-                let first = self.first + site.place.environment as u64;
-                *words = Streams::at(self.seed, first, step / EPOCH, Purpose::StepTime);
+            if const { E::Clock::DRAWS } {
+                let now = [site.place.step, self.substeps, substep];
+                renew(words, block, now, Purpose::StepTime);
             }
             let beat = parts.clock.beat(step);
             for l in 0..LANES {

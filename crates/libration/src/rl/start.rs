@@ -21,11 +21,22 @@ pub struct Episode {
 /// Draws of an episode for the same purpose.
 const DRAWS: u64 = 64;
 
+/// Between the epochs of an episode and those of the next: an odd number, so that all of them differ, and as far from any simple share of
+/// 2⁶⁴ as can be, so that they hardly ever come near each other.
+const EPISODES_APART: u64 = 0x9E37_79B9_7F4A_7C15;
+
 impl Episode {
     /// The address of its `i`-th draw for a purpose.
     pub(super) fn address(self, purpose: Purpose, i: usize) -> Address {
         let Episode { seed, environment: trajectory, number } = self;
         let step = number.wrapping_mul(DRAWS).wrapping_add(i as u64);
+        Address { seed, trajectory, step, purpose }
+    }
+
+    /// The address of the words that follow each other in one of its epochs. Those of the first episode are those of a trajectory.
+    pub(super) fn epoch(self, purpose: Purpose, epoch: u64) -> Address {
+        let Episode { seed, environment: trajectory, number } = self;
+        let step = number.wrapping_mul(EPISODES_APART).wrapping_add(epoch);
         Address { seed, trajectory, step, purpose }
     }
 

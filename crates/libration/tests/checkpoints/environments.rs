@@ -106,7 +106,7 @@ fn a_state_of_other_environments_or_a_damaged_one_is_refused_and_changes_nothing
     let blocks = state.len() - 8 - 3 * (5 * 2 + 4) * 64 * 4;
     assert_eq!(blocks % 3, 0, "{blocks}");
     let end = 8 + blocks / 3;
-    for at in [end - 64 - 2 * 64 * 8 + 7, end - 64 - 2 * 64 * 8 - 4] {
+    for at in [end - 64 - 4 * 64 * 8 + 7, end - 64 - 4 * 64 * 8 - 4] {
         let mut damaged = state.clone();
         damaged[at] = 0x7f;
         let error = other.restore(&damaged).unwrap_err().to_string();

@@ -31,13 +31,15 @@ struct Words {
 
 impl Words {
     fn new(seed: u64, n: u64, purpose: Purpose) -> Self {
-        Words { address: (seed, n, purpose), stream: Streams::at(seed, n, 0, purpose) }
+        Words { address: (seed, n, purpose), stream: Streams::none() }
     }
 
-    fn before(&mut self, step: u64) {
-        let (seed, n, purpose) = self.address;
-        if step.is_multiple_of(EPOCH) {
-            self.stream = Streams::at(seed, n, step / EPOCH, purpose);
+    /// Before this one of the draws of an episode: the epochs of each are as far from those of the next as 2⁶⁴ divided by the golden ratio.
+    fn before(&mut self, draw: u64, number: u64) {
+        let (seed, trajectory, purpose) = self.address;
+        if draw.is_multiple_of(EPOCH) {
+            let step = (draw / EPOCH).wrapping_add(number.wrapping_mul(11_400_714_819_323_198_485));
+            self.stream.seat(0, Address { seed, trajectory, step, purpose });
         }
     }
 }
@@ -61,10 +63,13 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
     let mut standing: Option<(u8, u8)> = None;
     // Of the episode: states at the beginning of each step of the integrator, and actions.
     let (mut states, mut actions, mut clock) = (Vec::new(), Vec::<[f32; 1]>::new(), None);
+    // Its steps so far: what stands still grows no older.
+    let mut age = 0;
     for step in 0..steps {
         if clock.is_none() {
             states = vec![parts.start.draw(address(number))];
             actions.clear();
+            age = 0;
             clock = Some(parts.clock.start(Begin::new(seed, n as u64, number)));
         }
         let numbers = parts.variation.draw(address(number));
@@ -72,16 +77,17 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
         let (system, task) = parts.variation.apply(&numbers, systems, parts.task);
         let severity = severity(&parts.severity, address(number));
         let [late, effect] = delays(&parts.delays, address(number));
-        let see = |states: &[State<f32, 1>], looks: &mut Words, step: u64| {
-            looks.before(step);
+        let see = |states: &[State<f32, 1>], looks: &mut Words, age: u64| {
+            looks.before(age, number);
             let shown = states[states.len().saturating_sub(1 + late)];
             let seen = task.observe(0.0, &shown);
             let measured = parts.sensor.measure(seen, &mut || looks.stream.next(0));
             let noisy = |i: usize| measured[i] + (severity[1] - 1.0) * (measured[i] - seen[i]);
             if E::Sensor::DRAWS { [noisy(0), noisy(1)] } else { measured }
         };
-        let seen = see(&states, &mut looks, step);
-        acts.before(step);
+        let words = [&times, &looks, &acts].map(|words| words.stream);
+        let seen = see(&states, &mut looks, age);
+        acts.before(age, number);
         let place = Place { environment: n, environments, step, row: 0 };
         let act = policy.act(place, &seen, &mut || acts.stream.next(0));
         let before = *states.last().unwrap();
@@ -89,7 +95,7 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
         let mut state = before;
         for substep in 0..substeps {
             let at = step * substeps + substep;
-            times.before(at);
+            times.before(age * substeps + substep, number);
             // The action whose look lies a latency or more behind.
             let passed = (states.len() as i64 - 1 - effect as i64).div_euclid(substeps as i64);
             let command = usize::try_from(passed).map_or([0.0], |passed| actions[passed]);
@@ -117,6 +123,7 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
             // No step at all; sensors go on seeing what stands still.
             let passed = states.len() - substeps as usize;
             states[passed..].fill(before);
+            [times.stream, looks.stream, acts.stream] = words;
             (now.reward, now.moved) = (0.0, false);
             if parts.autoreset == Autoreset::NextStep {
                 (now.over, now.cut) = (0, 0);
@@ -126,12 +133,13 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
             }
         } else if now.over + now.cut > 0 {
             let mut ahead = Words { stream: looks.stream, ..looks };
-            now.last = Some(see(&states, &mut ahead, step + 1));
+            now.last = Some(see(&states, &mut ahead, age + 1));
             match parts.autoreset {
                 Autoreset::SameStep => (number, clock) = (number + 1, None),
                 Autoreset::NextStep | Autoreset::Disabled => standing = Some((now.over, now.cut)),
             }
         }
+        age += u64::from(now.moved);
         told.push(now);
     }
     told

@@ -11,6 +11,7 @@ use crate::alone::{Told, alone};
 use crate::{executions, ideal, perturbed};
 
 pub(crate) const POLICY: Linear<2, 1> = Linear { weights: [[-3.0, 0.5]], bias: [0.25] };
+pub(crate) const EXPLORING: Explore<Linear<2, 1>, 1> = Explore { policy: POLICY, sigma: [0.5] };
 
 /// What these environments tell of so many steps, in as many rollouts as there are horizons.
 pub(crate) fn told<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
@@ -85,17 +86,15 @@ fn an_ideal_environment_does_what_it_does_alone_whatever_runs_beside_it_and_howe
 
 #[test]
 fn so_does_one_with_delays_jitter_skew_noise_variation_and_exploration_under_every_autoreset() {
-    let policy = Explore { policy: POLICY, sigma: [0.5] };
     for autoreset in [Autoreset::SameStep, Autoreset::NextStep, Autoreset::Disabled] {
-        let ends = compare(perturbed(autoreset), policy);
+        let ends = compare(perturbed(autoreset), EXPLORING);
         assert!(ends > 50, "some episodes end before their limit: {ends} {autoreset:?}");
     }
 }
 
 #[test]
 fn shards_of_any_size_do_what_all_do_together() {
-    let (world, policy) =
-        (perturbed(Autoreset::SameStep), Explore { policy: POLICY, sigma: [0.5] });
+    let (world, policy) = (perturbed(Autoreset::SameStep), EXPLORING);
     let how = (Layout::Interleaved, Writes::Plain);
     let whole = told(world, policy, 0..400, Execution::serial(), &[270], how);
     for which in [0..1, 1..64, 64..100, 100..399, 399..400] {

@@ -8,6 +8,7 @@ mod clocks;
 mod episodes;
 mod faults;
 mod policies;
+mod seeds;
 mod tensors;
 mod widths;
 
