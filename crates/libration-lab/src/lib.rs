@@ -9,6 +9,7 @@ pub mod bench;
 pub mod config;
 pub mod dataset;
 mod effort;
+pub mod environments;
 pub mod export;
 pub mod figure;
 mod lab;

@@ -7,6 +7,7 @@
 //! This crate does no input or output, reads no clock and prints nothing.
 
 pub mod analysis;
+mod array;
 pub mod catalog;
 pub mod checkpoint;
 pub mod control;

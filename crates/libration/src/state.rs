@@ -1,8 +1,8 @@
 //! A point in phase space, and the vector-space operations on it.
 
-use core::array::from_fn;
 use core::ops::Add;
 
+use crate::array::each;
 use crate::{Scalar, System};
 
 /// Position `q` and velocity `v` of a system with `D` degrees of freedom.
@@ -20,7 +20,7 @@ pub struct State<S, const D: usize> {
 /// `x + h·y`, element by element.
 #[inline(always)]
 fn axpy<S: Scalar, const D: usize>(x: [S; D], h: S, y: [S; D]) -> [S; D] {
-    from_fn(|i| x[i] + h * y[i])
+    each(|i| x[i] + h * y[i])
 }
 
 impl<S: Scalar, const D: usize> State<S, D> {
@@ -76,6 +76,6 @@ impl<S: Scalar, const D: usize> Add for State<S, D> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        State { q: from_fn(|i| self.q[i] + other.q[i]), v: from_fn(|i| self.v[i] + other.v[i]) }
+        State { q: each(|i| self.q[i] + other.q[i]), v: each(|i| self.v[i] + other.v[i]) }
     }
 }

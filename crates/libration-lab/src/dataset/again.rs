@@ -5,16 +5,15 @@ use std::ops::Range;
 use std::path::Path;
 
 use libration::ensemble::Execution;
-use libration::rl::{Environments, World};
 use libration_data::{Chunk, Flaw, Manifest, checksum, unlisted, verify};
 use serde_json::Value;
 
-use super::actor::Actor;
 use super::minari::Before;
 use super::stream::{Course, head};
 use super::tables::File;
 use super::world::{Group, Number, Visit};
 use super::{DataFormat, Dataset, DatasetError, Watch};
+use crate::environments::{Actor, Batch};
 
 /// Reads a data set and compares it with its manifest; with `again` computes it anew as well, and compares that. Gives what is wrong.
 ///
@@ -144,10 +143,10 @@ struct Compare<'a> {
 impl Visit for Compare<'_> {
     type Output = Result<(), DatasetError>;
 
-    fn visit<T: Number, E: World<T, O, 1>, const O: usize>(
+    fn visit<T: Number, const O: usize>(
         self,
-        all: Environments<T, E, O, 1>,
-        actor: Actor<O>,
+        all: Box<dyn Batch<T, O>>,
+        actor: Actor<'static, T, O>,
     ) -> Self::Output {
         let Compare { dataset, format, group, execution, watch, flaws, .. } = self;
         let mut course = Course::new(dataset, format, group, all, actor);

@@ -12,8 +12,9 @@ use serde_json::{Value, json};
 use super::DataFormat;
 use super::chunk::{NamedFile, column};
 use super::episodes::Episode;
-use super::settings::{Acting, Dataset};
+use super::settings::Dataset;
 use super::world::Number;
+use crate::environments::Acting;
 use crate::trajectory::FloatType;
 
 /// The version of the package whose store this is.
@@ -110,14 +111,14 @@ fn rows<'a, T: Number, const O: usize>(
         flags[episode.len() - 1] = u8::from(is);
         Values::Bool(flags.into())
     };
-    let units: Vec<_> = dataset.seen().iter().map(|&(_, unit)| unit).collect();
+    let units: Vec<_> = dataset.recipe.seen().iter().map(|&(_, unit)| unit).collect();
     let list = |of| Values::Lists(1, Box::new(of));
     let mut seen =
         column("observations", "1", Values::Lists(O, Box::new(T::view(&episode.observation))));
     seen.unit = units.join(", ").into();
     Table::new(vec![
         seen,
-        column("actions", dataset.units()[2], list(with_last(&episode.action))),
+        column("actions", dataset.recipe.units()[2], list(with_last(&episode.action))),
         column("rewards", "1", with_last(&episode.reward)),
         column("terminations", "1", end(episode.terminated)),
         column("truncations", "1", end(!episode.terminated)),
@@ -126,7 +127,7 @@ fn rows<'a, T: Number, const O: usize>(
 
 /// What Minari asks of a data set.
 pub(super) fn about(dataset: &Dataset, all: Before) -> String {
-    let (system, task) = (dataset.system.name(), dataset.task.name());
+    let (system, task) = (dataset.recipe.system.any().name(), dataset.recipe.task.name());
     let about = json!({
         "dataset_id": format!("libration/{system}-{task}-v0"),
         "minari_version": VERSION,
@@ -146,10 +147,10 @@ pub(super) fn about(dataset: &Dataset, all: Before) -> String {
 
 /// Between which numbers each that is seen lies: cosines and sines within one, unless a sensor adds noise.
 fn bounds(dataset: &Dataset) -> Vec<[f64; 2]> {
-    let exact = dataset.noise.observation == 0.0;
+    let exact = dataset.recipe.noise.observation.rms() == 0.0;
     let circle = |name: &str| exact && (name.starts_with("cos_") || name.starts_with("sin_"));
     let bound = |name| if circle(name) { 1.0 } else { f64::INFINITY };
-    dataset.seen().iter().map(|&(name, _)| [-bound(name), bound(name)]).collect()
+    dataset.recipe.seen().iter().map(|&(name, _)| [-bound(name), bound(name)]).collect()
 }
 
 /// Between which numbers actions lie.

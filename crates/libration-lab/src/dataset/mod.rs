@@ -3,14 +3,12 @@
 //! A data set is divided into groups of neighbouring environments, and what each group does into chunks of steps. All of it follows
 //! from its settings, so that whoever was stopped computes again where it was, and whoever doubts computes it again.
 
-mod actor;
 mod again;
 mod chunk;
 mod episodes;
 mod error;
 mod format;
 mod minari;
-mod plant;
 mod reading;
 mod room;
 mod settings;

@@ -1,14 +1,15 @@
 //! Settings from the tables of a file.
 
-use libration::rl::Delays;
+use libration::analysis::Jitter;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
+use libration::rl::{Autoreset, Delays};
 use libration::{AnySystem, Method};
 
-use super::plant::Plant;
-use super::settings::{Acting, Chunk, Dataset, Noise, STEPS, Task};
+use super::settings::{Chunk, Dataset, STEPS};
 use super::tables::{File, PolicyTable, TaskTable};
 use crate::config::limits::{TIME_STEP, within};
 use crate::config::{Count, Fault, Number, names};
+use crate::environments::{Acting, Lone, Noise, Recipe, Task};
 use crate::trajectory::FloatType;
 
 /// `count`, if it is one of these.
@@ -79,35 +80,40 @@ impl TryFrom<File> for Dataset {
             Ok([low, high])
         };
         let task = task(file.task)?;
+        let rms = |key, number| Ok(Jitter::Gaussian(least_zero(key, number)?));
         Ok(Dataset {
             seed: count("seed", file.seed, 0..=u64::MAX)?,
             float,
             environments: count("environments", file.environments, 1..=1_000_000_000)? as usize,
             steps: count("steps", file.steps, 1..=STEPS)?,
-            method,
-            dt,
-            substeps: count("substeps", file.substeps, 1..=1_000_000)? as u32,
-            limit: Some(limit).filter(|&limit| limit > 0),
             chunk: Chunk {
                 environments: count("chunk.environments", file.chunk.environments, 1..=1_000_000)?
                     as usize,
                 steps: count("chunk.steps", file.chunk.steps, 1..=1_000_000)? as usize,
             },
-            system: system(&file)?,
-            task,
-            start: [ends("start.q", file.start.q)?, ends("start.v", file.start.v)?],
-            delays: Delays { observation: observation?, action: action? },
-            noise: Noise {
-                jitter: least_zero("noise.jitter", file.noise.jitter)?,
-                skew: least_zero("noise.skew", file.noise.skew)?,
-                observation: least_zero("noise.observation", file.noise.observation)?,
+            recipe: Recipe {
+                system: system(&file)?,
+                method,
+                dt,
+                substeps: count("substeps", file.substeps, 1..=1_000_000)? as u32,
+                task,
+                start: [ends("start.q", file.start.q)?, ends("start.v", file.start.v)?],
+                limit: Some(limit).filter(|&limit| limit > 0),
+                autoreset: Autoreset::SameStep,
+                delays: Delays { observation: observation?, action: action? },
+                saturation: f64::INFINITY,
+                noise: Noise {
+                    jitter: rms("noise.jitter", file.noise.jitter)?,
+                    skew: rms("noise.skew", file.noise.skew)?,
+                    observation: rms("noise.observation", file.noise.observation)?,
+                },
             },
-            policy: policy(file.policy, task.seen().len())?,
+            policy: policy(file.policy, task.observations())?,
         })
     }
 }
 
-fn system(file: &File) -> Result<AnySystem, Fault> {
+fn system(file: &File) -> Result<Lone, Fault> {
     let mut systems = file.system.iter();
     let (Some((name, parameters)), None) = (systems.next(), systems.next()) else {
         return Err(Fault::new("system", "`system` must be one table, as [system.oscillator]"));
@@ -115,11 +121,10 @@ fn system(file: &File) -> Result<AnySystem, Fault> {
     let parameters: Vec<_> = parameters.iter().map(|(name, value)| (name, value.0)).collect();
     let system = AnySystem::build(name, &parameters);
     let system = system.map_err(|error| Fault::new("system", error.to_string()))?;
-    if Plant::<f64>::new(system).is_none() {
+    Lone::new(system).ok_or_else(|| {
         let message = format!("`{name}` has no single degree of freedom, as a data set needs");
-        return Err(Fault::new("system", message));
-    }
-    Ok(system)
+        Fault::new("system", message)
+    })
 }
 
 fn task(table: TaskTable) -> Result<Task, Fault> {

@@ -1,11 +1,11 @@
 //! Whether a data set can be computed here.
 
 use libration::ensemble::{EnsembleError, NoRoom};
-use libration::rl::{Environments, Plan, Rollout, World};
+use libration::rl::{Plan, Rollout};
 
-use super::actor::Actor;
 use super::world::{Number, Visit};
 use super::{Dataset, DatasetError};
+use crate::environments::{Actor, Batch};
 
 /// Takes a step, if there is memory for all that is on its way at once, and the policy fits.
 pub(super) struct Try<'a>(pub(super) &'a Dataset);
@@ -16,10 +16,10 @@ const AT_ONCE: u128 = 2 * 4;
 impl Visit for Try<'_> {
     type Output = Result<(), DatasetError>;
 
-    fn visit<T: Number, E: World<T, O, 1>, const O: usize>(
+    fn visit<T: Number, const O: usize>(
         self,
-        mut all: Environments<T, E, O, 1>,
-        actor: Actor<O>,
+        mut all: Box<dyn Batch<T, O>>,
+        actor: Actor<'static, T, O>,
     ) -> Self::Output {
         let Dataset { chunk, steps, .. } = *self.0;
         let horizon = steps.min(chunk.steps as u64) as usize;

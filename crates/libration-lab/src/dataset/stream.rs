@@ -5,17 +5,17 @@ use std::sync::mpsc::{channel, sync_channel};
 use std::thread::{self, ScopedJoinHandle};
 
 use libration::ensemble::Execution;
-use libration::rl::{Environments, Plan, Rollout, World};
+use libration::rl::{Plan, Rollout};
 use libration_data::{Folder, Manifest, Stored, store};
 use serde_json::{Map, Value, json};
 
-use super::actor::Actor;
 use super::chunk::{Done, Rows};
 use super::episodes::Episodes;
 use super::minari::Before;
 use super::room::Try;
 use super::world::{Group, Number, Visit};
 use super::{DataFormat, Dataset, DatasetError};
+use crate::environments::{Actor, Batch};
 
 /// What is to be written, and where.
 #[derive(Clone, Debug)]
@@ -133,24 +133,24 @@ struct Stream<'a> {
 }
 
 /// Steps of a group through its chunks: what was done in each, into memory that is used again.
-pub(super) struct Course<'a, T: Number, E: World<T, O, 1>, const O: usize> {
+pub(super) struct Course<'a, T: Number, const O: usize> {
     pub(super) dataset: &'a Dataset,
     pub(super) group: Group,
-    pub(super) all: Environments<T, E, O, 1>,
-    pub(super) actor: Actor<O>,
+    pub(super) all: Box<dyn Batch<T, O>>,
+    pub(super) actor: Actor<'static, T, O>,
     format: DataFormat,
     /// Where they are wanted.
     episodes: Option<Episodes<T, O>>,
 }
 
-impl<'a, T: Number, E: World<T, O, 1>, const O: usize> Course<'a, T, E, O> {
+impl<'a, T: Number, const O: usize> Course<'a, T, O> {
     /// From the first step on.
     pub(super) fn new(
         dataset: &'a Dataset,
         format: DataFormat,
         group: Group,
-        all: Environments<T, E, O, 1>,
-        actor: Actor<O>,
+        all: Box<dyn Batch<T, O>>,
+        actor: Actor<'static, T, O>,
     ) -> Self {
         let episodes = || Episodes::new(group.first, group.len, dataset.longest());
         let episodes = (format == DataFormat::Minari).then(episodes);
@@ -192,10 +192,10 @@ impl<'a, T: Number, E: World<T, O, 1>, const O: usize> Course<'a, T, E, O> {
 impl Visit for Stream<'_> {
     type Output = Result<(), DatasetError>;
 
-    fn visit<T: Number, E: World<T, O, 1>, const O: usize>(
+    fn visit<T: Number, const O: usize>(
         self,
-        all: Environments<T, E, O, 1>,
-        actor: Actor<O>,
+        all: Box<dyn Batch<T, O>>,
+        actor: Actor<'static, T, O>,
     ) -> Self::Output {
         let Stream { dataset, format, group, from, folder, threads, watch } = self;
         let mut course = Course::new(dataset, format, group, all, actor);

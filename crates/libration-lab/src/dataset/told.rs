@@ -4,7 +4,8 @@ use libration::rl::task::{Regulate, Track};
 use serde_json::{Map, Value, json};
 
 use super::DataFormat;
-use super::settings::{Acting, Dataset, Noise, Task};
+use super::settings::Dataset;
+use crate::environments::{Acting, Noise, Recipe, Task};
 
 /// Version of the contract that manifests keep.
 const SCHEMA: &str = "libration.dataset/1";
@@ -13,7 +14,7 @@ impl Dataset {
     /// What manifests say: the keys of the file of settings, and what belongs to all files.
     pub(super) fn settings(&self, format: DataFormat) -> Map<String, Value> {
         // In the order of the tensor.
-        let seen = self.seen().into_iter();
+        let seen = self.recipe.seen().into_iter();
         let seen: Vec<_> = seen.map(|(name, unit)| json!({ "name": name, "unit": unit })).collect();
         let value = json!({
             "schema": SCHEMA,
@@ -32,7 +33,10 @@ impl Dataset {
     fn data(&self) -> Value {
         // JSON has no infinite numbers.
         let number = |x: f64| if x.is_finite() { json!(x) } else { json!(x.to_string()) };
-        let parameters = self.system.parameters().into_iter();
+        let Recipe { system, method, dt, substeps, task, start, limit, delays, noise, .. } =
+            &self.recipe;
+        let system = system.any();
+        let parameters = system.parameters().into_iter();
         let parameters: Map<String, Value> =
             parameters.map(|(name, value)| (name.to_owned(), number(value))).collect();
         let regulate = |r: &Regulate, mut more: Value| {
@@ -46,7 +50,7 @@ impl Dataset {
             }
             more
         };
-        let task = match &self.task {
+        let numbers = match task {
             Task::Regulate(r) => regulate(r, json!({})),
             Task::SwingUp(s) => json!({ "velocity": s.velocity, "effort": s.effort }),
             Task::Track(Track { reference, regulate: r }) => {
@@ -63,22 +67,22 @@ impl Dataset {
             Acting::Random { low, high } => json!({ "low": low, "high": high }),
             Acting::Constant(action) => json!({ "action": action }),
         };
-        let Noise { jitter, skew, observation } = self.noise;
+        let Noise { jitter, skew, observation } = noise;
         json!({
             "seed": self.seed,
             "float": self.float.name(),
             "environments": self.environments,
             "steps": self.steps,
-            "integrator": self.method.name(),
-            "dt": self.dt,
-            "substeps": self.substeps,
-            "limit": self.limit.unwrap_or(0),
+            "integrator": method.name(),
+            "dt": dt,
+            "substeps": substeps,
+            "limit": limit.unwrap_or(0),
             "chunk": { "environments": self.chunk.environments, "steps": self.chunk.steps },
-            "system": { self.system.name(): parameters },
-            "task": { self.task.name(): task },
-            "start": { "q": self.start[0], "v": self.start[1] },
-            "delays": { "observation": self.delays.observation, "action": self.delays.action },
-            "noise": { "jitter": jitter, "skew": skew, "observation": observation },
+            "system": { system.name(): parameters },
+            "task": { task.name(): numbers },
+            "start": { "q": start[0], "v": start[1] },
+            "delays": { "observation": delays.observation, "action": delays.action },
+            "noise": { "jitter": jitter.rms(), "skew": skew.rms(), "observation": observation.rms() },
             "policy": { self.policy.name(): policy },
         })
     }

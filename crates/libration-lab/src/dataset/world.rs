@@ -1,21 +1,17 @@
-//! From settings to environments: float type and task are chosen here, outside every loop.
+//! From settings to environments.
 
 use bytemuck::Pod;
-use libration::control::clock::{Gaussian, Jittered, Skewed};
-use libration::ensemble::{All, Execution};
-use libration::rl::sensor::Noisy;
-use libration::rl::start::Between;
-use libration::rl::{self, Environment, EnvironmentError, Environments, World};
-use libration::{Float, Method, State};
+use libration::ensemble::Execution;
+use libration::rl::EnvironmentError;
+use libration::{Elementary, Float};
 use libration_data::Values;
 
-use super::actor::Actor;
-use super::plant::Plant;
-use super::settings::{Dataset, Task};
+use super::settings::Dataset;
+use crate::environments::{self, Acting, Actor, Batch};
 use crate::trajectory::FloatType;
 
 /// A float type of data sets.
-pub(super) trait Number: Float + Pod {
+pub(super) trait Number: Float + Elementary + Pod {
     /// Its name in NumPy.
     const NUMPY: &str;
 
@@ -56,10 +52,10 @@ pub(super) trait Visit {
     type Output;
 
     /// Does it.
-    fn visit<T: Number, E: World<T, O, 1>, const O: usize>(
+    fn visit<T: Number, const O: usize>(
         self,
-        all: Environments<T, E, O, 1>,
-        actor: Actor<O>,
+        all: Box<dyn Batch<T, O>>,
+        actor: Actor<'static, T, O>,
     ) -> Self::Output;
 }
 
@@ -87,56 +83,25 @@ impl Dataset {
     /// If the settings cannot be.
     pub(super) fn with<V: Visit>(
         &self,
-        group: Group,
+        Group { first, len, .. }: Group,
         execution: &Execution,
         visit: V,
     ) -> Result<V::Output, EnvironmentError> {
+        let visit = Acted(visit, &self.policy);
         match self.float {
-            FloatType::F64 => self.on::<f64, V>(group, execution, visit),
-            _ => self.on::<f32, V>(group, execution, visit),
+            FloatType::F64 => self.recipe.with::<f64, _>([first, len], self.seed, execution, visit),
+            _ => self.recipe.with::<f32, _>([first, len], self.seed, execution, visit),
         }
     }
+}
 
-    fn on<T: Number, V: Visit>(
-        &self,
-        group: Group,
-        execution: &Execution,
-        visit: V,
-    ) -> Result<V::Output, EnvironmentError> {
-        match self.task {
-            Task::Regulate(task) => self.made::<T, _, V, 2>(task, group, execution, visit),
-            Task::SwingUp(task) => self.made::<T, _, V, 3>(task, group, execution, visit),
-            Task::Track(task) => self.made::<T, _, V, 4>(task, group, execution, visit),
-        }
-    }
+/// What is to be done, and who acts.
+struct Acted<'a, V>(V, &'a Acting);
 
-    fn made<T: Number, K: rl::Task<T, 1, O>, V: Visit, const O: usize>(
-        &self,
-        task: K,
-        group: Group,
-        execution: &Execution,
-        visit: V,
-    ) -> Result<V::Output, EnvironmentError> {
-        let [q, v] = self.start;
-        let start = Between(State { q: [q[0]], v: [v[0]] }, State { q: [q[1]], v: [v[1]] });
-        let Some(plant) = Plant::<T>::new(self.system) else {
-            unreachable!("a system of several degrees of freedom is refused with the settings");
-        };
-        let method: Method = self.method;
-        let mut world = Environment::new(All(plant), method, self.dt, task, start)
-            .substeps(self.substeps)
-            .delays(self.delays);
-        world.limit = self.limit;
-        let actor = Actor::new(&self.policy);
-        let Group { first, len, .. } = group;
-        if self.noise.is_none() {
-            let all = Environments::shard(world, first, len, self.seed, execution.clone())?;
-            return Ok(visit.visit(all, actor));
-        }
-        let clock = (Skewed(self.noise.skewed()), Jittered(Gaussian(self.noise.jitter)));
-        let noisy = Noisy([Gaussian(self.noise.observation); O]);
-        let world = world.clock(clock).sensor(noisy);
-        let all = Environments::shard(world, first, len, self.seed, execution.clone())?;
-        Ok(visit.visit(all, actor))
+impl<T: Number, V: Visit> environments::Visit<T> for Acted<'_, V> {
+    type Output = V::Output;
+
+    fn visit<const O: usize>(self, all: Box<dyn Batch<T, O>>) -> V::Output {
+        self.0.visit(all, Actor::new(self.1))
     }
 }

@@ -1,5 +1,7 @@
 //! What is remembered of a trajectory from step to step.
 
+use crate::Scalar;
+use crate::array::each;
 use core::fmt::Debug;
 
 /// Numbers that a clock, a delay or a controller keeps of every trajectory: part of the state of a loop.
@@ -34,7 +36,7 @@ pub trait Memory<T: Copy>: Copy + Send + Sync {
     fn set_lane<const W: usize>(lanes: &mut Self::Lanes<W>, l: usize, memory: Self);
 }
 
-impl<T: Copy + Debug + Send + Sync, const N: usize> Memory<T> for [T; N] {
+impl<T: Scalar + Send + Sync, const N: usize> Memory<T> for [T; N] {
     const LEN: usize = N;
     type Lanes<const W: usize> = [[T; W]; N];
 
@@ -56,7 +58,7 @@ impl<T: Copy + Debug + Send + Sync, const N: usize> Memory<T> for [T; N] {
 
     #[inline(always)]
     fn lane<const W: usize>(lanes: &[[T; W]; N], l: usize) -> Self {
-        core::array::from_fn(|i| lanes[i][l])
+        each(|i| lanes[i][l])
     }
 
     #[inline(always)]

@@ -7,6 +7,8 @@ use pulp::{Simd, WithSimd};
 
 use super::assign::Assign;
 use super::planes::Share;
+use crate::Scalar;
+use crate::array::each;
 use crate::{Float, Integrator, State, System};
 
 /// Takes `steps` steps with all trajectories of a block, which stays in registers where it fits.
@@ -147,11 +149,11 @@ pub(crate) struct Lines<P>(pub(crate) P);
 
 /// Lane `l` of each plane.
 #[inline(always)]
-pub(crate) fn at<T: Copy, const D: usize, const W: usize>(
+pub(crate) fn at<T: Scalar, const D: usize, const W: usize>(
     planes: &[[T; W]; D],
     l: usize,
 ) -> [T; D] {
-    from_fn(|i| planes[i][l])
+    each(|i| planes[i][l])
 }
 
 /// Sets lane `l` of each plane.

@@ -26,11 +26,14 @@ impl<const N: usize> Integrator for Splitting<N> {
         state: State<S, D>,
         dt: S,
     ) -> State<S, D> {
-        let stages: [_; N] = core::array::from_fn(|i| [self.kicks[i], self.drifts[i]]);
+        let mut stages = [[0.0; 2]; N];
+        for (stage, (kick, drift)) in stages.iter_mut().zip(self.kicks.iter().zip(&self.drifts)) {
+            *stage = [*kick, *drift];
+        }
         let mut state = state;
         each!(stages, |stage| {
-            let [kick, drift] = stage.map(|weight| dt * S::from_f64(weight));
-            state = state.kick(system, kick).drift(drift);
+            let [kick, drift] = stage;
+            state = state.kick(system, dt * S::from_f64(kick)).drift(dt * S::from_f64(drift));
         });
         state
     }

@@ -1,8 +1,7 @@
 //! Velocity Verlet as textbooks print it.
 
-use core::array::from_fn;
-
 use super::Integrator;
+use crate::array::each;
 use crate::{Scalar, State, System};
 
 /// Velocity Verlet as `q' = q + Δt·v + ½Δt²·a`, `v' = v + ½Δt·(a + a')`.
@@ -35,8 +34,8 @@ impl Integrator for TextbookVerlet {
         dt: S,
     ) -> (State<S, D>, [S; D]) {
         let half = dt.ratio(1, 2);
-        let q = from_fn(|i| q[i] + dt * v[i] + half * dt * a[i]);
+        let q = each(|i| q[i] + dt * v[i] + half * dt * a[i]);
         let next = system.acceleration(&State { q, v });
-        (State { q, v: from_fn(|i| v[i] + half * (a[i] + next[i])) }, next)
+        (State { q, v: each(|i| v[i] + half * (a[i] + next[i])) }, next)
     }
 }

@@ -10,12 +10,14 @@
 #[inline(always)]
 pub fn philox4x32(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
     // Words of which the low half counts: 64 bits are what a product fills, also in vectors.
-    let (mut counter, mut key) = (counter.map(u64::from), key);
+    let [a, b, c, d] = counter;
+    let (mut counter, mut key) = ([a.into(), b.into(), c.into(), d.into()], key);
     for _ in 0..ROUNDS {
         counter = round(counter, key);
         key = [key[0].wrapping_add(WEYL[0]), key[1].wrapping_add(WEYL[1])];
     }
-    counter.map(|word| word as u32)
+    let [a, b, c, d]: [u64; 4] = counter;
+    [a as u32, b as u32, c as u32, d as u32]
 }
 
 const ROUNDS: usize = 10;
@@ -30,7 +32,7 @@ const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
 fn round([a, b, c, d]: [u64; 4], key: [u32; 2]) -> [u64; 4] {
     let product = |x: u64, multiplier: u32| (x & u64::from(u32::MAX)) * u64::from(multiplier);
     let (near, far) = (product(a, MULTIPLIERS[0]), product(c, MULTIPLIERS[1]));
-    let [first, second] = key.map(u64::from);
+    let [first, second] = [u64::from(key[0]), u64::from(key[1])];
     [(far >> 32) ^ b ^ first, far, (near >> 32) ^ d ^ second, near]
 }
 

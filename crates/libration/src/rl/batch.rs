@@ -123,6 +123,8 @@ where
         ensure("random words of the clock", clock, NOTHING_DRAWN, |n| timed || n == 0.0)?;
         ensure("random words of the sensor", sensor, NOTHING_DRAWN, |n| seen || n == 0.0)?;
         parts.severity.check::<T>()?;
+        let most = parts.saturation;
+        ensure("saturation", most, "above 0", |most| T::from_f64(most) > T::zero())?;
         let rates = parts.clock.trajectories();
         for (what, values, len) in [
             ("systems", parts.systems.count(), len),
@@ -159,6 +161,11 @@ where
     /// Actions of each so far.
     pub fn step(&self) -> u64 {
         self.step
+    }
+
+    /// Where they are stepped from now on, which changes nothing of what they do.
+    pub fn execute(&mut self, execution: Execution) {
+        self.execution = execution;
     }
 
     /// What each is.

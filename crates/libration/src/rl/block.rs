@@ -7,7 +7,7 @@ use super::{Start, Variation, World};
 use crate::control::{Begin, Clock, Memory};
 use crate::ensemble::kernel::{at, put};
 use crate::random::Streams;
-use crate::{Float, State};
+use crate::{Float, Scalar, State};
 
 /// Neighbouring environments, of which each has a lane.
 #[derive(Clone, Copy, Debug)]
@@ -122,7 +122,7 @@ pub(super) fn begin<T: Float, E: World<T, O, D>, const O: usize, const D: usize>
     history.begin(past, l, &state);
 }
 
-impl<T: Copy, C: Copy, V, const D: usize> Block<T, C, V, D> {
+impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
     /// The state of lane `l`.
     #[inline(always)]
     pub(super) fn state(&self, l: usize) -> State<T, D> {

@@ -26,7 +26,7 @@ where
     pub(super) fn is_brief(&self) -> bool {
         let ideal = const { P::BRIEF && !E::Sensor::DRAWS && E::Clock::EVEN };
         let timely = !self.history.sees_late() && !self.history.acts_late();
-        ideal && timely && self.substeps == 1
+        ideal && timely && self.substeps == 1 && self.is_free()
     }
 
     /// All of an ideal step of a whole block, and its numbers where they belong: what one loop computes stays in registers until

@@ -5,6 +5,7 @@
 
 use super::block::Block;
 use super::kernel::LANES;
+use crate::Scalar;
 use crate::random::{EPOCH, Purpose, Streams};
 
 /// The words of all blocks for one purpose, as they are before some step.
@@ -28,7 +29,7 @@ impl Draws {
 
     /// Makes them those before `step`, of which each has so many parts that each take so many words; where they take none there are no
     /// streams. What follows takes `steps` steps.
-    pub(super) fn prepare<T: Copy, C: Copy, V, const D: usize>(
+    pub(super) fn prepare<T: Scalar, C: Copy, V, const D: usize>(
         &mut self,
         blocks: &[Block<T, C, V, D>],
         [step, parts]: [u64; 2],
@@ -49,7 +50,7 @@ impl Draws {
 }
 
 /// The words of a block as they are before part `part` of step `now`, where each of its `parts` took so many.
-fn resumed<T: Copy, C: Copy, V, const D: usize>(
+fn resumed<T: Scalar, C: Copy, V, const D: usize>(
     block: &Block<T, C, V, D>,
     [now, parts, part]: [u64; 3],
     purpose: Purpose,
@@ -68,7 +69,7 @@ fn resumed<T: Copy, C: Copy, V, const D: usize>(
 
 /// Before part `part` of step `now`, of which each has so many: whose episode enters an epoch draws by address.
 #[inline(always)]
-pub(super) fn renew<T: Copy, C: Copy, V, const D: usize>(
+pub(super) fn renew<T: Scalar, C: Copy, V, const D: usize>(
     streams: &mut Streams<LANES>,
     block: &Block<T, C, V, D>,
     [now, parts, part]: [u64; 3],
@@ -87,7 +88,7 @@ pub(super) fn renew<T: Copy, C: Copy, V, const D: usize>(
 
 #[cold]
 #[inline(never)]
-fn seat<T: Copy, C: Copy, V, const D: usize>(
+fn seat<T: Scalar, C: Copy, V, const D: usize>(
     streams: &mut Streams<LANES>,
     block: &Block<T, C, V, D>,
     [now, parts, part]: [u64; 3],

@@ -33,6 +33,9 @@ pub struct Environment<Sys, A, M, K, S, C = Fixed, N = Exact, V = Same> {
     pub clock: C,
     /// How late observations and actions are.
     pub delays: Delays,
+    /// The largest command in each degree of freedom, of either sign: whoever asks for more gets, and pays for, that much. Infinite for
+    /// none.
+    pub saturation: f64,
     /// How observations are measured.
     pub sensor: N,
     /// What is different in every episode.
@@ -73,6 +76,7 @@ impl<Sys, A, M, K, S> Environment<Sys, A, M, K, S> {
             autoreset: Autoreset::SameStep,
             clock: Fixed,
             delays: Delays::default(),
+            saturation: f64::INFINITY,
             sensor: Exact,
             variation: Same,
             severity: Severity::default(),
@@ -100,6 +104,11 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
     /// This, with delays.
     pub fn delays(self, delays: Delays) -> Self {
         Environment { delays, ..self }
+    }
+
+    /// This, with commands of at most so much.
+    pub fn saturation(self, saturation: f64) -> Self {
+        Environment { saturation, ..self }
     }
 
     /// This, with clocks and sensors that are more or less wrong from episode to episode.
@@ -130,6 +139,7 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
         let Environment { systems, method, dt, substeps, task, start, limit, .. } = self;
         let Environment { autoreset, clock, delays, sensor, variation, severity, system, .. } =
             self;
+        let saturation = self.saturation;
         let (clock, sensor, variation) = change(clock, sensor, variation);
         Environment {
             systems,
@@ -142,6 +152,7 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
             autoreset,
             clock,
             delays,
+            saturation,
             sensor,
             variation,
             severity,

@@ -4,7 +4,6 @@ use core::ops::Range;
 
 use super::Delays;
 use super::kernel::LANES;
-use crate::ensemble::kernel::{at, put};
 use crate::{Float, State};
 
 /// Where the past of a block lies: states at the beginning of the last steps of the integrator, `2·D` rows each, and the last
@@ -146,7 +145,9 @@ impl History {
         } else {
             for (l, &latency) in latencies.iter().enumerate() {
                 let place = back(now, age(latency), self.actions);
-                put(held, l, at::<T, D, LANES>(&core::array::from_fn(|i| rows[place * D + i]), l));
+                for i in 0..D {
+                    held[i][l] = rows[place * D + i][l];
+                }
             }
         }
     }

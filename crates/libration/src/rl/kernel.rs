@@ -9,7 +9,7 @@ use super::row::{Records, Writer};
 use super::stage::{Site, Stage};
 use super::strip::Strip;
 use super::yields::Yield;
-use super::{Final, Place, Policy, World, Writes};
+use super::{Final, Place, Policy, Sensor, World, Writes};
 use crate::Float;
 use crate::ensemble::Assign;
 use crate::ensemble::instructions::{Target, Targeted};
@@ -42,6 +42,8 @@ pub(super) struct Horizon<'a, 's, T, E, P, B, const O: usize, const D: usize> {
     pub(super) environments: usize,
     /// Steps taken before.
     pub(super) step: u64,
+    /// And rows of the rollout written before.
+    pub(super) row: usize,
     pub(super) share: Share<'a, T, B>,
     pub(super) strip: Strip<'a, T, O, D>,
     pub(super) writes: Writes,
@@ -77,19 +79,22 @@ where
     #[inline(always)]
     fn with_simd<V: Simd>(self, _: V) -> Vec<Final<T, O>> {
         let On(horizon, target) = self;
-        let Horizon { world, policy, history, environments, step, .. } = horizon;
+        let Horizon { world, policy, history, environments, step, row: before, .. } = horizon;
         let Horizon { share, mut strip, writes, .. } = horizon;
         let writer = Writer { streaming: Streaming::on(target), layout: strip.layout, writes };
         let parts = *world.parts();
         let stage = Stage::<T, E, P, O, D>::new(world, policy, history);
         let brief = stage.is_brief();
+        let steps = strip.steps();
+        // A sensor that draws takes its words at every look.
+        let looks_on = strip.shows() || policy.looks() || const { E::Sensor::DRAWS };
         let [times, looks, acts] = share.words;
         let mut none = [Streams::<LANES>::none(); 3];
         let [no_times, no_looks, no_acts] = &mut none;
         let mut out = Yield::<T, O, D>::zeros();
         let mut records = Records::zeros();
         for (index, blocks) in share.blocks.chunks_mut(TILE / LANES).enumerate() {
-            for t in 0..strip.steps() {
+            for t in 0..steps {
                 let row = &mut strip.row(t);
                 for (b, block) in blocks.iter_mut().enumerate() {
                     let b = index * (TILE / LANES) + b;
@@ -97,7 +102,8 @@ where
                     let count = (share.len - b * LANES).min(LANES);
                     let systems = parts.systems.lanes::<LANES>(first, count);
                     let now = step + t as u64;
-                    let place = Place { environment: first, environments, step: now, row: t };
+                    let place =
+                        Place { environment: first, environments, step: now, row: before + t };
                     let site = Site { place, count, systems };
                     block.bank(now);
                     // What stands still is stepped with its neighbours, and put back.
@@ -117,7 +123,11 @@ where
                         let overs = &mut out.overs;
                         stage.brief(parts, &site, block, acts, overs, b, row, &writer, &mut records)
                     } else {
-                        stage.look(&site, block, past!(), looks, &mut out.step.seen);
+                        if looks_on {
+                            stage.look(&site, block, past!(), looks, &mut out.step.seen);
+                        } else {
+                            stage.pass(now, block, past!());
+                        }
                         stage.act(place, block, acts, &mut out.step);
                         stage.advance(&site, block, past!(), times, &mut out)
                     };
@@ -145,6 +155,26 @@ where
                     let flags = if whole { &NO_FLAGS } else { &(out.overs, out.cuts) };
                     row.write_flags(&writer, b, &flags.0, &flags.1);
                 }
+            }
+            let (next, now) = (strip.next(), step + steps as u64);
+            if next.is_empty() {
+                continue;
+            }
+            for (b, block) in blocks.iter_mut().enumerate() {
+                let b = index * (TILE / LANES) + b;
+                let first = share.first + b * LANES;
+                let count = (share.len - b * LANES).min(LANES);
+                let systems = parts.systems.lanes::<LANES>(first, count);
+                let place = Place { environment: first, environments, step: now, row: 0 };
+                let past = &mut share.past[b * history.len()..][..history.len()];
+                let words = looks.get(b).unwrap_or(no_looks);
+                stage.show(
+                    &Site { place, count, systems },
+                    block,
+                    past,
+                    words,
+                    &mut next[b * LANES * O..],
+                );
             }
         }
         out.finals

@@ -2,10 +2,12 @@
 
 use bytemuck::Pod;
 
+use super::block::BlockOf;
 use super::kernel::LANES;
+use super::row::interleave;
 use super::stage::{Site, Stage};
 use super::strip::first_of;
-use super::{EnvironmentError, Environments, Place, Sensor, World, policy};
+use super::{EnvironmentError, Environments, Place, Policy, Sensor, World, policy};
 use crate::Float;
 use crate::ensemble::Assign;
 use crate::random::Streams;
@@ -44,15 +46,42 @@ where
                 let place = Place { environment, environments: len, step, row: 0 };
                 let site = Site { place, count, systems };
                 let past = &mut past[b * history.len()..][..history.len()];
-                let mut words = words.get(from + b).copied().unwrap_or_else(Streams::none);
-                let mut seen = [[T::zero(); LANES]; O];
-                stage.look(&site, block, past, &mut words, &mut seen);
-                let rows = to[b * LANES * O..][..count * O].chunks_exact_mut(O.max(1));
-                for (l, row) in rows.enumerate() {
-                    (0..O).for_each(|i| row[i] = seen[i][l]);
-                }
+                let none = Streams::none();
+                let words = words.get(from + b).unwrap_or(&none);
+                stage.show(&site, block, past, words, &mut to[b * LANES * O..]);
             }
         });
         Ok(())
+    }
+}
+
+impl<T, E, P, const O: usize, const D: usize> Stage<'_, T, E, P, O, D>
+where
+    T: Float + Pod,
+    E: World<T, O, D>,
+    P: Policy<T, O, D>,
+{
+    /// Writes what is seen of a block before an action, side by side; the words of its sensors are still to be taken.
+    #[inline(always)]
+    pub(super) fn show(
+        &self,
+        site: &Site<T, E, O, D>,
+        block: &BlockOf<T, E, O, D>,
+        past: &mut [T],
+        words: &Streams<LANES>,
+        to: &mut [T],
+    ) {
+        let mut seen = [[T::zero(); LANES]; O];
+        self.look(site, block, past, &mut words.clone(), &mut seen);
+        if const { O == 0 } {
+            return;
+        }
+        if let (LANES, Some(to)) = (site.count, to.as_chunks_mut().0.first_chunk_mut()) {
+            interleave(&seen, to);
+            return;
+        }
+        for (l, row) in to.chunks_exact_mut(O).take(site.count).enumerate() {
+            (0..O).for_each(|i| row[i] = seen[i][l]);
+        }
     }
 }

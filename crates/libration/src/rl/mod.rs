@@ -48,6 +48,7 @@ pub use estimates::{Discounts, Estimates};
 pub use plan::{Layout, Plan, Writes};
 pub use policy::{Act, Place, Policy};
 pub use rollout::Rollout;
+pub use run::Outcome;
 pub use sensor::Sensor;
 pub use severity::Severity;
 pub use spread::Spread;

@@ -1,10 +1,11 @@
 //! What environments do over a horizon, as tensors.
 
 use core::array::from_fn;
+use core::ops::Range;
 
 use bytemuck::Pod;
 
-use super::strip::{Strip, planes, rows_of};
+use super::strip::{Strip, planes, rows_of, some_rows};
 use super::{EnvironmentError, Final, Layout, Plan};
 use crate::ensemble::{Buffer, NoRoom, Pages};
 
@@ -176,16 +177,19 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
         })
     }
 
-    /// All of it, to be written.
-    pub(super) fn strip(&mut self) -> Strip<'_, T, O, D> {
+    /// Some of its rows, to be written.
+    pub(super) fn strip(&mut self, rows: &Range<usize>) -> Strip<'_, T, O, D> {
         let Plan { horizon, layout, .. } = self.plan;
+        let part = |all| some_rows(all, rows);
+        let flags = |all| some_rows(all, rows);
         Strip {
-            observation: planes(&mut self.observation, layout, horizon),
-            action: planes(&mut self.action, layout, horizon),
-            reward: rows_of(&mut self.reward, horizon),
-            terminated: rows_of(&mut self.terminated, horizon),
-            truncated: rows_of(&mut self.truncated, horizon),
-            log_probability: rows_of(&mut self.log_probability, horizon),
+            observation: planes(&mut self.observation, layout, horizon).map(part),
+            action: planes(&mut self.action, layout, horizon).map(part),
+            reward: part(rows_of(&mut self.reward, horizon)),
+            terminated: flags(rows_of(&mut self.terminated, horizon)),
+            truncated: flags(rows_of(&mut self.truncated, horizon)),
+            log_probability: part(rows_of(&mut self.log_probability, horizon)),
+            next: rows_of(&mut [], 0),
             layout,
         }
     }

@@ -160,7 +160,10 @@ impl<I: Target> Writer<I> {
 
 /// Numbers of every lane side by side.
 #[inline(always)]
-fn interleave<T: Copy, const N: usize>(planes: &[[T; LANES]; N], records: &mut [[T; N]; LANES]) {
+pub(super) fn interleave<T: Copy, const N: usize>(
+    planes: &[[T; LANES]; N],
+    records: &mut [[T; N]; LANES],
+) {
     for (l, record) in records.iter_mut().enumerate() {
         for (number, plane) in record.iter_mut().zip(planes) {
             *number = plane[l];

@@ -22,6 +22,8 @@ pub(super) struct Stage<'s, T, E, P, const O: usize, const D: usize> {
     pub(super) dt: T,
     /// From action to action.
     span: f64,
+    /// The largest command.
+    saturation: T,
     pub(super) substeps: u64,
     limit: Option<u64>,
     pub(super) autoreset: Autoreset,
@@ -54,6 +56,7 @@ where
             history,
             dt: T::from_f64(parts.dt),
             span: parts.dt * f64::from(parts.substeps),
+            saturation: T::from_f64(parts.saturation),
             substeps: parts.substeps.into(),
             limit: parts.limit.map(u64::from),
             autoreset: parts.autoreset,
@@ -92,9 +95,9 @@ where
             renew(words, block, [site.place.step, 1, 0], Purpose::Observation);
         }
         let (mut q, mut v) = (Lines(block.q), Lines(block.v));
+        self.pass(site.place.step, block, past);
         if self.history.sees_late() {
             let step = site.place.step * self.substeps;
-            self.history.pass(past, step, &q.0, &v.0);
             self.history.seen(past, step, &block.delays[0], &mut q.0, &mut v.0);
         }
         let parts = self.parts();
@@ -109,6 +112,14 @@ where
                 }
             }
             put(seen, l, measured);
+        }
+    }
+
+    /// Keeps what is to be seen later.
+    #[inline(always)]
+    pub(super) fn pass(&self, now: u64, block: &BlockOf<T, E, O, D>, past: &mut [T]) {
+        if self.history.sees_late() {
+            self.history.pass(past, now * self.substeps, &block.q, &block.v);
         }
     }
 
@@ -129,6 +140,29 @@ where
         policy.act_all(place, seen, words, actions, log_probabilities);
     }
 
+    /// Whether nothing is asked of commands but what they are.
+    #[inline(always)]
+    pub(super) fn is_free(&self) -> bool {
+        self.saturation.to_f64() == f64::INFINITY
+    }
+
+    /// What is to be had of these actions. What is no number stays none.
+    #[inline(always)]
+    fn commands(&self, actions: &[[T; LANES]; D]) -> [[T; LANES]; D] {
+        let mut commands = *actions;
+        if self.is_free() {
+            return commands;
+        }
+        let most = self.saturation;
+        for row in &mut commands {
+            for x in row {
+                let low = if *x < -most { -most } else { *x };
+                *x = if low > most { most } else { low };
+            }
+        }
+        commands
+    }
+
     /// What comes of it.
     #[inline(always)]
     pub(super) fn advance(
@@ -140,9 +174,11 @@ where
         out: &mut Yield<T, O, D>,
     ) -> u8 {
         let (parts, dt) = (self.parts(), self.dt);
-        let (mut q, mut v, mut held) = (Lines(block.q), Lines(block.v), Lines(out.step.actions));
+        let (mut q, mut v) = (Lines(block.q), Lines(block.v));
+        let commands = Lines(self.commands(&out.step.actions));
+        let mut held = Lines(commands.0);
         if self.history.acts_late() {
-            self.history.act(past, site.place.step, &out.step.actions);
+            self.history.act(past, site.place.step, &commands.0);
         }
         for substep in 0..self.substeps {
             let step = site.place.step * self.substeps + substep;
@@ -178,8 +214,8 @@ where
         for l in 0..LANES {
             let (_, task) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
             let after = State { q: at(&q.0, l), v: at(&v.0, l) };
-            let action = at(&out.step.actions, l);
-            let acted = is_number(&action);
+            let action = at(&commands.0, l);
+            let acted = is_number(&at(&out.step.actions, l));
             let time = self.time(site.place.step + 1, block.began[l]);
             let (reward, over) = judged(&task, acted, time, &block.state(l), &action, &after);
             out.step.rewards[l] = reward;

@@ -2,6 +2,7 @@
 
 use core::array::from_fn;
 use core::mem::{replace, take};
+use core::ops::Range;
 
 use ndarray::{ArrayViewMut2, Axis};
 
@@ -19,6 +20,8 @@ pub(super) struct Strip<'a, T, const O: usize, const D: usize> {
     /// Without columns where nobody asked for it, as the next.
     pub(super) truncated: ArrayViewMut2<'a, u8>,
     pub(super) log_probability: ArrayViewMut2<'a, T>,
+    /// What is seen after the last step, side by side in one row.
+    pub(super) next: ArrayViewMut2<'a, T>,
     pub(super) layout: Layout,
 }
 
@@ -37,6 +40,7 @@ impl<'a, T, const O: usize, const D: usize> Strip<'a, T, O, D> {
             terminated: first_columns(&mut self.terminated, count),
             truncated: first_columns(&mut self.truncated, count),
             log_probability: first_columns(&mut self.log_probability, count),
+            next: first_columns(&mut self.next, count * O),
             layout,
         }
     }
@@ -44,6 +48,16 @@ impl<'a, T, const O: usize, const D: usize> Strip<'a, T, O, D> {
     /// How many steps there are.
     pub(super) fn steps(&self) -> usize {
         self.reward.nrows()
+    }
+
+    /// What is seen after the last step; empty where nobody asked for it.
+    pub(super) fn next(&mut self) -> &mut [T] {
+        if self.next.is_empty() { &mut [] } else { row(&mut self.next, 0) }
+    }
+
+    /// Whether it is asked what is seen before each step.
+    pub(super) fn shows(&self) -> bool {
+        self.observation.iter().any(|plane| !plane.is_empty())
     }
 
     /// Step `t`.
@@ -77,6 +91,15 @@ pub(super) fn planes<T, const N: usize>(
 pub(super) fn rows_of<T>(numbers: &mut [T], rows: usize) -> ArrayViewMut2<'_, T> {
     let width = numbers.len().checked_div(rows).unwrap_or(0);
     ArrayViewMut2::from_shape((rows, width), numbers).expect("whole rows")
+}
+
+/// Some of the rows.
+pub(super) fn some_rows<'a, X>(
+    all: ArrayViewMut2<'a, X>,
+    rows: &Range<usize>,
+) -> ArrayViewMut2<'a, X> {
+    let (_, rest) = all.split_at(Axis(0), rows.start);
+    rest.split_at(Axis(0), rows.len()).0
 }
 
 /// Row `t` of columns.

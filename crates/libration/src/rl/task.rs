@@ -1,5 +1,6 @@
 //! What an environment shows, what it pays, and when it is over.
 
+use crate::array::{each, map};
 use crate::control::ControlError;
 use crate::control::error::{ensure, finite};
 use crate::{Elementary, Float, State};
@@ -65,13 +66,13 @@ macro_rules! regulate {
 
             #[inline(always)]
             fn observe(&self, _: T, state: &State<T, $d>) -> [T; $o] {
-                core::array::from_fn(|i| if i < $d { state.q[i] } else { state.v[i - $d] })
+                each(|i| if i < $d { state.q[i] } else { state.v[i - $d] })
             }
 
             #[inline(always)]
             fn reward(&self, _: T, _: &State<T, $d>, action: &[T; $d], after: &State<T, $d>) -> T {
                 let [position, velocity, effort] =
-                    [self.position, self.velocity, self.effort].map(T::from_f64);
+                    map([self.position, self.velocity, self.effort], T::from_f64);
                 let cost = |i: usize| {
                     let (q, v, u) = (after.q[i], after.v[i], action[i]);
                     position * (q * q) + velocity * (v * v) + effort * (u * u)
@@ -165,7 +166,7 @@ impl<T: Float + Elementary> Reference<T> for Sine {
     #[inline(always)]
     fn at(&self, time: T) -> [T; 2] {
         let [amplitude, omega, phase] =
-            [self.amplitude, self.angular_frequency, self.phase].map(T::from_f64);
+            map([self.amplitude, self.angular_frequency, self.phase], T::from_f64);
         let angle = omega * time + phase;
         [amplitude * Elementary::sin(angle), amplitude * omega * Elementary::cos(angle)]
     }

@@ -1,10 +1,9 @@
 //! What is different in every episode.
 
-use core::array::from_fn;
-
 use super::Spread;
 use super::start::Episode;
 use crate::Float;
+use crate::array::each;
 use crate::control::{ControlError, Memory};
 use crate::random::Purpose;
 
@@ -81,7 +80,7 @@ where
 
     fn draw(&self, episode: Episode) -> [T; N] {
         const { Episode::has(N) };
-        from_fn(|i| T::from_f64(self.numbers[i].draw(episode, Purpose::Variation, i)))
+        each(|i| T::from_f64(self.numbers[i].draw(episode, Purpose::Variation, i)))
     }
 
     #[inline(always)]

@@ -1,8 +1,7 @@
 //! A system under a command.
 
-use core::array::from_fn;
-
 use super::System;
+use crate::array::each;
 use crate::{Scalar, State};
 
 /// `q̈ = a(q, v) + u`: a system with a command `u` that is held while a step lasts, as a zero-order hold does.
@@ -21,6 +20,6 @@ impl<Sys: System<S, D>, S: Scalar, const D: usize> System<S, D> for Held<Sys, S,
     #[inline(always)]
     fn acceleration(&self, state: &State<S, D>) -> [S; D] {
         let own = self.system.acceleration(state);
-        from_fn(|i| own[i] + self.command[i])
+        each(|i| own[i] + self.command[i])
     }
 }

@@ -1,6 +1,7 @@
 //! The Kepler problem.
 
 use super::kinetic;
+use crate::array::map;
 use crate::{Elementary, Hamiltonian, Model, State, System};
 
 /// The planar Kepler problem `q̈ = −μ q/|q|³`: a light body about a fixed centre of attraction.
@@ -40,7 +41,7 @@ impl<S: Elementary> System<S, 2> for Kepler<S> {
     fn acceleration(&self, &State { q, .. }: &State<S, 2>) -> [S; 2] {
         let inverse = inverse_distance(q);
         let pull = -self.mu * (inverse * inverse * inverse);
-        q.map(|q| pull * q)
+        map(q, |q| pull * q)
     }
 }
 

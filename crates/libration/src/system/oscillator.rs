@@ -1,6 +1,7 @@
 //! The harmonic oscillator.
 
 use super::kinetic;
+use crate::array::each;
 use crate::{Elementary, Hamiltonian, Model, Scalar, State, System};
 
 /// The isotropic harmonic oscillator `q̈ = −ω²q` in any number of dimensions.
@@ -32,7 +33,7 @@ impl<S: Scalar, const D: usize> System<S, D> for Oscillator<S> {
 
     #[inline(always)]
     fn acceleration(&self, state: &State<S, D>) -> [S; D] {
-        state.q.map(|q| -self.omega2 * q)
+        each(|i| -self.omega2 * state.q[i])
     }
 }
 

@@ -91,7 +91,9 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
         let place = Place { environment: n, environments, step, row: 0 };
         let act = policy.act(place, &seen, &mut || acts.stream.next(0));
         let before = *states.last().unwrap();
-        actions.push(act.action);
+        let most = parts.saturation as f32;
+        let command = act.action.map(|u| if u.abs() > most { most.copysign(u) } else { u });
+        actions.push(command);
         let mut state = before;
         for substep in 0..substeps {
             let at = step * substeps + substep;
@@ -113,7 +115,7 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
             seen,
             action: act.action,
             log_probability: act.log_probability,
-            reward: task.reward(0.0, &before, &act.action, &state),
+            reward: task.reward(0.0, &before, &command, &state),
             over: u8::from(task.terminated(0.0, &state)),
             cut: u8::from(actions.len() as u32 >= parts.limit.unwrap_or(u32::MAX)),
             moved: true,

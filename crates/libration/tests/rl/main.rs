@@ -9,6 +9,7 @@ mod episodes;
 mod faults;
 mod policies;
 mod seeds;
+mod steps;
 mod tensors;
 mod widths;
 
@@ -59,6 +60,7 @@ fn perturbed(
         .limit(60)
         .autoreset(autoreset)
         .delays(Delays { observation: [0, 4], action: [2, 7] })
+        .saturation(2.5)
         .clock((Skewed(Jitter::Uniform(0.01)), Jittered(Gaussian(0.2))))
         .sensor(Noisy([Uniform(0.05), Uniform(0.1)]))
         .severity(Severity { clock: [0.0, 2.0], sensor: [0.5, 1.5] })

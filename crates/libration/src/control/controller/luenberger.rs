@@ -2,6 +2,7 @@
 
 use super::Controller;
 use crate::analysis::{Feedback, StateObserver};
+use crate::array::{each, map};
 use crate::control::ControlError;
 use crate::control::error::finite;
 use crate::{Float, State};
@@ -51,11 +52,11 @@ impl<T: Float, const D: usize> Controller<T, D> for Luenberger<D> {
 
     #[inline(always)]
     fn command(&self, (far, speed): &mut Self::Memory, observed: &State<T, D>, _: T) -> [T; D] {
-        let [kp, kd] = [self.gains.position, self.gains.velocity].map(T::from_f64);
+        let [kp, kd] = map([self.gains.position, self.gains.velocity], T::from_f64);
         let StateObserver { phi, gamma, correction } = self.observer;
-        let (phi, gamma) = (phi.map(|row| row.map(T::from_f64)), gamma.map(T::from_f64));
-        let correction = correction.map(T::from_f64);
-        core::array::from_fn(|i| {
+        let phi = [map(phi[0], T::from_f64), map(phi[1], T::from_f64)];
+        let (gamma, correction) = (map(gamma, T::from_f64), map(correction, T::from_f64));
+        each(|i| {
             let off = observed.q[i] - T::from_f64(self.target[i]) - far[i];
             let (q, v) = (far[i] + correction[0] * off, speed[i] + correction[1] * off);
             let command = -(kp * q) - kd * v;

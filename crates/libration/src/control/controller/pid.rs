@@ -1,8 +1,7 @@
 //! Three terms.
 
-use core::array::from_fn;
-
 use super::{Controller, within};
+use crate::array::{each, map};
 use crate::control::ControlError;
 use crate::control::error::{ensure, finite, not_negative};
 use crate::{Float, State};
@@ -97,17 +96,17 @@ impl<T: Float, const D: usize> Controller<T, D> for Pid<D> {
     ) -> [T; D] {
         let PidGains { proportional, integral, derivative, filter, most, tracking, target } =
             self.gains;
-        let [kp, ki, kd, filter] = [proportional, integral, derivative, filter].map(T::from_f64);
+        let [kp, ki, kd, filter] = map([proportional, integral, derivative, filter], T::from_f64);
         let whole = (filter + period).recip();
         let follows = period * T::from_f64(1.0 / tracking);
-        let wanted: [T; D] = from_fn(|i| {
+        let wanted: [T; D] = each(|i| {
             let error = T::from_f64(target[i]) - observed.q[i];
             // (filter·D + K_d·(y' − y))/(filter + h), with the sign of a derivative of the position.
             slope[i] = (filter * slope[i] - kd * (observed.q[i] - last[i])) * whole;
             last[i] = observed.q[i];
             kp * error + sum[i] + slope[i]
         });
-        from_fn(|i| {
+        each(|i| {
             let error = T::from_f64(target[i]) - observed.q[i];
             let command = within(wanted[i], T::from_f64(most));
             sum[i] = sum[i] + ki * period * error + follows * (command - wanted[i]);

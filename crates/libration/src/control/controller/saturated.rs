@@ -1,6 +1,7 @@
 //! Actuators that can only do so much.
 
 use super::{Controller, within};
+use crate::array::map;
 use crate::control::ControlError;
 use crate::control::error::ensure;
 use crate::{Float, State};
@@ -29,6 +30,6 @@ impl<T: Float, C: Controller<T, D>, const D: usize> Controller<T, D> for Saturat
     #[inline(always)]
     fn command(&self, memory: &mut C::Memory, observed: &State<T, D>, period: T) -> [T; D] {
         let most = T::from_f64(self.most);
-        self.controller.command(memory, observed, period).map(|u| within(u, most))
+        map(self.controller.command(memory, observed, period), |u| within(u, most))
     }
 }

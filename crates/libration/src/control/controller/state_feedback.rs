@@ -2,6 +2,7 @@
 
 use super::Controller;
 use crate::analysis::Feedback;
+use crate::array::{each, map};
 use crate::control::ControlError;
 use crate::control::error::finite;
 use crate::{Float, State};
@@ -38,7 +39,7 @@ impl<T: Float, const D: usize> Controller<T, D> for StateFeedback<D> {
 
     #[inline(always)]
     fn command(&self, _: &mut [T; 0], &State { q, v }: &State<T, D>, _: T) -> [T; D] {
-        let [kp, kd] = [self.gains.position, self.gains.velocity].map(T::from_f64);
-        core::array::from_fn(|i| -(kp * (q[i] - T::from_f64(self.target[i]))) - kd * v[i])
+        let [kp, kd] = map([self.gains.position, self.gains.velocity], T::from_f64);
+        each(|i| -(kp * (q[i] - T::from_f64(self.target[i]))) - kd * v[i])
     }
 }

@@ -1,9 +1,8 @@
 //! Actions from outside.
 
-use core::array::from_fn;
-
 use super::{Act, Place, Policy};
 use crate::Float;
+use crate::array::each;
 use crate::rl::EnvironmentError;
 
 /// Actions for a whole horizon: `[t, n, i]`.
@@ -21,10 +20,14 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Given<'_, T> 
         EnvironmentError::shape("actions", self.0.len(), wanted)
     }
 
+    fn looks(&self) -> bool {
+        false
+    }
+
     #[inline(always)]
     fn act(&self, place: Place, _: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
         // Lanes beyond the last environment find nothing.
         let first = (place.row * place.environments + place.environment) * D;
-        Act::sure(from_fn(|i| self.0.get(first + i).copied().unwrap_or_else(T::zero)))
+        Act::sure(each(|i| self.0.get(first + i).copied().unwrap_or_else(T::zero)))
     }
 }

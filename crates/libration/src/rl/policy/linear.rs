@@ -1,9 +1,8 @@
 //! Linear feedback.
 
-use core::array::from_fn;
-
 use super::{Act, Place, Policy, all_finite, lanes};
 use crate::Float;
+use crate::array::each;
 use crate::random::Streams;
 use crate::rl::EnvironmentError;
 
@@ -26,7 +25,7 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Linear<O, D> 
 
     #[inline(always)]
     fn act(&self, _: Place, seen: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
-        Act::sure(from_fn(|i| {
+        Act::sure(each(|i| {
             let mut sum = T::from_f64(self.bias[i]);
             for (weight, &x) in self.weights[i].iter().zip(seen) {
                 sum = sum + T::from_f64(*weight) * x;
@@ -54,7 +53,7 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Each<'_, T> {
     #[inline(always)]
     fn act(&self, place: Place, seen: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
         let number = |k: usize| self.0[k * place.environments + place.environment];
-        Act::sure(from_fn(|i| {
+        Act::sure(each(|i| {
             let mut sum = number(i * (O + 1) + O);
             for (k, &x) in seen.iter().enumerate() {
                 sum = sum + number(i * (O + 1) + k) * x;

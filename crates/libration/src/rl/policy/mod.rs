@@ -12,10 +12,9 @@ pub use linear::{Each, Linear};
 pub use perceptron::{Activation, EachPerceptron, Perceptron};
 pub use random::Random;
 
-use core::array::from_fn;
-
 use super::EnvironmentError;
 use crate::Float;
+use crate::array::{each, map};
 use crate::control::ControlError;
 use crate::ensemble::kernel::{at, put};
 use crate::random::Streams;
@@ -34,6 +33,11 @@ pub trait Policy<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
     fn check(&self, environments: usize, horizon: usize) -> Result<(), EnvironmentError> {
         let _ = (environments, horizon);
         Ok(())
+    }
+
+    /// Whether its actions depend on what is seen: otherwise nobody looks where nobody else wants to know.
+    fn looks(&self) -> bool {
+        true
     }
 
     /// Random words that an action takes: always as many.
@@ -115,9 +119,13 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Constant<D> {
         all_finite::<T>("constant action", self.0)
     }
 
+    fn looks(&self) -> bool {
+        false
+    }
+
     #[inline(always)]
     fn act(&self, _: Place, _: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
-        Act::sure(self.0.map(T::from_f64))
+        Act::sure(map(self.0, T::from_f64))
     }
 }
 
@@ -140,5 +148,5 @@ fn lanes<T: Float, const W: usize>(numbers: &[T], place: Place, k: usize) -> [T;
     let row = &numbers[k * place.environments..][place.environment..place.environments];
     // All at once where there are as many.
     let whole = row.first_chunk().copied();
-    whole.unwrap_or_else(|| from_fn(|l| row.get(l).copied().unwrap_or_else(T::zero)))
+    whole.unwrap_or_else(|| each(|l| row.get(l).copied().unwrap_or_else(T::zero)))
 }

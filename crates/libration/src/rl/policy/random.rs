@@ -1,9 +1,8 @@
 //! Actions that follow from nothing.
 
-use core::array::from_fn;
-
 use super::{Act, Place, Policy};
 use crate::Float;
+use crate::array::each;
 use crate::control::error::finite;
 use crate::random::{UNIT, odd};
 use crate::rl::EnvironmentError;
@@ -38,13 +37,17 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Random<D> {
         Ok(())
     }
 
+    fn looks(&self) -> bool {
+        false
+    }
+
     fn words(&self) -> usize {
         D
     }
 
     #[inline(always)]
     fn act(&self, _: Place, _: &[T; O], word: &mut impl FnMut() -> u32) -> Act<T, D> {
-        let action = from_fn(|i| {
+        let action = each(|i| {
             let half = 0.5 * (self.high[i] - self.low[i]);
             let (middle, unit) = (self.low[i] + half, half * f64::from(UNIT));
             T::from_f64(middle) + T::from_f64(unit) * T::from_f64(odd(word()).into())

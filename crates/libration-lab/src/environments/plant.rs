@@ -1,7 +1,31 @@
-//! The system of a data set, chosen when the program runs.
+//! The system of environments, chosen when the program runs.
 
 use libration::system::{DampedOscillator, Duffing, Oscillator, Pendulum};
 use libration::{AnySystem, Elementary, Model, State, System};
+
+/// A system of the catalogue that has one degree of freedom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lone(AnySystem);
+
+impl Lone {
+    /// The system, if it is one.
+    pub fn new(system: AnySystem) -> Option<Self> {
+        match system {
+            AnySystem::Oscillator(_)
+            | AnySystem::DampedOscillator(_)
+            | AnySystem::Pendulum(_)
+            | AnySystem::Duffing(_) => Some(Lone(system)),
+            AnySystem::DrivenOscillator(_) | AnySystem::Kepler(_) | AnySystem::HenonHeiles(_) => {
+                None
+            }
+        }
+    }
+
+    /// As any other.
+    pub fn any(self) -> AnySystem {
+        self.0
+    }
+}
 
 /// A system with one degree of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,17 +37,16 @@ pub(super) enum Plant<T> {
 }
 
 impl<T: Elementary> Plant<T> {
-    /// The one of this description, if it has one degree of freedom.
-    pub(super) fn new(system: AnySystem) -> Option<Self> {
-        Some(match system {
+    pub(super) fn new(Lone(system): Lone) -> Self {
+        match system {
             AnySystem::Oscillator(model) => Plant::Oscillator(Model::<1>::on(&model)),
             AnySystem::DampedOscillator(model) => Plant::Damped(Model::<1>::on(&model)),
             AnySystem::Pendulum(model) => Plant::Pendulum(Model::<1>::on(&model)),
             AnySystem::Duffing(model) => Plant::Duffing(Model::<1>::on(&model)),
             AnySystem::DrivenOscillator(_) | AnySystem::Kepler(_) | AnySystem::HenonHeiles(_) => {
-                return None;
+                unreachable!("nothing makes a lone system of {}", system.name())
             }
-        })
+        }
     }
 }
 
