@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::{Outcome, codegen, command, dependencies, examples, report, test, tidy};
+use crate::{Outcome, codegen, command, dependencies, examples, report, test, tidy, wheel};
 
 /// A headline and what stands under it.
 type Step = (&'static str, Work);
@@ -12,13 +12,13 @@ type Step = (&'static str, Work);
 enum Work {
     /// What is done when its turn comes.
     Now(fn() -> Outcome),
-    /// What begins with the first step and is waited for when its turn comes; what it says is printed then.
-    Beside(fn() -> Result<String, String>),
+    /// What begins with the step of this name and is waited for when its turn comes; what it says is printed then.
+    Beside(&'static str, fn() -> Result<String, String>),
 }
 
 use Work::{Beside, Now};
 
-const STEPS: [Step; 9] = [
+const STEPS: [Step; 10] = [
     ("format", Now(|| command::run(&mut command::cargo("fmt --all --check")))),
     ("tidy", Now(tidy::run)),
     ("dependencies", Now(dependencies::run)),
@@ -31,8 +31,9 @@ const STEPS: [Step; 9] = [
     ("documentation", Now(documentation)),
     ("report", Now(report::run)),
     ("test", Now(|| test::with_report(&report::folder()))),
-    // A compiler on one core for most of the time: beside all before.
-    ("codegen", Beside(codegen::report)),
+    ("python", Now(|| wheel::test(&[]))),
+    // A compiler on one core for most of the time: beside tests, some of which wait for a browser or for other programs.
+    ("codegen", Beside("test", codegen::report)),
     ("examples", Now(examples::run)),
 ];
 
@@ -40,20 +41,24 @@ const STEPS: [Step; 9] = [
 pub(crate) fn run() -> Outcome {
     let mut durations = Vec::new();
     let mut failure = None;
-    let mut beside = STEPS.map(|(_, work)| match work {
-        Beside(work) => Some(thread::spawn(work)),
-        Now(_) => None,
-    });
+    let mut beside: [Option<thread::JoinHandle<_>>; STEPS.len()] = Default::default();
     for (i, (name, work)) in STEPS.iter().enumerate() {
         println!("\n=== {} of {}: {name}", i + 1, STEPS.len());
+        for (j, (_, work)) in STEPS.iter().enumerate() {
+            if let Beside(first, work) = work
+                && first == name
+            {
+                beside[j] = Some(thread::spawn(*work));
+            }
+        }
         let start = Instant::now();
         let outcome = match (work, beside[i].take()) {
             (Now(work), _) => work(),
-            (Beside(_), Some(thread)) => match thread.join() {
+            (Beside(..), Some(thread)) => match thread.join() {
                 Ok(said) => said.map(|said| print!("{said}")),
                 Err(_) => Err("it panicked".to_owned()),
             },
-            (Beside(work), None) => work().map(|said| print!("{said}")),
+            (Beside(_, work), None) => work().map(|said| print!("{said}")),
         };
         durations.push(start.elapsed());
         let verdict = if outcome.is_ok() { "passed" } else { "failed" };

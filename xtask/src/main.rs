@@ -12,6 +12,7 @@ mod scratch;
 mod test;
 mod tidy;
 mod torture;
+mod wheel;
 mod workspace;
 
 use std::process::ExitCode;
@@ -33,7 +34,7 @@ enum Action {
     With(fn(&[String]) -> Outcome),
 }
 
-const TASKS: [Task; 9] = [
+const TASKS: [Task; 10] = [
     Task {
         name: "ci",
         summary: "all of the below up to `report`, with format, lints and documentation",
@@ -56,8 +57,13 @@ const TASKS: [Task; 9] = [
     },
     Task {
         name: "test",
-        summary: "all tests, with a Python environment; arguments go to `cargo test`",
+        summary: "all tests, with a Python environment and the wheel; arguments go to `cargo test`",
         action: Action::With(test::run),
+    },
+    Task {
+        name: "python",
+        summary: "the wheel of the Python package and its tests; arguments go to pytest",
+        action: Action::With(wheel::test),
     },
     Task {
         name: "examples",

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
-use crate::{Outcome, command, python};
+use crate::{Outcome, command, python, wheel};
 
-/// Prepares the Python environment, then runs `cargo test --workspace` with `arguments`.
+/// Prepares the Python environment and runs `cargo test --workspace` with `arguments`; without any, the tests of the Python package
+/// follow.
 pub(crate) fn run(arguments: &[String]) -> Outcome {
-    tests(arguments, None)
+    tests(arguments, None)?;
+    if arguments.is_empty() { wheel::test(&[]) } else { Ok(()) }
 }
 
 /// The same, where the browser opens this report and not one of its own.

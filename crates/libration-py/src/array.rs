@@ -1,0 +1,76 @@
+//! NumPy arrays, and the memory that they are.
+#![allow(unsafe_code)]
+
+use std::slice::{from_raw_parts, from_raw_parts_mut};
+
+use bytemuck::{AnyBitPattern, NoUninit, Zeroable};
+use libration::{Elementary, Float};
+use numpy::ndarray::{Dim, Dimension, IntoDimension, IxDyn};
+use numpy::{Element, PyArray, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+/// A float type that NumPy has.
+pub(crate) trait Number: Float + Elementary + bytemuck::Pod + Element {
+    /// Its name in NumPy.
+    const NUMPY: &str;
+}
+
+impl Number for f32 {
+    const NUMPY: &str = "float32";
+}
+
+impl Number for f64 {
+    const NUMPY: &str = "float64";
+}
+
+/// An array of so many dimensions.
+pub(crate) type Array<T, const N: usize> = PyArray<T, Dim<[usize; N]>>;
+
+/// A new array, of which everything is to be written.
+pub(crate) fn fresh<'py, T: Element + Zeroable, const N: usize>(
+    py: Python<'py>,
+    shape: [usize; N],
+) -> Bound<'py, Array<T, N>>
+where
+    [usize; N]: IntoDimension<Dim = Dim<[usize; N]>>,
+    Dim<[usize; N]>: Dimension,
+{
+    // SAFETY: the numbers and flags that are made here have no invalid bits, nobody sees them before they are written, and the memory is
+    // that of a contiguous array.
+    unsafe { PyArray::new(py, shape, false) }
+}
+
+/// The memory of an array, to be written by the engine.
+#[allow(clippy::mut_from_ref, reason = "a reference to an array is no claim to its numbers")]
+pub(crate) fn room<'a, T: Element + AnyBitPattern + NoUninit, D: Dimension>(
+    array: &'a Bound<'_, PyArray<T, D>>,
+) -> &'a mut [T] {
+    // SAFETY: every array that comes here is one from `fresh`, so its numbers lie one after the other, in memory that is its own. Whoever
+    // reads it in Python while the engine writes has asked for buffers that are used again, and finds numbers of one step or the
+    // next, as with any array that NumPy writes without the interpreter's lock.
+    unsafe { from_raw_parts_mut(array.data(), array.len()) }
+}
+
+/// The memory of an array of flags, to be filled with 0 and 1.
+#[allow(clippy::mut_from_ref, reason = "as above")]
+pub(crate) fn flags<'a>(array: &'a Bound<'_, Array<bool, 1>>) -> &'a mut [u8] {
+    // SAFETY: as in `room`; a flag is a byte, of which the engine makes nothing but 0 and 1.
+    unsafe { from_raw_parts_mut(array.data().cast(), array.len()) }
+}
+
+/// The numbers of an array of actions, `[n]` or `[n, 1]`, if they lie as the engine reads them.
+pub(crate) fn borrowed<'a, T: Number>(
+    actions: &'a Bound<'_, PyAny>,
+    len: usize,
+) -> Option<&'a [T]> {
+    let array = actions.cast::<PyArray<T, IxDyn>>().ok()?;
+    let fits = matches!(*array.shape(), [n] | [n, 1] if n == len);
+    // SAFETY: the array is contiguous and aligned, and lives as long as the call that reads it. Whoever writes it meanwhile, from another
+    // thread, gives one action or the other.
+    (fits && array.is_c_contiguous() && is_aligned(array))
+        .then(|| unsafe { from_raw_parts(array.data(), len) })
+}
+
+fn is_aligned<T: Element>(array: &Bound<'_, PyArray<T, IxDyn>>) -> bool {
+    array.data().is_aligned()
+}

@@ -1,0 +1,21 @@
+//! The engine as a Python package: the module `libration._native`, which `python/libration` makes pleasant.
+//!
+//! Nothing is computed here. What Python hands over becomes a recipe, and what environments lead to becomes NumPy arrays.
+
+mod array;
+mod error;
+mod held;
+mod layer;
+mod settings;
+mod step;
+
+/// What `libration` is made of.
+#[pyo3::pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::layer::Batch;
+
+    #[pymodule_export]
+    #[allow(non_upper_case_globals, reason = "as Python names it")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+}

@@ -1,0 +1,177 @@
+//! A step: arrays in, arrays out.
+
+use libration::rl::{Autoreset, Outcome};
+use libration_lab::environments::Recipe;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyDict;
+
+use crate::array::{Array, Number, borrowed, flags, fresh, room};
+use crate::error::{Raised, refused};
+use crate::held::{Ends, Table};
+use crate::layer::{Batch, raise};
+
+/// What there is to know about environments besides themselves.
+pub(crate) struct Books {
+    pub(crate) len: usize,
+    autoreset: Autoreset,
+    /// Whether nothing has begun yet.
+    pub(crate) untouched: bool,
+    /// Of environments that wait for their reset, not 0.
+    pub(crate) standing: Vec<u8>,
+    /// Rows of arrays that are used again, how many there are to be, and whose turn it is.
+    rows: Vec<[Py<PyAny>; 4]>,
+    buffers: usize,
+    turn: usize,
+    /// Steps of the integrator that a call takes.
+    work: usize,
+}
+
+/// Arrays that a step fills: what is seen, paid, over and cut off.
+pub(crate) type Row<'py> = [Bound<'py, PyAny>; 4];
+
+/// More steps than this are worth giving up the interpreter's lock, which takes as long as some hundred of them.
+const WORTH_A_LOCK: usize = 512;
+
+impl Books {
+    pub(crate) fn new(recipe: &Recipe, len: usize, buffers: usize) -> Self {
+        Books {
+            len,
+            autoreset: recipe.autoreset,
+            untouched: true,
+            standing: vec![0; len],
+            rows: Vec::new(),
+            buffers,
+            turn: 0,
+            work: len.saturating_mul(recipe.substeps as usize),
+        }
+    }
+
+    /// Nothing, if all can take an action.
+    pub(crate) fn expect_action(&self, slf: &Bound<'_, Batch>) -> PyResult<()> {
+        if self.untouched {
+            let text = "environments must be reset before their first step";
+            return Err(raise(slf, "_reset_needed", text));
+        }
+        if self.autoreset != Autoreset::Disabled {
+            return Ok(());
+        }
+        match self.standing.iter().position(|&stands| stands != 0) {
+            None => Ok(()),
+            Some(n) => {
+                let text = format!(
+                    "the episode of environment {n} is over: reset it before the next step"
+                );
+                Err(raise(slf, "_reset_needed", &text))
+            }
+        }
+    }
+
+    /// Episodes have begun where there is a `true`.
+    pub(crate) fn begun(&mut self, which: &[bool]) {
+        self.untouched = false;
+        let marked = self.standing.iter_mut().zip(which).filter(|(_, which)| **which);
+        marked.for_each(|(stands, _)| *stands = 0);
+    }
+
+    /// The arrays of the next step.
+    fn row<'py, T: Number>(&mut self, py: Python<'py>, observations: usize) -> Row<'py> {
+        let len = self.len;
+        if self.rows.len() < self.buffers.max(1) {
+            let seen: Bound<'py, Array<T, 2>> = fresh(py, [len, observations]);
+            let reward: Bound<'py, Array<T, 1>> = fresh(py, [len]);
+            let marks = || -> Bound<'py, Array<bool, 1>> { fresh(py, [len]) };
+            let row = [seen.into_any(), reward.into_any(), marks().into_any(), marks().into_any()];
+            if self.buffers > 0 {
+                self.rows.push(row.each_ref().map(|array| array.clone().unbind()));
+            }
+            return row;
+        }
+        let row = self.rows[self.turn].each_ref().map(|array| array.bind(py).clone());
+        self.turn = (self.turn + 1) % self.buffers;
+        row
+    }
+}
+
+/// What is seen now, in an array.
+pub(crate) fn look<'py, T: Number>(
+    py: Python<'py>,
+    table: &mut dyn Table<T>,
+    books: &mut Books,
+) -> PyResult<Bound<'py, PyAny>> {
+    let [seen, ..] = books.row::<T>(py, table.observations());
+    let to = room(seen.cast::<Array<T, 2>>()?);
+    py.detach(|| table.observe(to)).map_err(Raised::raised)?;
+    Ok(seen)
+}
+
+/// Takes a step, and says what ended with it.
+pub(crate) fn take<'py, T: Number>(
+    py: Python<'py>,
+    table: &mut dyn Table<T>,
+    books: &mut Books,
+    given: &Bound<'py, PyAny>,
+) -> PyResult<(Row<'py>, Bound<'py, PyDict>)> {
+    let made;
+    let actions: &[T] = match borrowed(given, books.len) {
+        Some(actions) => actions,
+        None => {
+            made = helper(py, &ACTIONS, "actions")?.call1((given, books.len, T::NUMPY))?;
+            let error = || PyTypeError::new_err("actions are no array");
+            borrowed(&made, books.len).ok_or_else(error)?
+        }
+    };
+    // Not up to the first: so that it is a vector's work.
+    let mut finite = true;
+    actions.iter().for_each(|action| finite &= action.is_finite());
+    if !finite {
+        let n = actions.iter().position(|action| !action.is_finite()).unwrap_or(0);
+        return Err(refused(format!("actions[{n}] is {:?}, but it must be finite", actions[n])));
+    }
+    let row = books.row::<T>(py, table.observations());
+    let [seen, reward, terminated, truncated] = &row;
+    let (terminated, truncated) = (flags(terminated.cast()?), flags(truncated.cast()?));
+    let (seen, reward) = (room(seen.cast::<Array<T, 2>>()?), room(reward.cast::<Array<T, 1>>()?));
+    let to = Outcome { seen, reward, terminated: &mut *terminated, truncated: &mut *truncated };
+    let act = || table.act(actions, to);
+    let ends = if books.work > WORTH_A_LOCK { py.detach(act) } else { act() };
+    let ends = ends.map_err(Raised::raised)?;
+    if books.autoreset == Autoreset::Disabled && !ends.environments.is_empty() {
+        for (stands, flags) in books.standing.iter_mut().zip(terminated.iter().zip(&*truncated)) {
+            *stands = flags.0 | flags.1;
+        }
+    }
+    let infos = told(py, &ends, books, table.observations())?;
+    Ok((row, infos))
+}
+
+/// What the dictionary of a step says.
+fn told<'py, T: Number>(
+    py: Python<'py>,
+    ends: &Ends<T>,
+    books: &Books,
+    observations: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let same_step = books.autoreset == Autoreset::SameStep;
+    if ends.environments.is_empty() || !(same_step || ends.lost.contains(&true)) {
+        return Ok(PyDict::new(py));
+    }
+    let seen: Bound<'py, Array<T, 2>> = fresh(py, [ends.environments.len(), observations]);
+    room(&seen).copy_from_slice(&ends.seen);
+    let arguments = (books.len, same_step, &ends.environments, seen, &ends.lost);
+    Ok(helper(py, &INFOS, "infos")?.call1(arguments)?.cast_into()?)
+}
+
+static ACTIONS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+static INFOS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+
+/// A function of Python's for what is rare.
+fn helper<'py>(
+    py: Python<'py>,
+    cell: &'static PyOnceLock<Py<PyAny>>,
+    name: &str,
+) -> PyResult<&'py Bound<'py, PyAny>> {
+    let import = || Ok::<_, PyErr>(py.import("libration._arrays")?.getattr(name)?.unbind());
+    Ok(cell.get_or_try_init(py, import)?.bind(py))
+}

@@ -1,0 +1,213 @@
+"""From keywords to what the engine is told."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import numbers
+from typing import Any, Iterable, Sequence
+
+from ._presets import Preset
+
+AUTORESET = ("NextStep", "SameStep", "Disabled")
+
+MOST_SUBSTEPS = 1000
+"""As many are tried where latencies are to be whole numbers of them."""
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """What to say about a name that is none of the known ones."""
+    known = sorted(known)
+    near = difflib.get_close_matches(name, known, n=1)
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    return f"{hint}known are {', '.join(known)}"
+
+
+def number(name: str, value: Any, allowed: str, holds=math.isfinite) -> float:
+    """``value`` as a float.
+
+    Raises
+    ------
+    TypeError
+        If it is no real number.
+    ValueError
+        If it is not what is allowed.
+    """
+    if isinstance(value, bool) or not isinstance(value, (numbers.Real,)):
+        raise TypeError(f"{name} must be a number, not {type(value).__name__}")
+    value = float(value)
+    if math.isnan(value) or not holds(value):
+        raise ValueError(f"{name} is {value!r}, but it must be {allowed}")
+    return value
+
+
+def positive(name: str, value: Any) -> float:
+    return number(name, value, "finite and greater than 0", lambda x: 0 < x < math.inf)
+
+
+def count(name: str, value: Any, least: int, most: int) -> int:
+    """``value`` as an int between two ends."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral):
+        raise TypeError(f"{name} must be an integer, not {type(value).__name__}")
+    if not least <= value <= most:
+        raise ValueError(f"{name} is {value}, but it must be {least} to {most}")
+    return int(value)
+
+
+def ends(name: str, value: Any, least: float = -math.inf) -> tuple[float, float]:
+    """A number, or the two ends between which it is drawn for every episode."""
+    pair = value if isinstance(value, Sequence) and not isinstance(value, str) else (value, value)
+    if len(pair) != 2:
+        raise ValueError(f"{name} has {len(pair)} numbers, but it must be one, or two ends")
+    allowed = "finite" if least == -math.inf else f"finite and at least {least:g}"
+    low, high = (number(name, x, allowed, lambda x: least <= x < math.inf and x > -math.inf) for x in pair)
+    if low > high:
+        raise ValueError(f"{name} is from {low!r} to {high!r}, but it must rise")
+    return low, high
+
+
+def law(name: str, value: Any) -> tuple[str, float]:
+    """A standard deviation, or a law and its standard deviation."""
+    if value is None:
+        return "gaussian", 0.0
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        if len(value) != 2 or not isinstance(value[0], str):
+            raise ValueError(f"{name} is {value!r}, but it must be like ('gaussian', 0.05)")
+        kind, rms = value
+        if kind not in ("gaussian", "uniform"):
+            raise ValueError(f"law of {name} is {kind!r}: {nearest(kind, ('gaussian', 'uniform'))}")
+    else:
+        kind, rms = "gaussian", value
+    at_least_zero = lambda x: 0 <= x < math.inf  # noqa: E731
+    return kind, number(name, rms, "finite and at least 0", at_least_zero)
+
+
+def _steps(seconds: tuple[float, float], dt: float) -> list[int] | None:
+    """Latencies in steps of ``dt``, if they are whole numbers of them."""
+    exact = [x / dt for x in seconds]
+    whole = [round(x) for x in exact]
+    near = all(abs(x - n) <= 1e-9 * max(1.0, abs(x)) for x, n in zip(exact, whole))
+    return whole if near else None
+
+
+def delays(
+    dt: float, substeps: int | None, named: dict[str, tuple[float, float]]
+) -> tuple[int, dict[str, list[int]]]:
+    """The number of substeps, and latencies as numbers of them."""
+    tried = range(1, MOST_SUBSTEPS + 1) if substeps is None else (substeps,)
+    for parts in tried:
+        steps = {name: _steps(seconds, dt / parts) for name, seconds in named.items()}
+        if None not in steps.values():
+            for name, (_, most) in steps.items():
+                if most > 4096:
+                    raise ValueError(
+                        f"{name} is {named[name][1]!r} s, which is {most} steps of {dt / parts:g} s, "
+                        "but it must be at most 4096 of them"
+                    )
+            return parts, steps
+    alone = [
+        name
+        for name, seconds in named.items()
+        if all(_steps(seconds, dt / parts) is None for parts in tried)
+    ]
+    what = " and ".join(
+        f"{name} is {low!r} s" if low == high else f"{name} is from {low!r} to {high!r} s"
+        for name, (low, high) in named.items()
+        if name in (alone or named)
+    )
+    of = f"dt/{substeps}" if substeps else f"dt/n with n up to {MOST_SUBSTEPS}"
+    raise ValueError(
+        f"{what}, but it must be whole steps of the integrator, {of} (dt is {dt!r} s)"
+    )
+
+
+OPTIONS = (
+    "num_envs",
+    "max_episode_steps",
+    "autoreset_mode",
+    "integrator",
+    "dt",
+    "substeps",
+    "action_delay",
+    "observation_delay",
+    "jitter",
+    "skew",
+    "observation_noise",
+    "max_action",
+    "start_position",
+    "start_velocity",
+    "dtype",
+    "threads",
+    "copy",
+    "buffers",
+    "render_mode",
+)
+
+CATALOGUE = {
+    "oscillator": ("m", "k", "omega2"),
+    "pendulum": ("omega2",),
+    "duffing": ("alpha", "beta"),
+}
+
+
+def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
+    """What the engine is told of an environment.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Of the first keyword that cannot be, with its name, its value and what is allowed.
+    """
+    given = dict(given)
+    parameters = given.pop("parameters")
+    of_system = CATALOGUE[preset.system]
+    known = set(OPTIONS) | set(of_system) | set(preset.costs)
+    for name in parameters:
+        if name not in known:
+            raise TypeError(f"unexpected keyword argument {name!r}: {nearest(name, known)}")
+    system = {name: parameters[name] for name in of_system if name in parameters}
+    if not {"m", "k"} & set(system):
+        system = {**preset.parameters, **system}
+    system = {name: number(name, value, "finite") for name, value in system.items()}
+    costs = {**preset.costs, **{k: v for k, v in parameters.items() if k in preset.costs}}
+    task = []
+    for name, value in costs.items():
+        if name == "bound":
+            task.append(number(name, value, "greater than 0", lambda x: x > 0))
+        else:
+            task.append(number(name, value, "finite"))
+    either = lambda name: getattr(preset, name) if given[name] is None else given[name]  # noqa: E731
+    dt = positive("dt", either("dt"))
+    substeps = given["substeps"]
+    if substeps is not None:
+        substeps = count("substeps", substeps, 1, 1_000_000)
+    late = {
+        name: ends(name, given[name], least=0.0) for name in ("observation_delay", "action_delay")
+    }
+    substeps, late_steps = delays(dt, substeps, late)
+    limit = either("max_episode_steps")
+    limit = None if limit == math.inf else count("max_episode_steps", limit, 1, 2**32 - 1)
+    max_action = either("max_action")
+    max_action = number("max_action", max_action, "greater than 0", lambda x: x > 0)
+    integrator, dtype = given["integrator"], given["dtype"]
+    if not isinstance(integrator, str):
+        raise TypeError(f"integrator must be a string, not {type(integrator).__name__}")
+    return {
+        "num_envs": count("num_envs", given["num_envs"], 1, 2**40),
+        "dtype": str(dtype),
+        "threads": count("threads", given["threads"], 0, 1024),
+        "autoreset": given["autoreset_mode"],
+        "integrator": integrator,
+        "dt": dt / substeps,
+        "substeps": substeps,
+        "limit": limit,
+        "saturation": max_action,
+        "system": (preset.system, list(system.items())),
+        "task": (preset.task, task),
+        "start": [ends(name, either(name)) for name in ("start_position", "start_velocity")],
+        "observation_delay": late_steps["observation_delay"],
+        "action_delay": late_steps["action_delay"],
+        "jitter": law("jitter", given["jitter"]),
+        "skew": law("skew", given["skew"]),
+        "noise": law("observation_noise", given["observation_noise"]),
+    }

@@ -1,0 +1,184 @@
+"""Environments of Gymnasium: vector environments of the engine, and single ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.error import ClosedEnvironmentError, ResetNeeded
+from gymnasium.spaces import Box
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector.utils import batch_space
+
+from ._presets import PRESETS, Preset
+from .environments import Environments
+
+__all__ = [
+    "DuffingEnv",
+    "DuffingVectorEnv",
+    "OscillatorEnv",
+    "OscillatorVectorEnv",
+    "PendulumEnv",
+    "PendulumVectorEnv",
+    "VectorEnv",
+    "register",
+]
+
+NAMESPACE = "libration"
+METADATA = {"render_modes": ["rgb_array"], "render_fps": 30}
+
+
+def _spaces(preset: Preset, settings: dict[str, Any]) -> tuple[Box, Box]:
+    """The spaces of what one environment shows and takes."""
+    dtype = np.dtype(settings["dtype"])
+    noisy = settings["noise"][1] > 0
+    high = np.array([np.inf if noisy else limit for limit in preset.limits], dtype=dtype)
+    most = settings["saturation"]
+    return Box(-high, high, dtype=dtype), Box(-most, most, shape=(1,), dtype=dtype)
+
+
+def _render_mode(render_mode: str | None) -> str | None:
+    if render_mode not in (None, "rgb_array"):
+        raise ValueError(f"render_mode is {render_mode!r}, but it must be 'rgb_array' or None")
+    return render_mode
+
+
+class VectorEnv(Environments, gymnasium.vector.VectorEnv):
+    """Environments of the engine behind the interface of Gymnasium's vector environments.
+
+    See :class:`libration.Environments` for all keywords; ``render_mode`` may be ``"rgb_array"``.
+    """
+
+    metadata = METADATA
+    _reset_needed = ResetNeeded
+    _closed_error = ClosedEnvironmentError
+
+    def __init__(
+        self, name: str, num_envs: int = 1, *, render_mode: str | None = None, **given: Any
+    ) -> None:
+        self.render_mode = _render_mode(render_mode)
+        super().__init__(name, num_envs, **given)
+        self.metadata = {
+            **METADATA,
+            "autoreset_mode": AutoresetMode(self._settings["autoreset"]),
+        }
+        spaces = _spaces(self.preset, dict(self._settings))
+        self.single_observation_space, self.single_action_space = spaces
+        self.observation_space, self.action_space = (batch_space(s, self.num_envs) for s in spaces)
+
+    def reset(
+        self,
+        *,
+        seed: int | list[int | None] | None = None,
+        options: dict[str, Any] | None = None,
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        if isinstance(seed, (int, np.integer)) and not isinstance(seed, bool):
+            self._seeds(seed)
+            gymnasium.vector.VectorEnv.reset(self, seed=int(seed))
+        return super().reset(seed=seed, options=options)
+
+    def render(self) -> tuple[np.ndarray, ...] | None:
+        """Pictures of all environments, if ``render_mode`` is ``"rgb_array"``."""
+        if self.render_mode is None:
+            gymnasium.logger.warn("render was called, but render_mode is None: nothing is drawn")
+            return None
+        from ._render import picture
+
+        return tuple(picture(self.preset, *state) for state in self.states.astype(float))
+
+    def close_extras(self, **kwargs: Any) -> None:
+        self._close()
+
+    def _extras(self) -> dict[str, Any]:
+        names = ("spec", "render_mode", "_np_random", "_np_random_seed", "closed")
+        return {name: self.__dict__[name] for name in names if name in self.__dict__}
+
+    @classmethod
+    def _made(cls, name: str, given: dict[str, Any]) -> Environments:
+        return cls(name, **given) if cls is VectorEnv else cls(**given)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.preset.name}, num_envs={self.num_envs})"
+
+
+class Env(gymnasium.Env):
+    """One environment of the engine.
+
+    A time limit is Gymnasium's: ``gymnasium.make`` adds it.
+    """
+
+    metadata = METADATA
+
+    def __init__(self, name: str, *, render_mode: str | None = None, **given: Any) -> None:
+        for unknown in ("num_envs", "autoreset_mode", "copy", "buffers", "max_episode_steps"):
+            if unknown in given:
+                raise TypeError(f"unexpected keyword argument {unknown!r}: it is of many environments")
+        self.render_mode = _render_mode(render_mode)
+        self._all = Environments(
+            name, max_episode_steps=np.inf, autoreset_mode="Disabled", **given
+        )
+        self._all._reset_needed = ResetNeeded
+        spaces = _spaces(self._all.preset, dict(self._all._settings))
+        self.observation_space, self.action_space = spaces
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        super().reset(seed=seed)
+        observations, infos = self._all.reset(seed=None if seed is None else [seed])
+        return observations[0], infos
+
+    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        observations, rewards, terminated, truncated, infos = self._all.step(action)
+        told = {"lost": True} if infos else {}
+        return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), told
+
+    def render(self) -> np.ndarray | None:
+        if self.render_mode is None:
+            gymnasium.logger.warn("render was called, but render_mode is None: nothing is drawn")
+            return None
+        from ._render import picture
+
+        return picture(self._all.preset, *self._all.states[0].astype(float))
+
+    def close(self) -> None:
+        self._all._close()
+
+
+def _classes(preset: Preset) -> tuple[type[Env], type[VectorEnv]]:
+    """The single and the vector environment of a preset."""
+
+    class Single(Env):
+        __doc__ = f"One ``{NAMESPACE}/{preset.name}-v0``."
+
+        def __init__(self, **given: Any) -> None:
+            super().__init__(preset.name, **given)
+
+    class Vector(VectorEnv):
+        __doc__ = f"Many ``{NAMESPACE}/{preset.name}-v0``."
+
+        def __init__(self, num_envs: int = 1, **given: Any) -> None:
+            super().__init__(preset.name, num_envs, **given)
+
+    for made, name in ((Single, f"{preset.name}Env"), (Vector, f"{preset.name}VectorEnv")):
+        made.__name__ = made.__qualname__ = name
+    return Single, Vector
+
+
+OscillatorEnv, OscillatorVectorEnv = _classes(PRESETS["Oscillator"])
+PendulumEnv, PendulumVectorEnv = _classes(PRESETS["Pendulum"])
+DuffingEnv, DuffingVectorEnv = _classes(PRESETS["Duffing"])
+
+
+def register() -> None:
+    """Make the environments known to Gymnasium, as happens by itself on import."""
+    for preset in PRESETS.values():
+        known = f"{NAMESPACE}/{preset.name}-v0"
+        if known not in gymnasium.registry:
+            gymnasium.register(
+                id=known,
+                entry_point=f"libration.envs:{preset.name}Env",
+                vector_entry_point=f"libration.envs:{preset.name}VectorEnv",
+                max_episode_steps=preset.max_episode_steps,
+            )

@@ -1,0 +1,15 @@
+"""What tests share."""
+
+NAMES = ("Oscillator", "Pendulum", "Duffing")
+AUTORESETS = ("NextStep", "SameStep", "Disabled")
+
+# All that an environment can suffer from; dt is that of none of them.
+PERTURBED = dict(
+    dt=0.02,
+    substeps=4,
+    action_delay=(0.01, 0.03),
+    observation_delay=0.015,
+    jitter=("uniform", 0.1),
+    skew=0.01,
+    observation_noise=0.02,
+)
