@@ -73,6 +73,11 @@ impl Batch {
         Ok((seen, reward, terminated, truncated, infos))
     }
 
+    /// Takes what a step takes and does nothing with it, for benchmarks.
+    fn _nothing(&self, actions: &Bound<'_, PyAny>) {
+        let _ = (self, actions);
+    }
+
     /// Begins episodes: a first one where there is a seed, otherwise the next, where `mask` has a `True`. Gives what is seen then.
     #[pyo3(signature = (seeds, mask=None))]
     fn _reset<'py>(

@@ -3,6 +3,7 @@
 //! Nothing is computed here. What Python hands over becomes a recipe, and what environments lead to becomes NumPy arrays.
 
 mod array;
+mod bench;
 mod error;
 mod held;
 mod layer;
@@ -12,6 +13,8 @@ mod step;
 /// What `libration` is made of.
 #[pyo3::pymodule]
 mod _native {
+    #[pymodule_export]
+    use crate::bench::_seconds_of_steps;
     #[pymodule_export]
     use crate::layer::Batch;
 

@@ -1,6 +1,6 @@
 //! The system of environments, chosen when the program runs.
 
-use libration::system::{DampedOscillator, Duffing, Oscillator, Pendulum};
+use libration::system::{DampedOscillator, Duffing, Oscillator, Pendulum, WithSystem};
 use libration::{AnySystem, Elementary, Model, State, System};
 
 /// A system of the catalogue that has one degree of freedom.
@@ -51,6 +51,18 @@ impl<T: Elementary> Plant<T> {
 }
 
 impl<T: Elementary> System<T, 1> for Plant<T> {
+    const CHOSEN: bool = true;
+
+    #[inline(always)]
+    fn known<W: WithSystem<T, 1>>(&self, with: W) -> W::Output {
+        match *self {
+            Plant::Oscillator(system) => with.system(system),
+            Plant::Damped(system) => with.system(system),
+            Plant::Pendulum(system) => with.system(system),
+            Plant::Duffing(system) => with.system(system),
+        }
+    }
+
     #[inline]
     fn acceleration(&self, state: &State<T, 1>) -> [T; 1] {
         match self {

@@ -5,6 +5,9 @@ pub trait Assign<X>: Copy + Send + Sync {
     /// The values of a block of `W` neighbouring trajectories.
     type Lanes<const W: usize>: Copy;
 
+    /// Whether it is the same for all.
+    const UNIFORM: bool = false;
+
     /// The values of the `count` trajectories from `first` on; lanes beyond repeat the last.
     fn lanes<const W: usize>(self, first: usize, count: usize) -> Self::Lanes<W>;
 
@@ -28,6 +31,8 @@ pub struct Each<'a, X>(pub &'a [X]);
 
 impl<X: Copy + Send + Sync> Assign<X> for All<X> {
     type Lanes<const W: usize> = X;
+
+    const UNIFORM: bool = true;
 
     #[inline(always)]
     fn lanes<const W: usize>(self, _: usize, _: usize) -> X {

@@ -1,11 +1,18 @@
 //! A method that is chosen when the program runs.
 
-use super::Integrator;
+use super::{Integrator, WithIntegrator};
 use crate::{Method, Scalar, State, System, with_method};
 
 /// The same bits as the method itself. Each step begins with a choice, so that code which takes any method is
 /// compiled once: for loops that are to be fast there is [`with_method!`].
 impl Integrator for Method {
+    const CHOSEN: bool = true;
+
+    #[inline(always)]
+    fn known<W: WithIntegrator>(self, with: W) -> W::Output {
+        with_method!(self, |method| with.integrator(method))
+    }
+
     // Of the one that fills the most.
     const REGISTERS: usize = 16;
 

@@ -39,6 +39,15 @@ pub trait Integrator: Copy + Send + Sync {
     /// [`Ensemble`](crate::Ensemble) makes its blocks narrower by them, and gives the same results.
     const REGISTERS: usize = 4;
 
+    /// Whether it is one of several integrators, which is known only when the program runs.
+    const CHOSEN: bool = false;
+
+    /// Hands over the integrator that it is, so that a loop can be made for that alone.
+    #[inline(always)]
+    fn known<W: WithIntegrator>(self, with: W) -> W::Output {
+        with.integrator(self)
+    }
+
     /// Advances `state` by one step of length `dt`.
     fn step<S: Scalar, const D: usize>(
         self,
@@ -64,4 +73,13 @@ pub trait Integrator: Copy + Send + Sync {
         let state = self.step(system, state, dt);
         (state, system.acceleration(&state))
     }
+}
+
+/// What is to be done with an integrator, whichever it is.
+pub trait WithIntegrator {
+    /// What comes of it.
+    type Output;
+
+    /// Does it.
+    fn integrator<M: Integrator>(self, integrator: M) -> Self::Output;
 }

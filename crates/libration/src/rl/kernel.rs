@@ -129,7 +129,7 @@ where
                             stage.pass(now, block, past!());
                         }
                         stage.act(place, block, acts, &mut out.step);
-                        stage.advance(&site, block, past!(), times, &mut out)
+                        stage.advance(target, &site, block, past!(), times, &mut out)
                     };
                     ended |= stage.limit(now, block, ended != 0 || stood.is_some(), &mut out.cuts);
                     let whole = ended == 0 && stood.is_none();

@@ -23,6 +23,7 @@ mod error;
 mod estimates;
 mod history;
 mod kernel;
+mod lanes;
 mod look;
 mod plan;
 pub mod policy;
@@ -37,6 +38,7 @@ pub mod start;
 mod strip;
 pub mod task;
 pub mod variation;
+mod wrong;
 mod yields;
 
 pub use batch::Environments;

@@ -1,13 +1,16 @@
 //! What a step of a block consists of: scalar functions in loops over lanes.
 
-use super::block::{self, BlockOf, ClockMemory, LOST, NumberLanes};
+use super::block::{self, BlockOf, LOST, NumberLanes};
 use super::draws::renew;
 use super::history::History;
 use super::kernel::LANES;
+use super::lanes::Lanes;
+use super::wrong::worse;
 use super::yields::{Step, Yield};
 use super::{Autoreset, Parts, Place, Policy, Sensor, Task, Variation, World};
 use crate::control::{Clock, Memory};
 use crate::ensemble::Assign;
+use crate::ensemble::instructions::Target;
 use crate::ensemble::kernel::{Lines, at, put};
 use crate::random::{Purpose, Streams};
 use crate::system::Held;
@@ -23,7 +26,7 @@ pub(super) struct Stage<'s, T, E, P, const O: usize, const D: usize> {
     /// From action to action.
     span: f64,
     /// The largest command.
-    saturation: T,
+    pub(super) saturation: T,
     pub(super) substeps: u64,
     limit: Option<u64>,
     pub(super) autoreset: Autoreset,
@@ -77,7 +80,7 @@ where
 
     /// The environment, as a value of its own: behind a reference the compiler would look for changes after every store.
     #[inline(always)]
-    fn parts(&self) -> Parts<T, E, O, D> {
+    pub(super) fn parts(&self) -> Parts<T, E, O, D> {
         *self.world.parts()
     }
 
@@ -140,33 +143,11 @@ where
         policy.act_all(place, seen, words, actions, log_probabilities);
     }
 
-    /// Whether nothing is asked of commands but what they are.
-    #[inline(always)]
-    pub(super) fn is_free(&self) -> bool {
-        self.saturation.to_f64() == f64::INFINITY
-    }
-
-    /// What is to be had of these actions. What is no number stays none.
-    #[inline(always)]
-    fn commands(&self, actions: &[[T; LANES]; D]) -> [[T; LANES]; D] {
-        let mut commands = *actions;
-        if self.is_free() {
-            return commands;
-        }
-        let most = self.saturation;
-        for row in &mut commands {
-            for x in row {
-                let low = if *x < -most { -most } else { *x };
-                *x = if low > most { most } else { low };
-            }
-        }
-        commands
-    }
-
     /// What comes of it.
     #[inline(always)]
-    pub(super) fn advance(
+    pub(super) fn advance<I: Target>(
         &self,
+        target: I,
         site: &Site<T, E, O, D>,
         block: &mut BlockOf<T, E, O, D>,
         past: &mut [T],
@@ -194,18 +175,19 @@ where
                 renew(words, block, now, Purpose::StepTime);
             }
             let beat = parts.clock.beat(step);
+            if const { Self::CHOSEN } {
+                let dt = self.lengths(block, beat, words);
+                let (system, _) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, 0);
+                let lanes = Lanes { q: &mut q.0, v: &mut v.0, held: &held.0, dt: &dt.0 };
+                lanes.step(target, system, parts.method);
+                continue;
+            }
             for l in 0..LANES {
                 let (system, _) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
-                let mut memory = ClockMemory::<T, E, O, D>::lane(&block.clock, l);
-                let mut ratio = parts.clock.ratio(&mut memory, beat, &mut || words.next(l));
-                if const { !E::Clock::EVEN } {
-                    ratio = worse(ratio, T::one(), block.severity[0][l]);
-                    ratio = if ratio < T::zero() { T::zero() } else { ratio };
-                }
-                ClockMemory::<T, E, O, D>::set_lane(&mut block.clock, l, memory);
+                let dt = dt * self.ratio(block, l, beat, words);
                 let system = Held { system, command: at(&held.0, l) };
                 let state = State { q: at(&q.0, l), v: at(&v.0, l) };
-                let state = parts.method.step(&system, state, dt * ratio);
+                let state = parts.method.step(&system, state, dt);
                 put(&mut q.0, l, state.q);
                 put(&mut v.0, l, state.v);
             }
@@ -247,12 +229,6 @@ where
         }
         ended
     }
-}
-
-/// What is, if it is so many times as far from what should be: with a factor of 1, what is to the last bit.
-#[inline(always)]
-fn worse<T: Float>(is: T, should_be: T, factor: T) -> T {
-    is + (factor - T::one()) * (is - should_be)
 }
 
 /// The system and the task of lane `l`.

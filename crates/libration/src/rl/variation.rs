@@ -15,6 +15,9 @@ pub trait Variation<T: Float, Sys, K>: Copy + Send + Sync {
     /// What is kept of an environment for the episode.
     type Numbers: Memory<T>;
 
+    /// Whether every episode has the system and the task that there are.
+    const SAME: bool = false;
+
     /// Whether its numbers are those of a variation.
     ///
     /// # Errors
@@ -37,6 +40,8 @@ pub struct Same;
 
 impl<T: Float, Sys, K> Variation<T, Sys, K> for Same {
     type Numbers = [T; 0];
+
+    const SAME: bool = true;
 
     fn draw(&self, _: Episode) -> [T; 0] {
         []

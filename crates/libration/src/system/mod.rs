@@ -40,6 +40,18 @@ pub trait System<S: Scalar, const D: usize> {
     /// about right; its results do not depend on it.
     const REGISTERS: usize = 16;
 
+    /// Whether it is one of several systems, which is known only when the program runs.
+    const CHOSEN: bool = false;
+
+    /// Hands over the system that it is, so that a loop can be made for that alone.
+    #[inline(always)]
+    fn known<W: WithSystem<S, D>>(&self, with: W) -> W::Output
+    where
+        Self: Copy,
+    {
+        with.system(*self)
+    }
+
     /// The acceleration `a(q, v)`.
     fn acceleration(&self, state: &State<S, D>) -> [S; D];
 
@@ -48,6 +60,15 @@ pub trait System<S: Scalar, const D: usize> {
     fn rate(&self, state: State<S, D>) -> State<S, D> {
         State { q: state.v, v: self.acceleration(&state) }
     }
+}
+
+/// What is to be done with a system, whichever it is.
+pub trait WithSystem<S: Scalar, const D: usize> {
+    /// What comes of it.
+    type Output;
+
+    /// Does it.
+    fn system<Sys: System<S, D> + Copy>(self, system: Sys) -> Self::Output;
 }
 
 /// A system with an energy, conserved or not.

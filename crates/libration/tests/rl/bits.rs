@@ -8,7 +8,7 @@ use libration::rl::policy::{Explore, Linear, Random};
 use libration::rl::{Autoreset, Environments, Layout, Plan, Policy, Rollout, Task, World, Writes};
 
 use crate::alone::{Told, alone};
-use crate::{executions, ideal, perturbed};
+use crate::{chosen, executions, ideal, perturbed};
 
 pub(crate) const POLICY: Linear<2, 1> = Linear { weights: [[-3.0, 0.5]], bias: [0.25] };
 pub(crate) const EXPLORING: Explore<Linear<2, 1>, 1> = Explore { policy: POLICY, sigma: [0.5] };
@@ -89,6 +89,14 @@ fn so_does_one_with_delays_jitter_skew_noise_variation_and_exploration_under_eve
     for autoreset in [Autoreset::SameStep, Autoreset::NextStep, Autoreset::Disabled] {
         let ends = compare(perturbed(autoreset), EXPLORING);
         assert!(ends > 50, "some episodes end before their limit: {ends} {autoreset:?}");
+    }
+}
+
+#[test]
+fn an_environment_whose_integrator_is_chosen_when_it_runs_does_what_it_does_alone() {
+    use libration::Method::{ExplicitEuler, Rk4, VelocityVerlet, Yoshida4};
+    for method in [ExplicitEuler, VelocityVerlet, Rk4, Yoshida4] {
+        assert!(compare(chosen(method), EXPLORING) > 50, "some episodes end before their limit");
     }
 }
 

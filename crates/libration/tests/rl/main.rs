@@ -7,13 +7,13 @@ mod bits;
 mod clocks;
 mod episodes;
 mod faults;
+mod golden;
 mod policies;
 mod seeds;
 mod steps;
 mod tensors;
 mod widths;
 
-use libration::State;
 use libration::control::clock::{Fixed, Gaussian, Jittered, Skewed, Uniform};
 use libration::ensemble::{All, Execution, InstructionSet};
 use libration::integrator::SymplecticEuler;
@@ -21,8 +21,9 @@ use libration::rl::sensor::{Exact, Noisy};
 use libration::rl::start::Between;
 use libration::rl::task::Regulate;
 use libration::rl::variation::Same;
-use libration::rl::{Autoreset, Delays, Environment, Severity, Spread, Variation};
+use libration::rl::{Autoreset, Delays, Environment, Severity, Spread, Variation, World};
 use libration::system::Oscillator;
+use libration::{Method, State};
 
 const SPRING: Oscillator<f32> = Oscillator { omega2: 10.0 };
 const TASK: Regulate = Regulate { position: 1.0, velocity: 0.1, effort: 0.01, bound: 1.2 };
@@ -70,6 +71,20 @@ fn perturbed(
                 (Oscillator { omega2 }, Regulate { bound: bound.into(), ..task })
             },
         })
+}
+
+/// One whose integrator is known only when the program runs.
+fn chosen(method: Method) -> impl World<f32, 2, 1> {
+    use libration::analysis::Jitter;
+
+    Environment::new(All(SPRING), method, 0.02, TASK, ANYWHERE)
+        .substeps(3)
+        .limit(60)
+        .delays(Delays { observation: [0, 4], action: [2, 7] })
+        .saturation(2.5)
+        .clock((Skewed(Jitter::Uniform(0.01)), Jittered(Gaussian(0.2))))
+        .sensor(Noisy([Uniform(0.05), Uniform(0.1)]))
+        .severity(Severity { clock: [0.0, 2.0], sensor: [0.5, 1.5] })
 }
 
 /// On every instruction set, alone and with more threads than a small machine has cores.

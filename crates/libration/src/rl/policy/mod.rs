@@ -3,12 +3,14 @@
 mod explore;
 mod given;
 mod linear;
+mod network;
 mod perceptron;
 mod random;
 
 pub use explore::Explore;
 pub use given::Given;
 pub use linear::{Each, Linear};
+pub use network::Network;
 pub use perceptron::{Activation, EachPerceptron, Perceptron};
 pub use random::Random;
 

@@ -125,7 +125,7 @@ where
 
 /// One action of a policy that has many at once.
 #[inline(always)]
-fn alone<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize>(
+pub(super) fn alone<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize>(
     policy: &P,
     place: Place,
     seen: &[T; O],
@@ -161,9 +161,9 @@ fn forward<T, const O: usize, const H: usize, const D: usize, const W: usize>(
 }
 
 #[inline(always)]
-fn activate<T: Float + Elementary, const H: usize, const W: usize>(
+pub(super) fn activate<T: Float + Elementary, const W: usize>(
     activation: Activation,
-    hidden: &mut [[T; W]; H],
+    hidden: &mut [[T; W]],
 ) {
     for row in hidden {
         match activation {
