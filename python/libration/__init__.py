@@ -7,9 +7,11 @@ The engine's environments are :class:`Environments`; with Gymnasium installed th
 from __future__ import annotations
 
 from ._native import __version__
+from . import policies
 from .environments import Environments
+from .rollout import Rollout
 
-__all__ = ["Environments", "__version__"]
+__all__ = ["Environments", "Rollout", "__version__", "policies"]
 
 
 try:

@@ -9,6 +9,8 @@ import numpy as np
 from . import _native
 from ._presets import PRESETS, Preset
 from ._settings import AUTORESET, count, native, nearest
+from .policies import Policy
+from .rollout import Rollout
 
 __all__ = ["Environments"]
 
@@ -200,6 +202,36 @@ class Environments(_native.Batch):
         if not mask.any():
             raise ValueError("options['reset_mask'] has no True, but it must have one at least")
         return np.ascontiguousarray(mask)
+
+    def rollout(
+        self,
+        policy: Policy,
+        horizon: int,
+        *,
+        log_probabilities: bool = False,
+        values: bool = False,
+        out: Rollout | None = None,
+    ) -> Rollout:
+        """Act ``horizon`` times in every environment, under a policy of :mod:`libration.policies`.
+
+        ``out`` is filled again if it is given, and then says what is asked for. Ctrl-C ends a long rollout between two steps, after
+        which ``out`` holds a part of it.
+        """
+        observations = len(self.preset.seen)
+        if not isinstance(policy, Policy):
+            raise TypeError(
+                f"policy must be one of libration.policies, not {type(policy).__name__}: to act from Python, use step"
+            )
+        told = policy._told(observations)
+        if out is None:
+            horizon = count("horizon", horizon, 1, 2**40)
+            out = Rollout(self._memory(horizon, bool(log_probabilities), bool(values)))
+        elif out.rewards.shape != (horizon, self.num_envs):
+            raise ValueError(
+                f"out has shape {out.rewards.shape}, but it must be ({horizon}, {self.num_envs})"
+            )
+        out.last_observations = self._rollout(told, out._memory)
+        return out
 
     @property
     def states(self) -> np.ndarray:

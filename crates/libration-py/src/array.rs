@@ -5,9 +5,11 @@ use std::slice::{from_raw_parts, from_raw_parts_mut};
 
 use bytemuck::{AnyBitPattern, NoUninit, Zeroable};
 use libration::{Elementary, Float};
-use numpy::ndarray::{Dim, Dimension, IntoDimension, IxDyn};
+use numpy::ndarray::{ArrayView, Dim, Dimension, IntoDimension, IxDyn};
 use numpy::{Element, PyArray, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+
+use crate::error::refused;
 
 /// A float type that NumPy has.
 pub(crate) trait Number: Float + Elementary + bytemuck::Pod + Element {
@@ -69,6 +71,36 @@ pub(crate) fn borrowed<'a, T: Number>(
     // thread, gives one action or the other.
     (fits && array.is_c_contiguous() && is_aligned(array))
         .then(|| unsafe { from_raw_parts(array.data(), len) })
+}
+
+/// Memory of the engine as an array that keeps its owner.
+pub(crate) fn view<'py, T: Number, const N: usize>(
+    owner: &Bound<'py, PyAny>,
+    numbers: &[T],
+    shape: [usize; N],
+) -> PyResult<Bound<'py, PyAny>>
+where
+    [usize; N]: IntoDimension<Dim = Dim<[usize; N]>>,
+    Dim<[usize; N]>: Dimension,
+{
+    let array = ArrayView::from_shape(shape, numbers);
+    let array = array.map_err(|error| refused(error.to_string()))?;
+    // SAFETY: whoever calls lends memory that its owner has until it is gone, at the same place; the array keeps the owner.
+    Ok(unsafe { PyArray::borrow_from_array(&array, owner.clone()) }.into_any())
+}
+
+/// Flags of the engine as an array of `bool` that keeps its owner.
+pub(crate) fn view_of_flags<'py>(
+    owner: &Bound<'py, PyAny>,
+    flags: &[u8],
+    shape: [usize; 2],
+) -> PyResult<Bound<'py, PyAny>> {
+    // SAFETY: a flag of the engine is a byte of 0 or 1.
+    let flags: &[bool] = unsafe { from_raw_parts(flags.as_ptr().cast(), flags.len()) };
+    let array = ArrayView::from_shape(shape, flags);
+    let array = array.map_err(|error| refused(error.to_string()))?;
+    // SAFETY: as in `view`.
+    Ok(unsafe { PyArray::borrow_from_array(&array, owner.clone()) }.into_any())
 }
 
 fn is_aligned<T: Element>(array: &Bound<'_, PyArray<T, IxDyn>>) -> bool {

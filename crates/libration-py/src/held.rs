@@ -1,12 +1,16 @@
 //! Environments of which Python knows nothing but how many numbers they show.
 
+use std::ops::Range;
+
 use libration::checkpoint::CheckpointError;
 use libration::ensemble::Execution;
 use libration::rl::policy::Given;
-use libration::rl::{EnvironmentError, Outcome};
+use libration::rl::{EnvironmentError, Outcome, Plan, Rollout};
 use libration_lab::environments::{Actor, Batch, Recipe, Visit};
 
+use crate::acts::Acts;
 use crate::array::Number;
+use crate::tensors::Tensors;
 
 /// Episodes that ended in a step, by environment.
 pub(crate) struct Ends<T> {
@@ -23,6 +27,15 @@ pub(crate) trait Table<T>: Send {
     fn observations(&self) -> usize;
 
     fn act(&mut self, actions: &[T], to: Outcome<'_, T>) -> Result<Ends<T>, EnvironmentError>;
+
+    fn tensors(&self, plan: Plan) -> Result<Box<dyn Tensors<T>>, EnvironmentError>;
+
+    fn fill(
+        &mut self,
+        policy: &Acts<T>,
+        tensors: &mut dyn Tensors<T>,
+        rows: Range<usize>,
+    ) -> Result<(), EnvironmentError>;
 
     fn observe(&mut self, to: &mut [T]) -> Result<(), EnvironmentError>;
 
@@ -51,6 +64,24 @@ impl<T: Number, const O: usize> Table<T> for Box<dyn Batch<T, O>> {
             seen: ends.iter().flat_map(|end| end.observation).collect(),
             lost: ends.iter().map(|end| end.lost).collect(),
         })
+    }
+
+    fn tensors(&self, plan: Plan) -> Result<Box<dyn Tensors<T>>, EnvironmentError> {
+        Ok(Box::new(Rollout::<T, O, 1>::new(plan)?))
+    }
+
+    fn fill(
+        &mut self,
+        policy: &Acts<T>,
+        tensors: &mut dyn Tensors<T>,
+        rows: Range<usize>,
+    ) -> Result<(), EnvironmentError> {
+        let found = tensors.observations();
+        let Some(rollout) = tensors.as_any().downcast_mut::<Rollout<T, O, 1>>() else {
+            let name = "numbers that an environment of the rollout shows";
+            return Err(EnvironmentError::Shape { name, found, wanted: O });
+        };
+        (**self).fill(policy.actor(), rollout, rows)
     }
 
     fn observe(&mut self, to: &mut [T]) -> Result<(), EnvironmentError> {

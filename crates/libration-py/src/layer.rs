@@ -4,15 +4,17 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 use std::time::Duration;
 
 use libration::ensemble::Execution;
-use libration::rl::EnvironmentError;
+use libration::rl::{EnvironmentError, Plan};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 
+use crate::acts::Told;
 use crate::array::{Array, Number, fresh, room};
 use crate::error::{Raised, refused};
 use crate::held::{Held, Table, with_table};
+use crate::rollout::Memory;
 use crate::settings::Settings;
 use crate::step::{self, Books};
 
@@ -106,6 +108,34 @@ impl Batch {
             books.begun(&mask);
             step::look(slf.py(), &mut **table, books)
         })
+    }
+
+    /// Room for a rollout of so many steps.
+    fn _memory(
+        slf: &Bound<'_, Self>,
+        horizon: usize,
+        log_probabilities: bool,
+        values: bool,
+    ) -> PyResult<Memory> {
+        let mut guard = slf.get().enter(slf.py());
+        let Inner { held, books, .. } = open(slf, &mut guard)?;
+        let plan = Plan::new(horizon, books.len).truncated();
+        let plan = Plan { log_probability: log_probabilities, value: values, ..plan };
+        Memory::new(held, plan)
+    }
+
+    /// Fills a rollout with what all do under a policy. Gives what is seen then.
+    fn _rollout<'py>(
+        slf: &Bound<'py, Self>,
+        policy: Told<'py>,
+        memory: &Memory,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut guard = slf.get().enter(slf.py());
+        let Inner { held, books, .. } = open(slf, &mut guard)?;
+        books.expect_action(slf)?;
+        let ended = memory.fill(slf.py(), held, &policy, books.substeps)?;
+        books.stood(&ended);
+        with_table!(held, table => step::look(slf.py(), &mut **table, books))
     }
 
     /// Positions and velocities, `(num_envs, 2)`.

@@ -24,8 +24,8 @@ pub(crate) struct Books {
     rows: Vec<[Py<PyAny>; 4]>,
     buffers: usize,
     turn: usize,
-    /// Steps of the integrator that a call takes.
-    work: usize,
+    /// Steps of the integrator for an action.
+    pub(crate) substeps: usize,
 }
 
 /// Arrays that a step fills: what is seen, paid, over and cut off.
@@ -44,7 +44,7 @@ impl Books {
             rows: Vec::new(),
             buffers,
             turn: 0,
-            work: len.saturating_mul(recipe.substeps as usize),
+            substeps: recipe.substeps as usize,
         }
     }
 
@@ -73,6 +73,13 @@ impl Books {
         self.untouched = false;
         let marked = self.standing.iter_mut().zip(which).filter(|(_, which)| **which);
         marked.for_each(|(stands, _)| *stands = 0);
+    }
+
+    /// Episodes ended where this is not 0, and nothing follows if it is to be asked for.
+    pub(crate) fn stood(&mut self, ended: &[u8]) {
+        if self.autoreset == Autoreset::Disabled {
+            self.standing.copy_from_slice(ended);
+        }
     }
 
     /// The arrays of the next step.
@@ -135,12 +142,16 @@ pub(crate) fn take<'py, T: Number>(
     let (seen, reward) = (room(seen.cast::<Array<T, 2>>()?), room(reward.cast::<Array<T, 1>>()?));
     let to = Outcome { seen, reward, terminated: &mut *terminated, truncated: &mut *truncated };
     let act = || table.act(actions, to);
-    let ends = if books.work > WORTH_A_LOCK { py.detach(act) } else { act() };
+    let ends = if books.len.saturating_mul(books.substeps) > WORTH_A_LOCK {
+        py.detach(act)
+    } else {
+        act()
+    };
     let ends = ends.map_err(Raised::raised)?;
-    if books.autoreset == Autoreset::Disabled && !ends.environments.is_empty() {
-        for (stands, flags) in books.standing.iter_mut().zip(terminated.iter().zip(&*truncated)) {
-            *stands = flags.0 | flags.1;
-        }
+    if !ends.environments.is_empty() {
+        let ended: Vec<u8> =
+            terminated.iter().zip(&*truncated).map(|(over, cut)| over | cut).collect();
+        books.stood(&ended);
     }
     let infos = told(py, &ends, books, table.observations())?;
     Ok((row, infos))

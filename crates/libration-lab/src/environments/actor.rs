@@ -1,9 +1,9 @@
 //! Who acts, chosen when the program runs.
 
-use libration::Float;
 use libration::random::Streams;
-use libration::rl::policy::{Constant, Given, Linear, Random};
+use libration::rl::policy::{Constant, Given, Linear, Network, Random};
 use libration::rl::{Act, EnvironmentError, Place, Policy};
+use libration::{Elementary, Float};
 
 /// A policy, and its numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +48,8 @@ pub enum Actor<'a, T, const O: usize> {
     Constant(Constant<1>),
     /// See [`Given`].
     Given(Given<'a, T>),
+    /// See [`Network`].
+    Network(Network<'a, T>),
 }
 
 impl<T, const O: usize> Actor<'_, T, O> {
@@ -72,11 +74,12 @@ macro_rules! with {
             Actor::Random($policy) => $work,
             Actor::Constant($policy) => $work,
             Actor::Given($policy) => $work,
+            Actor::Network($policy) => $work,
         }
     };
 }
 
-impl<T: Float, const O: usize> Policy<T, O, 1> for Actor<'_, T, O> {
+impl<T: Float + Elementary, const O: usize> Policy<T, O, 1> for Actor<'_, T, O> {
     const DRAWS: bool = true;
 
     fn check(&self, environments: usize, horizon: usize) -> Result<(), EnvironmentError> {

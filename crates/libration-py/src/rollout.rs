@@ -1,0 +1,187 @@
+//! Rollouts as Python holds them: memory of the engine, seen as NumPy arrays.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use libration::rl::{Discounts, Estimates, Plan};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::acts::{Acts, Told};
+use crate::array::{Array, Number, fresh, room, view, view_of_flags};
+use crate::error::{Raised, refused};
+use crate::held::{Held, Table};
+use crate::tensors::Tensors;
+
+/// What environments did over a horizon: memory that is taken once and filled again and again.
+#[pyclass(frozen, module = "libration._native")]
+pub(crate) struct Memory {
+    kept: Mutex<Kept>,
+}
+
+/// Tensors of either float type.
+enum Kept {
+    F32(Box<dyn Tensors<f32>>),
+    F64(Box<dyn Tensors<f64>>),
+}
+
+/// Does something with the tensors, whichever they are.
+macro_rules! with_tensors {
+    ($kept:expr, $tensors:ident => $work:expr) => {
+        match $kept {
+            Kept::F32($tensors) => $work,
+            Kept::F64($tensors) => $work,
+        }
+    };
+}
+
+/// Transitions, each of one step of the integrator, after which it is asked whether somebody wants to interrupt: a tenth of a second at
+/// the most.
+const PIECE: usize = 1 << 24;
+
+impl Memory {
+    /// Room for what these environments do over a horizon.
+    pub(crate) fn new(held: &Held, plan: Plan) -> PyResult<Self> {
+        let kept = match held {
+            Held::F32(table) => Kept::F32(table.tensors(plan).map_err(Raised::raised)?),
+            Held::F64(table) => Kept::F64(table.tensors(plan).map_err(Raised::raised)?),
+        };
+        Ok(Memory { kept: Mutex::new(kept) })
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Kept> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Fills all of it. Gives which environments ended with the last step.
+    pub(crate) fn fill(
+        &self,
+        py: Python<'_>,
+        held: &mut Held,
+        policy: &Told<'_>,
+        substeps: usize,
+    ) -> PyResult<Vec<u8>> {
+        match (held, &mut *self.lock()) {
+            (Held::F32(table), Kept::F32(tensors)) => {
+                filled(py, &mut **table, &Acts::new(policy)?, &mut **tensors, substeps)
+            }
+            (Held::F64(table), Kept::F64(tensors)) => {
+                filled(py, &mut **table, &Acts::new(policy)?, &mut **tensors, substeps)
+            }
+            _ => Err(refused("the rollout is of another dtype than the environments".to_owned())),
+        }
+    }
+}
+
+/// Fills tensors piece by piece.
+fn filled<T: Number>(
+    py: Python<'_>,
+    table: &mut dyn Table<T>,
+    policy: &Acts<T>,
+    tensors: &mut dyn Tensors<T>,
+    substeps: usize,
+) -> PyResult<Vec<u8>> {
+    let Plan { horizon, environments, .. } = tensors.plan();
+    let rows = (PIECE / environments.saturating_mul(substeps).max(1)).max(1);
+    for first in (0..horizon).step_by(rows) {
+        let piece = first..(first + rows).min(horizon);
+        py.detach(|| table.fill(policy, tensors, piece)).map_err(Raised::raised)?;
+        py.check_signals()?;
+    }
+    let [(_, terminated), (_, truncated)] = tensors.flags();
+    let last = horizon.saturating_sub(1) * environments;
+    let flags = terminated[last..].iter().zip(&truncated[last..]);
+    Ok(flags.map(|(over, cut)| over | cut).collect())
+}
+
+#[pymethods]
+impl Memory {
+    /// All tensors that there are, by name, without a copy.
+    fn _arrays<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        fn arrays<'py, T: Number>(
+            owner: &Bound<'py, Memory>,
+            tensors: &dyn Tensors<T>,
+        ) -> PyResult<Bound<'py, PyDict>> {
+            let Plan { horizon, environments, .. } = tensors.plan();
+            let all = PyDict::new(owner.py());
+            for (name, numbers, each) in tensors.numbers() {
+                if numbers.is_empty() {
+                    continue;
+                }
+                let array = match each {
+                    0 => view(owner.as_any(), numbers, [horizon, environments]),
+                    _ => view(owner.as_any(), numbers, [horizon, environments, each]),
+                };
+                all.set_item(name, array?)?;
+            }
+            for (name, flags) in tensors.flags() {
+                let flags = view_of_flags(owner.as_any(), flags, [horizon, environments])?;
+                all.set_item(name, flags)?;
+            }
+            Ok(all)
+        }
+        with_tensors!(&*slf.get().lock(), tensors => arrays(slf, &**tensors))
+    }
+
+    /// Columns of episodes that ended, by step and environment.
+    fn _ends<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        fn ends<'py, T: Number>(
+            py: Python<'py>,
+            tensors: &dyn Tensors<T>,
+        ) -> PyResult<Bound<'py, PyDict>> {
+            let ended = tensors.ends();
+            let seen: Bound<'py, Array<T, 2>> =
+                fresh(py, [ended.steps.len(), tensors.observations()]);
+            room(&seen).copy_from_slice(&ended.seen);
+            let all = PyDict::new(py);
+            all.set_item("steps", PyArray1::from_vec(py, ended.steps))?;
+            all.set_item("environments", PyArray1::from_vec(py, ended.environments))?;
+            all.set_item("lengths", PyArray1::from_vec(py, ended.lengths))?;
+            all.set_item("returns", PyArray1::from_vec(py, ended.returns))?;
+            all.set_item("lost", PyArray1::from_vec(py, ended.lost))?;
+            all.set_item("final_observations", seen)?;
+            Ok(all)
+        }
+        with_tensors!(&*self.lock(), tensors => ends(py, &**tensors))
+    }
+
+    /// Whether each step is a transition, `(horizon, num_envs)`: not where an environment stood still or began anew.
+    fn _transitions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let (plan, all) =
+            with_tensors!(&*self.lock(), tensors => (tensors.plan(), tensors.transitions()));
+        let all = PyArray1::from_vec(py, all).reshape([plan.horizon, plan.environments])?;
+        Ok(all.into_any())
+    }
+
+    /// Advantages and returns, `(horizon, num_envs)` each, from the values that were written into the tensor `values`.
+    fn _estimates<'py>(
+        &self,
+        py: Python<'py>,
+        gamma: f64,
+        lambda_: f64,
+        next: Vec<f64>,
+        last: Vec<f64>,
+    ) -> PyResult<[Bound<'py, PyAny>; 2]> {
+        fn estimates<'py, T: Number>(
+            py: Python<'py>,
+            tensors: &dyn Tensors<T>,
+            discounts: Discounts,
+            [next, last]: [Vec<f64>; 2],
+        ) -> PyResult<[Bound<'py, PyAny>; 2]> {
+            let plan = tensors.plan();
+            let rounded = |all: Vec<f64>| -> Vec<T> { all.into_iter().map(T::from_f64).collect() };
+            let (next, last) = (rounded(next), rounded(last));
+            let mut found = Estimates::new(plan).map_err(Raised::raised)?;
+            py.detach(|| tensors.estimate(&mut found, discounts, &next, &last))
+                .map_err(Raised::raised)?;
+            let array = |numbers: &[T]| {
+                let array: Bound<'py, Array<T, 2>> = fresh(py, [plan.horizon, plan.environments]);
+                room(&array).copy_from_slice(numbers);
+                array.into_any()
+            };
+            Ok([array(found.advantage()), array(found.returned())])
+        }
+        let discounts = Discounts { rewards: gamma, errors: lambda_ };
+        with_tensors!(&*self.lock(), tensors => estimates(py, &**tensors, discounts, [next, last]))
+    }
+}

@@ -1,0 +1,115 @@
+"""Policies that act inside the engine, without a word of Python between steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._settings import number
+
+__all__ = ["Constant", "Linear", "MLP", "Policy", "Random"]
+
+
+def _finite(name: str, values: ArrayLike) -> np.ndarray:
+    array = np.asarray(values)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} has dtype {array.dtype}, but it must be real numbers")
+    array = array.astype(np.float64)
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} is not finite everywhere")
+    return array
+
+
+class Policy:
+    """What chooses actions from observations."""
+
+    def _told(self, observations: int) -> dict[str, Any]:
+        """What the engine is told, for environments that show so many numbers."""
+        raise NotImplementedError
+
+    @staticmethod
+    def _numbers(name: str, numbers: Any, hidden: Sequence[int] = (), activation: str = "tanh") -> dict[str, Any]:
+        return {
+            "name": name,
+            "numbers": np.ascontiguousarray(numbers, dtype=np.float64),
+            "hidden": list(hidden),
+            "activation": activation,
+        }
+
+
+@dataclass(frozen=True)
+class Linear(Policy):
+    """``weights @ observation + bias``."""
+
+    weights: ArrayLike
+    """One for each number that is observed."""
+    bias: float = 0.0
+
+    def _told(self, observations: int) -> dict[str, Any]:
+        weights = _finite("weights", self.weights).ravel()
+        if weights.shape != (observations,):
+            raise ValueError(
+                f"there are {weights.size} weights, but there must be {observations}: "
+                "one for each number that is observed"
+            )
+        return self._numbers("linear", [*weights, number("bias", self.bias, "finite")])
+
+
+@dataclass(frozen=True)
+class Random(Policy):
+    """Uniform between two ends, drawn from the seed of the environment."""
+
+    low: float
+    high: float
+
+    def _told(self, observations: int) -> dict[str, Any]:
+        low, high = (number(name, getattr(self, name), "finite") for name in ("low", "high"))
+        if low >= high:
+            raise ValueError(f"actions are from {low!r} to {high!r}, but that must rise")
+        return self._numbers("random", [low, high])
+
+
+@dataclass(frozen=True)
+class Constant(Policy):
+    """Always the same."""
+
+    action: float = 0.0
+
+    def _told(self, observations: int) -> dict[str, Any]:
+        return self._numbers("constant", [number("action", self.action, "finite")])
+
+
+@dataclass(frozen=True)
+class MLP(Policy):
+    """A multilayer perceptron whose last layer is linear and has one output.
+
+    ``layers`` are pairs of a matrix ``(outputs, inputs)`` and biases ``(outputs,)``, as PyTorch's ``Linear`` has them; ``activation``,
+    ``"tanh"`` or ``"relu"``, is what all but the last apply.
+    """
+
+    layers: Sequence[tuple[ArrayLike, ArrayLike]]
+    activation: str = field(default="tanh")
+
+    def _told(self, observations: int) -> dict[str, Any]:
+        if self.activation not in ("tanh", "relu"):
+            raise ValueError(f"activation is {self.activation!r}, but it must be 'tanh' or 'relu'")
+        if not self.layers:
+            raise ValueError("there are no layers, but there must be one at least")
+        parts, widths, inputs = [], [], observations
+        for i, (matrix, biases) in enumerate(self.layers):
+            matrix, biases = _finite(f"matrix {i}", matrix), _finite(f"biases {i}", biases)
+            outputs = len(biases) if biases.ndim == 1 else -1
+            if matrix.shape != (outputs, inputs):
+                raise ValueError(
+                    f"matrix {i} has shape {matrix.shape} and its biases {biases.shape}, but they must be "
+                    f"(outputs, {inputs}) and (outputs,)"
+                )
+            parts += [matrix.ravel(), biases]
+            widths.append(outputs)
+            inputs = outputs
+        if widths[-1] != 1:
+            raise ValueError(f"the last layer has {widths[-1]} outputs, but it must have one")
+        return self._numbers("network", np.concatenate(parts), widths[:-1], self.activation)
