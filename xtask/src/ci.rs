@@ -1,65 +1,36 @@
 //! `cargo xtask ci`: every check in order, up to the first that fails.
 
 use std::fmt::Write;
-use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::{Outcome, codegen, command, dependencies, examples, report, test, tidy, wheel};
 
 /// A headline and what stands under it.
-type Step = (&'static str, Work);
-
-enum Work {
-    /// What is done when its turn comes.
-    Now(fn() -> Outcome),
-    /// What begins with the step of this name and is waited for when its turn comes; what it says is printed then.
-    Beside(&'static str, fn() -> Result<String, String>),
-}
-
-use Work::{Beside, Now};
+type Step = (&'static str, fn() -> Outcome);
 
 const STEPS: [Step; 10] = [
-    ("format", Now(|| command::run(&mut command::cargo("fmt --all --check")))),
-    ("tidy", Now(tidy::run)),
-    ("dependencies", Now(dependencies::run)),
-    (
-        "clippy",
-        Now(|| {
-            command::run(&mut command::cargo("clippy --workspace --all-targets -- -D warnings"))
-        }),
-    ),
-    ("documentation", Now(documentation)),
-    ("report", Now(report::run)),
-    ("test", Now(|| test::with_report(&report::folder()))),
-    ("python", Now(|| wheel::test(&[]))),
-    // A compiler on one core for most of the time: beside tests, some of which wait for a browser or for other programs.
-    ("codegen", Beside("test", codegen::report)),
-    ("examples", Now(examples::run)),
+    ("format", || command::run(&mut command::cargo("fmt --all --check"))),
+    ("tidy", tidy::run),
+    ("dependencies", dependencies::run),
+    ("codegen", codegen::unless_read),
+    ("clippy", || {
+        command::run(&mut command::cargo("clippy --workspace --all-targets -- -D warnings"))
+    }),
+    ("documentation", documentation),
+    ("report", report::run),
+    ("test", || test::with_report(&report::folder())),
+    ("python", || wheel::test(&[])),
+    ("examples", examples::run),
 ];
 
 /// Runs the steps and prints how long each took.
 pub(crate) fn run() -> Outcome {
     let mut durations = Vec::new();
     let mut failure = None;
-    let mut beside: [Option<thread::JoinHandle<_>>; STEPS.len()] = Default::default();
     for (i, (name, work)) in STEPS.iter().enumerate() {
         println!("\n=== {} of {}: {name}", i + 1, STEPS.len());
-        for (j, (_, work)) in STEPS.iter().enumerate() {
-            if let Beside(first, work) = work
-                && first == name
-            {
-                beside[j] = Some(thread::spawn(*work));
-            }
-        }
         let start = Instant::now();
-        let outcome = match (work, beside[i].take()) {
-            (Now(work), _) => work(),
-            (Beside(..), Some(thread)) => match thread.join() {
-                Ok(said) => said.map(|said| print!("{said}")),
-                Err(_) => Err("it panicked".to_owned()),
-            },
-            (Beside(_, work), None) => work().map(|said| print!("{said}")),
-        };
+        let outcome = work();
         durations.push(start.elapsed());
         let verdict = if outcome.is_ok() { "passed" } else { "failed" };
         println!("--- {name} {verdict} after {:.1} s", start.elapsed().as_secs_f64());

@@ -11,6 +11,7 @@ mod function;
 mod hot;
 mod instruction;
 mod kernel;
+mod seal;
 mod verdict;
 
 use std::fs;
@@ -19,13 +20,29 @@ use crate::Outcome;
 use census::Census;
 use kernel::Kernel;
 
-/// Prints what is in the kernels, or what is wrong with them.
+/// Prints what is in the kernels, or what is wrong with them; keeps that this engine was read.
 pub(crate) fn run() -> Outcome {
-    report().map(|said| print!("{said}"))
+    print!("{}", read()?);
+    seal::keep()
+}
+
+/// The same, unless this engine was read before.
+pub(crate) fn unless_read() -> Outcome {
+    if seal::is_whole() {
+        println!(
+            "the engine is the one that was read last: see crates/libration/benches/codegen.txt"
+        );
+        return Ok(());
+    }
+    print!("{}", read()?);
+    println!(
+        "`cargo xtask codegen` keeps that this engine was read, so that the next run need not"
+    );
+    Ok(())
 }
 
 /// Compiles the engine to assembly and fails if a kernel lost its vectors, or is not there; else a table.
-pub(crate) fn report() -> Result<String, String> {
+fn read() -> Result<String, String> {
     if !cfg!(target_arch = "x86_64") {
         return Ok("skipped: the kernels for AVX2 and AVX-512 are compiled on x86-64 only\n".into());
     }

@@ -1,7 +1,7 @@
 //! Rust with its comments and literals blanked, and words in what remains.
 
 /// `text` with comments and the insides of literals as blanks, line for line.
-pub(super) fn of(text: &str) -> String {
+pub(crate) fn of(text: &str) -> String {
     let mut code = String::with_capacity(text.len());
     let mut rest = text;
     let mut previous = ' ';

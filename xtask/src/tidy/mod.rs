@@ -2,7 +2,7 @@
 //!
 //! A finding names the place and says what to change. One file a rule, its test at the foot.
 
-mod code;
+pub(crate) mod code;
 mod finding;
 mod integrator;
 mod length;
