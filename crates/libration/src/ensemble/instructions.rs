@@ -115,6 +115,12 @@ pub(crate) trait Target: Copy + Send + Sync {
 
     /// Runs `kernel`, compiled for this instruction set.
     fn run<K: WithSimd>(self, kernel: K) -> K::Output;
+
+    /// Runs a loop, compiled for this instruction set.
+    #[inline(always)]
+    fn vectorize<L: Loop>(self, work: L) -> L::Output {
+        self.run(Vectorized(work))
+    }
 }
 
 /// [`InstructionSet::Baseline`].

@@ -1,9 +1,8 @@
 //! Steps of all lanes of a block whose system and integrator are chosen when the program runs: the choice stands outside the loop, and the
 //! loop is compiled once for whatever has it in common.
 
-use pulp::{Simd, WithSimd};
-
 use super::kernel::LANES;
+use crate::ensemble::Loop;
 use crate::ensemble::instructions::Target;
 use crate::ensemble::kernel::{at, put};
 use crate::integrator::WithIntegrator;
@@ -62,7 +61,7 @@ impl<T: Float, I: Target, M: Integrator, const D: usize> WithSystem<T, D>
     #[inline(always)]
     fn system<Sys: System<T, D> + Copy>(self, system: Sys) {
         let Waiting { lanes, target, method, .. } = self;
-        target.run(Known { lanes, system, method });
+        target.vectorize(Known { lanes, system, method });
     }
 }
 
@@ -73,13 +72,13 @@ struct Known<'a, T, Sys, M, const D: usize> {
     method: M,
 }
 
-impl<T: Float, Sys: System<T, D> + Copy, M: Integrator, const D: usize> WithSimd
+impl<T: Float, Sys: System<T, D> + Copy, M: Integrator, const D: usize> Loop
     for Known<'_, T, Sys, M, D>
 {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<V: Simd>(self, _: V) {
+    fn run(self) {
         let Known { lanes: Lanes { q, v, held, dt }, system, method } = self;
         // Of their own, or every store could change what is read.
         let (mut new_q, mut new_v, held, dt) = (*q, *v, *held, *dt);
