@@ -4,7 +4,9 @@ from typing import Any, Mapping, Sequence, final
 
 import numpy as np
 from numpy.typing import NDArray
-from typing_extensions import Self
+from typing_extensions import Self, disjoint_base
+
+__all__ = ["Batch", "Memory", "__version__", "_seconds_of_steps"]
 
 __version__: str
 
@@ -19,6 +21,7 @@ class Memory:
         self, gamma: float, lambda_: float, next: Sequence[float], last: Sequence[float]
     ) -> list[NDArray[Any]]: ...
 
+@disjoint_base
 class Batch:
     def __new__(cls, *args: Any, **kwargs: Any) -> Self: ...
     def _set_up(self, settings: Mapping[str, Any], buffers: int) -> None: ...
