@@ -162,7 +162,7 @@ class Environments(_native.Batch):
         mask = None
         if options is not None and "reset_mask" in options:
             mask = self._mask(options["reset_mask"])
-        elif self._seeder is None:
+        if self._seeder is None:
             self._seeder = np.random.default_rng()
             fresh = self._seeder.integers(2**63, size=self.num_envs, dtype=np.uint64).tolist()
             seeds = [old if old is not None else new for old, new in zip(seeds, fresh)]

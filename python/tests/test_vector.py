@@ -268,6 +268,13 @@ def test_who_is_closed_or_not_reset_says_so():
         stopped.step(np.zeros(2))
 
 
+def test_without_a_seed_every_environment_is_another_whichever_are_reset():
+    mask = np.array([True, False, True])
+    for options in (None, {"reset_mask": mask}):
+        seen = [made("Pendulum", 3).reset(options=options)[0][mask] for _ in range(2)]
+        assert len(np.unique(seen, axis=None)) == 12
+
+
 @pytest.mark.parametrize(
     ("seed", "error", "said"),
     [
