@@ -86,6 +86,7 @@ def _steps(seconds: tuple[float, float], dt: float) -> list[int] | None:
     """Latencies in steps of ``dt``, if they are whole numbers of them."""
     exact = [x / dt for x in seconds]
     whole = [round(x) for x in exact]
+    # Decimals are doubles to 1e-16, and so is their quotient to a few of it; nobody types a latency of steps and a billionth.
     near = all(abs(x - n) <= 1e-9 * max(1.0, abs(x)) for x, n in zip(exact, whole))
     return whole if near else None
 

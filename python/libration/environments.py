@@ -32,7 +32,8 @@ class Environments(_native.Batch):
     autoreset_mode:
         What follows an episode: ``"NextStep"``, ``"SameStep"`` or ``"Disabled"``, as Gymnasium defines them.
     integrator:
-        One of the nine of :func:`libration.integrators`.
+        ``"explicit-euler"``, ``"symplectic-euler"``, ``"symplectic-euler-drift-first"``, ``"velocity-verlet"``, ``"textbook-verlet"``,
+        ``"leapfrog"``, ``"rk4"``, ``"yoshida4"`` or ``"suzuki4"``.
     dt:
         Seconds from action to action.
     substeps:

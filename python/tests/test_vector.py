@@ -185,6 +185,29 @@ def test_actions_that_cannot_be_are_refused_and_nothing_has_moved(actions, error
     np.testing.assert_array_equal(env.states, before)
 
 
+class Lent:
+    """Numbers that are to be had by DLPack alone, as those of learners are."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def __dlpack__(self, **given):
+        return self.array.__dlpack__(**given)
+
+    def __dlpack_device__(self):
+        return self.array.__dlpack_device__()
+
+
+@pytest.mark.parametrize(
+    "integrator",
+    "explicit-euler symplectic-euler symplectic-euler-drift-first velocity-verlet textbook-verlet leapfrog rk4 yoshida4 suzuki4".split(),
+)
+def test_every_integrator_is_one(integrator):
+    env = made("Oscillator", 2, integrator=integrator)
+    env.reset(seed=0)
+    assert np.isfinite(env.step(np.zeros(2))[0]).all()
+
+
 def test_actions_are_taken_from_whatever_holds_them():
     def stepped(actions):
         env = made("Oscillator", 3)
@@ -198,6 +221,8 @@ def test_actions_are_taken_from_whatever_holds_them():
         np.array([[1.0, 9], [-2.0, 9], [3.0, 9]])[:, :1],
         np.array([3, -2, 1], np.float32)[::-1],
         memoryview(np.array([1.0, -2.0, 3.0])),
+        Lent(np.array([1.0, -2.0, 3.0], np.float32)),
+        Lent(np.array([1.0, -2.0, 3.0])),
     ]:
         np.testing.assert_array_equal(stepped(actions), wanted)
     locked = np.array([1, -2, 3], np.float32)
@@ -309,7 +334,7 @@ def test_masks_that_cannot_be_are_refused_as_gymnasium_does(mask, error, said):
         made("Pendulum", 3).reset(options={"reset_mask": mask})
 
 
-def test_pictures_show_where_the_system_is(name="Pendulum"):
+def test_pictures_show_where_the_system_is():
     for name in NAMES:
         env = made(name, 2, render_mode="rgb_array", start_position=0.5, start_velocity=0.0)
         env.reset(seed=0)

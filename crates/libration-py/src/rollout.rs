@@ -35,8 +35,7 @@ macro_rules! with_tensors {
     };
 }
 
-/// Transitions, each of one step of the integrator, after which it is asked whether somebody wants to interrupt: a tenth of a second at
-/// the most.
+/// Steps of the integrator after which it is asked whether somebody wants to interrupt: of all environments, and a whole row at least.
 const PIECE: usize = 1 << 24;
 
 impl Memory {

@@ -1,7 +1,7 @@
 //! Arrays, number by number.
 //!
-//! `core::array::from_fn` and `map` are half a dozen functions for every closure: where there are hundreds of kernels, a compiler
-//! spends a tenth of its time on them, and it may not inline them from one unit of code into another.
+//! `core::array::from_fn` and `map` are half a dozen functions for every closure: where there are hundreds of kernels, a tenth of
+//! all code consists of them, and a compiler may not inline them from one unit of code into another.
 
 use crate::Scalar;
 

@@ -262,16 +262,8 @@ fn a_run_repeats_to_the_bit_on_one_thread_and_on_many() {
     for (study, a) in studies::ALL.iter().zip(records()) {
         // That ensembles of loops repeat on any number of threads the engine's tests show, and `determinism`; `throughput`,
         // `memory`, `rollout` and `storage` measure time.
-        let others = [
-            "latency",
-            "jitter",
-            "asynchrony",
-            "hierarchy",
-            "throughput",
-            "memory",
-            "rollout",
-            "storage",
-        ];
+        let others =
+            ["latency", "jitter", "asynchrony", "throughput", "memory", "rollout", "storage"];
         if others.contains(&study.name()) {
             continue;
         }

@@ -27,6 +27,8 @@ fn to_act_step_by_step_is_to_do_so_at_once() {
             for execution in executions() {
                 compare(perturbed(autoreset), count, &execution);
             }
+            // Nobody looks before an action that was given.
+            compare(ideal().autoreset(autoreset), count, &executions()[0]);
         }
     }
 }
