@@ -20,6 +20,7 @@ import numpy as np
 
 import libration
 from libration import _native
+from libration.policies import Linear
 
 try:
     import envpool
@@ -40,6 +41,13 @@ def seconds(work, least=0.05):
         if elapsed >= least:
             return elapsed / count
         count = max(2 * count, int(1.2 * count * least / max(elapsed, 1e-9)))
+
+
+def once(work):
+    """Seconds of one call."""
+    start = time.perf_counter()
+    work()
+    return time.perf_counter() - start
 
 
 def compared(ours, theirs):
@@ -71,6 +79,21 @@ def rows():
         ratios = statistics.quantiles([rust / python for python, rust in rounds], n=4)
         medians = [statistics.median(column) for column in zip(*rounds)]
         yield f"{name}: step of {MANY} over the same in Rust", 0.7, ratios, medians
+
+    # Into memory that is used again, as who learns does: fresh pages cost as much as what is written into them.
+    robots, horizon = libration.Environments("Oscillator", MANY), 1024
+    robots.reset(seed=0)
+    policy = Linear([-2.0, 0.0])
+    out = robots.rollout(policy, horizon)
+    told = policy._told(2)
+    rounds = []
+    for _ in range(ROUNDS):
+        python = min(once(lambda: robots.rollout(policy, horizon, out=out)) for _ in range(3))
+        rust = min(_native._seconds_of_rollouts(robots._settings, told, horizon, 4)[1:])
+        rounds.append((python, rust))
+    ratios = statistics.quantiles([rust / python for python, rust in rounds], n=4)
+    medians = [statistics.median(column) for column in zip(*rounds)]
+    yield f"rollout of {MANY} × {horizon} over the same in Rust", 0.95, ratios, medians
 
     env = gymnasium.make_vec("libration/Pendulum-v0", MANY)
     theirs = gymnasium.make_vec("Pendulum-v1", MANY, vectorization_mode="sync")

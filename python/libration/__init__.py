@@ -1,20 +1,57 @@
 """Libration: what integrators, time steps, floats, latency, jitter and clocks do to a simulated system.
 
-The engine's environments are :class:`Environments`; with Gymnasium installed they are registered as ``libration/Oscillator-v0``,
+:func:`simulate`, :class:`Ensemble`, :func:`analyze`, :func:`advise` and :func:`run_lab` are what the program does on the command line. The
+engine's environments are :class:`Environments`; with Gymnasium installed they are registered as ``libration/Oscillator-v0``,
 ``libration/Pendulum-v0`` and ``libration/Duffing-v0``, for ``gymnasium.make`` and ``gymnasium.make_vec``.
 """
 
 from __future__ import annotations
 
 from ._native import __version__
-from . import policies
+from . import datasets, policies
+from .analysis import Advice, Analysis, advise, analyze
 from .environments import Environments
+from .laboratory import STUDIES, Finding, Results, run_lab
+from .perturbations import LQR, PD, PID, Gaussian, Observer, Steps, Uniform
+from .replay import ReplayBuffer
 from .rollout import Rollout
+from .simulation import Ensemble, Trajectory, simulate
+from .systems import INTEGRATORS, SYSTEMS, CustomSystem, System
 
-__all__ = ["Environments", "Rollout", "__version__", "policies"]
+__all__ = [
+    "Advice",
+    "Analysis",
+    "CustomSystem",
+    "Ensemble",
+    "Environments",
+    "Finding",
+    "Gaussian",
+    "INTEGRATORS",
+    "LQR",
+    "Observer",
+    "PD",
+    "PID",
+    "ReplayBuffer",
+    "Results",
+    "Rollout",
+    "STUDIES",
+    "SYSTEMS",
+    "Steps",
+    "System",
+    "Trajectory",
+    "Uniform",
+    "__version__",
+    "advise",
+    "analyze",
+    "datasets",
+    "policies",
+    "run_lab",
+    "simulate",
+]
 
 
 try:
+    from .custom import CustomTaskVectorEnv
     from .envs import VectorEnv, register
 except ModuleNotFoundError as error:
     # Gymnasium is an extra.
@@ -22,4 +59,4 @@ except ModuleNotFoundError as error:
         raise
 else:
     register()
-    __all__.append("VectorEnv")
+    __all__ += ["CustomTaskVectorEnv", "VectorEnv"]

@@ -1,16 +1,118 @@
 """The engine."""
 
-from typing import Any, Mapping, Sequence, final
+from os import PathLike
+from typing import Any, Callable, Mapping, Sequence, final
 
 import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import Self, disjoint_base
 
-__all__ = ["Batch", "Memory", "__version__", "_seconds_of_steps"]
+__all__ = [
+    "Batch",
+    "Buffer",
+    "Memory",
+    "Trajectories",
+    "__version__",
+    "_advise",
+    "_analyze",
+    "_dataset_settings",
+    "_integrators",
+    "_parameters",
+    "_program",
+    "_run_lab",
+    "_seconds_of_rollouts",
+    "_seconds_of_steps",
+    "_simulate",
+    "_studies",
+    "_systems",
+    "_verify_dataset",
+    "_write_dataset",
+]
+
+_Numbers = NDArray[Any]
+_System = tuple[str, Sequence[tuple[str, float]]]
+_Columns = dict[str, _Numbers]
 
 __version__: str
 
 def _seconds_of_steps(settings: Mapping[str, Any], steps: int) -> float: ...
+
+def _seconds_of_rollouts(
+    settings: Mapping[str, Any],
+    policy: Mapping[str, Any],
+    horizon: int,
+    rollouts: int,
+) -> list[float]: ...
+def _systems() -> list[tuple[str, str, int, int, list[tuple[str, str, str, float]]]]: ...
+def _integrators() -> list[tuple[str, str]]: ...
+def _studies() -> list[tuple[str, str]]: ...
+def _parameters(told: _System) -> list[tuple[str, float]]: ...
+def _program(
+    integrator: str,
+) -> tuple[list[tuple[str, int, int, int]], list[float], list[int]]: ...
+def _simulate(
+    step: Mapping[str, Any], looped: Mapping[str, Any], rows: Mapping[str, Any]
+) -> tuple[_Columns, dict[str, str], dict[str, Any]]: ...
+def _analyze(
+    step: Mapping[str, Any], looped: Mapping[str, Any], questions: Mapping[str, Any]
+) -> str: ...
+def _advise(
+    asked: str, page: bool, progress: Callable[[str, int, int, str, int, int], Any] | None
+) -> tuple[str, bool, str | None]: ...
+def _run_lab(
+    asked: str,
+    names: Sequence[str] | None,
+    effort: str | None,
+    out: PathLike[str],
+    progress: Callable[[str, int, int, str, int, int], Any] | None,
+) -> tuple[str, list[tuple[str, str, _Columns, dict[str, str]]]]: ...
+def _dataset_settings() -> str: ...
+def _write_dataset(
+    settings: str,
+    writing: Mapping[str, Any],
+    progress: Callable[[int, int, int], Any] | None,
+) -> tuple[int, int, int]: ...
+def _verify_dataset(
+    folder: PathLike[str],
+    replay: bool,
+    threads: int,
+    progress: Callable[[int, int, int], Any] | None,
+) -> tuple[list[tuple[str, PathLike[str], str]], int]: ...
+@final
+class Trajectories:
+    def __new__(
+        cls,
+        told: _System,
+        integrator: str,
+        dt: float,
+        q: _Numbers,
+        v: _Numbers,
+        single: bool,
+        threads: int,
+    ) -> Self: ...
+    def _advance(self, steps: int) -> None: ...
+    def _step(self) -> int: ...
+    def _states(self) -> list[_Numbers]: ...
+    def _energies(self) -> _Numbers: ...
+
+@final
+class Buffer:
+    def __new__(
+        cls,
+        steps: int,
+        environments: int,
+        observations: int,
+        single: bool,
+        priorities: bool,
+        ends: int | None = None,
+    ) -> Self: ...
+    def __len__(self) -> int: ...
+    def _insert(self, memory: Memory, next: _Numbers) -> None: ...
+    def _sample(self, asked: Mapping[str, Any]) -> dict[str, _Numbers]: ...
+    def _sequences(self, asked: Mapping[str, Any]) -> dict[str, _Numbers]: ...
+    def _update(
+        self, numbers: NDArray[np.uint64], priorities: NDArray[np.float64], exponent: float
+    ) -> int: ...
 
 @final
 class Memory:

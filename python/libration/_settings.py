@@ -7,6 +7,7 @@ import math
 import numbers
 from typing import Any, Iterable, Sequence
 
+from ._native import _systems
 from ._presets import Preset
 
 AUTORESET = ("NextStep", "SameStep", "Disabled")
@@ -144,11 +145,8 @@ OPTIONS = (
     "render_mode",
 )
 
-CATALOGUE = {
-    "oscillator": ("m", "k", "omega2"),
-    "pendulum": ("omega2",),
-    "duffing": ("alpha", "beta"),
-}
+CATALOGUE = {name: tuple(entry[0] for entry in all) for name, _, _, _, all in _systems()}
+"""The parameters of each system."""
 
 
 def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:

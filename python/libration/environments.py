@@ -159,7 +159,11 @@ class Environments(_native.Batch):
         infos:
             Empty.
         """
-        seeds = self._seeds(seed)
+        return self._begin(self._seeds(seed), options)
+
+    def _begin(
+        self, seeds: list[int | None], options: dict[str, Any] | None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
         mask = None
         if options is not None and "reset_mask" in options:
             mask = self._mask(options["reset_mask"])

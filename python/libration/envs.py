@@ -73,10 +73,10 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
         seed: int | list[int | None] | None = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        if isinstance(seed, (int, np.integer)) and not isinstance(seed, bool):
-            self._seeds(seed)
+        seeds = self._seeds(seed)
+        if isinstance(seed, (int, np.integer)):
             gymnasium.vector.VectorEnv.reset(self, seed=int(seed))
-        return super().reset(seed=seed, options=options)
+        return self._begin(seeds, options)
 
     def render(self) -> tuple[np.ndarray, ...] | None:
         """Pictures of all environments, if ``render_mode`` is ``"rgb_array"``."""

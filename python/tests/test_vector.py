@@ -273,6 +273,19 @@ def test_arrays_are_of_their_own_or_used_again_in_turn():
     np.testing.assert_array_equal(kept, values)
 
 
+def test_actions_that_lie_where_a_step_is_written_are_taken_as_they_were():
+    kept = libration.Environments("Oscillator", 64, copy=False, buffers=1)
+    fresh = libration.Environments("Oscillator", 64)
+    kept.reset(seed=0)
+    fresh.reset(seed=0)
+    for _ in range(3):
+        rewards, wanted = (e.step(np.full(64, 0.5, np.float32))[1] for e in (kept, fresh))
+        # What was paid is asked for next, and what is paid for that stands in the same memory.
+        mine, theirs = kept.step(rewards), fresh.step(wanted)
+        for a, b in zip(mine[:2], theirs[:2]):
+            np.testing.assert_array_equal(a, b)
+
+
 def test_who_is_closed_or_not_reset_says_so():
     env = made("Pendulum", 2)
     with pytest.raises(ResetNeeded, match="must be reset before their first step"):

@@ -92,6 +92,11 @@ impl<'a> Table<'a> {
         }
     }
 
+    /// The columns, from left to right, to be taken.
+    pub fn into_columns(self) -> Vec<Column<'a>> {
+        self.columns
+    }
+
     /// The columns from left to right.
     pub fn columns(&self) -> &[Column<'a>] {
         &self.columns

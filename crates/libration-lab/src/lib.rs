@@ -21,6 +21,7 @@ pub mod record;
 pub mod report;
 pub mod results;
 pub mod session;
+pub mod setting;
 pub mod studies;
 pub mod study;
 mod text;

@@ -55,7 +55,7 @@ pub(crate) fn room<'a, T: Element + AnyBitPattern + NoUninit, D: Dimension>(
 
 /// The memory of an array of flags, to be filled with 0 and 1.
 #[allow(clippy::mut_from_ref, reason = "as above")]
-pub(crate) fn flags<'a>(array: &'a Bound<'_, Array<bool, 1>>) -> &'a mut [u8] {
+pub(crate) fn bytes_of<'a>(array: &'a Bound<'_, Array<bool, 1>>) -> &'a mut [u8] {
     // SAFETY: as in `room`; a flag is a byte, of which the engine makes nothing but 0 and 1.
     unsafe { from_raw_parts_mut(array.data().cast(), array.len()) }
 }
@@ -71,6 +71,17 @@ pub(crate) fn borrowed<'a, T: Number>(
     // thread, gives one action or the other.
     (fits && array.is_c_contiguous() && is_aligned(array))
         .then(|| unsafe { from_raw_parts(array.data(), len) })
+}
+
+/// Whether some of these numbers lie in the memory of an array.
+pub(crate) fn lies_in<T, U: Element, D: Dimension>(
+    numbers: &[T],
+    array: &Bound<'_, PyArray<U, D>>,
+) -> bool {
+    let numbers = numbers.as_ptr_range();
+    let begin = array.data() as usize;
+    let end = begin + array.len() * size_of::<U>();
+    (numbers.start as usize) < end && begin < numbers.end as usize
 }
 
 /// Memory of the engine as an array that keeps its owner.

@@ -2,9 +2,10 @@
 
 use std::time::Instant;
 
-use libration::rl::Outcome;
+use libration::rl::{EnvironmentError, Outcome, Plan};
 use pyo3::prelude::*;
 
+use crate::acts::{Acts, Told};
 use crate::array::Number;
 use crate::error::Raised;
 use crate::held::{Held, Table, with_table};
@@ -19,6 +20,48 @@ pub(crate) fn _seconds_of_steps(py: Python<'_>, settings: Settings, steps: usize
         let mut held = Held::new(&recipe, single, len, &execution).map_err(Raised::raised)?;
         with_table!(&mut held, table => timed(&mut **table, len, steps))
     })
+}
+
+/// Seconds of each of so many rollouts under a policy, into memory that is used again.
+#[pyfunction]
+pub(crate) fn _seconds_of_rollouts(
+    py: Python<'_>,
+    settings: Settings,
+    policy: Told<'_>,
+    horizon: usize,
+    rollouts: usize,
+) -> PyResult<Vec<f64>> {
+    fn each<T: Number>(
+        table: &mut dyn Table<T>,
+        acts: &Acts<T>,
+        plan: Plan,
+        rollouts: usize,
+    ) -> Result<Vec<f64>, EnvironmentError> {
+        let mut tensors = table.tensors(plan)?;
+        let seeds: Vec<Option<u64>> = (0..plan.environments as u64).map(Some).collect();
+        table.seed(&seeds)?;
+        let timed = |_| {
+            let start = Instant::now();
+            table.fill(acts, &mut *tensors, 0..plan.horizon)?;
+            Ok(start.elapsed().as_secs_f64())
+        };
+        (0..rollouts).map(timed).collect()
+    }
+    let (recipe, execution) = (settings.recipe()?, settings.execution()?);
+    let len = settings.num_envs;
+    let held = Held::new(&recipe, settings.single()?, len, &execution);
+    let plan = Plan::new(horizon, len).truncated();
+    let done = match held.map_err(Raised::raised)? {
+        Held::F32(mut table) => {
+            let acts = Acts::new(&policy)?;
+            py.detach(|| each(&mut *table, &acts, plan, rollouts))
+        }
+        Held::F64(mut table) => {
+            let acts = Acts::new(&policy)?;
+            py.detach(|| each(&mut *table, &acts, plan, rollouts))
+        }
+    };
+    done.map_err(Raised::raised)
 }
 
 fn timed<T: Number>(table: &mut dyn Table<T>, len: usize, steps: usize) -> PyResult<f64> {

@@ -2,9 +2,23 @@
 
 use libration::checkpoint::CheckpointError;
 use libration::ensemble::EnsembleError;
+use libration::replay::ReplayError;
 use libration::rl::EnvironmentError;
+use libration_data::DataError;
+use libration_lab::advise::AdviseError;
+use libration_lab::analyze::AnalyzeError;
+use libration_lab::config::{ConfigError, names};
+use libration_lab::dataset::DatasetError;
+use libration_lab::export::ExportError;
+use libration_lab::output::OutputError;
+use libration_lab::session::SessionError;
+use libration_lab::setting::SettingError;
+use libration_lab::study::StudyError;
+use libration_lab::trajectory::TrajectoryError;
 use pyo3::PyErr;
-use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{
+    PyKeyboardInterrupt, PyMemoryError, PyOSError, PyRuntimeError, PyValueError,
+};
 
 /// Every error of the engine is turned into an exception here, and nowhere else.
 pub(crate) trait Raised {
@@ -26,13 +40,135 @@ impl Raised for EnvironmentError {
     }
 }
 
+impl Raised for EnsembleError {
+    fn raised(self) -> PyErr {
+        EnvironmentError::from(self).raised()
+    }
+}
+
 impl Raised for CheckpointError {
     fn raised(self) -> PyErr {
         PyValueError::new_err(self.to_string())
     }
 }
 
+impl Raised for ReplayError {
+    fn raised(self) -> PyErr {
+        match self {
+            ReplayError::Environment(error) => error.raised(),
+            error => PyValueError::new_err(error.to_string()),
+        }
+    }
+}
+
+impl Raised for SettingError {
+    fn raised(self) -> PyErr {
+        refused(keywords(&self.to_string()))
+    }
+}
+
+impl Raised for AnalyzeError {
+    fn raised(self) -> PyErr {
+        refused(keywords(&self.to_string()))
+    }
+}
+
+impl Raised for TrajectoryError {
+    fn raised(self) -> PyErr {
+        match self {
+            TrajectoryError::Ensemble(error) => error.raised(),
+            TrajectoryError::Memory(_) | TrajectoryError::Export(ExportError::Memory { .. }) => {
+                PyMemoryError::new_err(keywords(&self.to_string()))
+            }
+            TrajectoryError::Interrupted => interrupted(),
+            error => refused(keywords(&error.to_string())),
+        }
+    }
+}
+
+impl Raised for ConfigError {
+    fn raised(self) -> PyErr {
+        let help = self.help().map(|help| format!(" ({help})")).unwrap_or_default();
+        refused(format!("{}{help}", self.message()))
+    }
+}
+
+impl Raised for AdviseError {
+    fn raised(self) -> PyErr {
+        match self {
+            AdviseError::Study(error) => error.raised(),
+            AdviseError::Ensemble(error) => error.raised(),
+            error => refused(error.to_string()),
+        }
+    }
+}
+
+impl Raised for StudyError {
+    fn raised(self) -> PyErr {
+        match self {
+            StudyError::Interrupted => interrupted(),
+            error => PyRuntimeError::new_err(error.to_string()),
+        }
+    }
+}
+
+impl Raised for SessionError {
+    fn raised(self) -> PyErr {
+        match self {
+            SessionError::Interrupted => interrupted(),
+            SessionError::Output(error) => error.raised(),
+            error => PyRuntimeError::new_err(error.to_string()),
+        }
+    }
+}
+
+impl Raised for OutputError {
+    fn raised(self) -> PyErr {
+        PyOSError::new_err(format!("cannot write `{}`: {}", self.path.display(), self.source))
+    }
+}
+
+impl Raised for DatasetError {
+    fn raised(self) -> PyErr {
+        match self {
+            DatasetError::Interrupted => interrupted(),
+            DatasetError::Environment(error) => error.raised(),
+            DatasetError::Data(error @ DataError::Io { .. }) => {
+                PyOSError::new_err(error.to_string())
+            }
+            error => refused(error.to_string()),
+        }
+    }
+}
+
+/// Work that somebody stopped; the exception of a handler of signals comes before it.
+fn interrupted() -> PyErr {
+    PyKeyboardInterrupt::new_err("interrupted")
+}
+
 /// What cannot be asked for.
 pub(crate) fn refused(text: String) -> PyErr {
     PyValueError::new_err(text)
+}
+
+/// What is said of a name that is none of these.
+pub(crate) fn unknown<'a>(
+    what: &str,
+    name: &str,
+    known: impl IntoIterator<Item = &'a str> + Clone,
+) -> PyErr {
+    let hint = names::suggest(&format!("{what}s"), name, known);
+    refused(format!("unknown {what} `{name}`: {hint}"))
+}
+
+/// A sentence about flags, as one about keywords: what is `--max-drift` there is `max_drift` here.
+fn keywords(text: &str) -> String {
+    let mut words = text.split("--");
+    let mut told = words.next().unwrap_or_default().to_owned();
+    for word in words {
+        let end = word.find(|c: char| !(c.is_ascii_lowercase() || c == '-')).unwrap_or(word.len());
+        told += &word[..end].replace('-', "_");
+        told += &word[end..];
+    }
+    told
 }

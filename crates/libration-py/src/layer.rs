@@ -1,7 +1,6 @@
 //! Environments as Python steps them.
 
-use std::sync::{Mutex, MutexGuard, TryLockError};
-use std::time::Duration;
+use std::sync::{Mutex, MutexGuard};
 
 use libration::ensemble::Execution;
 use libration::rl::{EnvironmentError, Plan};
@@ -17,6 +16,7 @@ use crate::held::{Held, Table, with_table};
 use crate::rollout::Memory;
 use crate::settings::Settings;
 use crate::step::{self, Books};
+use crate::work::enter;
 
 /// Environments that are stepped together, without anything of Gymnasium.
 ///
@@ -35,9 +35,6 @@ struct Inner {
     threads: usize,
 }
 
-/// How long somebody sleeps who waits for another thread.
-const NAP: Duration = Duration::from_micros(20);
-
 #[pymethods]
 impl Batch {
     #[new]
@@ -52,7 +49,7 @@ impl Batch {
         let (recipe, execution) = (settings.recipe()?, settings.execution()?);
         let len = settings.num_envs;
         let held = Held::new(&recipe, settings.single()?, len, &execution);
-        *self.enter(py) = Some(Inner {
+        *enter(py, &self.inner) = Some(Inner {
             held: held.map_err(Raised::raised)?,
             books: Books::new(&recipe, len, buffers),
             process: std::process::id(),
@@ -66,7 +63,7 @@ impl Batch {
     /// Gives what is seen then `(num_envs, n)`, rewards, whether episodes terminated and whether they were truncated `(num_envs,)`, and a
     /// dictionary.
     fn step<'py>(slf: &Bound<'py, Self>, actions: &Bound<'py, PyAny>) -> PyResult<Step<'py>> {
-        let mut guard = slf.get().enter(slf.py());
+        let mut guard = enter(slf.py(), &slf.get().inner);
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         books.expect_action(slf)?;
         let (row, infos) =
@@ -87,7 +84,7 @@ impl Batch {
         seeds: Vec<Option<u64>>,
         mask: Option<Bound<'py, PyArray1<bool>>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let mut guard = slf.get().enter(slf.py());
+        let mut guard = enter(slf.py(), &slf.get().inner);
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         let mask = match mask {
             Some(mask) => mask.to_vec()?,
@@ -117,7 +114,7 @@ impl Batch {
         log_probabilities: bool,
         values: bool,
     ) -> PyResult<Memory> {
-        let mut guard = slf.get().enter(slf.py());
+        let mut guard = enter(slf.py(), &slf.get().inner);
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         let plan = Plan::new(horizon, books.len).truncated();
         let plan = Plan { log_probability: log_probabilities, value: values, ..plan };
@@ -130,7 +127,7 @@ impl Batch {
         policy: Told<'py>,
         memory: &Memory,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let mut guard = slf.get().enter(slf.py());
+        let mut guard = enter(slf.py(), &slf.get().inner);
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         books.expect_action(slf)?;
         let ended = memory.fill(slf.py(), held, &policy, books.substeps)?;
@@ -151,14 +148,14 @@ impl Batch {
             }
             all.into_any()
         }
-        let mut guard = slf.get().enter(slf.py());
+        let mut guard = enter(slf.py(), &slf.get().inner);
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         Ok(with_table!(held, table => states(slf.py(), &**table, books.len)))
     }
 
     /// All that they are, to be restored by environments with the same settings.
     fn _state<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyBytes>, bool, Vec<u8>)> {
-        let mut guard = slf.get().enter(slf.py());
+        let mut guard = enter(slf.py(), &slf.get().inner);
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         let state = with_table!(held, table => table.to_bytes());
         Ok((PyBytes::new(slf.py(), &state), books.untouched, books.standing.clone()))
@@ -166,7 +163,7 @@ impl Batch {
 
     /// Makes them what they were.
     fn _restore(slf: &Bound<'_, Self>, state: (Vec<u8>, bool, Vec<u8>)) -> PyResult<()> {
-        let mut guard = slf.get().enter(slf.py());
+        let mut guard = enter(slf.py(), &slf.get().inner);
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         let (bytes, untouched, standing) = state;
         if standing.len() != books.len {
@@ -179,26 +176,13 @@ impl Batch {
 
     /// Gives all memory back. Arrays that were handed out stay.
     fn _close(&self, py: Python<'_>) {
-        *self.enter(py) = None;
+        *enter(py, &self.inner) = None;
     }
 }
 
 /// What a step gives.
 type Step<'py> = (Any<'py>, Any<'py>, Any<'py>, Any<'py>, Bound<'py, PyDict>);
 type Any<'py> = Bound<'py, PyAny>;
-
-impl Batch {
-    /// Takes what is inside for itself. Nobody waits for another thread with the interpreter's lock, which that may be waiting for.
-    fn enter(&self, py: Python<'_>) -> MutexGuard<'_, Option<Inner>> {
-        loop {
-            match self.inner.try_lock() {
-                Ok(guard) => return guard,
-                Err(TryLockError::Poisoned(poisoned)) => return poisoned.into_inner(),
-                Err(TryLockError::WouldBlock) => py.detach(|| std::thread::sleep(NAP)),
-            }
-        }
-    }
-}
 
 /// What is inside, if it was not closed, with threads of this process.
 fn open<'a>(

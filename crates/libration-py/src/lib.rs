@@ -1,27 +1,50 @@
 //! The engine as a Python package: the module `libration._native`, which `python/libration` makes pleasant.
 //!
-//! Nothing is computed here. What Python hands over becomes a recipe, and what environments lead to becomes NumPy arrays.
+//! Nothing is computed here. What Python hands over becomes a request, and what comes of it NumPy arrays.
 
 mod acts;
 mod array;
+mod asked;
 mod bench;
+mod catalogue;
+mod datasets;
 mod error;
 mod held;
+mod laboratory;
 mod layer;
+mod program;
+mod replay;
 mod rollout;
 mod settings;
+mod simulate;
 mod step;
 mod tensors;
+mod trajectories;
+mod work;
 
 /// What `libration` is made of.
 #[pyo3::pymodule]
 mod _native {
     #[pymodule_export]
-    use crate::bench::_seconds_of_steps;
+    use crate::bench::{_seconds_of_rollouts, _seconds_of_steps};
+    #[pymodule_export]
+    use crate::catalogue::{_integrators, _parameters, _studies, _systems};
+    #[pymodule_export]
+    use crate::datasets::{_dataset_settings, _verify_dataset, _write_dataset};
+    #[pymodule_export]
+    use crate::laboratory::{_advise, _run_lab};
     #[pymodule_export]
     use crate::layer::Batch;
     #[pymodule_export]
+    use crate::program::_program;
+    #[pymodule_export]
+    use crate::replay::Buffer;
+    #[pymodule_export]
     use crate::rollout::Memory;
+    #[pymodule_export]
+    use crate::simulate::{_analyze, _simulate};
+    #[pymodule_export]
+    use crate::trajectories::Trajectories;
 
     #[pymodule_export]
     #[allow(non_upper_case_globals, reason = "as Python names it")]

@@ -1,6 +1,6 @@
 //! Rollouts as Python holds them: memory of the engine, seen as NumPy arrays.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard};
 
 use libration::rl::{Discounts, Estimates, Plan};
 use numpy::{PyArray1, PyArrayMethods};
@@ -12,6 +12,7 @@ use crate::array::{Array, Number, fresh, room, view, view_of_flags};
 use crate::error::{Raised, refused};
 use crate::held::{Held, Table};
 use crate::tensors::Tensors;
+use crate::work::enter;
 
 /// What environments did over a horizon: memory that is taken once and filled again and again.
 #[pyclass(frozen, module = "libration._native")]
@@ -20,7 +21,7 @@ pub(crate) struct Memory {
 }
 
 /// Tensors of either float type.
-enum Kept {
+pub(crate) enum Kept {
     F32(Box<dyn Tensors<f32>>),
     F64(Box<dyn Tensors<f64>>),
 }
@@ -48,8 +49,9 @@ impl Memory {
         Ok(Memory { kept: Mutex::new(kept) })
     }
 
-    fn lock(&self) -> MutexGuard<'_, Kept> {
-        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Its tensors, for whoever waits without the interpreter's lock.
+    pub(crate) fn kept(&self, py: Python<'_>) -> MutexGuard<'_, Kept> {
+        enter(py, &self.kept)
     }
 
     /// Fills all of it. Gives which environments ended with the last step.
@@ -60,7 +62,7 @@ impl Memory {
         policy: &Told<'_>,
         substeps: usize,
     ) -> PyResult<Vec<u8>> {
-        match (held, &mut *self.lock()) {
+        match (held, &mut *self.kept(py)) {
             (Held::F32(table), Kept::F32(tensors)) => {
                 filled(py, &mut **table, &Acts::new(policy)?, &mut **tensors, substeps)
             }
@@ -119,7 +121,7 @@ impl Memory {
             }
             Ok(all)
         }
-        with_tensors!(&*slf.get().lock(), tensors => arrays(slf, &**tensors))
+        with_tensors!(&*slf.get().kept(slf.py()), tensors => arrays(slf, &**tensors))
     }
 
     /// Columns of episodes that ended, by step and environment.
@@ -141,13 +143,13 @@ impl Memory {
             all.set_item("final_observations", seen)?;
             Ok(all)
         }
-        with_tensors!(&*self.lock(), tensors => ends(py, &**tensors))
+        with_tensors!(&*self.kept(py), tensors => ends(py, &**tensors))
     }
 
     /// Whether each step is a transition, `(horizon, num_envs)`: not where an environment stood still or began anew.
     fn _transitions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (plan, all) =
-            with_tensors!(&*self.lock(), tensors => (tensors.plan(), tensors.transitions()));
+            with_tensors!(&*self.kept(py), tensors => (tensors.plan(), tensors.transitions()));
         let all = PyArray1::from_vec(py, all).reshape([plan.horizon, plan.environments])?;
         Ok(all.into_any())
     }
@@ -181,6 +183,6 @@ impl Memory {
             Ok([array(found.advantage()), array(found.returned())])
         }
         let discounts = Discounts { rewards: gamma, errors: lambda_ };
-        with_tensors!(&*self.lock(), tensors => estimates(py, &**tensors, discounts, [next, last]))
+        with_tensors!(&*self.kept(py), tensors => estimates(py, &**tensors, discounts, [next, last]))
     }
 }

@@ -1,15 +1,13 @@
 //! What environments are to be, as `libration` hands it over.
 
-use libration::analysis::Jitter;
 use libration::ensemble::Execution;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Delays};
-use libration::{AnySystem, Method};
-use libration_lab::config::names;
 use libration_lab::environments::{Lone, Noise, Recipe, Task};
 use pyo3::prelude::*;
 
-use crate::error::{Raised, refused};
+use crate::asked::{SystemTold, law, method, system};
+use crate::error::{Raised, refused, unknown};
 
 /// All keys of the dictionary that Python makes of what it was given, in units of the engine.
 #[derive(FromPyObject)]
@@ -24,7 +22,7 @@ pub(crate) struct Settings {
     substeps: u32,
     limit: Option<u32>,
     saturation: f64,
-    system: (String, Vec<(String, f64)>),
+    system: SystemTold,
     task: (String, Vec<f64>),
     start: [[f64; 2]; 2],
     observation_delay: [u32; 2],
@@ -40,7 +38,7 @@ impl Settings {
         match self.dtype.as_str() {
             "float32" => Ok(true),
             "float64" => Ok(false),
-            other => Err(unknown("dtype", other, &["float32", "float64"])),
+            other => Err(unknown("dtype", other, ["float32", "float64"])),
         }
     }
 
@@ -49,7 +47,7 @@ impl Settings {
             "NextStep" => Ok(Autoreset::NextStep),
             "SameStep" => Ok(Autoreset::SameStep),
             "Disabled" => Ok(Autoreset::Disabled),
-            other => Err(unknown("autoreset mode", other, &["NextStep", "SameStep", "Disabled"])),
+            other => Err(unknown("autoreset mode", other, ["NextStep", "SameStep", "Disabled"])),
         }
     }
 
@@ -59,15 +57,9 @@ impl Settings {
     }
 
     pub(crate) fn recipe(&self) -> PyResult<Recipe> {
-        let method = Method::from_name(&self.integrator);
-        let method = method.ok_or_else(|| {
-            unknown("integrator", &self.integrator, &Method::ALL.map(Method::name))
-        })?;
-        let (name, parameters) = &self.system;
-        let parameters: Vec<_> = parameters.iter().map(|(name, value)| (name, *value)).collect();
-        let system = AnySystem::build(name, &parameters);
-        let system = system.map_err(|error| refused(error.to_string()))?;
-        let system = Lone::new(system).ok_or_else(|| {
+        let method = method(&self.integrator)?;
+        let system = Lone::new(system(&self.system)?).ok_or_else(|| {
+            let name = &self.system.0;
             refused(format!("system is {name}, but it must have a single degree of freedom"))
         })?;
         Ok(Recipe {
@@ -82,9 +74,9 @@ impl Settings {
             delays: Delays { observation: self.observation_delay, action: self.action_delay },
             saturation: self.saturation,
             noise: Noise {
-                jitter: law("jitter", &self.jitter)?,
-                skew: law("skew", &self.skew)?,
-                observation: law("observation_noise", &self.noise)?,
+                jitter: law("jitter", &self.jitter.0, self.jitter.1)?,
+                skew: law("skew", &self.skew.0, self.skew.1)?,
+                observation: law("observation_noise", &self.noise.0, self.noise.1)?,
             },
         })
     }
@@ -103,27 +95,7 @@ impl Settings {
                 reference: Sine { amplitude, angular_frequency, phase },
                 regulate: Regulate { position, velocity, effort, bound },
             }),
-            _ => return Err(unknown("task", name, &["regulate", "swing-up", "track"])),
+            _ => return Err(unknown("task", name, ["regulate", "swing-up", "track"])),
         })
     }
-}
-
-/// A law with mean zero.
-fn law(name: &str, (law, rms): &(String, f64)) -> PyResult<Jitter> {
-    if !(*rms >= 0.0 && rms.is_finite()) {
-        return Err(refused(format!("{name} is {rms}, but it must be finite and at least 0")));
-    }
-    match law.as_str() {
-        "gaussian" => Ok(Jitter::Gaussian(*rms)),
-        "uniform" => Ok(Jitter::Uniform(*rms)),
-        other => Err(unknown(&format!("law of {name}"), other, &["gaussian", "uniform"])),
-    }
-}
-
-/// What is said of a name that is none of these.
-fn unknown(what: &str, name: &str, known: &[&str]) -> PyErr {
-    refused(format!(
-        "unknown {what} `{name}`: {}",
-        names::suggest(&format!("{what}s"), name, known.iter().copied())
-    ))
 }

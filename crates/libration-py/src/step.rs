@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 
-use crate::array::{Array, Number, borrowed, flags, fresh, room};
+use crate::array::{Array, Number, borrowed, bytes_of, fresh, lies_in, room};
 use crate::error::{Raised, refused};
 use crate::held::{Ends, Table};
 use crate::layer::{Batch, raise};
@@ -138,7 +138,20 @@ pub(crate) fn take<'py, T: Number>(
     }
     let row = books.row::<T>(py, table.observations());
     let [seen, reward, terminated, truncated] = &row;
-    let (terminated, truncated) = (flags(terminated.cast()?), flags(truncated.cast()?));
+    // Who uses arrays again may ask for what an array of earlier steps says, and that is written now.
+    let copied;
+    let actions = if books.buffers > 0
+        && (lies_in(actions, seen.cast::<Array<T, 2>>()?)
+            || lies_in(actions, reward.cast::<Array<T, 1>>()?)
+            || lies_in(actions, terminated.cast::<Array<bool, 1>>()?)
+            || lies_in(actions, truncated.cast::<Array<bool, 1>>()?))
+    {
+        copied = actions.to_vec();
+        &*copied
+    } else {
+        actions
+    };
+    let (terminated, truncated) = (bytes_of(terminated.cast()?), bytes_of(truncated.cast()?));
     let (seen, reward) = (room(seen.cast::<Array<T, 2>>()?), room(reward.cast::<Array<T, 1>>()?));
     let to = Outcome { seen, reward, terminated: &mut *terminated, truncated: &mut *truncated };
     let act = || table.act(actions, to);

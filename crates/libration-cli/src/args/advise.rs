@@ -6,10 +6,10 @@ use clap::Args;
 use libration::analysis::{Feedback, Jitter, LqrWeights};
 use libration_lab::advise::{Control, Law, Measure, Request, Tolerance};
 use libration_lab::analyze::Late;
+use libration_lab::setting::Setting;
 
 use super::SystemArgs;
 use super::timing::{feedback, finite, latency, law, weights};
-use crate::args::Setting;
 use crate::error::Failure;
 
 /// What `advise` takes.

@@ -27,7 +27,7 @@ pub(crate) use bench::BenchArgs;
 pub(crate) use measure_jitter::MeasureJitterArgs;
 pub(crate) use rollout::{RolloutArgs, VerifyArgs};
 pub(crate) use simulate::SimulateArgs;
-pub(crate) use system::{Setting, StepArgs, SystemArgs};
+pub(crate) use system::{StepArgs, SystemArgs};
 pub(crate) use timing::CostArgs;
 
 /// A laboratory for the stability of simulations: what theory predicts beside what was measured.

@@ -60,11 +60,11 @@ pub(super) fn time_step(text: &str) -> Result<f64, String> {
     Ok(dt)
 }
 
-/// Reads what a criterion tolerates. Roots are known to 96 digits, which is why it ends somewhere.
+/// Reads what a criterion tolerates.
 pub(super) fn criterion(text: &str) -> Result<f64, String> {
     let rule = "it must be between 1e-60 and 1e60";
     match text.trim().parse::<f64>() {
-        Ok(x) if (1e-60..=1e60).contains(&x) => Ok(x),
+        Ok(x) if limits::CRITERION.contains(&x) => Ok(x),
         Ok(_) => Err(rule.into()),
         Err(_) => Err(format!("it is not a number; {rule}")),
     }

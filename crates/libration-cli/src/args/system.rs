@@ -4,9 +4,10 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use libration::catalog::{ENTRIES, Entry};
 use libration::integrator::Exact;
-use libration::{AnySystem, CatalogError, Method, State, with_system};
+use libration::{AnySystem, CatalogError, Method};
 use libration_lab::analyze::Stepping;
 use libration_lab::config::names;
+use libration_lab::setting::Setting;
 
 use super::number::{Coordinates, assignment, coordinates, time_step};
 use crate::error::Failure;
@@ -39,17 +40,6 @@ pub(crate) struct StepArgs {
     pub(crate) dt: f64,
 }
 
-/// A system that can be simulated: `q` and `v` are as long as one of its dimensions.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Setting {
-    /// The system with its parameters.
-    pub(crate) system: AnySystem,
-    /// Positions at the start.
-    pub(crate) q: Vec<f64>,
-    /// Velocities at the start.
-    pub(crate) v: Vec<f64>,
-}
-
 impl SystemArgs {
     /// The system and its start; what is not given comes from the catalogue.
     ///
@@ -66,37 +56,14 @@ impl SystemArgs {
                 _ => {}
             }
         }
-        let dimension = match (&self.q, &self.v) {
-            (Some(q), Some(v)) if q.0.len() != v.0.len() => return Err(unequal_counts(q, v)),
-            (Some(given), _) | (None, Some(given)) => given.0.len(),
-            (None, None) => *entry.dimensions.start(),
-        };
-        let (q, v) = with_system!(
-            system,
-            dimension,
-            |_model, D| default_start::<D>(entry),
-            return Err(Failure::usage(entry.wrong_dimension(dimension)))
-        );
-        let or_default = |given: &Option<Coordinates>, default| match given {
-            Some(given) => given.0.clone(),
-            None => default,
-        };
-        let (q, v) = (or_default(&self.q, q), or_default(&self.v, v));
-        match (system, v.as_slice()) {
-            (AnySystem::DrivenOscillator(_), &[_, rate]) if rate != 1.0 => {
-                Err(Failure::usage(format!(
-                    "--v ends in {rate}, but the second coordinate of {} is time, so it must be 1",
-                    entry.name
-                )))
-            }
-            _ => Ok(Setting { system, q, v }),
+        if let (Some(q), Some(v)) = (&self.q, &self.v)
+            && q.0.len() != v.0.len()
+        {
+            return Err(unequal_counts(q, v));
         }
+        let given = |x: &Option<Coordinates>| x.as_ref().map(|x| x.0.clone());
+        Setting::new(system, given(&self.q), given(&self.v)).map_err(Failure::usage)
     }
-}
-
-fn default_start<const D: usize>(entry: &Entry) -> (Vec<f64>, Vec<f64>) {
-    let start: Option<State<f64, D>> = entry.start();
-    start.map(|State { q, v }| (q.to_vec(), v.to_vec())).unwrap_or_default()
 }
 
 fn wrong_parameter(error: CatalogError) -> Failure {

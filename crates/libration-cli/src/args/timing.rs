@@ -3,6 +3,7 @@
 use clap::Args;
 use libration::analysis::{Feedback, Jitter, LqrWeights};
 use libration_lab::analyze::{Late, Timing};
+use libration_lab::config::limits::{MOST_GAIN, MOST_RMS};
 
 /// The loop, and what happens to its clock and its commands.
 #[derive(Args, Clone, Copy, Debug)]
@@ -60,12 +61,6 @@ pub(crate) struct CostArgs {
     )]
     pub(crate) cost_weights: Option<LqrWeights>,
 }
-
-/// Products of gains must stay far within the range of floats.
-const MOST_GAIN: f64 = 1e50;
-
-/// Nobody's clock is worse.
-const MOST_RMS: f64 = 100.0;
 
 pub(super) fn finite(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|x: &f64| x.is_finite())

@@ -7,8 +7,9 @@ use libration_lab::analyze::{
     self, Analysis, Criteria, ModifiedHamiltonian, Request, Stepping, Timing, TimingAnswer,
 };
 use libration_lab::config::limits;
+use libration_lab::setting::Setting;
 
-use crate::args::{AnalyzeArgs, CostArgs, Setting};
+use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
 
 /// Analyses one step and prints what theory says of it.

@@ -6,10 +6,11 @@ use std::sync::atomic::AtomicBool;
 
 use libration::control::clock::Recorded;
 use libration_lab::export::ExportError;
+use libration_lab::setting::Setting;
 use libration_lab::trajectory::{self, Copies, Ending, Format, Request, Stopped, TrajectoryError};
 
 use super::time_stamps;
-use crate::args::{Setting, SimulateArgs, simd};
+use crate::args::{SimulateArgs, simd};
 use crate::error::Failure;
 use crate::output_file::OutputFile;
 use crate::{interrupt, terminal};

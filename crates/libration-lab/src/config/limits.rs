@@ -18,6 +18,13 @@ pub const STEPS: RangeInclusive<u64> = 1..=1_000_000_000;
 /// Numbers of steps over which a linear system is forecast, in closed form.
 pub const FORECAST_STEPS: RangeInclusive<u64> = 1..=1_000_000_000_000_000;
 
+/// Gains and weights of a loop: their products must stay far within the range of floats.
+pub const MOST_GAIN: f64 = 1e50;
+/// Relative rms of step times and clock rates: nobody's clock is worse.
+pub const MOST_RMS: f64 = 100.0;
+/// What a criterion for the largest time step tolerates. Roots are known to 96 digits, which is why it ends somewhere.
+pub const CRITERION: RangeInclusive<f64> = 1e-60..=1e60;
+
 /// Steps a turn at the largest step of a sequence of halvings.
 pub const COARSEST: RangeInclusive<u64> = COARSEST_UNIT..=4096;
 /// What such a number must be a multiple of: orbits are compared that often in a turn.

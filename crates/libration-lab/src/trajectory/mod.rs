@@ -92,12 +92,19 @@ pub struct Stopped {
 /// # Errors
 /// A [`TrajectoryError`], before any work if the request itself is wrong.
 pub fn simulate(request: &Request) -> Result<Trajectory, TrajectoryError> {
-    let stop = AtomicBool::new(false);
+    simulate_until(request, &AtomicBool::new(false))
+}
+
+/// The same, until `stop` is set.
+///
+/// # Errors
+/// As [`simulate`], and [`TrajectoryError::Interrupted`].
+pub fn simulate_until(request: &Request, stop: &AtomicBool) -> Result<Trajectory, TrajectoryError> {
     match request.float {
-        FloatType::F64 => keep::<f64>(request, &stop),
-        FloatType::F32 => keep::<f32>(request, &stop),
-        FloatType::F16 => keep::<half::f16>(request, &stop),
-        FloatType::Bf16 => keep::<half::bf16>(request, &stop),
+        FloatType::F64 => keep::<f64>(request, stop),
+        FloatType::F32 => keep::<f32>(request, stop),
+        FloatType::F16 => keep::<half::f16>(request, stop),
+        FloatType::Bf16 => keep::<half::bf16>(request, stop),
     }
 }
 

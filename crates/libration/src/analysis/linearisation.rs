@@ -3,6 +3,7 @@
 use super::UpdateMatrix;
 use super::exponential::exponential;
 use crate::number::{Dual, Wide};
+use crate::system::Chosen;
 use crate::{Integrator, Model, State, System};
 
 /// A system and one step of an integrator on it, linearised about a state.
@@ -38,7 +39,10 @@ impl<const D: usize> Linearisation<D> {
     ) -> Self {
         let system = model.on::<Dual<Wide>>();
         let rate = |state| system.rate(state);
-        let step = |state, h| integrator.step(&system, state, h);
+        // A call is nothing beside numbers so long, and steps of any system are compiled once.
+        let acceleration = |state: &_| model.on::<Dual<Wide>>().acceleration(state);
+        let chosen = Chosen(&acceleration);
+        let step = |state, h| integrator.step(&chosen, state, h);
         Linearisation::of(&rate, &step, at.map(wide), wide(dt))
     }
 

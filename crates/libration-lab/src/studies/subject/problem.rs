@@ -6,7 +6,8 @@ use libration::analysis::Linearisation;
 use libration::ensemble::Execution;
 use libration::number::TwoFloat;
 use libration::simulation::{Sample, SimulationError, Simulator};
-use libration::{Float, Method, Model, Scalar, State, integrator, with_method};
+use libration::system::Chosen;
+use libration::{Float, Method, Model, Scalar, State, System, integrator, with_method};
 
 use super::errors::{self, Orbit};
 use super::{
@@ -93,10 +94,18 @@ impl<M: Model<D>, const D: usize> Problem<M, D> {
         steps: u64,
         watch: &mut dyn FnMut(&Sample<S, D>),
     ) -> Result<State<S, D>, SimulationError> {
+        let watch = &mut |sample: &Sample<S, D>| watch(sample);
+        if const { size_of::<S>() > size_of::<f64>() } {
+            // What each operation takes is more than a call, and more code than all else.
+            let acceleration = |state: &State<S, D>| self.model.on::<S>().acceleration(state);
+            let mut simulator = Simulator::new(Chosen(&acceleration), method, start, dt)?;
+            simulator.run(steps, watch)?;
+            return Ok(simulator.sample().state);
+        }
         let system = self.model.on::<S>();
         with_method!(method, |m| {
             let mut simulator = Simulator::new(system, m, start, dt)?;
-            simulator.run(steps, &mut |sample: &Sample<S, D>| watch(sample))?;
+            simulator.run(steps, watch)?;
             Ok(simulator.sample().state)
         })
     }

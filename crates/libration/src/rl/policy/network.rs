@@ -43,6 +43,7 @@ where
     T: Float + Elementary,
 {
     fn check(&self, _: usize, _: usize) -> Result<(), EnvironmentError> {
+        EnvironmentError::shape("numbers that a network sees", O, O.min(Self::WIDEST))?;
         for &width in self.hidden {
             let allowed = width.clamp(1, Self::WIDEST);
             EnvironmentError::shape("neurons of a hidden layer", width, allowed)?;
@@ -89,7 +90,7 @@ where
     fn run(self) {
         let Forward { network: &Network { parameters, hidden, activation, .. }, seen, actions } =
             self;
-        let mut layers = [[[T::zero(); TOGETHER]; 256]; 2];
+        let mut layers = [[[T::zero(); TOGETHER]; Network::<()>::WIDEST]; 2];
         for first in (0..W).step_by(TOGETHER) {
             let count = (W - first).min(TOGETHER);
             let [mut inputs, mut outputs] = layers.each_mut();

@@ -1,0 +1,161 @@
+//! Trajectories and analyses, as Python asks for them.
+
+use half::{bf16, f16};
+use libration::control::clock::Recorded;
+use libration_data::Values;
+use libration_lab::analyze::{self, Criteria};
+use libration_lab::config::limits;
+use libration_lab::trajectory::{self, Copies, Ending, FloatType, Request, Stopped};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::asked::{Loop, Step};
+use crate::error::{Raised, refused, unknown};
+use crate::work::work;
+
+/// What is asked of a trajectory besides its step and its loop.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Rows {
+    steps: i64,
+    float: String,
+    every: u64,
+    count: Option<usize>,
+    spread: f64,
+    threads: usize,
+    seed: u64,
+    time_stamps: Option<Vec<f64>>,
+}
+
+/// What is asked of an analysis.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Questions {
+    steps: i64,
+    max_drift: Option<f64>,
+    max_amplitude: Option<f64>,
+    max_error: Option<f64>,
+}
+
+/// Simulates. Gives columns, their units, and how it ended.
+#[pyfunction]
+pub(crate) fn _simulate<'py>(
+    py: Python<'py>,
+    step: Step,
+    looped: Loop,
+    rows: Rows,
+) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+    let setting = step.setting()?;
+    let dt = step.dt()?;
+    let float = FloatType::from_name(&rows.float)
+        .ok_or_else(|| unknown("float", &rows.float, FloatType::ALL.map(FloatType::name)))?;
+    let record = rows.time_stamps.map(|stamps| {
+        Recorded::steps_in(&stamps, dt).map_err(|error| refused(format!("time_stamps: {error}")))
+    });
+    let copies = rows.count.map(|count| Copies {
+        count,
+        spread: rows.spread,
+        threads: rows.threads,
+        instructions: None,
+    });
+    let request = Request {
+        system: setting.system,
+        stepping: step.stepping()?,
+        float,
+        dt,
+        steps: limits::steps("steps", rows.steps.into()).map_err(refused)?,
+        q: setting.q,
+        v: setting.v,
+        every: rows.every,
+        copies,
+        timing: looped.timing()?,
+        record: record.transpose()?,
+        seed: rows.seed,
+    };
+    let done = work(py, |stop| trajectory::simulate_until(&request, stop), |_| Ok(()))?;
+    let trajectory::Trajectory { table, ending } = done.map_err(Raised::raised)?;
+    let (columns, units) = (PyDict::new(py), PyDict::new(py));
+    for column in table.into_columns() {
+        units.set_item(&*column.name, &*column.unit)?;
+        columns.set_item(&*column.name, array(py, column.values)?)?;
+    }
+    Ok((columns, units, ended(py, &ending)?))
+}
+
+/// Numbers as an array, which is the memory that they are in where NumPy has the type.
+pub(crate) fn array<'py>(py: Python<'py>, values: Values<'static>) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match values {
+        Values::U64(x) => PyArray1::from_vec(py, x.into_owned()).into_any(),
+        Values::U32(x) => PyArray1::from_vec(py, x.into_owned()).into_any(),
+        Values::F64(x) => PyArray1::from_vec(py, x.into_owned()).into_any(),
+        Values::F32(x) => PyArray1::from_vec(py, x.into_owned()).into_any(),
+        Values::F16(x) => {
+            let halves: Vec<f32> = x.iter().copied().map(f16::to_f32).collect();
+            PyArray1::from_vec(py, halves).call_method1("astype", ("float16",))?
+        }
+        Values::Bf16(x) => {
+            let exact: Vec<f32> = x.iter().copied().map(bf16::to_f32).collect();
+            PyArray1::from_vec(py, exact).into_any()
+        }
+        Values::Bool(x) => {
+            let flags: Vec<bool> = x.iter().map(|&flag| flag != 0).collect();
+            PyArray1::from_vec(py, flags).into_any()
+        }
+        Values::Lists(_, of) => array(py, *of)?,
+    })
+}
+
+fn ended<'py>(py: Python<'py>, ending: &Ending) -> PyResult<Bound<'py, PyDict>> {
+    let told = PyDict::new(py);
+    match ending {
+        Ending::Whole => {}
+        Ending::Stopped(Stopped { step, t, reason }) => {
+            told.set_item("step", step)?;
+            told.set_item("t", t)?;
+            told.set_item("reason", reason)?;
+        }
+        Ending::NotFinite { count, first } => {
+            told.set_item("count", count)?;
+            told.set_item("first", first)?;
+        }
+    }
+    Ok(told)
+}
+
+/// Analyses one step. Gives JSON.
+#[pyfunction]
+pub(crate) fn _analyze(
+    py: Python<'_>,
+    step: Step,
+    looped: Loop,
+    questions: Questions,
+) -> PyResult<String> {
+    let setting = step.setting()?;
+    let Questions { steps, max_drift, max_amplitude, max_error } = questions;
+    let criteria =
+        [("max_drift", max_drift), ("max_amplitude", max_amplitude), ("max_error", max_error)];
+    for (name, value) in criteria {
+        if let Some(value) = value {
+            crate::asked::within(name, &[value], &limits::CRITERION)?;
+        }
+    }
+    let steps = match setting.system.is_linear() {
+        true => limits::forecast_steps("steps", steps.into()),
+        // What cannot be forecast is simulated.
+        false => limits::steps("steps", steps.into()),
+    };
+    let request = analyze::Request {
+        system: setting.system,
+        stepping: step.stepping()?,
+        dt: step.dt()?,
+        q: setting.q,
+        v: setting.v,
+        steps: steps.map_err(refused)?,
+        criteria: Criteria { max_drift, max_amplitude, max_error },
+        timing: looped.timing()?,
+    };
+    let done = work(py, |_| analyze::analyze(&request), |_| Ok(()))?;
+    let analysis = done.map_err(Raised::raised)?;
+    serde_json::to_string(&analysis).map_err(|error| refused(error.to_string()))
+}

@@ -1,0 +1,140 @@
+//! Many trajectories, held between calls.
+
+use std::sync::Mutex;
+
+use libration::ensemble::{AnyEnsemble, BatchFloat, EnsembleError, Execution};
+use libration::rl::EnvironmentError;
+use libration::{AnySystem, Method};
+use numpy::{PyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::array::{Array, Number, fresh, room};
+use crate::asked::{SystemTold, method, system};
+use crate::error::{Raised, refused};
+use crate::work::enter;
+
+/// Trajectories of a system of the catalogue, stepped together.
+#[pyclass(frozen, module = "libration._native")]
+pub(crate) struct Trajectories {
+    held: Mutex<Held>,
+    method: Method,
+    dt: f64,
+}
+
+enum Held {
+    F32(Box<dyn AnyEnsemble<f32>>),
+    F64(Box<dyn AnyEnsemble<f64>>),
+}
+
+/// Does something with the trajectories, whichever they are.
+macro_rules! with_all {
+    ($held:expr, $all:ident => $work:expr) => {
+        match $held {
+            Held::F32($all) => $work,
+            Held::F64($all) => $work,
+        }
+    };
+}
+
+/// Coordinates that are stepped between two looks at whether somebody wants to interrupt: some ten milliseconds of work, and more
+/// than a thread costs to begin.
+const PIECE: u64 = 1 << 24;
+
+#[pymethods]
+impl Trajectories {
+    /// Trajectories from `q` and `v`, `(len, dimension)` each.
+    #[new]
+    fn new(
+        told: SystemTold,
+        integrator: &str,
+        dt: f64,
+        q: PyReadonlyArray2<'_, f64>,
+        v: PyReadonlyArray2<'_, f64>,
+        single: bool,
+        threads: usize,
+    ) -> PyResult<Self> {
+        let system = system(&told)?;
+        let (q, v) = (q.as_array(), v.as_array());
+        let [len, dimension] = [q.nrows(), q.ncols()];
+        let of = |n: usize, i: usize| if i < dimension { q[[n, i]] } else { v[[n, i - dimension]] };
+        let execution = Execution::serial().threads(threads).map_err(Raised::raised)?;
+        let held = if single {
+            Held::F32(made(system, [len, dimension], execution, &|n, i| of(n, i) as f32)?)
+        } else {
+            Held::F64(made(system, [len, dimension], execution, &of)?)
+        };
+        Ok(Trajectories { held: Mutex::new(held), method: method(integrator)?, dt })
+    }
+
+    /// Takes so many steps with all of them.
+    fn _advance(&self, py: Python<'_>, steps: u64) -> PyResult<()> {
+        let mut left = steps;
+        let mut held = enter(py, &self.held);
+        let many = with_all!(&*held, all => (all.len() * all.dimension()).max(1) as u64);
+        let piece = (PIECE / many).max(1);
+        while left > 0 {
+            let now = left.min(piece);
+            let held = &mut *held;
+            py.detach(|| match held {
+                Held::F32(all) => all.advance(self.method, self.dt as f32, now),
+                Held::F64(all) => all.advance(self.method, self.dt, now),
+            });
+            left -= now;
+            py.check_signals()?;
+        }
+        Ok(())
+    }
+
+    /// Steps taken.
+    fn _step(&self, py: Python<'_>) -> u64 {
+        with_all!(&*enter(py, &self.held), all => all.step())
+    }
+
+    /// Positions and velocities, `(len, dimension)` each.
+    fn _states<'py>(&self, py: Python<'py>) -> [Bound<'py, PyAny>; 2] {
+        fn states<'a, 'py, T: Number>(
+            py: Python<'py>,
+            all: &'a dyn AnyEnsemble<T>,
+        ) -> [Bound<'py, PyAny>; 2] {
+            let [len, dimension] = [all.len(), all.dimension()];
+            let array = |plane: &dyn Fn(usize) -> Option<&'a [T]>| {
+                let array: Bound<'py, Array<T, 2>> = fresh(py, [len, dimension]);
+                let to = room(&array);
+                for i in 0..dimension {
+                    for (n, x) in plane(i).unwrap_or_default().iter().enumerate() {
+                        to[n * dimension + i] = *x;
+                    }
+                }
+                array.into_any()
+            };
+            [array(&|i| all.q(i)), array(&|i| all.v(i))]
+        }
+        let held = enter(py, &self.held);
+        with_all!(&*held, all => states(py, &**all))
+    }
+
+    /// The energy of each per unit mass, `(len,)`, in J/kg.
+    fn _energies<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        fn energies<T: Number>(all: &dyn AnyEnsemble<T>) -> Vec<T> {
+            let none = || T::from_f64(f64::NAN);
+            (0..all.len()).map(|n| all.energy(n).unwrap_or_else(none)).collect()
+        }
+        match &*enter(py, &self.held) {
+            Held::F32(all) => PyArray1::from_vec(py, energies(&**all)).into_any(),
+            Held::F64(all) => PyArray1::from_vec(py, energies(&**all)).into_any(),
+        }
+    }
+}
+
+fn made<T: BatchFloat>(
+    system: AnySystem,
+    [len, dimension]: [usize; 2],
+    execution: Execution,
+    start: &(dyn Fn(usize, usize) -> T + Sync),
+) -> PyResult<Box<dyn AnyEnsemble<T>>> {
+    if len == 0 {
+        return Err(refused("q has no rows, but there must be a trajectory at least".to_owned()));
+    }
+    let made: Result<_, EnsembleError> = T::ensemble(system, dimension, len, execution, start);
+    made.map_err(|error| EnvironmentError::from(error).raised())
+}

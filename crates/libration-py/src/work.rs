@@ -1,0 +1,65 @@
+//! Work that takes a while: without the interpreter's lock, and until somebody presses Ctrl-C.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::thread;
+use std::time::Duration;
+
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+
+/// How often it is asked whether somebody wants to interrupt, and told how far it is.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// How long somebody sleeps who waits for another thread.
+const NAP: Duration = Duration::from_micros(20);
+
+/// Takes what is inside for itself. Nobody waits for another thread with the interpreter's lock, which that may be waiting for.
+pub(crate) fn enter<'a, T>(py: Python<'_>, inside: &'a Mutex<T>) -> MutexGuard<'a, T> {
+    loop {
+        match inside.try_lock() {
+            Ok(guard) => return guard,
+            Err(TryLockError::Poisoned(poisoned)) => return poisoned.into_inner(),
+            Err(TryLockError::WouldBlock) => py.detach(|| thread::sleep(NAP)),
+        }
+    }
+}
+
+/// Does work in a thread of its own, which is to end soon after the flag is set; calls `tell` now and then meanwhile.
+///
+/// # Errors
+/// What `tell` or a handler of signals raised; a `RuntimeError` where the work panicked.
+pub(crate) fn work<R: Send>(
+    py: Python<'_>,
+    work: impl FnOnce(&AtomicBool) -> R + Send,
+    mut tell: impl FnMut(Python<'_>) -> PyResult<()>,
+) -> PyResult<R> {
+    let stop = AtomicBool::new(false);
+    thread::scope(|scope| {
+        let waiting = thread::current();
+        let worker = scope.spawn({
+            let stop = &stop;
+            move || {
+                let result = work(stop);
+                waiting.unpark();
+                result
+            }
+        });
+        let mut raised = None;
+        while !worker.is_finished() {
+            py.detach(|| thread::park_timeout(LOOK));
+            if raised.is_none()
+                && let Err(error) = py.check_signals().and_then(|()| tell(py))
+            {
+                stop.store(true, Ordering::Relaxed);
+                raised = Some(error);
+            }
+        }
+        let result = py.detach(|| worker.join());
+        match (raised, result) {
+            (Some(error), _) => Err(error),
+            (None, Ok(result)) => tell(py).map(|()| result),
+            (None, Err(_)) => Err(PyRuntimeError::new_err("the engine failed; please report this")),
+        }
+    })
+}

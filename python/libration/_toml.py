@@ -1,0 +1,58 @@
+"""Settings as the text that the program reads from files."""
+
+from __future__ import annotations
+
+import json
+import math
+import numbers
+import os
+from pathlib import Path
+from typing import Any, Mapping
+
+
+def text_of(name: str, settings: Any) -> str:
+    """The text of settings: of a dictionary, or of the file of that path; nothing if there are none."""
+    if settings is None:
+        return ""
+    if isinstance(settings, (str, os.PathLike)):
+        return Path(settings).read_text(encoding="utf-8")
+    if isinstance(settings, Mapping):
+        return "\n".join(_table((), settings)) + "\n"
+    raise TypeError(f"{name} must be a dictionary or the path of a file, not {type(settings).__name__}")
+
+
+def _table(path: tuple[str, ...], table: Mapping[str, Any]) -> list[str]:
+    lines = [f"[{'.'.join(map(_string, path))}]"] if path else []
+    inner = {key: value for key, value in table.items() if isinstance(value, Mapping)}
+    for key, value in table.items():
+        if key not in inner and value is not None:
+            lines.append(f"{_string(str(key))} = {_value(str(key), value)}")
+    for key, value in inner.items():
+        lines += _table((*path, str(key)), value)
+    return lines
+
+
+def _value(key: str, value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return _string(value)
+    if isinstance(value, numbers.Integral):
+        return str(int(value))
+    if isinstance(value, numbers.Real):
+        number = float(value)
+        return repr(number) if math.isfinite(number) else str(number)
+    if isinstance(value, os.PathLike):
+        return _string(os.fspath(value))
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+        if not isinstance(value, list):
+            return _value(key, value)
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(_value(key, entry) for entry in value)}]"
+    raise TypeError(f"{key} must be a number, a string, a list or a dictionary, not {type(value).__name__}")
+
+
+def _string(text: str) -> str:
+    # Strings of TOML are those of JSON, but for characters that JSON writes as pairs.
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

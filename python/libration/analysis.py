@@ -1,0 +1,286 @@
+"""What theory says of a step, and what a loop or a simulation can afford."""
+
+from __future__ import annotations
+
+import html
+import json
+from pathlib import Path
+from typing import Any, Mapping, Sequence
+
+from . import _native
+from ._progress import Progress, Shown
+from ._toml import text_of
+from .perturbations import LQR, PD, PID, Controller, Observer, Steps, law
+from .perturbations import latency as _latency
+from .simulation import told_loop, told_step, whole
+from .systems import CustomSystem, System, known
+
+__all__ = ["Advice", "Analysis", "advise", "analyze"]
+
+
+class Answer(Mapping[str, Any]):
+    """An answer of many parts, each had by its name: ``answer["trace"]`` or ``answer.trace``."""
+
+    def __init__(self, parts: dict[str, Any]) -> None:
+        self._parts = parts
+
+    def __getitem__(self, name: str) -> Any:
+        return self._parts[name]
+
+    def __iter__(self) -> Any:
+        return iter(self._parts)
+
+    def __len__(self) -> int:
+        return len(self._parts)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name not in self._parts:
+            raise AttributeError(f"{type(self).__name__} has no part {name!r}: there are {', '.join(self)}")
+        return self._parts[name]
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._parts]
+
+    def __repr__(self) -> str:
+        return "\n".join([type(self).__name__, *(f"  {name}: {value!r}" for name, value in self.items())])
+
+    def _repr_html_(self) -> str:
+        rows = (
+            f"<tr><th style='text-align:left'>{html.escape(name.replace('_', ' '))}</th>"
+            f"<td style='text-align:left'>{html.escape(_shown(value))}</td></tr>"
+            for name, value in self.items()
+        )
+        return f"<table>{''.join(rows)}</table>"
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.12g}"
+    if value is None:
+        return "none"
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+
+
+class Analysis(Answer):
+    """What theory says of one step: the parts are the keys of ``libration analyze --json``."""
+
+
+class Advice(Answer):
+    """What can be afforded: the parts are the keys of ``libration advise --json``, ``loop`` among them."""
+
+    holds: bool
+    """Whether the loop stands and tolerates all that is stated, and an integrator is accurate enough."""
+    asked: str
+    """What was asked, as the file that ``libration advise --config`` reads."""
+    page: str | None
+    """A page with all of it and a map of stability, as HTML, if one was asked for."""
+
+    def __init__(self, parts: dict[str, Any], holds: bool, asked: str, page: str | None) -> None:
+        super().__init__(parts)
+        self.holds, self.asked, self.page = holds, asked, page
+
+    def save(self, path: str | Path) -> None:
+        """Write the page."""
+        if self.page is None:
+            raise ValueError("there is no page: ask for it with page=True")
+        Path(path).write_text(self.page, encoding="utf-8")
+
+
+def analyze(
+    system: str | System,
+    *,
+    integrator: str,
+    dt: float,
+    q: Any = None,
+    v: Any = None,
+    steps: int = 1_000_000,
+    max_drift: float | None = None,
+    max_amplitude: float | None = None,
+    max_error: float | None = None,
+    feedback: Any = None,
+    latency: Any = None,
+    jitter: Any = None,
+    skew: Any = None,
+    loss: float | None = None,
+    cost_weights: Sequence[float] | None = None,
+) -> Analysis:
+    """Say what theory says of one step: what ``libration analyze`` does.
+
+    Parameters
+    ----------
+    system, integrator, dt, q, v, feedback, latency, jitter, skew:
+        As in :func:`~libration.simulate`.
+    steps:
+        Over how many the largest energy drift is taken; of a linear system up to 10¹⁵.
+    max_drift, max_amplitude, max_error:
+        Also say the largest ``dt`` that keeps to these (oscillator): a relative energy drift, a length in m, an error relative to the
+        amplitude.
+    loss:
+        The probability that a command is lost, at least 0 and below 1.
+    cost_weights:
+        Weights of position², velocity² and command² of what the loop costs; by default of its energy.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Before any work, with the name of what is wrong and what is allowed.
+    """
+    system = _of_catalogue(system)
+    criteria = {"max_drift": max_drift, "max_amplitude": max_amplitude, "max_error": max_error}
+    answer = _native._analyze(
+        told_step(system, integrator, dt, q, v),
+        told_loop(feedback, latency, jitter, skew, loss, cost_weights),
+        {"steps": whole("steps", steps), **criteria},
+    )
+    return Analysis(json.loads(answer))
+
+
+def _of_catalogue(system: Any) -> System:
+    system = known(system)
+    if isinstance(system, CustomSystem):
+        raise ValueError("system is a custom one, but theory is derived for systems of the catalogue only")
+    return system
+
+
+def advise(
+    system: str | System | None = None,
+    controller: Controller | Sequence[float] | None = None,
+    *,
+    q: Any = None,
+    v: Any = None,
+    period: float | None = None,
+    latency: Any = None,
+    jitter: Any = None,
+    skew: float | None = None,
+    loss: float | None = None,
+    cost_weights: Sequence[float] | None = None,
+    deviation: float | None = None,
+    tolerance: tuple[str, float] | None = None,
+    horizon: float | None = None,
+    config: Any = None,
+    page: bool = False,
+    progress: Progress = None,
+) -> Advice:
+    """Say what a loop or a simulation can afford: what ``libration advise`` does.
+
+    Parameters
+    ----------
+    system:
+        A name or a :class:`~libration.System`.
+    controller:
+        Who commands: gains of position and velocity, :class:`~libration.PD`, :class:`~libration.PID`, :class:`~libration.LQR` or
+        :class:`~libration.Observer`; nobody if there is none.
+    q, v:
+        Where it starts, or where a loop is held; by default the origin.
+    period:
+        Between two samples, in s; by default 0.01.
+    latency, jitter, skew, loss:
+        What is stated to be wrong: a latency in s or :class:`~libration.Steps`, a law of sample times, the part by which the clock is slow,
+        the probability that a command is lost.
+    cost_weights, deviation, tolerance, horizon:
+        Weights of position², velocity² and command² of what the loop costs; how far off, in m or rad, it must return from; what is
+        tolerated, as ``("energy", 1e-6)``, of ``energy``, ``phase``, ``trajectory`` or ``cost``; for how long, in s.
+    config:
+        A dictionary or the path of a file with all of that, in place of it.
+    page:
+        Whether a page with a map of stability is wanted, which takes longer.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Before any work, with the name of what is wrong and what is allowed.
+    """
+    keywords = {
+        "system": system,
+        "controller": controller,
+        "q": q,
+        "v": v,
+        "period": period,
+        "latency": latency,
+        "jitter": jitter,
+        "skew": skew,
+        "loss": loss,
+        "cost_weights": cost_weights,
+        "deviation": deviation,
+        "tolerance": tolerance,
+        "horizon": horizon,
+    }
+    given = [name for name, value in keywords.items() if value is not None]
+    if config is not None:
+        if given:
+            raise TypeError(f"{given[0]} is given beside config, which takes its place")
+        asked = text_of("config", config)
+    elif system is None:
+        raise TypeError("nothing is asked: it must be a system, or a config")
+    else:
+        asked = text_of("config", _request(**keywords))
+    with Shown(progress) as shown:
+        tell = (lambda _, __, ___, what, done, total: shown.tell(done / max(total, 1), what)) if shown.wanted else None
+        answer, holds, html_page = _native._advise(asked, bool(page), tell)
+    return Advice(json.loads(answer), holds, asked, html_page)
+
+
+def _request(
+    system: Any,
+    controller: Any,
+    q: Any,
+    v: Any,
+    period: Any,
+    latency: Any,
+    jitter: Any,
+    skew: Any,
+    loss: Any,
+    cost_weights: Any,
+    deviation: Any,
+    tolerance: Any,
+    horizon: Any,
+) -> dict[str, Any]:
+    """What is asked, as the file says it."""
+    system = _of_catalogue(system)
+    start = {"q": _list(q, system), "v": _list(v, system)}
+    asked: dict[str, Any] = {"system": {system.name: dict(system.parameters)}, "start": start}
+    if horizon is not None:
+        asked["asked"] = {"horizon": horizon}
+    if tolerance is not None:
+        of, most = tolerance
+        asked["tolerance"] = {of: most}
+    loop = {
+        "period": period,
+        "skew": skew,
+        "loss": loss,
+        "cost": cost_weights,
+        "deviation": deviation,
+    }
+    if latency is not None:
+        unit, number = _latency(latency) or ("seconds", 0.0)
+        loop["latency"] = number * (0.01 if period is None else period) if unit == "steps" else number
+    if jitter is not None:
+        loop["law"], loop["jitter"] = law("jitter", jitter) or ("gaussian", 0.0)
+    loop = {name: value for name, value in loop.items() if value is not None}
+    if controller is not None:
+        asked["controller"] = _controller(controller)
+    if loop:
+        asked["loop"] = loop
+    return asked
+
+
+def _list(values: Any, system: System) -> list[float]:
+    if values is None:
+        return [0.0] * system.dimensions.start
+    return list(values) if isinstance(values, (list, tuple)) else [values]
+
+
+def _controller(controller: Any) -> dict[str, Any]:
+    if isinstance(controller, PID):
+        return {"pid": vars(controller)}
+    if isinstance(controller, LQR):
+        return {"lqr": {"weights": controller.weights}}
+    if isinstance(controller, Observer):
+        table = {name: value for name, value in vars(controller).items() if value is not None}
+        if "noise" in table:
+            acceleration, position = table.pop("noise")
+            table = {**table, "acceleration": acceleration, "position": position}
+        return {"observer": table}
+    if not isinstance(controller, PD):
+        controller = PD(*controller)
+    return {"pd": vars(controller)}

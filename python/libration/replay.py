@@ -1,0 +1,160 @@
+"""Replay buffers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native
+from ._settings import count, number
+from .environments import Environments
+from .rollout import Rollout
+
+__all__ = ["ReplayBuffer", "Sequences", "Transitions"]
+
+
+@dataclass(frozen=True)
+class Transitions:
+    """Transitions that were drawn: ``B`` of them."""
+
+    numbers: NDArray[np.uint64]
+    """By which priorities are changed, ``(B,)``."""
+    observations: NDArray[Any]
+    """``(B, n)``."""
+    actions: NDArray[Any]
+    """``(B, 1)``."""
+    rewards: NDArray[Any]
+    """What was paid, with the discounted steps after it as far as one looks ahead, ``(B,)``."""
+    next_observations: NDArray[Any]
+    """What was seen after the last of these steps, ``(B, n)``; the last observation of the episode where it ended."""
+    terminated: NDArray[np.bool_]
+    truncated: NDArray[np.bool_]
+    discounts: NDArray[Any]
+    """What the value of the next observations counts, ``(B,)``: 0 where the episode was over."""
+    weights: NDArray[Any]
+    """What each counts for the mean to be that of uniform draws, ``(B,)``; 1 at most."""
+
+
+@dataclass(frozen=True)
+class Sequences:
+    """Stretches of ``T`` steps that were drawn: ``B`` of them."""
+
+    numbers: NDArray[np.uint64]
+    """Of the first transition of each, ``(B,)``."""
+    observations: NDArray[Any]
+    """``(B, T, n)``."""
+    actions: NDArray[Any]
+    """``(B, T, 1)``."""
+    rewards: NDArray[Any]
+    """``(B, T)``."""
+    terminated: NDArray[np.bool_]
+    truncated: NDArray[np.bool_]
+    mask: NDArray[np.bool_]
+    """Whether the episode goes on in which the stretch began, ``(B, T)``."""
+    next_observations: NDArray[Any]
+    """What was seen after the last step of the mask, ``(B, n)``."""
+
+
+class ReplayBuffer:
+    """The last transitions of environments, of which batches are drawn.
+
+    Parameters
+    ----------
+    environments:
+        Whose rollouts come in.
+    steps:
+        How many of each environment are kept.
+    priorities:
+        Whether transitions have priorities.
+    ends:
+        Room for ends of episodes, by default a quarter of all transitions: where there are more, the oldest steps go earlier.
+    seed:
+        Of all draws. Draw ``number`` is the same whatever was drawn before.
+
+    Raises
+    ------
+    ValueError
+        For a capacity of nothing.
+    MemoryError
+        If there is no room.
+    """
+
+    def __init__(
+        self,
+        environments: Environments,
+        steps: int,
+        *,
+        priorities: bool = False,
+        ends: int | None = None,
+        seed: int = 0,
+    ) -> None:
+        settings = environments._settings
+        self.seed = count("seed", seed, 0, 2**64 - 1)
+        #: The number of the next draw.
+        self.number = 0
+        self._buffer = _native.Buffer(
+            count("steps", steps, 1, 2**40),
+            settings["num_envs"],
+            len(environments.preset.seen),
+            settings["dtype"] == "float32",
+            bool(priorities),
+            None if ends is None else count("ends", ends, 1, 2**40),
+        )
+
+    def __len__(self) -> int:
+        return len(self._buffer)
+
+    def insert(self, rollout: Rollout) -> None:
+        """Take what a rollout holds; the oldest steps make room for it."""
+        self._buffer._insert(rollout._memory, rollout.last_observations)
+
+    def sample(
+        self,
+        batch_size: int,
+        *,
+        steps: int = 1,
+        gamma: float = 0.99,
+        correction: float | None = None,
+    ) -> Transitions:
+        """Draw transitions with replacement, each as likely.
+
+        Parameters
+        ----------
+        steps:
+            How far each looks ahead: its reward is the discounted sum of so many.
+        gamma:
+            The discount, from 0 to 1.
+        correction:
+            Draw in proportion to priorities, and correct for that with this exponent, from 0 to 1 (Schaul et al. 2016, section 3.4).
+        """
+        asked = self._asked(batch_size, steps, gamma)
+        if correction is not None:
+            asked["correction"] = number("correction", correction, "0 to 1")
+        return Transitions(**self._buffer._sample(asked))
+
+    def sample_sequences(self, batch_size: int, steps: int) -> Sequences:
+        """Draw stretches of so many steps with replacement, each as likely."""
+        return Sequences(**self._buffer._sequences(self._asked(batch_size, steps, 1.0)))
+
+    def update_priorities(
+        self, numbers: NDArray[np.uint64], priorities: ArrayLike, exponent: float = 0.6
+    ) -> int:
+        """Give transitions other priorities; their weights are ``priority ** exponent``. Gives how many are still there."""
+        numbers = np.ascontiguousarray(numbers, np.uint64)
+        priorities = np.ascontiguousarray(priorities, np.float64)
+        return self._buffer._update(numbers, priorities, number("exponent", exponent, "finite"))
+
+    def _asked(self, batch_size: int, steps: int, gamma: float) -> dict[str, Any]:
+        asked = {
+            "len": count("batch_size", batch_size, 1, 2**32),
+            "seed": self.seed,
+            "number": self.number,
+            "steps": count("steps", steps, 1, 2**32),
+            "gamma": number("gamma", gamma, "0 to 1"),
+            "correction": None,
+        }
+        self.number += 1
+        return asked

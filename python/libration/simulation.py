@@ -1,0 +1,358 @@
+"""Trajectories: of one system, and of many at once."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native
+from ._settings import count, nearest, number, positive
+from .perturbations import gains, latency as _latency, law, numbers
+from .systems import INTEGRATORS, CustomSystem, Program, System, known
+
+__all__ = ["Ensemble", "Trajectory", "simulate"]
+
+_FLOATS = {"f64": np.float64, "f32": np.float32}
+
+
+class Trajectory(Mapping[str, np.ndarray]):
+    """Rows of a trajectory, or of several, as columns: ``step``, ``t``, ``q0`` …, ``v0`` … and ``energy``, with ``trajectory`` where there
+    are several.
+
+    A column is had by its name. Columns of ``bf16`` are arrays of ``float32``, which hold them exactly.
+    """
+
+    def __init__(
+        self, columns: dict[str, NDArray[Any]], units: dict[str, str], ended: dict[str, Any]
+    ) -> None:
+        self._columns = columns
+        self.units: Mapping[str, str] = units
+        """The unit of each column, where it is known; ``1`` if there is none."""
+        self.stopped: dict[str, Any] | None = ended if "step" in ended else None
+        """Of a lone trajectory that ceased to be finite: the first ``step`` that is not, its ``t`` in seconds, and the ``reason``."""
+        self.not_finite: dict[str, Any] | None = ended if "count" in ended else None
+        """Of several trajectories: the ``count`` of those that are not finite in the end, and the ``first`` ten of them."""
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        return self._columns[name]
+
+    def __iter__(self) -> Any:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    @property
+    def t(self) -> NDArray[np.float64]:
+        """Times in s, ``(rows,)``."""
+        return self["t"]
+
+    @property
+    def q(self) -> NDArray[Any]:
+        """Positions, ``(rows, dimension)``: a copy."""
+        return self._stacked("q")
+
+    @property
+    def v(self) -> NDArray[Any]:
+        """Velocities, ``(rows, dimension)``: a copy."""
+        return self._stacked("v")
+
+    @property
+    def energy(self) -> NDArray[Any]:
+        """Energies per unit mass in J/kg, ``(rows,)``."""
+        return self["energy"]
+
+    def _stacked(self, letter: str) -> NDArray[Any]:
+        return np.stack([self[name] for name in self if name[0] == letter and name[1:].isdigit()], axis=1)
+
+    def to_pandas(self) -> Any:
+        """A ``pandas.DataFrame`` of all columns."""
+        import pandas
+
+        return pandas.DataFrame(dict(self))
+
+    def __repr__(self) -> str:
+        return f"<Trajectory of {len(self['t'])} rows: {', '.join(self)}>"
+
+
+def simulate(
+    system: Any,
+    *,
+    integrator: str,
+    dt: float,
+    steps: int,
+    q: ArrayLike | None = None,
+    v: ArrayLike | None = None,
+    float: str = "f64",
+    every: int = 1,
+    count: int | None = None,
+    spread: float = 0.0,
+    threads: int = 0,
+    feedback: Any = None,
+    latency: Any = None,
+    jitter: Any = None,
+    skew: Any = None,
+    time_stamps: ArrayLike | None = None,
+    seed: int = 0,
+) -> Trajectory:
+    """Simulate a trajectory, or several from starts around one: what ``libration simulate`` does.
+
+    Parameters
+    ----------
+    system:
+        A name, a :class:`~libration.System`, or a :class:`~libration.CustomSystem` or function ``a(q, v)``, which nothing but
+        ``integrator``, ``dt``, ``steps``, ``q``, ``v``, ``float`` and ``every`` are for.
+    integrator:
+        One of :data:`~libration.INTEGRATORS`.
+    dt:
+        The time step in s.
+    steps:
+        How many, 1 to 10⁹.
+    q, v:
+        Positions and velocities at the start, a number or ``(dimension,)``; by default those of the catalogue.
+    float:
+        ``"f64"``, ``"f32"``, ``"f16"`` or ``"bf16"``: of every operation.
+    every:
+        Rows that are kept: every so many steps, besides the first and the last.
+    count, spread, threads:
+        Simulate ``count`` trajectories from ``1 - spread`` to ``1 + spread`` times the start, in so many threads; 0 for all cores.
+    feedback:
+        Close the loop: gains of position and velocity, or a :class:`~libration.PD`.
+    latency:
+        How late commands arrive, in s or as :class:`~libration.Steps`.
+    jitter, skew:
+        The laws of step times and of clock rates: a relative standard deviation, a pair like ``("uniform", 0.1)``, or a
+        :class:`~libration.Gaussian` or :class:`~libration.Uniform`.
+    time_stamps:
+        Those of a recorded clock, in s, in place of even steps.
+    seed:
+        Of all that is random.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Before any work, with the name of what is wrong and what is allowed.
+    MemoryError
+        If all rows do not fit.
+    """
+    system = known(system)
+    if isinstance(system, CustomSystem):
+        wrong = {
+            "count": count,
+            "feedback": feedback,
+            "latency": latency,
+            "jitter": jitter,
+            "skew": skew,
+            "time_stamps": time_stamps,
+        }
+        for name, value in wrong.items():
+            if value is not None:
+                raise ValueError(f"{name} is given, but it is for systems of the catalogue only")
+        return _custom(system, integrator, dt, steps, q, v, float, every)
+    columns, units, ended = _native._simulate(
+        told_step(system, integrator, dt, q, v),
+        told_loop(feedback, latency, jitter, skew),
+        {
+            "steps": whole("steps", steps),
+            "float": text("float", float),
+            "every": whole("every", every, 0),
+            "count": None if count is None else whole("count", count, 0),
+            "spread": number("spread", spread, "finite"),
+            "threads": whole("threads", threads, 0),
+            "seed": whole("seed", seed, 0),
+            "time_stamps": None if time_stamps is None else np.asarray(time_stamps, np.float64).tolist(),
+        },
+    )
+    return Trajectory(columns, units, ended)
+
+
+def _custom(
+    system: CustomSystem, integrator: str, dt: Any, steps: Any, q: Any, v: Any, float: str, every: Any
+) -> Trajectory:
+    steps, every = whole("steps", steps), whole("every", every)
+    if float not in _FLOATS:
+        raise ValueError(f"float is {float!r}: {nearest(float, _FLOATS)}")
+    if q is None:
+        raise ValueError("q is missing: a custom system has no start of its own")
+    start = np.atleast_1d(np.asarray(q, np.float64))[np.newaxis]
+    speed = None if v is None else np.atleast_1d(np.asarray(v, np.float64))[np.newaxis]
+    one = Ensemble(system, integrator=integrator, dt=dt, q=start, v=speed, dtype=_FLOATS[float])
+    kept = [0, *range(every, steps, every), steps]
+    rows, ended = [], {}
+    for step in kept:
+        one.advance(step - one.step)
+        if not (np.isfinite(one.q).all() and np.isfinite(one.v).all()):
+            ended = {"step": step, "t": step * one.dt, "reason": "the state is not finite"}
+            break
+        rows.append((step, one.q[0], one.v[0], math.nan if system.energy is None else one.energy[0]))
+    columns = {"step": np.array([row[0] for row in rows], np.uint64)}
+    columns["t"] = columns["step"] * one.dt
+    for letter, index in (("q", 1), ("v", 2)):
+        for i in range(start.shape[1]):
+            columns[f"{letter}{i}"] = np.array([row[index][i] for row in rows], one.dtype)
+    columns["energy"] = np.array([row[3] for row in rows], one.dtype)
+    return Trajectory(columns, {"step": "1", "t": "s"}, ended)
+
+
+class Ensemble:
+    """Many trajectories of a system, stepped together and held between calls.
+
+    Parameters
+    ----------
+    system:
+        As in :func:`simulate`.
+    integrator:
+        One of :data:`~libration.INTEGRATORS` but ``"exact"``.
+    dt:
+        The time step in s.
+    q, v:
+        Where trajectories start, ``(N, dimension)``, or ``(N,)`` where there is one degree of freedom; by default at rest.
+    dtype:
+        ``"float64"`` or ``"float32"``: of every operation.
+    threads:
+        How many; 0 for as many as there are cores. What comes out does not depend on it, nor on ``N``.
+    """
+
+    def __init__(
+        self,
+        system: Any,
+        *,
+        integrator: str = "velocity-verlet",
+        dt: float,
+        q: ArrayLike,
+        v: ArrayLike | None = None,
+        dtype: Any = "float64",
+        threads: int = 0,
+    ) -> None:
+        self.system = known(system)
+        self.integrator = text("integrator", integrator)
+        self.dt = positive("dt", dt)
+        self.dtype = np.dtype(dtype)
+        if self.dtype not in (np.float64, np.float32):
+            raise ValueError(f"dtype is {self.dtype}, but it must be float64 or float32")
+        start = [_rows("q", q), np.zeros(np.shape(q)) if v is None else v]
+        start[1] = _rows("v", start[1])
+        if start[0].shape != start[1].shape:
+            raise ValueError(f"q has shape {start[0].shape} and v {start[1].shape}, but they must be the same")
+        if 0 in start[0].shape:
+            raise ValueError(f"q has shape {start[0].shape}, but there must be a trajectory at least")
+        threads = count("threads", threads, 0, 1024)
+        self._step = 0
+        if isinstance(self.system, System):
+            arguments = [self.system._told(), self.integrator, self.dt, *start]
+            single = self.dtype == np.float32
+            self._held: Any = _native.Trajectories(*arguments, single, threads)
+        else:
+            self._held = Program(self.integrator, self.system)
+            self._state = tuple(array.astype(self.dtype) for array in start)
+
+    @property
+    def step(self) -> int:
+        """Steps taken."""
+        return self._held._step() if isinstance(self.system, System) else self._step
+
+    @property
+    def time(self) -> float:
+        """The time in s."""
+        return self.step * self.dt
+
+    @property
+    def q(self) -> NDArray[Any]:
+        """Positions, ``(N, dimension)``: a copy."""
+        return self._held._states()[0] if isinstance(self.system, System) else self._state[0].copy()
+
+    @property
+    def v(self) -> NDArray[Any]:
+        """Velocities, ``(N, dimension)``: a copy."""
+        return self._held._states()[1] if isinstance(self.system, System) else self._state[1].copy()
+
+    @property
+    def energy(self) -> NDArray[Any]:
+        """Energies per unit mass in J/kg, ``(N,)``."""
+        if isinstance(self.system, System):
+            return self._held._energies()
+        if self.system.energy is None:
+            raise ValueError("the custom system has no energy")
+        return np.asarray(self.system.energy(*self._state))
+
+    def advance(self, steps: int) -> None:
+        """Take so many steps. Ctrl-C ends it between two of them."""
+        steps = count("steps", steps, 0, 2**62)
+        if isinstance(self.system, System):
+            self._held._advance(steps)
+            return
+        dt = self.dtype.type(self.dt)
+        # What overflows is infinite, as in the engine.
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            for _ in range(steps):
+                self._state = self._held.step(*self._state, dt)
+                self._step += 1
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+
+def _rows(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    array = np.asarray(values)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} has dtype {array.dtype}, but it must be real numbers")
+    array = np.ascontiguousarray(array, np.float64)
+    if array.ndim == 1:
+        array = array[:, np.newaxis]
+    if array.ndim != 2:
+        raise ValueError(f"{name} has shape {array.shape}, but it must be (N, dimension) or (N,)")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} is not finite everywhere")
+    return array
+
+
+def told_step(system: System, integrator: Any, dt: Any, q: Any, v: Any) -> dict[str, Any]:
+    """A system, its start and its step, as the engine is told of them."""
+    text("integrator", integrator)
+    if integrator not in INTEGRATORS:
+        raise ValueError(f"unknown integrator {integrator!r}: {nearest(integrator, INTEGRATORS)}")
+    return {
+        "system": system._told(),
+        "q": _coordinates("q", q),
+        "v": _coordinates("v", v),
+        "integrator": integrator,
+        "dt": number("dt", dt, "finite and greater than 0"),
+    }
+
+
+def told_loop(
+    feedback: Any, latency: Any, jitter: Any, skew: Any, loss: Any = None, cost_weights: Any = None
+) -> dict[str, Any]:
+    """A loop and what is wrong with it, as the engine is told of them."""
+    return {
+        "feedback": gains("feedback", feedback),
+        "latency": _latency(latency),
+        "jitter": law("jitter", jitter),
+        "skew": law("skew", skew),
+        "loss": None if loss is None else number("loss", loss, "at least 0 and below 1"),
+        "cost_weights": None if cost_weights is None else numbers("cost_weights", cost_weights, 3),
+    }
+
+
+def _coordinates(name: str, value: ArrayLike | None) -> list[float] | None:
+    if value is None:
+        return None
+    array = np.atleast_1d(np.asarray(value))
+    if array.dtype.kind not in "fiu" or array.ndim != 1:
+        raise TypeError(f"{name} must be a number or a list of numbers")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} is {array.tolist()}, but it must be finite")
+    return array.astype(np.float64).tolist()
+
+
+def whole(name: str, value: Any, least: int = 1) -> int:
+    return count(name, value, least, 2**63 - 1)
+
+
+def text(name: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{name} must be a string, not {type(value).__name__}")
+    return value

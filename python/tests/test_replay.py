@@ -1,0 +1,102 @@
+"""Replay buffers: what is drawn is what was inserted."""
+
+import numpy as np
+import pytest
+
+from libration import Environments, ReplayBuffer
+from libration.policies import Random
+
+
+def filled(steps=50, rollouts=3, horizon=20, **more):
+    envs = Environments("Oscillator", 8, max_episode_steps=7, dtype="float64")
+    envs.reset(seed=1)
+    buffer = ReplayBuffer(envs, steps, **more)
+    all = []
+    for _ in range(rollouts):
+        rollout = envs.rollout(Random(-1.0, 1.0), horizon)
+        buffer.insert(rollout)
+        all.append([rollout.observations.copy(), rollout.rewards.copy(), rollout.transitions.copy()])
+    return buffer, [np.concatenate(parts) for parts in zip(*all)]
+
+
+def test_what_is_drawn_is_what_was_inserted_and_the_oldest_is_gone():
+    buffer, (seen, rewards, transitions) = filled()
+    drawn = buffer.sample(500)
+    step, n = np.divmod(drawn.numbers.astype(int), 8)
+    assert step.min() >= 10 and step.max() < 60 and transitions[step, n].all()
+    np.testing.assert_array_equal(drawn.observations, seen[step, n])
+    np.testing.assert_array_equal(drawn.rewards, rewards[step, n])
+    # Where an episode goes on, what is seen next is what the next step begins with.
+    goes_on = ~(drawn.terminated | drawn.truncated) & (step < 59)
+    np.testing.assert_array_equal(
+        drawn.next_observations[goes_on], seen[step[goes_on] + 1, n[goes_on]]
+    )
+    assert len(buffer) == transitions[10:].sum() and drawn.truncated.any()
+    np.testing.assert_array_equal(drawn.discounts, 0.99)
+
+
+def test_a_draw_has_a_number_by_which_it_can_be_repeated():
+    buffer, _ = filled()
+    one, two = buffer.sample(64), buffer.sample(64)
+    assert (one.numbers != two.numbers).any()
+    buffer.number = 0
+    np.testing.assert_array_equal(buffer.sample(64).numbers, one.numbers)
+
+
+def test_rewards_look_ahead_as_far_as_they_are_told():
+    buffer, (_, rewards, _) = filled()
+    drawn = buffer.sample(200, steps=3, gamma=0.5)
+    step, n = np.divmod(drawn.numbers.astype(int), 8)
+    whole = drawn.discounts == 0.5**3
+    assert whole.any() and not whole.all()
+    of = [rewards[np.minimum(step + k, 59), n] * 0.5**k for k in range(3)]
+    # Three products and two sums, each of which rounds once.
+    np.testing.assert_allclose(drawn.rewards[whole], sum(of)[whole], rtol=8 * np.finfo(float).eps)
+
+
+def test_sequences_are_stretches_of_one_environment():
+    buffer, (seen, _, _) = filled()
+    drawn = buffer.sample_sequences(40, 5)
+    step, n = np.divmod(drawn.numbers.astype(int), 8)
+    assert drawn.observations.shape == (40, 5, 2) and drawn.actions.shape == (40, 5, 1)
+    for t in range(5):
+        on = drawn.mask[:, t]
+        np.testing.assert_array_equal(drawn.observations[on, t], seen[step[on] + t, n[on]])
+    assert drawn.mask[:, 0].all() and not drawn.mask.all()
+
+
+def test_what_has_a_priority_of_zero_is_never_drawn():
+    buffer, _ = filled(priorities=True)
+    everything = np.unique(buffer.sample(5000).numbers)
+    assert buffer.update_priorities(everything, np.arange(len(everything)) % 2) == len(everything)
+    drawn = buffer.sample(2000, correction=0.5)
+    assert set(drawn.numbers) <= set(everything[1::2])
+    assert drawn.weights.max() == 1.0
+
+
+@pytest.mark.parametrize(
+    "call, error, told",
+    [
+        (lambda b: b.sample(0), ValueError, "batch_size"),
+        (lambda b: b.sample(4, gamma=1.5), ValueError, "discount"),
+        (lambda b: b.sample(4, steps=0), ValueError, "steps"),
+        (lambda b: b.sample(4, correction=0.5), ValueError, "priorities"),
+        (lambda b: b.update_priorities([1], [1.0]), ValueError, "priorities"),
+        (lambda b: b.sample_sequences(4, 60), ValueError, "to draw"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_by_name(call, error, told):
+    with pytest.raises(error, match=told):
+        call(filled()[0])
+
+
+def test_a_rollout_of_other_environments_is_refused():
+    buffer, _ = filled()
+    for other in (Environments("Oscillator", 4, dtype="float64"), Environments("Oscillator", 8)):
+        other.reset(seed=0)
+        with pytest.raises(ValueError):
+            buffer.insert(other.rollout(Random(-1.0, 1.0), 5))
+    with pytest.raises(ValueError, match="steps of a rollout"):
+        envs = Environments("Oscillator", 8, dtype="float64")
+        envs.reset(seed=0)
+        buffer.insert(envs.rollout(Random(-1.0, 1.0), 51))

@@ -1,0 +1,199 @@
+"""Trajectories from Python: those of the engine, whoever computes the force."""
+
+import math
+import pickle
+import signal
+import threading
+
+import numpy as np
+import pytest
+
+import libration
+from libration import CustomSystem, Ensemble, Steps, System, simulate
+
+METHODS = [name for name in libration.INTEGRATORS if name != "exact"]
+SPRING = System("oscillator", omega2=10.0)
+
+
+def spring(q, v):
+    return -10.0 * q
+
+
+def test_a_trajectory_has_named_columns_with_units_and_ends_where_the_exact_solution_does():
+    path = simulate(SPRING, integrator="exact", dt=0.1, steps=100, every=30)
+    assert list(path) == ["step", "t", "q0", "v0", "energy"]
+    assert [path.units[name] for name in path] == ["1", "s", "m", "m/s", "J/kg"]
+    np.testing.assert_array_equal(path["step"], [0, 30, 60, 90, 100])
+    assert path.q.shape == path.v.shape == (5, 1) and path.stopped is None
+    assert list(path.to_pandas().columns) == list(path)
+    # Each of the 100 steps rounds both coordinates, which are at most 1 and √10.
+    expected = np.cos(math.sqrt(10) * path.t)
+    assert np.abs(path.q[:, 0] - expected).max() < 100 * 4 * np.finfo(float).eps
+
+
+@pytest.mark.parametrize("integrator", METHODS)
+@pytest.mark.parametrize("single", [False, True])
+def test_a_custom_system_steps_to_the_bits_of_the_catalogue(integrator, single):
+    rng = np.random.default_rng(1)
+    q, v = rng.normal(size=(2, 37, 2))
+    dtype = np.float32 if single else np.float64
+    built_in = Ensemble(SPRING, integrator=integrator, dt=0.03, q=q, v=v, dtype=dtype)
+    for positional in (False, True):
+        # The constant has the type of the array, as a parameter of the catalogue has.
+        own = CustomSystem(lambda q, v: -dtype(10.0) * q, positional=positional)
+        mine = Ensemble(own, integrator=integrator, dt=0.03, q=q, v=v, dtype=dtype)
+        mine.advance(50)
+        if not positional:
+            built_in.advance(50)
+        np.testing.assert_array_equal(mine.q, built_in.q)
+        np.testing.assert_array_equal(mine.v, built_in.v)
+        assert mine.q.dtype == built_in.q.dtype == dtype
+    assert (built_in.step, built_in.time) == (50, 50 * 0.03)
+
+
+@pytest.mark.parametrize("integrator", METHODS)
+def test_simulate_and_an_ensemble_take_the_same_steps(integrator):
+    path = simulate("pendulum", integrator=integrator, dt=0.05, steps=200, q=2.0, v=0.1)
+    swings = Ensemble("pendulum", integrator=integrator, dt=0.05, q=[2.0, 1.0], v=[0.1, 0.0])
+    swings.advance(120)
+    swings.advance(80)
+    assert (swings.q[0, 0], swings.v[0, 0]) == (path["q0"][-1], path["v0"][-1])
+    assert swings.energy[0] == path.energy[-1]
+
+
+def test_a_function_of_positions_and_velocities_is_a_system():
+    built_in = simulate(SPRING, integrator="rk4", dt=0.05, steps=90, every=40)
+    own = CustomSystem(spring, energy=lambda q, v: ((v * v + 10.0 * q * q) / 2.0)[:, 0])
+    for system in (spring, own):
+        path = simulate(system, integrator="rk4", dt=0.05, steps=90, every=40, q=1.0)
+        for name in ("step", "t", "q0", "v0"):
+            np.testing.assert_array_equal(path[name], built_in[name])
+        assert np.isnan(path.energy).all() == (system is spring)
+    np.testing.assert_allclose(path.energy, built_in.energy, rtol=4 * np.finfo(float).eps)
+
+
+def test_a_step_that_needs_the_force_twice_at_a_place_computes_it_once_if_it_is_positional():
+    for positional, wanted in ((False, 2 * 10), (True, 10 + 1)):
+        calls = []
+        own = CustomSystem(lambda q, v: (calls.append(1), -q)[1], positional=positional)
+        Ensemble(own, integrator="velocity-verlet", dt=0.1, q=[1.0]).advance(10)
+        assert len(calls) == wanted
+
+
+def test_a_loop_is_late_and_jitters_as_it_is_told():
+    loop = {"integrator": "exact", "dt": 0.01, "steps": 2000, "feedback": (10.0, 2.0)}
+    at_once = simulate(SPRING, **loop)
+    late = simulate(SPRING, **loop, latency=Steps(16.5))
+    assert simulate(SPRING, **loop, latency=0.165).energy[-1] == late.energy[-1]
+    # It stands 0.153 s.
+    assert at_once.energy[-1] < 1e-9 < 1e2 < late.energy[-1]
+    one, same, other = (simulate(SPRING, **loop, jitter=0.1, seed=s) for s in (1, 1, 2))
+    np.testing.assert_array_equal(one.q, same.q)
+    assert (one.q != other.q).any()
+
+
+def test_copies_start_around_the_start_and_say_which_they_are():
+    many = simulate(SPRING, integrator="leapfrog", dt=0.01, steps=5, every=5, count=3, spread=0.5)
+    start = many["step"] == 0
+    np.testing.assert_array_equal(many["trajectory"][start], [0, 1, 2])
+    np.testing.assert_array_equal(many["q0"][start], [0.5, 1.0, 1.5])
+    assert many.not_finite is None or many.not_finite["count"] == 0
+
+
+@pytest.mark.parametrize("float, dtype", [("f64", "f8"), ("f32", "f4"), ("f16", "f2"), ("bf16", "f4")])
+def test_every_float_type_has_an_array_that_holds_it(float, dtype):
+    path = simulate(SPRING, integrator="rk4", dt=0.01, steps=3, float=float)
+    assert path["q0"].dtype == np.dtype(dtype)
+
+
+def test_a_state_that_overflows_ends_a_trajectory_and_says_where():
+    for system, more in ((SPRING, {}), (spring, {"q": 1.0})):
+        path = simulate(system, integrator="explicit-euler", dt=100.0, steps=1000, **more)
+        # A step multiplies by √(1 + ω²Δt²) = 316.2; 10^308 is 123 of them.
+        assert abs(path.stopped["step"] - 123) <= 2
+        assert path["step"][-1] == path.stopped["step"] - 1
+
+
+WRONG = [
+    ({"system": "oscilator"}, ValueError, "did you mean 'oscillator'"),
+    ({"system": 3}, TypeError, "a name, a System or a function"),
+    ({"integrator": "verlet"}, ValueError, "velocity-verlet"),
+    ({"integrator": None}, TypeError, "integrator"),
+    ({"dt": -0.1}, ValueError, "dt"),
+    ({"dt": math.nan}, ValueError, "dt"),
+    ({"dt": "0.1"}, TypeError, "dt"),
+    ({"steps": 0}, ValueError, "steps"),
+    ({"steps": 2.5}, TypeError, "steps"),
+    ({"steps": 10**12}, ValueError, "steps"),
+    ({"q": [1.0, 2.0], "v": [0.0]}, ValueError, "equally many"),
+    ({"q": math.inf}, ValueError, "q"),
+    ({"q": "1"}, TypeError, "q"),
+    ({"every": 0}, ValueError, "every"),
+    ({"count": 0}, ValueError, "count"),
+    ({"float": "f8"}, ValueError, "f64"),
+    ({"latency": 0.1}, ValueError, "feedback"),
+    ({"latency": -0.1, "feedback": (1.0, 1.0)}, ValueError, "latency"),
+    ({"feedback": (1.0,)}, ValueError, "feedback"),
+    ({"feedback": (math.nan, 1.0)}, ValueError, "feedback"),
+    ({"jitter": ("normal", 0.1)}, ValueError, "gaussian"),
+    ({"jitter": -0.1}, ValueError, "jitter"),
+    ({"time_stamps": [0.0, 0.1]}, ValueError, "steps"),
+    ({"system": spring}, ValueError, "q is missing"),
+    ({"system": spring, "q": 1.0, "jitter": 0.1}, ValueError, "jitter"),
+]
+
+
+@pytest.mark.parametrize("change, error, told", WRONG)
+def test_what_cannot_be_simulated_is_refused_by_name(change, error, told):
+    asked = {"system": "oscillator", "integrator": "rk4", "dt": 0.01, "steps": 10, **change}
+    with pytest.raises(error, match=told):
+        simulate(asked.pop("system"), **asked)
+
+
+@pytest.mark.parametrize(
+    "change, error, told",
+    [
+        ({"q": [[1.0, 2.0]], "system": "pendulum"}, ValueError, "pendulum"),
+        ({"q": np.zeros((2, 2, 2))}, ValueError, "shape"),
+        ({"q": np.zeros((0, 1))}, ValueError, "at least"),
+        ({"q": [1.0], "v": [1.0, 2.0]}, ValueError, "shape"),
+        ({"q": ["a"]}, TypeError, "q"),
+        ({"q": [math.nan]}, ValueError, "q"),
+        ({"integrator": "exact"}, ValueError, "exact"),
+        ({"dtype": "float16"}, ValueError, "float32"),
+        ({"system": lambda q, v: q[:, 0]}, ValueError, "shape"),
+    ],
+)
+def test_what_cannot_be_an_ensemble_is_refused_by_name(change, error, told):
+    asked = {"system": "oscillator", "dt": 0.01, "q": [1.0, 2.0], **change}
+    with pytest.raises(error, match=told):
+        Ensemble(asked.pop("system"), **asked).advance(1)
+
+
+def test_a_system_has_its_parameters_and_refuses_what_it_has_not():
+    assert System("oscillator", m=2.0, k=20.0) == SPRING
+    assert pickle.loads(pickle.dumps(SPRING)) == SPRING and hash(SPRING) == hash(SPRING)
+    assert System("kepler").dimensions == range(2, 3)
+    for wrong, told in (({"omega": 1.0}, "did you mean `omega2`"), ({"omega2": -1.0}, "omega2")):
+        with pytest.raises(ValueError, match=told):
+            System("oscillator", **wrong)
+
+
+@pytest.mark.skipif(not hasattr(signal, "raise_signal"), reason="no signals")
+def test_ctrl_c_ends_a_long_simulation():
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
+        timer.start()
+        with pytest.raises(KeyboardInterrupt):
+            simulate("kepler", integrator="rk4", dt=1e-4, steps=10**9, every=10**8)
+        timer.join()
+        swings = Ensemble("kepler", integrator="rk4", dt=1e-4, q=np.ones((1000, 2)))
+        timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
+        timer.start()
+        with pytest.raises(KeyboardInterrupt):
+            swings.advance(10**9)
+        timer.join()
+        assert 0 < swings.step < 10**9
+    finally:
+        signal.signal(signal.SIGINT, before)
