@@ -18,7 +18,11 @@ def actions(given: Any, num_envs: int, dtype: str) -> np.ndarray:
         If there are more or fewer than one for each environment.
     """
     if not isinstance(given, np.ndarray) and hasattr(given, "__dlpack__"):
-        array = np.from_dlpack(given)
+        try:
+            array = np.from_dlpack(given)
+        except RuntimeError as error:
+            # As NumPy says of numbers that it has not.
+            raise TypeError(f"actions are of a type that NumPy has not: {error}") from error
     else:
         array = np.asarray(given)
     if array.dtype.kind not in "fiu":

@@ -118,7 +118,7 @@ class Env(gymnasium.Env):
         self._all = Environments(
             name, max_episode_steps=np.inf, autoreset_mode="Disabled", **given
         )
-        self._all._reset_needed = ResetNeeded
+        self._all._reset_needed, self._all._closed_error = ResetNeeded, ClosedEnvironmentError
         spaces = _spaces(self._all.preset, dict(self._all._settings))
         self.observation_space, self.action_space = spaces
 

@@ -1,9 +1,11 @@
 """Trajectories from Python: those of the engine, whoever computes the force."""
 
 import math
+import os
 import pickle
 import signal
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -197,3 +199,29 @@ def test_ctrl_c_ends_a_long_simulation():
         assert 0 < swings.step < 10**9
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="nothing is forked here")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+def test_a_process_that_was_forked_has_threads_of_its_own():
+    swings = Ensemble("pendulum", dt=0.01, q=np.linspace(0.1, 2.0, 40_000), threads=2)
+    swings.advance(200)
+    libration.run_lab(studies=["spectrum"], effort="quick", progress=False)
+    child = os.fork()
+    if child == 0:
+        # Nothing of the tests may go on in it.
+        try:
+            swings.advance(200)
+            libration.run_lab(studies=["spectrum"], effort="quick", progress=False)
+            os._exit(0)
+        finally:
+            os._exit(1)
+    swings.advance(200)
+    for _ in range(600):
+        done, status = os.waitpid(child, os.WNOHANG)
+        if done:
+            break
+        time.sleep(0.1)
+    else:
+        os.kill(child, signal.SIGKILL)
+    assert done and status == 0

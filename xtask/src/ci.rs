@@ -1,14 +1,15 @@
 //! `cargo xtask ci`: every check in order, up to the first that fails.
 
 use std::fmt::Write;
+use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::{Outcome, codegen, command, dependencies, examples, report, test, tidy, wheel};
+use crate::{Outcome, codegen, command, dependencies, examples, python, report, test, tidy};
 
 /// A headline and what stands under it.
 type Step = (&'static str, fn() -> Outcome);
 
-const STEPS: [Step; 10] = [
+const STEPS: [Step; 9] = [
     ("format", || command::run(&mut command::cargo("fmt --all --check"))),
     ("tidy", tidy::run),
     ("dependencies", dependencies::run),
@@ -18,8 +19,7 @@ const STEPS: [Step; 10] = [
     }),
     ("documentation", documentation),
     ("report", report::run),
-    ("test", || test::with_report(&report::folder())),
-    ("python", || wheel::test(&[])),
+    ("test", tests),
     ("examples", examples::run),
 ];
 
@@ -41,6 +41,21 @@ pub(crate) fn run() -> Outcome {
     }
     print!("\n{}", summary(&STEPS.map(|(name, _)| name), &durations, failure.is_some()));
     failure.map_or(Ok(()), Err)
+}
+
+/// The tests of the workspace, and beside them those of the Python package, which keep one core busy: those say what they have to say when
+/// the others are done.
+fn tests() -> Outcome {
+    // Both have it.
+    python::interpreter()?;
+    let this = std::env::current_exe().map_err(|error| error.to_string())?;
+    thread::scope(|scope| {
+        let package = scope.spawn(|| command::kept(command::program(this).arg("python")));
+        let outcome = test::with_report(&report::folder());
+        let (package, said) = package.join().map_err(|_| "nobody ran the package's tests")?;
+        println!("{said}");
+        outcome.and(package)
+    })
 }
 
 fn documentation() -> Outcome {

@@ -37,6 +37,19 @@ pub(crate) fn silent(command: &mut Command) -> Outcome {
     Err(format!("`{}` ended with {} and said {said:?}", shown(command), output.status))
 }
 
+/// Runs `command` to its end, and keeps all that it says until then.
+pub(crate) fn kept(command: &mut Command) -> (Outcome, String) {
+    match command.output() {
+        Ok(output) => {
+            let said = [output.stdout, output.stderr].concat();
+            let failed = || Err(format!("`{}` failed ({})", shown(command), output.status));
+            let outcome = if output.status.success() { Ok(()) } else { failed() };
+            (outcome, String::from_utf8_lossy(&said).into_owned())
+        }
+        Err(error) => (Err(not_started(command, &error)), String::new()),
+    }
+}
+
 /// What `command` prints to its standard output.
 pub(crate) fn output(command: &mut Command) -> Result<String, String> {
     let output = command.output().map_err(|error| not_started(command, &error))?;

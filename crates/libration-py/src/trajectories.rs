@@ -16,9 +16,15 @@ use crate::work::enter;
 /// Trajectories of a system of the catalogue, stepped together.
 #[pyclass(frozen, module = "libration._native")]
 pub(crate) struct Trajectories {
-    held: Mutex<Held>,
+    held: Mutex<(Held, Threads)>,
     method: Method,
     dt: f64,
+}
+
+/// How many there are, and the process that has them.
+struct Threads {
+    count: usize,
+    process: u32,
 }
 
 enum Held {
@@ -58,23 +64,31 @@ impl Trajectories {
         let [len, dimension] = [q.nrows(), q.ncols()];
         let of = |n: usize, i: usize| if i < dimension { q[[n, i]] } else { v[[n, i - dimension]] };
         let execution = Execution::serial().threads(threads).map_err(Raised::raised)?;
+        let threads = Threads { count: execution.thread_count(), process: std::process::id() };
         let held = if single {
             Held::F32(made(system, [len, dimension], execution, &|n, i| of(n, i) as f32)?)
         } else {
             Held::F64(made(system, [len, dimension], execution, &of)?)
         };
-        Ok(Trajectories { held: Mutex::new(held), method: method(integrator)?, dt })
+        let held = Mutex::new((held, threads));
+        Ok(Trajectories { held, method: method(integrator)?, dt })
     }
 
     /// Takes so many steps with all of them.
     fn _advance(&self, py: Python<'_>, steps: u64) -> PyResult<()> {
         let mut left = steps;
-        let mut held = enter(py, &self.held);
-        let many = with_all!(&*held, all => (all.len() * all.dimension()).max(1) as u64);
+        let mut inside = enter(py, &self.held);
+        let (held, threads) = &mut *inside;
+        // A process that was forked has none of them.
+        if threads.count > 1 && threads.process != std::process::id() {
+            let execution = Execution::serial().threads(threads.count).map_err(Raised::raised)?;
+            with_all!(held, all => all.execute(execution));
+            threads.process = std::process::id();
+        }
+        let many = with_all!(held, all => (all.len() * all.dimension()).max(1) as u64);
         let piece = (PIECE / many).max(1);
         while left > 0 {
             let now = left.min(piece);
-            let held = &mut *held;
             py.detach(|| match held {
                 Held::F32(all) => all.advance(self.method, self.dt as f32, now),
                 Held::F64(all) => all.advance(self.method, self.dt, now),
@@ -87,7 +101,7 @@ impl Trajectories {
 
     /// Steps taken.
     fn _step(&self, py: Python<'_>) -> u64 {
-        with_all!(&*enter(py, &self.held), all => all.step())
+        with_all!(&enter(py, &self.held).0, all => all.step())
     }
 
     /// Positions and velocities, `(len, dimension)` each.
@@ -109,8 +123,8 @@ impl Trajectories {
             };
             [array(&|i| all.q(i)), array(&|i| all.v(i))]
         }
-        let held = enter(py, &self.held);
-        with_all!(&*held, all => states(py, &**all))
+        let inside = enter(py, &self.held);
+        with_all!(&inside.0, all => states(py, &**all))
     }
 
     /// The energy of each per unit mass, `(len,)`, in J/kg.
@@ -119,7 +133,7 @@ impl Trajectories {
             let none = || T::from_f64(f64::NAN);
             (0..all.len()).map(|n| all.energy(n).unwrap_or_else(none)).collect()
         }
-        match &*enter(py, &self.held) {
+        match &enter(py, &self.held).0 {
             Held::F32(all) => PyArray1::from_vec(py, energies(&**all)).into_any(),
             Held::F64(all) => PyArray1::from_vec(py, energies(&**all)).into_any(),
         }

@@ -1,12 +1,13 @@
 //! Work that takes a while: without the interpreter's lock, and until somebody presses Ctrl-C.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::Duration;
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// How often it is asked whether somebody wants to interrupt, and told how far it is.
 const LOOK: Duration = Duration::from_millis(50);
@@ -25,6 +26,20 @@ pub(crate) fn enter<'a, T>(py: Python<'_>, inside: &'a Mutex<T>) -> MutexGuard<'
     }
 }
 
+/// Threads of this process for whatever divides its work. One that was forked has none of those that there were.
+fn threads() -> PyResult<Arc<ThreadPool>> {
+    static THREADS: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+    let mut threads = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
+    match &*threads {
+        Some((process, pool)) if *process == std::process::id() => Ok(pool.clone()),
+        _ => {
+            let pool = ThreadPoolBuilder::new().build();
+            let pool = pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+            Ok(threads.insert((std::process::id(), Arc::new(pool))).1.clone())
+        }
+    }
+}
+
 /// Does work in a thread of its own, which is to end soon after the flag is set; calls `tell` now and then meanwhile.
 ///
 /// # Errors
@@ -35,12 +50,13 @@ pub(crate) fn work<R: Send>(
     mut tell: impl FnMut(Python<'_>) -> PyResult<()>,
 ) -> PyResult<R> {
     let stop = AtomicBool::new(false);
+    let threads = threads()?;
     thread::scope(|scope| {
         let waiting = thread::current();
         let worker = scope.spawn({
             let stop = &stop;
             move || {
-                let result = work(stop);
+                let result = threads.install(|| work(stop));
                 waiting.unpark();
                 result
             }

@@ -30,6 +30,9 @@ pub trait AnyEnsemble<T>: Debug + Send {
     /// Takes `steps` steps of `dt` seconds with every trajectory.
     fn advance(&mut self, method: Method, dt: T, steps: u64);
 
+    /// Goes on elsewhere, which changes no result.
+    fn execute(&mut self, execution: Execution);
+
     /// Position `i` of every trajectory, if there is one.
     fn q(&self, i: usize) -> Option<&[T]>;
 
@@ -164,6 +167,10 @@ where
         advance(&mut self.trajectories, self.system, method, dt, steps);
     }
 
+    fn execute(&mut self, execution: Execution) {
+        self.trajectories.execute(execution);
+    }
+
     fn q(&self, i: usize) -> Option<&[T]> {
         (i < D).then(|| self.trajectories.q(i))
     }
@@ -196,6 +203,10 @@ impl<T: Float + Pod> AnyEnsemble<T> for Isotropic<T> {
 
     fn advance(&mut self, method: Method, dt: T, steps: u64) {
         advance(&mut self.coordinates, self.system, method, dt, steps);
+    }
+
+    fn execute(&mut self, execution: Execution) {
+        self.coordinates.execute(execution);
     }
 
     fn q(&self, i: usize) -> Option<&[T]> {

@@ -122,6 +122,11 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         &self.execution
     }
 
+    /// Goes on elsewhere, which changes no result.
+    pub fn execute(&mut self, execution: Execution) {
+        self.execution = execution;
+    }
+
     /// Position `i` of every trajectory.
     ///
     /// # Panics
