@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from common import AUTORESETS, NAMES, PERTURBED
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
+from gymnasium.utils import performance
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
@@ -29,6 +30,19 @@ def test_the_checker_of_gymnasium_has_nothing_to_say(name):
     env = gymnasium.make(f"libration/{name}-v0", render_mode="rgb_array")
     check_env(env.unwrapped)
     env.close()
+
+
+@pytest.mark.skipif(
+    not hasattr(performance, "benchmark_vector_step"), reason="this Gymnasium has no such benchmark"
+)
+@pytest.mark.parametrize("mode", AUTORESETS)
+@pytest.mark.parametrize("name", NAMES)
+def test_the_benchmark_of_gymnasium_takes_far_more_steps_of_a_thousand_than_of_one(name, mode):
+    many = made(name, 1000, mode)
+    together = performance.benchmark_vector_step(many, target_duration=0.2, seed=0)
+    alone = performance.benchmark_step(gymnasium.make(f"libration/{name}-v0"), 0.2, seed=0)
+    # It is a thousand times, on a machine that does nothing else.
+    assert together > 20 * alone
 
 
 @pytest.mark.parametrize("perturbed", [{}, PERTURBED], ids=["ideal", "perturbed"])
@@ -198,6 +212,13 @@ class Lent:
         return self.array.__dlpack_device__()
 
 
+class Unknown(Lent):
+    """The same of a type that NumPy has not, as bfloat16."""
+
+    def __dlpack__(self, **given):
+        raise RuntimeError("Unsupported dtype in DLTensor.")
+
+
 @pytest.mark.parametrize(
     "integrator",
     "explicit-euler symplectic-euler symplectic-euler-drift-first velocity-verlet textbook-verlet leapfrog rk4 yoshida4 suzuki4".split(),
@@ -225,6 +246,8 @@ def test_actions_are_taken_from_whatever_holds_them():
         Lent(np.array([1.0, -2.0, 3.0])),
     ]:
         np.testing.assert_array_equal(stepped(actions), wanted)
+    with pytest.raises(TypeError, match="a type that NumPy has not"):
+        stepped(Unknown(np.array([1, -2, 3])))
     locked = np.array([1, -2, 3], np.float32)
     locked.flags.writeable = False
     np.testing.assert_array_equal(stepped(locked), wanted)
@@ -284,6 +307,14 @@ def test_actions_that_lie_where_a_step_is_written_are_taken_as_they_were():
         mine, theirs = kept.step(rewards), fresh.step(wanted)
         for a, b in zip(mine[:2], theirs[:2]):
             np.testing.assert_array_equal(a, b)
+
+
+def test_a_single_environment_that_is_closed_says_so():
+    env = gymnasium.make("libration/Pendulum-v0")
+    env.reset()
+    env.close()
+    with pytest.raises(ClosedEnvironmentError):
+        env.reset()
 
 
 def test_who_is_closed_or_not_reset_says_so():
