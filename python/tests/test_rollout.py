@@ -110,8 +110,10 @@ def test_memory_is_filled_again_and_outlives_whoever_made_it():
     np.testing.assert_array_equal(observations, kept)
 
 
-def test_a_long_rollout_can_be_interrupted():
-    envs = libration.Environments("Oscillator", 100, substeps=1_000_000)
+@pytest.mark.parametrize("mode", ["NextStep", "Disabled"])
+def test_a_long_rollout_can_be_interrupted(mode):
+    given = dict(substeps=1_000_000, max_episode_steps=1, autoreset_mode=mode)
+    envs = libration.Environments("Oscillator", 100, **given)
     envs.reset(seed=0)
     # A process in the background may have been told to ignore it.
     handler = signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -124,6 +126,11 @@ def test_a_long_rollout_can_be_interrupted():
         timer.join()
     finally:
         signal.signal(signal.SIGINT, handler)
+    if mode == "Disabled":
+        # What ended before stands.
+        with pytest.raises(RuntimeError, match="is over: reset it"):
+            envs.step(np.zeros(100))
+        envs.reset()
     # It goes on.
     envs.step(np.zeros(100))
 

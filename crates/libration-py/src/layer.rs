@@ -130,8 +130,11 @@ impl Batch {
         let mut guard = enter(slf.py(), &slf.get().inner);
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         books.expect_action(slf)?;
-        let ended = memory.fill(slf.py(), held, &policy, books.substeps)?;
-        books.stood(&ended);
+        let (ended, outcome) = memory.fill(slf.py(), held, &policy, books.substeps)?;
+        if !ended.is_empty() {
+            books.stood(&ended);
+        }
+        outcome?;
         with_table!(held, table => step::look(slf.py(), &mut **table, books))
     }
 

@@ -54,45 +54,50 @@ impl Memory {
         enter(py, &self.kept)
     }
 
-    /// Fills all of it. Gives which environments ended with the last step.
+    /// Fills all of it. Gives which environments ended with the last step that was taken, and why it was the last.
     pub(crate) fn fill(
         &self,
         py: Python<'_>,
         held: &mut Held,
         policy: &Told<'_>,
         substeps: usize,
-    ) -> PyResult<Vec<u8>> {
+    ) -> PyResult<(Vec<u8>, PyResult<()>)> {
         match (held, &mut *self.kept(py)) {
             (Held::F32(table), Kept::F32(tensors)) => {
-                filled(py, &mut **table, &Acts::new(policy)?, &mut **tensors, substeps)
+                Ok(filled(py, &mut **table, &Acts::new(policy)?, &mut **tensors, substeps))
             }
             (Held::F64(table), Kept::F64(tensors)) => {
-                filled(py, &mut **table, &Acts::new(policy)?, &mut **tensors, substeps)
+                Ok(filled(py, &mut **table, &Acts::new(policy)?, &mut **tensors, substeps))
             }
             _ => Err(refused("the rollout is of another dtype than the environments".to_owned())),
         }
     }
 }
 
-/// Fills tensors piece by piece.
+/// Fills tensors piece by piece. Gives which environments ended with the last step that was taken, and why it was the last.
 fn filled<T: Number>(
     py: Python<'_>,
     table: &mut dyn Table<T>,
     policy: &Acts<T>,
     tensors: &mut dyn Tensors<T>,
     substeps: usize,
-) -> PyResult<Vec<u8>> {
+) -> (Vec<u8>, PyResult<()>) {
     let Plan { horizon, environments, .. } = tensors.plan();
     let rows = (PIECE / environments.saturating_mul(substeps).max(1)).max(1);
-    for first in (0..horizon).step_by(rows) {
-        let piece = first..(first + rows).min(horizon);
-        py.detach(|| table.fill(policy, tensors, piece)).map_err(Raised::raised)?;
-        py.check_signals()?;
+    let (mut taken, mut outcome) = (0, Ok(()));
+    while taken < horizon && outcome.is_ok() {
+        let piece = taken..(taken + rows).min(horizon);
+        let end = piece.end;
+        outcome = py.detach(|| table.fill(policy, tensors, piece)).map_err(Raised::raised);
+        if outcome.is_ok() {
+            taken = end;
+            outcome = py.check_signals();
+        }
     }
     let [(_, terminated), (_, truncated)] = tensors.flags();
-    let last = horizon.saturating_sub(1) * environments;
-    let flags = terminated[last..].iter().zip(&truncated[last..]);
-    Ok(flags.map(|(over, cut)| over | cut).collect())
+    let last = taken.saturating_sub(1) * environments..taken * environments;
+    let flags = terminated[last.clone()].iter().zip(&truncated[last]);
+    (flags.map(|(over, cut)| over | cut).collect(), outcome)
 }
 
 #[pymethods]

@@ -161,7 +161,7 @@ pub(crate) fn take<'py, T: Number>(
         act()
     };
     let ends = ends.map_err(Raised::raised)?;
-    if !ends.environments.is_empty() {
+    if books.autoreset == Autoreset::Disabled && !ends.environments.is_empty() {
         let ended: Vec<u8> =
             terminated.iter().zip(&*truncated).map(|(over, cut)| over | cut).collect();
         books.stood(&ended);
