@@ -42,6 +42,20 @@ def test_the_latency_budget_is_kept_and_growth_is_that_of_theory(capsys, monkeyp
     assert (tmp_path / "budget.png").stat().st_size > 10_000
 
 
+def test_training_runs_and_does_not_depend_on_threads(capsys, monkeypatch):
+    # Nothing is learnt in a time that a test has, but all of it runs.
+    one, three = (
+        said_by("train.py", capsys, monkeypatch, "--quick", "--seed", 5, "--threads", threads)
+        for threads in (1, 3)
+    )
+    assert one == three
+    rows = [line.split() for line in one.split("|λ|\n")[1].splitlines()[:4]]
+    assert [row[-5] for row in rows] == ["0.00", "0.15"] * 2
+    for row in rows:
+        mean, upright, largest = map(float, row[-3:])
+        assert -2000 < mean < -10 and 0 <= upright <= 1 and 0 < largest < 10, row
+
+
 def test_the_notebook_says_what_it_said_when_it_was_stored():
     cells = json.loads((EXAMPLES / "tour.ipynb").read_text())["cells"]
     cells = [cell for cell in cells if cell["cell_type"] == "code"]
