@@ -8,7 +8,7 @@ import numpy as np
 
 
 def actions(given: Any, num_envs: int, dtype: str) -> np.ndarray:
-    """Make actions an array that the engine can read: without a copy where dtype and layout fit.
+    """Make actions an array that the engine can read. What it can read as it is does not come here.
 
     Raises
     ------
@@ -34,7 +34,9 @@ def actions(given: Any, num_envs: int, dtype: str) -> np.ndarray:
         raise ValueError(
             f"actions have shape {array.shape}, but it must be ({num_envs}, 1) or ({num_envs},)"
         )
-    return np.require(array, dtype=dtype, requirements=["C", "A"])
+    # What is too large for the dtype becomes infinite, and is refused as such.
+    with np.errstate(over="ignore"):
+        return array.astype(dtype, order="C")
 
 
 def infos(

@@ -36,7 +36,11 @@ def number(name: str, value: Any, allowed: str, holds=math.isfinite) -> float:
     """
     if isinstance(value, bool) or not isinstance(value, (numbers.Real,)):
         raise TypeError(f"{name} must be a number, not {type(value).__name__}")
-    value = float(value)
+    try:
+        value = float(value)
+    except OverflowError:
+        # An integer or a fraction may be larger than any float.
+        value = math.inf if value > 0 else -math.inf
     if math.isnan(value) or not holds(value):
         raise ValueError(f"{name} is {value!r}, but it must be {allowed}")
     return value
@@ -55,9 +59,14 @@ def count(name: str, value: Any, least: int, most: int) -> int:
     return int(value)
 
 
+def is_several(value: Any) -> bool:
+    """Whether it is several things and none of them a letter."""
+    return isinstance(value, Sequence) and not isinstance(value, (str, bytes, bytearray))
+
+
 def ends(name: str, value: Any, least: float = -math.inf) -> tuple[float, float]:
     """A number, or the two ends between which it is drawn for every episode."""
-    pair = value if isinstance(value, Sequence) and not isinstance(value, str) else (value, value)
+    pair = value if is_several(value) else (value, value)
     if len(pair) != 2:
         raise ValueError(f"{name} has {len(pair)} numbers, but it must be one, or two ends")
     allowed = "finite" if least == -math.inf else f"finite and at least {least:g}"
@@ -71,7 +80,7 @@ def law(name: str, value: Any) -> tuple[str, float]:
     """A standard deviation, or a law and its standard deviation."""
     if value is None:
         return "gaussian", 0.0
-    if isinstance(value, Sequence) and not isinstance(value, str):
+    if is_several(value):
         if len(value) != 2 or not isinstance(value[0], str):
             raise ValueError(f"{name} is {value!r}, but it must be like ('gaussian', 0.05)")
         kind, rms = value
@@ -85,7 +94,10 @@ def law(name: str, value: Any) -> tuple[str, float]:
 
 def _steps(seconds: tuple[float, float], dt: float) -> list[int] | None:
     """Latencies in steps of ``dt``, if they are whole numbers of them."""
-    exact = [x / dt for x in seconds]
+    # A part of the shortest of steps is none, and there may be more steps than the largest float.
+    exact = [x / dt if dt > 0 else math.inf for x in seconds]
+    if math.inf in exact:
+        return None
     whole = [round(x) for x in exact]
     # Decimals are doubles to 1e-16, and so is their quotient to a few of it; nobody types a latency of steps and a billionth.
     near = all(abs(x - n) <= 1e-9 * max(1.0, abs(x)) for x, n in zip(exact, whole))
@@ -160,9 +172,11 @@ def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
     given = dict(given)
     parameters = given.pop("parameters")
     of_system = CATALOGUE[preset.system]
-    known = set(OPTIONS) | set(of_system) | set(preset.costs)
+    taken = set(of_system) | set(preset.costs)
+    known = set(OPTIONS) | taken
     for name in parameters:
-        if name not in known:
+        # An option that comes here is one of other classes: here it would do nothing.
+        if name not in taken:
             raise TypeError(f"unexpected keyword argument {name!r}: {nearest(name, known)}")
     system = {name: parameters[name] for name in of_system if name in parameters}
     if not {"m", "k"} & set(system):
@@ -180,12 +194,14 @@ def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
     substeps = given["substeps"]
     if substeps is not None:
         substeps = count("substeps", substeps, 1, 1_000_000)
+        positive("dt/substeps", dt / substeps)
     late = {
         name: ends(name, given[name], least=0.0) for name in ("observation_delay", "action_delay")
     }
     substeps, late_steps = delays(dt, substeps, late)
     limit = either("max_episode_steps")
-    limit = None if limit == math.inf else count("max_episode_steps", limit, 1, 2**32 - 1)
+    unlimited = isinstance(limit, numbers.Real) and limit == math.inf
+    limit = None if unlimited else count("max_episode_steps", limit, 1, 2**32 - 1)
     max_action = either("max_action")
     max_action = number("max_action", max_action, "greater than 0", lambda x: x > 0)
     integrator, dtype = given["integrator"], given["dtype"]

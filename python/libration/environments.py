@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from typing import Any, Mapping
 
 import numpy as np
@@ -231,6 +232,8 @@ class Environments(_native.Batch):
         if out is None:
             horizon = count("horizon", horizon, 1, 2**40)
             out = Rollout(self._memory(horizon, bool(log_probabilities), bool(values)))
+        elif not isinstance(out, Rollout):
+            raise TypeError(f"out must be a Rollout, not {type(out).__name__}")
         elif out.rewards.shape != (horizon, self.num_envs):
             raise ValueError(
                 f"out has shape {out.rewards.shape}, but it must be ({horizon}, {self.num_envs})"
@@ -259,7 +262,8 @@ class Environments(_native.Batch):
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Environments:
         function, arguments = self.__reduce__()
-        return function(*arguments)
+        # Generators of random numbers are among them.
+        return function(*copy.deepcopy(arguments, memo))
 
 
 def _again(cls: Any, made_of: Any, state: Any, seeder: Any, extras: dict[str, Any]) -> Any:

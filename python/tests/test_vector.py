@@ -435,3 +435,12 @@ def test_what_is_lost_is_told():
         # It begins anew.
         _, rewards, terminated, _, infos = env.step(np.array([1e30, 0.0]))
         assert infos == {} and not terminated.any()
+
+
+def test_random_numbers_of_a_copy_are_its_own():
+    env = made("Pendulum", 2)
+    env.reset(seed=3)
+    copies = [copy.copy(env), copy.deepcopy(env), pickle.loads(pickle.dumps(env))]
+    wanted = env.np_random.random(4)
+    for other in copies:
+        np.testing.assert_array_equal(other.np_random.random(4), wanted)
