@@ -478,7 +478,7 @@ def go_on(envs, steps, policy):
     num_envs=COUNTS,
     before=st.integers(0, 40),
     after=st.integers(1, 15),
-    policy=st.floats(-30, 30).map(Constant),
+    policy=POLICIES,
     keep=st.sampled_from([copy.copy, copy.deepcopy, lambda envs: pickle.loads(pickle.dumps(envs))]),
 )
 def test_a_copy_made_at_any_point_goes_on_bit_for_bit(

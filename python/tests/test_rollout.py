@@ -73,6 +73,15 @@ def test_random_actions_follow_from_the_seed_and_fill_their_interval():
     np.testing.assert_allclose(found.log_probabilities, -np.log(3), rtol=1e-6)
 
 
+@pytest.mark.parametrize("before", ["steps", "rollout"])
+def test_what_is_drawn_follows_from_the_episode_whoever_acted_before(before):
+    wanted = made("Pendulum").rollout(Random(-1.0, 1.0), 10).actions
+    envs = made("Pendulum")
+    for t in range(4):
+        envs.step(wanted[t]) if before == "steps" else envs.rollout(Constant(), 1)
+    np.testing.assert_array_equal(envs.rollout(Random(-1.0, 1.0), 6).actions, wanted[4:])
+
+
 @pytest.mark.parametrize("mode", AUTORESETS)
 def test_advantages_are_those_of_the_definition(mode):
     found = made("Duffing", 9, mode, dtype="float64").rollout(Constant(0.1), 50, values=True)
