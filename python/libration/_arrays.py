@@ -25,6 +25,8 @@ def actions(given: Any, num_envs: int, dtype: str) -> np.ndarray:
             raise TypeError(f"actions are of a type that NumPy has not: {error}") from error
     else:
         array = np.asarray(given)
+    if isinstance(given, np.ma.MaskedArray):
+        raise TypeError("actions are a masked array, but all of them must be there: use filled()")
     if array.dtype.kind not in "fiu":
         raise TypeError(
             f"actions have dtype {array.dtype}, but they must be real numbers: "

@@ -123,7 +123,7 @@ class Environments(_native.Batch):
             "max_action": max_action,
             "start_position": start_position,
             "start_velocity": start_velocity,
-            "dtype": np.dtype(dtype).name,
+            "dtype": _name_of(dtype),
             "threads": threads,
             "copy": copy,
             "buffers": buffers,
@@ -171,7 +171,12 @@ class Environments(_native.Batch):
         if self._seeder is None:
             self._seeder = np.random.default_rng()
             fresh = self._seeder.integers(2**63, size=self.num_envs, dtype=np.uint64).tolist()
-            seeds = [old if old is not None else new for old, new in zip(seeds, fresh)]
+            # Who is not reset has not begun either, and begins with the others.
+            seeds = [
+                new if old is None or (mask is not None and not mask[n]) else old
+                for n, (old, new) in enumerate(zip(seeds, fresh))
+            ]
+            mask = None
         return self._reset(seeds, mask), {}
 
     def _seeds(self, seed: Any) -> list[int | None]:
@@ -181,6 +186,8 @@ class Environments(_native.Batch):
             seeds = [int(seed) + n for n in range(self.num_envs)]
         else:
             try:
+                if isinstance(seed, (str, bytes, bytearray)):
+                    raise TypeError
                 seeds = list(seed)
             except TypeError:
                 raise TypeError(
@@ -207,7 +214,8 @@ class Environments(_native.Batch):
             raise TypeError(f"options['reset_mask'] has dtype {mask.dtype}, but it must be bool")
         if not mask.any():
             raise ValueError("options['reset_mask'] has no True, but it must have one at least")
-        return np.ascontiguousarray(mask)
+        # A byte of an array of ``bool`` need not be 0 or 1.
+        return np.ascontiguousarray(mask).view(np.uint8) != 0
 
     def rollout(
         self,
@@ -264,6 +272,13 @@ class Environments(_native.Batch):
         function, arguments = self.__reduce__()
         # Generators of random numbers are among them.
         return function(*copy.deepcopy(arguments, memo))
+
+
+def _name_of(dtype: Any) -> str:
+    # NumPy takes None for float64.
+    if dtype is None:
+        raise TypeError("dtype must be float32 or float64, not None")
+    return np.dtype(dtype).name
 
 
 def _again(cls: Any, made_of: Any, state: Any, seeder: Any, extras: dict[str, Any]) -> Any:

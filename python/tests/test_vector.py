@@ -188,6 +188,8 @@ def test_what_cannot_be_is_refused_with_its_name_and_what_is_allowed(given, erro
         (np.array([None] * 3), TypeError, "dtype object"),
         (np.zeros((3, 1), complex), TypeError, "dtype complex128"),
         (["a", "b", "c"], TypeError, "dtype"),
+        (np.ma.masked_array([1.0, 2.0, 3.0], [0, 1, 0]), TypeError, "masked"),
+        (np.ma.masked_array(np.ones(3, np.float32), [0, 1, 0]), TypeError, "masked"),
     ],
 )
 def test_actions_that_cannot_be_are_refused_and_nothing_has_moved(actions, error, said):
@@ -340,8 +342,9 @@ def test_who_is_closed_or_not_reset_says_so():
 def test_without_a_seed_every_environment_is_another_whichever_are_reset():
     mask = np.array([True, False, True])
     for options in (None, {"reset_mask": mask}):
-        seen = [made("Pendulum", 3).reset(options=options)[0][mask] for _ in range(2)]
-        assert len(np.unique(seen, axis=None)) == 12
+        # Who is not reset has not begun either, and begins with the others.
+        seen = [made("Pendulum", 3).reset(options=options)[0] for _ in range(2)]
+        assert len(np.unique(seen, axis=None)) == 18
 
 
 @pytest.mark.parametrize(
@@ -350,6 +353,7 @@ def test_without_a_seed_every_environment_is_another_whichever_are_reset():
         ([1, 2], ValueError, "there are 2 seeds, but there must be one for each of 3"),
         (-1, ValueError, "seed of environment 0 is -1"),
         (1.5, TypeError, "seed must be an integer, a list or None, not float"),
+        (b"abc", TypeError, "seed must be an integer, a list or None, not bytes"),
         ([1, "a", 2], TypeError, "seed of environment 1 must be an integer"),
     ],
 )

@@ -65,7 +65,8 @@ pub(crate) fn borrowed<'a, T: Number>(
     actions: &'a Bound<'_, PyAny>,
     len: usize,
 ) -> Option<&'a [T]> {
-    let array = actions.cast::<PyArray<T, IxDyn>>().ok()?;
+    // A class of its own may mean something else by its numbers, as a masked array does.
+    let array = actions.cast_exact::<PyArray<T, IxDyn>>().ok()?;
     let fits = matches!(*array.shape(), [n] | [n, 1] if n == len);
     // SAFETY: the array is contiguous and aligned, and lives as long as the call that reads it. Whoever writes it meanwhile, from another
     // thread, gives one action or the other.

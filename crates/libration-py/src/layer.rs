@@ -1,7 +1,5 @@
 //! Environments as Python steps them.
 
-use std::sync::{Mutex, MutexGuard};
-
 use libration::ensemble::Execution;
 use libration::rl::{EnvironmentError, Plan};
 use numpy::{PyArray1, PyArrayMethods};
@@ -12,18 +10,18 @@ use pyo3::types::{PyBytes, PyDict, PyTuple};
 use crate::acts::Told;
 use crate::array::{Array, Number, fresh, room};
 use crate::error::{Raised, refused};
+use crate::guarded::{Entered, Guarded};
 use crate::held::{Held, Table, with_table};
 use crate::rollout::Memory;
 use crate::settings::Settings;
 use crate::step::{self, Books};
-use crate::work::enter;
 
 /// Environments that are stepped together, without anything of Gymnasium.
 ///
 /// The classes of `libration` are made of it.
 #[pyclass(subclass, frozen, module = "libration._native")]
 pub(crate) struct Batch {
-    inner: Mutex<Option<Inner>>,
+    inner: Guarded<Option<Inner>>,
 }
 
 /// What there is until it is closed.
@@ -41,7 +39,7 @@ impl Batch {
     #[pyo3(signature = (*args, **kwargs))]
     #[allow(unused_variables, reason = "a class of Python's takes them, and sets up what is here")]
     fn new(args: &Bound<'_, PyTuple>, kwargs: Option<&Bound<'_, PyDict>>) -> Self {
-        Batch { inner: Mutex::new(None) }
+        Batch { inner: Guarded::new(None) }
     }
 
     /// Makes environments; `buffers` is after how many steps an array is used again, or 0 for new arrays in every step.
@@ -49,7 +47,7 @@ impl Batch {
         let (recipe, execution) = (settings.recipe()?, settings.execution()?);
         let len = settings.num_envs;
         let held = Held::new(&recipe, settings.single()?, len, &execution);
-        *enter(py, &self.inner) = Some(Inner {
+        *self.inner.enter(py)? = Some(Inner {
             held: held.map_err(Raised::raised)?,
             books: Books::new(&recipe, len, buffers),
             process: std::process::id(),
@@ -63,7 +61,7 @@ impl Batch {
     /// Gives what is seen then `(num_envs, n)`, rewards, whether episodes terminated and whether they were truncated `(num_envs,)`, and a
     /// dictionary.
     fn step<'py>(slf: &Bound<'py, Self>, actions: &Bound<'py, PyAny>) -> PyResult<Step<'py>> {
-        let mut guard = enter(slf.py(), &slf.get().inner);
+        let mut guard = slf.get().inner.enter(slf.py())?;
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         books.expect_action(slf)?;
         let (row, infos) =
@@ -84,7 +82,7 @@ impl Batch {
         seeds: Vec<Option<u64>>,
         mask: Option<Bound<'py, PyArray1<bool>>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let mut guard = enter(slf.py(), &slf.get().inner);
+        let mut guard = slf.get().inner.enter(slf.py())?;
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         let mask = match mask {
             Some(mask) => mask.to_vec()?,
@@ -114,7 +112,7 @@ impl Batch {
         log_probabilities: bool,
         values: bool,
     ) -> PyResult<Memory> {
-        let mut guard = enter(slf.py(), &slf.get().inner);
+        let mut guard = slf.get().inner.enter(slf.py())?;
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         let plan = Plan::new(horizon, books.len).truncated();
         let plan = Plan { log_probability: log_probabilities, value: values, ..plan };
@@ -127,7 +125,7 @@ impl Batch {
         policy: Told<'py>,
         memory: &Memory,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let mut guard = enter(slf.py(), &slf.get().inner);
+        let mut guard = slf.get().inner.enter(slf.py())?;
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         books.expect_action(slf)?;
         let (ended, outcome) = memory.fill(slf.py(), held, &policy, books.substeps)?;
@@ -151,14 +149,14 @@ impl Batch {
             }
             all.into_any()
         }
-        let mut guard = enter(slf.py(), &slf.get().inner);
+        let mut guard = slf.get().inner.enter(slf.py())?;
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         Ok(with_table!(held, table => states(slf.py(), &**table, books.len)))
     }
 
     /// All that they are, to be restored by environments with the same settings.
     fn _state<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyBytes>, bool, Vec<u8>)> {
-        let mut guard = enter(slf.py(), &slf.get().inner);
+        let mut guard = slf.get().inner.enter(slf.py())?;
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         let state = with_table!(held, table => table.to_bytes());
         Ok((PyBytes::new(slf.py(), &state), books.untouched, books.standing.clone()))
@@ -166,7 +164,7 @@ impl Batch {
 
     /// Makes them what they were.
     fn _restore(slf: &Bound<'_, Self>, state: (Vec<u8>, bool, Vec<u8>)) -> PyResult<()> {
-        let mut guard = enter(slf.py(), &slf.get().inner);
+        let mut guard = slf.get().inner.enter(slf.py())?;
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         let (bytes, untouched, standing) = state;
         if standing.len() != books.len {
@@ -178,8 +176,9 @@ impl Batch {
     }
 
     /// Gives all memory back. Arrays that were handed out stay.
-    fn _close(&self, py: Python<'_>) {
-        *enter(py, &self.inner) = None;
+    fn _close(&self, py: Python<'_>) -> PyResult<()> {
+        *self.inner.enter(py)? = None;
+        Ok(())
     }
 }
 
@@ -190,7 +189,7 @@ type Any<'py> = Bound<'py, PyAny>;
 /// What is inside, if it was not closed, with threads of this process.
 fn open<'a>(
     slf: &Bound<'_, Batch>,
-    guard: &'a mut MutexGuard<'_, Option<Inner>>,
+    guard: &'a mut Entered<'_, Option<Inner>>,
 ) -> PyResult<&'a mut Inner> {
     let Some(inner) = guard.as_mut() else {
         return Err(raise(slf, "_closed_error", "the environments are closed"));

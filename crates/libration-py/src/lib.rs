@@ -9,6 +9,7 @@ mod bench;
 mod catalogue;
 mod datasets;
 mod error;
+mod guarded;
 mod held;
 mod laboratory;
 mod layer;

@@ -1,7 +1,5 @@
 //! Replay buffers as Python holds them.
 
-use std::sync::Mutex;
-
 use bytemuck::cast_slice_mut;
 use libration::ensemble::Execution;
 use libration::replay::{Capacity, Columns, Draw, Lookahead, Replay, ReplayError, Sequences};
@@ -12,14 +10,14 @@ use pyo3::types::PyDict;
 
 use crate::array::{Array, Number, bytes_of, fresh, room};
 use crate::error::{Raised, refused};
+use crate::guarded::Guarded;
 use crate::rollout::{Kept as Tensed, Memory};
 use crate::tensors::Tensors;
-use crate::work::enter;
 
 /// The last transitions of many environments, of which batches are drawn.
 #[pyclass(frozen, module = "libration._native")]
 pub(crate) struct Buffer {
-    kept: Mutex<Kept>,
+    kept: Guarded<Kept>,
 }
 
 /// A buffer of either float type.
@@ -194,11 +192,11 @@ impl Buffer {
         } else {
             Kept::F64(made(observations, capacity)?)
         };
-        Ok(Buffer { kept: Mutex::new(kept) })
+        Ok(Buffer { kept: Guarded::new(kept) })
     }
 
     fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
-        let kept = enter(py, &self.kept);
+        let kept = self.kept.enter(py)?;
         let len = with_store!(&*kept, store => store.len());
         usize::try_from(len).map_err(|error| refused(error.to_string()))
     }
@@ -216,8 +214,8 @@ impl Buffer {
             })?;
             store.insert(tensors, &next.to_vec()?).map_err(Raised::raised)
         }
-        let mut kept = enter(py, &self.kept);
-        match (&mut *kept, &mut *memory.kept(py)) {
+        let mut kept = self.kept.enter(py)?;
+        match (&mut *kept, &mut *memory.kept(py)?) {
             (Kept::F32(store), Tensed::F32(tensors)) => taken(&mut **store, &mut **tensors, next),
             (Kept::F64(store), Tensed::F64(tensors)) => taken(&mut **store, &mut **tensors, next),
             _ => Err(refused("the rollout is of another dtype than the buffer".to_owned())),
@@ -226,13 +224,13 @@ impl Buffer {
 
     /// Draws transitions.
     fn _sample<'py>(&self, py: Python<'py>, asked: Asked) -> PyResult<Bound<'py, PyDict>> {
-        let kept = enter(py, &self.kept);
+        let kept = self.kept.enter(py)?;
         with_store!(&*kept, store => store.sample(py, asked))
     }
 
     /// Draws stretches of steps.
     fn _sequences<'py>(&self, py: Python<'py>, asked: Asked) -> PyResult<Bound<'py, PyDict>> {
-        let kept = enter(py, &self.kept);
+        let kept = self.kept.enter(py)?;
         with_store!(&*kept, store => store.sequences(py, asked))
     }
 
@@ -245,7 +243,7 @@ impl Buffer {
         exponent: f64,
     ) -> PyResult<usize> {
         let (numbers, priorities) = (numbers.to_vec()?, priorities.to_vec()?);
-        let mut kept = enter(py, &self.kept);
+        let mut kept = self.kept.enter(py)?;
         let changed =
             with_store!(&mut *kept, store => store.update(&numbers, &priorities, exponent));
         changed.map_err(Raised::raised)

@@ -1,7 +1,5 @@
 //! Rollouts as Python holds them: memory of the engine, seen as NumPy arrays.
 
-use std::sync::{Mutex, MutexGuard};
-
 use libration::rl::{Discounts, Estimates, Plan};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
@@ -10,14 +8,14 @@ use pyo3::types::PyDict;
 use crate::acts::{Acts, Told};
 use crate::array::{Array, Number, fresh, room, view, view_of_flags};
 use crate::error::{Raised, refused};
+use crate::guarded::{Entered, Guarded};
 use crate::held::{Held, Table};
 use crate::tensors::Tensors;
-use crate::work::enter;
 
 /// What environments did over a horizon: memory that is taken once and filled again and again.
 #[pyclass(frozen, module = "libration._native")]
 pub(crate) struct Memory {
-    kept: Mutex<Kept>,
+    kept: Guarded<Kept>,
 }
 
 /// Tensors of either float type.
@@ -46,12 +44,12 @@ impl Memory {
             Held::F32(table) => Kept::F32(table.tensors(plan).map_err(Raised::raised)?),
             Held::F64(table) => Kept::F64(table.tensors(plan).map_err(Raised::raised)?),
         };
-        Ok(Memory { kept: Mutex::new(kept) })
+        Ok(Memory { kept: Guarded::new(kept) })
     }
 
-    /// Its tensors, for whoever waits without the interpreter's lock.
-    pub(crate) fn kept(&self, py: Python<'_>) -> MutexGuard<'_, Kept> {
-        enter(py, &self.kept)
+    /// Its tensors.
+    pub(crate) fn kept(&self, py: Python<'_>) -> PyResult<Entered<'_, Kept>> {
+        self.kept.enter(py)
     }
 
     /// Fills all of it. Gives which environments ended with the last step that was taken, and why it was the last.
@@ -62,7 +60,7 @@ impl Memory {
         policy: &Told<'_>,
         substeps: usize,
     ) -> PyResult<(Vec<u8>, PyResult<()>)> {
-        match (held, &mut *self.kept(py)) {
+        match (held, &mut *self.kept(py)?) {
             (Held::F32(table), Kept::F32(tensors)) => {
                 Ok(filled(py, &mut **table, &Acts::new(policy)?, &mut **tensors, substeps))
             }
@@ -126,7 +124,7 @@ impl Memory {
             }
             Ok(all)
         }
-        with_tensors!(&*slf.get().kept(slf.py()), tensors => arrays(slf, &**tensors))
+        with_tensors!(&*slf.get().kept(slf.py())?, tensors => arrays(slf, &**tensors))
     }
 
     /// Columns of episodes that ended, by step and environment.
@@ -148,13 +146,13 @@ impl Memory {
             all.set_item("final_observations", seen)?;
             Ok(all)
         }
-        with_tensors!(&*self.kept(py), tensors => ends(py, &**tensors))
+        with_tensors!(&*self.kept(py)?, tensors => ends(py, &**tensors))
     }
 
     /// Whether each step is a transition, `(horizon, num_envs)`: not where an environment stood still or began anew.
     fn _transitions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (plan, all) =
-            with_tensors!(&*self.kept(py), tensors => (tensors.plan(), tensors.transitions()));
+            with_tensors!(&*self.kept(py)?, tensors => (tensors.plan(), tensors.transitions()));
         let all = PyArray1::from_vec(py, all).reshape([plan.horizon, plan.environments])?;
         Ok(all.into_any())
     }
@@ -188,6 +186,6 @@ impl Memory {
             Ok([array(found.advantage()), array(found.returned())])
         }
         let discounts = Discounts { rewards: gamma, errors: lambda_ };
-        with_tensors!(&*self.kept(py), tensors => estimates(py, &**tensors, discounts, [next, last]))
+        with_tensors!(&*self.kept(py)?, tensors => estimates(py, &**tensors, discounts, [next, last]))
     }
 }

@@ -1,7 +1,5 @@
 //! Many trajectories, held between calls.
 
-use std::sync::Mutex;
-
 use libration::ensemble::{AnyEnsemble, BatchFloat, EnsembleError, Execution};
 use libration::rl::EnvironmentError;
 use libration::{AnySystem, Method};
@@ -11,12 +9,12 @@ use pyo3::prelude::*;
 use crate::array::{Array, Number, fresh, room};
 use crate::asked::{SystemTold, method, system};
 use crate::error::{Raised, refused};
-use crate::work::enter;
+use crate::guarded::Guarded;
 
 /// Trajectories of a system of the catalogue, stepped together.
 #[pyclass(frozen, module = "libration._native")]
 pub(crate) struct Trajectories {
-    held: Mutex<(Held, Threads)>,
+    held: Guarded<(Held, Threads)>,
     method: Method,
     dt: f64,
 }
@@ -70,14 +68,14 @@ impl Trajectories {
         } else {
             Held::F64(made(system, [len, dimension], execution, &of)?)
         };
-        let held = Mutex::new((held, threads));
+        let held = Guarded::new((held, threads));
         Ok(Trajectories { held, method: method(integrator)?, dt })
     }
 
     /// Takes so many steps with all of them.
     fn _advance(&self, py: Python<'_>, steps: u64) -> PyResult<()> {
         let mut left = steps;
-        let mut inside = enter(py, &self.held);
+        let mut inside = self.held.enter(py)?;
         let (held, threads) = &mut *inside;
         // A process that was forked has none of them.
         if threads.count > 1 && threads.process != std::process::id() {
@@ -100,12 +98,12 @@ impl Trajectories {
     }
 
     /// Steps taken.
-    fn _step(&self, py: Python<'_>) -> u64 {
-        with_all!(&enter(py, &self.held).0, all => all.step())
+    fn _step(&self, py: Python<'_>) -> PyResult<u64> {
+        Ok(with_all!(&self.held.enter(py)?.0, all => all.step()))
     }
 
     /// Positions and velocities, `(len, dimension)` each.
-    fn _states<'py>(&self, py: Python<'py>) -> [Bound<'py, PyAny>; 2] {
+    fn _states<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyAny>; 2]> {
         fn states<'a, 'py, T: Number>(
             py: Python<'py>,
             all: &'a dyn AnyEnsemble<T>,
@@ -123,20 +121,20 @@ impl Trajectories {
             };
             [array(&|i| all.q(i)), array(&|i| all.v(i))]
         }
-        let inside = enter(py, &self.held);
-        with_all!(&inside.0, all => states(py, &**all))
+        let inside = self.held.enter(py)?;
+        Ok(with_all!(&inside.0, all => states(py, &**all)))
     }
 
     /// The energy of each per unit mass, `(len,)`, in J/kg.
-    fn _energies<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+    fn _energies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         fn energies<T: Number>(all: &dyn AnyEnsemble<T>) -> Vec<T> {
             let none = || T::from_f64(f64::NAN);
             (0..all.len()).map(|n| all.energy(n).unwrap_or_else(none)).collect()
         }
-        match &enter(py, &self.held).0 {
+        Ok(match &self.held.enter(py)?.0 {
             Held::F32(all) => PyArray1::from_vec(py, energies(&**all)).into_any(),
             Held::F64(all) => PyArray1::from_vec(py, energies(&**all)).into_any(),
-        }
+        })
     }
 }
 

@@ -1,7 +1,7 @@
 //! Work that takes a while: without the interpreter's lock, and until somebody presses Ctrl-C.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
@@ -11,20 +11,6 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// How often it is asked whether somebody wants to interrupt, and told how far it is.
 const LOOK: Duration = Duration::from_millis(50);
-
-/// How long somebody sleeps who waits for another thread.
-const NAP: Duration = Duration::from_micros(20);
-
-/// Takes what is inside for itself. Nobody waits for another thread with the interpreter's lock, which that may be waiting for.
-pub(crate) fn enter<'a, T>(py: Python<'_>, inside: &'a Mutex<T>) -> MutexGuard<'a, T> {
-    loop {
-        match inside.try_lock() {
-            Ok(guard) => return guard,
-            Err(TryLockError::Poisoned(poisoned)) => return poisoned.into_inner(),
-            Err(TryLockError::WouldBlock) => py.detach(|| thread::sleep(NAP)),
-        }
-    }
-}
 
 /// Threads of this process for whatever divides its work. One that was forked has none of those that there were.
 fn threads() -> PyResult<Arc<ThreadPool>> {

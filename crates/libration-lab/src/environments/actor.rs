@@ -90,9 +90,8 @@ impl<T: Float + Elementary, const O: usize> Policy<T, O, 1> for Actor<'_, T, O> 
         with!(self, policy => Policy::<T, O, 1>::looks(policy))
     }
 
-    /// As many as the one that draws takes.
     fn words(&self) -> usize {
-        1
+        with!(self, policy => Policy::<T, O, 1>::words(policy))
     }
 
     #[inline(always)]

@@ -112,6 +112,10 @@ where
         let wanted = 8 + self.blocks.len() * Self::BLOCK + size_of_val(&self.past[..]);
         let mut from = Reader::new(state, wanted)?;
         let step = from.next();
+        // Nobody takes so many steps, and what follows can be counted.
+        if step > FURTHEST {
+            return Err(CheckpointError::Damaged(format!("its step is {step}")));
+        }
         let mut blocks = self.blocks.clone();
         blocks.iter_mut().for_each(|block| Self::take_up(block, &mut from));
         let most = self.world.parts().delays;
@@ -119,6 +123,7 @@ where
         for (n, block) in blocks.iter().enumerate() {
             let late = |i: usize| block.delays[i].iter().any(|&delay| delay > most[i]);
             let ahead = block.began.iter().any(|&began| began > step);
+            let ahead = ahead || block.episode.iter().any(|&episode| episode > FURTHEST);
             let ended = block.ended.iter().any(|&ended| ended > (OVER | CUT));
             if late(0) || late(1) || ahead || ended {
                 let first = n * LANES;
@@ -132,6 +137,9 @@ where
         Ok(())
     }
 }
+
+/// The largest number of steps or episodes of a state.
+const FURTHEST: u64 = 1 << 52;
 
 /// Lane `l` is as before any episode.
 fn clear<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(

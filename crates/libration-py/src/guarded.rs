@@ -1,0 +1,99 @@
+//! What one thread uses at a time.
+
+use std::ops::{Deref, DerefMut};
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::thread;
+use std::time::Duration;
+
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+
+/// How long somebody sleeps who waits for another thread.
+const NAP: Duration = Duration::from_micros(20);
+
+/// Something that threads of Python's take turns with.
+pub(crate) struct Guarded<T> {
+    inside: Mutex<T>,
+    /// The thread that has it, and the process of that thread.
+    owner: AtomicUsize,
+    process: AtomicU32,
+}
+
+/// What is inside, for as long as it is needed.
+pub(crate) struct Entered<'a, T> {
+    inside: MutexGuard<'a, T>,
+    owner: &'a AtomicUsize,
+}
+
+impl<T> Guarded<T> {
+    pub(crate) fn new(inside: T) -> Self {
+        Guarded {
+            inside: Mutex::new(inside),
+            owner: AtomicUsize::new(NOBODY),
+            process: AtomicU32::new(0),
+        }
+    }
+
+    /// Takes what is inside. Nobody waits for another thread with the interpreter's lock, which that may be waiting for.
+    ///
+    /// # Errors
+    /// A `RuntimeError` where one would wait for oneself, as a handler of signals would that is called in the midst of a rollout, or for
+    /// a thread that a fork has left behind; what a handler of signals raises meanwhile.
+    pub(crate) fn enter(&self, py: Python<'_>) -> PyResult<Entered<'_, T>> {
+        loop {
+            let inside = match self.inside.try_lock() {
+                Ok(inside) => inside,
+                Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
+                Err(TryLockError::WouldBlock) => {
+                    let owner = self.owner.load(Ordering::Acquire);
+                    if owner == this_thread() {
+                        return Err(PyRuntimeError::new_err(
+                            "it is at work: who is called from within, as a handler of signals or a finaliser, cannot use it",
+                        ));
+                    }
+                    let here = self.process.load(Ordering::Acquire) == std::process::id();
+                    if owner != NOBODY && !here {
+                        return Err(PyRuntimeError::new_err(
+                            "a thread was at work with it when this process was forked: it is of no use here",
+                        ));
+                    }
+                    py.detach(|| thread::sleep(NAP));
+                    py.check_signals()?;
+                    continue;
+                }
+            };
+            self.process.store(std::process::id(), Ordering::Release);
+            self.owner.store(this_thread(), Ordering::Release);
+            return Ok(Entered { inside, owner: &self.owner });
+        }
+    }
+}
+
+const NOBODY: usize = 0;
+
+/// What no other thread that lives has.
+fn this_thread() -> usize {
+    thread_local!(static MARK: u8 = const { 0 });
+    MARK.with(|mark| std::ptr::from_ref(mark) as usize)
+}
+
+impl<T> Deref for Entered<'_, T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.inside
+    }
+}
+
+impl<T> DerefMut for Entered<'_, T> {
+    fn deref_mut(&mut self) -> &mut T {
+        &mut self.inside
+    }
+}
+
+impl<T> Drop for Entered<'_, T> {
+    fn drop(&mut self) {
+        self.owner.store(NOBODY, Ordering::Release);
+    }
+}
