@@ -58,10 +58,10 @@ def picture(preset: Preset, position: float, velocity: float) -> np.ndarray:
 
 def _pendulum(angle: float) -> np.ndarray:
     canvas = Canvas(1.5)
-    bob = np.array([np.sin(angle), -np.cos(angle)])
+    x, y = float(np.sin(angle)), float(-np.cos(angle))
     canvas.line(np.array([[0.0, -1.0], [0.0, 1.0]]), 0.012, FAINT)
-    canvas.line(np.array([[0.0, 0.0], bob]), 0.06, INK)
-    canvas.disc(*bob, 0.16, BODY)
+    canvas.line(np.array([[0.0, 0.0], [x, y]]), 0.06, INK)
+    canvas.disc(x, y, 0.16, BODY)
     canvas.disc(0.0, 0.0, 0.06, INK)
     return canvas.array()
 

@@ -54,9 +54,10 @@ def count(name: str, value: Any, least: int, most: int) -> int:
     """``value`` as an int between two ends."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
         raise TypeError(f"{name} must be an integer, not {type(value).__name__}")
-    if not least <= value <= most:
-        raise ValueError(f"{name} is {value}, but it must be {least} to {most}")
-    return int(value)
+    number = int(value)
+    if not least <= number <= most:
+        raise ValueError(f"{name} is {number}, but it must be {least} to {most}")
+    return number
 
 
 def is_several(value: Any) -> bool:
@@ -110,8 +111,9 @@ def delays(
     """The number of substeps, and latencies as numbers of them."""
     tried = range(1, MOST_SUBSTEPS + 1) if substeps is None else (substeps,)
     for parts in tried:
-        steps = {name: _steps(seconds, dt / parts) for name, seconds in named.items()}
-        if None not in steps.values():
+        found = {name: _steps(seconds, dt / parts) for name, seconds in named.items()}
+        steps = {name: late for name, late in found.items() if late is not None}
+        if len(steps) == len(named):
             for name, (_, most) in steps.items():
                 if most > 4096:
                     raise ValueError(

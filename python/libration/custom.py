@@ -54,7 +54,7 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         for price in ("position_cost", "velocity_cost", "effort_cost", "bound"):
             if price in given:
                 raise TypeError(f"unexpected keyword argument {price!r}: the task says what is paid")
-        endless = {} if name == "Pendulum" else {"bound": np.inf}
+        endless: dict[str, Any] = {} if name == "Pendulum" else {"bound": np.inf}
         self.inner = VectorEnv(name, num_envs, autoreset_mode="Disabled", **endless, **given)
         self.task = task
         self.num_envs = num_envs

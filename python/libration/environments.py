@@ -183,7 +183,7 @@ class Environments(_native.Batch):
         if seed is None:
             return [None] * self.num_envs
         if isinstance(seed, (int, np.integer)) and not isinstance(seed, bool):
-            seeds = [int(seed) + n for n in range(self.num_envs)]
+            seeds: list[int | None] = [int(seed) + n for n in range(self.num_envs)]
         else:
             try:
                 if isinstance(seed, (str, bytes, bytearray)):

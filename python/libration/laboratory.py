@@ -103,7 +103,7 @@ class Results:
 
     def to_pandas(self) -> Any:
         """A ``pandas.DataFrame`` of all findings, by their identifiers."""
-        import pandas
+        import pandas  # type: ignore[import-untyped]
 
         return pandas.DataFrame([vars(finding) for finding in self.findings]).set_index("id")
 

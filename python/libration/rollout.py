@@ -74,5 +74,6 @@ class Rollout:
             raise ValueError("the rollout has no values: ask for them with values=True")
         discounts = [number("gamma", gamma, "finite"), number("lam", lam, "finite")]
         last, final = (np.asarray(x, dtype=np.float64).ravel() for x in (last_values, final_values))
-        advantages, returns = self._memory._estimates(*discounts, last.tolist(), final.tolist())
+        found = self._memory._estimates(discounts[0], discounts[1], last.tolist(), final.tolist())
+        advantages, returns = found
         return advantages, returns

@@ -70,7 +70,7 @@ class Trajectory(Mapping[str, np.ndarray]):
 
     def to_pandas(self) -> Any:
         """A ``pandas.DataFrame`` of all columns."""
-        import pandas
+        import pandas  # type: ignore[import-untyped]
 
         return pandas.DataFrame(dict(self))
 
@@ -181,19 +181,22 @@ def _custom(
     speed = None if v is None else np.atleast_1d(np.asarray(v, np.float64))[np.newaxis]
     one = Ensemble(system, integrator=integrator, dt=dt, q=start, v=speed, dtype=_FLOATS[float])
     kept = [0, *range(every, steps, every), steps]
-    rows, ended = [], {}
+    steps_kept, positions, velocities, energies, ended = [], [], [], [], {}
     for step in kept:
         one.advance(step - one.step)
         if not (np.isfinite(one.q).all() and np.isfinite(one.v).all()):
             ended = {"step": step, "t": step * one.dt, "reason": "the state is not finite"}
             break
-        rows.append((step, one.q[0], one.v[0], math.nan if system.energy is None else one.energy[0]))
-    columns = {"step": np.array([row[0] for row in rows], np.uint64)}
+        steps_kept.append(step)
+        positions.append(one.q[0])
+        velocities.append(one.v[0])
+        energies.append(math.nan if system.energy is None else one.energy[0])
+    columns: dict[str, NDArray[Any]] = {"step": np.array(steps_kept, np.uint64)}
     columns["t"] = columns["step"] * one.dt
-    for letter, index in (("q", 1), ("v", 2)):
+    for letter, rows in (("q", positions), ("v", velocities)):
         for i in range(start.shape[1]):
-            columns[f"{letter}{i}"] = np.array([row[index][i] for row in rows], one.dtype)
-    columns["energy"] = np.array([row[3] for row in rows], one.dtype)
+            columns[f"{letter}{i}"] = np.array([row[i] for row in rows], one.dtype)
+    columns["energy"] = np.array(energies, one.dtype)
     return Trajectory(columns, {"step": "1", "t": "s"}, ended)
 
 
@@ -233,21 +236,23 @@ class Ensemble:
         self.dtype = np.dtype(dtype)
         if self.dtype not in (np.float64, np.float32):
             raise ValueError(f"dtype is {self.dtype}, but it must be float64 or float32")
-        start = [_rows("q", q), np.zeros(np.shape(q)) if v is None else v]
-        start[1] = _rows("v", start[1])
-        if start[0].shape != start[1].shape:
-            raise ValueError(f"q has shape {start[0].shape} and v {start[1].shape}, but they must be the same")
-        if 0 in start[0].shape:
-            raise ValueError(f"q has shape {start[0].shape}, but there must be a trajectory at least")
+        at = _rows("q", q)
+        speed = np.zeros_like(at) if v is None else _rows("v", v)
+        if at.shape != speed.shape:
+            raise ValueError(f"q has shape {at.shape} and v {speed.shape}, but they must be the same")
+        if 0 in at.shape:
+            raise ValueError(f"q has shape {at.shape}, but there must be a trajectory at least")
         threads = count("threads", threads, 0, 1024)
         self._step = 0
         if isinstance(self.system, System):
-            arguments = [self.system._told(), self.integrator, self.dt, *start]
-            single = self.dtype == np.float32
-            self._held: Any = _native.Trajectories(*arguments, single, threads)
+            single = bool(self.dtype == np.float32)
+            told = self.system._told()
+            self._held: Any = _native.Trajectories(
+                told, self.integrator, self.dt, at, speed, single, threads
+            )
         else:
             self._held = Program(self.integrator, self.system)
-            self._state = tuple(array.astype(self.dtype) for array in start)
+            self._state = (at.astype(self.dtype), speed.astype(self.dtype))
 
     @property
     def step(self) -> int:
