@@ -122,4 +122,6 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         return self.inner.render()
 
     def close_extras(self, **kwargs: Any) -> None:
-        self.inner.close()
+        # Gymnasium closes what could not be made, too.
+        if "inner" in self.__dict__:
+            self.inner.close()
