@@ -13,3 +13,16 @@ PERTURBED = dict(
     skew=0.01,
     observation_noise=0.02,
 )
+
+
+class Lent:
+    """Numbers that are to be had by DLPack alone, as those of learners are."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def __dlpack__(self, **given):
+        return self.array.__dlpack__(**given)
+
+    def __dlpack_device__(self):
+        return self.array.__dlpack_device__()

@@ -9,7 +9,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from common import AUTORESETS, NAMES, PERTURBED
+from common import AUTORESETS, Lent, NAMES, PERTURBED
 from hypothesis import HealthCheck, assume, example, given, settings
 from hypothesis import strategies as st
 from hypothesis.configuration import set_hypothesis_home_dir
@@ -84,19 +84,6 @@ def sound(envs, outcome):
 
 class Plain(np.ndarray):
     """A subclass that adds nothing."""
-
-
-class Lent:
-    """Numbers that are to be had by DLPack alone."""
-
-    def __init__(self, array):
-        self.array = array
-
-    def __dlpack__(self, **given):
-        return self.array.__dlpack__(**given)
-
-    def __dlpack_device__(self):
-        return self.array.__dlpack_device__()
 
 
 def strided(array):

@@ -9,7 +9,7 @@ import threading
 import gymnasium
 import numpy as np
 import pytest
-from common import AUTORESETS, NAMES, PERTURBED
+from common import AUTORESETS, NAMES, PERTURBED, Lent
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 from gymnasium.utils import performance
 from gymnasium.utils.env_checker import check_env
@@ -199,19 +199,6 @@ def test_actions_that_cannot_be_are_refused_and_nothing_has_moved(actions, error
     with pytest.raises(error, match=said):
         env.step(actions)
     np.testing.assert_array_equal(env.states, before)
-
-
-class Lent:
-    """Numbers that are to be had by DLPack alone, as those of learners are."""
-
-    def __init__(self, array):
-        self.array = array
-
-    def __dlpack__(self, **given):
-        return self.array.__dlpack__(**given)
-
-    def __dlpack_device__(self):
-        return self.array.__dlpack_device__()
 
 
 class Unknown(Lent):
