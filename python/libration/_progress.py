@@ -38,7 +38,7 @@ class Shown:
             sys.stderr.write("\r" + " " * self._line + "\r")
             sys.stderr.flush()
         if self._display is not None:
-            from IPython.display import HTML
+            from IPython.display import HTML  # type: ignore[import-not-found,unused-ignore]
 
             self._display.update(HTML(""))
 
@@ -58,7 +58,7 @@ class Shown:
         self._line = len(line)
 
     def _in_notebook(self, part: float, what: str) -> None:
-        from IPython.display import HTML, display
+        from IPython.display import HTML, display  # type: ignore[import-not-found,unused-ignore]
 
         bar = HTML(f"<progress value='{part:.4f}' max='1'></progress> {html.escape(what)}")
         if self._display is None:
