@@ -34,7 +34,10 @@ def number(name: str, value: Any, allowed: str, holds=math.isfinite) -> float:
     ValueError
         If it is not what is allowed.
     """
-    if isinstance(value, bool) or not isinstance(value, (numbers.Real,)):
+    if getattr(value, "shape", None) == () and hasattr(value, "item"):
+        # An array of no dimensions is a number.
+        value = value.item()
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise TypeError(f"{name} must be a number, not {type(value).__name__}")
     try:
         value = float(value)
@@ -67,6 +70,8 @@ def is_several(value: Any) -> bool:
 
 def ends(name: str, value: Any, least: float = -math.inf) -> tuple[float, float]:
     """A number, or the two ends between which it is drawn for every episode."""
+    if getattr(value, "shape", ()) != ():
+        value = value.tolist()
     pair = value if is_several(value) else (value, value)
     if len(pair) != 2:
         raise ValueError(f"{name} has {len(pair)} numbers, but it must be one, or two ends")
@@ -81,6 +86,9 @@ def law(name: str, value: Any) -> tuple[str, float]:
     """A standard deviation, or a law and its standard deviation."""
     if value is None:
         return "gaussian", 0.0
+    if hasattr(value, "rms"):
+        # A law of libration.
+        value = (type(value).__name__.lower(), value.rms)
     if is_several(value):
         if len(value) != 2 or not isinstance(value[0], str):
             raise ValueError(f"{name} is {value!r}, but it must be like ('gaussian', 0.05)")

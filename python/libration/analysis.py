@@ -8,11 +8,13 @@ from pathlib import Path
 from typing import Any, Mapping, Sequence
 
 from . import _native
+from ._named import named
 from ._progress import Progress, Shown
+from ._settings import number
 from ._toml import text_of
-from .perturbations import LQR, PD, PID, Controller, Observer, Steps, law
+from .perturbations import LQR, PD, PID, Controller, Observer, law, numbers
 from .perturbations import latency as _latency
-from .simulation import told_loop, told_step, whole
+from .simulation import coordinates, told_loop, told_step, whole
 from .systems import CustomSystem, System, known
 
 __all__ = ["Advice", "Analysis", "advise", "analyze"]
@@ -34,7 +36,10 @@ class Answer(Mapping[str, Any]):
         return len(self._parts)
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("_") or name not in self._parts:
+        if name.startswith("_"):
+            # What copies and pickles ask for before there are any parts.
+            raise AttributeError(name)
+        if name not in self._parts:
             raise AttributeError(f"{type(self).__name__} has no part {name!r}: there are {', '.join(self)}")
         return self._parts[name]
 
@@ -86,6 +91,7 @@ class Advice(Answer):
         Path(path).write_text(self.page, encoding="utf-8")
 
 
+@named
 def analyze(
     system: str | System,
     *,
@@ -130,7 +136,13 @@ def analyze(
     answer = _native._analyze(
         told_step(system, integrator, dt, q, v),
         told_loop(feedback, latency, jitter, skew, loss, cost_weights),
-        {"steps": whole("steps", steps), **criteria},
+        {
+            "steps": whole("steps", steps),
+            **{
+                name: None if value is None else number(name, value, "1e-60 to 1e60")
+                for name, value in criteria.items()
+            },
+        },
     )
     return Analysis(json.loads(answer))
 
@@ -142,6 +154,7 @@ def _of_catalogue(system: Any) -> System:
     return system
 
 
+@named
 def advise(
     system: str | System | None = None,
     controller: Controller | Sequence[float] | None = None,
@@ -237,26 +250,31 @@ def _request(
 ) -> dict[str, Any]:
     """What is asked, as the file says it."""
     system = _of_catalogue(system)
-    start = {"q": _list(q, system), "v": _list(v, system)}
+    start = {"q": _list("q", q, system), "v": _list("v", v, system)}
     asked: dict[str, Any] = {"system": {system.name: dict(system.parameters)}, "start": start}
     if horizon is not None:
-        asked["asked"] = {"horizon": horizon}
+        asked["asked"] = {"horizon": number("horizon", horizon, "a number")}
     if tolerance is not None:
-        of, most = tolerance
-        asked["tolerance"] = {of: most}
-    loop = {
-        "period": period,
-        "skew": skew,
-        "loss": loss,
-        "cost": cost_weights,
-        "deviation": deviation,
+        if isinstance(tolerance, str) or not isinstance(tolerance, Sequence) or len(tolerance) != 2:
+            raise TypeError(f"tolerance is {tolerance!r}, but it must be like ('energy', 1e-6)")
+        asked["tolerance"] = {tolerance[0]: number("tolerance", tolerance[1], "a number")}
+    loop: dict[str, Any] = {
+        name: number(name, value, "a number", lambda _: True)
+        for name, value in {
+            "period": period,
+            "skew": skew,
+            "loss": loss,
+            "deviation": deviation,
+        }.items()
+        if value is not None
     }
+    if cost_weights is not None:
+        loop["cost"] = numbers("cost_weights", cost_weights, 3)
     if latency is not None:
-        unit, number = _latency(latency) or ("seconds", 0.0)
-        loop["latency"] = number * (0.01 if period is None else period) if unit == "steps" else number
+        unit, late = _latency(latency) or ("seconds", 0.0)
+        loop["latency"] = late * loop.get("period", 0.01) if unit == "steps" else late
     if jitter is not None:
         loop["law"], loop["jitter"] = law("jitter", jitter) or ("gaussian", 0.0)
-    loop = {name: value for name, value in loop.items() if value is not None}
     if controller is not None:
         asked["controller"] = _controller(controller)
     if loop:
@@ -264,23 +282,23 @@ def _request(
     return asked
 
 
-def _list(values: Any, system: System) -> list[float]:
-    if values is None:
-        return [0.0] * system.dimensions.start
-    return list(values) if isinstance(values, (list, tuple)) else [values]
+def _list(name: str, values: Any, system: System) -> list[float]:
+    given = coordinates(name, values)
+    return [0.0] * system.dimensions.start if given is None else given
 
 
 def _controller(controller: Any) -> dict[str, Any]:
-    if isinstance(controller, PID):
-        return {"pid": vars(controller)}
-    if isinstance(controller, LQR):
-        return {"lqr": {"weights": controller.weights}}
-    if isinstance(controller, Observer):
-        table = {name: value for name, value in vars(controller).items() if value is not None}
-        if "noise" in table:
-            acceleration, position = table.pop("noise")
-            table = {**table, "acceleration": acceleration, "position": position}
-        return {"observer": table}
-    if not isinstance(controller, PD):
-        controller = PD(*controller)
-    return {"pd": vars(controller)}
+    several = {"weights": 3, "gains": 2, "noise": 2, "correction": 2}
+    table: dict[str, Any] = {}
+    if not isinstance(controller, (PID, LQR, Observer)):
+        if not isinstance(controller, PD):
+            controller = PD(*numbers("controller", controller, 2))
+        return {"pd": {name: number(name, gain, "a number") for name, gain in vars(controller).items()}}
+    for name, value in vars(controller).items():
+        if name in several and value is not None:
+            table[name] = numbers(name, value, several[name])
+        elif value is not None:
+            table[name] = number(name, value, "a number", lambda _: True)
+    if "noise" in table:
+        table["acceleration"], table["position"] = table.pop("noise")
+    return {type(controller).__name__.lower(): table}

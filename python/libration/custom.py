@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import threading
 from typing import Any, Callable
 
 import gymnasium
@@ -10,6 +12,7 @@ from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
+from ._arrays import actions as read
 from .envs import VectorEnv
 
 __all__ = ["CustomTaskVectorEnv"]
@@ -30,7 +33,7 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         How many.
     task:
         ``task(before, actions, after)`` of positions and velocities ``(N, 2)``, as they are and not as they are observed, and of actions
-        ``(N, 1)``, gives rewards ``(N,)``, or a pair of them and whether each episode is over, ``(N,)``.
+        ``(N, 1)`` within ``max_action``, gives rewards ``(N,)``, or a pair of them and whether each episode is over, ``(N,)``.
     **given:
         As for :class:`libration.Environments`; prices of tasks are not among them.
 
@@ -55,17 +58,24 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
             if price in given:
                 raise TypeError(f"unexpected keyword argument {price!r}: the task says what is paid")
         endless: dict[str, Any] = {} if name == "Pendulum" else {"bound": np.inf}
-        self.inner = VectorEnv(name, num_envs, autoreset_mode="Disabled", **endless, **given)
+        mode = getattr(autoreset_mode, "value", autoreset_mode)
+        # Who is reset in the step that ends an episode is reset here: the task has yet to say that it has ended.
+        inner = "Disabled" if mode == "SameStep" else mode
+        kept = given.pop("copy", True)
+        if kept is not True:
+            raise ValueError(f"copy is {kept!r}, but it must be True: what the task makes is new in any case")
+        self.inner = VectorEnv(name, num_envs, autoreset_mode=inner, **endless, **given)
         self.task = task
-        self.num_envs = num_envs
-        mode = AutoresetMode(getattr(autoreset_mode, "value", autoreset_mode))
-        self.metadata = {**self.inner.metadata, "autoreset_mode": mode}
+        self.num_envs = self.inner.num_envs
+        self._mode = AutoresetMode(mode)
+        self.metadata = {**self.inner.metadata, "autoreset_mode": self._mode}
         self.render_mode = self.inner.render_mode
         for space in ("action_space", "observation_space"):
             setattr(self, space, getattr(self.inner, space))
             setattr(self, f"single_{space}", getattr(self.inner, f"single_{space}"))
-        self._mode = mode
-        self._ended = np.zeros(num_envs, bool)
+        self._most = self.inner._settings["saturation"]
+        self._ended = np.zeros(self.num_envs, bool)
+        self._turn = threading.RLock()
 
     @property
     def states(self) -> NDArray[Any]:
@@ -75,48 +85,69 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
     def reset(
         self, *, seed: Any = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[Any], dict[str, Any]]:
-        observations, infos = self.inner.reset(seed=seed, options=options)
-        mask = (options or {}).get("reset_mask")
-        self._ended[slice(None) if mask is None else mask] = False
-        return observations, infos
+        with self._turn:
+            observations, infos = self.inner.reset(seed=seed, options=options)
+            mask = (options or {}).get("reset_mask")
+            self._ended[slice(None) if mask is None else mask] = False
+            return observations, infos
 
     def step(
         self, actions: Any
     ) -> tuple[NDArray[Any], NDArray[Any], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        late = self._ended.copy()
-        if late.any():
-            if self._mode is AutoresetMode.DISABLED:
-                raise ResetNeeded(f"episodes of {np.flatnonzero(late).tolist()} are over: reset them first")
-            self.inner.reset(options={"reset_mask": late})
+        with self._turn:
+            return self._step(actions)
+
+    def _step(self, actions: Any) -> Any:
+        # Under NEXT_STEP these begin anew in this step.
+        began = self._ended.copy()
+        if self._mode is AutoresetMode.DISABLED and began.any():
+            raise ResetNeeded(f"episodes of {np.flatnonzero(began).tolist()} are over: reset them first")
         before = self.states
-        observations, rewards, lost, truncated, _ = self.inner.step(actions)
-        actions = np.reshape(np.asarray(actions, rewards.dtype), (self.num_envs, 1))
-        paid = self.task(before, actions, self.states)
-        rewards, over = paid if isinstance(paid, tuple) else (paid, np.zeros(self.num_envs, bool))
-        rewards = self._row("rewards", rewards, observations.dtype)
-        terminated = self._row("ends of episodes", over, np.dtype(bool)) | lost
-        rewards[lost | late] = 0
-        terminated[late] = truncated[late] = False
-        self._ended = terminated | truncated
-        if late.any():
-            # Who began anew has not acted: it steps beside the others, and begins once more.
-            observations = self.inner.reset(options={"reset_mask": late})[0]
-        infos: dict[str, Any] = {}
-        if self._mode is AutoresetMode.SAME_STEP and self._ended.any():
-            ended, self._ended = self._ended, np.zeros(self.num_envs, bool)
-            infos["final_obs"] = np.full(self.num_envs, None, dtype=object)
-            for n in np.flatnonzero(ended):
-                infos["final_obs"][n] = observations[n].copy()
-            infos["_final_obs"] = ended
-            infos["final_info"], infos["_final_info"] = {}, ended.copy()
-            observations = self.inner.reset(options={"reset_mask": ended})[0]
+        observations, rewards, lost, truncated, infos = self.inner.step(actions)
+        # Whatever the task does: what the engine says of the end holds.
+        self._ended = lost | truncated
+        taken = read(actions, self.num_envs, rewards.dtype.name).reshape(self.num_envs, 1)
+        paid = self.task(before, np.clip(taken, -self._most, self._most), self.states)
+        given, over = paid if isinstance(paid, tuple) else (paid, np.zeros(self.num_envs, bool))
+        rewards = self._row("rewards", given, "fiu").astype(observations.dtype)
+        terminated = (self._row("ends of episodes", over, "b") & ~began) | lost
+        rewards[lost | began] = 0
+        ended = terminated | truncated
+        if self._mode is AutoresetMode.SAME_STEP:
+            self._ended = np.zeros(self.num_envs, bool)
+            if ended.any():
+                final = np.full(self.num_envs, None, dtype=object)
+                for n in np.flatnonzero(ended):
+                    final[n] = observations[n].copy()
+                infos = {
+                    "final_obs": final,
+                    "_final_obs": ended,
+                    "final_info": infos,
+                    "_final_info": ended.copy(),
+                }
+                observations = self.inner.reset(options={"reset_mask": ended})[0]
+        else:
+            self.inner._end(terminated)
+            self._ended = ended
         return observations, rewards, terminated, truncated, infos
 
-    def _row(self, name: str, values: Any, dtype: np.dtype[Any]) -> NDArray[Any]:
-        row = np.array(values, dtype)
+    def _row(self, name: str, values: Any, kinds: str) -> NDArray[Any]:
+        row = np.asarray(values)
         if row.shape != (self.num_envs,):
             raise ValueError(f"{name} of the task have shape {row.shape}, but it must be ({self.num_envs},)")
+        if row.dtype.kind not in kinds:
+            allowed = "bool" if kinds == "b" else "real numbers"
+            raise TypeError(f"{name} of the task have dtype {row.dtype}, but they must be {allowed}")
         return row
+
+    def __copy__(self) -> CustomTaskVectorEnv:
+        return self.__deepcopy__({})
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> CustomTaskVectorEnv:
+        twin: CustomTaskVectorEnv = object.__new__(type(self))
+        twin.__dict__.update(self.__dict__, inner=copy.deepcopy(self.inner, memo))
+        twin._ended, twin._turn = self._ended.copy(), threading.RLock()
+        return twin
 
     def render(self) -> Any:
         return self.inner.render()

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Mapping
 
 from . import _native
+from ._named import named
 from ._progress import Progress, Shown
 from ._settings import count
 from ._toml import text_of
@@ -39,6 +40,7 @@ class Flaw:
     what: str
 
 
+@named
 def write(
     out: str | os.PathLike[str],
     settings: Mapping[str, Any] | str | os.PathLike[str] | None = None,
@@ -76,6 +78,10 @@ def write(
     OSError
         If a file cannot be written.
     """
+    if not isinstance(format, str):
+        raise TypeError(f"format must be a string, not {type(format).__name__}")
+    if not isinstance(shard, (tuple, list)) or len(shard) != 2:
+        raise TypeError(f"shard is {shard!r}, but it must be which and of how many, as (1, 4)")
     index, of = shard
     writing = {
         "out": Path(out),
@@ -94,6 +100,7 @@ def write(
     return Written(Path(out), *told)
 
 
+@named
 def verify(
     folder: str | os.PathLike[str],
     *,

@@ -16,6 +16,7 @@ from typing import Any, Iterable, Mapping
 import numpy as np
 
 from . import _native
+from ._named import named
 from ._progress import Progress, Shown
 from ._toml import text_of
 
@@ -134,6 +135,7 @@ def _number(x: float | None) -> str:
     return "" if x is None else f"{x:.6g}"
 
 
+@named
 def run_lab(
     config: Mapping[str, Any] | str | os.PathLike[str] | None = None,
     *,
@@ -170,6 +172,10 @@ def run_lab(
         if isinstance(studies, str):
             raise TypeError("studies must be a list of names, not a single one")
         names = list(studies)
+        if not all(isinstance(name, str) for name in names):
+            raise TypeError(f"studies are {names!r}, but they must be names")
+    if effort is not None and not isinstance(effort, str):
+        raise TypeError(f"effort must be a string, not {type(effort).__name__}")
     shown = Shown(progress)
     folder = Path(tempfile.mkdtemp(prefix="libration-") if out is None else out)
     try:

@@ -112,6 +112,8 @@ def gains(name: str, value: Any) -> list[float] | None:
 
 def numbers(name: str, value: Any, count: int) -> list[float]:
     """So many numbers."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
     if isinstance(value, str) or not isinstance(value, Sequence) or len(value) != count:
         raise ValueError(f"{name} is {value!r}, but it must be {count} numbers")
     return [number(name, x, "a number", lambda _: True) for x in value]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
+from ._named import named
 from ._settings import count, number
 from .environments import Environments
 from .rollout import Rollout
@@ -82,6 +83,7 @@ class ReplayBuffer:
         If there is no room.
     """
 
+    @named
     def __init__(
         self,
         environments: Environments,
@@ -91,6 +93,8 @@ class ReplayBuffer:
         ends: int | None = None,
         seed: int = 0,
     ) -> None:
+        if not isinstance(environments, Environments):
+            raise TypeError(f"environments must be Environments, not {type(environments).__name__}")
         settings = environments._settings
         self.seed = count("seed", seed, 0, 2**64 - 1)
         #: The number of the next draw.
@@ -107,8 +111,16 @@ class ReplayBuffer:
     def __len__(self) -> int:
         return len(self._buffer)
 
+    def __copy__(self) -> ReplayBuffer:
+        raise TypeError("a ReplayBuffer cannot be copied")
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a ReplayBuffer cannot be pickled")
+
     def insert(self, rollout: Rollout) -> None:
         """Take what a rollout holds; the oldest steps make room for it."""
+        if not isinstance(rollout, Rollout):
+            raise TypeError(f"rollout must be a Rollout, not {type(rollout).__name__}")
         self._buffer._insert(rollout._memory, rollout.last_observations)
 
     def sample(
@@ -143,15 +155,25 @@ class ReplayBuffer:
         self, numbers: NDArray[np.uint64], priorities: ArrayLike, exponent: float = 0.6
     ) -> int:
         """Give transitions other priorities; their weights are ``priority ** exponent``. Gives how many are still there."""
-        numbers = np.ascontiguousarray(numbers, np.uint64)
-        priorities = np.ascontiguousarray(priorities, np.float64)
-        return self._buffer._update(numbers, priorities, number("exponent", exponent, "finite"))
+        which, errors = np.asarray(numbers), np.asarray(priorities)
+        if which.dtype.kind not in "iu" or errors.dtype.kind not in "fiu":
+            raise TypeError(
+                f"numbers have dtype {which.dtype} and priorities {errors.dtype}, but they must be whole and real numbers"
+            )
+        if which.ndim != 1 or which.shape != errors.shape or (which < 0).any():
+            raise ValueError(
+                f"numbers have shape {which.shape} and priorities {errors.shape}, but they must be (B,), and "
+                "numbers those that were drawn"
+            )
+        exponent = number("exponent", exponent, "finite")
+        which, errors = which.astype(np.uint64), errors.astype(np.float64)
+        return self._buffer._update(np.ascontiguousarray(which), np.ascontiguousarray(errors), exponent)
 
     def _asked(self, batch_size: int, steps: int, gamma: float) -> dict[str, Any]:
         asked = {
             "len": count("batch_size", batch_size, 1, 2**32),
-            "seed": self.seed,
-            "number": self.number,
+            "seed": count("seed", self.seed, 0, 2**64 - 1),
+            "number": count("number", self.number, 0, 2**64 - 1),
             "steps": count("steps", steps, 1, 2**32),
             "gamma": number("gamma", gamma, "0 to 1"),
             "correction": None,

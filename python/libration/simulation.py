@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+import threading
 from typing import Any, Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
+from ._named import named
 from ._settings import count, nearest, number, positive
 from .perturbations import gains, latency as _latency, law, numbers
-from .systems import INTEGRATORS, CustomSystem, Program, System, known
+from .systems import INTEGRATORS, CustomSystem, Program, System, known, seen
 
 __all__ = ["Ensemble", "Trajectory", "simulate"]
 
@@ -78,6 +80,7 @@ class Trajectory(Mapping[str, np.ndarray]):
         return f"<Trajectory of {len(self['t'])} rows: {', '.join(self)}>"
 
 
+@named
 def simulate(
     system: Any,
     *,
@@ -151,7 +154,14 @@ def simulate(
         for name, value in wrong.items():
             if value is not None:
                 raise ValueError(f"{name} is given, but it is for systems of the catalogue only")
+        for name, value in {"spread": spread, "threads": threads, "seed": seed}.items():
+            if value != 0:
+                raise ValueError(f"{name} is {value!r}, but it is for systems of the catalogue only")
         return _custom(system, integrator, dt, steps, q, v, float, every)
+    if count is None:
+        for name, value in {"spread": spread, "threads": threads}.items():
+            if value != 0:
+                raise ValueError(f"{name} is {value!r}, but there is no count of trajectories that it is for")
     columns, units, ended = _native._simulate(
         told_step(system, integrator, dt, q, v),
         told_loop(feedback, latency, jitter, skew),
@@ -163,7 +173,7 @@ def simulate(
             "spread": number("spread", spread, "finite"),
             "threads": whole("threads", threads, 0),
             "seed": whole("seed", seed, 0),
-            "time_stamps": None if time_stamps is None else np.asarray(time_stamps, np.float64).tolist(),
+            "time_stamps": coordinates("time_stamps", time_stamps),
         },
     )
     return Trajectory(columns, units, ended)
@@ -177,8 +187,8 @@ def _custom(
         raise ValueError(f"float is {float!r}: {nearest(float, _FLOATS)}")
     if q is None:
         raise ValueError("q is missing: a custom system has no start of its own")
-    start = np.atleast_1d(np.asarray(q, np.float64))[np.newaxis]
-    speed = None if v is None else np.atleast_1d(np.asarray(v, np.float64))[np.newaxis]
+    start = np.array([coordinates("q", q)])
+    speed = None if v is None else np.array([coordinates("v", v)])
     one = Ensemble(system, integrator=integrator, dt=dt, q=start, v=speed, dtype=_FLOATS[float])
     kept = [0, *range(every, steps, every), steps]
     steps_kept, positions, velocities, energies, ended = [], [], [], [], {}
@@ -219,6 +229,7 @@ class Ensemble:
         How many; 0 for as many as there are cores. What comes out does not depend on it, nor on ``N``.
     """
 
+    @named
     def __init__(
         self,
         system: Any,
@@ -242,8 +253,12 @@ class Ensemble:
             raise ValueError(f"q has shape {at.shape} and v {speed.shape}, but they must be the same")
         if 0 in at.shape:
             raise ValueError(f"q has shape {at.shape}, but there must be a trajectory at least")
+        for name, start in (("q", at), ("v", speed)):
+            with np.errstate(over="ignore"):
+                if not np.isfinite(start.astype(self.dtype)).all():
+                    raise ValueError(f"{name} is not finite in {self.dtype}")
         threads = count("threads", threads, 0, 1024)
-        self._step = 0
+        self._step, self._len = 0, len(at)
         if isinstance(self.system, System):
             single = bool(self.dtype == np.float32)
             told = self.system._told()
@@ -252,6 +267,8 @@ class Ensemble:
             )
         else:
             self._held = Program(self.integrator, self.system)
+            # Threads take turns with what is Python's.
+            self._turn = threading.RLock()
             self._state = (at.astype(self.dtype), speed.astype(self.dtype))
 
     @property
@@ -281,7 +298,14 @@ class Ensemble:
             return self._held._energies()
         if self.system.energy is None:
             raise ValueError("the custom system has no energy")
-        return np.asarray(self.system.energy(*self._state))
+        with self._turn:
+            found = np.asarray(self.system.energy(*map(seen, self._state)))
+        if found.shape != (len(self),) or found.dtype.kind not in "fiu":
+            raise ValueError(
+                f"the energy has shape {found.shape} and dtype {found.dtype}, but it must be "
+                f"({len(self)},) real numbers"
+            )
+        return found.astype(self.dtype)
 
     def advance(self, steps: int) -> None:
         """Take so many steps. Ctrl-C ends it between two of them."""
@@ -291,13 +315,19 @@ class Ensemble:
             return
         dt = self.dtype.type(self.dt)
         # What overflows is infinite, as in the engine.
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        with self._turn, np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             for _ in range(steps):
                 self._state = self._held.step(*self._state, dt)
                 self._step += 1
 
     def __len__(self) -> int:
-        return len(self.q)
+        return self._len
+
+    def __copy__(self) -> Ensemble:
+        raise TypeError("an Ensemble cannot be copied: make another of its q and v")
+
+    def __reduce__(self) -> Any:
+        raise TypeError("an Ensemble cannot be pickled: make another of its q and v")
 
 
 def _rows(name: str, values: ArrayLike) -> NDArray[np.float64]:
@@ -321,8 +351,8 @@ def told_step(system: System, integrator: Any, dt: Any, q: Any, v: Any) -> dict[
         raise ValueError(f"unknown integrator {integrator!r}: {nearest(integrator, INTEGRATORS)}")
     return {
         "system": system._told(),
-        "q": _coordinates("q", q),
-        "v": _coordinates("v", v),
+        "q": coordinates("q", q),
+        "v": coordinates("v", v),
         "integrator": integrator,
         "dt": number("dt", dt, "finite and greater than 0"),
     }
@@ -342,12 +372,12 @@ def told_loop(
     }
 
 
-def _coordinates(name: str, value: ArrayLike | None) -> list[float] | None:
+def coordinates(name: str, value: ArrayLike | None) -> list[float] | None:
     if value is None:
         return None
     array = np.atleast_1d(np.asarray(value))
     if array.dtype.kind not in "fiu" or array.ndim != 1:
-        raise TypeError(f"{name} must be a number or a list of numbers")
+        raise TypeError(f"{name} must be a number or a list of numbers, not {value!r:.60}")
     if not np.isfinite(array).all():
         raise ValueError(f"{name} is {array.tolist()}, but it must be finite")
     return array.astype(np.float64).tolist()

@@ -87,11 +87,17 @@ class CustomSystem:
     """
 
     acceleration: Callable[[np.ndarray, np.ndarray], Any]
-    """The acceleration ``a(q, v)`` of arrays ``(N, D)``, as an array ``(N, D)``. What it is given must not be written."""
+    """The acceleration ``a(q, v)`` of arrays ``(N, D)``, as an array ``(N, D)``. What it is given cannot be written."""
     energy: Callable[[np.ndarray, np.ndarray], Any] | None = None
     """The energy per unit mass, ``(N,)``, if there is one."""
     positional: bool = False
     """Whether the acceleration depends on positions alone: then it is not computed twice from the same ones."""
+
+    def __post_init__(self) -> None:
+        for name in ("acceleration", "energy"):
+            function = getattr(self, name)
+            if not callable(function) and not (name == "energy" and function is None):
+                raise TypeError(f"{name} must be a function, not {type(function).__name__}")
 
 
 def known(system: Any) -> System | CustomSystem:
@@ -107,6 +113,13 @@ def known(system: Any) -> System | CustomSystem:
     raise TypeError(
         f"system must be a name, a System or a function of positions and velocities, not {type(system).__name__}"
     )
+
+
+def seen(array: np.ndarray) -> np.ndarray:
+    """The array for who must not write it."""
+    view = array.view()
+    view.flags.writeable = False
+    return view
 
 
 class Program:
@@ -146,8 +159,12 @@ class Program:
     def acceleration(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         if self.system.positional and self.known is not None and self.known[0] is q:
             return self.known[1]
-        found = np.asarray(self.system.acceleration(q, v), dtype=q.dtype)
+        found = np.asarray(self.system.acceleration(seen(q), seen(v)))
         if found.shape != q.shape:
             raise ValueError(f"the acceleration has shape {found.shape}, but it must be {q.shape}")
+        if found.dtype.kind not in "fiu":
+            raise TypeError(f"the acceleration has dtype {found.dtype}, but it must be real numbers")
+        # Whoever computes it may use that memory again.
+        found = found.astype(q.dtype)
         self.known = q, found
         return found

@@ -64,6 +64,10 @@ pub(crate) fn stepping(name: &str) -> PyResult<Stepping> {
 
 /// The integrator of that name.
 pub(crate) fn method(name: &str) -> PyResult<Method> {
+    if name == Stepping::EXACT {
+        let what = "are those of simulate and analyze only, of linear systems of the catalogue";
+        return Err(refused(format!("integrator is `{name}`, but exact steps {what}")));
+    }
     Method::from_name(name)
         .ok_or_else(|| unknown("integrator", name, Method::ALL.map(Method::name)))
 }

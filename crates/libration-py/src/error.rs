@@ -1,7 +1,7 @@
 //! What goes wrong, as Python has it.
 
 use libration::checkpoint::CheckpointError;
-use libration::ensemble::EnsembleError;
+use libration::ensemble::{EnsembleError, NoRoom};
 use libration::replay::ReplayError;
 use libration::rl::EnvironmentError;
 use libration_data::DataError;
@@ -15,10 +15,10 @@ use libration_lab::session::SessionError;
 use libration_lab::setting::SettingError;
 use libration_lab::study::StudyError;
 use libration_lab::trajectory::TrajectoryError;
-use pyo3::PyErr;
 use pyo3::exceptions::{
     PyKeyboardInterrupt, PyMemoryError, PyOSError, PyRuntimeError, PyValueError,
 };
+use pyo3::{PyErr, PyResult};
 
 /// Every error of the engine is turned into an exception here, and nowhere else.
 pub(crate) trait Raised {
@@ -69,6 +69,9 @@ impl Raised for SettingError {
 
 impl Raised for AnalyzeError {
     fn raised(self) -> PyErr {
+        if matches!(self, AnalyzeError::Interrupted) {
+            return interrupted();
+        }
         refused(keywords(&self.to_string()))
     }
 }
@@ -136,7 +139,7 @@ impl Raised for DatasetError {
             DatasetError::Data(error @ DataError::Io { .. }) => {
                 PyOSError::new_err(error.to_string())
             }
-            error => refused(error.to_string()),
+            error => refused(keywords(&error.to_string())),
         }
     }
 }
@@ -161,8 +164,15 @@ pub(crate) fn unknown<'a>(
     refused(format!("unknown {what} `{name}`: {hint}"))
 }
 
-/// A sentence about flags, as one about keywords: what is `--max-drift` there is `max_drift` here.
+/// Nothing, if there is room for so many bytes.
+pub(crate) fn room_for(bytes: u128) -> PyResult<()> {
+    NoRoom::check(bytes).map_err(|error| PyMemoryError::new_err(error.to_string()))
+}
+
+/// A sentence about flags, as one about keywords: what is `--max-drift` there is `max_drift` here, and a flag that goes on with something is
+/// what is true.
 fn keywords(text: &str) -> String {
+    let text = &*text.replace("--resume", "resume=True");
     let mut words = text.split("--");
     let mut told = words.next().unwrap_or_default().to_owned();
     for word in words {

@@ -41,6 +41,8 @@ pub(crate) trait Table<T>: Send {
 
     fn reset(&mut self, which: &[bool]) -> Result<(), EnvironmentError>;
 
+    fn end(&mut self, which: &[bool]) -> Result<(), EnvironmentError>;
+
     fn seed(&mut self, seeds: &[Option<u64>]) -> Result<(), EnvironmentError>;
 
     fn execute(&mut self, execution: Execution);
@@ -90,6 +92,10 @@ impl<T: Number, const O: usize> Table<T> for Box<dyn Batch<T, O>> {
 
     fn reset(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
         (**self).reset(which)
+    }
+
+    fn end(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
+        (**self).end(which)
     }
 
     fn seed(&mut self, seeds: &[Option<u64>]) -> Result<(), EnvironmentError> {

@@ -105,6 +105,14 @@ impl Batch {
         })
     }
 
+    /// Ends episodes where there is a `True`.
+    fn _end(slf: &Bound<'_, Self>, which: Bound<'_, PyArray1<bool>>) -> PyResult<()> {
+        let mut guard = slf.get().inner.enter(slf.py())?;
+        let Inner { held, .. } = open(slf, &mut guard)?;
+        let which = which.to_vec()?;
+        with_table!(held, table => table.end(&which)).map_err(Raised::raised)
+    }
+
     /// Room for a rollout of so many steps.
     fn _memory(
         slf: &Bound<'_, Self>,

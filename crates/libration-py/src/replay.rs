@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::array::{Array, Number, bytes_of, fresh, room};
-use crate::error::{Raised, refused};
+use crate::error::{Raised, refused, room_for};
 use crate::guarded::Guarded;
 use crate::rollout::{Kept as Tensed, Memory};
 use crate::tensors::Tensors;
@@ -82,6 +82,7 @@ impl<T: Number, const O: usize> Store<T> for Replay<T, O, 1> {
 
     fn sample<'py>(&self, py: Python<'py>, asked: Asked) -> PyResult<Bound<'py, PyDict>> {
         let Asked { len, seed, number, steps, gamma, correction } = asked;
+        room_for(len as u128 * (8 + 2 + (2 * O + 4) as u128 * size_of::<T>() as u128))?;
         let numbers: Bound<'py, Array<u64, 1>> = fresh(py, [len]);
         let [seen, next] = [O, O].map(|each| fresh::<T, 2>(py, [len, each]));
         let actions = fresh::<T, 2>(py, [len, 1]);
@@ -120,6 +121,9 @@ impl<T: Number, const O: usize> Store<T> for Replay<T, O, 1> {
 
     fn sequences<'py>(&self, py: Python<'py>, asked: Asked) -> PyResult<Bound<'py, PyDict>> {
         let Asked { len, seed, number, steps, .. } = asked;
+        // Each of the numbers is moved once more on its way.
+        let each = 2 * (3 + (O + 2) * size_of::<T>()) as u128;
+        room_for((len as u128 * steps as u128).saturating_mul(each))?;
         let mut drawn = Sequences::<T, O, 1>::new(len, steps);
         let found = py.detach(|| {
             self.sample_sequences(Draw { seed, number }, &mut drawn, &Execution::serial())

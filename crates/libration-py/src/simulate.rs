@@ -155,7 +155,7 @@ pub(crate) fn _analyze(
         criteria: Criteria { max_drift, max_amplitude, max_error },
         timing: looped.timing()?,
     };
-    let done = work(py, |_| analyze::analyze(&request), |_| Ok(()))?;
+    let done = work(py, |stop| analyze::analyze_until(&request, stop), |_| Ok(()))?;
     let analysis = done.map_err(Raised::raised)?;
     serde_json::to_string(&analysis).map_err(|error| refused(error.to_string()))
 }

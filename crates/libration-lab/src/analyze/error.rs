@@ -60,6 +60,9 @@ pub enum AnalyzeError {
         /// In steps.
         steps: f64,
     },
+    /// The caller stopped it.
+    #[error("interrupted")]
+    Interrupted,
     /// The Jacobian does not exist at this state.
     #[error(
         "the step cannot be linearised about q = {q:?} (--q), v = {v:?} (--v): the force or its \

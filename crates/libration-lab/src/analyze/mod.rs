@@ -8,6 +8,8 @@ mod modes;
 mod request;
 mod timing;
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use libration::analysis::{Linearisation, Spectrum, SymbolicStep, forecast_drift};
 use libration::number::Wide;
 use libration::simulation::{EnergyDrift, Simulator};
@@ -26,6 +28,14 @@ pub use timing::{CostAnswer, Critical, Late, Timing, TimingAnswer};
 /// # Errors
 /// If the request does not fit the system; before any work.
 pub fn analyze(request: &Request) -> Result<Analysis, AnalyzeError> {
+    analyze_until(request, &AtomicBool::new(false))
+}
+
+/// The same, until `stop` is set.
+///
+/// # Errors
+/// As [`analyze`], and [`AnalyzeError::Interrupted`].
+pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, AnalyzeError> {
     if request.q.len() != request.v.len() {
         return Err(AnalyzeError::Coordinates { q: request.q.len(), v: request.v.len() });
     }
@@ -48,7 +58,7 @@ pub fn analyze(request: &Request) -> Result<Analysis, AnalyzeError> {
                 v: std::array::from_fn(|i| request.v[i]),
             };
             let step = match request.stepping {
-                Stepping::Method(method) => Step::take(method, model, start, request)?,
+                Stepping::Method(method) => Step::take(method, model, start, request, stop)?,
                 Stepping::Exact => {
                     let linear = Linearisation::exact(model, &start, request.dt);
                     Step { linear, evaluations: 0, drift: None }
@@ -74,13 +84,14 @@ impl<const D: usize> Step<D> {
         model: impl Model<D>,
         start: State<f64, D>,
         request: &Request,
+        stop: &AtomicBool,
     ) -> Result<Self, AnalyzeError> {
         let mut simulator = Simulator::new(model.on::<f64>(), integrator, start, request.dt)?;
         let linear = Linearisation::new(integrator, model, &start, request.dt);
         regular(&linear, request)?;
         let drift = match request.system.is_linear() {
             true => None,
-            false => simulated_drift(&mut simulator.clone(), model, request.steps),
+            false => simulated_drift(&mut simulator.clone(), model, request.steps, stop)?,
         };
         simulator.run(1, &mut ()).ok();
         Ok(Step { linear, evaluations: simulator.evaluations(), drift })
@@ -219,17 +230,29 @@ fn to_f64(rows: &[Vec<Wide>]) -> Vec<Vec<f64>> {
     rows.iter().map(|row| row.iter().map(|x| x.to_f64()).collect()).collect()
 }
 
+/// Steps between two looks at whether to stop.
+const PIECE: u64 = 1 << 16;
+
 /// The drift of a nonlinear system can only be simulated.
 fn simulated_drift<Sys, I, const D: usize>(
     simulator: &mut Simulator<Sys, I, f64, D>,
     model: impl Model<D>,
     steps: u64,
-) -> Option<Drift>
+    stop: &AtomicBool,
+) -> Result<Option<Drift>, AnalyzeError>
 where
     Sys: System<f64, D> + Copy,
     I: Integrator,
 {
     let mut drift = EnergyDrift::new(model.on::<f64>(), &simulator.sample().state);
-    let stopped = simulator.run(steps, &mut drift).err();
-    (drift.initial() != 0.0).then(|| Drift::simulated(&drift, stopped))
+    let (mut left, mut stopped) = (steps, None);
+    while left > 0 && stopped.is_none() {
+        if stop.load(Ordering::Relaxed) {
+            return Err(AnalyzeError::Interrupted);
+        }
+        let piece = left.min(PIECE);
+        stopped = simulator.run(piece, &mut drift).err();
+        left -= piece;
+    }
+    Ok((drift.initial() != 0.0).then(|| Drift::simulated(&drift, stopped)))
 }

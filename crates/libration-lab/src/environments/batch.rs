@@ -66,6 +66,12 @@ pub trait Batch<T, const O: usize>: Send + Sync {
     /// See [`Environments::reset`].
     fn reset(&mut self, which: &[bool]) -> Result<(), EnvironmentError>;
 
+    /// Ends the episode of every environment for which there is a `true`.
+    ///
+    /// # Errors
+    /// See [`Environments::end`].
+    fn end(&mut self, which: &[bool]) -> Result<(), EnvironmentError>;
+
     /// Begins a first episode in every environment for which there is a seed.
     ///
     /// # Errors
@@ -132,6 +138,10 @@ where
 
     fn reset(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
         Environments::reset(self, which)
+    }
+
+    fn end(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
+        Environments::end(self, which)
     }
 
     fn seed(&mut self, seeds: &[Option<u64>]) -> Result<(), EnvironmentError> {

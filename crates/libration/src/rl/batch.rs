@@ -2,13 +2,13 @@
 
 use bytemuck::Pod;
 
-use super::block::{self, BlockOf};
+use super::block::{self, BlockOf, OVER};
 use super::draws::Draws;
 use super::error::NOTHING_DRAWN;
 use super::history::History;
 use super::kernel::LANES;
 use super::start::Episode;
-use super::{Environment, EnvironmentError, Sensor, Start, Task, Variation, World};
+use super::{Autoreset, Environment, EnvironmentError, Sensor, Start, Task, Variation, World};
 use crate::control::Clock;
 use crate::control::error::ensure;
 use crate::ensemble::{Assign, EnsembleError, Execution, NoRoom};
@@ -187,6 +187,22 @@ where
         for n in (0..self.len).filter(|&n| which[n]) {
             let next = self.blocks[n / LANES].next(n % LANES);
             self.begin(n, next);
+        }
+        Ok(())
+    }
+
+    /// Ends the episode of every environment for which there is a `true`, as its task might have in the step before: what follows it is what
+    /// follows any.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] if there is not one for each.
+    pub fn end(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
+        EnvironmentError::shape("marks of the ends", which.len(), self.len)?;
+        if self.world.parts().autoreset == Autoreset::SameStep {
+            return self.reset(which);
+        }
+        for n in (0..self.len).filter(|&n| which[n]) {
+            self.blocks[n / LANES].ended[n % LANES] |= OVER;
         }
         Ok(())
     }
