@@ -1,5 +1,7 @@
 """Tasks of one's own: the engine's environments, paid by a function."""
 
+import copy
+
 import numpy as np
 import pytest
 from common import PERTURBED
@@ -22,33 +24,26 @@ def test_a_task_that_pays_as_the_engine_does_ends_the_same_episodes(mode, given)
     own = CustomTaskVectorEnv("Oscillator", 16, task=regulate, **given)
     built_in = libration.VectorEnv("Oscillator", 16, bound=0.9, **given)
     np.testing.assert_array_equal(own.reset(seed=3)[0], built_in.reset(seed=3)[0])
-    rng, first, ends, over_early = np.random.default_rng(0), np.ones(16, bool), 0, False
+    rng, early = np.random.default_rng(0), 0
     for _ in range(120):
-        actions = rng.uniform(-20, 20, (16, 1))
+        # More than there is to be had: both pay for what is.
+        actions = rng.uniform(-30, 30, (16, 1))
         mine, theirs = own.step(actions), built_in.step(actions)
-        # Of a first episode all is the same; which is the next one is for each to say.
-        for a, b in zip(mine[2:4], theirs[2:4]):
-            np.testing.assert_array_equal(a[first], b[first])
+        for k in (0, 2, 3):
+            np.testing.assert_array_equal(mine[k], theirs[k])
         # The prices are those of the engine, added up in another order.
-        np.testing.assert_allclose(mine[1][first], theirs[1][first], rtol=1e-14, atol=1e-300)
+        np.testing.assert_allclose(mine[1], theirs[1], rtol=1e-14, atol=1e-300)
         over = mine[2] | mine[3]
-        ends += over.sum()
-        over_early |= mine[2].any()
-        if mode == "SameStep" and over.any():
-            for n in np.flatnonzero(over & first):
-                np.testing.assert_array_equal(
-                    mine[4]["final_obs"][n], theirs[4]["final_obs"][n]
-                )
-        else:
-            np.testing.assert_array_equal(mine[0][first], theirs[0][first])
-        first &= ~over
+        early += mine[2].sum()
+        assert mine[4].keys() == theirs[4].keys()
+        for n in np.flatnonzero(over) if mode == "SameStep" else ():
+            np.testing.assert_array_equal(mine[4]["final_obs"][n], theirs[4]["final_obs"][n])
         if mode == "Disabled" and over.any():
             with pytest.raises(ResetNeeded):
                 own.step(actions)
-            own.reset(options={"reset_mask": over})
-            if (theirs[2] | theirs[3]).any():
-                built_in.reset(options={"reset_mask": theirs[2] | theirs[3]})
-    assert ends > 16 and over_early and not first.any()
+            for envs in (own, built_in):
+                envs.reset(options={"reset_mask": over})
+    assert early > 16
 
 
 def test_a_new_episode_is_neither_paid_nor_over_in_the_step_that_begins_it():
@@ -66,12 +61,14 @@ def test_a_new_episode_is_neither_paid_nor_over_in_the_step_that_begins_it():
     [
         (lambda b, u, a: np.zeros(3), "rewards"),
         (lambda b, u, a: (np.zeros(4), False), "ends of episodes"),
+        (lambda b, u, a: (np.zeros(4), np.ones(4)), "ends of episodes"),
+        (lambda b, u, a: np.zeros(4, complex), "rewards"),
     ],
 )
 def test_a_task_that_gives_something_else_is_told_so(task, told):
     own = CustomTaskVectorEnv("Pendulum", 4, task=task)
     own.reset(seed=0)
-    with pytest.raises(ValueError, match=told):
+    with pytest.raises((TypeError, ValueError), match=told):
         own.step(np.zeros((4, 1)))
 
 
@@ -80,3 +77,51 @@ def test_what_is_no_task_is_refused():
         CustomTaskVectorEnv("Pendulum", 4, task=3)
     with pytest.raises(TypeError, match="effort_cost"):
         CustomTaskVectorEnv("Pendulum", 4, task=regulate, effort_cost=1.0)
+
+
+def test_a_task_has_actions_of_its_own_within_what_there_is():
+    seen = []
+
+    def task(before, actions, after):
+        seen.append(actions.copy())
+        actions *= 0
+        return np.zeros(2)
+
+    own = CustomTaskVectorEnv("Pendulum", 2, task=task)
+    own.reset(seed=0)
+    actions = np.array([[1.0], [100.0]], np.float32)
+    own.step(actions)
+    np.testing.assert_array_equal(seen[0], [[1.0], [6.0]])
+    np.testing.assert_array_equal(actions, [[1.0], [100.0]])
+
+
+@pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
+def test_a_task_that_raises_leaves_environments_that_go_on(mode):
+    def task(before, actions, after):
+        calls.append(1)
+        if len(calls) == 3:
+            raise ZeroDivisionError
+        return np.zeros(2)
+
+    calls = []
+    own = CustomTaskVectorEnv("Duffing", 2, task=task, max_episode_steps=3, autoreset_mode=mode)
+    own.reset(seed=0)
+    for call in range(1, 9):
+        if call == 3:
+            with pytest.raises(ZeroDivisionError):
+                own.step(np.zeros(2))
+        else:
+            own.step(np.zeros(2))
+        if call == 3 and mode == "SameStep":
+            own.reset()
+
+
+def test_a_copy_of_a_task_s_environments_is_another():
+    own = CustomTaskVectorEnv("Oscillator", 3, task=lambda b, u, a: -a[:, 0])
+    own.reset(seed=1)
+    twin, before = copy.copy(own), own.states
+    twin.step(np.ones(3))
+    np.testing.assert_array_equal(own.states, before)
+    for mine, theirs in zip(own.step(np.ones(3))[:4], copy.deepcopy(own).step(np.ones(3))[:4]):
+        assert mine.shape == theirs.shape
+    np.testing.assert_array_equal(own.states, twin.states)

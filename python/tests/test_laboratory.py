@@ -1,7 +1,12 @@
 """Theory, advice, the laboratory and data sets from Python."""
 
+import copy
 import json
 import math
+import os
+import pickle
+import signal
+import threading
 
 import numpy as np
 import pytest
@@ -113,11 +118,38 @@ def test_advice_has_a_page_if_one_is_wanted(tmp_path):
         ({"system": "oscillator", "controller": (-100.0, 0.0)}, ValueError, "unstable"),
         ({"system": "oscillator", "tolerance": ("speed", 1.0)}, ValueError, "energy"),
         ({"config": {"loop": {"latncy": 1.0}}}, ValueError, "latency"),
+        ({"system": "oscillator", "tolerance": 3}, TypeError, "tolerance is 3"),
+        ({"system": "oscillator", "controller": 3}, ValueError, "controller is 3"),
+        ({"system": "oscillator", "controller": (1.0, 2.0), "skew": Gaussian(0.1)}, TypeError, "skew"),
+        ({"system": "oscillator", "controller": Observer(noise=3)}, ValueError, "noise"),
+        ({"system": "oscillator", "contoller": (1.0, 2.0)}, TypeError, "did you mean 'controller'"),
     ],
 )
 def test_what_cannot_be_advised_on_is_refused_by_name(asked, error, told):
     with pytest.raises(error, match=told):
         advise(**asked)
+
+
+def test_answers_are_copied_and_pickled():
+    step = analyze(SPRING, integrator="rk4", dt=0.01)
+    advice = advise(SPRING, (10.0, 2.0))
+    for answer in (step, advice):
+        for other in (copy.copy(answer), copy.deepcopy(answer), pickle.loads(pickle.dumps(answer))):
+            assert type(other) is type(answer) and dict(other) == dict(answer)
+    assert copy.copy(advice).holds
+
+
+def test_ctrl_c_ends_a_long_analysis():
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    try:
+        timer.start()
+        with pytest.raises(KeyboardInterrupt):
+            # A nonlinear system is simulated, for minutes.
+            analyze("pendulum", integrator="suzuki4", dt=0.01, steps=10**9)
+        timer.join()
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def test_the_laboratory_gives_findings_series_claims_and_files(tmp_path):
@@ -162,6 +194,7 @@ def test_without_a_folder_the_files_go_with_the_results():
         ({"config": {"drift": {"dt": [-1.0]}}}, ValueError, "drift.dt"),
         ({"config": {"drfit": {}}}, ValueError, "drift"),
         ({"config": 3}, TypeError, "config"),
+        ({"studies": [3]}, TypeError, "names"),
         ({"progress": 3}, TypeError, "progress"),
     ],
 )
@@ -176,6 +209,8 @@ DATA = {"environments": 8, "steps": 64, "chunk": {"environments": 4, "steps": 16
 def test_a_data_set_is_resumed_to_the_same_bytes_and_verified(tmp_path):
     whole = libration.datasets.write(tmp_path / "whole", DATA, format="npy", progress=False)
     assert (whole.transitions, whole.chunks) == (8 * 64, 8)
+    with pytest.raises(ValueError, match="resume=True"):
+        libration.datasets.write(tmp_path / "whole", DATA, format="npy")
     part = tmp_path / "part"
 
     class Stop(Exception):
@@ -206,6 +241,8 @@ def test_a_data_set_is_resumed_to_the_same_bytes_and_verified(tmp_path):
         ({"shard": (3, 2)}, ValueError, "shard"),
         ({"shard": (0, 0)}, ValueError, "shard"),
         ({"transitions": 0}, ValueError, "transitions"),
+        ({"format": 3}, TypeError, "format"),
+        ({"shard": 3}, TypeError, "shard"),
     ],
 )
 def test_a_data_set_that_cannot_be_is_refused_by_name(tmp_path, change, error, told):

@@ -83,6 +83,15 @@ def test_what_has_a_priority_of_zero_is_never_drawn():
         (lambda b: b.sample(4, correction=0.5), ValueError, "priorities"),
         (lambda b: b.update_priorities([1], [1.0]), ValueError, "priorities"),
         (lambda b: b.sample_sequences(4, 60), ValueError, "to draw"),
+        (lambda b: b.sample_sequences(2**32, 2**32), MemoryError, "memory"),
+        (lambda b: b.sample_sequences(3, 2**32), MemoryError, "memory"),
+        (lambda b: b.sample(2**32), MemoryError, "memory"),
+        (lambda b: b.insert(3), TypeError, "rollout must be"),
+        (lambda b: b.update_priorities([1.5], [1.0]), TypeError, "whole"),
+        (lambda b: b.update_priorities([-1], [1.0]), ValueError, "those that were drawn"),
+        (lambda b: b.update_priorities([[1]], [[1.0]]), ValueError, "shape"),
+        (lambda b: ReplayBuffer(None, 3), TypeError, "environments must be"),
+        (lambda b: ReplayBuffer(b, 3, prorities=True), TypeError, "did you mean 'priorities'"),
     ],
 )
 def test_what_cannot_be_drawn_is_refused_by_name(call, error, told):

@@ -1,5 +1,6 @@
 """Trajectories from Python: those of the engine, whoever computes the force."""
 
+import copy
 import math
 import os
 import pickle
@@ -82,6 +83,53 @@ def test_a_step_that_needs_the_force_twice_at_a_place_computes_it_once_if_it_is_
         assert len(calls) == wanted
 
 
+def test_a_force_may_use_its_memory_again_and_may_not_write_what_it_is_given():
+    room = np.zeros((2, 1))
+
+    def again(q, v):
+        room[:] = -10.0 * q
+        return room
+
+    def writes(q, v):
+        v += 1.0
+        return -q
+
+    given = {"integrator": "rk4", "dt": 0.01, "q": [1.0, 2.0]}
+    mine, wanted = Ensemble(again, **given), Ensemble(SPRING, **given)
+    for all in (mine, wanted):
+        all.advance(3)
+    np.testing.assert_array_equal(mine.q, wanted.q)
+    with pytest.raises(ValueError, match="read-only"):
+        Ensemble(writes, **given).advance(1)
+
+
+def test_threads_take_turns_with_a_custom_system():
+    one, many = (Ensemble(spring, dt=0.01, q=[1.0, 2.0]) for _ in range(2))
+    one.advance(400)
+    threads = [threading.Thread(target=lambda: [many.advance(5) for _ in range(20)]) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert many.step == 400
+    np.testing.assert_array_equal(many.q, one.q)
+
+
+def test_an_ensemble_is_neither_copied_nor_pickled():
+    for all in (Ensemble("pendulum", dt=0.01, q=[1.0]), Ensemble(spring, dt=0.01, q=[1.0])):
+        for of in (copy.copy, copy.deepcopy, pickle.dumps):
+            with pytest.raises(TypeError, match="make another"):
+                of(all)
+
+
+@pytest.mark.parametrize("energy", [lambda q, v: 1.0, lambda q, v: q, lambda q, v: np.array(["a"])])
+def test_an_energy_of_another_shape_is_refused(energy):
+    with pytest.raises(ValueError, match="the energy has shape"):
+        Ensemble(CustomSystem(spring, energy=energy), dt=0.01, q=[1.0]).energy
+    with pytest.raises(TypeError, match="acceleration must be a function"):
+        CustomSystem(3)
+
+
 def test_a_loop_is_late_and_jitters_as_it_is_told():
     loop = {"integrator": "exact", "dt": 0.01, "steps": 2000, "feedback": (10.0, 2.0)}
     at_once = simulate(SPRING, **loop)
@@ -140,7 +188,13 @@ WRONG = [
     ({"jitter": ("normal", 0.1)}, ValueError, "gaussian"),
     ({"jitter": -0.1}, ValueError, "jitter"),
     ({"time_stamps": [0.0, 0.1]}, ValueError, "steps"),
+    ({"stesp": 3}, TypeError, "did you mean 'steps'"),
+    ({"time_stamps": "abc"}, TypeError, "time_stamps"),
+    ({"spread": 0.5}, ValueError, "spread is 0.5, but there is no count"),
+    ({"feedback": np.array([1.0, 2.0, 3.0])}, ValueError, "feedback"),
     ({"system": spring}, ValueError, "q is missing"),
+    ({"system": spring, "q": 1.0, "seed": 3}, ValueError, "seed"),
+    ({"system": spring, "q": "a"}, TypeError, "q must be"),
     ({"system": spring, "q": 1.0, "jitter": 0.1}, ValueError, "jitter"),
 ]
 
@@ -161,7 +215,9 @@ def test_what_cannot_be_simulated_is_refused_by_name(change, error, told):
         ({"q": [1.0], "v": [1.0, 2.0]}, ValueError, "shape"),
         ({"q": ["a"]}, TypeError, "q"),
         ({"q": [math.nan]}, ValueError, "q"),
-        ({"integrator": "exact"}, ValueError, "exact"),
+        ({"integrator": "exact"}, ValueError, "exact steps are those of simulate"),
+        ({"q": [1e300], "dtype": "float32"}, ValueError, "q is not finite in float32"),
+        ({"system": lambda q, v: q + 1j}, TypeError, "complex"),
         ({"dtype": "float16"}, ValueError, "float32"),
         ({"system": lambda q, v: q[:, 0]}, ValueError, "shape"),
     ],
