@@ -10,12 +10,13 @@ from __future__ import annotations
 from ._native import __version__
 from . import datasets, policies
 from .analysis import Advice, Analysis, advise, analyze
+from .ensemble import Ensemble
 from .environments import Environments
 from .laboratory import STUDIES, Finding, Results, run_lab
 from .perturbations import LQR, PD, PID, Gaussian, Observer, Steps, Uniform
 from .replay import ReplayBuffer
 from .rollout import Rollout
-from .simulation import Ensemble, Trajectory, simulate
+from .simulation import Trajectory, simulate
 from .systems import INTEGRATORS, SYSTEMS, CustomSystem, System
 
 __all__ = [

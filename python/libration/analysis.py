@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any, Mapping, Sequence
 
 from . import _native
+from ._asked import coordinates, told_loop, told_step, whole
 from ._named import named
 from ._progress import Progress, Shown
 from ._settings import number
 from ._toml import text_of
 from .perturbations import LQR, PD, PID, Controller, Observer, law, numbers
 from .perturbations import latency as _latency
-from .simulation import coordinates, told_loop, told_step, whole
 from .systems import CustomSystem, System, known
 
 __all__ = ["Advice", "Analysis", "advise", "analyze"]

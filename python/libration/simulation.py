@@ -1,21 +1,21 @@
-"""Trajectories: of one system, and of many at once."""
+"""Trajectories: of one system, or of several copies of it."""
 
 from __future__ import annotations
 
 import math
-import threading
 from typing import Any, Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
+from ._asked import coordinates, text, told_loop, told_step, whole
 from ._named import named
-from ._settings import count, nearest, number, positive
-from .perturbations import gains, latency as _latency, law, numbers
-from .systems import INTEGRATORS, CustomSystem, Program, System, known, seen
+from ._settings import nearest, number
+from .ensemble import Ensemble
+from .systems import CustomSystem, known
 
-__all__ = ["Ensemble", "Trajectory", "simulate"]
+__all__ = ["Trajectory", "simulate"]
 
 _FLOATS = {"f64": np.float64, "f32": np.float32}
 
@@ -208,186 +208,3 @@ def _custom(
             columns[f"{letter}{i}"] = np.array([row[i] for row in rows], one.dtype)
     columns["energy"] = np.array(energies, one.dtype)
     return Trajectory(columns, {"step": "1", "t": "s"}, ended)
-
-
-class Ensemble:
-    """Many trajectories of a system, stepped together and held between calls.
-
-    Parameters
-    ----------
-    system:
-        As in :func:`simulate`.
-    integrator:
-        One of :data:`~libration.INTEGRATORS` but ``"exact"``.
-    dt:
-        The time step in s.
-    q, v:
-        Where trajectories start, ``(N, dimension)``, or ``(N,)`` where there is one degree of freedom; by default at rest.
-    dtype:
-        ``"float64"`` or ``"float32"``: of every operation.
-    threads:
-        How many; 0 for as many as there are cores. What comes out does not depend on it, nor on ``N``.
-    """
-
-    @named
-    def __init__(
-        self,
-        system: Any,
-        *,
-        integrator: str = "velocity-verlet",
-        dt: float,
-        q: ArrayLike,
-        v: ArrayLike | None = None,
-        dtype: Any = "float64",
-        threads: int = 0,
-    ) -> None:
-        self.system = known(system)
-        self.integrator = text("integrator", integrator)
-        self.dt = positive("dt", dt)
-        self.dtype = np.dtype(dtype)
-        if self.dtype not in (np.float64, np.float32):
-            raise ValueError(f"dtype is {self.dtype}, but it must be float64 or float32")
-        at = _rows("q", q)
-        speed = np.zeros_like(at) if v is None else _rows("v", v)
-        if at.shape != speed.shape:
-            raise ValueError(f"q has shape {at.shape} and v {speed.shape}, but they must be the same")
-        if 0 in at.shape:
-            raise ValueError(f"q has shape {at.shape}, but there must be a trajectory at least")
-        for name, start in (("q", at), ("v", speed)):
-            with np.errstate(over="ignore"):
-                if not np.isfinite(start.astype(self.dtype)).all():
-                    raise ValueError(f"{name} is not finite in {self.dtype}")
-        threads = count("threads", threads, 0, 1024)
-        self._step, self._len = 0, len(at)
-        if isinstance(self.system, System):
-            single = bool(self.dtype == np.float32)
-            told = self.system._told()
-            self._held: Any = _native.Trajectories(
-                told, self.integrator, self.dt, at, speed, single, threads
-            )
-        else:
-            self._held = Program(self.integrator, self.system)
-            # Threads take turns with what is Python's.
-            self._turn = threading.RLock()
-            self._state = (at.astype(self.dtype), speed.astype(self.dtype))
-
-    @property
-    def step(self) -> int:
-        """Steps taken."""
-        return self._held._step() if isinstance(self.system, System) else self._step
-
-    @property
-    def time(self) -> float:
-        """The time in s."""
-        return self.step * self.dt
-
-    @property
-    def q(self) -> NDArray[Any]:
-        """Positions, ``(N, dimension)``: a copy."""
-        return self._held._states()[0] if isinstance(self.system, System) else self._state[0].copy()
-
-    @property
-    def v(self) -> NDArray[Any]:
-        """Velocities, ``(N, dimension)``: a copy."""
-        return self._held._states()[1] if isinstance(self.system, System) else self._state[1].copy()
-
-    @property
-    def energy(self) -> NDArray[Any]:
-        """Energies per unit mass in J/kg, ``(N,)``."""
-        if isinstance(self.system, System):
-            return self._held._energies()
-        if self.system.energy is None:
-            raise ValueError("the custom system has no energy")
-        with self._turn:
-            found = np.asarray(self.system.energy(*map(seen, self._state)))
-        if found.shape != (len(self),) or found.dtype.kind not in "fiu":
-            raise ValueError(
-                f"the energy has shape {found.shape} and dtype {found.dtype}, but it must be "
-                f"({len(self)},) real numbers"
-            )
-        return found.astype(self.dtype)
-
-    def advance(self, steps: int) -> None:
-        """Take so many steps. Ctrl-C ends it between two of them."""
-        steps = count("steps", steps, 0, 2**62)
-        if isinstance(self.system, System):
-            self._held._advance(steps)
-            return
-        dt = self.dtype.type(self.dt)
-        # What overflows is infinite, as in the engine.
-        with self._turn, np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            for _ in range(steps):
-                self._state = self._held.step(*self._state, dt)
-                self._step += 1
-
-    def __len__(self) -> int:
-        return self._len
-
-    def __copy__(self) -> Ensemble:
-        raise TypeError("an Ensemble cannot be copied: make another of its q and v")
-
-    def __reduce__(self) -> Any:
-        raise TypeError("an Ensemble cannot be pickled: make another of its q and v")
-
-
-def _rows(name: str, values: ArrayLike) -> NDArray[np.float64]:
-    array = np.asarray(values)
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name} has dtype {array.dtype}, but it must be real numbers")
-    array = np.ascontiguousarray(array, np.float64)
-    if array.ndim == 1:
-        array = array[:, np.newaxis]
-    if array.ndim != 2:
-        raise ValueError(f"{name} has shape {array.shape}, but it must be (N, dimension) or (N,)")
-    if not np.isfinite(array).all():
-        raise ValueError(f"{name} is not finite everywhere")
-    return array
-
-
-def told_step(system: System, integrator: Any, dt: Any, q: Any, v: Any) -> dict[str, Any]:
-    """A system, its start and its step, as the engine is told of them."""
-    text("integrator", integrator)
-    if integrator not in INTEGRATORS:
-        raise ValueError(f"unknown integrator {integrator!r}: {nearest(integrator, INTEGRATORS)}")
-    return {
-        "system": system._told(),
-        "q": coordinates("q", q),
-        "v": coordinates("v", v),
-        "integrator": integrator,
-        "dt": number("dt", dt, "finite and greater than 0"),
-    }
-
-
-def told_loop(
-    feedback: Any, latency: Any, jitter: Any, skew: Any, loss: Any = None, cost_weights: Any = None
-) -> dict[str, Any]:
-    """A loop and what is wrong with it, as the engine is told of them."""
-    return {
-        "feedback": gains("feedback", feedback),
-        "latency": _latency(latency),
-        "jitter": law("jitter", jitter),
-        "skew": law("skew", skew),
-        "loss": None if loss is None else number("loss", loss, "at least 0 and below 1"),
-        "cost_weights": None if cost_weights is None else numbers("cost_weights", cost_weights, 3),
-    }
-
-
-def coordinates(name: str, value: ArrayLike | None) -> list[float] | None:
-    if value is None:
-        return None
-    array = np.atleast_1d(np.asarray(value))
-    if array.dtype.kind not in "fiu" or array.ndim != 1:
-        raise TypeError(f"{name} must be a number or a list of numbers, not {value!r:.60}")
-    if not np.isfinite(array).all():
-        raise ValueError(f"{name} is {array.tolist()}, but it must be finite")
-    return array.astype(np.float64).tolist()
-
-
-def whole(name: str, value: Any, least: int = 1) -> int:
-    return count(name, value, least, 2**63 - 1)
-
-
-def text(name: str, value: Any) -> str:
-    if not isinstance(value, str):
-        raise TypeError(f"{name} must be a string, not {type(value).__name__}")
-    return value
