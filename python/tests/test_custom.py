@@ -24,7 +24,7 @@ def test_a_task_that_pays_as_the_engine_does_ends_the_same_episodes(mode, given)
     own = CustomTaskVectorEnv("Oscillator", 16, task=regulate, **given)
     built_in = libration.VectorEnv("Oscillator", 16, bound=0.9, **given)
     np.testing.assert_array_equal(own.reset(seed=3)[0], built_in.reset(seed=3)[0])
-    rng, early = np.random.default_rng(0), 0
+    rng, early, ends = np.random.default_rng(0), 0, 0
     for _ in range(120):
         # More than there is to be had: both pay for what is.
         actions = rng.uniform(-30, 30, (16, 1))
@@ -34,7 +34,7 @@ def test_a_task_that_pays_as_the_engine_does_ends_the_same_episodes(mode, given)
         # The prices are those of the engine, added up in another order.
         np.testing.assert_allclose(mine[1], theirs[1], rtol=1e-14, atol=1e-300)
         over = mine[2] | mine[3]
-        early += mine[2].sum()
+        early, ends = early + mine[2].sum(), ends + over.sum()
         assert mine[4].keys() == theirs[4].keys()
         for n in np.flatnonzero(over) if mode == "SameStep" else ():
             np.testing.assert_array_equal(mine[4]["final_obs"][n], theirs[4]["final_obs"][n])
@@ -43,7 +43,7 @@ def test_a_task_that_pays_as_the_engine_does_ends_the_same_episodes(mode, given)
                 own.step(actions)
             for envs in (own, built_in):
                 envs.reset(options={"reset_mask": over})
-    assert early > 16
+    assert ends > 16 and early > 0
 
 
 def test_a_new_episode_is_neither_paid_nor_over_in_the_step_that_begins_it():
