@@ -47,9 +47,11 @@ def coordinates(name: str, value: ArrayLike | None) -> list[float] | None:
     array = np.atleast_1d(np.asarray(value))
     if array.dtype.kind not in "fiu" or array.ndim != 1:
         raise TypeError(f"{name} must be a number or a list of numbers, not {value!r:.60}")
+    with np.errstate(over="ignore"):
+        array = array.astype(np.float64)
     if not np.isfinite(array).all():
         raise ValueError(f"{name} is {array.tolist()}, but it must be finite")
-    return array.astype(np.float64).tolist()
+    return array.tolist()
 
 
 def whole(name: str, value: Any, least: int = 1) -> int:

@@ -12,6 +12,7 @@ __all__ = [
     "Buffer",
     "Memory",
     "Trajectories",
+    "_MOST_STEPS",
     "__version__",
     "_advise",
     "_analyze",
@@ -34,6 +35,7 @@ _System = tuple[str, Sequence[tuple[str, float]]]
 _Columns = dict[str, _Numbers]
 
 __version__: str
+_MOST_STEPS: int
 
 def _seconds_of_steps(settings: Mapping[str, Any], steps: int) -> float: ...
 

@@ -250,7 +250,9 @@ def _request(
 ) -> dict[str, Any]:
     """What is asked, as the file says it."""
     system = _of_catalogue(system)
-    start = {"q": _list("q", q, system), "v": _list("v", v, system)}
+    at, speed = coordinates("q", q), coordinates("v", v)
+    origin = [0.0] * len(at or speed or [0.0] * system.dimensions.start)
+    start = {"q": at or origin, "v": speed or origin}
     asked: dict[str, Any] = {"system": {system.name: dict(system.parameters)}, "start": start}
     if horizon is not None:
         asked["asked"] = {"horizon": number("horizon", horizon, "a number")}
@@ -280,11 +282,6 @@ def _request(
     if loop:
         asked["loop"] = loop
     return asked
-
-
-def _list(name: str, values: Any, system: System) -> list[float]:
-    given = coordinates(name, values)
-    return [0.0] * system.dimensions.start if given is None else given
 
 
 def _controller(controller: Any) -> dict[str, Any]:

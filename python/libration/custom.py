@@ -107,10 +107,17 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         # Whatever the task does: what the engine says of the end holds.
         self._ended = lost | truncated
         taken = read(actions, self.num_envs, rewards.dtype.name).reshape(self.num_envs, 1)
-        paid = self.task(before, np.clip(taken, -self._most, self._most), self.states)
-        given, over = paid if isinstance(paid, tuple) else (paid, np.zeros(self.num_envs, bool))
-        rewards = self._row("rewards", given, "fiu").astype(observations.dtype)
-        terminated = (self._row("ends of episodes", over, "b") & ~began) | lost
+        try:
+            paid = self.task(before, np.clip(taken, -self._most, self._most), self.states)
+            given, over = paid if isinstance(paid, tuple) else (paid, np.zeros(self.num_envs, bool))
+            rewards = self._row("rewards", given, "fiu").astype(observations.dtype)
+            terminated = (self._row("ends of episodes", over, "b") & ~began) | lost
+        except BaseException:
+            # Whoever is reset in the step that ends an episode does not wait for the task.
+            if self._mode is AutoresetMode.SAME_STEP and self._ended.any():
+                self.inner.reset(options={"reset_mask": self._ended})
+                self._ended = np.zeros(self.num_envs, bool)
+            raise
         rewards[lost | began] = 0
         ended = terminated | truncated
         if self._mode is AutoresetMode.SAME_STEP:

@@ -246,6 +246,8 @@ class Environments(_native.Batch):
             raise ValueError(
                 f"out has shape {out.rewards.shape}, but it must be ({horizon}, {self.num_envs})"
             )
+        # Of a rollout that is interrupted they are not those that follow.
+        out.last_observations = np.empty(0)
         out.last_observations = self._rollout(told, out._memory)
         return out
 

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any, Sequence
 
-from ._settings import number
+from ._settings import is_several, number
+from ._settings import law as _law
 
 __all__ = ["Gaussian", "LQR", "Observer", "PD", "PID", "Steps", "Uniform"]
 
@@ -83,13 +84,7 @@ def law(name: str, value: Any) -> tuple[str, float] | None:
     """A law as the engine is told of it."""
     if value is None:
         return None
-    if isinstance(value, (Gaussian, Uniform)):
-        return type(value).__name__.lower(), number(name, value.rms, "finite")
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        if len(value) != 2 or not isinstance(value[0], str):
-            raise ValueError(f"{name} is {value!r}, but it must be like ('gaussian', 0.05)")
-        return value[0], number(name, value[1], "finite")
-    return "gaussian", number(name, value, "finite")
+    return _law(name, value)
 
 
 def latency(value: Any) -> tuple[str, float] | None:
@@ -114,6 +109,6 @@ def numbers(name: str, value: Any, count: int) -> list[float]:
     """So many numbers."""
     if hasattr(value, "tolist"):
         value = value.tolist()
-    if isinstance(value, str) or not isinstance(value, Sequence) or len(value) != count:
+    if not is_several(value) or len(value) != count:
         raise ValueError(f"{name} is {value!r}, but it must be {count} numbers")
     return [number(name, x, "a number", lambda _: True) for x in value]

@@ -145,16 +145,20 @@ class ReplayBuffer:
         asked = self._asked(batch_size, steps, gamma)
         if correction is not None:
             asked["correction"] = number("correction", correction, "0 to 1")
-        return Transitions(**self._buffer._sample(asked))
+        drawn = Transitions(**self._buffer._sample(asked))
+        self.number += 1
+        return drawn
 
     def sample_sequences(self, batch_size: int, steps: int) -> Sequences:
         """Draw stretches of so many steps with replacement, each as likely."""
-        return Sequences(**self._buffer._sequences(self._asked(batch_size, steps, 1.0)))
+        drawn = Sequences(**self._buffer._sequences(self._asked(batch_size, steps, 1.0)))
+        self.number += 1
+        return drawn
 
     def update_priorities(
         self, numbers: NDArray[np.uint64], priorities: ArrayLike, exponent: float = 0.6
     ) -> int:
-        """Give transitions other priorities; their weights are ``priority ** exponent``. Gives how many are still there."""
+        """Give transitions other priorities: they are drawn in proportion to ``priority ** exponent``. Gives how many are still there."""
         which, errors = np.asarray(numbers), np.asarray(priorities)
         if which.dtype.kind not in "iu" or errors.dtype.kind not in "fiu":
             raise TypeError(
@@ -178,5 +182,4 @@ class ReplayBuffer:
             "gamma": number("gamma", gamma, "0 to 1"),
             "correction": None,
         }
-        self.number += 1
         return asked

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any, Mapping
 
@@ -16,6 +17,8 @@ from .ensemble import Ensemble
 from .systems import CustomSystem, known
 
 __all__ = ["Trajectory", "simulate"]
+
+MOST_STEPS: int = _native._MOST_STEPS
 
 _FLOATS = {"f64": np.float64, "f32": np.float32}
 
@@ -179,6 +182,10 @@ def simulate(
     return Trajectory(columns, units, ended)
 
 
+def _finite(all: Ensemble) -> bool:
+    return bool(np.isfinite(all.q).all() and np.isfinite(all.v).all())
+
+
 def _custom(
     system: CustomSystem, integrator: str, dt: Any, steps: Any, q: Any, v: Any, float: str, every: Any
 ) -> Trajectory:
@@ -190,11 +197,20 @@ def _custom(
     start = np.array([coordinates("q", q)])
     speed = None if v is None else np.array([coordinates("v", v)])
     one = Ensemble(system, integrator=integrator, dt=dt, q=start, v=speed, dtype=_FLOATS[float])
-    kept = [0, *range(every, steps, every), steps]
+    if steps > MOST_STEPS:
+        raise ValueError(f"steps is {steps}, but it must be 1 to {MOST_STEPS}")
+    kept = itertools.chain([0], range(every, steps, every), [steps])
     steps_kept, positions, velocities, energies, ended = [], [], [], [], {}
     for step in kept:
         one.advance(step - one.step)
-        if not (np.isfinite(one.q).all() and np.isfinite(one.v).all()):
+        if not _finite(one):
+            # Which of the steps since the last row it was.
+            again = Ensemble(
+                system, integrator=integrator, dt=dt, q=positions[-1:], v=velocities[-1:], dtype=one.dtype
+            )
+            while _finite(again):
+                again.advance(1)
+            step = steps_kept[-1] + again.step
             ended = {"step": step, "t": step * one.dt, "reason": "the state is not finite"}
             break
         steps_kept.append(step)

@@ -1,4 +1,4 @@
-"""Every example runs, and says what it should."""
+"""Every example that needs no library of learners runs, and says what it should."""
 
 import contextlib
 import io

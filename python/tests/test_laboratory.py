@@ -99,6 +99,10 @@ def test_every_controller_is_advised_on(controller):
     assert advise(SPRING, controller).holds
 
 
+def test_what_is_not_said_of_a_start_is_the_origin():
+    assert advise("oscillator", q=[1.0, 0.5], horizon=1.0).v == [0.0, 0.0]
+
+
 def test_advice_has_a_page_if_one_is_wanted(tmp_path):
     plain = advise("pendulum", tolerance=("energy", 1e-4), horizon=1.0, q=1.0)
     with pytest.raises(ValueError, match="page=True"):

@@ -156,12 +156,15 @@ def test_every_float_type_has_an_array_that_holds_it(float, dtype):
     assert path["q0"].dtype == np.dtype(dtype)
 
 
-def test_a_state_that_overflows_ends_a_trajectory_and_says_where():
-    for system, more in ((SPRING, {}), (spring, {"q": 1.0})):
-        path = simulate(system, integrator="explicit-euler", dt=100.0, steps=1000, **more)
-        # A step multiplies by √(1 + ω²Δt²) = 316.2; 10^308 is 123 of them.
-        assert abs(path.stopped["step"] - 123) <= 2
-        assert path["step"][-1] == path.stopped["step"] - 1
+@pytest.mark.parametrize("every", [1, 7])
+def test_a_state_that_overflows_ends_a_trajectory_and_says_where(every):
+    given = {"integrator": "explicit-euler", "dt": 100.0, "steps": 1000, "every": every}
+    built_in, own = simulate(SPRING, **given), simulate(spring, q=1.0, **given)
+    # A step multiplies by √(1 + ω²Δt²) = 316.2; 10^308 is 123 of them.
+    assert abs(built_in.stopped["step"] - 123) <= 2
+    for path in (built_in, own):
+        assert path.stopped["step"] == built_in.stopped["step"]
+        assert 0 < path.stopped["step"] - path["step"][-1] <= every
 
 
 WRONG = [
@@ -192,7 +195,11 @@ WRONG = [
     ({"time_stamps": "abc"}, TypeError, "time_stamps"),
     ({"spread": 0.5}, ValueError, "spread is 0.5, but there is no count"),
     ({"feedback": np.array([1.0, 2.0, 3.0])}, ValueError, "feedback"),
+    ({"feedback": b"ab"}, ValueError, "feedback"),
+    ({"jitter": b"ab"}, TypeError, "jitter"),
+    ({"q": np.longdouble("1e400")}, ValueError, "q"),
     ({"system": spring}, ValueError, "q is missing"),
+    ({"system": spring, "q": 1.0, "steps": 10**12}, ValueError, "steps"),
     ({"system": spring, "q": 1.0, "seed": 3}, ValueError, "seed"),
     ({"system": spring, "q": "a"}, TypeError, "q must be"),
     ({"system": spring, "q": 1.0, "jitter": 0.1}, ValueError, "jitter"),

@@ -43,7 +43,7 @@ pub(crate) fn run() -> Outcome {
     failure.map_or(Ok(()), Err)
 }
 
-/// The tests of the workspace, and beside them those of the Python package, which keep one core busy: those say what they have to say when
+/// The tests of the workspace, and beside them those of the Python package, which mostly keep one core busy: those say what they have to say when
 /// the others are done.
 fn tests() -> Outcome {
     // Both have it.
@@ -54,7 +54,10 @@ fn tests() -> Outcome {
         let outcome = test::with_report(&report::folder());
         let (package, said) = package.join().map_err(|_| "nobody ran the package's tests")?;
         println!("{said}");
-        outcome.and(package)
+        match (outcome, package) {
+            (Err(tests), Err(package)) => Err(format!("{tests}; {package}")),
+            (outcome, package) => outcome.and(package),
+        }
     })
 }
 

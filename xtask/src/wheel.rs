@@ -9,7 +9,7 @@ use crate::{Outcome, command, python, workspace};
 const OLDER_GYMNASIUM: &str = "gymnasium==1.2.2";
 
 /// What depends on Gymnasium.
-const OF_GYMNASIUM: [&str; 3] = ["test_vector.py", "test_rollout.py", "test_custom.py"];
+const OF_GYMNASIUM: [&str; 3] = ["test_vector.py", "test_custom.py", "test_leaks.py"];
 
 /// Builds the wheel, installs it into the environment of the tests and runs those of the package, with the newest Gymnasium and with an
 /// older one; `arguments`, which else are what there is for each, go to pytest.

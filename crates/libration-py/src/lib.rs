@@ -47,6 +47,10 @@ mod _native {
     #[pymodule_export]
     use crate::trajectories::Trajectories;
 
+    /// Steps of a simulation.
+    #[pymodule_export]
+    const _MOST_STEPS: u64 = *libration_lab::config::limits::STEPS.end();
+
     #[pymodule_export]
     #[allow(non_upper_case_globals, reason = "as Python names it")]
     const __version__: &str = env!("CARGO_PKG_VERSION");
