@@ -200,7 +200,10 @@ def _custom(
     if steps > MOST_STEPS:
         raise ValueError(f"steps is {steps}, but it must be 1 to {MOST_STEPS}")
     kept = itertools.chain([0], range(every, steps, every), [steps])
-    steps_kept, positions, velocities, energies, ended = [], [], [], [], {}
+    steps_kept: list[int] = []
+    positions: list[NDArray[Any]] = []
+    velocities: list[NDArray[Any]] = []
+    energies, ended = [], {}
     for step in kept:
         one.advance(step - one.step)
         if not _finite(one):
