@@ -7,6 +7,9 @@ engine's environments are :class:`Environments`; with Gymnasium installed they a
 
 from __future__ import annotations
 
+import os
+
+from . import _native
 from ._native import __version__
 from . import datasets, policies
 from .analysis import Advice, Analysis, advise, analyze
@@ -50,6 +53,8 @@ __all__ = [
     "simulate",
 ]
 
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_native._forked)
 
 try:
     from .custom import CustomTaskVectorEnv

@@ -17,6 +17,7 @@ __all__ = [
     "_advise",
     "_analyze",
     "_dataset_settings",
+    "_forked",
     "_integrators",
     "_parameters",
     "_program",
@@ -68,6 +69,7 @@ def _run_lab(
     out: PathLike[str],
     progress: Callable[[str, int, int, str, int, int], Any] | None,
 ) -> tuple[str, list[tuple[str, str, _Columns, dict[str, str]]]]: ...
+def _forked() -> None: ...
 def _dataset_settings() -> str: ...
 def _write_dataset(
     settings: str,

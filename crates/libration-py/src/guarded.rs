@@ -15,9 +15,9 @@ const NAP: Duration = Duration::from_micros(20);
 /// Something that threads of Python's take turns with.
 pub(crate) struct Guarded<T> {
     inside: Mutex<T>,
-    /// The thread that has it, and the process of that thread.
+    /// The thread that has it, and after how many forks it took it.
     owner: AtomicUsize,
-    process: AtomicU32,
+    forks: AtomicU32,
 }
 
 /// What is inside, for as long as it is needed.
@@ -31,7 +31,7 @@ impl<T> Guarded<T> {
         Guarded {
             inside: Mutex::new(inside),
             owner: AtomicUsize::new(NOBODY),
-            process: AtomicU32::new(0),
+            forks: AtomicU32::new(0),
         }
     }
 
@@ -52,7 +52,7 @@ impl<T> Guarded<T> {
                             "it is at work: who is called from within, as a handler of signals or a finaliser, cannot use it",
                         ));
                     }
-                    let here = self.process.load(Ordering::Acquire) == std::process::id();
+                    let here = self.forks.load(Ordering::Acquire) == FORKS.load(Ordering::Relaxed);
                     if owner != NOBODY && !here {
                         return Err(PyRuntimeError::new_err(
                             "a thread was at work with it when this process was forked: it is of no use here",
@@ -63,7 +63,7 @@ impl<T> Guarded<T> {
                     continue;
                 }
             };
-            self.process.store(std::process::id(), Ordering::Release);
+            self.forks.store(FORKS.load(Ordering::Relaxed), Ordering::Release);
             self.owner.store(this_thread(), Ordering::Release);
             return Ok(Entered { inside, owner: &self.owner });
         }
@@ -71,6 +71,16 @@ impl<T> Guarded<T> {
 }
 
 const NOBODY: usize = 0;
+
+/// How many forks lie between the process that imported the package and this one. Whoever asked the system which process this is would pay for
+/// that in every step.
+static FORKS: AtomicU32 = AtomicU32::new(0);
+
+/// This is another process now; Python says so.
+#[pyfunction]
+pub(crate) fn _forked() {
+    FORKS.fetch_add(1, Ordering::Relaxed);
+}
 
 /// What no other thread that lives has.
 fn this_thread() -> usize {

@@ -33,6 +33,8 @@ mod _native {
     #[pymodule_export]
     use crate::datasets::{_dataset_settings, _verify_dataset, _write_dataset};
     #[pymodule_export]
+    use crate::guarded::_forked;
+    #[pymodule_export]
     use crate::laboratory::{_advise, _run_lab};
     #[pymodule_export]
     use crate::layer::Batch;
