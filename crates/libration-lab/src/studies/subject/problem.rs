@@ -96,7 +96,7 @@ impl<M: Model<D>, const D: usize> Problem<M, D> {
     ) -> Result<State<S, D>, SimulationError> {
         let watch = &mut |sample: &Sample<S, D>| watch(sample);
         if const { size_of::<S>() > size_of::<f64>() } {
-            // What each operation takes is more than a call, and more code than all else.
+            // What each operation takes is more than a call.
             let acceleration = |state: &State<S, D>| self.model.on::<S>().acceleration(state);
             let mut simulator = Simulator::new(Chosen(&acceleration), method, start, dt)?;
             simulator.run(steps, watch)?;
