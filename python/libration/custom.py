@@ -22,8 +22,8 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
     """Environments of the engine that pay what a function says.
 
     System, integrator, latencies, clocks and noise are the engine's, bit for bit; rewards and ends of episodes are those of ``task``, which is
-    called once a step with arrays of all environments. A step costs what that takes and some ten microseconds besides, many times what the
-    engine alone takes; rollouts inside the engine are not to be had.
+    called once a step with arrays of all environments. A step costs what that takes and several calls of NumPy besides, where the engine
+    alone takes one call; rollouts inside the engine are not to be had.
 
     Parameters
     ----------
