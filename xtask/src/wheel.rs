@@ -12,7 +12,7 @@ const OLDER_GYMNASIUM: &str = "gymnasium==1.2.2";
 const APART: [&str; 3] = ["test_laboratory.py", "test_replay.py", "test_simulation.py"];
 
 /// Its types are written against those of the newest release.
-const OF_THE_NEWEST: &str = "test_stubs.py::test_the_package_agrees_with_its_types";
+const OF_THE_NEWEST: &str = "python/tests/test_stubs.py::test_the_package_agrees_with_its_types";
 
 /// Builds the wheel, installs it into the environment of the tests and runs those of the package, with the newest Gymnasium and with an
 /// older one; `arguments`, which else are what there is for each, go to pytest.
