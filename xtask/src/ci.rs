@@ -1,10 +1,9 @@
 //! `cargo xtask ci`: every check in order, up to the first that fails.
 
 use std::fmt::Write;
-use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::{Outcome, codegen, command, dependencies, examples, python, report, test, tidy};
+use crate::{Outcome, codegen, command, dependencies, examples, report, test, tidy};
 
 /// A headline and what stands under it.
 type Step = (&'static str, fn() -> Outcome);
@@ -19,7 +18,7 @@ const STEPS: [Step; 9] = [
     }),
     ("documentation", documentation),
     ("report", report::run),
-    ("test", tests),
+    ("test", || test::all(Some(&report::folder()))),
     ("examples", examples::run),
 ];
 
@@ -41,24 +40,6 @@ pub(crate) fn run() -> Outcome {
     }
     print!("\n{}", summary(&STEPS.map(|(name, _)| name), &durations, failure.is_some()));
     failure.map_or(Ok(()), Err)
-}
-
-/// The tests of the workspace, and beside them those of the Python package, which mostly keep one core busy: those say what they have to say when
-/// the others are done.
-fn tests() -> Outcome {
-    // Both have it.
-    python::interpreter()?;
-    let this = std::env::current_exe().map_err(|error| error.to_string())?;
-    thread::scope(|scope| {
-        let package = scope.spawn(|| command::kept(command::program(this).arg("python")));
-        let outcome = test::with_report(&report::folder());
-        let (package, said) = package.join().map_err(|_| "nobody ran the package's tests")?;
-        println!("{said}");
-        match (outcome, package) {
-            (Err(tests), Err(package)) => Err(format!("{tests}; {package}")),
-            (outcome, package) => outcome.and(package),
-        }
-    })
 }
 
 fn documentation() -> Outcome {

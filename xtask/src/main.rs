@@ -9,6 +9,7 @@ mod instructions;
 mod python;
 mod report;
 mod scratch;
+mod suites;
 mod test;
 mod tidy;
 mod torture;
@@ -57,7 +58,7 @@ const TASKS: [Task; 10] = [
     },
     Task {
         name: "test",
-        summary: "all tests, with a Python environment and the wheel; arguments go to `cargo test`",
+        summary: "all tests, with a Python environment and the wheel; with arguments `cargo test` alone",
         action: Action::With(test::run),
     },
     Task {

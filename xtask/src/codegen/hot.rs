@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn copying_and_jumping_ahead_are_no_hot_loops() {
-        assert_eq!(lengths(".L1:\n\tmovsd\t(%rax), %xmm0\n\tjne\t.L1\n"), []);
-        assert_eq!(lengths("\tjne\t.L1\n\taddpd\t%xmm0, %xmm1\n.L1:\n"), []);
+        assert!(lengths(".L1:\n\tmovsd\t(%rax), %xmm0\n\tjne\t.L1\n").is_empty());
+        assert!(lengths("\tjne\t.L1\n\taddpd\t%xmm0, %xmm1\n.L1:\n").is_empty());
     }
 }

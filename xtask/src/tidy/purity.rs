@@ -73,9 +73,9 @@ mod tests {
     #[test]
     fn mathematics_comments_and_other_crates_pass() {
         let engine = "crates/libration/src/state.rs";
-        assert_eq!(lines(engine, "use std::{array, f64::consts};"), []);
-        assert_eq!(lines(engine, "/// println!(\"{}\", std::env::args())\nlet time = 0;"), []);
-        assert_eq!(lines("crates/libration-lab/src/lib.rs", "use std::fs;"), []);
-        assert_eq!(lines("crates/libration/tests/numpy.rs", "use std::process;"), []);
+        assert!(lines(engine, "use std::{array, f64::consts};").is_empty());
+        assert!(lines(engine, "/// println!(\"{}\", std::env::args())\nlet time = 0;").is_empty());
+        assert!(lines("crates/libration-lab/src/lib.rs", "use std::fs;").is_empty());
+        assert!(lines("crates/libration/tests/numpy.rs", "use std::process;").is_empty());
     }
 }
