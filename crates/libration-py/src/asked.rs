@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use libration::analysis::{Feedback, Jitter, LqrWeights};
-use libration::{AnySystem, CatalogError, Method};
+use libration::{AnySystem, Method};
 use libration_lab::analyze::{Late, Stepping, Timing};
 use libration_lab::config::limits::{self, MOST_GAIN, MOST_RMS};
 use libration_lab::config::names;
@@ -41,19 +41,8 @@ pub(crate) struct Loop {
 /// The system of that name.
 pub(crate) fn system((name, parameters): &SystemTold) -> PyResult<AnySystem> {
     let parameters: Vec<_> = parameters.iter().map(|(name, value)| (name, *value)).collect();
-    AnySystem::build(name, &parameters).map_err(|error| {
-        let near = match &error {
-            CatalogError::UnknownParameter { name, known, .. } => {
-                names::nearest(name, known.iter().map(|parameter| parameter.name))
-            }
-            CatalogError::UnknownSystem { name } => {
-                names::nearest(name, libration::catalog::ENTRIES.map(|entry| entry.name))
-            }
-            _ => None,
-        };
-        let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-        refused(format!("{error}{hint}"))
-    })
+    AnySystem::build(name, &parameters)
+        .map_err(|error| refused(format!("{error}{}", names::meant(&error))))
 }
 
 /// The integrator of that name, or exact steps.

@@ -67,14 +67,7 @@ impl SystemArgs {
 }
 
 fn wrong_parameter(error: CatalogError) -> Failure {
-    let near = match &error {
-        CatalogError::UnknownParameter { name, known, .. } => {
-            names::nearest(name, known.iter().map(|p| p.name))
-        }
-        _ => None,
-    };
-    let hint = near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
-    Failure::usage(format!("{error}{hint} (--set)"))
+    Failure::usage(format!("{error}{} (--set)", names::meant(&error)))
 }
 
 fn wrong_count(entry: &Entry, flag: &str, given: &Coordinates) -> Failure {

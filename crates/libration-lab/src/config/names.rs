@@ -1,5 +1,7 @@
 //! Names as people type them.
 
+use libration::CatalogError;
+use libration::catalog::ENTRIES;
 use libration::ensemble::InstructionSet;
 
 /// What an instruction set is called, or that it is to be the widest that there is.
@@ -42,6 +44,18 @@ pub fn suggest<'a>(
     }
 }
 
+/// The end of a sentence that says what the catalogue lacks: which name was likely meant, or nothing where none is near enough.
+pub fn meant(error: &CatalogError) -> String {
+    let near = match error {
+        CatalogError::UnknownParameter { name, known, .. } => {
+            nearest(name, known.iter().map(|parameter| parameter.name))
+        }
+        CatalogError::UnknownSystem { name } => nearest(name, ENTRIES.map(|entry| entry.name)),
+        _ => None,
+    };
+    near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -60,5 +74,15 @@ mod tests {
         ] {
             assert_eq!(nearest(typed, names), meant, "{typed}");
         }
+    }
+    #[test]
+    fn what_the_catalogue_lacks_was_meant_as_something_that_it_has() {
+        let error = |name, parameters: &[(&str, f64)]| {
+            meant(&libration::AnySystem::build(name, parameters).unwrap_err())
+        };
+        assert_eq!(error("oscilator", &[]), "; did you mean `oscillator`?");
+        assert_eq!(error("oscillator", &[("omega", 1.0)]), "; did you mean `omega2`?");
+        assert_eq!(error("oscillator", &[("temperature", 1.0)]), "");
+        assert_eq!(error("oscillator", &[("omega2", -1.0)]), "");
     }
 }
