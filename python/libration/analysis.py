@@ -85,7 +85,15 @@ class Advice(Answer):
         self.holds, self.asked, self.page = holds, asked, page
 
     def save(self, path: str | Path) -> None:
-        """Write the page."""
+        """Write the page.
+
+        Raises
+        ------
+        ValueError
+            If there is none.
+        OSError
+            If it cannot be written.
+        """
         if self.page is None:
             raise ValueError("there is no page: ask for it with page=True")
         Path(path).write_text(self.page, encoding="utf-8")

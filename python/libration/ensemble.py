@@ -115,7 +115,15 @@ class Ensemble:
         return found.astype(self.dtype)
 
     def advance(self, steps: int) -> None:
-        """Take so many steps. Ctrl-C ends it between two of them."""
+        """Take so many steps of ``dt`` seconds.
+
+        Raises
+        ------
+        ValueError
+            For what is no number of steps, or an acceleration of another shape.
+        KeyboardInterrupt
+            Between two steps, after Ctrl-C.
+        """
         steps = count("steps", steps, 0, 2**62)
         if isinstance(self.system, System):
             self._held._advance(steps)

@@ -58,7 +58,8 @@ class Environments(_native.Batch):
     threads:
         How many; 0 for as many as there are cores. What comes out does not depend on it.
     copy:
-        Whether every step gives arrays of its own. Otherwise it fills the same ``buffers`` again and again, one after the other.
+        Whether the arrays of a step stay as they are for as long as somebody has them. Otherwise every step fills the same ``buffers``
+        again and again, one after the other.
     **parameters:
         Of the system (``omega2``, or ``m`` and ``k``; ``alpha``, ``beta``) and of the task (``position_cost``, ``velocity_cost``,
         ``effort_cost``, ``bound``).
@@ -159,6 +160,13 @@ class Environments(_native.Batch):
             Of all environments, ``(num_envs, n)``.
         infos:
             Empty.
+
+        Raises
+        ------
+        TypeError
+            For seeds that are no integers, or a mask that is no array of ``bool``.
+        ValueError
+            For seeds or a mask of another length, a negative seed, or a mask without a ``True``.
         """
         return self._begin(self._seeds(seed), options)
 
@@ -228,8 +236,23 @@ class Environments(_native.Batch):
     ) -> Rollout:
         """Act ``horizon`` times in every environment, under a policy of :mod:`libration.policies`.
 
-        ``out`` is filled again if it is given, and then says what is asked for. Ctrl-C ends a long rollout between two steps, after
-        which ``out`` holds a part of it.
+        Parameters
+        ----------
+        log_probabilities, values:
+            Whether there is to be room for the logarithms of the densities of actions, and for values, ``(horizon, num_envs)`` each.
+        out:
+            A rollout that is filled again, and then says what is asked for.
+
+        Raises
+        ------
+        TypeError
+            For a policy that is none of the engine's: to act from Python, use ``step``.
+        ValueError
+            For a policy or an ``out`` of another shape or dtype; in Gymnasium's words where there was no ``reset``.
+        MemoryError
+            If there is no room.
+        KeyboardInterrupt
+            Between two steps, after Ctrl-C: ``out`` holds a part of it then.
         """
         observations = len(self.preset.seen)
         if not isinstance(policy, Policy):

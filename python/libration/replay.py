@@ -118,7 +118,13 @@ class ReplayBuffer:
         raise TypeError("a ReplayBuffer cannot be pickled")
 
     def insert(self, rollout: Rollout) -> None:
-        """Take what a rollout holds; the oldest steps make room for it."""
+        """Take what a rollout holds; the oldest steps make room for it.
+
+        Raises
+        ------
+        ValueError
+            For a rollout of other environments, or of more steps than are kept.
+        """
         if not isinstance(rollout, Rollout):
             raise TypeError(f"rollout must be a Rollout, not {type(rollout).__name__}")
         self._buffer._insert(rollout._memory, rollout.last_observations)
@@ -141,6 +147,13 @@ class ReplayBuffer:
             The discount, from 0 to 1.
         correction:
             Draw in proportion to priorities, and correct for that with this exponent, from 0 to 1 (Schaul et al. 2016, section 3.4).
+
+        Raises
+        ------
+        ValueError
+            If there is nothing to draw, or a ``correction`` without priorities.
+        MemoryError
+            If there is no room for the batch.
         """
         asked = self._asked(batch_size, steps, gamma)
         if correction is not None:
@@ -150,7 +163,15 @@ class ReplayBuffer:
         return drawn
 
     def sample_sequences(self, batch_size: int, steps: int) -> Sequences:
-        """Draw stretches of so many steps with replacement, each as likely."""
+        """Draw stretches of so many steps with replacement, each as likely.
+
+        Raises
+        ------
+        ValueError
+            If no environment has as many steps in the buffer.
+        MemoryError
+            If there is no room for the batch.
+        """
         drawn = Sequences(**self._buffer._sequences(self._asked(batch_size, steps, 1.0)))
         self.number += 1
         return drawn
@@ -158,7 +179,25 @@ class ReplayBuffer:
     def update_priorities(
         self, numbers: NDArray[np.uint64], priorities: ArrayLike, exponent: float = 0.6
     ) -> int:
-        """Give transitions other priorities: they are drawn in proportion to ``priority ** exponent``. Gives how many are still there."""
+        """Give transitions other priorities: they are drawn in proportion to ``priority ** exponent``.
+
+        Parameters
+        ----------
+        numbers:
+            Of transitions that were drawn, ``(B,)``.
+        priorities:
+            ``(B,)``, none of them negative: sizes of errors, as a rule.
+
+        Returns
+        -------
+        int
+            How many of them are still there.
+
+        Raises
+        ------
+        ValueError
+            For other shapes, a priority that is negative or not finite, or a buffer without priorities.
+        """
         which, errors = np.asarray(numbers), np.asarray(priorities)
         if which.dtype.kind not in "iu" or errors.dtype.kind not in "fiu":
             raise TypeError(

@@ -69,6 +69,11 @@ class Rollout:
             What ``last_observations`` are worth, ``(N,)``.
         final_values:
             What the ``final_observations`` of ``episodes`` are worth, one for each: of those that were cut off it counts.
+
+        Raises
+        ------
+        ValueError
+            If the rollout has no ``values``, or there are more or fewer of the others than are needed.
         """
         if self.values is None:
             raise ValueError("the rollout has no values: ask for them with values=True")

@@ -43,6 +43,26 @@ def test_a_draw_has_a_number_by_which_it_can_be_repeated():
     np.testing.assert_array_equal(buffer.sample(64).numbers, one.numbers)
 
 
+def test_what_ends_is_drawn_with_what_was_seen_last_and_nothing_counts_after_it():
+    # Who is fast leaves so narrow a bound, and others are cut off.
+    fast = {"bound": 1.2, "start_velocity": (-5.0, 5.0), "max_episode_steps": 15}
+    envs = Environments("Oscillator", 8, dtype="float64", **fast)
+    envs.reset(seed=2)
+    buffer = ReplayBuffer(envs, 60)
+    rollout = envs.rollout(Random(-4.0, 4.0), 60)
+    buffer.insert(rollout)
+    drawn = buffer.sample(2000, gamma=0.5)
+    step, n = np.divmod(drawn.numbers.astype(int), 8)
+    for name in ("actions", "terminated", "truncated"):
+        np.testing.assert_array_equal(getattr(drawn, name), getattr(rollout, name)[step, n])
+    assert drawn.terminated.any() and drawn.truncated.any()
+    np.testing.assert_array_equal(drawn.discounts, np.where(drawn.terminated, 0.0, 0.5))
+    ends = rollout.episodes
+    last = dict(zip(zip(ends["steps"], ends["environments"]), ends["final_observations"]))
+    for i in np.flatnonzero(drawn.terminated | drawn.truncated):
+        np.testing.assert_array_equal(drawn.next_observations[i], last[step[i], n[i]])
+
+
 def test_rewards_look_ahead_as_far_as_they_are_told():
     buffer, (_, rewards, _) = filled()
     drawn = buffer.sample(200, steps=3, gamma=0.5)
