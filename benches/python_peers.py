@@ -80,14 +80,15 @@ def rows():
         medians = [statistics.median(column) for column in zip(*rounds)]
         yield f"{name}: step of {MANY} over the same in Rust", 0.7, ratios, medians
 
-    # Into memory that is used again, as who learns does: fresh pages cost as much as what is written into them.
+    # Into memory that is used again, as who learns does: fresh pages cost as much as what is written into them. It is another in each
+    # round, on both sides: how fast it is differs with the pages that it got.
     robots, horizon = libration.Environments("Oscillator", MANY), 1024
     robots.reset(seed=0)
     policy = Linear([-2.0, 0.0])
-    out = robots.rollout(policy, horizon)
     told = policy._told(2)
     rounds = []
     for _ in range(ROUNDS):
+        out = robots.rollout(policy, horizon)
         python = min(once(lambda: robots.rollout(policy, horizon, out=out)) for _ in range(3))
         rust = min(_native._seconds_of_rollouts(robots._settings, told, horizon, 4)[1:])
         rounds.append((python, rust))
