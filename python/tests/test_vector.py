@@ -1,6 +1,7 @@
 """The contract of Gymnasium's vector environments."""
 
 import copy
+import functools
 import gc
 import os
 import pickle
@@ -283,6 +284,61 @@ def test_arrays_are_of_their_own_or_used_again_in_turn():
     del env, steps
     gc.collect()
     np.testing.assert_array_equal(kept, values)
+
+
+@pytest.mark.parametrize("copies", [True, False])
+def test_what_nobody_has_any_more_is_written_again(copies):
+    envs = libration.Environments("Oscillator", 3, copy=copies)
+    envs.reset(seed=0)
+    places = [[array.ctypes.data for array in envs.step(np.ones(3))[:4]] for _ in range(20)]
+    assert all(len(set(column)) <= 2 for column in zip(*places))
+
+
+@pytest.mark.parametrize(
+    "hold",
+    [
+        lambda array: array,
+        lambda array: array[:1],
+        lambda array: array.view(np.uint8),
+        memoryview,
+        np.from_dlpack,
+        lambda array: array.__dlpack__(),
+        lambda array: np.frombuffer(array, array.dtype),
+        lambda array: array.flat,
+        lambda array: [array],
+        lambda array: functools.partial(np.copy, array),
+    ],
+)
+@pytest.mark.parametrize("which", range(4))
+def test_what_somebody_has_in_whatever_way_is_not_written_again(hold, which):
+    envs = libration.Environments("Oscillator", 3, observation_noise=0.1)
+    envs.reset(seed=0)
+    array = envs.step(np.ones(3))[which]
+    held, place = hold(array), array.ctypes.data
+    del array
+    assert place not in [envs.step(np.ones(3))[which].ctypes.data for _ in range(5)]
+    del held
+
+
+@pytest.mark.parametrize("copies", [True, False])
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda array: array.setflags(write=False),
+        lambda array: array.resize(2, refcheck=False),
+        lambda array: array.resize((0, 3), refcheck=False),
+    ],
+)
+def test_arrays_that_were_changed_are_not_written_again(change, copies):
+    envs, others = (libration.Environments("Oscillator", 3, copy=copies) for _ in range(2))
+    envs.reset(seed=0)
+    others.reset(seed=0)
+    for _ in range(6):
+        found, wanted = envs.step(np.ones(3))[:4], others.step(np.ones(3))[:4]
+        for mine, theirs in zip(found, wanted):
+            np.testing.assert_array_equal(mine, theirs)
+            assert mine.flags.writeable
+            change(mine)
 
 
 def test_actions_that_lie_where_a_step_is_written_are_taken_as_they_were():

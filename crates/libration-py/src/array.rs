@@ -1,12 +1,18 @@
 //! NumPy arrays, and the memory that they are.
 #![allow(unsafe_code)]
 
+use std::ffi::c_int;
+use std::ptr::null_mut;
 use std::slice::{from_raw_parts, from_raw_parts_mut};
 
 use bytemuck::{AnyBitPattern, NoUninit, Zeroable};
 use libration::{Elementary, Float};
 use numpy::ndarray::{ArrayView, Dim, Dimension, IntoDimension, IxDyn};
-use numpy::{Element, PyArray, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::npyffi::{
+    NPY_ARRAY_CARRAY, NPY_ARRAY_OWNDATA, NpyTypes, PY_ARRAY_API, get_type_object, npy_intp,
+};
+use numpy::{Element, PyArray, PyArrayDescrMethods, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::ffi::Py_REFCNT;
 use pyo3::prelude::*;
 
 use crate::error::refused;
@@ -29,17 +35,67 @@ impl Number for f64 {
 pub(crate) type Array<T, const N: usize> = PyArray<T, Dim<[usize; N]>>;
 
 /// A new array, of which everything is to be written.
+///
+/// # Errors
+/// A `MemoryError` of NumPy's.
 pub(crate) fn fresh<'py, T: Element + Zeroable, const N: usize>(
     py: Python<'py>,
     shape: [usize; N],
-) -> Bound<'py, Array<T, N>>
+) -> PyResult<Bound<'py, Array<T, N>>> {
+    let mut shape = shape.map(|len| len as npy_intp);
+    // SAFETY: NumPy takes over the description that it is given, reads as many lengths as it is told, and gives a contiguous array of that
+    // type and shape, which belongs to nobody yet, or nothing and an exception. The numbers and flags that are made here have no
+    // invalid bits, and nobody sees them before they are written.
+    unsafe {
+        let array = PY_ARRAY_API.PyArray_NewFromDescr(
+            py,
+            get_type_object(py, NpyTypes::PyArray_Type),
+            T::get_dtype(py).into_dtype_ptr(),
+            N as c_int,
+            shape.as_mut_ptr(),
+            null_mut(),
+            null_mut(),
+            0,
+            null_mut(),
+        );
+        Ok(Bound::from_owned_ptr_or_err(py, array)?.cast_into_unchecked())
+    }
+}
+
+/// The array that is kept for it, to be written once more, or a new one, which is kept from now on: where somebody still has the old one, unless
+/// `shared` says that it is to be written all the same, and where it is not what it was when it was made.
+///
+/// # Errors
+/// A `MemoryError` of NumPy's.
+pub(crate) fn again<'py, T: Element + Zeroable, const N: usize>(
+    py: Python<'py>,
+    kept: &mut Option<Py<PyAny>>,
+    shape: [usize; N],
+    shared: bool,
+) -> PyResult<Bound<'py, Array<T, N>>>
 where
-    [usize; N]: IntoDimension<Dim = Dim<[usize; N]>>,
     Dim<[usize; N]>: Dimension,
 {
-    // SAFETY: the numbers and flags that are made here have no invalid bits, nobody sees them before they are written, and the memory is
-    // that of a contiguous array.
-    unsafe { PyArray::new(py, shape, false) }
+    if let Some(old) = kept.as_ref().map(|old| old.bind(py))
+        // SAFETY: this is a reference to an object that is alive. Whatever shows its numbers has one too, so nobody has if this is the only one.
+        && (shared || unsafe { Py_REFCNT(old.as_ptr()) } == 1)
+        && let Ok(old) = old.cast_exact::<Array<T, N>>()
+        && old.shape() == shape
+        && is_ours(old)
+    {
+        return Ok(old.clone());
+    }
+    let new = fresh(py, shape)?;
+    *kept = Some(new.clone().into_any().unbind());
+    Ok(new)
+}
+
+/// Whether an array has memory of its own that lies as it was made and may be written.
+fn is_ours<T: Element, D: Dimension>(array: &Bound<'_, PyArray<T, D>>) -> bool {
+    let wanted = NPY_ARRAY_CARRAY | NPY_ARRAY_OWNDATA;
+    // SAFETY: a reference to an array that is alive.
+    let flags = unsafe { (*array.as_array_ptr()).fields.flags };
+    flags & wanted == wanted
 }
 
 /// The memory of an array, to be written by the engine.
@@ -47,7 +103,7 @@ where
 pub(crate) fn room<'a, T: Element + AnyBitPattern + NoUninit, D: Dimension>(
     array: &'a Bound<'_, PyArray<T, D>>,
 ) -> &'a mut [T] {
-    // SAFETY: every array that comes here is one from `fresh`, so its numbers lie one after the other, in memory that is its own. Whoever
+    // SAFETY: every array that comes here is one from `fresh` or `again`, so its numbers lie one after the other, in memory that is its own. Whoever
     // reads it in Python while the engine writes has asked for buffers that are used again, and finds numbers of one step or the
     // next, as with any array that NumPy writes without the interpreter's lock.
     unsafe { from_raw_parts_mut(array.data(), array.len()) }

@@ -14,7 +14,7 @@ use crate::guarded::{Entered, Guarded};
 use crate::held::{Held, Table, with_table};
 use crate::rollout::Memory;
 use crate::settings::Settings;
-use crate::step::{self, Books};
+use crate::step::{self, Books, Step};
 
 /// Environments that are stepped together, without anything of Gymnasium.
 ///
@@ -64,10 +64,7 @@ impl Batch {
         let mut guard = slf.get().inner.enter(slf.py())?;
         let Inner { held, books, .. } = open(slf, &mut guard)?;
         books.expect_action(slf)?;
-        let (row, infos) =
-            with_table!(held, table => step::take(slf.py(), &mut **table, books, actions)?);
-        let [seen, reward, terminated, truncated] = row;
-        Ok((seen, reward, terminated, truncated, infos))
+        with_table!(held, table => step::take(slf.py(), &mut **table, books, actions))
     }
 
     /// Takes what a step takes and does nothing with it, for benchmarks.
@@ -150,16 +147,16 @@ impl Batch {
             py: Python<'py>,
             table: &dyn Table<T>,
             len: usize,
-        ) -> Bound<'py, PyAny> {
-            let all: Bound<'py, Array<T, 2>> = fresh(py, [len, 2]);
+        ) -> PyResult<Bound<'py, PyAny>> {
+            let all: Bound<'py, Array<T, 2>> = fresh(py, [len, 2])?;
             for (n, row) in room(&all).chunks_exact_mut(2).enumerate() {
                 row.copy_from_slice(&table.state(n).unwrap_or([T::zero(); 2]));
             }
-            all.into_any()
+            Ok(all.into_any())
         }
         let mut guard = slf.get().inner.enter(slf.py())?;
         let Inner { held, books, .. } = open(slf, &mut guard)?;
-        Ok(with_table!(held, table => states(slf.py(), &**table, books.len)))
+        with_table!(held, table => states(slf.py(), &**table, books.len))
     }
 
     /// All that they are, to be restored by environments with the same settings.
@@ -189,10 +186,6 @@ impl Batch {
         Ok(())
     }
 }
-
-/// What a step gives.
-type Step<'py> = (Any<'py>, Any<'py>, Any<'py>, Any<'py>, Bound<'py, PyDict>);
-type Any<'py> = Bound<'py, PyAny>;
 
 /// What is inside, if it was not closed, with threads of this process.
 fn open<'a>(

@@ -83,11 +83,13 @@ impl<T: Number, const O: usize> Store<T> for Replay<T, O, 1> {
     fn sample<'py>(&self, py: Python<'py>, asked: Asked) -> PyResult<Bound<'py, PyDict>> {
         let Asked { len, seed, number, steps, gamma, correction } = asked;
         room_for(len as u128 * (8 + 2 + (2 * O + 4) as u128 * size_of::<T>() as u128))?;
-        let numbers: Bound<'py, Array<u64, 1>> = fresh(py, [len]);
-        let [seen, next] = [O, O].map(|each| fresh::<T, 2>(py, [len, each]));
-        let actions = fresh::<T, 2>(py, [len, 1]);
-        let [rewards, discounts, weights] = [(); 3].map(|()| fresh::<T, 1>(py, [len]));
-        let [over, cut] = [(); 2].map(|()| fresh::<bool, 1>(py, [len]));
+        let numbers: Bound<'py, Array<u64, 1>> = fresh(py, [len])?;
+        let rows = |each| fresh::<T, 2>(py, [len, each]);
+        let (seen, actions, next) = (rows(O)?, rows(1)?, rows(O)?);
+        let column = || fresh::<T, 1>(py, [len]);
+        let (rewards, discounts, weights) = (column()?, column()?, column()?);
+        let flags = || fresh::<bool, 1>(py, [len]);
+        let (over, cut) = (flags()?, flags()?);
         let mut columns: Columns<'_, T, O, 1> = Columns {
             number: room(&numbers),
             observation: cast_slice_mut(room(&seen)),

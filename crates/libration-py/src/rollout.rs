@@ -135,7 +135,7 @@ impl Memory {
         ) -> PyResult<Bound<'py, PyDict>> {
             let ended = tensors.ends();
             let seen: Bound<'py, Array<T, 2>> =
-                fresh(py, [ended.steps.len(), tensors.observations()]);
+                fresh(py, [ended.steps.len(), tensors.observations()])?;
             room(&seen).copy_from_slice(&ended.seen);
             let all = PyDict::new(py);
             all.set_item("steps", PyArray1::from_vec(py, ended.steps))?;
@@ -178,12 +178,12 @@ impl Memory {
             let mut found = Estimates::new(plan).map_err(Raised::raised)?;
             py.detach(|| tensors.estimate(&mut found, discounts, &next, &last))
                 .map_err(Raised::raised)?;
-            let array = |numbers: &[T]| {
-                let array: Bound<'py, Array<T, 2>> = fresh(py, [plan.horizon, plan.environments]);
+            let array = |numbers: &[T]| -> PyResult<_> {
+                let array: Bound<'py, Array<T, 2>> = fresh(py, [plan.horizon, plan.environments])?;
                 room(&array).copy_from_slice(numbers);
-                array.into_any()
+                Ok(array.into_any())
             };
-            Ok([array(found.advantage()), array(found.returned())])
+            Ok([array(found.advantage())?, array(found.returned())?])
         }
         let discounts = Discounts { rewards: gamma, errors: lambda_ };
         with_tensors!(&*self.kept(py)?, tensors => estimates(py, &**tensors, discounts, [next, last]))

@@ -1,5 +1,7 @@
 //! A step: arrays in, arrays out.
 
+use std::iter::repeat_with;
+
 use libration::rl::{Autoreset, Outcome};
 use libration_lab::environments::Recipe;
 use pyo3::exceptions::PyTypeError;
@@ -7,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 
-use crate::array::{Array, Number, borrowed, bytes_of, fresh, lies_in, room};
+use crate::array::{Array, Number, again, borrowed, bytes_of, fresh, lies_in, room};
 use crate::error::{Raised, refused};
 use crate::held::{Ends, Table};
 use crate::layer::{Batch, raise};
@@ -20,30 +22,43 @@ pub(crate) struct Books {
     pub(crate) untouched: bool,
     /// Of environments that wait for their reset, not 0.
     pub(crate) standing: Vec<u8>,
-    /// Rows of arrays that are used again, how many there are to be, and whose turn it is.
-    rows: Vec<[Py<PyAny>; 4]>,
-    buffers: usize,
+    /// Rows of arrays, whose turn it is, and whether they are written again whoever has them.
+    rows: Vec<[Option<Py<PyAny>>; 4]>,
     turn: usize,
+    shared: bool,
     /// Steps of the integrator for an action.
     pub(crate) substeps: usize,
 }
 
 /// Arrays that a step fills: what is seen, paid, over and cut off.
-pub(crate) type Row<'py> = [Bound<'py, PyAny>; 4];
+struct Row<'py, T> {
+    seen: Bound<'py, Array<T, 2>>,
+    reward: Bound<'py, Array<T, 1>>,
+    terminated: Bound<'py, Array<bool, 1>>,
+    truncated: Bound<'py, Array<bool, 1>>,
+}
+
+/// What a step gives.
+pub(crate) type Step<'py> = (Any<'py>, Any<'py>, Any<'py>, Any<'py>, Bound<'py, PyDict>);
+type Any<'py> = Bound<'py, PyAny>;
+
+/// Who asks for arrays of their own has those of the last step in hand while the next is written.
+const IN_HAND: usize = 2;
 
 /// More steps than this are worth giving up the interpreter's lock, which takes as long as some hundred of them.
 const WORTH_A_LOCK: usize = 512;
 
 impl Books {
     pub(crate) fn new(recipe: &Recipe, len: usize, buffers: usize) -> Self {
+        let rows = if buffers > 0 { buffers } else { IN_HAND };
         Books {
             len,
             autoreset: recipe.autoreset,
             untouched: true,
             standing: vec![0; len],
-            rows: Vec::new(),
-            buffers,
+            rows: repeat_with(Default::default).take(rows).collect(),
             turn: 0,
+            shared: buffers > 0,
             substeps: recipe.substeps as usize,
         }
     }
@@ -83,21 +98,21 @@ impl Books {
     }
 
     /// The arrays of the next step.
-    fn row<'py, T: Number>(&mut self, py: Python<'py>, observations: usize) -> Row<'py> {
-        let len = self.len;
-        if self.rows.len() < self.buffers.max(1) {
-            let seen: Bound<'py, Array<T, 2>> = fresh(py, [len, observations]);
-            let reward: Bound<'py, Array<T, 1>> = fresh(py, [len]);
-            let marks = || -> Bound<'py, Array<bool, 1>> { fresh(py, [len]) };
-            let row = [seen.into_any(), reward.into_any(), marks().into_any(), marks().into_any()];
-            if self.buffers > 0 {
-                self.rows.push(row.each_ref().map(|array| array.clone().unbind()));
-            }
-            return row;
-        }
-        let row = self.rows[self.turn].each_ref().map(|array| array.bind(py).clone());
-        self.turn = (self.turn + 1) % self.buffers;
-        row
+    fn row<'py, T: Number>(
+        &mut self,
+        py: Python<'py>,
+        observations: usize,
+    ) -> PyResult<Row<'py, T>> {
+        let (len, shared) = (self.len, self.shared);
+        let [seen, reward, terminated, truncated] = &mut self.rows[self.turn];
+        let row = Row {
+            seen: again(py, seen, [len, observations], shared)?,
+            reward: again(py, reward, [len], shared)?,
+            terminated: again(py, terminated, [len], shared)?,
+            truncated: again(py, truncated, [len], shared)?,
+        };
+        self.turn = (self.turn + 1) % self.rows.len();
+        Ok(row)
     }
 }
 
@@ -107,10 +122,10 @@ pub(crate) fn look<'py, T: Number>(
     table: &mut dyn Table<T>,
     books: &mut Books,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let [seen, ..] = books.row::<T>(py, table.observations());
-    let to = room(seen.cast::<Array<T, 2>>()?);
+    let Row { seen, .. } = books.row::<T>(py, table.observations())?;
+    let to = room(&seen);
     py.detach(|| table.observe(to)).map_err(Raised::raised)?;
-    Ok(seen)
+    Ok(seen.into_any())
 }
 
 /// Takes a step, and says what ended with it.
@@ -119,7 +134,7 @@ pub(crate) fn take<'py, T: Number>(
     table: &mut dyn Table<T>,
     books: &mut Books,
     given: &Bound<'py, PyAny>,
-) -> PyResult<(Row<'py>, Bound<'py, PyDict>)> {
+) -> PyResult<Step<'py>> {
     let made;
     let actions: &[T] = match borrowed(given, books.len) {
         Some(actions) => actions,
@@ -136,23 +151,23 @@ pub(crate) fn take<'py, T: Number>(
         let n = actions.iter().position(|action| !action.is_finite()).unwrap_or(0);
         return Err(refused(format!("actions[{n}] is {:?}, but it must be finite", actions[n])));
     }
-    let row = books.row::<T>(py, table.observations());
-    let [seen, reward, terminated, truncated] = &row;
+    let row = books.row::<T>(py, table.observations())?;
+    let Row { seen, reward, terminated, truncated } = &row;
     // Who uses arrays again may ask for what an array of earlier steps says, and that is written now.
     let copied;
-    let actions = if books.buffers > 0
-        && (lies_in(actions, seen.cast::<Array<T, 2>>()?)
-            || lies_in(actions, reward.cast::<Array<T, 1>>()?)
-            || lies_in(actions, terminated.cast::<Array<bool, 1>>()?)
-            || lies_in(actions, truncated.cast::<Array<bool, 1>>()?))
+    let actions = if books.shared
+        && (lies_in(actions, seen)
+            || lies_in(actions, reward)
+            || lies_in(actions, terminated)
+            || lies_in(actions, truncated))
     {
         copied = actions.to_vec();
         &*copied
     } else {
         actions
     };
-    let (terminated, truncated) = (bytes_of(terminated.cast()?), bytes_of(truncated.cast()?));
-    let (seen, reward) = (room(seen.cast::<Array<T, 2>>()?), room(reward.cast::<Array<T, 1>>()?));
+    let (seen, reward) = (room(seen), room(reward));
+    let (terminated, truncated) = (bytes_of(terminated), bytes_of(truncated));
     let to = Outcome { seen, reward, terminated: &mut *terminated, truncated: &mut *truncated };
     let act = || table.act(actions, to);
     let ends = if books.len.saturating_mul(books.substeps) > WORTH_A_LOCK {
@@ -167,7 +182,8 @@ pub(crate) fn take<'py, T: Number>(
         books.stood(&ended);
     }
     let infos = told(py, &ends, books, table.observations())?;
-    Ok((row, infos))
+    let Row { seen, reward, terminated, truncated } = row;
+    Ok((seen.into_any(), reward.into_any(), terminated.into_any(), truncated.into_any(), infos))
 }
 
 /// What the dictionary of a step says.
@@ -181,7 +197,7 @@ fn told<'py, T: Number>(
     if ends.environments.is_empty() || !(same_step || ends.lost.contains(&true)) {
         return Ok(PyDict::new(py));
     }
-    let seen: Bound<'py, Array<T, 2>> = fresh(py, [ends.environments.len(), observations]);
+    let seen: Bound<'py, Array<T, 2>> = fresh(py, [ends.environments.len(), observations])?;
     room(&seen).copy_from_slice(&ends.seen);
     let arguments = (books.len, same_step, &ends.environments, seen, &ends.lost);
     Ok(helper(py, &INFOS, "infos")?.call1(arguments)?.cast_into()?)

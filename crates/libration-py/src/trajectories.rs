@@ -107,22 +107,22 @@ impl Trajectories {
         fn states<'a, 'py, T: Number>(
             py: Python<'py>,
             all: &'a dyn AnyEnsemble<T>,
-        ) -> [Bound<'py, PyAny>; 2] {
+        ) -> PyResult<[Bound<'py, PyAny>; 2]> {
             let [len, dimension] = [all.len(), all.dimension()];
-            let array = |plane: &dyn Fn(usize) -> Option<&'a [T]>| {
-                let array: Bound<'py, Array<T, 2>> = fresh(py, [len, dimension]);
+            let array = |plane: &dyn Fn(usize) -> Option<&'a [T]>| -> PyResult<_> {
+                let array: Bound<'py, Array<T, 2>> = fresh(py, [len, dimension])?;
                 let to = room(&array);
                 for i in 0..dimension {
                     for (n, x) in plane(i).unwrap_or_default().iter().enumerate() {
                         to[n * dimension + i] = *x;
                     }
                 }
-                array.into_any()
+                Ok(array.into_any())
             };
-            [array(&|i| all.q(i)), array(&|i| all.v(i))]
+            Ok([array(&|i| all.q(i))?, array(&|i| all.v(i))?])
         }
         let inside = self.held.enter(py)?;
-        Ok(with_all!(&inside.0, all => states(py, &**all)))
+        with_all!(&inside.0, all => states(py, &**all))
     }
 
     /// The energy of each per unit mass, `(len,)`, in J/kg.
