@@ -310,14 +310,37 @@ def test_what_nobody_has_any_more_is_written_again(copies):
     ],
 )
 @pytest.mark.parametrize("which", range(4))
-def test_what_somebody_has_in_whatever_way_is_not_written_again(hold, which):
-    envs = libration.Environments("Oscillator", 3, observation_noise=0.1)
+@pytest.mark.parametrize("num_envs", [3, 2000])
+def test_what_somebody_has_in_whatever_way_is_not_written_again(hold, which, num_envs):
+    envs = libration.Environments("Oscillator", num_envs)
     envs.reset(seed=0)
-    array = envs.step(np.ones(3))[which]
+    array = envs.step(np.ones(num_envs))[which]
     held, place = hold(array), array.ctypes.data
     del array
-    assert place not in [envs.step(np.ones(3))[which].ctypes.data for _ in range(5)]
+    assert place not in [envs.step(np.ones(num_envs))[which].ctypes.data for _ in range(5)]
     del held
+
+
+@pytest.mark.parametrize("copies", [True, False])
+def test_large_arrays_begin_where_a_cache_line_does(copies):
+    envs = libration.Environments("Oscillator", 1111, copy=copies)
+    steps = [envs.reset(seed=0)[:1]] + [envs.step(np.ones(1111))[:4] for _ in range(9)]
+    assert all(array.ctypes.data % 64 == 0 for arrays in steps for array in arrays)
+
+
+@pytest.mark.parametrize("num_envs", [1, 15, 16, 17, 33])
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+def test_no_action_that_is_not_finite_goes_unseen(num_envs, dtype):
+    envs = libration.Environments("Oscillator", num_envs, dtype=dtype)
+    envs.reset(seed=0)
+    largest = np.finfo(dtype).max
+    envs.step(np.full(num_envs, -largest, dtype))
+    for n in range(num_envs):
+        for wrong in (np.nan, np.inf, -np.inf):
+            actions = np.full(num_envs, largest, dtype)
+            actions[n] = wrong
+            with pytest.raises(ValueError, match=rf"actions\[{n}\] is "):
+                envs.step(actions)
 
 
 @pytest.mark.parametrize("copies", [True, False])
@@ -330,6 +353,7 @@ def test_what_somebody_has_in_whatever_way_is_not_written_again(hold, which):
     ],
 )
 def test_arrays_that_were_changed_are_not_written_again(change, copies):
+    # Small ones, which may be resized.
     envs, others = (libration.Environments("Oscillator", 3, copy=copies) for _ in range(2))
     envs.reset(seed=0)
     others.reset(seed=0)

@@ -8,12 +8,12 @@ use std::slice::{from_raw_parts, from_raw_parts_mut};
 use bytemuck::{AnyBitPattern, NoUninit, Zeroable};
 use libration::{Elementary, Float};
 use numpy::ndarray::{ArrayView, Dim, Dimension, IntoDimension, IxDyn};
-use numpy::npyffi::{
-    NPY_ARRAY_CARRAY, NPY_ARRAY_OWNDATA, NpyTypes, PY_ARRAY_API, get_type_object, npy_intp,
-};
+use numpy::npyffi::{NPY_ARRAY_CARRAY, NpyTypes, PY_ARRAY_API, get_type_object, npy_intp};
 use numpy::{Element, PyArray, PyArrayDescrMethods, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::ffi::Py_REFCNT;
 use pyo3::prelude::*;
+use pyo3::types::PyCapsule;
 
 use crate::error::refused;
 
@@ -62,40 +62,84 @@ pub(crate) fn fresh<'py, T: Element + Zeroable, const N: usize>(
     }
 }
 
+/// An array that may be written again, and where its numbers were when it was made.
+pub(crate) struct Kept {
+    array: Py<PyAny>,
+    at: usize,
+}
+
 /// The array that is kept for it, to be written once more, or a new one, which is kept from now on: where somebody still has the old one, unless
 /// `shared` says that it is to be written all the same, and where it is not what it was when it was made.
 ///
 /// # Errors
-/// A `MemoryError` of NumPy's.
+/// A `MemoryError`.
 pub(crate) fn again<'py, T: Element + Zeroable, const N: usize>(
     py: Python<'py>,
-    kept: &mut Option<Py<PyAny>>,
+    kept: &mut Option<Kept>,
     shape: [usize; N],
     shared: bool,
 ) -> PyResult<Bound<'py, Array<T, N>>>
 where
+    [usize; N]: IntoDimension<Dim = Dim<[usize; N]>>,
     Dim<[usize; N]>: Dimension,
 {
-    if let Some(old) = kept.as_ref().map(|old| old.bind(py))
+    if let Some(Kept { array, at }) = kept
         // SAFETY: this is a reference to an object that is alive. Whatever shows its numbers has one too, so nobody has if this is the only one.
-        && (shared || unsafe { Py_REFCNT(old.as_ptr()) } == 1)
-        && let Ok(old) = old.cast_exact::<Array<T, N>>()
+        && (shared || unsafe { Py_REFCNT(array.as_ptr()) } == 1)
+        && let Ok(old) = array.bind(py).cast_exact::<Array<T, N>>()
         && old.shape() == shape
-        && is_ours(old)
+        && old.data() as usize == *at
+        && may_be_written(old)
     {
         return Ok(old.clone());
     }
-    let new = fresh(py, shape)?;
-    *kept = Some(new.clone().into_any().unbind());
+    let new = if shape.iter().product::<usize>().saturating_mul(size_of::<T>()) < LARGE {
+        fresh(py, shape)?
+    } else {
+        in_lines(py, shape)?
+    };
+    *kept = Some(Kept { array: new.clone().into_any().unbind(), at: new.data() as usize });
     Ok(new)
 }
 
-/// Whether an array has memory of its own that lies as it was made and may be written.
-fn is_ours<T: Element, D: Dimension>(array: &Bound<'_, PyArray<T, D>>) -> bool {
-    let wanted = NPY_ARRAY_CARRAY | NPY_ARRAY_OWNDATA;
+/// Whether the numbers of an array lie one after the other, and may be written.
+fn may_be_written<T: Element, D: Dimension>(array: &Bound<'_, PyArray<T, D>>) -> bool {
     // SAFETY: a reference to an array that is alive.
     let flags = unsafe { (*array.as_array_ptr()).fields.flags };
-    flags & wanted == wanted
+    flags & NPY_ARRAY_CARRAY == NPY_ARRAY_CARRAY
+}
+
+/// Bytes from which it matters that no vector lies in two cache lines: a step of thousands takes a tenth less.
+const LARGE: usize = 1024;
+
+/// A cache line.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+struct Line([u8; 64]);
+
+/// A new array that begins where a cache line does, of zeros.
+fn in_lines<'py, T: Element + Zeroable, const N: usize>(
+    py: Python<'py>,
+    shape: [usize; N],
+) -> PyResult<Bound<'py, Array<T, N>>>
+where
+    [usize; N]: IntoDimension<Dim = Dim<[usize; N]>>,
+    Dim<[usize; N]>: Dimension,
+{
+    let bytes = shape.iter().try_fold(size_of::<T>(), |bytes, len| bytes.checked_mul(*len));
+    let lines = bytes.map(|bytes| bytes.div_ceil(size_of::<Line>()));
+    let mut memory = Vec::new();
+    let room = lines.and_then(|lines| memory.try_reserve_exact(lines).ok().map(|()| lines));
+    let lines =
+        room.ok_or_else(|| PyMemoryError::new_err(format!("no room for {shape:?} numbers")))?;
+    memory.resize(lines, Line([0; 64]));
+    let numbers = memory.as_ptr().cast::<T>();
+    let owner = PyCapsule::new_with_value(py, memory, c"libration.memory")?;
+    // SAFETY: so many numbers of zero bits lie there, aligned, until the owner is gone, which the array keeps; nobody else writes them.
+    Ok(unsafe {
+        let array = ArrayView::from_shape_ptr(shape.into_dimension(), numbers);
+        PyArray::borrow_from_array(&array, owner.into_any())
+    })
 }
 
 /// The memory of an array, to be written by the engine.
@@ -128,6 +172,18 @@ pub(crate) fn borrowed<'a, T: Number>(
     // thread, gives one action or the other.
     (fits && array.is_c_contiguous() && is_aligned(array))
         .then(|| unsafe { from_raw_parts(array.data(), len) })
+}
+
+/// Whether all of these numbers are finite: nothing times a finite number is nothing, which vectors add faster than they compare.
+pub(crate) fn are_finite<T: Number>(numbers: &[T]) -> bool {
+    let (rows, rest) = numbers.as_chunks::<16>();
+    let mut sums = [T::zero(); 16];
+    for row in rows {
+        for (sum, x) in sums.iter_mut().zip(row) {
+            *sum = *sum + *x * T::zero();
+        }
+    }
+    sums.iter().chain(rest).all(|x| x.is_finite())
 }
 
 /// Whether some of these numbers lie in the memory of an array.

@@ -9,7 +9,9 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 
-use crate::array::{Array, Number, again, borrowed, bytes_of, fresh, lies_in, room};
+use crate::array::{
+    Array, Kept, Number, again, are_finite, borrowed, bytes_of, fresh, lies_in, room,
+};
 use crate::error::{Raised, refused};
 use crate::held::{Ends, Table};
 use crate::layer::{Batch, raise};
@@ -23,7 +25,7 @@ pub(crate) struct Books {
     /// Of environments that wait for their reset, not 0.
     pub(crate) standing: Vec<u8>,
     /// Rows of arrays, whose turn it is, and whether they are written again whoever has them.
-    rows: Vec<[Option<Py<PyAny>>; 4]>,
+    rows: Vec<[Option<Kept>; 4]>,
     turn: usize,
     shared: bool,
     /// Steps of the integrator for an action.
@@ -144,10 +146,7 @@ pub(crate) fn take<'py, T: Number>(
             borrowed(&made, books.len).ok_or_else(error)?
         }
     };
-    // Not up to the first: so that it is a vector's work.
-    let mut finite = true;
-    actions.iter().for_each(|action| finite &= action.is_finite());
-    if !finite {
+    if !are_finite(actions) {
         let n = actions.iter().position(|action| !action.is_finite()).unwrap_or(0);
         return Err(refused(format!("actions[{n}] is {:?}, but it must be finite", actions[n])));
     }
