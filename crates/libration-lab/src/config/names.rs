@@ -75,6 +75,7 @@ mod tests {
             assert_eq!(nearest(typed, names), meant, "{typed}");
         }
     }
+
     #[test]
     fn what_the_catalogue_lacks_was_meant_as_something_that_it_has() {
         let error = |name, parameters: &[(&str, f64)]| {
