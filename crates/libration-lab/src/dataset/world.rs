@@ -1,17 +1,15 @@
 //! From settings to environments.
 
-use bytemuck::Pod;
 use libration::ensemble::Execution;
 use libration::rl::EnvironmentError;
-use libration::{Elementary, Float};
 use libration_data::Values;
 
 use super::settings::Dataset;
-use crate::environments::{self, Acting, Actor, Batch};
+use crate::environments::{self, Acting, Actor, Batch, Compiled};
 use crate::trajectory::FloatType;
 
 /// A float type of data sets.
-pub(super) trait Number: Float + Elementary + Pod {
+pub(super) trait Number: Compiled {
     /// Its name in NumPy.
     const NUMPY: &str;
 

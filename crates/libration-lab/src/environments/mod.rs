@@ -14,4 +14,4 @@ pub use batch::Batch;
 pub use plant::Lone;
 pub use recipe::{Noise, Recipe};
 pub use task::Task;
-pub use world::Visit;
+pub use world::{Compiled, Visit};
