@@ -147,6 +147,13 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
             raise TypeError(f"{name} of the task have dtype {row.dtype}, but they must be {allowed}")
         return row
 
+    def __getstate__(self) -> dict[str, Any]:
+        # Whose turn it is belongs to this process.
+        return {name: value for name, value in self.__dict__.items() if name != "_turn"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, _turn=threading.RLock())
+
     def __copy__(self) -> CustomTaskVectorEnv:
         return self.__deepcopy__({})
 

@@ -34,6 +34,13 @@ class Ensemble:
         ``"float64"`` or ``"float32"``: of every operation.
     threads:
         How many; 0 for as many as there are cores. What comes out does not depend on it, nor on ``N``.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For what cannot be, with its name and what is allowed.
+    MemoryError
+        If there is no room.
     """
 
     @named
@@ -100,7 +107,7 @@ class Ensemble:
 
     @property
     def energy(self) -> NDArray[Any]:
-        """Energies per unit mass in J/kg, ``(N,)``."""
+        """Energies per unit mass, ``(N,)``, in the unit of a velocity squared, such as J/kg."""
         if isinstance(self.system, System):
             return self._held._energies()
         if self.system.energy is None:

@@ -8,6 +8,7 @@ from typing import Any, Mapping
 import numpy as np
 
 from . import _native
+from ._named import named
 from ._presets import PRESETS, Preset
 from ._settings import AUTORESET, count, native, nearest
 from .policies import Policy
@@ -50,9 +51,9 @@ class Environments(_native.Batch):
     observation_noise:
         The same for every number that is observed, in its unit.
     max_action:
-        The largest acceleration of either sign; who asks for more gets, and pays for, that much.
+        The largest acceleration of either sign, in m/s² (rad/s² of a pendulum); who asks for more gets, and pays for, that much.
     start_position, start_velocity:
-        Where an episode begins: a number, or two ends.
+        Where an episode begins, in m and m/s (rad and rad/s of a pendulum): a number, or two ends.
     dtype:
         ``"float32"`` or ``"float64"``: of all that is computed.
     threads:
@@ -225,6 +226,7 @@ class Environments(_native.Batch):
         # A byte of an array of ``bool`` need not be 0 or 1.
         return np.ascontiguousarray(mask).view(np.uint8) != 0
 
+    @named
     def rollout(
         self,
         policy: Policy,

@@ -29,7 +29,7 @@ class Policy:
 
     def _told(self, observations: int) -> dict[str, Any]:
         """What the engine is told, for environments that show so many numbers."""
-        raise NotImplementedError
+        raise TypeError(f"{type(self).__name__} says nothing of what it does: policies are {', '.join(__all__)}")
 
     @staticmethod
     def _numbers(name: str, numbers: Any, hidden: Sequence[int] = (), activation: str = "tanh") -> dict[str, Any]:
@@ -43,7 +43,7 @@ class Policy:
 
 @dataclass(frozen=True)
 class Linear(Policy):
-    """``weights @ observation + bias``."""
+    """``weights @ observation + bias``, an acceleration in m/s² (rad/s² of a pendulum), as all actions are."""
 
     weights: ArrayLike
     """One for each number that is observed."""
@@ -61,7 +61,7 @@ class Linear(Policy):
 
 @dataclass(frozen=True)
 class Random(Policy):
-    """Uniform between two ends, drawn from the seed of the environment."""
+    """Uniform between two accelerations, drawn from the seed of the environment."""
 
     low: float
     high: float
@@ -75,7 +75,7 @@ class Random(Policy):
 
 @dataclass(frozen=True)
 class Constant(Policy):
-    """Always the same."""
+    """Always the same acceleration."""
 
     action: float = 0.0
 
@@ -100,7 +100,10 @@ class MLP(Policy):
         if not self.layers:
             raise ValueError("there are no layers, but there must be one at least")
         parts, widths, inputs = [], [], observations
-        for i, (matrix, biases) in enumerate(self.layers):
+        for i, layer in enumerate(self.layers):
+            if not isinstance(layer, (tuple, list)) or len(layer) != 2:
+                raise TypeError(f"layer {i} is no pair of a matrix and its biases")
+            matrix, biases = layer
             matrix, biases = _finite(f"matrix {i}", matrix), _finite(f"biases {i}", biases)
             outputs = len(biases) if biases.ndim == 1 else -1
             if matrix.shape != (outputs, inputs):

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._named import named
 from ._native import Memory
 from ._settings import number
 
@@ -51,6 +52,7 @@ class Rollout:
         """Whether each step is one, ``(T, N)``: not where an environment stood still or began anew."""
         return self._memory._transitions()
 
+    @named
     def advantages(
         self,
         gamma: float = 0.99,

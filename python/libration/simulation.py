@@ -67,7 +67,7 @@ class Trajectory(Mapping[str, np.ndarray]):
 
     @property
     def energy(self) -> NDArray[Any]:
-        """Energies per unit mass in J/kg, ``(rows,)``."""
+        """Energies per unit mass, ``(rows,)``, in the unit of a velocity squared: ``units["energy"]``."""
         return self["energy"]
 
     def _stacked(self, letter: str) -> NDArray[Any]:
@@ -211,8 +211,9 @@ def _custom(
             again = Ensemble(
                 system, integrator=integrator, dt=dt, q=positions[-1:], v=velocities[-1:], dtype=one.dtype
             )
-            while _finite(again):
+            while _finite(again) and again.step < step - steps_kept[-1]:
                 again.advance(1)
+            # A force that is another each time need not do so again.
             step = steps_kept[-1] + again.step
             ended = {"step": step, "t": step * one.dt, "reason": "the state is not finite"}
             break

@@ -1,6 +1,7 @@
 """Tasks of one's own: the engine's environments, paid by a function."""
 
 import copy
+import pickle
 
 import numpy as np
 import pytest
@@ -117,6 +118,16 @@ def test_a_task_that_raises_leaves_environments_that_go_on(mode):
         else:
             own.step(np.zeros(2))
         np.testing.assert_array_equal(own.states, other.states)
+
+
+def test_environments_with_a_task_that_can_be_found_again_are_pickled():
+    own = CustomTaskVectorEnv("Oscillator", 3, task=regulate)
+    own.reset(seed=1)
+    own.step(np.ones(3))
+    twin = pickle.loads(pickle.dumps(own))
+    for _ in range(5):
+        for mine, theirs in zip(own.step(np.ones(3))[:4], twin.step(np.ones(3))[:4]):
+            np.testing.assert_array_equal(mine, theirs)
 
 
 def test_a_copy_of_a_task_s_environments_is_another():

@@ -10,7 +10,7 @@ import pytest
 from common import AUTORESETS, NAMES, PERTURBED
 
 import libration
-from libration.policies import MLP, Constant, Linear, Random
+from libration.policies import MLP, Constant, Linear, Policy, Random
 
 WEIGHTS = {"Oscillator": [-3.0, -1.0], "Pendulum": [-2.0, 1.0, -0.5], "Duffing": [-1.0, -0.5]}
 
@@ -119,6 +119,17 @@ def test_memory_is_filled_again_and_outlives_whoever_made_it():
     np.testing.assert_array_equal(observations, kept)
 
 
+@pytest.mark.parametrize("buffers", [1, 2])
+def test_what_is_seen_last_in_a_rollout_is_no_array_of_a_step(buffers):
+    envs = libration.Environments("Pendulum", 4, copy=False, buffers=buffers)
+    envs.reset(seed=0)
+    rollout = envs.rollout(Constant(1.0), 5)
+    kept = rollout.last_observations.copy()
+    for _ in range(3):
+        envs.step(np.full(4, 3.0))
+    np.testing.assert_array_equal(rollout.last_observations, kept)
+
+
 @pytest.mark.parametrize("mode", ["NextStep", "Disabled"])
 def test_a_long_rollout_can_be_interrupted(mode):
     given = dict(substeps=1_000_000, max_episode_steps=1, autoreset_mode=mode)
@@ -148,6 +159,8 @@ def test_a_long_rollout_can_be_interrupted(mode):
     ("policy", "error", "said"),
     [
         (Linear([1.0, 2.0]), ValueError, "there are 2 weights, but there must be 3"),
+        (MLP([1, 2]), TypeError, "layer 0 is no pair"),
+        (Policy(), TypeError, "Policy says nothing of what it does"),
         (Linear([1.0, np.nan, 2.0]), ValueError, "weights is not finite"),
         (Linear(["a", "b", "c"]), TypeError, "weights has dtype"),
         (Random(1.0, 1.0), ValueError, "from 1.0 to 1.0"),

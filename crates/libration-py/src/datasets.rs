@@ -7,7 +7,7 @@ use libration::ensemble::Execution;
 use libration_lab::dataset::{self, DataFormat, Dataset, Job, Watch};
 use pyo3::prelude::*;
 
-use crate::error::{Raised, refused, unknown};
+use crate::error::{Raised, keywords, refused, unknown};
 use crate::work::work;
 
 /// What is done so far.
@@ -107,7 +107,8 @@ pub(crate) fn _verify_dataset(
         teller(&transitions, &bytes, 0, progress.as_ref()),
     )?;
     let (_, flaws) = checked.map_err(Raised::raised)?;
-    let told = flaws.into_iter().map(|flaw| (flaw.chunk, flaw.path, flaw.what)).collect();
+    let told =
+        flaws.into_iter().map(|flaw| (flaw.chunk, flaw.path, keywords(&flaw.what))).collect();
     Ok((told, bytes.into_inner()))
 }
 

@@ -171,7 +171,7 @@ pub(crate) fn room_for(bytes: u128) -> PyResult<()> {
 
 /// A sentence about flags, as one about keywords: what is `--max-drift` there is `max_drift` here, and a flag that goes on with something is
 /// what is true.
-fn keywords(text: &str) -> String {
+pub(crate) fn keywords(text: &str) -> String {
     let text = &*text.replace("--resume", "resume=True");
     let mut words = text.split("--");
     let mut told = words.next().unwrap_or_default().to_owned();

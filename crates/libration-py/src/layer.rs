@@ -59,7 +59,11 @@ impl Batch {
     /// Takes one action of each environment: an array of shape `(num_envs, 1)` or `(num_envs,)`, in the unit of an acceleration.
     ///
     /// Gives what is seen then `(num_envs, n)`, rewards, whether episodes terminated and whether they were truncated `(num_envs,)`, and a
-    /// dictionary.
+    /// dictionary: of episodes that ended in it (`final_obs`, `final_info`, under `"SameStep"`), and of environments that were lost.
+    ///
+    /// Raises a `ValueError` for actions of another shape or that are not finite, a `TypeError` for what are no real numbers, and a
+    /// `RuntimeError` (Gymnasium's `ResetNeeded` and `ClosedEnvironmentError` in its environments) before the first `reset`, after the end
+    /// of an episode under `"Disabled"`, and after `close`.
     fn step<'py>(slf: &Bound<'py, Self>, actions: &Bound<'py, PyAny>) -> PyResult<Step<'py>> {
         let mut guard = slf.get().inner.enter(slf.py())?;
         let Inner { held, books, .. } = open(slf, &mut guard)?;
@@ -138,7 +142,7 @@ impl Batch {
             books.stood(&ended);
         }
         outcome?;
-        with_table!(held, table => step::look(slf.py(), &mut **table, books))
+        with_table!(held, table => step::look_apart(slf.py(), &mut **table, books))
     }
 
     /// Positions and velocities, `(num_envs, 2)`.

@@ -13,6 +13,7 @@ mod guarded;
 mod held;
 mod laboratory;
 mod layer;
+mod pace;
 mod program;
 mod replay;
 mod rollout;

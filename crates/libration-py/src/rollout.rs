@@ -10,6 +10,7 @@ use crate::array::{Array, Number, fresh, room, view, view_of_flags};
 use crate::error::{Raised, refused};
 use crate::guarded::{Entered, Guarded};
 use crate::held::{Held, Table};
+use crate::pace::paced;
 use crate::tensors::Tensors;
 
 /// What environments did over a horizon: memory that is taken once and filled again and again.
@@ -34,8 +35,8 @@ macro_rules! with_tensors {
     };
 }
 
-/// Steps of the integrator after which it is asked whether somebody wants to interrupt: of all environments, and a whole row at least.
-const PIECE: usize = 1 << 24;
+/// Steps of the integrator, of all environments, before it is known how long they take under a policy.
+const FIRST: usize = 1 << 16;
 
 impl Memory {
     /// Room for what these environments do over a horizon.
@@ -81,17 +82,14 @@ fn filled<T: Number>(
     substeps: usize,
 ) -> (Vec<u8>, PyResult<()>) {
     let Plan { horizon, environments, .. } = tensors.plan();
-    let rows = (PIECE / environments.saturating_mul(substeps).max(1)).max(1);
-    let (mut taken, mut outcome) = (0, Ok(()));
-    while taken < horizon && outcome.is_ok() {
-        let piece = taken..(taken + rows).min(horizon);
-        let end = piece.end;
-        outcome = py.detach(|| table.fill(policy, tensors, piece)).map_err(Raised::raised);
-        if outcome.is_ok() {
-            taken = end;
-            outcome = py.check_signals();
-        }
-    }
+    let first = FIRST / environments.saturating_mul(substeps).max(1);
+    let mut taken = 0;
+    let outcome = paced(py, horizon as u64, first as u64, |piece| {
+        let rows = piece.start as usize..piece.end as usize;
+        py.detach(|| table.fill(policy, tensors, rows)).map_err(Raised::raised)?;
+        taken = piece.end as usize;
+        Ok(())
+    });
     let [(_, terminated), (_, truncated)] = tensors.flags();
     let last = taken.saturating_sub(1) * environments..taken * environments;
     let flags = terminated[last.clone()].iter().zip(&truncated[last]);

@@ -118,13 +118,31 @@ impl Books {
     }
 }
 
-/// What is seen now, in an array.
+/// What is seen now, in the array of a step.
 pub(crate) fn look<'py, T: Number>(
     py: Python<'py>,
     table: &mut dyn Table<T>,
     books: &mut Books,
 ) -> PyResult<Bound<'py, PyAny>> {
     let Row { seen, .. } = books.row::<T>(py, table.observations())?;
+    shown(py, table, seen)
+}
+
+/// What is seen now, in an array that no step is written into.
+pub(crate) fn look_apart<'py, T: Number>(
+    py: Python<'py>,
+    table: &mut dyn Table<T>,
+    books: &Books,
+) -> PyResult<Bound<'py, PyAny>> {
+    let seen = fresh(py, [books.len, table.observations()])?;
+    shown(py, table, seen)
+}
+
+fn shown<'py, T: Number>(
+    py: Python<'py>,
+    table: &mut dyn Table<T>,
+    seen: Bound<'py, Array<T, 2>>,
+) -> PyResult<Bound<'py, PyAny>> {
     let to = room(&seen);
     py.detach(|| table.observe(to)).map_err(Raised::raised)?;
     Ok(seen.into_any())

@@ -10,6 +10,7 @@ use crate::array::{Array, Number, fresh, room};
 use crate::asked::{SystemTold, method, system};
 use crate::error::{Raised, refused};
 use crate::guarded::Guarded;
+use crate::pace::paced;
 
 /// Trajectories of a system of the catalogue, stepped together.
 #[pyclass(frozen, module = "libration._native")]
@@ -40,9 +41,8 @@ macro_rules! with_all {
     };
 }
 
-/// Coordinates that are stepped between two looks at whether somebody wants to interrupt: some ten milliseconds of work, and more
-/// than a thread costs to begin.
-const PIECE: u64 = 1 << 24;
+/// Coordinates that are stepped before it is known how long they take: some milliseconds of work as a rule.
+const FIRST: u64 = 1 << 18;
 
 #[pymethods]
 impl Trajectories {
@@ -74,7 +74,6 @@ impl Trajectories {
 
     /// Takes so many steps with all of them.
     fn _advance(&self, py: Python<'_>, steps: u64) -> PyResult<()> {
-        let mut left = steps;
         let mut inside = self.held.enter(py)?;
         let (held, threads) = &mut *inside;
         // A process that was forked has none of them.
@@ -84,17 +83,14 @@ impl Trajectories {
             threads.process = std::process::id();
         }
         let many = with_all!(held, all => (all.len() * all.dimension()).max(1) as u64);
-        let piece = (PIECE / many).max(1);
-        while left > 0 {
-            let now = left.min(piece);
+        paced(py, steps, FIRST / many, |piece| {
+            let steps = piece.end - piece.start;
             py.detach(|| match held {
-                Held::F32(all) => all.advance(self.method, self.dt as f32, now),
-                Held::F64(all) => all.advance(self.method, self.dt, now),
+                Held::F32(all) => all.advance(self.method, self.dt as f32, steps),
+                Held::F64(all) => all.advance(self.method, self.dt, steps),
             });
-            left -= now;
-            py.check_signals()?;
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
     /// Steps taken.
@@ -125,7 +121,7 @@ impl Trajectories {
         with_all!(&inside.0, all => states(py, &**all))
     }
 
-    /// The energy of each per unit mass, `(len,)`, in J/kg.
+    /// The energy of each per unit mass, `(len,)`, in the unit of a velocity squared.
     fn _energies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         fn energies<T: Number>(all: &dyn AnyEnsemble<T>) -> Vec<T> {
             let none = || T::from_f64(f64::NAN);

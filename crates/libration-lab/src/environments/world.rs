@@ -1,6 +1,7 @@
 //! From a recipe to environments: float type and task are chosen here, outside every loop.
 
 use bytemuck::Pod;
+use libration::control::ControlError;
 use libration::control::clock::{Jittered, Skewed};
 use libration::ensemble::{All, Execution};
 use libration::rl::sensor::Noisy;
@@ -88,6 +89,12 @@ impl Recipe {
         task: K,
         ([first, len], seed, execution): Which<'_>,
     ) -> Made<T, O> {
+        for (name, value) in self.system.any().parameters() {
+            if !T::from_f64(value).is_finite() {
+                let allowed = "small enough for the float type";
+                return Err(ControlError { name, index: None, value, allowed }.into());
+            }
+        }
         let [q, v] = self.start;
         let start = Between(State { q: [q[0]], v: [v[0]] }, State { q: [q[1]], v: [v[1]] });
         let plant = Plant::<T>::new(self.system);

@@ -18,7 +18,7 @@ use crate::analyze::Stepping;
 use crate::export::{Number, Rows};
 
 /// Steps of trajectories between two looks at whether to stop: about a second.
-const CHUNK: u64 = 1 << 24;
+const CHUNK: u64 = 1 << 18;
 
 /// Every clock that can be asked for is a clock with a rate of its own whose steps, which may have been recorded, jitter.
 type Clocks<'a> = (Skewed, (Recorded<'a>, Jittered<Jitter>));

@@ -10,7 +10,7 @@ use super::{Copies, Ending, Request, TrajectoryError, loops};
 use crate::export::{Number, Rows};
 
 /// Trajectory steps between two looks at whether to stop: a second of the slowest kernel.
-const CHUNK: u64 = 1 << 26;
+const CHUNK: u64 = 1 << 21;
 
 /// A float type in which many trajectories may be asked for.
 pub(super) trait Many: Number {
