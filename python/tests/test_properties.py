@@ -336,6 +336,7 @@ def test_any_keywords_make_environments_that_work_or_are_refused(name, given):
         (dict(dt=1e-300, action_delay=1e308), ValueError, "action_delay is 1e.308 s"),
         (dict(dt=5e-324, action_delay=0.1), ValueError, "action_delay is 0.1 s"),
         (dict(dt=5e-324, substeps=10), ValueError, "dt/substeps is 0.0, but it must be finite"),
+        (dict(omega2=1e300), ValueError, "omega2 is 1e300; it must be small enough for the float type"),
         (dict(start_position=b"ab"), TypeError, "start_position must be a number, not bytes"),
         (dict(render_mode="human"), TypeError, "unexpected keyword argument 'render_mode'"),
     ],
