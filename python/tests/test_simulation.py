@@ -325,8 +325,10 @@ def test_a_force_that_is_another_each_time_ends_where_it_did():
         calls.append(1)
         return q * np.nan if len(calls) == 30 else -q
 
-    ended = simulate(force, integrator="velocity-verlet", dt=0.01, steps=100, every=10, q=1.0).ended
-    assert ended["reason"] == "the state is not finite" and 20 < ended["step"] <= 30
+    path = simulate(force, integrator="velocity-verlet", dt=0.01, steps=100, every=10, q=1.0)
+    assert path.stopped["reason"] == "the state is not finite"
+    # It is not found again, so it is the row that was to be.
+    assert path.stopped["step"] == path["step"][-1] + 10
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="nothing is forked here")
