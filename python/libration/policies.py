@@ -29,7 +29,8 @@ class Policy:
 
     def _told(self, observations: int) -> dict[str, Any]:
         """What the engine is told, for environments that show so many numbers."""
-        raise TypeError(f"{type(self).__name__} says nothing of what it does: policies are {', '.join(__all__)}")
+        known = ", ".join(name for name in __all__ if name != "Policy")
+        raise TypeError(f"{type(self).__name__} says nothing of what it does: policies are {known}")
 
     @staticmethod
     def _numbers(name: str, numbers: Any, hidden: Sequence[int] = (), activation: str = "tanh") -> dict[str, Any]:
