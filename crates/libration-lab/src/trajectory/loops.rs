@@ -17,7 +17,7 @@ use super::{Copies, Ending, Request, TrajectoryError};
 use crate::analyze::Stepping;
 use crate::export::{Number, Rows};
 
-/// Steps of trajectories between two looks at whether to stop: about a second.
+/// Steps of trajectories between two looks at whether to stop: a tenth of a second where there is one.
 const CHUNK: u64 = 1 << 18;
 
 /// Every clock that can be asked for is a clock with a rate of its own whose steps, which may have been recorded, jitter.

@@ -9,7 +9,7 @@ use libration::ensemble::{BatchFloat, NoRoom};
 use super::{Copies, Ending, Request, TrajectoryError, loops};
 use crate::export::{Number, Rows};
 
-/// Trajectory steps between two looks at whether to stop: a second of the slowest kernel.
+/// Trajectory steps between two looks at whether to stop: half a second of the slowest kernel.
 const CHUNK: u64 = 1 << 21;
 
 /// A float type in which many trajectories may be asked for.
