@@ -28,7 +28,7 @@ type Made<T, const O: usize> = Result<Box<dyn Batch<T, O>>, EnvironmentError>;
 /// The first of them and how many, their seed, and where they are stepped.
 type Which<'a> = ([usize; 2], u64, &'a Execution);
 
-/// A float type whose environments are compiled here: a crate that compiled its own would take as long as this one.
+/// A float type whose environments are compiled here, so that other crates need not compile all of their kernels again.
 pub trait Compiled: Float + Elementary + Pod {
     /// Environments that are to rest at the origin.
     ///
