@@ -54,7 +54,7 @@ def amplitudes(latency: float, episodes: int = 1000, seconds: float = 8.0) -> np
 def predicted_growth(latency: float) -> float:
     """By how much the loop grows in a second, as theory has it."""
     step = libration.analyze(SYSTEM, integrator="exact", dt=PERIOD, feedback=GAINS, latency=latency)
-    return math.log(step.spectral_radius) / PERIOD
+    return math.log(step.closed_loop_spectral_radius) / PERIOD
 
 
 def main() -> None:

@@ -13,6 +13,7 @@ __all__ = [
     "Memory",
     "Trajectories",
     "_MOST_STEPS",
+    "_SETTINGS_BYTES",
     "__version__",
     "_advise",
     "_analyze",
@@ -37,6 +38,7 @@ _Columns = dict[str, _Numbers]
 
 __version__: str
 _MOST_STEPS: int
+_SETTINGS_BYTES: int
 
 def _seconds_of_steps(settings: Mapping[str, Any], steps: int) -> float: ...
 
@@ -79,9 +81,10 @@ def _write_dataset(
 def _verify_dataset(
     folder: PathLike[str],
     replay: bool,
+    repair: bool,
     threads: int,
     progress: Callable[[int, int, int], Any] | None,
-) -> tuple[list[tuple[str, PathLike[str], str]], int]: ...
+) -> list[tuple[str, PathLike[str], str, bool]]: ...
 @final
 class Trajectories:
     def __new__(

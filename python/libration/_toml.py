@@ -6,8 +6,9 @@ import json
 import math
 import numbers
 import os
-from pathlib import Path
 from typing import Any, Mapping
+
+from . import _native
 
 
 def text_of(name: str, settings: Any) -> str:
@@ -15,10 +16,19 @@ def text_of(name: str, settings: Any) -> str:
     if settings is None:
         return ""
     if isinstance(settings, (str, os.PathLike)):
-        return Path(settings).read_text(encoding="utf-8")
+        return _text_of_file(name, settings)
     if isinstance(settings, Mapping):
         return "\n".join(_table((), settings)) + "\n"
     raise TypeError(f"{name} must be a dictionary or the path of a file, not {type(settings).__name__}")
+
+
+def _text_of_file(name: str, path: str | os.PathLike[str]) -> str:
+    with open(path, "rb") as file:
+        # A device or a pipe may have no end.
+        text = file.read(_native._SETTINGS_BYTES + 1)
+    if len(text) > _native._SETTINGS_BYTES:
+        raise ValueError(f"{name}: {os.fspath(path)!r} is too long; expected at most {_native._SETTINGS_BYTES} bytes")
+    return text.decode("utf-8")
 
 
 def _table(path: tuple[str, ...], table: Mapping[str, Any]) -> list[str]:

@@ -67,7 +67,12 @@ def _shown(value: Any) -> str:
 
 
 class Analysis(Answer):
-    """What theory says of one step: the parts are the keys of ``libration analyze --json``."""
+    """What theory says of one step: the parts are the keys of ``libration analyze --json``.
+
+    ``spectral_radius`` and all that is named without a loop is of one step of the plant without feedback; the loop has
+    ``closed_loop_spectral_radius``, and with jitter or losses ``mean_square_growth``. ``note``, where there is one, says what
+    must be known of the numbers.
+    """
 
 
 class Advice(Answer):
@@ -130,7 +135,7 @@ def analyze(
         Also say the largest ``dt`` that keeps to these (oscillator): a relative energy drift, a length in m, an error relative to the
         amplitude.
     loss:
-        The probability that a command is lost, at least 0 and below 1.
+        The probability that a command is lost, at least 0 and below 1; what acts goes on then.
     cost_weights:
         Weights of position², velocity² and command² of what the loop costs; by default of its energy.
 
@@ -189,7 +194,8 @@ def advise(
     system:
         A name or a :class:`~libration.System`.
     controller:
-        Who commands: gains of position and velocity, :class:`~libration.PD`, :class:`~libration.PID`, :class:`~libration.LQR` or
+        The controller: gains of position and velocity, in s⁻² and s⁻¹ (in N/m and N·s/m where the system is given by ``m`` and ``k``),
+        :class:`~libration.PD`, :class:`~libration.PID`, :class:`~libration.LQR` or
         :class:`~libration.Observer`; nobody if there is none.
     q, v:
         Where it starts, or where a loop is held; by default the origin.

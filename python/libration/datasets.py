@@ -38,6 +38,8 @@ class Flaw:
     path: Path
     """Which file, in its folder."""
     what: str
+    repaired: bool = False
+    """Whether the file has been computed again and replaced."""
 
 
 @named
@@ -67,7 +69,8 @@ def write(
     shard:
         Which part, from 1 on, and of how many.
     resume:
-        Go on where an earlier run was stopped: the bytes are those of a run that was not.
+        Resume an interrupted run: the bytes are those of an uninterrupted one. What is there is read first, and broken files are
+        computed again.
     threads:
         How many; 0 for as many as there are cores.
 
@@ -105,19 +108,21 @@ def verify(
     folder: str | os.PathLike[str],
     *,
     replay: bool = False,
+    repair: bool = False,
     threads: int = 0,
     progress: Progress = None,
 ) -> list[Flaw]:
     """Read a data set and say what is wrong with it, if anything: what ``libration verify`` does.
 
-    With ``replay`` it is computed again from its settings, and compared.
+    With ``replay`` it is computed again from its settings, and compared. With ``repair`` broken files (missing, truncated or altered
+    ones) are computed again and replaced: they are in the list with ``repaired`` true, and have the bytes that they had.
 
     Raises
     ------
     ValueError
-        If there is no data set.
+        If there is no data set; with ``replay`` or ``repair`` also if another version of the package wrote it.
     OSError
-        If its manifest cannot be read.
+        If its manifest cannot be read, or a file cannot be replaced.
     """
     with Shown(progress) as shown:
 
@@ -125,5 +130,6 @@ def verify(
             shown.tell(0.0, f"{size / 1e9:.2f} GB")
 
         threads = count("threads", threads, 0, 1024)
-        flaws, _ = _native._verify_dataset(Path(folder), bool(replay), threads, tell if shown.wanted else None)
-    return [Flaw(chunk, Path(path), what) for chunk, path, what in flaws]
+        told = tell if shown.wanted else None
+        flaws = _native._verify_dataset(Path(folder), bool(replay), bool(repair), threads, told)
+    return [Flaw(chunk, Path(path), what, repaired) for chunk, path, what, repaired in flaws]

@@ -51,7 +51,8 @@ class Environments(_native.Batch):
     observation_noise:
         The same for every number that is observed, in its unit.
     max_action:
-        The largest acceleration of either sign, in m/s² (rad/s² of a pendulum); who asks for more gets, and pays for, that much.
+        The largest action of either sign: an acceleration in m/s² (rad/s² of a pendulum), or a force in N where the system is given
+        by ``m`` and ``k``. Larger actions are cut off at it, and are paid for as such.
     start_position, start_velocity:
         Where an episode begins, in m and m/s (rad and rad/s of a pendulum): a number, or two ends.
     dtype:

@@ -164,7 +164,7 @@ def run_lab(
     TypeError, ValueError
         For a configuration that cannot be, before any work.
     OSError
-        If the folder cannot be written.
+        If the folder cannot be written, or another run writes there.
     """
     asked = text_of("config", config)
     names = None

@@ -35,7 +35,10 @@ class Uniform:
 
 @dataclass(frozen=True)
 class PD:
-    """The command ``-position·q - velocity·v``, with gains in s⁻² and s⁻¹."""
+    """The command ``-position·q - velocity·v``.
+
+    An acceleration, with gains in s⁻² and s⁻¹; a force, with gains in N/m and N·s/m, where the system is given by ``m`` and ``k``.
+    """
 
     position: float
     velocity: float
@@ -51,14 +54,18 @@ class PID:
     filter: float = 0.0
     """Of the derivative, in s."""
     most: float = math.inf
-    """Largest command, in m/s²."""
+    """Largest command, in m/s², or in N where the system is given by ``m`` and ``k``."""
     tracking: float = 1.0
     """In how many seconds the integral follows the limit."""
 
 
 @dataclass(frozen=True)
 class LQR:
-    """The feedback that costs least, designed from the model: weights of position², velocity² and command²."""
+    """The feedback that costs least, designed from the model: weights of position², velocity² and command².
+
+    It minimises the weighted sum over the samples. The cost that :func:`advise` reports is the mean over continuous time; the two
+    have the same minimum in the limit of short periods only.
+    """
 
     weights: Sequence[float]
 

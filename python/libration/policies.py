@@ -44,7 +44,7 @@ class Policy:
 
 @dataclass(frozen=True)
 class Linear(Policy):
-    """``weights @ observation + bias``, an acceleration in m/s² (rad/s² of a pendulum), as all actions are."""
+    """``weights @ observation + bias``, in the unit of all actions: m/s² (rad/s² of a pendulum), or N where ``m`` and ``k`` are given."""
 
     weights: ArrayLike
     """One for each number that is observed."""

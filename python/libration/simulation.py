@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _native
 from ._asked import coordinates, text, told_loop, told_step, whole
 from ._named import named
-from ._settings import nearest, number
+from ._settings import count as _whole_between, nearest, number
 from .ensemble import Ensemble
 from .systems import CustomSystem, known
 
@@ -37,9 +37,11 @@ class Trajectory(Mapping[str, np.ndarray]):
         self.units: Mapping[str, str] = units
         """The unit of each column, where it is known; ``1`` if there is none."""
         self.stopped: dict[str, Any] | None = ended if "step" in ended else None
-        """Of a lone trajectory that ceased to be finite: the first ``step`` that is not, its ``t`` in seconds, and the ``reason``."""
+        """Of a lone trajectory that ceased to be finite: the first ``step`` that is not, its ``t`` in seconds, and the ``reason``: also why and
+        what to do, where the stability of the step tells."""
         self.not_finite: dict[str, Any] | None = ended if "count" in ended else None
-        """Of several trajectories: the ``count`` of those that are not finite in the end, and the ``first`` ten of them."""
+        """Of several trajectories: the ``count`` of those that are not finite in the end, the ``first`` ten of them, and the ``reason`` where
+        it is known."""
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         return self._columns[name]
@@ -116,7 +118,7 @@ def simulate(
     dt:
         The time step in s.
     steps:
-        How many, 1 to 10⁹.
+        How many, 1 to 2⁵³; ``every`` bounds the rows.
     q, v:
         Positions and velocities at the start, a number or ``(dimension,)``; by default those of the catalogue.
     float:
@@ -126,7 +128,8 @@ def simulate(
     count, spread, threads:
         Simulate ``count`` trajectories from ``1 - spread`` to ``1 + spread`` times the start, in so many threads; 0 for all cores.
     feedback:
-        Close the loop: gains of position and velocity, or a :class:`~libration.PD`.
+        Close the loop: gains of position and velocity, or a :class:`~libration.PD`. The command is an acceleration (gains in s⁻² and
+        s⁻¹), or a force (N/m and N·s/m) where the system is given by ``m`` and ``k``.
     latency:
         How late commands arrive, in s or as :class:`~libration.Steps`.
     jitter, skew:
@@ -189,7 +192,8 @@ def _finite(all: Ensemble) -> bool:
 def _custom(
     system: CustomSystem, integrator: str, dt: Any, steps: Any, q: Any, v: Any, float: str, every: Any
 ) -> Trajectory:
-    steps, every = whole("steps", steps), whole("every", every)
+    # Python takes minutes for as many.
+    steps, every = _whole_between("steps", steps, 1, 10**9), whole("every", every)
     if float not in _FLOATS:
         raise ValueError(f"float is {float!r}: {nearest(float, _FLOATS)}")
     if q is None:

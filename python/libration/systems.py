@@ -39,8 +39,8 @@ class System:
 
     Examples
     --------
-    >>> System("oscillator", m=2.0, k=20.0)
-    System('oscillator', omega2=10.0)
+    >>> System("oscillator", m=2.0, k=20.0)  # commands are forces in N
+    System('oscillator', m=2.0, k=20.0)
     """
 
     def __init__(self, name: str, **parameters: float) -> None:

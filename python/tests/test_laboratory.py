@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import libration
-from libration import LQR, PD, PID, Gaussian, Observer, System, Uniform, advise, analyze, run_lab
+from libration import LQR, PD, PID, Gaussian, Observer, Steps, System, Uniform, advise, analyze, run_lab
 
 SPRING = System("oscillator", omega2=10.0)
 
@@ -36,6 +36,30 @@ def test_a_latency_that_theory_forbids_is_one_that_a_simulation_does_not_stand()
     for latency, stands in ((0.97 * critical, True), (1.03 * critical, False)):
         path = libration.simulate(SPRING, **loop, latency=latency, steps=20_000, every=20_000)
         assert (path.energy[-1] < path.energy[0]) == stands
+
+
+def test_the_radius_of_the_plant_and_that_of_the_loop_have_names_of_their_own():
+    loop = {"integrator": "exact", "dt": 0.0608, "feedback": (23.97, 2.47), "latency": Steps(0.5)}
+    plant = System("oscillator", omega2=15.98)
+    answer = analyze(plant, **loop, jitter=Gaussian(0.068), loss=0.41)
+    assert answer.spectral_radius == 1.0
+    assert answer.closed_loop_spectral_radius == pytest.approx(0.972274008985203, rel=1e-14)
+    # By NumPy: tools/loop_reference.py.
+    assert answer.mean_square_growth == pytest.approx(0.0281475368382684, rel=1e-10)
+    assert answer.lyapunov_exponent is None
+
+
+def test_textbook_verlet_is_said_to_be_another_method_where_forces_depend_on_velocities():
+    step = {"integrator": "textbook-verlet", "dt": 0.01}
+    assert "another method" in analyze("damped-oscillator", **step).note
+    for work in (
+        lambda: libration.simulate("damped-oscillator", **step, steps=3),
+        lambda: libration.Ensemble("damped-oscillator", **step, q=[[0.5]]),
+    ):
+        with pytest.warns(UserWarning, match="another method"):
+            work()
+    # Where nothing is to be said of it a warning would fail the test.
+    libration.simulate("oscillator", **step, steps=3)
 
 
 def test_jitter_skew_loss_and_cost_are_answered():
@@ -198,6 +222,12 @@ def test_without_a_folder_the_files_go_with_the_results():
         ({"config": {"drift": {"dt": [-1.0]}}}, ValueError, "drift.dt"),
         ({"config": {"drfit": {}}}, ValueError, "drift"),
         ({"config": 3}, TypeError, "config"),
+        pytest.param(
+            {"config": "/dev/zero"},
+            ValueError,
+            "'/dev/zero' is too long; expected at most",
+            marks=pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="a device without an end"),
+        ),
         ({"studies": [3]}, TypeError, "names"),
         ({"progress": 3}, TypeError, "progress"),
     ],
@@ -235,7 +265,21 @@ def test_a_data_set_is_resumed_to_the_same_bytes_and_verified(tmp_path):
     raw[-1] ^= 1
     file.write_bytes(raw)
     (flaw,) = libration.datasets.verify(tmp_path / "whole")
-    assert str(flaw.path) in str(file)
+    assert str(flaw.path) in str(file) and not flaw.repaired
+
+
+def test_a_broken_file_is_computed_again_byte_for_byte(tmp_path):
+    folder = tmp_path / "whole"
+    libration.datasets.write(folder, DATA, format="npy")
+    file = next(folder.glob("reward/*.npy"))
+    good = file.read_bytes()
+    file.write_bytes(good[:-1] + bytes([good[-1] ^ 1]))
+    gone = next(folder.glob("action/*.npy"))
+    gone.unlink()
+    flaws = libration.datasets.verify(folder, repair=True)
+    assert {flaw.path for flaw in flaws} == {path.relative_to(folder) for path in (file, gone)}
+    assert all(flaw.repaired for flaw in flaws)
+    assert file.read_bytes() == good and libration.datasets.verify(folder) == []
 
 
 @pytest.mark.parametrize(

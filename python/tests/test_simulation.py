@@ -168,6 +168,22 @@ def test_a_state_that_overflows_ends_a_trajectory_and_says_where(every):
         assert 0 < path.stopped["step"] - path["step"][-1] <= every
 
 
+def test_a_step_beyond_the_limit_of_its_method_is_named_with_the_step_that_it_allows():
+    given = {"integrator": "velocity-verlet", "dt": 0.7, "steps": 1000}
+    # ω = √10: the limit 2 of ωΔt is at Δt = 0.63245.
+    why = "ωΔt = 2.21 is beyond velocity-verlet's limit 2; choose dt below 0.632"
+    assert simulate(SPRING, **given).stopped["reason"] == f"the state stopped being finite: {why}"
+    assert simulate(SPRING, count=2, **given).not_finite["reason"] == why
+    assert simulate(SPRING, **{**given, "dt": 0.632}).stopped is None
+
+
+def test_a_trajectory_may_have_as_many_steps_as_a_float_can_count():
+    given = {"integrator": "explicit-euler", "dt": 100.0, "every": 2**52}
+    assert simulate(SPRING, steps=2**53, **given).stopped["step"] < 200
+    with pytest.raises(ValueError, match="9007199254740992"):
+        simulate(SPRING, steps=2**53 + 1, **given)
+
+
 WRONG = [
     ({"system": "oscilator"}, ValueError, "did you mean 'oscillator'"),
     ({"system": 3}, TypeError, "a name, a System or a function"),
@@ -237,7 +253,10 @@ def test_what_cannot_be_an_ensemble_is_refused_by_name(change, error, told):
 
 
 def test_a_system_has_its_parameters_and_refuses_what_it_has_not():
-    assert System("oscillator", m=2.0, k=20.0) == SPRING
+    joint = System("oscillator", m=2.0, k=20.0)
+    # The same motion, but commands are forces.
+    assert joint != SPRING and dict(joint.parameters) == {"m": 2.0, "k": 20.0}
+    assert repr(joint) == "System('oscillator', m=2.0, k=20.0)"
     assert pickle.loads(pickle.dumps(SPRING)) == SPRING and hash(SPRING) == hash(SPRING)
     assert System("kepler").dimensions == range(2, 3)
     for wrong, told in (({"omega": 1.0}, "did you mean `omega2`"), ({"omega2": -1.0}, "omega2")):

@@ -162,7 +162,7 @@ def test_an_environment_is_the_same_beside_any_number_of_others_and_on_any_numbe
         (dict(dt="fast"), TypeError, "dt must be a number, not str"),
         (dict(jitter=("normal", 0.1)), ValueError, "law of jitter is 'normal'"),
         (dict(skew=-1), ValueError, "skew is -1.0"),
-        (dict(omega2=0.0), ValueError, "omega2"),
+        (dict(omega2=-1.0), ValueError, "omega2"),
         (dict(dtype="int8"), ValueError, "unknown dtype `int8`"),
         (dict(autoreset_mode="Never"), ValueError, "autoreset_mode is 'Never'"),
         (dict(max_episode_steps=0), ValueError, "max_episode_steps is 0, but it must be 1 to"),

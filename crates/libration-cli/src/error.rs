@@ -1,13 +1,17 @@
 //! What can end a run, and the exit code of each.
 
 use std::fmt::Display;
-use std::io;
+use std::io::{self, ErrorKind};
+use std::path::Path;
 use std::process::ExitCode;
+
+use libration::ensemble::{EnsembleError, MOST_THREADS, NoRoom};
+use libration_lab::dataset::{DataError, DatasetError};
 
 use crate::terminal;
 
 /// Exit code of a failed run, and of one whose findings disagree.
-const FAILED: u8 = 1;
+pub(crate) const FAILED: u8 = 1;
 /// Exit code of wrong input.
 const USAGE: u8 = 2;
 /// Exit code of a run that the user stopped: 128 and the number of SIGINT.
@@ -41,13 +45,35 @@ impl Failure {
         Failure::Run(message.to_string())
     }
 
+    /// Not enough memory: wrong input if this machine could never have it, a failed run otherwise.
+    pub(crate) fn room(room: &NoRoom, message: impl Display) -> Self {
+        if room.is_beyond_machine() { Failure::usage(message) } else { Failure::run(message) }
+    }
+
+    /// An ensemble cannot be made: the system refuses, or the input is wrong.
+    pub(crate) fn ensemble(error: &EnsembleError) -> Self {
+        match error {
+            EnsembleError::Memory(room) => Failure::room(room, error),
+            EnsembleError::Threads { threads, .. } if *threads <= MOST_THREADS => {
+                Failure::run(format!("{error}; lower --threads"))
+            }
+            error => Failure::usage(error),
+        }
+    }
+
     /// Says on stderr what happened; gives the exit code.
     pub(crate) fn report(self) -> ExitCode {
         match self {
             Failure::Arguments(error) => {
-                // Nobody is left to tell if this cannot be written.
-                let _ = error.print();
-                if error.use_stderr() { ExitCode::from(USAGE) } else { ExitCode::SUCCESS }
+                let printed = error.print();
+                match printed {
+                    // If this cannot be written, nobody is left to tell.
+                    _ if error.use_stderr() => ExitCode::from(USAGE),
+                    Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+                        Failure::from(error).report()
+                    }
+                    _ => ExitCode::SUCCESS,
+                }
             }
             Failure::Usage(message) => {
                 terminal::error(&message);
@@ -81,4 +107,21 @@ impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         Failure::Run(format!("cannot write to standard output: {error}"))
     }
+}
+
+/// Whether an error says that the folder that was given, or its manifest, cannot be used: wrong input, unlike a disk that is full.
+pub(crate) fn is_unusable(error: &DatasetError, folder: &Path) -> bool {
+    let DatasetError::Data(DataError::Io { path, source, .. }) = error else { return false };
+    let named = path == folder || *path == folder.join("manifest.jsonl");
+    let kinds = [
+        ErrorKind::NotFound,
+        ErrorKind::PermissionDenied,
+        ErrorKind::AlreadyExists,
+        ErrorKind::NotADirectory,
+        ErrorKind::IsADirectory,
+        ErrorKind::ReadOnlyFilesystem,
+        ErrorKind::InvalidFilename,
+        ErrorKind::FileTooLarge,
+    ];
+    named && kinds.contains(&source.kind())
 }

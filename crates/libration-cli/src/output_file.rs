@@ -1,19 +1,32 @@
 //! A file that is written whole or not at all.
 
 use std::ffi::OsString;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process;
 
+/// Links that lead from one to the next at most, as on Linux.
+const MOST_LINKS: usize = 40;
+
 /// A file under a temporary name beside its own, until it is complete.
 ///
-/// What exists and is no regular file (a pipe, `/dev/null`) is written to directly.
+/// What exists and is no regular file (a pipe, `/dev/null`) is written to directly. A file that is
+/// replaced keeps its permissions, its owner and its links: one with several hard links, or of an owner
+/// whose files this user cannot make, is filled with the complete result instead of replaced.
 #[derive(Debug)]
 pub(crate) struct OutputFile {
     file: File,
-    /// The temporary name, and the name that it is to get.
-    rename: Option<(PathBuf, PathBuf)>,
+    /// Where the result is until it is complete, and how it gets its name.
+    pending: Option<Pending>,
+}
+
+#[derive(Debug)]
+struct Pending {
+    temporary: PathBuf,
+    target: PathBuf,
+    /// The file to fill in the end, if another one under its name would lose a hard link or the owner.
+    fill: Option<File>,
 }
 
 impl OutputFile {
@@ -22,34 +35,57 @@ impl OutputFile {
     /// # Errors
     /// If `path` cannot be written, or is a folder.
     pub(crate) fn create(path: &Path) -> io::Result<Self> {
-        // Follows links, so that what they point to is replaced and not the link.
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        if let Some(file) = standard_stream(path)? {
+            return Ok(OutputFile { file, pending: None });
+        }
+        let target = resolve(path)?;
+        let mut old = None;
         if target.exists() {
             // A file that the user made read-only stays as it is.
             let file = OpenOptions::new().write(true).open(&target)?;
-            if !file.metadata()?.is_file() {
-                return Ok(OutputFile { file, rename: None });
+            let metadata = file.metadata()?;
+            if !metadata.is_file() {
+                return Ok(OutputFile { file, pending: None });
             }
+            old = Some((file, metadata));
         }
         let name = target.file_name().ok_or(io::ErrorKind::IsADirectory)?;
         let mut temporary = OsString::from(".");
         temporary.push(name);
         temporary.push(format!(".{}.part", process::id()));
         let temporary = target.with_file_name(temporary);
-        let file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
-        Ok(OutputFile { file, rename: Some((temporary, target)) })
+        let mut options = OpenOptions::new();
+        options.write(true).create_new(true);
+        #[cfg(unix)]
+        if old.is_some() {
+            // Nobody reads meanwhile what nobody may read later.
+            std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+        }
+        let file = options.open(&temporary)?;
+        let fill = old.filter(|(_, old)| !becomes(&file, old)).map(|(old, _)| old);
+        Ok(OutputFile { file, pending: Some(Pending { temporary, target, fill }) })
     }
 
     /// Gives the complete file its name.
     ///
     /// # Errors
-    /// If the file system refuses; the temporary file is then gone.
+    /// If the file system refuses; the temporary file is then gone, unless its file is half filled.
     pub(crate) fn keep(mut self) -> io::Result<()> {
         self.file.flush()?;
-        if let Some((temporary, target)) = &self.rename {
-            fs::rename(temporary, target)?;
+        match &self.pending {
+            Some(Pending { temporary, fill: Some(file), .. }) => {
+                if let Err(error) = fill_with(file, temporary) {
+                    let whole = format!("{error}; `{}` holds all of it", temporary.display());
+                    self.pending = None;
+                    return Err(io::Error::new(error.kind(), whole));
+                }
+                // It is rubbish now.
+                let _ = fs::remove_file(temporary);
+            }
+            Some(Pending { temporary, target, fill: None }) => fs::rename(temporary, target)?,
+            None => {}
         }
-        self.rename = None;
+        self.pending = None;
         Ok(())
     }
 }
@@ -66,9 +102,69 @@ impl Write for OutputFile {
 
 impl Drop for OutputFile {
     fn drop(&mut self) {
-        if let Some((temporary, _)) = &self.rename {
+        if let Some(Pending { temporary, .. }) = &self.pending {
             // It is rubbish; there is nobody to tell that it stays.
             let _ = fs::remove_file(temporary);
         }
     }
+}
+
+/// Standard output or standard error, if `path` is one of their names. Where it is a regular file, others write to it before and after:
+/// it may not be replaced, nor be opened again at its beginning.
+#[cfg(unix)]
+fn standard_stream(path: &Path) -> io::Result<Option<File>> {
+    use std::os::fd::AsFd;
+    let is = |names: [&str; 3]| names.iter().any(|name| path == Path::new(name));
+    let owned = if is(["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"]) {
+        io::stdout().as_fd().try_clone_to_owned()?
+    } else if is(["/dev/stderr", "/dev/fd/2", "/proc/self/fd/2"]) {
+        io::stderr().as_fd().try_clone_to_owned()?
+    } else {
+        return Ok(None);
+    };
+    Ok(Some(File::from(owned)))
+}
+
+#[cfg(not(unix))]
+fn standard_stream(_: &Path) -> io::Result<Option<File>> {
+    Ok(None)
+}
+
+/// The file that a path leads to, whether it exists or not: links stay, and what they lead to is written.
+fn resolve(path: &Path) -> io::Result<PathBuf> {
+    if let Ok(target) = fs::canonicalize(path) {
+        return Ok(target);
+    }
+    let mut target = path.to_owned();
+    if target.exists() {
+        // A pipe behind `/dev/stdout` has no other name.
+        return Ok(target);
+    }
+    for _ in 0..MOST_LINKS {
+        let Ok(next) = fs::read_link(&target) else { return Ok(target) };
+        target = target.parent().unwrap_or(Path::new("")).join(next);
+    }
+    Err(io::Error::other("too many symbolic links"))
+}
+
+/// Gives a file the owner and the permissions of an old one. Whether it can take its place then.
+#[cfg(unix)]
+fn becomes(file: &File, old: &Metadata) -> bool {
+    use std::os::unix::fs::{MetadataExt, fchown};
+    let same = file.metadata().is_ok_and(|new| (new.uid(), new.gid()) == (old.uid(), old.gid()));
+    old.nlink() == 1
+        && (same || fchown(file, Some(old.uid()), Some(old.gid())).is_ok())
+        && file.set_permissions(old.permissions()).is_ok()
+}
+
+/// Gives a file the permissions of an old one. Whether it can take its place then.
+#[cfg(not(unix))]
+fn becomes(file: &File, old: &Metadata) -> bool {
+    file.set_permissions(old.permissions()).is_ok()
+}
+
+/// Makes the bytes of `from` those of a file.
+fn fill_with(mut file: &File, from: &Path) -> io::Result<()> {
+    let bytes = io::copy(&mut File::open(from)?, &mut file)?;
+    file.set_len(bytes)
 }

@@ -36,8 +36,7 @@ struct State {
 impl Reporter {
     /// Bars if stderr is a terminal, lines if it is not, nothing if `quiet`.
     pub(crate) fn new(quiet: bool) -> Self {
-        let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
-        match (quiet, stderr().is_terminal() && !dumb) {
+        match (quiet, has_bars()) {
             (true, _) => Reporter::Quiet,
             (false, true) => Reporter::Bars(Bars::default()),
             (false, false) => Reporter::Lines,
@@ -95,6 +94,23 @@ impl Bars {
         // A study that panicked leaves bars behind that are still whole.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Whether stderr is a terminal on which a bar can move.
+pub(crate) fn has_bars() -> bool {
+    let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+    stderr().is_terminal() && !dumb
+}
+
+/// A bar over so many steps, with the time left.
+pub(crate) fn steps(total: u64) -> ProgressBar {
+    let template = "{bar:20} {percent} %  {human_pos} of {human_len} steps  {left}";
+    let style = ProgressStyle::with_template(template);
+    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+    let style = style.with_key("left", time_left).progress_chars("━╸─");
+    let bar = ProgressBar::new(total).with_style(style);
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
 }
 
 /// The study, a bar, the time left, and what is being done, cut where the terminal ends.

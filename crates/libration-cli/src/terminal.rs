@@ -7,6 +7,8 @@ use anstyle::{AnsiColor, Style};
 
 /// The heading of an error.
 const ERROR: Style = AnsiColor::Red.on_default().bold();
+/// The heading of a warning.
+const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 
 /// Settles the colour of both streams. `Auto` looks at the stream and at `NO_COLOR`.
 pub(crate) fn set_color(choice: clap::ColorChoice) {
@@ -31,6 +33,11 @@ pub(crate) fn print(text: &str) -> io::Result<()> {
 /// Writes a line for people to stderr; if that fails, nobody is left to tell.
 pub(crate) fn say(text: &str) {
     let _ = writeln!(anstream::stderr().lock(), "{}", text.trim_end());
+}
+
+/// Writes to stderr what went wrong and changes no result.
+pub(crate) fn warn(message: &str) {
+    say(&format!("{WARNING}warning{WARNING:#}: {message}"));
 }
 
 /// Writes an error to stderr.

@@ -60,7 +60,7 @@ pub enum DataError {
         /// What is wrong with it.
         what: String,
     },
-    /// The manifest says other things than the files.
+    /// A file contradicts itself.
     #[error("{}: {what}", path.display())]
     Damaged {
         /// Which file.

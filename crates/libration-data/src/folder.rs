@@ -2,14 +2,16 @@
 
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::fs::{self, File};
+use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value};
 
+use crate::bounded::read_rest;
 use crate::durable::{named, remove_parts, sync_folder};
-use crate::manifest::NAME;
+use crate::lock::open_locked;
+use crate::manifest::{LIMIT, NAME};
 use crate::{Chunk, DataError, Manifest, Stored, on_threads, write_file};
 
 /// Files that are written at once: to wait for the disk takes as long for one as for all of them.
@@ -35,11 +37,11 @@ pub struct FileOf<'a> {
 
 impl Folder {
     /// Opens a folder for a data set of these settings; with `resume` one that was begun before, of which everything that is in its
-    /// manifest stays.
+    /// manifest stays. Whether its files are sound, [`verify`](crate::verify) finds out.
     ///
     /// # Errors
-    /// If another process has it open, or it holds something else, another data set, or one that nobody asked to go on with; if the
-    /// files that its manifest names are not there. Nothing has changed then.
+    /// If another process has it open, or it holds something else, another data set, or one that nobody asked to go on with. Nothing
+    /// has changed then.
     pub fn open(
         path: &Path,
         settings: &Map<String, Value>,
@@ -55,20 +57,11 @@ impl Folder {
                 return Err(DataError::Strange { folder: path.to_owned(), found });
             }
         }
-        let mut log = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(&name)
-            .map_err(DataError::io("write", &name))?;
-        match log.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(DataError::Locked(path.to_owned())),
-            Err(TryLockError::Error(error)) => return Err(DataError::io("lock", &name)(error)),
-        }
-        let mut text = Vec::new();
-        log.read_to_end(&mut text).map_err(DataError::io("read", &name))?;
+        let log = open_locked(&name).map_err(|error| match error {
+            DataError::Locked(_) => DataError::Locked(path.to_owned()),
+            error => error,
+        })?;
+        let text = read_rest(&log, LIMIT).map_err(DataError::io("read", &name))?;
         let (found, len) = Manifest::parse(&text, &name)?;
         let path = path.to_owned();
         let Some(manifest) = found else {
@@ -91,7 +84,6 @@ impl Folder {
         }
         same(&path, &manifest.settings, settings)?;
         let mut folder = Folder { path, manifest, log };
-        folder.look()?;
         folder.cut(len as u64)?;
         remove_parts(&folder.path)?;
         Ok(folder)
@@ -152,25 +144,6 @@ impl Folder {
         let name = self.path.join(NAME);
         let cut = self.log.set_len(len).and_then(|()| self.log.seek(SeekFrom::End(0)));
         cut.map(|_| ()).map_err(DataError::io("write", &name))
-    }
-
-    /// Whether every file of the manifest is there, as long as it should be.
-    fn look(&self) -> Result<(), DataError> {
-        for file in self.manifest.chunks.iter().flat_map(|chunk| &chunk.files) {
-            let path = self.path.join(&file.path);
-            let damaged = |what: String| DataError::Damaged { path: path.clone(), what };
-            match fs::metadata(&path) {
-                Ok(found) if found.len() == file.bytes => {}
-                Ok(found) => {
-                    let (found, wanted) = (found.len(), file.bytes);
-                    return Err(damaged(format!(
-                        "it has {found} bytes; the manifest says {wanted}"
-                    )));
-                }
-                Err(error) => return Err(damaged(format!("the manifest names it: {error}"))),
-            }
-        }
-        Ok(())
     }
 }
 

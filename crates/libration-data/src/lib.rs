@@ -6,11 +6,13 @@
 //!
 //! Nothing here knows of physics.
 
+mod bounded;
 mod checksum;
 mod direct;
 mod durable;
 mod error;
 mod folder;
+mod lock;
 mod manifest;
 mod mapped;
 mod npy;
@@ -20,14 +22,16 @@ mod table;
 mod threads;
 mod verify;
 
+pub use bounded::{read_bounded, read_text_bounded};
 pub use checksum::checksum;
 pub use durable::{write_file, write_past};
 pub use error::{DataError, TableError};
 pub use folder::{FileOf, Folder, same, store};
+pub use lock::open_locked;
 pub use manifest::{Chunk, Manifest, Stored};
 pub use mapped::ReplayFile;
 pub use npy::{npy_array, write_npy};
-pub use parquet::write_parquet;
+pub use parquet::{parquet_bytes, write_parquet};
 pub use state::{keep, take_up};
 pub use table::{Column, Table, Values};
 pub use threads::on_threads;

@@ -7,9 +7,13 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::DataError;
+use crate::bounded::read_bounded;
 
 /// Its name in the folder.
 pub(crate) const NAME: &str = "manifest.jsonl";
+
+/// Bytes of the longest manifest: a file takes less than 200 of them, so that there is room for five million files.
+pub(crate) const LIMIT: u64 = 1 << 30;
 
 /// What a data set consists of: its settings, and the chunks that are there. In its file each has a line of JSON.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,7 +48,19 @@ pub struct Stored {
     pub blake3: String,
 }
 
+impl Chunk {
+    /// Bytes of all its files.
+    pub fn bytes(&self) -> u64 {
+        self.files.iter().map(|file| file.bytes).sum()
+    }
+}
+
 impl Manifest {
+    /// Bytes of all files of all chunks.
+    pub fn bytes(&self) -> u64 {
+        self.chunks.iter().map(Chunk::bytes).sum()
+    }
+
     /// Reads the text of one, and how much of it that is: a last line without its end was never written.
     pub(crate) fn parse(text: &[u8], path: &Path) -> Result<(Option<Self>, usize), DataError> {
         let len = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
@@ -89,7 +105,7 @@ impl Manifest {
     /// If there is none, or what there is is none.
     pub fn read(folder: &Path) -> Result<Self, DataError> {
         let path = folder.join(NAME);
-        let text = match std::fs::read(&path) {
+        let text = match read_bounded(&path, LIMIT) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Err(DataError::Missing(folder.to_owned()));

@@ -1,6 +1,6 @@
 //! Replay buffers in files.
 
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
@@ -12,6 +12,7 @@ use memmap2::MmapMut;
 
 use crate::DataError;
 use crate::durable::make;
+use crate::lock::lock;
 
 /// A replay buffer whose memory is a file, which this process alone uses: at whatever moment it dies, what was inserted before is
 /// found there again. A loss of power is another matter: the system writes what was changed in no order, so that only a buffer that
@@ -87,14 +88,6 @@ impl<T, const O: usize, const D: usize> DerefMut for ReplayFile<T, O, D> {
 fn refused(path: &Path) -> impl FnOnce(ReplayError) -> DataError {
     let path = path.to_owned();
     move |source| DataError::Replay { path, source }
-}
-
-fn lock(file: &File, path: &Path) -> Result<(), DataError> {
-    match file.try_lock() {
-        Ok(()) => Ok(()),
-        Err(TryLockError::WouldBlock) => Err(DataError::Locked(path.to_owned())),
-        Err(TryLockError::Error(error)) => Err(DataError::io("lock", path)(error)),
-    }
 }
 
 /// So many zeros, on the disk.

@@ -23,6 +23,9 @@ use crate::{Column, Table, TableError, Values, on_threads};
 /// Rows that are compressed, and can be skipped, together.
 const ROW_GROUP: usize = 1 << 20;
 
+/// Bytes of a compressor at level 1 with its window, and of the pages that it is given, each at most a megabyte.
+const ENCODER: u128 = 8 << 20;
+
 /// Writes `table` into `out`, with further `metadata` beside the units. So many threads encode its columns; the bytes do not
 /// depend on how many.
 ///
@@ -56,6 +59,13 @@ pub fn write_parquet(
     }
     file.close()?;
     Ok(())
+}
+
+/// Bytes of memory at most that [`write_parquet`] takes besides a table of so many rows and bytes.
+pub fn parquet_bytes(rows: u64, bytes: u128, threads: usize) -> u128 {
+    // The columns of a row group are kept until it ends, and may be moved as they grow.
+    let group = bytes * u128::from(rows.min(ROW_GROUP as u64)) / u128::from(rows.max(1));
+    2 * group + threads as u128 * ENCODER
 }
 
 /// A column of a row group by itself.

@@ -23,7 +23,9 @@ pub fn on_threads<R: Send>(
         }
     };
     thread::scope(|scope| {
-        (1..threads.min(count)).for_each(|_| drop(scope.spawn(drain)));
+        // Where the system gives no more threads, those that there are do the work.
+        let start = |_| thread::Builder::new().spawn_scoped(scope, drain).is_ok();
+        (1..threads.min(count)).all(start);
         drain();
     });
     let taken =

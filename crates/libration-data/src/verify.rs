@@ -17,20 +17,24 @@ pub struct Flaw {
     pub path: PathBuf,
     /// What is wrong.
     pub what: String,
+    /// Whether the file is missing or has other bytes than the manifest says.
+    pub broken: bool,
 }
 
-/// Reads all files of a data set and compares their checksums; `seen` is told after each how many bytes it had, and says whether to go on.
-pub fn verify(folder: &Path, manifest: &Manifest, mut seen: impl FnMut(u64) -> bool) -> Vec<Flaw> {
-    let mut flaws = Vec::new();
+/// Reads all files of a data set and compares their checksums. `go_on` gets the number of bytes in the chunks up to each
+/// one that was read, and returns whether to read the next.
+pub fn verify(folder: &Path, manifest: &Manifest, mut go_on: impl FnMut(u64) -> bool) -> Vec<Flaw> {
+    let (mut flaws, mut bytes) = (Vec::new(), 0);
     for chunk in &manifest.chunks {
         for file in &chunk.files {
             if let Err(what) = sound(folder, file) {
                 let (chunk, path) = (chunk.chunk.clone(), file.path.clone());
-                flaws.push(Flaw { chunk, path, what });
+                flaws.push(Flaw { chunk, path, what, broken: true });
             }
-            if !seen(file.bytes) {
-                return flaws;
-            }
+        }
+        bytes += chunk.bytes();
+        if !go_on(bytes) {
+            break;
         }
     }
     flaws

@@ -49,7 +49,7 @@ impl Model<1> for Bead<f64> {
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let config = match arguments.next() {
-        Some(path) => config::parse_bytes(&std::fs::read(&path)?, &path)?,
+        Some(path) => config::parse_bytes(&config::read(path.as_ref())?, &path)?,
         None => config::parse(include_str!("own_system.toml"), "own_system.toml")?,
     };
     let output = Output::open(arguments.next().unwrap_or_else(|| "bead-report".into()))?;

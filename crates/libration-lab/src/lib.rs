@@ -27,8 +27,10 @@ pub mod study;
 mod text;
 pub mod trajectory;
 pub mod tried;
+pub mod units;
 pub mod untried;
 pub mod wakeups;
+mod written;
 
 pub use config::Config;
 pub use effort::Effort;

@@ -1,5 +1,6 @@
 //! A run of the laboratory: studies in turn, each written to disk as it ends.
 
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use thiserror::Error;
@@ -7,18 +8,29 @@ use thiserror::Error;
 use crate::export::{ExportError, series_to_parquet};
 use crate::output::{Output, OutputError};
 use crate::page::{Chapter, Page};
-use crate::record::{FigureFile, RecordError};
+use crate::record::{DataFile, FigureFile, RecordError, Series};
 use crate::results::{Results, SCHEMA};
 use crate::study::StudyError;
 use crate::tried::unjudged;
 use crate::untried::UNTRIED;
 use crate::{Lab, Machine, Record, Study, figure, report};
 
+/// A run that ended early.
+#[derive(Debug, Error)]
+#[error("{cause}; {}", kept_in(kept.as_deref()))]
+pub struct SessionError {
+    /// Why.
+    #[source]
+    pub cause: Box<Cause>,
+    /// The folder that holds the studies that had ended, if there are any.
+    pub kept: Option<PathBuf>,
+}
+
 /// Why a run ended early.
 #[derive(Debug, Error)]
-pub enum SessionError {
-    /// The user stopped it; what had ended is on disk.
-    #[error("interrupted; finished studies were kept")]
+pub enum Cause {
+    /// The user stopped it.
+    #[error("interrupted")]
     Interrupted,
     /// A study failed.
     #[error("study `{study}` failed: {source}")]
@@ -44,16 +56,23 @@ pub enum SessionError {
     Output(#[from] OutputError),
 }
 
-/// Runs `studies` in turn and writes records, data, figures and report into `output`.
+fn kept_in(folder: Option<&Path>) -> String {
+    match folder {
+        Some(folder) => format!("`{}` holds the studies that ended", folder.display()),
+        None => "no study had ended, and no earlier result has changed".to_owned(),
+    }
+}
+
+/// Runs `studies` in turn and writes records, data, figures and report aside; when all have ended, they replace what an earlier run
+/// left in the folder of `output`.
 ///
 /// # Errors
-/// See [`SessionError`]. Whatever the error, the studies that had ended by then are on disk.
+/// See [`SessionError`]. Whatever the cause, the studies that had ended by then are on disk.
 pub fn run(
     lab: &Lab<'_>,
     studies: &[&dyn Study],
     output: &Output,
 ) -> Result<Results, SessionError> {
-    let started = Instant::now();
     let mut results = Results {
         schema: SCHEMA,
         machine: Machine::detect(),
@@ -64,35 +83,54 @@ pub fn run(
         unjudged: unjudged(lab.config, &[], &[]),
         studies: Vec::new(),
     };
+    match run_all(lab, studies, output, &mut results) {
+        Ok(()) => Ok(results),
+        Err(cause) => {
+            // Without one, what lies aside is of an earlier run.
+            let kept = if results.studies.is_empty() { None } else { output.keep() };
+            Err(SessionError { cause: Box::new(cause), kept })
+        }
+    }
+}
+
+fn run_all(
+    lab: &Lab<'_>,
+    studies: &[&dyn Study],
+    output: &Output,
+    results: &mut Results,
+) -> Result<(), Cause> {
+    let started = Instant::now();
     let mut chapters = Vec::new();
-    // An older report would stand beside newer results.
-    output.remove("report.html")?;
-    write_results(&results, output)?;
     for &study in studies {
         let begun = Instant::now();
         lab.announce(study.name(), results.studies.len() + 1, studies.len());
         let mut record = match study.run(lab) {
             Ok(record) => record,
-            Err(StudyError::Interrupted) => return Err(SessionError::Interrupted),
-            Err(source) => return Err(SessionError::Study { study: study.name(), source }),
+            Err(StudyError::Interrupted) => return Err(Cause::Interrupted),
+            Err(source) => return Err(Cause::Study { study: study.name(), source }),
         };
         record.seconds = begun.elapsed().as_secs_f64();
         let mut page = Page::default();
         study
             .render(&record, &mut page)
-            .map_err(|source| SessionError::Render { study: study.name(), source })?;
+            .map_err(|source| Cause::Render { study: study.name(), source })?;
+        if results.studies.is_empty() {
+            // What an earlier run left unfinished stays until there is something in its place.
+            output.clear()?;
+        }
         record.figures = write_figures(&page, output)?;
-        write_series(&record, output)?;
-        results.studies.push(record.clone());
-        chapters.push(Chapter { record, page });
+        record.data = write_series(&record, output)?;
+        chapters.push(Chapter { record: record.clone(), page });
+        results.studies.push(record);
         results.seconds = started.elapsed().as_secs_f64();
         let ended = &studies[..results.studies.len()];
         results.unjudged = unjudged(lab.config, ended, &results.studies);
         results.complete = results.studies.len() == studies.len();
-        write_results(&results, output)?;
-        output.write("report.html", report::render(&results, &chapters).as_bytes())?;
+        output.write("report.html", report::render(results, &chapters).as_bytes())?;
+        // After all files that it names.
+        write_results(results, output)?;
     }
-    Ok(results)
+    Ok(output.put_in_place()?)
 }
 
 fn write_figures(page: &Page, output: &Output) -> Result<Vec<FigureFile>, OutputError> {
@@ -105,12 +143,13 @@ fn write_figures(page: &Page, output: &Output) -> Result<Vec<FigureFile>, Output
         .collect()
 }
 
-fn write_series(record: &Record, output: &Output) -> Result<(), SessionError> {
-    for series in &record.series {
+fn write_series(record: &Record, output: &Output) -> Result<Vec<DataFile>, Cause> {
+    let write = |series: &Series| {
         let file = format!("data/{}-{}.parquet", record.name, series.name);
         output.write(&file, &series_to_parquet(series)?)?;
-    }
-    Ok(())
+        Ok(DataFile { name: series.name.clone(), file })
+    };
+    record.series.iter().map(write).collect()
 }
 
 fn write_results(results: &Results, output: &Output) -> Result<(), OutputError> {

@@ -1,6 +1,6 @@
 //! A system and where it starts.
 
-use libration::catalog::Entry;
+use libration::catalog::{Actuation, Entry};
 use libration::{AnySystem, CatalogError, State, with_system};
 use thiserror::Error;
 
@@ -9,6 +9,8 @@ use thiserror::Error;
 pub struct Setting {
     /// The system with its parameters.
     pub system: AnySystem,
+    /// The quantity of its commands.
+    pub actuation: Actuation,
     /// Positions at the start.
     pub q: Vec<f64>,
     /// Velocities at the start.
@@ -37,7 +39,7 @@ impl Setting {
     /// # Errors
     /// [`SettingError`]. That positions and velocities are equally many is for those to check who say what both are called.
     pub fn new(
-        system: AnySystem,
+        (system, actuation): (AnySystem, Actuation),
         q: Option<Vec<f64>>,
         v: Option<Vec<f64>>,
     ) -> Result<Self, SettingError> {
@@ -55,7 +57,7 @@ impl Setting {
             (AnySystem::DrivenOscillator(_), &[_, rate]) if rate != 1.0 => {
                 Err(SettingError::Rate { rate, system: entry.name })
             }
-            _ => Ok(Setting { system, q, v }),
+            _ => Ok(Setting { system, actuation, q, v }),
         }
     }
 }

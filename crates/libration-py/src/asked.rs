@@ -1,13 +1,16 @@
 //! What is asked of a simulation or an analysis, as `libration` hands it over.
 
+use std::ffi::CString;
 use std::ops::RangeInclusive;
 
 use libration::analysis::{Feedback, Jitter, LqrWeights};
+use libration::catalog::{self, Actuation};
 use libration::{AnySystem, Method};
 use libration_lab::analyze::{Late, Stepping, Timing};
 use libration_lab::config::limits::{self, MOST_GAIN, MOST_RMS};
 use libration_lab::config::names;
 use libration_lab::setting::Setting;
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 
 use crate::error::{Raised, refused, unknown};
@@ -39,9 +42,9 @@ pub(crate) struct Loop {
 }
 
 /// The system of that name.
-pub(crate) fn system((name, parameters): &SystemTold) -> PyResult<AnySystem> {
+pub(crate) fn system((name, parameters): &SystemTold) -> PyResult<(AnySystem, Actuation)> {
     let parameters: Vec<_> = parameters.iter().map(|(name, value)| (name, *value)).collect();
-    AnySystem::build(name, &parameters)
+    catalog::build(name, &parameters)
         .map_err(|error| refused(format!("{error}{}", names::meant(&error))))
 }
 
@@ -59,6 +62,14 @@ pub(crate) fn method(name: &str) -> PyResult<Method> {
     }
     Method::from_name(name)
         .ok_or_else(|| unknown("integrator", name, Method::ALL.map(Method::name)))
+}
+
+/// Warns of what must be known of `method` on `system`, if anything.
+pub(crate) fn warn_of(py: Python<'_>, system: AnySystem, method: Method) -> PyResult<()> {
+    let Some(caveat) = system.caveat(method) else { return Ok(()) };
+    let category = py.get_type::<PyUserWarning>();
+    // Of who called the function of the package.
+    PyErr::warn(py, &category, &CString::new(caveat)?, 3)
 }
 
 impl Step {

@@ -43,5 +43,6 @@ pub(crate) fn _studies() -> Vec<(&'static str, &'static str)> {
 /// All parameters of a system, those that were not given as well.
 #[pyfunction]
 pub(crate) fn _parameters(told: SystemTold) -> PyResult<Vec<(&'static str, f64)>> {
-    Ok(system(&told)?.parameters())
+    let (system, actuation) = system(&told)?;
+    Ok(actuation.parameters(system))
 }

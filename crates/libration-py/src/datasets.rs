@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use libration::ensemble::Execution;
-use libration_lab::dataset::{self, DataFormat, Dataset, Job, Watch};
+use libration_lab::dataset::{self, Check, DataFormat, Dataset, Flaw, Job, Watch};
 use pyo3::prelude::*;
 
 use crate::error::{Raised, keywords, refused, unknown};
@@ -14,6 +15,7 @@ use crate::work::work;
 struct Done<'a> {
     transitions: &'a AtomicU64,
     bytes: &'a AtomicU64,
+    repaired: &'a Mutex<Vec<Flaw>>,
     stop: &'a AtomicBool,
 }
 
@@ -21,6 +23,14 @@ impl Watch for Done<'_> {
     fn done(&self, transitions: u64, bytes: u64) {
         self.transitions.fetch_add(transitions, Ordering::Relaxed);
         self.bytes.fetch_add(bytes, Ordering::Relaxed);
+    }
+
+    fn checked(&self, bytes: u64, _: u64) {
+        self.bytes.fetch_max(bytes, Ordering::Relaxed);
+    }
+
+    fn repaired(&self, flaw: &Flaw) {
+        self.repaired.lock().unwrap_or_else(PoisonError::into_inner).push(flaw.clone());
     }
 
     fn stops(&self) -> bool {
@@ -71,11 +81,13 @@ pub(crate) fn _write_dataset(
         execution: Execution::serial().threads(writing.threads).map_err(Raised::raised)?,
     };
     let all = if writing.shard[1] == 0 { 0 } else { dataset.share(writing.shard) };
-    let (transitions, bytes) = (AtomicU64::new(0), AtomicU64::new(0));
+    let (transitions, bytes, repaired) =
+        (AtomicU64::new(0), AtomicU64::new(0), Mutex::new(Vec::new()));
     let manifest = work(
         py,
         |stop| {
-            let watch = Done { transitions: &transitions, bytes: &bytes, stop };
+            let watch =
+                Done { transitions: &transitions, bytes: &bytes, repaired: &repaired, stop };
             dataset::write(&job, &watch)
         },
         teller(&transitions, &bytes, all, progress.as_ref()),
@@ -84,32 +96,40 @@ pub(crate) fn _write_dataset(
     Ok((transitions.into_inner(), bytes.into_inner(), chunks))
 }
 
-/// A flaw: in which chunk, of which file, and what it is.
-type Flaw = (String, PathBuf, String);
+/// A flaw: in which chunk, of which file, what it is, and whether it has been repaired.
+type Told = (String, PathBuf, String, bool);
 
-/// Reads a data set, and computes it again if asked to. Gives what is wrong, and how many bytes it is.
+fn told(flaw: Flaw, repaired: bool) -> Told {
+    (flaw.chunk, flaw.path, keywords(&flaw.what), repaired)
+}
+
+/// Reads a data set, and computes it or what is broken again if asked to. Gives what is or was wrong.
 #[pyfunction]
 pub(crate) fn _verify_dataset(
     py: Python<'_>,
     folder: PathBuf,
     replay: bool,
+    repair: bool,
     threads: usize,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(Vec<Flaw>, u64)> {
+) -> PyResult<Vec<Told>> {
     let again = Execution::serial().threads(threads).map_err(Raised::raised)?;
-    let (transitions, bytes) = (AtomicU64::new(0), AtomicU64::new(0));
+    let how = Check { replay: replay.then_some(&again), repair: repair.then_some(&again) };
+    let (transitions, bytes, repaired) =
+        (AtomicU64::new(0), AtomicU64::new(0), Mutex::new(Vec::new()));
     let checked = work(
         py,
         |stop| {
-            let watch = Done { transitions: &transitions, bytes: &bytes, stop };
-            dataset::check(&folder, replay.then_some(&again), &watch)
+            let watch =
+                Done { transitions: &transitions, bytes: &bytes, repaired: &repaired, stop };
+            dataset::check(&folder, how, &watch)
         },
         teller(&transitions, &bytes, 0, progress.as_ref()),
     )?;
     let (_, flaws) = checked.map_err(Raised::raised)?;
-    let told =
-        flaws.into_iter().map(|flaw| (flaw.chunk, flaw.path, keywords(&flaw.what))).collect();
-    Ok((told, bytes.into_inner()))
+    let repaired = repaired.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let repaired = repaired.into_iter().map(|flaw| told(flaw, true));
+    Ok(repaired.chain(flaws.into_iter().map(|flaw| told(flaw, false))).collect())
 }
 
 /// Tells how far it is, whenever that has changed.

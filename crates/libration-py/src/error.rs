@@ -9,9 +9,8 @@ use libration_lab::advise::AdviseError;
 use libration_lab::analyze::AnalyzeError;
 use libration_lab::config::{ConfigError, names};
 use libration_lab::dataset::DatasetError;
-use libration_lab::export::ExportError;
 use libration_lab::output::OutputError;
-use libration_lab::session::SessionError;
+use libration_lab::session::{Cause, SessionError};
 use libration_lab::setting::SettingError;
 use libration_lab::study::StudyError;
 use libration_lab::trajectory::TrajectoryError;
@@ -80,9 +79,7 @@ impl Raised for TrajectoryError {
     fn raised(self) -> PyErr {
         match self {
             TrajectoryError::Ensemble(error) => error.raised(),
-            TrajectoryError::Memory(_) | TrajectoryError::Export(ExportError::Memory { .. }) => {
-                PyMemoryError::new_err(keywords(&self.to_string()))
-            }
+            TrajectoryError::Memory(_) => PyMemoryError::new_err(keywords(&self.to_string())),
             TrajectoryError::Interrupted => interrupted(),
             error => refused(keywords(&error.to_string())),
         }
@@ -117,10 +114,10 @@ impl Raised for StudyError {
 
 impl Raised for SessionError {
     fn raised(self) -> PyErr {
-        match self {
-            SessionError::Interrupted => interrupted(),
-            SessionError::Output(error) => error.raised(),
-            error => PyRuntimeError::new_err(error.to_string()),
+        match *self.cause {
+            Cause::Interrupted => interrupted(),
+            Cause::Output(_) => PyOSError::new_err(self.to_string()),
+            _ => PyRuntimeError::new_err(self.to_string()),
         }
     }
 }

@@ -58,12 +58,14 @@ impl Settings {
 
     pub(crate) fn recipe(&self) -> PyResult<Recipe> {
         let method = method(&self.integrator)?;
-        let system = Lone::new(system(&self.system)?).ok_or_else(|| {
+        let (system, actuation) = system(&self.system)?;
+        let system = Lone::new(system).ok_or_else(|| {
             let name = &self.system.0;
             refused(format!("system is {name}, but it must have a single degree of freedom"))
         })?;
         Ok(Recipe {
             system,
+            actuation,
             method,
             dt: self.dt,
             substeps: self.substeps,

@@ -10,8 +10,8 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::asked::{Loop, Step};
-use crate::error::{Raised, refused, unknown};
+use crate::asked::{Loop, Step, warn_of};
+use crate::error::{Raised, keywords, refused, unknown};
 use crate::work::work;
 
 /// What is asked of a trajectory besides its step and its loop.
@@ -61,10 +61,11 @@ pub(crate) fn _simulate<'py>(
     });
     let request = Request {
         system: setting.system,
+        actuation: setting.actuation,
         stepping: step.stepping()?,
         float,
         dt,
-        steps: limits::steps("steps", rows.steps.into()).map_err(refused)?,
+        steps: limits::trajectory_steps("steps", rows.steps.into()).map_err(refused)?,
         q: setting.q,
         v: setting.v,
         every: rows.every,
@@ -73,6 +74,9 @@ pub(crate) fn _simulate<'py>(
         record: record.transpose()?,
         seed: rows.seed,
     };
+    if let Some(method) = request.stepping.method() {
+        warn_of(py, request.system, method)?;
+    }
     let done = work(py, |stop| trajectory::simulate_until(&request, stop), |_| Ok(()))?;
     let trajectory::Trajectory { table, ending } = done.map_err(Raised::raised)?;
     let (columns, units) = (PyDict::new(py), PyDict::new(py));
@@ -113,11 +117,14 @@ fn ended<'py>(py: Python<'py>, ending: &Ending) -> PyResult<Bound<'py, PyDict>> 
         Ending::Stopped(Stopped { step, t, reason }) => {
             told.set_item("step", step)?;
             told.set_item("t", t)?;
-            told.set_item("reason", reason)?;
+            told.set_item("reason", keywords(reason))?;
         }
-        Ending::NotFinite { count, first } => {
+        Ending::NotFinite { count, first, reason } => {
             told.set_item("count", count)?;
             told.set_item("first", first)?;
+            if let Some(reason) = reason {
+                told.set_item("reason", keywords(reason))?;
+            }
         }
     }
     Ok(told)
@@ -147,6 +154,7 @@ pub(crate) fn _analyze(
     };
     let request = analyze::Request {
         system: setting.system,
+        actuation: setting.actuation,
         stepping: step.stepping()?,
         dt: step.dt()?,
         q: setting.q,

@@ -7,7 +7,7 @@ use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::array::{Array, Number, fresh, room};
-use crate::asked::{SystemTold, method, system};
+use crate::asked::{SystemTold, method, system, warn_of};
 use crate::error::{Raised, refused};
 use crate::guarded::Guarded;
 use crate::pace::paced;
@@ -57,7 +57,9 @@ impl Trajectories {
         single: bool,
         threads: usize,
     ) -> PyResult<Self> {
-        let system = system(&told)?;
+        let (system, _) = system(&told)?;
+        let method = method(integrator)?;
+        warn_of(q.py(), system, method)?;
         let (q, v) = (q.as_array(), v.as_array());
         let [len, dimension] = [q.nrows(), q.ncols()];
         let of = |n: usize, i: usize| if i < dimension { q[[n, i]] } else { v[[n, i - dimension]] };
@@ -69,7 +71,7 @@ impl Trajectories {
             Held::F64(made(system, [len, dimension], execution, &of)?)
         };
         let held = Guarded::new((held, threads));
-        Ok(Trajectories { held, method: method(integrator)?, dt })
+        Ok(Trajectories { held, method, dt })
     }
 
     /// Takes so many steps with all of them.

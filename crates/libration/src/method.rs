@@ -122,7 +122,9 @@ impl Method {
             Method::SymplecticEuler => "order 1; symplectic; kick then drift",
             Method::SymplecticEulerDriftFirst => "order 1; symplectic; drift then kick",
             Method::VelocityVerlet => "order 2; symplectic, time-reversible; kick, drift, kick",
-            Method::TextbookVerlet => "velocity Verlet as textbooks print it; rounds with a bias",
+            Method::TextbookVerlet => {
+                "velocity Verlet as textbooks print it; rounds with a bias; another method where forces depend on velocities"
+            }
             Method::Leapfrog => "order 2; symplectic, time-reversible; drift, kick, drift",
             Method::Rk4 => "order 4; classical Runge-Kutta; not symplectic",
             Method::Yoshida4 => "order 4; symplectic, time-reversible; three Verlet substeps",

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use libration::analysis::{Feedback, Jitter, LqrWeights};
+use libration::catalog;
 use libration_lab::advise::{Control, Law, Measure, Request, Tolerance};
 use libration_lab::analyze::Late;
 use libration_lab::setting::Setting;
@@ -21,7 +22,9 @@ pub(crate) struct AdviseArgs {
     pub(crate) config: Option<PathBuf>,
     #[command(flatten)]
     system: Option<SystemArgs>,
-    /// Close the loop: the command is −KP·q − KD·v; without it the system is simulated as it is
+    /// Close the loop with the command −KP·q − KD·v: a force where --set m= is given (gains in N/m and N·s/m), else an
+    /// acceleration (gains in s⁻² and s⁻¹);
+    /// without it the system is simulated as it is
     #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
     feedback: Option<Feedback>,
     /// Between two samples of the loop, in s
@@ -159,8 +162,9 @@ impl AdviseArgs {
                 "nothing is asked: it must be --config FILE, or --system NAME with what else is to be said of it",
             ));
         };
-        let Setting { system, q, mut v } = {
+        let Setting { system, actuation, q, mut v } = {
             let mut given = system.clone();
+            one_degree_of_freedom(&given.system, self.feedback)?;
             // A loop is held where it is: at the origin, if nothing is said.
             if self.feedback.is_some() && given.q.is_none() {
                 given.q = Some(super::number::Coordinates::origin());
@@ -183,6 +187,7 @@ impl AdviseArgs {
         });
         self.instead(Request {
             system,
+            actuation,
             q,
             v,
             control,
@@ -230,6 +235,19 @@ impl AdviseArgs {
         control.skew = self.skew.unwrap_or(control.skew);
         control.loss = self.loss.unwrap_or(control.loss);
         Ok(request)
+    }
+}
+
+/// Fails where a loop is to be closed around a system with several degrees of freedom.
+fn one_degree_of_freedom(system: &str, feedback: Option<Feedback>) -> Result<(), Failure> {
+    match catalog::find(system) {
+        Ok(entry) if feedback.is_some() && !entry.dimensions.contains(&1) => {
+            let fewest = entry.dimensions.start();
+            Err(Failure::usage(format!(
+                "--feedback closes a loop around one degree of freedom, but --system {system} has {fewest}"
+            )))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -53,9 +53,13 @@ Examples:
   libration analyze --system pendulum --q 2.5 --integrator velocity-verlet --dt 0.05 --json
 
 Of a nonlinear system, matrix and eigenvalues are those of one step linearised about --q, --v.
+With --feedback rows stand in blocks: what holds of one step of the plant without feedback, of the closed
+loop, and of the closed loop under jitter, skew and losses. In JSON `spectral_radius` is that of the plant,
+`closed_loop_spectral_radius` that of the loop with its latency.
 Between whole steps critical latency and stable latencies follow the textbook's λᵈ; the end of
-split steps is where a command that arrives within a step splits it, as the spectral radius and
-simulations have it. The cost is the stationary mean under white noise of the acceleration of unit
+split steps is where a command that arrives within a step splits it, as the spectral radius of the loop
+and simulations have it. The cost is the stationary mean under white noise of the acceleration of unit
 intensity: of exact steps over continuous time, of an integrator over its steps, with the noise
-held through each; half the clocks of --skew are slow by its rms, half fast. With a latency second moments are known up to 90 steps, and the exponent of
-a typical run is not.";
+held through each; half the clocks of --skew are slow by its rms, half fast. Second moments are those of
+the loop with its latency, jitter and losses, of a clock at its nominal rate; they are known up to a
+latency of 90 steps. The exponent of a typical run is not known with a latency or losses.";

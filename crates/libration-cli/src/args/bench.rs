@@ -78,7 +78,8 @@ Examples:
   libration bench --storage --folder /data         how near to the disk data sets come
 
 All implementations advance harmonic oscillators by symplectic Euler and give the same bits.
-Rates are medians; of each it is said how far the quartiles of its repeats lie apart.";
+Rates are medians; of each it is said how far the quartiles of its repeats lie apart.
+Exit code 1 if a ratio of speeds misses its prediction.";
 
 fn implementations() -> impl TypedValueParser<Value = Implementation> {
     let value = |one: Implementation| PossibleValue::new(one.name()).help(one.summary());

@@ -125,7 +125,9 @@ Examples:
   libration lab spectrum drift --out my-report
   libration lab --config mine.toml --effort thorough
 
-The folder gets report.html, results.json, figures/*.svg and data/*.parquet.";
+The folder gets report.html, results.json, figures/*.svg and data/*.parquet when all studies have ended; they
+replace those of an earlier run. Until then they are in its folder libration-unfinished, and stay there if an
+interrupted run would replace a complete report.";
 
 /// What `list` takes.
 #[derive(Args, Debug)]

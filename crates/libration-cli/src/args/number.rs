@@ -70,12 +70,12 @@ pub(super) fn criterion(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Reads a number of steps; also as `1e6`.
-pub(super) fn steps(text: &str) -> Result<u64, String> {
+/// Reads a number of steps of a trajectory; also as `1e6`.
+pub(super) fn trajectory_steps(text: &str) -> Result<u64, String> {
     let steps = whole_number(text).ok_or_else(|| {
-        format!("it is not a whole number; steps must be {}", limits::steps_allowed())
+        format!("it is not a whole number; steps must be {}", limits::trajectory_steps_allowed())
     })?;
-    limits::steps("--steps", steps)
+    limits::trajectory_steps("--steps", steps)
 }
 
 /// Reads a number of steps of a forecast; also as `1e12`.

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{ArgGroup, Args};
 use libration_lab::dataset::DataFormat;
 
 use super::number::whole_number;
@@ -27,7 +27,7 @@ pub(crate) struct RolloutArgs {
     /// Only the I-th of N parts of the environments: the parts of all N together are the data set
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     pub(crate) shard: [usize; 2],
-    /// Go on with the data set in the folder, which was interrupted
+    /// Resume the interrupted data set in the folder; reads all of it first and repairs broken chunks
     #[arg(long)]
     pub(crate) resume: bool,
     /// Threads; 0 for as many as there are cores
@@ -53,15 +53,21 @@ follows from the settings: what was interrupted ends as if it had not been, byte
 
 /// What `verify` takes.
 #[derive(Args, Debug)]
-#[command(after_help = "Examples:\n  libration verify data\n  libration verify data --replay")]
+#[command(
+    after_help = "Examples:\n  libration verify data\n  libration verify data --replay\n  libration verify data --repair",
+    group(ArgGroup::new("computing").args(["replay", "repair"]).multiple(true))
+)]
 pub(crate) struct VerifyArgs {
     /// Folder of the data set
     pub(crate) folder: PathBuf,
     /// Compute all of it again and compare the bits
     #[arg(long)]
     pub(crate) replay: bool,
-    /// Threads of --replay; 0 for as many as there are cores
-    #[arg(long, value_name = "N", default_value = "0", requires = "replay")]
+    /// Compute broken chunks again and replace their files: missing, truncated or altered ones
+    #[arg(long)]
+    pub(crate) repair: bool,
+    /// Threads of --replay and --repair; 0 for as many as there are cores
+    #[arg(long, value_name = "N", default_value = "0", requires = "computing")]
     pub(crate) threads: usize,
 }
 

@@ -7,7 +7,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use libration::ensemble::InstructionSet;
 use libration_lab::trajectory::{FloatType, Format};
 
-use super::number::{count, steps, whole_number};
+use super::number::{count, trajectory_steps, whole_number};
 use super::timing::TimingArgs;
 use super::{StepArgs, SystemArgs, simd};
 
@@ -19,8 +19,8 @@ pub(crate) struct SimulateArgs {
     pub(crate) system: SystemArgs,
     #[command(flatten)]
     pub(crate) step: StepArgs,
-    /// Number of steps
-    #[arg(long, value_name = "N", value_parser = steps, allow_hyphen_values = true)]
+    /// Number of steps, up to 2^53; --every bounds the rows
+    #[arg(long, value_name = "N", value_parser = trajectory_steps, allow_hyphen_values = true)]
     pub(crate) steps: u64,
     /// Float type of the state, the parameters and every operation
     #[arg(long, value_name = "TYPE", value_parser = float_types(), default_value = "f64")]
@@ -65,7 +65,7 @@ pub(crate) struct SimulateArgs {
     /// Format of the rows [default: that of the extension of --output, or csv]
     #[arg(long, value_parser = formats())]
     pub(crate) format: Option<Format>,
-    /// File to write, whole or not at all [default: standard output]
+    /// File to write, whole or not at all; one that is replaced keeps its permissions, owner and links [default: standard output]
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 }

@@ -2,9 +2,9 @@
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use libration::catalog::{ENTRIES, Entry};
+use libration::catalog::{self, ENTRIES, Entry};
 use libration::integrator::Exact;
-use libration::{AnySystem, CatalogError, Method};
+use libration::{CatalogError, Method};
 use libration_lab::analyze::Stepping;
 use libration_lab::config::names;
 use libration_lab::setting::Setting;
@@ -18,7 +18,7 @@ pub(crate) struct SystemArgs {
     /// The system; `libration list` shows them with their parameters
     #[arg(long, value_name = "NAME", value_parser = system_names(), hide_possible_values = true)]
     pub(crate) system: String,
-    /// A parameter of the system, as in `omega2=10`; may be repeated
+    /// A parameter of the system, as in `omega2=10`; may be repeated. `m` takes `k` with it, in kg and N/m: commands are then forces
     #[arg(long, value_name = "KEY=VALUE", value_parser = assignment, allow_hyphen_values = true)]
     pub(crate) set: Vec<(String, f64)>,
     /// Positions at the start, separated by commas [default: the system's own]
@@ -46,7 +46,8 @@ impl SystemArgs {
     /// # Errors
     /// Wrong input: a parameter that is unknown or not allowed, or a wrong number of coordinates.
     pub(crate) fn resolve(&self) -> Result<Setting, Failure> {
-        let system = AnySystem::build(&self.system, &self.set).map_err(wrong_parameter)?;
+        let (system, actuation) =
+            catalog::build(&self.system, &self.set).map_err(wrong_parameter)?;
         let entry = system.entry();
         for (flag, given) in [("--q", &self.q), ("--v", &self.v)] {
             match given {
@@ -62,7 +63,7 @@ impl SystemArgs {
             return Err(unequal_counts(q, v));
         }
         let given = |x: &Option<Coordinates>| x.as_ref().map(|x| x.0.clone());
-        Setting::new(system, given(&self.q), given(&self.v)).map_err(Failure::usage)
+        Setting::new((system, actuation), given(&self.q), given(&self.v)).map_err(Failure::usage)
     }
 }
 

@@ -8,7 +8,8 @@ use libration_lab::config::limits::{MOST_GAIN, MOST_RMS};
 /// The loop, and what happens to its clock and its commands.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct TimingArgs {
-    /// Close the loop: the command is −KP·q − KD·v
+    /// Close the loop with the command −KP·q − KD·v: a force where --set m= is given (gains in N/m and N·s/m), else an
+    /// acceleration (gains in s⁻² and s⁻¹)
     #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
     pub(crate) feedback: Option<Feedback>,
     /// How late the command arrives, as 0.015 (in s) or 1.5steps; up to 4096 steps. A latency scales with the loop's own steps: in

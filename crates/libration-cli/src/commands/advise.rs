@@ -24,6 +24,7 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
     let unwritable = |path: &Path, error: &std::io::Error| {
         format!("cannot write `{}` (--page): {error}", path.display())
     };
+    let stop = interrupt::listen();
     // Before any work.
     let file = args.page.as_deref().map(|path| match OutputFile::create(path) {
         Ok(file) => Ok((path, file)),
@@ -32,7 +33,7 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
     let file = file.transpose()?;
     let config = Config::default();
     let reporter = Reporter::new(quiet);
-    let lab = Lab::new(&config, config.effort, &reporter, interrupt::listen()?);
+    let lab = Lab::new(&config, config.effort, &reporter, stop);
     let advice = advise::advise(&lab, &request);
     reporter.clear();
     let advice = advice.map_err(failure)?;
@@ -78,7 +79,7 @@ fn failure(error: AdviseError) -> Failure {
                 "cost" => "cost-weights",
                 flag => flag,
             };
-            Failure::usage(format!("--{flag} is {value}, but it must be {allowed}"))
+            Failure::usage(format!("--{flag} is {value:?}, but it must be {allowed}"))
         }
         AdviseError::Study(error) => Failure::run(error),
         error
@@ -120,11 +121,13 @@ fn told(advice: &Advice) -> String {
     if let Some(looped) = &advice.looped {
         of_loop(looped, &advice.again, &mut text);
     }
-    let _ = writeln!(
-        text,
-        "\n{:<30} {:>12} {:>9} {:>12} {:>12} {:>14}",
-        "integrator", "largest dt/s", "a period", "lost", "with longer", "evaluations/s"
-    );
+    if !advice.integrators.is_empty() {
+        let _ = writeln!(
+            text,
+            "\n{:<30} {:>12} {:>9} {:>12} {:>12} {:>14}",
+            "integrator", "largest dt/s", "a period", "lost", "with longer", "evaluations/s"
+        );
+    }
     let shown = |x: Option<f64>| match x {
         Some(x) if x.is_finite() => format!("{x:.4e}"),
         Some(_) => "lost".into(),
@@ -183,8 +186,8 @@ fn of_loop(looped: &LoopAdvice, again: &str, text: &mut String) {
     if looped.held_command != 0.0 {
         let _ = writeln!(
             text,
-            "a command of {:.6} m/s² holds the operating point",
-            looped.held_command
+            "a {} of {:.6} {} holds the operating point",
+            looped.command, looped.held_command, looped.command_unit
         );
     }
     let _ = writeln!(
@@ -204,7 +207,11 @@ fn of_loop(looped: &LoopAdvice, again: &str, text: &mut String) {
             budget.stated,
             of(budget, budget.stable_up_to),
             budget.tolerated_up_to.map_or_else(String::new, |limit| of(budget, limit)),
-            budget.used.map_or_else(String::new, |used| format!("{:.1} %", 100.0 * used)),
+            match (budget.used, budget.regained) {
+                (_, Some(_)) => "regained".to_owned(),
+                (Some(used), None) => format!("{:.1} %", 100.0 * used),
+                (None, None) => String::new(),
+            },
             budget.unit,
             budget.how
         );

@@ -4,17 +4,18 @@ use std::fmt::Write as _;
 use std::io::{self, Write as _};
 
 use libration_lab::analyze::{
-    self, Analysis, Criteria, ModifiedHamiltonian, Request, Stepping, Timing, TimingAnswer,
+    self, Analysis, Criteria, ModifiedHamiltonian, Request, Stepping, Timing,
 };
 use libration_lab::config::limits;
 use libration_lab::setting::Setting;
 
+use super::closed_loop::{dephasing, describe_loop};
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
 
 /// Analyses one step and prints what theory says of it.
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
-    let Setting { system, q, v } = args.system.resolve()?;
+    let Setting { system, actuation, q, v } = args.system.resolve()?;
     let (stepping, dt) = (args.step.integrator, args.step.dt);
     let CostArgs { loss, cost_weights: weights } = args.cost;
     let timing = Timing { loss, weights, ..args.timing.timing() };
@@ -27,11 +28,12 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         max_amplitude: args.max_amplitude,
         max_error: args.max_error,
     };
-    let request = Request { system, stepping, dt, q, v, steps: args.steps, criteria, timing };
+    let request =
+        Request { system, actuation, stepping, dt, q, v, steps: args.steps, criteria, timing };
     let analysis = analyze::analyze(&request).map_err(Failure::usage)?;
     let text = match args.json {
         true => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
-        false => describe(&analysis, &request.criteria),
+        false => describe(&analysis, &request),
     };
     match io::stdout().lock().write_all(text.as_bytes()) {
         // A reader that has seen enough is not an error.
@@ -41,8 +43,8 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
 }
 
 /// The analysis for a reader at a terminal.
-fn describe(analysis: &Analysis, criteria: &Criteria) -> String {
-    let about = &analysis.about;
+fn describe(analysis: &Analysis, request: &Request) -> String {
+    let (about, criteria) = (&analysis.about, &request.criteria);
     let parameters: Vec<String> =
         about.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let mut text = format!(
@@ -52,6 +54,9 @@ fn describe(analysis: &Analysis, criteria: &Criteria) -> String {
         about.integrator,
         about.dt
     );
+    if analysis.timing.is_some() {
+        text += "Open loop: one step of the plant\n";
+    }
     // Writing into a string cannot fail.
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:<22} {value}");
@@ -143,82 +148,16 @@ fn describe(analysis: &Analysis, criteria: &Criteria) -> String {
         },
     );
     if let Some(timing) = &analysis.timing {
-        describe_timing(timing, &mut text);
+        if let Some(steps) = timing.dephasing_steps {
+            line("mean falls to 1/e in", dephasing(steps));
+        }
+        describe_loop(timing, &request.timing, &mut text);
     }
     if let Some(note) = &about.note {
         let _ = writeln!(text, "note: {note}");
     }
     text
 }
-
-/// What timing does to the loop.
-fn describe_timing(timing: &TimingAnswer, text: &mut String) {
-    let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "  {name:<22} {value}");
-    };
-    let number = |x: Option<f64>, unit: &str| {
-        x.map_or_else(|| "none".to_owned(), |x| format!("{x:?} {unit}"))
-    };
-    if let (Some([kp, kd]), Some(steps)) = (timing.feedback, timing.latency_steps) {
-        line("command", format!("-{kp:?} q - {kd:?} v, {steps:?} steps late"));
-    }
-    if let Some(critical) = &timing.critical {
-        line("critical latency", number(critical.critical_latency_steps, "steps"));
-        line("", number(critical.critical_latency_seconds, "s"));
-        line("of split steps", number(critical.critical_latency_split_steps, "steps"));
-        let end = |x: Option<f64>| x.map_or("∞".into(), |x| format!("{x:?}"));
-        let shown: Vec<String> = critical
-            .latency_windows
-            .iter()
-            .map(|&(from, to)| format!("{from:?} to {}", end(to)))
-            .collect();
-        let shown = if shown.is_empty() { "none".into() } else { shown.join(", ") };
-        line("stable, steps late", shown);
-        line("continuous margin", number(critical.delay_margin_seconds, "s"));
-    }
-    if let (Some(radius), Some(growth)) = (timing.mean_square_radius, timing.mean_square_growth) {
-        let grown = radius.zip(growth);
-        let shown = grown.map(|(radius, growth)| format!("{radius:?} a step  (1 {growth:+e})"));
-        line("second moments grow by", shown.unwrap_or_else(|| TOO_FAR.into()));
-        if timing.jitter_clips == Some(true) {
-            line("", CLIPPED.into());
-        }
-    }
-    if let Some(exponent) = timing.lyapunov_exponent {
-        let late = timing.latency_steps.is_some_and(|steps| steps > 0.0);
-        let shown = if late { LATE.into() } else { number(exponent, "a step") };
-        line("a typical run grows", shown);
-    }
-    if let Some(cost) = &timing.cost {
-        let [q, v, u] = cost.cost_weights;
-        let command = if u == 0.0 { String::new() } else { format!(" {u:+?} u²") };
-        let of = format!("{q:?} q² {v:+?} v²{command} under unit noise");
-        line(
-            "cost",
-            match (cost.cost, cost.cost_infinite) {
-                (Some(cost), _) => format!("{cost:?}, the mean of {of}"),
-                (None, Some(_)) => "infinite: second moments grow".into(),
-                (None, None) => "not known: the loop has to know too many numbers".into(),
-            },
-        );
-        if let Some(increase) = cost.cost_increase {
-            line("", format!("{:+e} of that of an ideal clock and link", increase));
-        }
-    }
-    if let Some(steps) = timing.dephasing_steps {
-        line("mean falls to 1/e in", number(steps, "steps"));
-    }
-}
-
-/// Why there are no second moments.
-const TOO_FAR: &str =
-    "not known: steps turn too far in a deviation, or the latency is above 90 steps";
-
-/// Why there is no exponent.
-const LATE: &str = "not known with a latency";
-
-/// The rule of steps that would be negative.
-const CLIPPED: &str = "some steps would be negative: they are of length zero";
 
 /// What stands for a number that is not derived.
 const UNKNOWN: &str = "not known: the polynomials of this step outgrow exact arithmetic";

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::path::Path;
 
-use libration_lab::config::ConfigError;
+use libration_lab::config::{self, ConfigError};
 
 use crate::error::Failure;
 
@@ -15,7 +15,6 @@ pub(super) fn read<T>(
     let wrong = |why: &dyn Display| {
         Failure::usage(format!("cannot read `{}` (--config): {why}", path.display()))
     };
-    let bytes = std::fs::read(path).map_err(|error| wrong(&error))?;
-    let text = String::from_utf8(bytes).map_err(|error| wrong(&error.utf8_error()))?;
+    let text = config::read_text(path).map_err(|error| wrong(&error))?;
     parse(&text, &path.to_string_lossy()).map_err(|error| Failure::Shown(error.render_styled()))
 }

@@ -29,9 +29,9 @@ pub(crate) fn run(args: &MeasureJitterArgs, quiet: bool) -> Result<(), Failure> 
     }
     let plan = args.plan();
     plan.check().map_err(|error| Failure::usage(format!("--{error}")))?;
+    let stop = interrupt::listen();
     // Before anything is measured, so that nothing is measured in vain.
     let mut file = args.output.as_deref().map(create).transpose()?;
-    let stop = interrupt::listen()?;
     let mut told_json = Vec::new();
     let mut interrupted = false;
     for &priority in args.priorities() {

@@ -3,8 +3,10 @@
 mod advise;
 mod analyze;
 mod bench;
+mod closed_loop;
 mod completions;
 mod config_file;
+mod judgement;
 mod lab;
 mod list;
 mod measure_jitter;

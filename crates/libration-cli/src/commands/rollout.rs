@@ -1,17 +1,18 @@
 //! `libration rollout` and `libration verify`.
 
-use std::io::{IsTerminal, stderr};
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use libration::ensemble::Execution;
-use libration_lab::dataset::{self, Dataset, DatasetError, Job, Watch};
+use libration::rl::EnvironmentError;
+use libration_lab::dataset::{self, Check, Dataset, DatasetError, Flaw, Job, Watch};
 
 use super::config_file;
 use crate::args::{RolloutArgs, VerifyArgs};
-use crate::error::Failure;
-use crate::{interrupt, terminal};
+use crate::error::{Failure, is_unusable};
+use crate::{interrupt, progress, terminal};
 
 /// Writes a data set, or goes on with one.
 pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
@@ -31,6 +32,9 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
         })?,
         None => dataset,
     };
+    if let Some(caveat) = dataset.caveat().filter(|_| !quiet) {
+        terminal::say(&format!("note: {caveat}"));
+    }
     let job = Job {
         dataset: &dataset,
         format: args.format,
@@ -39,7 +43,7 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
         resume: args.resume,
         execution: threads(args.threads)?,
     };
-    let watcher = Watcher::new(quiet, dataset.share(args.shard), interrupt::listen()?);
+    let watcher = Watcher::new(quiet, out, dataset.share(args.shard), interrupt::listen());
     let manifest = dataset::write(&job, &watcher);
     watcher.clear();
     let manifest = manifest.map_err(|error| match error {
@@ -48,7 +52,7 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
             out.display(),
             watcher.transitions.load(Ordering::Relaxed)
         )),
-        error => failed(error),
+        error => failed(error, out),
     })?;
     if !quiet {
         let (count, bytes) = watcher.told();
@@ -63,25 +67,31 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Reads a data set, and computes it again if asked to.
+/// Reads a data set; computes all of it again, or what is broken, if asked to.
 pub(crate) fn verify(args: &VerifyArgs, quiet: bool) -> Result<(), Failure> {
-    let again = if args.replay { Some(threads(args.threads)?) } else { None };
-    let watcher = Watcher::new(quiet, 0, interrupt::listen()?);
-    let checked = dataset::check(&args.folder, again.as_ref(), &watcher);
+    let execution = if args.replay || args.repair { Some(threads(args.threads)?) } else { None };
+    let how = Check {
+        replay: execution.as_ref().filter(|_| args.replay),
+        repair: execution.as_ref().filter(|_| args.repair),
+    };
+    let watcher = Watcher::new(quiet, &args.folder, 0, interrupt::listen());
+    let checked = dataset::check(&args.folder, how, &watcher);
     watcher.clear();
     let (manifest, flaws) = checked.map_err(|error| match error {
         DatasetError::Interrupted => Failure::Interrupted("interrupted".to_owned()),
-        error => failed(error),
+        error => failed(error, &args.folder),
     })?;
     for flaw in &flaws {
-        let path = args.folder.join(&flaw.path);
-        let whose = match &*flaw.chunk {
-            "" => String::new(),
-            chunk => format!("chunk {chunk}: "),
-        };
-        terminal::error(&format!("{whose}{} {}", path.display(), flaw.what));
+        terminal::error(&shown(flaw, &args.folder));
     }
     if !flaws.is_empty() {
+        if !args.repair && flaws.iter().any(|flaw| flaw.broken) {
+            let folder = args.folder.to_string_lossy();
+            let folder = shlex::try_quote(&folder).unwrap_or_default();
+            terminal::say(&format!(
+                "help: `libration verify --repair {folder}` computes broken chunks again and replaces them"
+            ));
+        }
         return Err(Failure::Disagreement);
     }
     if !quiet {
@@ -90,34 +100,49 @@ pub(crate) fn verify(args: &VerifyArgs, quiet: bool) -> Result<(), Failure> {
         } else {
             "as the manifest says"
         };
-        let (files, bytes) = (
-            manifest.chunks.iter().map(|chunk| chunk.files.len()).sum::<usize>(),
-            watcher.told().1,
-        );
         terminal::print(&format!(
-            "{} chunks, {files} files, {:.3} GB: all {what}\n",
+            "{} chunks, {} files, {:.3} GB: all {what}\n",
             manifest.chunks.len(),
-            bytes as f64 / 1e9
+            manifest.chunks.iter().map(|chunk| chunk.files.len()).sum::<usize>(),
+            manifest.bytes() as f64 / 1e9
         ))?;
     }
     Ok(())
 }
 
+/// A flaw as a line: of which chunk and file, and what is wrong.
+fn shown(flaw: &Flaw, folder: &Path) -> String {
+    let whose = match &*flaw.chunk {
+        "" => String::new(),
+        chunk => format!("chunk {chunk}: "),
+    };
+    format!("{whose}{} {}", folder.join(&flaw.path).display(), flaw.what)
+}
+
 fn threads(threads: usize) -> Result<Execution, Failure> {
-    Execution::serial().threads(threads).map_err(Failure::usage)
+    Execution::serial().threads(threads).map_err(|error| Failure::ensemble(&error))
 }
 
 /// What is wrong with the input is known before any work; all else went wrong meanwhile.
-fn failed(error: DatasetError) -> Failure {
+fn failed(error: DatasetError, folder: &Path) -> Failure {
     use libration_lab::dataset::DataError;
+    if let Some(room) = error.room() {
+        return Failure::room(room, &error);
+    }
     match error {
-        DatasetError::Data(DataError::Io { .. }) | DatasetError::Table(_) => Failure::run(error),
+        error if is_unusable(&error, folder) => Failure::usage(error),
+        DatasetError::Environment(EnvironmentError::Ensemble(error)) => Failure::ensemble(&error),
+        DatasetError::Data(DataError::Io { .. })
+        | DatasetError::Table(_)
+        | DatasetError::Unrepairable { .. } => Failure::run(error),
         error => Failure::usage(error),
     }
 }
 
 /// What is done so far, and how fast.
 struct Watcher {
+    quiet: bool,
+    folder: PathBuf,
     bar: Option<ProgressBar>,
     transitions: AtomicU64,
     bytes: AtomicU64,
@@ -128,9 +153,8 @@ struct Watcher {
 }
 
 impl Watcher {
-    fn new(quiet: bool, transitions: u64, stop: &'static AtomicBool) -> Self {
-        let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
-        let bar = (!quiet && stderr().is_terminal() && !dumb).then(|| {
+    fn new(quiet: bool, folder: &Path, transitions: u64, stop: &'static AtomicBool) -> Self {
+        let bar = (!quiet && progress::has_bars()).then(|| {
             let template = if transitions == 0 {
                 "{spinner} {msg}"
             } else {
@@ -144,7 +168,8 @@ impl Watcher {
         });
         let zero = || AtomicU64::new(0);
         let (transitions, bytes, before) = (zero(), zero(), zero());
-        Watcher { bar, transitions, bytes, before, began: Instant::now(), stop }
+        let (folder, began) = (folder.to_owned(), Instant::now());
+        Watcher { quiet, folder, bar, transitions, bytes, before, began, stop }
     }
 
     fn told(&self) -> (u64, u64) {
@@ -177,6 +202,25 @@ impl Watch for Watcher {
             let before = self.before.load(Ordering::Relaxed) as f64 / 1e9;
             let rate = (bytes - before) / self.began.elapsed().as_secs_f64().max(1e-3);
             bar.set_message(format!("{bytes:.2} GB, {rate:.2} GB/s"));
+        }
+    }
+
+    fn checked(&self, bytes: u64, of: u64) {
+        if let Some(bar) = &self.bar {
+            let [bytes, of] = [bytes, of].map(|bytes| bytes as f64 / 1e9);
+            let rate = bytes / self.began.elapsed().as_secs_f64().max(1e-3);
+            let left = Duration::try_from_secs_f64((of - bytes) / rate.max(1e-9));
+            let left = HumanDuration(left.unwrap_or_default());
+            bar.set_message(format!(
+                "{bytes:.2} of {of:.2} GB checked, {rate:.2} GB/s, {left:#} left"
+            ));
+        }
+    }
+
+    fn repaired(&self, flaw: &Flaw) {
+        if !self.quiet {
+            let tell = || terminal::say(&format!("repaired: {}", shown(flaw, &self.folder)));
+            self.bar.as_ref().map_or_else(tell, |bar| bar.suspend(tell));
         }
     }
 

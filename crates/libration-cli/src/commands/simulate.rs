@@ -2,18 +2,21 @@
 
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
+use indicatif::ProgressBar;
 use libration::control::clock::Recorded;
 use libration_lab::export::ExportError;
 use libration_lab::setting::Setting;
-use libration_lab::trajectory::{self, Copies, Ending, Format, Request, Stopped, TrajectoryError};
+use libration_lab::trajectory::{
+    self, Copies, Ending, Format, Request, Stopped, TrajectoryError, Watch,
+};
 
 use super::time_stamps;
 use crate::args::{SimulateArgs, simd};
 use crate::error::Failure;
 use crate::output_file::OutputFile;
-use crate::{interrupt, terminal};
+use crate::{interrupt, progress, terminal};
 
 /// Bytes that are gathered before they are written.
 const BUFFER: usize = 1 << 18;
@@ -22,26 +25,34 @@ const BUFFER: usize = 1 << 18;
 pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
     let request = request(args)?;
     let format = format(args)?;
-    let stop = interrupt::listen()?;
+    let caveat = request.stepping.method().and_then(|method| request.system.caveat(method));
+    if let Some(caveat) = caveat.filter(|_| !quiet) {
+        terminal::say(&format!("note: {caveat}"));
+    }
+    // Rows on the same terminal would break a bar.
+    let rows_shown = args.output.is_none() && io::stdout().is_terminal();
+    let watcher = Watcher::new(quiet || rows_shown, request.steps, interrupt::listen());
     let ending = match &args.output {
-        Some(path) => into_file(path, &request, format, stop)?,
-        None => into_stdout(&request, format, stop)?,
+        Some(path) => into_file(path, &request, format, &watcher),
+        None => into_stdout(&request, format, &watcher),
     };
-    match ending {
+    watcher.clear();
+    match ending? {
         _ if quiet => {}
         Ending::Whole => {}
         Ending::Stopped(Stopped { step, t, reason }) => {
             let last = step - 1;
             terminal::say(&format!(
-                "note: {reason} at step {step} (t = {t} s); the last row is step {last}"
+                "note: the last row is step {last}: at step {step} (t = {t} s) {reason}"
             ));
         }
-        Ending::NotFinite { count, first } => {
+        Ending::NotFinite { count, first, reason } => {
             let named: Vec<String> = first.iter().map(usize::to_string).collect();
             let more = if count > first.len() { ", …" } else { "" };
             let are = if count == 1 { "trajectory is" } else { "trajectories are" };
+            let why = reason.map_or_else(String::new, |reason| format!(": {reason}"));
             terminal::say(&format!(
-                "note: {count} {are} not finite in the end: {}{more}",
+                "note: {count} {are} not finite in the end: {}{more}{why}",
                 named.join(", ")
             ));
         }
@@ -72,9 +83,10 @@ fn format(args: &SimulateArgs) -> Result<Format, Failure> {
 }
 
 fn request(args: &SimulateArgs) -> Result<Request, Failure> {
-    let Setting { system, q, v } = args.system.resolve()?;
+    let Setting { system, actuation, q, v } = args.system.resolve()?;
     let instructions = if args.count.is_some() { simd::asked(args.simd)? } else { None };
     Ok(Request {
+        actuation,
         system,
         stepping: args.step.integrator,
         float: args.float,
@@ -104,14 +116,14 @@ fn into_file(
     path: &Path,
     request: &Request,
     format: Format,
-    stop: &AtomicBool,
+    watcher: &Watcher,
 ) -> Result<Ending, Failure> {
     let unwritable =
         |error: io::Error| format!("cannot write `{}` (--output): {error}", path.display());
     let file = OutputFile::create(path).map_err(|error| Failure::usage(unwritable(error)))?;
     let mut out = BufWriter::with_capacity(BUFFER, file);
     let ending =
-        trajectory::write(request, format, &mut out, stop).map_err(|error| match error {
+        trajectory::write(request, format, &mut out, watcher).map_err(|error| match error {
             TrajectoryError::Export(ExportError::Io(error)) => Failure::run(unwritable(error)),
             TrajectoryError::Interrupted => {
                 Failure::Interrupted(format!("interrupted; `{}` is as it was", path.display()))
@@ -123,7 +135,7 @@ fn into_file(
     Ok(ending)
 }
 
-fn into_stdout(request: &Request, format: Format, stop: &AtomicBool) -> Result<Ending, Failure> {
+fn into_stdout(request: &Request, format: Format, watcher: &Watcher) -> Result<Ending, Failure> {
     if format.is_binary() && io::stdout().is_terminal() {
         let name = format.name();
         return Err(Failure::usage(format!(
@@ -132,7 +144,7 @@ fn into_stdout(request: &Request, format: Format, stop: &AtomicBool) -> Result<E
         )));
     }
     let mut out = BufWriter::with_capacity(BUFFER, io::stdout());
-    let outcome = trajectory::write(request, format, &mut out, stop);
+    let outcome = trajectory::write(request, format, &mut out, watcher);
     match outcome {
         // A reader that has seen enough is not an error.
         Err(TrajectoryError::Export(ExportError::Io(error)))
@@ -154,15 +166,46 @@ fn into_stdout(request: &Request, format: Format, stop: &AtomicBool) -> Result<E
     }
 }
 
+/// How many steps are taken, told on a terminal.
+struct Watcher {
+    bar: Option<ProgressBar>,
+    stop: &'static AtomicBool,
+}
+
+impl Watcher {
+    fn new(quiet: bool, steps: u64, stop: &'static AtomicBool) -> Self {
+        Watcher { bar: (!quiet && progress::has_bars()).then(|| progress::steps(steps)), stop }
+    }
+
+    fn clear(&self) {
+        self.bar.iter().for_each(ProgressBar::finish_and_clear);
+    }
+}
+
+impl Watch for Watcher {
+    fn reached(&self, step: u64) {
+        self.bar.iter().for_each(|bar| bar.set_position(step));
+    }
+
+    fn stops(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+}
+
 /// The failure that an error in a request, or in the work, amounts to.
 fn failure(error: TrajectoryError) -> Failure {
+    if let Some(room) = error.room() {
+        return Failure::room(room, &error);
+    }
     match error {
+        TrajectoryError::Ensemble(error) => Failure::ensemble(&error),
         TrajectoryError::Value { name, value, allowed } => {
             Failure::usage(format!("--{name} is {value}, but it must be {allowed}"))
         }
         TrajectoryError::Parameter { .. } => Failure::usage(format!("{error} (--float)")),
         TrajectoryError::Catalog(_) | TrajectoryError::Simulation(_) => Failure::usage(error),
-        TrajectoryError::Ensemble(_) | TrajectoryError::Memory(_) => Failure::usage(error),
-        TrajectoryError::Export(_) | TrajectoryError::Interrupted => Failure::run(error),
+        TrajectoryError::Memory(_) | TrajectoryError::Export(_) | TrajectoryError::Interrupted => {
+            Failure::run(error)
+        }
     }
 }

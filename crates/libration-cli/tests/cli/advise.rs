@@ -101,7 +101,7 @@ fn advice_is_given_from_flags_and_its_command_shows_the_limit() {
     let command = latency["command"].as_str().unwrap();
     let mut again: Vec<&str> = command.split(' ').collect();
     assert_eq!(again.remove(0), "libration");
-    let radius = json(&again)["spectral_radius"].as_f64().unwrap();
+    let radius = json(&again)["closed_loop_spectral_radius"].as_f64().unwrap();
     // The limit has the digits of a float, and the radius changes by less than a tenth in a period.
     assert!((radius - 1.0).abs() < 1e-9, "{radius} by {command}");
     assert_eq!(found["loop"]["fails_first"]["kind"], "latency");
@@ -174,7 +174,7 @@ fn a_command_names_files_as_a_shell_takes_them() {
 #[test]
 fn a_loop_that_does_not_stand_what_is_stated_ends_with_1_and_an_unstable_one_says_how() {
     let late = [&ADVISE[..], &["10,2", "--period", "0.02", "--latency", "0.2"]].concat();
-    libration(&late).code(1).stdout(predicate::str::contains("does not stand what is stated"));
+    libration(&late).code(1).stdout(predicate::str::contains("unstable with what is stated"));
     let unstable = [&ADVISE[..], &["10,-2", "--period", "0.02"]].concat();
     libration(&unstable).code(1).stderr(
         predicate::str::contains("unstable even without")

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 /// Waits until `done` holds; panics after half a minute.
-fn wait_until(what: &str, mut done: impl FnMut() -> bool) {
+pub(crate) fn wait_until(what: &str, mut done: impl FnMut() -> bool) {
     let start = Instant::now();
     while !done() {
         assert!(start.elapsed() < Duration::from_secs(30), "{what}: waited in vain");
@@ -16,7 +16,7 @@ fn wait_until(what: &str, mut done: impl FnMut() -> bool) {
     }
 }
 
-fn interrupt(child: &Child) {
+pub(crate) fn interrupt(child: &Child) {
     let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(kill.unwrap().success());
 }
@@ -27,24 +27,27 @@ fn an_interrupted_run_leaves_valid_results() {
     let folder = tempfile::tempdir().unwrap();
     // Hours of work, in parts of a fraction of a second.
     let dt: Vec<String> = (1..=2000).map(|i| format!("{:?}", 1e-5 * f64::from(i))).collect();
-    let config = format!("[drift]\nsteps = 10_000_000\ndt = [{}]\n", dt.join(", "));
+    let config =
+        format!("effort = 'quick'\n[drift]\nsteps = 10_000_000\ndt = [{}]\n", dt.join(", "));
     fs::write(folder.path().join("long.toml"), config).unwrap();
     let mut child = Command::new(assert_cmd::cargo::cargo_bin("libration"))
-        .args(["lab", study.name(), "--config", "long.toml", "--out", "out"])
+        .args(["lab", "spectrum", study.name(), "--config", "long.toml", "--out", "out"])
         .current_dir(&folder)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let results = folder.path().join("out/results.json");
-    wait_until("the first results", || results.is_file());
+    let out = folder.path().join("out");
+    wait_until("the first results", || out.join("libration-unfinished/results.json").is_file());
     interrupt(&child);
     wait_until("the end", || child.try_wait().unwrap().is_some());
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{output:?}");
     assert!(output.stdout.is_empty(), "{output:?}");
     assert!(String::from_utf8_lossy(&output.stderr).contains("interrupted"), "{output:?}");
-    let results: Value = serde_json::from_slice(&fs::read(results).unwrap()).unwrap();
+    let results: Value =
+        serde_json::from_slice(&fs::read(out.join("results.json")).unwrap()).unwrap();
     assert_eq!(results["complete"], false);
-    assert_eq!(results["studies"], Value::Array(Vec::new()));
+    let studies = results["studies"].as_array().unwrap();
+    assert_eq!(studies.iter().map(|study| &study["name"]).collect::<Vec<_>>(), ["spectrum"]);
 }

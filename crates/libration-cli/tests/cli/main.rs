@@ -6,13 +6,26 @@ mod advise;
 mod analyze;
 mod bench;
 mod clocks;
+mod closed_loop;
+mod exit_codes;
+mod forces;
 #[cfg(unix)]
 mod interrupt;
 #[cfg(unix)]
 mod kills;
 mod lab;
+#[cfg(unix)]
+mod long_files;
+#[cfg(target_os = "linux")]
+mod memory;
 mod readers;
+#[cfg(unix)]
+mod replaced_file;
+#[cfg(unix)]
+mod report_folder;
 mod rollout;
 mod simulate;
+mod stability;
+mod steps;
 mod timing;
 mod verify;

@@ -27,7 +27,7 @@ fn close(found: &Value, wanted: f64) {
 #[test]
 fn latency_moves_the_radius_and_has_its_critical_values() {
     let late = json(&format!("{LOOP} --integrator exact --latency 5steps"));
-    close(&late["spectral_radius"], 0.992_337_179_288_081);
+    close(&late["closed_loop_spectral_radius"], 0.992_337_179_288_081);
     close(&late["critical_latency_steps"], 15.324_841_096_092_2);
     close(&late["critical_latency_seconds"], 0.153_248_410_960_922);
     let split = late["critical_latency_split_steps"].as_f64().unwrap();
@@ -35,7 +35,7 @@ fn latency_moves_the_radius_and_has_its_critical_values() {
     close(&late["delay_margin_seconds"], 0.158_235_684_716_435);
     close(&late["latency_windows"][0][1], 15.324_841_096_092_2);
     let verlet = json(&format!("{LOOP} --integrator velocity-verlet --latency 0.05"));
-    close(&verlet["spectral_radius"], 0.992_338_434_173_543);
+    close(&verlet["closed_loop_spectral_radius"], 0.992_338_434_173_543);
     close(&verlet["latency_steps"], 5.0);
     // The quotient of 0.07 and 0.01 is no whole number of floats.
     let seven = json(&format!("{LOOP} --integrator rk4 --latency 0.07"));
@@ -70,7 +70,10 @@ fn jitter_and_skew_are_told_with_and_without_feedback() {
     let radius = |words: &str| json(&format!("{exact} {words}"))["mean_square_radius"].clone();
     close(&radius("--latency 5steps"), 0.992_337_179_288_081_f64.powi(2));
     let long = json(&format!("{exact} --latency 40steps"));
-    close(&long["mean_square_radius"], long["spectral_radius"].as_f64().unwrap().powi(2));
+    close(
+        &long["mean_square_radius"],
+        long["closed_loop_spectral_radius"].as_f64().unwrap().powi(2),
+    );
     assert_eq!(radius("--latency 400steps"), Value::Null);
     assert!(json(&format!("{exact} --latency 1steps"))["lyapunov_exponent"].is_null());
     let text =

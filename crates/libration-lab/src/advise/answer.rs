@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::budget::{Budget, Failing};
 use super::choice::{Choice, by_cost, evaluations};
 use super::map::Map;
+use super::remedies::Remedies;
 use super::request::{Measure, Request, Tolerance};
 use super::throughput::Throughput;
 use super::together::Together;
@@ -67,9 +68,15 @@ pub struct ToleranceAnswer {
 pub struct LoopAdvice {
     /// Who commands, with its gains.
     pub controller: String,
+    /// The quantity of commands: `force` where the mass of the system is given, else `acceleration`.
+    pub command: &'static str,
+    /// The unit of commands.
+    pub command_unit: &'static str,
     /// Gains of position and velocity; of an observer those of what is estimated.
     pub gains: [f64; 2],
-    /// The command that holds the operating point, in m/s².
+    /// Their units.
+    pub gain_units: [&'static str; 2],
+    /// The command that holds the operating point.
     pub held_command: f64,
     /// Between two samples, in s.
     pub period: f64,
@@ -81,6 +88,8 @@ pub struct LoopAdvice {
     pub together: Together,
     /// Which fails first, of those that are stated.
     pub fails_first: Option<Failing>,
+    /// What would stabilise it, where it is unstable with what is stated.
+    pub remedies: Option<Remedies>,
 }
 
 /// What a float type loses.
@@ -122,7 +131,7 @@ impl Advice {
             answer: String::new(),
             warnings: Vec::new(),
             system: request.system.name(),
-            parameters: request.system.parameters().into_iter().collect(),
+            parameters: request.actuation.parameters(request.system).into_iter().collect(),
             q: request.q.clone(),
             v: request.v.clone(),
             tolerance: ToleranceAnswer { of: of.name(), most },
@@ -147,6 +156,8 @@ impl Advice {
     /// Says the answer, and how to take the steps that are advised.
     pub(super) fn conclude(&mut self, request: &Request, answer: String) {
         self.answer = answer;
+        let chosen = self.chosen().and_then(|(choice, _)| Method::from_name(choice.integrator));
+        self.warnings.extend(chosen.and_then(|method| request.system.caveat(method)));
         let float = self.float().map_or("f64", |float| float.float);
         self.command =
             self.chosen().map(|(choice, dt)| request.command(choice.integrator, dt, float));

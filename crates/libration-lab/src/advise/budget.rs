@@ -1,15 +1,17 @@
 //! What a loop stands of each imperfection alone, and which fails first.
 
 use libration::Model;
-use libration::analysis::{CostError, Imperfections, Jitter, Latency, Mode};
+use libration::analysis::{CostError, Feedback, Imperfections, Jitter, Latency, Mode};
 use serde::Serialize;
 
-use super::AdviseError;
+use super::control::{Control, Law};
 use super::limits::{Kind, Limit};
 use super::loops::{Loop, LoopError};
 use super::making::sweep;
-use super::request::{Control, Law, Request};
+use super::regained::Regained;
+use super::request::Request;
 use super::words::swings;
+use super::{AdviseError, TURN};
 use crate::Lab;
 
 /// What a loop stands of an imperfection alone.
@@ -28,8 +30,11 @@ pub struct Budget {
     pub tolerated_up_to: Option<Option<f64>>,
     /// The largest that was tried.
     pub tried_up_to: f64,
-    /// What is stated over the smaller of the two limits; none without one.
+    /// What is stated over the smaller of the two limits; none without one, and none in a window that is regained.
     pub used: Option<f64>,
+    /// The window beyond that limit in which what is stated lies, and the loop is stable again.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub regained: Option<Regained>,
     /// How it was obtained.
     pub how: &'static str,
     /// A command that shows it.
@@ -52,6 +57,7 @@ pub struct Failing {
 impl<M: Model<1>> Loop<M> {
     /// Fails where nothing can be advised, before any work.
     pub(super) fn check(&self) -> Result<(), AdviseError> {
+        self.check_period()?;
         let (plant, none) = (self.plant(), Imperfections::NONE);
         let stated = self.stated()?;
         if let Err(error) = self.decays(&plant, &stated) {
@@ -79,7 +85,26 @@ impl<M: Model<1>> Loop<M> {
             let how = swings(mode.angle, self.control.period).1;
             format!("a motion grows by the factor {:.6} a period ({how})", mode.radius)
         };
-        Err(AdviseError::Unstable { modes: modes.iter().map(told).collect() })
+        let remedies = self.remedies(&plant, &none);
+        let shorter = self.stable_period().map_or_else(String::new, |period| {
+            format!(" It is stable with a period of at most {period:.6} s.")
+        });
+        let gains = [self.units.gains[0], self.units.gains[1]];
+        let help = format!("{}{shorter}", remedies.sentence(gains));
+        Err(AdviseError::Unstable { modes: modes.iter().map(told).collect(), help })
+    }
+
+    /// Fails where the period is far too short or too long for the motions of the loop.
+    fn check_period(&self) -> Result<(), AdviseError> {
+        let Feedback { position, velocity } = self.gains();
+        let plant = self.plant().rate();
+        let fastest = plant.max(position.abs().sqrt()).max(velocity.abs());
+        let period = self.control.period;
+        let (least, most) = (TURN.start() / fastest, TURN.end() / plant);
+        if period >= least && period <= most {
+            return Ok(());
+        }
+        Err(AdviseError::Period { period, least, most })
     }
 
     pub(super) fn budgets(
@@ -109,6 +134,17 @@ impl<M: Model<1>> Loop<M> {
             self.cheap_up_to(&plant, kind, request.tolerance)?.map(|limit| end(limit).0);
         let smaller = |a: f64, b: f64| if a.abs() < b.abs() { a } else { b };
         let limit = [stable, tolerated.flatten()].into_iter().flatten().reduce(smaller);
+        let regained = match limit {
+            Some(first) => {
+                let sizes = [first, stated].map(|size| size / scale);
+                self.regained(&plant, kind, sizes, request.tolerance)?
+            }
+            None => None,
+        };
+        let regained = regained.map(|Regained { from, to }| Regained {
+            from: scale * from,
+            to: to.map(|to| scale * to),
+        });
         Ok(Budget {
             kind,
             unit,
@@ -116,7 +152,10 @@ impl<M: Model<1>> Loop<M> {
             stable_up_to: stable,
             tolerated_up_to: tolerated,
             tried_up_to: tried,
-            used: limit.filter(|&limit| limit != 0.0).map(|limit| stated / limit),
+            used: limit
+                .filter(|&limit| limit != 0.0 && regained.is_none())
+                .map(|limit| stated / limit),
+            regained,
             how: match kind {
                 Kind::Latency | Kind::Skew => "exact: the spectral radius passes 1",
                 Kind::Jitter if self.control.record.is_some() => {
@@ -134,8 +173,7 @@ impl<M: Model<1>> Loop<M> {
             _ if self.control.record.is_some() && imperfections.jitter.rms() > 0.0 => {
                 return format!("{} --json", request.asked_by);
             }
-            Law::Pd(gains) if M::LINEAR => gains,
-            Law::Lqr(_) if M::LINEAR => self.gains(),
+            Law::Pd(_) | Law::Lqr(_) if M::LINEAR => self.given_gains(),
             // No other command takes a controller that remembers, or exact steps of what is linearised.
             _ => return self.asked_again(imperfections, request),
         };

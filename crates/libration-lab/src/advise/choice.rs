@@ -1,5 +1,6 @@
 //! Which integrator, with which step: the cheapest that loses no more than is tolerated.
 
+use libration::catalog::Actuation;
 use libration::{AnySystem, Method};
 
 use super::AdviseError;
@@ -118,6 +119,7 @@ pub(super) fn best_possible(
 pub(super) fn evaluations(system: AnySystem, q: &[f64], v: &[f64], method: Method) -> Option<u64> {
     let request = Request {
         system,
+        actuation: Actuation::Acceleration,
         stepping: Stepping::Method(method),
         dt: 1e-6,
         q: q.to_vec(),

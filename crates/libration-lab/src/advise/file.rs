@@ -5,10 +5,12 @@ use std::path::Path;
 
 use libration::AnySystem;
 use libration::analysis::{Feedback, Jitter, LqrWeights, ObserverNoise};
+use libration::catalog::{self, Actuation};
 use libration::control::controller::PidGains;
 
 use super::AdviseError;
-use super::request::{Control, Correction, Law, Measure, Regulator, Request, Tolerance};
+use super::control::{Control, Correction, Law, Regulator};
+use super::request::{Measure, Request, Tolerance};
 use super::tables::{ControllerTable, File, LoopTable, ObserverTable};
 use crate::config::{ConfigError, Count, Document, Fault, Number, names};
 use crate::wakeups;
@@ -33,7 +35,7 @@ impl TryFrom<File> for Request {
 
     fn try_from(file: File) -> Result<Self, Fault> {
         let numbers = |list: Vec<Number>| -> Vec<f64> { list.into_iter().map(|x| x.0).collect() };
-        let system = system(file.system)?;
+        let (system, actuation) = system(file.system)?;
         let control = match file.controller {
             None if file.looped.is_some() => {
                 let message =
@@ -45,6 +47,7 @@ impl TryFrom<File> for Request {
         };
         let request = Request {
             system,
+            actuation,
             q: numbers(file.start.q),
             v: numbers(file.start.v),
             control,
@@ -66,19 +69,22 @@ impl TryFrom<File> for Request {
             AdviseError::Value { name, value, allowed } => {
                 Fault::new(name, format!("`{name}` is {value:?}, but it must be {allowed}"))
             }
+            error @ AdviseError::Parameter { .. } => Fault::new("system", error.to_string()),
             error => Fault::new("tolerance", error.to_string()),
         })?;
         Ok(request)
     }
 }
 
-fn system(tables: BTreeMap<String, BTreeMap<String, Number>>) -> Result<AnySystem, Fault> {
+fn system(
+    tables: BTreeMap<String, BTreeMap<String, Number>>,
+) -> Result<(AnySystem, Actuation), Fault> {
     let mut systems = tables.into_iter();
     let (Some((name, parameters)), None) = (systems.next(), systems.next()) else {
         return Err(Fault::new("system", "`system` must be one table, as [system.oscillator]"));
     };
     let parameters: Vec<_> = parameters.iter().map(|(name, value)| (name, value.0)).collect();
-    AnySystem::build(&name, &parameters).map_err(|error| Fault::new("system", error.to_string()))
+    catalog::build(&name, &parameters).map_err(|error| Fault::new("system", error.to_string()))
 }
 
 fn tolerance(table: BTreeMap<String, Number>) -> Result<Tolerance, Fault> {

@@ -3,8 +3,9 @@
 use libration::Model;
 use libration::analysis::{CostError, Imperfections, Plant};
 
+use super::control::Law;
 use super::loops::{Loop, LoopError};
-use super::request::{Law, Measure, Tolerance};
+use super::request::{Measure, Tolerance};
 
 /// What may be wrong with a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -75,7 +76,7 @@ impl<M: Model<1>> Loop<M> {
     }
 
     /// The largest that makes sense, or is tried.
-    fn largest(&self, kind: Kind) -> f64 {
+    pub(super) fn largest(&self, kind: Kind) -> f64 {
         match kind {
             // What is stated, and some more.
             Kind::Latency => {
@@ -122,7 +123,7 @@ impl<M: Model<1>> Loop<M> {
     }
 
     /// The sizes that are tried, upward; what is stated is one of them.
-    fn tried(&self, kind: Kind, largest: f64) -> Result<Vec<f64>, LoopError> {
+    pub(super) fn tried(&self, kind: Kind, largest: f64) -> Result<Vec<f64>, LoopError> {
         // Fine enough that the plant turns by a part of a radian between two: most windows of instability are wider.
         const PART: f64 = 0.25;
         let turn = self.plant().rate() * self.control.period;

@@ -9,7 +9,9 @@ use libration::control::{ControlError, Controller};
 use libration::{Float, Model, State, System};
 
 use super::about::About;
-use super::request::{Control, Correction, Law, Regulator};
+use super::control::{Control, Correction, Law, Regulator};
+use super::request::Request;
+use crate::units::{self, Units};
 
 /// A controller, chosen when the program runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +59,17 @@ impl<T: Float> Controller<T, 1> for AnyController {
     }
 }
 
+impl AnyController {
+    /// The linear map that it is at samples `period` seconds apart.
+    pub(super) fn linear(&self, period: f64) -> Result<LinearController, NotLinear> {
+        match self {
+            AnyController::Feedback(own) => LinearController::of(own, period),
+            AnyController::Pid(own) => LinearController::of(own, period),
+            AnyController::Observer(own) => LinearController::of(own, period),
+        }
+    }
+}
+
 /// A loop about its operating point.
 pub(super) struct Loop<M> {
     pub(super) model: About<M, 1>,
@@ -64,6 +77,9 @@ pub(super) struct Loop<M> {
     pub(super) linear: LinearController,
     pub(super) control: Control,
     pub(super) weights: LqrWeights,
+    /// What a command of the request moves, in kg; all other numbers here are per unit of it.
+    mass: f64,
+    pub(super) units: Units,
 }
 
 /// Why a loop cannot be made.
@@ -82,12 +98,14 @@ pub enum LoopError {
     #[error(transparent)]
     Cost(#[from] CostError),
     /// The limit of the command is too low.
-    #[error("a command of {} m/s² holds the operating point, and the limit is {most} m/s²", -held)]
+    #[error("a command of {held} {unit} holds the operating point, and the limit is {most} {unit}")]
     Weak {
         /// The limit.
         most: f64,
-        /// What pulls away from there.
+        /// The command that holds the operating point.
         held: f64,
+        /// The unit of both.
+        unit: &'static str,
     },
     /// The latency cannot be.
     #[error(
@@ -104,18 +122,22 @@ pub(super) const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
 
 impl<M: Model<1>> Loop<M> {
     /// Designs what is to be designed.
-    pub(super) fn new(model: M, at: f64, control: &Control) -> Result<Self, LoopError> {
+    pub(super) fn new(model: M, request: &Request, control: &Control) -> Result<Self, LoopError> {
+        let at = request.q[0];
+        let (mass, units) =
+            (request.actuation.mass(), units::of(request.system, request.actuation));
         let model = About { model, at: [at] };
         let plant = Plant::exact(model, ORIGIN, control.period);
         let [held] = model.model.on::<f64>().acceleration(&State { q: [at], v: [0.0] });
         let feedback = |gains: Feedback| AnyController::Feedback(StateFeedback::to_origin(gains));
-        let controller = match control.law {
+        let controller = match control.law.per_mass(mass) {
             Law::Pd(gains) => feedback(gains),
             Law::Pid(gains) => {
                 // The command that holds the operating point takes its part of what the motor can do.
                 let most = gains.most - held.abs();
                 if most <= 0.0 {
-                    return Err(LoopError::Weak { most: gains.most, held });
+                    let (most, held, unit) = (gains.most * mass, -held * mass, units.command);
+                    return Err(LoopError::Weak { most, held, unit });
                 }
                 AnyController::Pid(Pid::new(PidGains { most, ..gains })?)
             }
@@ -133,13 +155,15 @@ impl<M: Model<1>> Loop<M> {
             }
         };
         Controller::<f64, 1>::check(&controller, control.period)?;
-        let linear = match &controller {
-            AnyController::Feedback(own) => LinearController::of(own, control.period)?,
-            AnyController::Pid(own) => LinearController::of(own, control.period)?,
-            AnyController::Observer(own) => LinearController::of(own, control.period)?,
-        };
-        let weights = control.weights.unwrap_or_else(|| plant.energy());
-        Ok(Loop { model, controller, linear, control: control.clone(), weights })
+        let linear = controller.linear(control.period)?;
+        let weights = control.weights.map(|weights| weights.per_mass(mass));
+        let weights = weights.unwrap_or_else(|| plant.energy());
+        Ok(Loop { model, controller, linear, control: control.clone(), weights, mass, units })
+    }
+
+    /// This with all gains of its linear map times `factor`.
+    pub(super) fn amplified(&self, factor: f64) -> Self {
+        Loop { linear: self.linear.amplified(factor), control: self.control.clone(), ..*self }
     }
 
     /// The plant in exact steps of a period, linearised.
@@ -220,7 +244,7 @@ impl<M: Model<1>> Loop<M> {
 }
 
 impl<M> Loop<M> {
-    /// The gains of position and velocity.
+    /// The gains of position and velocity, of a command that is an acceleration.
     pub(super) fn gains(&self) -> Feedback {
         match &self.controller {
             AnyController::Feedback(own) => own.gains,
@@ -229,15 +253,24 @@ impl<M> Loop<M> {
         }
     }
 
+    /// The gains of position and velocity, in the units of the request.
+    pub(super) fn given_gains(&self) -> Feedback {
+        match self.control.law {
+            Law::Pd(gains) => gains,
+            _ => self.gains().times_mass(self.mass),
+        }
+    }
+
     /// Who commands, in words.
     pub(super) fn told(&self) -> String {
-        let Feedback { position, velocity } = self.gains();
-        let gains = format!("K_p = {position:.6} s⁻², K_d = {velocity:.6} s⁻¹");
+        let Feedback { position, velocity } = self.given_gains();
+        let Units { command, gains: [of_position, of_velocity, of_integral], .. } = self.units;
+        let gains = format!("K_p = {position:.6} {of_position}, K_d = {velocity:.6} {of_velocity}");
         match (self.control.law, &self.controller) {
             (Law::Pd(_), _) => format!("PD, {gains}"),
             (Law::Lqr(_), _) => format!("LQR, designed: {gains}"),
             (Law::Pid(g), _) => format!(
-                "PID, K_p = {} s⁻², K_i = {} s⁻³, K_d = {} s⁻¹, filter {} s, limit {} m/s²",
+                "PID, K_p = {} {of_position}, K_i = {} {of_integral}, K_d = {} {of_velocity}, filter {} s, limit {} {command}",
                 g.proportional, g.integral, g.derivative, g.filter, g.most
             ),
             (Law::Observer { feedback, correction }, AnyController::Observer(own)) => {

@@ -5,13 +5,15 @@ use libration::{Float, Method, Model, State, System};
 
 use super::answer::{Advice, FloatChoice, LoopAdvice};
 use super::choice::{best_possible, largest_step};
+use super::control::Control;
 use super::free::Free;
 use super::loops::Loop;
-use super::request::{Control, Measure, Request, Tolerance};
+use super::request::{Measure, Request, Tolerance};
 use super::stepped::{MOST_PERIODS, Stepped};
 use super::words::{advised, stands, warnings};
 use super::{AdviseError, Budget, Throughput};
 use crate::Lab;
+use crate::units;
 
 /// The advice on a system that nobody controls.
 pub(super) fn free<M: Model<D>, const D: usize>(
@@ -109,23 +111,14 @@ impl<M: Model<1>> Stepped<'_, M> {
     }
 }
 
-/// The advice on a loop.
-pub(super) fn looped<M: Model<1>>(
+/// The largest step of each integrator for a loop, and the float types with the best.
+fn integrators<M: Model<1>>(
     lab: &Lab<'_>,
-    model: M,
-    control: &Control,
+    one: &Loop<M>,
     request: &Request,
-) -> Result<Advice, AdviseError> {
-    let of = request.tolerance.of;
-    if !matches!(of, Measure::Trajectory | Measure::Cost) {
-        let why = "a loop does not conserve it; tolerate trajectory or cost".into();
-        return Err(AdviseError::Tolerance { of, why });
-    }
-    let one = Loop::new(model, request.q[0], control)?;
-    one.check()?;
-    let plant = one.plant();
-    let mut advice = Advice::new(request);
-    let stepped = Stepped { one: &one, horizon: request.horizon, tolerance: request.tolerance };
+    advice: &mut Advice,
+) -> Result<(), AdviseError> {
+    let stepped = Stepped { one, horizon: request.horizon, tolerance: request.tolerance };
     let truth = stepped.truth(lab)?;
     // Of a loop whose cost is infinite with its latency alone no integrator's is off.
     let methods = if stepped.costs()? { &Method::ALL[..] } else { &[] };
@@ -139,31 +132,63 @@ pub(super) fn looped<M: Model<1>>(
         let narrow = advice.float().is_some_and(|float| float.float == f32::NAME);
         advice.throughput = Some(Throughput::measure(lab, request, method, dt, narrow)?);
     }
+    Ok(())
+}
+
+/// The advice on a loop.
+pub(super) fn looped<M: Model<1>>(
+    lab: &Lab<'_>,
+    model: M,
+    control: &Control,
+    request: &Request,
+) -> Result<Advice, AdviseError> {
+    let of = request.tolerance.of;
+    if !matches!(of, Measure::Trajectory | Measure::Cost) {
+        let why = "a loop does not conserve it; tolerate trajectory or cost".into();
+        return Err(AdviseError::Tolerance { of, why });
+    }
+    let one = Loop::new(model, request, control)?;
+    one.check()?;
+    let plant = one.plant();
+    let mut advice = Advice::new(request);
     let budgets = one.budgets(lab, request)?;
     let together = one.together(lab, &plant, request, &budgets)?;
     let fails_first = one.fails_first(&budgets)?;
+    let remedies = if together.growth < 0.0 {
+        integrators(lab, &one, request, &mut advice)?;
+        None
+    } else {
+        // No integrator follows for long what grows without end.
+        Some(one.remedies(&plant, &one.stated()?))
+    };
     let rest = State { q: [request.q[0]], v: [0.0] };
     let [held] = model.on::<f64>().acceleration(&rest);
     advice.warnings.splice(0..0, warnings(&one, &together));
+    let units = units::of(request.system, request.actuation);
     let looped = LoopAdvice {
         controller: one.told(),
+        command: request.actuation.name(),
+        command_unit: units.command,
         gains: {
-            let gains = one.gains();
+            let gains = one.given_gains();
             [gains.position, gains.velocity]
         },
-        held_command: -held,
+        gain_units: [units.gains[0], units.gains[1]],
+        held_command: -held * request.actuation.mass(),
         period: control.period,
         stated: one.stated()? != Imperfections::NONE || control.record.is_some(),
         budgets,
         together,
         fails_first,
+        remedies,
     };
     let mut answer = stands(&looped, &advice.tolerance);
     if !advice.integrators.is_empty() {
         answer += &format!(" {}", advised(&advice, request));
     }
     let followed = MOST_PERIODS as f64 * control.period;
-    if request.tolerance.of == Measure::Trajectory && request.horizon > followed {
+    let stable = looped.remedies.is_none();
+    if stable && request.tolerance.of == Measure::Trajectory && request.horizon > followed {
         advice.warnings.push(format!(
             "the course of the loop was followed for {followed} s, not for the {} s that were asked for",
             request.horizon
@@ -184,7 +209,7 @@ pub(super) fn budgets<M: Model<1>>(
     control: &Control,
     request: &Request,
 ) -> Result<Vec<Budget>, AdviseError> {
-    let one = Loop::new(model, request.q[0], control)?;
+    let one = Loop::new(model, request, control)?;
     one.check()?;
     one.budgets(lab, request)
 }

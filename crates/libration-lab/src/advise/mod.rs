@@ -1,9 +1,12 @@
 //! What can be afforded: the budget of a simulation or a loop.
 
 mod about;
+#[cfg(test)]
+mod agreement;
 mod answer;
 mod budget;
 mod choice;
+mod control;
 mod ensemble;
 mod file;
 mod free;
@@ -13,6 +16,8 @@ mod making;
 mod map;
 mod pace;
 mod page;
+mod regained;
+mod remedies;
 mod request;
 mod returns;
 mod stepped;
@@ -21,6 +26,8 @@ mod throughput;
 mod together;
 mod words;
 
+use std::ops::RangeInclusive;
+
 use libration::ensemble::EnsembleError;
 use libration::{AnySystem, with_system};
 use thiserror::Error;
@@ -28,24 +35,35 @@ use thiserror::Error;
 pub use answer::{Advice, FloatChoice, LoopAdvice, ToleranceAnswer};
 pub use budget::{Budget, Failing};
 pub use choice::Choice;
+pub use control::{Control, Correction, Law, Regulator};
 pub use file::{DEFAULT, parse};
 pub use limits::Kind;
 pub use loops::LoopError;
 pub use map::Map;
 pub use page::page;
-pub use request::{Control, Correction, Law, Measure, Regulator, Request, Tolerance};
+pub use regained::Regained;
+pub use remedies::Remedies;
+pub use request::{Measure, Request, Tolerance};
 pub use returns::Returns;
 pub use throughput::Throughput;
 pub use together::{Simulated, Together};
 
 use crate::Lab;
+use crate::config::limits::SIZE;
 use crate::study::StudyError;
+
+/// The angles by which the fastest motion of a loop may turn in a period, in rad. Below, a float knows no growth in a period;
+/// above, jitter turns a step by more than second moments can be derived for.
+const TURN: RangeInclusive<f64> = 1e-9..=1e3;
+
+/// The same for a reader.
+const TURNS: &str = "1e-9 to 1e3";
 
 /// Why there is no advice.
 #[derive(Debug, Error)]
 pub enum AdviseError {
     /// A number cannot be.
-    #[error("{name} is {value}; it must be {allowed}")]
+    #[error("{name} is {value:?}; it must be {allowed}")]
     Value {
         /// Which.
         name: &'static str,
@@ -53,6 +71,28 @@ pub enum AdviseError {
         value: f64,
         /// What it may be.
         allowed: &'static str,
+    },
+    /// A parameter of the system is too large or too small.
+    #[error("{system}: `{name}` is {value:e}; expected 0, or {:e} to {:e} in size", SIZE.start(), SIZE.end())]
+    Parameter {
+        /// The system.
+        system: &'static str,
+        /// The parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The period does not fit the motions of the loop.
+    #[error(
+        "the period is {period:e} s; expected {least:.3e} to {most:.3e} s, in which the fastest motion of this loop turns by {TURNS} rad"
+    )]
+    Period {
+        /// The period, in s.
+        period: f64,
+        /// The least, in s.
+        least: f64,
+        /// The largest, in s.
+        most: f64,
     },
     /// The tolerance does not fit what is asked.
     #[error("{} cannot be tolerated here: {why}", of.name())]
@@ -74,12 +114,14 @@ pub enum AdviseError {
     },
     /// The loop is unstable without anything wrong with it.
     #[error(
-        "the loop is unstable even without latency, jitter, skew or loss: {}; choose other gains, or a shorter period",
+        "the loop is unstable even without latency, jitter, skew or loss: {}; help: {help}",
         modes.join("; ")
     )]
     Unstable {
-        /// What does not decay, in words, the fastest first.
+        /// The motions that do not decay, in words, the fastest first.
         modes: Vec<String>,
+        /// What stabilises it, in words.
+        help: String,
     },
     /// The loop does not stand its latency, and with what else is stated it is too large to be told of.
     #[error(

@@ -39,11 +39,13 @@ pub fn page(advice: &Advice) -> String {
 fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&Map>) {
     page.heading("What the loop stands of each alone");
     page.paragraph(format!(
-        "{}; a sample every {} s; the command {} m/s² holds the operating point. A limit is where the loop, in exact steps of a \
+        "{}; a sample every {} s; a {} of {} {} holds the operating point. A limit is where the loop, in exact steps of a \
          period, begins to grow (in the mean square where something is drawn), or where its cost is no longer tolerated.",
         looped.controller,
         number(looped.period, 4),
-        number(looped.held_command, 4)
+        looped.command,
+        number(looped.held_command, 4),
+        looped.command_unit
     ));
     let columns =
         ["imperfection", "stated", "stable up to", "tolerated up to", "used (%)", "unit", "how"];
@@ -128,7 +130,11 @@ fn row(budget: &Budget) -> [Cell; 7] {
         budget.stated.into(),
         limit(budget.stable_up_to),
         budget.tolerated_up_to.map_or_else(|| Cell::absent(""), limit),
-        budget.used.map_or_else(|| Cell::absent(""), |used| Cell::rounded(100.0 * used, 3)),
+        match (budget.used, budget.regained) {
+            (_, Some(_)) => Cell::absent("regained"),
+            (Some(used), None) => Cell::rounded(100.0 * used, 3),
+            (None, None) => Cell::absent(""),
+        },
         budget.unit.into(),
         budget.how.into(),
     ]
@@ -165,6 +171,9 @@ fn figure(map: &Map) -> Figure {
 }
 
 fn integrators(page: &mut Page, advice: &Advice) {
+    if advice.integrators.is_empty() {
+        return;
+    }
     page.heading("Integrator, step and float type");
     if let Some(why) = &advice.runner_up {
         page.paragraph(format!("Runner-up: {why}."));

@@ -1,17 +1,20 @@
 //! What is asked.
 
 use libration::AnySystem;
-use libration::analysis::{Feedback, Jitter, LqrWeights, ObserverNoise};
-use libration::control::clock::{Recorded, RecordedError};
-use libration::control::controller::PidGains;
+use libration::analysis::LqrWeights;
+use libration::catalog::Actuation;
 
 use super::AdviseError;
+use super::control::Control;
+use crate::config::limits;
 
 /// A plant, who controls it, what it may lose and what its surroundings are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
     /// The system.
     pub system: AnySystem,
+    /// The quantity of its commands, and so the units of gains and limits of commands.
+    pub actuation: Actuation,
     /// Positions at the start; of a loop those of the operating point.
     pub q: Vec<f64>,
     /// Velocities at the start.
@@ -28,89 +31,6 @@ pub struct Request {
     pub map: bool,
     /// The command that asks this again, without where it writes and how.
     pub asked_by: String,
-}
-
-/// A loop and what is wrong with it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Control {
-    /// Who commands.
-    pub law: Law,
-    /// Between two samples, in s.
-    pub period: f64,
-    /// How late a command arrives, in s.
-    pub latency: f64,
-    /// The law of sample times, with its relative rms.
-    pub jitter: Jitter,
-    /// The part by which the clock of the loop is slow; negative where it is fast.
-    pub skew: f64,
-    /// The probability that a command is lost.
-    pub loss: f64,
-    /// Steps that were measured, as multiples of their mean; they are replayed in place of `jitter`, whose rms is theirs.
-    pub record: Option<Vec<f64>>,
-    /// What the loop costs.
-    pub weights: Option<LqrWeights>,
-    /// How far from the operating point it must return from, in m or rad.
-    pub deviation: f64,
-}
-
-/// A clock that is off by less does nothing to a loop.
-const ON_TIME: f64 = 1e-6;
-
-/// The relative rms of steps that only rounding tells apart.
-const EVEN: f64 = 1e-9;
-
-impl Control {
-    /// This with a clock that was measured, whose time stamps are in seconds: where their mean is not the period, the clock is slow or
-    /// fast by that.
-    ///
-    /// # Errors
-    /// If they are no record of a clock.
-    pub fn replaying(self, stamps: &[f64]) -> Result<Self, RecordedError> {
-        let (steps, mean) = Recorded::steps_between(stamps)?;
-        let square = steps.iter().map(|step| (step - 1.0).powi(2)).sum::<f64>();
-        let rms = (square / steps.len() as f64).sqrt();
-        let skew = mean / self.period - 1.0;
-        let skew = if skew.abs() < ON_TIME { 0.0 } else { skew };
-        // Steps that differ by their last digits alone are even.
-        let (rms, record) = if rms < EVEN { (0.0, None) } else { (rms, Some(steps)) };
-        Ok(Control { jitter: self.jitter.with_rms(rms), record, skew, ..self })
-    }
-}
-
-/// Who commands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Law {
-    /// Feedback of position and velocity.
-    Pd(Feedback),
-    /// Three terms, of the position.
-    Pid(PidGains<1>),
-    /// The feedback that costs least, designed from the model.
-    Lqr(LqrWeights),
-    /// Feedback of a state that is estimated from the position.
-    Observer {
-        /// What is fed back.
-        feedback: Regulator,
-        /// How the estimate is corrected.
-        correction: Correction,
-    },
-}
-
-/// Gains, or what they are designed for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Regulator {
-    /// These.
-    Gains(Feedback),
-    /// The feedback that costs least.
-    Lqr(LqrWeights),
-}
-
-/// How an estimate is corrected by what is seen, or what that is designed for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Correction {
-    /// By so much of what the position is off: the position, and the velocity in 1/s.
-    Gains([f64; 2]),
-    /// As varies least: a stationary Kalman filter.
-    Kalman(ObserverNoise),
 }
 
 /// What may be lost.
@@ -164,7 +84,7 @@ impl Measure {
 impl Request {
     /// The parameters of the system, as flags.
     pub(super) fn parameters(&self) -> String {
-        let each = self.system.parameters().into_iter();
+        let each = self.actuation.parameters(self.system).into_iter();
         each.map(|(name, value)| format!(" --set {name}={value}")).collect()
     }
 
@@ -214,7 +134,13 @@ impl Request {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         let above = "a finite number above 0";
         ensure("tolerance", self.tolerance.most, above, positive(self.tolerance.most))?;
-        ensure("asked.horizon", self.horizon, above, positive(self.horizon))?;
+        let parameters = self.actuation.parameters(self.system);
+        if let Some((name, value)) = limits::beyond_theory(parameters) {
+            return Err(AdviseError::Parameter { system: self.system.name(), name, value });
+        }
+        let time = |x: f64| limits::SIZE.contains(&x);
+        let seconds = "from 1e-60 to 1e60 s";
+        ensure("asked.horizon", self.horizon, seconds, time(self.horizon))?;
         for count in self.rollout {
             ensure(
                 "asked.rollout",
@@ -228,7 +154,7 @@ impl Request {
         }
         let Some(control) = &self.control else { return Ok(()) };
         let Control { period, latency, jitter, skew, loss, deviation, .. } = *control;
-        ensure("loop.period", period, above, positive(period))?;
+        ensure("loop.period", period, seconds, time(period))?;
         ensure(
             "loop.latency",
             latency,

@@ -3,8 +3,11 @@
 use libration::Model;
 
 use super::answer::{Advice, LoopAdvice, ToleranceAnswer};
+use super::budget::Budget;
+use super::control::Control;
 use super::loops::Loop;
-use super::request::{Control, Measure, Request, Tolerance};
+use super::regained::Regained;
+use super::request::{Measure, Request, Tolerance};
 use super::stepped::MOST_PERIODS;
 use super::together::Together;
 
@@ -42,11 +45,14 @@ pub(super) fn advised(advice: &Advice, request: &Request) -> String {
 pub(super) fn stands(looped: &LoopAdvice, tolerance: &ToleranceAnswer) -> String {
     let Together { growth, room, room_tried, cost_increase, .. } = looped.together;
     if growth >= 0.0 {
+        let remedies = looped.remedies.as_ref();
         return format!(
-            "The loop does not stand what is stated: its second moments grow by {:.3} % a period.",
-            100.0 * growth.exp_m1()
+            "The loop is unstable with what is stated: its second moments grow by {:.3} % a period. {}",
+            100.0 * growth.exp_m1(),
+            remedies.map_or_else(String::new, |remedies| remedies.sentence(looped.gain_units))
         );
     }
+    let regained = looped.budgets.iter().find_map(|budget| Some((budget, budget.regained?)));
     let mut text = match (room, room_tried) {
         _ if looped.together.contradicted() => {
             "The simulation contradicts what theory says of the loop: see below.".to_owned()
@@ -54,6 +60,7 @@ pub(super) fn stands(looped: &LoopAdvice, tolerance: &ToleranceAnswer) -> String
         _ if looped.too_dear(tolerance) => {
             "The loop is stable with what is stated, but costs more than is tolerated.".to_owned()
         }
+        _ if let Some((budget, window)) = regained => alone_in(budget, window),
         (Some(room), _) => {
             format!(
                 "The loop stands what is stated, and all of it may become {room:.3} times as large."
@@ -83,6 +90,20 @@ pub(super) fn stands(looped: &LoopAdvice, tolerance: &ToleranceAnswer) -> String
             &format!(" It costs {:.3} % more than the ideal loop{tolerated}.", 100.0 * increase);
     }
     text
+}
+
+/// That a loop is stable in a window that is regained, and where it is not.
+fn alone_in(budget: &Budget, Regained { from, to }: Regained) -> String {
+    let (kind, unit) = (budget.kind.name(), budget.unit);
+    let limit = budget.stable_up_to.unwrap_or(0.0);
+    let end = match to {
+        Some(to) => format!("from {from:.6} to {to:.6}"),
+        None => format!("from {from:.6}"),
+    };
+    format!(
+        "The loop is stable with what is stated, but only in a window that is regained: {kind} alone is stable {end} {unit} again, \
+         and unstable in between from {limit:.6} {unit}. Do not rely on it: less {kind} makes the loop unstable as well as more."
+    )
 }
 
 fn capital(text: &str) -> String {

@@ -30,7 +30,7 @@ pub struct Analysis {
     pub trace: f64,
     /// The eigenvalues as pairs `[re, im]`.
     pub eigenvalues: Vec<[f64; 2]>,
-    /// The largest absolute value of an eigenvalue; with feedback of the loop and its waiting commands.
+    /// The largest absolute value of an eigenvalue: of the step without feedback, as all above and below.
     pub spectral_radius: f64,
     /// The spectral radius minus one, without cancellation.
     pub spectral_radius_minus_one: f64,
@@ -62,7 +62,7 @@ pub struct Analysis {
     /// The energy drift; none where the initial energy is zero.
     #[serde(flatten, serialize_with = "drift_or_nulls")]
     pub drift: Option<Drift>,
-    /// What timing does to the loop, if it was asked. With feedback `spectral_radius` is that of the loop.
+    /// What timing does to the loop, if it was asked.
     #[serde(flatten)]
     pub timing: Option<TimingAnswer>,
 }
@@ -105,20 +105,25 @@ impl About {
         let linear = request.system.is_linear();
         About {
             system: request.system.name(),
-            parameters: request.system.parameters().into_iter().collect(),
+            parameters: request.actuation.parameters(request.system).into_iter().collect(),
             integrator: request.stepping.name(),
             dt: request.dt,
             q: request.q.clone(),
             v: request.v.clone(),
             steps: request.steps,
             linear,
-            note: (!linear).then(|| {
-                "the system is not linear: matrix, eigenvalues and defects are those of the \
-                 linearisation of one step at the given state; the energy drift is simulated in f64"
-                    .into()
-            }),
+            note: note(request),
         }
     }
+}
+
+fn note(request: &Request) -> Option<String> {
+    let linearised = "the system is not linear: matrix, eigenvalues and defects are those of the linearisation of one step at \
+                      the given state; the energy drift is simulated in f64";
+    let caveat = request.stepping.method().and_then(|method| request.system.caveat(method));
+    let linearised = (!request.system.is_linear()).then(|| linearised.to_owned());
+    let notes: Vec<String> = linearised.into_iter().chain(caveat).collect();
+    (!notes.is_empty()).then(|| notes.join("; "))
 }
 
 /// `qq·q² + 2·qv·q·v + vv·v²` per unit mass, in each degree of freedom: what a symplectic step

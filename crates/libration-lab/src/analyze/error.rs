@@ -5,6 +5,8 @@ use libration::analysis::Latency;
 use libration::simulation::SimulationError;
 use thiserror::Error;
 
+use crate::config::limits;
+
 /// Why there is no analysis.
 #[derive(Debug, Error)]
 pub enum AnalyzeError {
@@ -23,7 +25,9 @@ pub enum AnalyzeError {
     #[error(transparent)]
     Simulation(#[from] SimulationError),
     /// A criterion was given for a system whose largest time step is not known in closed form.
-    #[error("--{flag} is answered for the system `oscillator`, not for `{system}`")]
+    #[error(
+        "--{flag} is answered for the system `oscillator` with a spring, not for `{system}` here"
+    )]
     Criterion {
         /// The flag.
         flag: &'static str,
@@ -53,6 +57,17 @@ pub enum AnalyzeError {
         system: &'static str,
         /// Its degrees of freedom here.
         dimension: usize,
+    },
+    /// The fastest motion turns too far in a step.
+    #[error(
+        "`dt` is {dt:e} s, in which the fastest motion turns by {turn:.3e} rad; expected at most {:e} rad, a dt of {:.3e} s",
+        limits::MOST_TURN, dt / turn * limits::MOST_TURN
+    )]
+    Turn {
+        /// The step, in s.
+        dt: f64,
+        /// The angle.
+        turn: f64,
     },
     /// There is no such latency.
     #[error("--latency is {steps:?} steps, but must be a number from 0 to {}", Latency::MOST_STEPS)]

@@ -69,13 +69,19 @@ impl OrderOfWord {
 }
 
 /// The windows of a linear system, in s.
-pub(super) fn stability_windows(
+pub(crate) fn stability_windows(
     method: Method,
     system: AnySystem,
 ) -> Option<Vec<[Option<f64>; 2]>> {
     // In powers of z for an oscillator of any stiffness, and of Δt where there is damping.
     let (step, unit) = match system {
-        AnySystem::Oscillator(model) => (SymbolicStep::new(method)?, period(model.omega2)),
+        AnySystem::Oscillator(model) if model.omega2 > 0.0 => {
+            (SymbolicStep::new(method)?, period(model.omega2))
+        }
+        AnySystem::Oscillator(model) => {
+            let system = Model::<1>::on::<UnknownStep>(&model);
+            (SymbolicStep::of(method, &system)?, Wide::one())
+        }
         AnySystem::DampedOscillator(model) => {
             let system = Model::<1>::on::<UnknownStep>(&model);
             (SymbolicStep::of(method, &system)?, Wide::one())

@@ -1,8 +1,10 @@
 //! What theory says of one step of an integrator on a system.
 
 mod answer;
+mod cost;
 mod criteria;
 mod error;
+mod growth;
 mod limits;
 mod modes;
 mod request;
@@ -15,13 +17,19 @@ use libration::number::Wide;
 use libration::simulation::{EnergyDrift, Simulator};
 use libration::{AnySystem, Elementary, Integrator, Model, Scalar, State, System, with_system};
 
+use crate::config::limits::MOST_TURN;
 pub use answer::{About, Analysis, Drift, ModifiedHamiltonian};
+pub use cost::CostAnswer;
 pub use criteria::Criteria;
 pub use error::AnalyzeError;
+pub use growth::GrowthAnswer;
+pub(crate) use limits::stability_windows;
 pub use limits::{LargestDt, OrderOfWord};
 use modes::Modes;
 pub use request::{Request, Stepping};
-pub use timing::{CostAnswer, Critical, Late, Timing, TimingAnswer};
+#[cfg(test)]
+pub(crate) use timing::growth;
+pub use timing::{Critical, Late, Timing, TimingAnswer};
 
 /// Analyses one step.
 ///
@@ -39,15 +47,14 @@ pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, A
     if request.q.len() != request.v.len() {
         return Err(AnalyzeError::Coordinates { q: request.q.len(), v: request.v.len() });
     }
-    if let (Some(flag), false) =
-        (request.criteria.first(), matches!(request.system, AnySystem::Oscillator(_)))
-    {
+    if let (Some(flag), None) = (request.criteria.first(), omega(request.system)) {
         return Err(AnalyzeError::Criterion { flag, system: request.system.name() });
     }
     if request.stepping == Stepping::Exact {
         exact(request)?;
     }
     let dimension = request.q.len();
+    turns(request)?;
     let timing = timing::answer(request)?;
     with_system!(
         request.system,
@@ -98,6 +105,18 @@ impl<const D: usize> Step<D> {
     }
 }
 
+/// Fails if the motion turns too far in an exact step for its exponential to have digits left.
+fn turns(request: &Request) -> Result<(), AnalyzeError> {
+    let rate = match request.system {
+        _ if request.stepping != Stepping::Exact => return Ok(()),
+        AnySystem::Oscillator(model) => model.omega2.sqrt(),
+        AnySystem::DampedOscillator(model) => model.omega2.sqrt().max(model.gamma),
+        _ => return Ok(()),
+    };
+    let (dt, turn) = (request.dt, rate * request.dt);
+    if turn > MOST_TURN { Err(AnalyzeError::Turn { dt, turn }) } else { Ok(()) }
+}
+
 /// Fails if exact steps are asked for what they are not.
 fn exact(request: &Request) -> Result<(), AnalyzeError> {
     match request.criteria.first() {
@@ -130,9 +149,9 @@ fn answer<const D: usize>(
 ) -> Result<Analysis, AnalyzeError> {
     let Step { linear, evaluations, drift } = step;
     let method = request.stepping.method();
-    let polynomials = method
-        .filter(|_| matches!(request.system, AnySystem::Oscillator(_)))
-        .and_then(SymbolicStep::new);
+    // A free mass has no frequency by which its time step could be measured.
+    let polynomials =
+        method.filter(|_| omega(request.system).is_some()).and_then(SymbolicStep::new);
     let exact = polynomials.as_ref().zip(omega(request.system));
     let modes = Modes::new(
         &linear,
@@ -150,11 +169,6 @@ fn answer<const D: usize>(
         true => forecast_drift(model, &linear.step, start, request.steps).map(Drift::from),
         false => drift,
     };
-    let radius = timing
-        .as_ref()
-        .and_then(|timing| timing.radius)
-        .map(|radius| (radius, radius - Wide::one()));
-    let (radius, radius_minus_one) = radius.unwrap_or((modes.radius, modes.radius_minus_one));
     Ok(Analysis {
         about: About::new(request),
         update_matrix: to_f64(&linear.step.rows()),
@@ -163,10 +177,10 @@ fn answer<const D: usize>(
         determinant_minus_one: modes.determinant_minus_one.to_f64(),
         trace: linear.step.trace().to_f64(),
         eigenvalues: modes.eigenvalues(),
-        spectral_radius: radius.to_f64(),
-        spectral_radius_minus_one: radius_minus_one.to_f64(),
+        spectral_radius: modes.radius.to_f64(),
+        spectral_radius_minus_one: modes.radius_minus_one.to_f64(),
         bounded: modes.bounded.filter(|_| linear_system),
-        stability_windows: method.and_then(|m| limits::stability_windows(m, request.system)),
+        stability_windows: method.and_then(|m| stability_windows(m, request.system)),
         largest_dt: method.and_then(|_| limits::largest_dt(polynomials.as_ref(), start, request)),
         modified_hamiltonian: linear_system
             .then(|| ModifiedHamiltonian::of(&linear.step, modes.determinant_minus_one.is_zero()))
@@ -203,10 +217,12 @@ fn positional<M: Model<D>, const D: usize>(_: &M) -> bool {
     <M::On<f64> as System<f64, D>>::POSITIONAL
 }
 
-/// The angular frequency of an oscillator, in rad/s.
+/// The angular frequency of an oscillator, in rad/s; none of a free mass.
 fn omega(system: AnySystem) -> Option<Wide> {
     match system {
-        AnySystem::Oscillator(model) => Some(Wide::from_f64(model.omega2).sqrt()),
+        AnySystem::Oscillator(model) if model.omega2 > 0.0 => {
+            Some(Wide::from_f64(model.omega2).sqrt())
+        }
         _ => None,
     }
 }

@@ -1,5 +1,6 @@
 //! What is to be analysed.
 
+use libration::catalog::Actuation;
 use libration::{AnySystem, Method};
 
 use super::{Criteria, Timing};
@@ -9,6 +10,8 @@ use super::{Criteria, Timing};
 pub struct Request {
     /// The system.
     pub system: AnySystem,
+    /// The quantity of its commands.
+    pub actuation: Actuation,
     /// How steps are taken.
     pub stepping: Stepping,
     /// The time step, in s.

@@ -1,11 +1,12 @@
 //! What timing does to the loop that a request describes.
 
-use libration::analysis::{CostError, Feedback, Imperfections, Jitter, Latency, LqrWeights, Plant};
+use libration::analysis::{Feedback, Jitter, Latency, LqrWeights, Plant};
 use libration::number::Wide;
 use libration::{AnySystem, Model, Scalar, State};
 use serde::Serialize;
 
-use super::{AnalyzeError, Request, Stepping};
+use super::{AnalyzeError, CostAnswer, GrowthAnswer, Request, Stepping};
+use crate::units;
 
 /// What is asked of timing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,6 +48,20 @@ impl Timing {
         given.into_iter().find_map(|(given, name)| given.then_some(name))
     }
 
+    /// The same of commands that are accelerations, where these are forces on `mass`.
+    fn per_mass(self, mass: f64) -> Self {
+        Timing {
+            feedback: self.feedback.map(|gains| gains.per_mass(mass)),
+            weights: self.weights.map(|weights| weights.per_mass(mass)),
+            ..self
+        }
+    }
+
+    /// Whether steps or losses are drawn.
+    pub fn draws(&self) -> bool {
+        self.jitter.is_some() || self.loss.is_some()
+    }
+
     /// How many times as long as the time step the longest step of a simulation may be.
     pub(crate) fn longest(&self) -> f64 {
         [self.jitter, self.skew].into_iter().flatten().map(|law| 1.0 + law.largest()).product()
@@ -68,38 +83,40 @@ impl Timing {
 /// What timing does to a loop; the fields are keys of `analyze --json`.
 #[derive(Debug, Default, Serialize)]
 pub struct TimingAnswer {
-    /// The gains `[K_p, K_d]` in s⁻² and s⁻¹.
+    /// The quantity of the command: `force` where the mass of the system is given, else `acceleration`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub command: Option<&'static str>,
+    /// The gains `[K_p, K_d]` of the command.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feedback: Option<[f64; 2]>,
+    /// Their units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub feedback_units: Option<[&'static str; 2]>,
     /// The latency in steps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub latency_steps: Option<f64>,
+    /// The largest absolute value of an eigenvalue of the loop with its latency, its steps even and no command lost.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub closed_loop_spectral_radius: Option<f64>,
+    /// The same minus one, without cancellation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub closed_loop_spectral_radius_minus_one: Option<f64>,
     /// What the feedback makes of the loop, whatever the latency.
     #[serde(flatten)]
     pub critical: Option<Critical>,
     /// Whether some steps would be negative, and are of length zero.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub jitter_clips: Option<bool>,
-    /// `ρ(E[M ⊗ M])`: the factor by which second moments grow in a step; none where steps turn by more than 2048 rad in a
-    /// deviation, or with a latency of more than 90 steps.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mean_square_radius: Option<Option<f64>>,
-    /// The same minus one, without cancellation.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mean_square_growth: Option<Option<f64>>,
-    /// The top Lyapunov exponent in a step; none with a latency, where the mean step does not turn, and where steps turn by more
-    /// than 2048 rad in a deviation.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub lyapunov_exponent: Option<Option<f64>>,
-    /// Steps after which the mean of an ensemble of clocks has fallen to 1/e; none where nothing turns.
+    /// How the loop, or the plant without feedback, grows where something is drawn.
+    #[serde(flatten)]
+    pub growth: Option<GrowthAnswer>,
+    /// Steps after which the mean of an ensemble of clocks has fallen to 1/e, of the plant without feedback; none where
+    /// nothing turns.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dephasing_steps: Option<Option<f64>>,
     /// What the loop costs under noise, and what timing adds to that.
     #[serde(flatten)]
     pub cost: Option<CostAnswer>,
-    /// The spectral radius of the loop with its latency.
-    #[serde(skip)]
-    pub(super) radius: Option<Wide>,
 }
 
 /// At which latencies a loop is stable.
@@ -119,111 +136,97 @@ pub struct Critical {
     pub delay_margin_seconds: Option<f64>,
 }
 
-/// The stationary cost of a loop under white noise of the acceleration of unit intensity.
-#[derive(Debug, Serialize)]
-pub struct CostAnswer {
-    /// The weights `[q, v, u]` of the squares of which the cost is the mean.
-    pub cost_weights: [f64; 3],
-    /// The cost with all that is asked: latency, jitter, skew (half the clocks slow by its rms, half fast) and loss; none where
-    /// it is infinite, or not known.
-    pub cost: Option<f64>,
-    /// Whether it is infinite: the loop is not stable in the mean square. Unknown where the loop is too large.
-    pub cost_infinite: Option<bool>,
-    /// `J/J₀ − 1`, with the cost `J₀` of the same loop with nothing of that; none where one of them is none.
-    pub cost_increase: Option<f64>,
-}
-
-impl CostAnswer {
-    fn of(plant: &Plant<'_>, feedback: Feedback, latency: Latency, timing: &Timing) -> Self {
-        let weights = timing.weights.unwrap_or_else(|| plant.energy());
-        let cost = |imperfections: &Imperfections| -> Result<f64, CostError> {
-            plant.cost(&feedback.into(), imperfections, weights)
-        };
-        let none = Imperfections::NONE;
-        let jitter = timing.jitter.unwrap_or(none.jitter);
-        let loss = timing.loss.unwrap_or(0.0);
-        let with = |skew| cost(&Imperfections { latency, jitter, skew, loss });
-        let all = match timing.skew.map(Jitter::rms).filter(|&rms| rms > 0.0) {
-            Some(rms) => with(rms).and_then(|slow| Ok(0.5 * (slow + with(-rms)?))),
-            None => with(0.0),
-        };
-        let all = all.ok();
-        let finite = |cost: Option<f64>| cost.filter(|cost| cost.is_finite());
-        let increase = finite(all).zip(finite(cost(&none).ok()));
-        CostAnswer {
-            cost_weights: [weights.position, weights.velocity, weights.command],
-            cost: finite(all),
-            cost_infinite: all.map(f64::is_infinite),
-            cost_increase: increase.map(|(all, ideal)| all / ideal - 1.0),
-        }
-    }
-}
-
 /// Answers what `request` asks of timing; none if it asks nothing.
 ///
 /// # Errors
 /// If the system has more than one degree of freedom, or the latency cannot be.
 pub(super) fn answer(request: &Request) -> Result<Option<TimingAnswer>, AnalyzeError> {
-    let Some(flag) = request.timing.first() else { return Ok(None) };
-    let latency = request.timing.latency_of(request.dt);
-    let latency = latency.map_err(|steps| AnalyzeError::Latency { steps })?;
-    let answer = match request.system {
-        AnySystem::Oscillator(model) if request.q.len() == 1 => of_model(model, latency, request),
-        AnySystem::DampedOscillator(model) => of_model(model, latency, request),
-        AnySystem::Pendulum(model) => of_model(model, latency, request),
-        AnySystem::Duffing(model) => of_model(model, latency, request),
-        _ => {
-            let (system, dimension) = (request.system.name(), request.q.len());
-            return Err(AnalyzeError::Loop { flag, system, dimension });
-        }
-    };
-    Ok(Some(answer))
+    Ok(Looped::new(request)?.map(|looped| looped.answer(request)))
 }
 
-fn of_model(model: impl Model<1>, latency: Latency, request: &Request) -> TimingAnswer {
-    let timing = &request.timing;
-    let at = State { q: [request.q[0]], v: [request.v[0]] };
-    let plant = match request.stepping {
-        Stepping::Method(method) => Plant::new(method, model, at, request.dt),
-        Stepping::Exact => Plant::exact(model, at, request.dt),
-    };
-    let feedback = timing.feedback.unwrap_or_default();
-    let finite = |[radius, growth]: [f64; 2]| radius.is_finite().then_some([radius, growth]);
-    let mean_square = timing.jitter.map(|law| {
-        if latency == Latency::NONE {
-            let radius = plant.mean_square(feedback, law).radius;
-            finite([radius, radius - Wide::one()].map(Wide::to_f64))
-        } else {
-            let drawn = Imperfections { latency, jitter: law, ..Imperfections::NONE };
-            let rate = plant.mean_square_growth(&feedback.into(), &drawn).ok()?;
-            finite([rate.exp(), rate.exp_m1()])
-        }
-    });
-    let exponent = |law: Jitter| {
-        let found = (latency == Latency::NONE).then(|| plant.lyapunov_exponent(feedback, law));
-        found.flatten().filter(|exponent| exponent.is_finite())
-    };
-    let critical = || {
-        let windows = plant.latency_windows(feedback);
+/// The part of the answer that no search precedes.
+#[cfg(test)]
+pub(crate) fn growth(request: &Request) -> Result<Option<GrowthAnswer>, AnalyzeError> {
+    Ok(Looped::new(request)?.and_then(|looped| looped.growth()))
+}
+
+/// A plant and the loop around it.
+struct Looped {
+    plant: Plant<'static>,
+    feedback: Feedback,
+    latency: Latency,
+    /// With commands that are accelerations.
+    timing: Timing,
+}
+
+impl Looped {
+    /// The loop of `request`; none if it asks nothing of timing.
+    fn new(request: &Request) -> Result<Option<Self>, AnalyzeError> {
+        let Some(flag) = request.timing.first() else { return Ok(None) };
+        let latency = request.timing.latency_of(request.dt);
+        let latency = latency.map_err(|steps| AnalyzeError::Latency { steps })?;
+        let plant = match request.system {
+            AnySystem::Oscillator(model) if request.q.len() == 1 => plant(model, request),
+            AnySystem::DampedOscillator(model) => plant(model, request),
+            AnySystem::Pendulum(model) => plant(model, request),
+            AnySystem::Duffing(model) => plant(model, request),
+            _ => {
+                let (system, dimension) = (request.system.name(), request.q.len());
+                return Err(AnalyzeError::Loop { flag, system, dimension });
+            }
+        };
+        let timing = request.timing.per_mass(request.actuation.mass());
+        let feedback = timing.feedback.unwrap_or_default();
+        Ok(Some(Looped { plant, feedback, latency, timing }))
+    }
+
+    fn growth(&self) -> Option<GrowthAnswer> {
+        let Looped { plant, feedback, latency, timing } = self;
+        timing.draws().then(|| GrowthAnswer::of(plant, *feedback, *latency, timing))
+    }
+
+    fn critical(&self, dt: f64) -> Critical {
+        let Looped { plant, feedback, .. } = self;
+        let windows = plant.latency_windows(*feedback);
         let steps = windows.critical();
         Critical {
             critical_latency_steps: steps,
-            critical_latency_split_steps: plant.split_critical_latency(feedback),
-            critical_latency_seconds: steps.map(|steps| steps * request.dt),
+            critical_latency_split_steps: plant.split_critical_latency(*feedback),
+            critical_latency_seconds: steps.map(|steps| steps * dt),
             latency_windows: windows.stable,
-            delay_margin_seconds: plant.delay_margin(feedback).map(Wide::to_f64),
+            delay_margin_seconds: plant.delay_margin(*feedback).map(Wide::to_f64),
         }
-    };
-    TimingAnswer {
-        feedback: timing.feedback.map(|f| [f.position, f.velocity]),
-        latency_steps: timing.feedback.map(|_| latency.steps()),
-        critical: timing.feedback.map(|_| critical()),
-        jitter_clips: timing.jitter.map(Jitter::clips),
-        mean_square_radius: mean_square.map(|found| found.map(|[radius, _]| radius)),
-        mean_square_growth: mean_square.map(|found| found.map(|[_, growth]| growth)),
-        lyapunov_exponent: timing.jitter.map(exponent),
-        dephasing_steps: timing.skew.map(|law| plant.dephasing_steps(law).map(Wide::to_f64)),
-        cost: timing.feedback.map(|_| CostAnswer::of(&plant, feedback, latency, timing)),
-        radius: timing.feedback.map(|_| plant.spectral_radius(feedback, latency)),
+    }
+
+    fn answer(&self, request: &Request) -> TimingAnswer {
+        let Looped { plant, feedback, latency, timing } = self;
+        let closed = timing.feedback.is_some();
+        let [of_position, of_velocity, _] = units::of(request.system, request.actuation).gains;
+        let radius = closed.then(|| plant.spectral_radius(*feedback, *latency));
+        TimingAnswer {
+            command: closed.then(|| request.actuation.name()),
+            feedback: request.timing.feedback.map(|f| [f.position, f.velocity]),
+            feedback_units: closed.then_some([of_position, of_velocity]),
+            latency_steps: closed.then(|| latency.steps()),
+            closed_loop_spectral_radius: radius.map(Wide::to_f64),
+            closed_loop_spectral_radius_minus_one: radius.map(|r| (r - Wide::one()).to_f64()),
+            critical: closed.then(|| self.critical(request.dt)),
+            jitter_clips: timing.jitter.map(Jitter::clips),
+            growth: self.growth(),
+            dephasing_steps: timing.skew.map(|law| plant.dephasing_steps(law).map(Wide::to_f64)),
+            cost: closed.then(|| {
+                let given = request.timing.weights;
+                CostAnswer::of(plant, *feedback, *latency, timing).told_with(given)
+            }),
+        }
+    }
+}
+
+/// The plant of `request`, in its steps.
+fn plant(model: impl Model<1> + 'static, request: &Request) -> Plant<'static> {
+    let at = State { q: [request.q[0]], v: [request.v[0]] };
+    match request.stepping {
+        Stepping::Method(method) => Plant::new(method, model, at, request.dt),
+        Stepping::Exact => Plant::exact(model, at, request.dt),
     }
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
+use crate::config;
 use crate::machine::Machine;
 
 /// A ratio of such a file, and which file it is of.
@@ -115,8 +116,8 @@ impl<R: PeerRow> Peers<R> {
     /// If it is not there, is none of those, or is of another processor; in words.
     pub(crate) fn read(path: &Path) -> Result<Self, String> {
         let name = path.display();
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| format!("`{name}` cannot be read: {error}"))?;
+        let text =
+            config::read_text(path).map_err(|error| format!("`{name}` cannot be read: {error}"))?;
         let not = |error| format!("`{name}` is not what {} writes: {error}", R::PROGRAM);
         let peers: Self = serde_json::from_str(&text).map_err(not)?;
         let here = Machine::detect().cpu;

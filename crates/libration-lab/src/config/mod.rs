@@ -7,6 +7,7 @@ pub mod limits;
 mod locate;
 pub mod names;
 mod schema;
+mod settings_file;
 mod tables;
 mod value;
 
@@ -25,6 +26,7 @@ pub use error::ConfigError;
 pub use file::{DEFAULT, parse, parse_bytes};
 pub(crate) use locate::Document;
 pub use schema::schema;
+pub use settings_file::{read, read_text};
 pub(crate) use value::{Count, Number};
 
 /// A checked configuration. The default is the setting of the source report (§4.3, §9.1).

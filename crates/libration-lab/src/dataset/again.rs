@@ -1,45 +1,63 @@
-//! A data set computed again, to be compared with the one on the disk.
+//! A data set compared with its manifest, and computed again.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 
 use libration::ensemble::Execution;
-use libration_data::{Chunk, Flaw, Manifest, checksum, unlisted, verify};
+use libration_data::{Chunk, Flaw, Folder, Manifest, checksum, unlisted};
 use serde_json::Value;
 
 use super::minari::Before;
+use super::repair::{Described, broken, repair};
+use super::room::Try;
 use super::stream::{Course, head};
 use super::tables::File;
 use super::world::{Group, Number, Visit};
 use super::{DataFormat, Dataset, DatasetError, Watch};
 use crate::environments::{Actor, Batch};
 
-/// Reads a data set and compares it with its manifest; with `again` computes it anew as well, and compares that. Gives what is wrong.
+/// What to do with a data set besides comparing its checksums.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Check<'a> {
+    /// Compute all of it again, there, and compare the bits.
+    pub replay: Option<&'a Execution>,
+    /// Compute broken chunks again, there, and replace them.
+    pub repair: Option<&'a Execution>,
+}
+
+/// Reads a data set and compares it with its manifest, repairs what is broken or computes all of it anew if `how` says so. Gives the
+/// manifest and what is wrong in the end.
 ///
 /// # Errors
-/// If there is none, its settings cannot be read, or it is stopped.
+/// If there is none, its settings cannot be read, or it is stopped; for a repair also if another process writes to it, or the system
+/// refuses.
 pub fn check(
     folder: &Path,
-    again: Option<&Execution>,
+    how: Check<'_>,
     watch: &dyn Watch,
 ) -> Result<(Manifest, Vec<Flaw>), DatasetError> {
-    let manifest = Manifest::read(folder)?;
-    let mut chunks = manifest.chunks.iter();
-    let mut left = 0;
-    let mut flaws = verify(folder, &manifest, |bytes| {
-        // Its transitions are told with the last of its files.
-        if left == 0 {
-            left = chunks.next().map_or(1, |chunk| chunk.files.len().max(1));
+    let mut manifest = Manifest::read(folder)?;
+    let told = settings(folder, &manifest);
+    let (flaws, told) = match how.repair {
+        None => (broken(folder, &manifest, watch)?, told),
+        Some(execution) => {
+            let (dataset, format, groups) = told?;
+            let described = Described { dataset: &dataset, format, groups };
+            if groups[0] < groups[1] {
+                // Whatever cannot be is said before anything is read.
+                let attempt = Try { dataset: &dataset, format, threads: execution.thread_count() };
+                dataset.with(dataset.group(groups[0]), &Execution::serial(), attempt)??;
+            }
+            let folder = Folder::open(folder, &manifest.settings, true)?;
+            manifest = folder.manifest().clone();
+            let flaws = broken(folder.path(), &manifest, watch)?;
+            let lost = repair(&folder, &described, &flaws, execution, watch)?;
+            (lost, Ok((dataset, format, groups)))
         }
-        left -= 1;
-        watch.done(0, bytes);
-        !watch.stops()
-    });
-    if watch.stops() {
-        return Err(DatasetError::Interrupted);
-    }
-    match (settings(folder, &manifest), again) {
+    };
+    let mut flaws = flaws;
+    match (told, how.replay) {
         (Ok((dataset, format, groups)), again) => {
             flaws.extend(whole(folder, &manifest, &dataset, groups)?);
             if let Some(execution) = again {
@@ -64,7 +82,7 @@ fn whole(
     let wanted = (end - first) as u64 * chunks;
     let of_all = |path: &Path, what: String| {
         let (chunk, path) = (String::new(), path.to_owned());
-        Flaw { chunk, path, what }
+        Flaw { chunk, path, what, broken: false }
     };
     if found < wanted {
         let what = format!("is unfinished: {found} of {wanted} chunks; --resume goes on");
@@ -75,6 +93,7 @@ fn whole(
         chunk: chunk.chunk.clone(),
         path: "manifest.jsonl".into(),
         what: "tells of it after the last that the settings lead to".to_owned(),
+        broken: false,
     });
     let unlisted = unlisted(folder, manifest)?;
     let unlisted = unlisted.iter().map(|path| of_all(path, "is not in the manifest".to_owned()));
@@ -163,7 +182,7 @@ impl Visit for Compare<'_> {
             let files = files.list();
             let mut flaw = |path: &Path, what: &str| {
                 let (chunk, path, what) = (chunk.chunk.clone(), path.to_owned(), what.to_owned());
-                flaws.push(Flaw { chunk, path, what });
+                flaws.push(Flaw { chunk, path, what, broken: false });
             };
             let stored = chunk.files.iter().map(|stored| (&stored.path, &stored.blake3));
             let mut stored: BTreeMap<_, _> = stored.collect();

@@ -1,5 +1,6 @@
 //! What environments did, episode by episode.
 
+use libration::ensemble::NoRoom;
 use libration::rl::Rollout;
 
 use super::world::Number;
@@ -31,6 +32,18 @@ impl<T, const O: usize> Episode<T, O> {
         }
     }
 
+    /// Room for one more step.
+    fn grow(&mut self) -> Result<(), NoRoom> {
+        let grown = self
+            .observation
+            .try_reserve(2 * O)
+            .and_then(|()| self.action.try_reserve(1))
+            .and_then(|()| self.reward.try_reserve(1));
+        let needed =
+            2 * (self.observation.capacity() + 2 * self.action.capacity()) * size_of::<T>();
+        grown.map_err(|_| NoRoom { needed: needed as u128, available: None })
+    }
+
     /// How many actions it has.
     pub(super) fn len(&self) -> usize {
         self.action.len()
@@ -54,7 +67,14 @@ impl<T: Number, const O: usize> Episodes<T, O> {
     /// Takes in a rollout whose first step has this number; gives the episodes that ended there, in the order of their ends.
     ///
     /// The action by which an environment was lost led nowhere, and is left out.
-    pub(super) fn take(&mut self, first: u64, rollout: &Rollout<T, O, 1>) -> Vec<Episode<T, O>> {
+    ///
+    /// # Errors
+    /// If there is no memory for those that go on.
+    pub(super) fn take(
+        &mut self,
+        first: u64,
+        rollout: &Rollout<T, O, 1>,
+    ) -> Result<Vec<Episode<T, O>>, NoRoom> {
         let n = self.open.len();
         let mut ended = Vec::new();
         let mut finals = rollout.finals().iter().peekable();
@@ -68,6 +88,7 @@ impl<T: Number, const O: usize> Episodes<T, O> {
                 if open.len() == 0 {
                     open.first = t;
                 }
+                open.grow()?;
                 open.observation.extend(&seen[at]);
                 let end = finals.next_if(|end| (end.step, end.environment) == (step, i));
                 if end.is_some_and(|end| end.lost) {
@@ -82,7 +103,7 @@ impl<T: Number, const O: usize> Episodes<T, O> {
                 }
             }
         }
-        ended
+        Ok(ended)
     }
 
     /// Cuts off those that go on; `next` is what each would have seen.

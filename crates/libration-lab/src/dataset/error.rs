@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use libration::ensemble::EnsembleError;
+use libration::ensemble::{EnsembleError, NoRoom};
 use libration::rl::EnvironmentError;
 use libration_data::{DataError, TableError};
 use thiserror::Error;
@@ -16,6 +16,16 @@ pub enum DatasetError {
     /// The environments cannot be so.
     #[error(transparent)]
     Environment(#[from] EnvironmentError),
+    /// There is not memory enough for the chunks that are on their way at once.
+    #[error("{room} (chunk.steps is {steps}, chunk.environments {environments})")]
+    Room {
+        /// How much is needed, and there.
+        room: NoRoom,
+        /// Steps of a chunk.
+        steps: usize,
+        /// Environments of a chunk.
+        environments: usize,
+    },
     /// A table cannot be written.
     #[error(transparent)]
     Table(#[from] TableError),
@@ -56,6 +66,14 @@ pub enum DatasetError {
         /// By which version.
         found: String,
     },
+    /// A broken file that its settings do not lead to.
+    #[error("{} {what}", path.display())]
+    Unrepairable {
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong with it.
+        what: String,
+    },
     /// The user stopped it.
     #[error("interrupted")]
     Interrupted,
@@ -68,6 +86,15 @@ impl From<EnsembleError> for DatasetError {
 }
 
 impl DatasetError {
+    /// The memory that is missing, if it is that.
+    pub fn room(&self) -> Option<&NoRoom> {
+        match self {
+            DatasetError::Room { room, .. } => Some(room),
+            DatasetError::Environment(error) => error.room(),
+            _ => None,
+        }
+    }
+
     /// Settings that cannot be read.
     pub(super) fn settings(folder: &std::path::Path) -> impl Fn(&dyn ToString) -> Self {
         let folder = folder.to_owned();

@@ -1,9 +1,10 @@
 //! Settings from the tables of a file.
 
+use libration::Method;
 use libration::analysis::Jitter;
+use libration::catalog::{self, Actuation};
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Delays};
-use libration::{AnySystem, Method};
 
 use super::settings::{Chunk, Dataset, STEPS};
 use super::tables::{File, PolicyTable, TaskTable};
@@ -80,6 +81,7 @@ impl TryFrom<File> for Dataset {
             Ok([low, high])
         };
         let task = task(file.task)?;
+        let (lone, actuation) = system(&file)?;
         let rms = |key, number| Ok(Jitter::Gaussian(least_zero(key, number)?));
         Ok(Dataset {
             seed: count("seed", file.seed, 0..=u64::MAX)?,
@@ -92,7 +94,8 @@ impl TryFrom<File> for Dataset {
                 steps: count("chunk.steps", file.chunk.steps, 1..=1_000_000)? as usize,
             },
             recipe: Recipe {
-                system: system(&file)?,
+                system: lone,
+                actuation,
                 method,
                 dt,
                 substeps: count("substeps", file.substeps, 1..=1_000_000)? as u32,
@@ -113,18 +116,19 @@ impl TryFrom<File> for Dataset {
     }
 }
 
-fn system(file: &File) -> Result<Lone, Fault> {
+fn system(file: &File) -> Result<(Lone, Actuation), Fault> {
     let mut systems = file.system.iter();
     let (Some((name, parameters)), None) = (systems.next(), systems.next()) else {
         return Err(Fault::new("system", "`system` must be one table, as [system.oscillator]"));
     };
     let parameters: Vec<_> = parameters.iter().map(|(name, value)| (name, value.0)).collect();
-    let system = AnySystem::build(name, &parameters);
-    let system = system.map_err(|error| Fault::new("system", error.to_string()))?;
-    Lone::new(system).ok_or_else(|| {
+    let (system, actuation) = catalog::build(name, &parameters)
+        .map_err(|error| Fault::new("system", error.to_string()))?;
+    let lone = Lone::new(system).ok_or_else(|| {
         let message = format!("`{name}` has no single degree of freedom, as a data set needs");
         Fault::new("system", message)
-    })
+    })?;
+    Ok((lone, actuation))
 }
 
 fn task(table: TaskTable) -> Result<Task, Fault> {

@@ -49,6 +49,11 @@ impl Default for Dataset {
 }
 
 impl Dataset {
+    /// What must be known of its integrator on its system, if anything.
+    pub fn caveat(&self) -> Option<String> {
+        self.recipe.system.any().caveat(self.recipe.method)
+    }
+
     /// The same with so many transitions, rounded up to whole steps of all environments.
     ///
     /// # Errors

@@ -1,20 +1,22 @@
 //! A data set on its way to the disk.
 
+use std::io;
 use std::path::Path;
 use std::sync::mpsc::{channel, sync_channel};
-use std::thread::{self, ScopedJoinHandle};
+use std::thread::{self, Builder, ScopedJoinHandle};
 
-use libration::ensemble::Execution;
+use libration::ensemble::{EnsembleError, Execution};
 use libration::rl::{Plan, Rollout};
-use libration_data::{Folder, Manifest, Stored, store};
+use libration_data::{Flaw, Folder, Manifest, Stored, store};
 use serde_json::{Map, Value, json};
 
 use super::chunk::{Done, Rows};
 use super::episodes::Episodes;
 use super::minari::Before;
-use super::room::Try;
+use super::repair::{Described, broken, repair};
+use super::room::{Try, missing};
 use super::world::{Group, Number, Visit};
-use super::{DataFormat, Dataset, DatasetError};
+use super::{DataFormat, Dataset, DatasetError, Watch};
 use crate::environments::{Actor, Batch};
 
 /// What is to be written, and where.
@@ -32,22 +34,6 @@ pub struct Job<'a> {
     pub resume: bool,
     /// Where environments are stepped, and as many threads encode.
     pub execution: Execution,
-}
-
-/// Who watches a data set being written or read.
-pub trait Watch: Sync {
-    /// So many more transitions, in so many bytes, are done.
-    fn done(&self, transitions: u64, bytes: u64);
-
-    /// So many were there before.
-    fn there(&self, transitions: u64, bytes: u64) {
-        self.done(transitions, bytes);
-    }
-
-    /// Whether to stop.
-    fn stops(&self) -> bool {
-        false
-    }
 }
 
 /// Groups of a shard.
@@ -79,6 +65,9 @@ pub(super) fn head(
 
 /// Writes a data set, or a shard of it: one chunk is computed while the one before is written. Gives what is there then.
 ///
+/// With `resume` it first reads the chunks that are there, at the speed of the disk, compares their checksums, and computes broken
+/// ones again.
+///
 /// # Errors
 /// See [`DatasetError`]; whatever the error, the chunks that were told as done are on the disk, and a run with `resume` goes on
 /// after them.
@@ -86,19 +75,26 @@ pub fn write(job: &Job<'_>, watch: &dyn Watch) -> Result<Manifest, DatasetError>
     let Job { dataset, format, shard, out, resume, ref execution } = *job;
     let [first, end] = groups(dataset, format, shard)?;
     // Whatever cannot be is said before a folder is made.
-    dataset.with(dataset.group(first), &Execution::serial(), Try(dataset))??;
+    let attempt = Try { dataset, format, threads: execution.thread_count() };
+    dataset.with(dataset.group(first), &Execution::serial(), attempt)??;
     let mut folder = Folder::open(out, &head(dataset, format, [first, end]), resume)?;
     let chunks = dataset.chunks();
     let mut there = folder.manifest().chunks.len() as u64;
     for (i, chunk) in folder.manifest().chunks.iter().enumerate() {
         let number = |name: &str| chunk.holds.get(name).and_then(Value::as_u64).unwrap_or(0);
-        watch.there(number("transitions"), chunk.files.iter().map(|file| file.bytes).sum());
+        watch.there(number("transitions"), chunk.bytes());
         let (group, k) = (first as u64 + i as u64 / chunks, i as u64 % chunks);
         let wanted = format!("{group:06}-{k:08}");
         if chunk.chunk != wanted || group >= end as u64 {
             let what = format!("chunk {} stands where {wanted} should", chunk.chunk);
             return Err(DatasetError::settings(out)(&what));
         }
+    }
+    let flaws = broken(out, folder.manifest(), watch)?;
+    let described = Described { dataset, format, groups: [first, end] };
+    let mut lost = repair(&folder, &described, &flaws, execution, watch)?.into_iter();
+    if let Some(Flaw { path, what, .. }) = lost.next() {
+        return Err(DatasetError::Unrepairable { path: out.join(path), what });
     }
     for number in first..end {
         if there >= chunks {
@@ -180,7 +176,8 @@ impl<'a, T: Number, const O: usize> Course<'a, T, O> {
         self.all.rollout(self.actor, &mut done.rollout)?;
         self.all.observe(&mut done.next)?;
         if let Some(episodes) = &mut self.episodes {
-            done.episodes = episodes.take(first, &done.rollout);
+            let ended = episodes.take(first, &done.rollout);
+            done.episodes = ended.map_err(|room| missing(self.dataset, room))?;
             if self.all.step() == steps {
                 done.episodes.extend(episodes.cut(&done.next));
             }
@@ -218,7 +215,7 @@ impl Visit for Stream<'_> {
             // is encoded no need to wait for it.
             let (send, turns) = sync_channel::<Turn<'_, T, O>>(1);
             let (give_back, free) = channel();
-            let teller = scope.spawn(move || {
+            let tell = move || {
                 for turn in turns {
                     let turn = turn.join().unwrap_or(Err(DatasetError::Interrupted))?;
                     let Written { done, after, holds, files } = turn;
@@ -229,14 +226,16 @@ impl Visit for Stream<'_> {
                     let _ = give_back.send((done, after));
                 }
                 Ok(())
-            });
+            };
+            let teller = Builder::new().spawn_scoped(scope, tell).map_err(no_thread)?;
             let mut compute = || {
                 for _ in from..dataset.chunks() {
                     if watch.stops() {
                         return Err(DatasetError::Interrupted);
                     }
                     let done = course.next(used.take())?;
-                    if send.send(scope.spawn(move || write(done, before))).is_err() {
+                    let writer = Builder::new().spawn_scoped(scope, move || write(done, before));
+                    if send.send(writer.map_err(no_thread)?).is_err() {
                         break;
                     }
                     if format == DataFormat::Minari {
@@ -256,6 +255,11 @@ impl Visit for Stream<'_> {
             written.and(computed)
         })
     }
+}
+
+/// That the system gives no thread to write a chunk.
+fn no_thread(error: io::Error) -> DatasetError {
+    EnsembleError::Threads { threads: 1, reason: error.to_string() }.into()
 }
 
 /// Somebody who writes a chunk.

@@ -33,10 +33,11 @@ impl Dataset {
     fn data(&self) -> Value {
         // JSON has no infinite numbers.
         let number = |x: f64| if x.is_finite() { json!(x) } else { json!(x.to_string()) };
-        let Recipe { system, method, dt, substeps, task, start, limit, delays, noise, .. } =
+        let Recipe { system, actuation, method, dt, substeps, task, start, limit, .. } =
             &self.recipe;
+        let Recipe { delays, noise, .. } = &self.recipe;
         let system = system.any();
-        let parameters = system.parameters().into_iter();
+        let parameters = actuation.parameters(system).into_iter();
         let parameters: Map<String, Value> =
             parameters.map(|(name, value)| (name.to_owned(), number(value))).collect();
         let regulate = |r: &Regulate, mut more: Value| {

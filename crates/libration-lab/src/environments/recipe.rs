@@ -1,17 +1,21 @@
 //! What environments are made of.
 
+use libration::Method;
 use libration::analysis::Jitter;
+use libration::catalog::Actuation;
 use libration::rl::{Autoreset, Delays};
-use libration::{AnySystem, Method};
 
 use super::task::Seen;
 use super::{Lone, Task};
+use crate::units::{self, Units};
 
 /// Everything about an environment but its float type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recipe {
     /// Of one degree of freedom.
     pub system: Lone,
+    /// The quantity of actions.
+    pub actuation: Actuation,
     /// The integrator.
     pub method: Method,
     /// Its step, in seconds.
@@ -60,12 +64,15 @@ impl Noise {
 }
 
 impl Recipe {
-    /// Units of positions, velocities and actions, which are accelerations.
+    /// Units of positions, velocities and actions.
     pub fn units(&self) -> [&'static str; 3] {
-        // That of a swing-up is an angle, whatever the system.
-        match (self.system.any(), &self.task) {
-            (AnySystem::Pendulum(_), _) | (_, Task::SwingUp(_)) => ["rad", "rad/s", "rad/s²"],
-            _ => ["m", "m/s", "m/s²"],
+        let Units { position, velocity, command, .. } =
+            units::of(self.system.any(), self.actuation);
+        // The position of a swing-up is an angle, whatever the system.
+        match (&self.task, self.actuation) {
+            (Task::SwingUp(_), Actuation::Acceleration) => ["rad", "rad/s", "rad/s²"],
+            (Task::SwingUp(_), Actuation::Force { .. }) => ["rad", "rad/s", "N·m"],
+            _ => [position, velocity, command],
         }
     }
 

@@ -102,7 +102,8 @@ impl Recipe {
             .substeps(self.substeps)
             .autoreset(self.autoreset)
             .delays(self.delays)
-            .saturation(self.saturation);
+            .saturation(self.saturation)
+            .mass(self.actuation.mass());
         world.limit = self.limit;
         if self.noise.is_none() {
             return Ok(Box::new(Environments::shard(world, first, len, seed, execution.clone())?));

@@ -14,12 +14,6 @@ pub enum ExportError {
     /// The table is none, or the format refuses it.
     #[error(transparent)]
     Table(TableError),
-    /// The table does not fit into memory.
-    #[error("out of memory for a table of {rows} rows")]
-    Memory {
-        /// The rows asked for.
-        rows: u64,
-    },
 }
 
 impl From<TableError> for ExportError {

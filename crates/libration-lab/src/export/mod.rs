@@ -12,7 +12,7 @@ mod series;
 pub use csv::Csv;
 pub use error::ExportError;
 pub use json::Json;
-pub use libration_data::{Column, Table, Values, write_npy, write_parquet};
+pub use libration_data::{Column, Table, Values, parquet_bytes, write_npy, write_parquet};
 pub use number::Number;
 pub use series::series_to_parquet;
 

@@ -32,6 +32,8 @@ pub struct Record {
     pub tables: Vec<Table>,
     /// The figures that were drawn from this record.
     pub figures: Vec<FigureFile>,
+    /// The files of its series.
+    pub data: Vec<DataFile>,
     /// The series behind the figures; they are written to `data/`, not to `results.json`.
     #[serde(skip)]
     pub series: Vec<Series>,
@@ -42,6 +44,15 @@ pub struct Record {
 pub struct FigureFile {
     /// Identifier, unique in the report.
     pub id: String,
+    /// Path relative to the output folder.
+    pub file: String,
+}
+
+/// Where a series of a record was written.
+#[derive(Clone, Debug, Serialize, PartialEq, Eq)]
+pub struct DataFile {
+    /// Name, unique in the study.
+    pub name: String,
     /// Path relative to the output folder.
     pub file: String,
 }
@@ -94,6 +105,7 @@ impl Record {
             claims: Vec::new(),
             tables: Vec::new(),
             figures: Vec::new(),
+            data: Vec::new(),
             series: Vec::new(),
         }
     }

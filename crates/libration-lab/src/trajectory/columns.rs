@@ -1,6 +1,9 @@
 //! A trajectory's rows, kept as columns.
 
 use std::borrow::Cow;
+use std::collections::TryReserveError;
+
+use libration::ensemble::NoRoom;
 
 use super::Request;
 use crate::export::{Column, ExportError, Number, Rows, Table, Values};
@@ -24,15 +27,19 @@ impl<S: Number> Columns<S> {
     }
 
     /// Empty columns with room for what is asked.
-    pub(super) fn new(request: &Request) -> Result<Self, ExportError> {
-        let rows = request.rows();
-        Ok(Columns {
-            index: (0..1 + usize::from(request.copies.is_some()))
-                .map(|_| room(rows))
-                .collect::<Result<_, _>>()?,
-            t: room(rows)?,
-            values: (0..=2 * request.q.len()).map(|_| room(rows)).collect::<Result<_, _>>()?,
-        })
+    pub(super) fn new(request: &Request) -> Result<Self, NoRoom> {
+        let refused = || NoRoom { needed: Self::bytes(request), available: None };
+        let rows = usize::try_from(request.rows()).map_err(|_| refused())?;
+        let columns = || {
+            Ok(Columns {
+                index: (0..1 + usize::from(request.copies.is_some()))
+                    .map(|_| room(rows))
+                    .collect::<Result<_, _>>()?,
+                t: room(rows)?,
+                values: (0..=2 * request.q.len()).map(|_| room(rows)).collect::<Result<_, _>>()?,
+            })
+        };
+        columns().map_err(|_: TryReserveError| refused())
     }
 
     /// The columns under their names and units.
@@ -50,11 +57,9 @@ impl<S: Number> Columns<S> {
     }
 }
 
-fn room<T>(rows: u64) -> Result<Vec<T>, ExportError> {
-    let memory = || ExportError::Memory { rows };
+fn room<T>(rows: usize) -> Result<Vec<T>, TryReserveError> {
     let mut column = Vec::new();
-    let length = usize::try_from(rows).map_err(|_| memory())?;
-    column.try_reserve_exact(length).map_err(|_| memory())?;
+    column.try_reserve_exact(rows)?;
     Ok(column)
 }
 

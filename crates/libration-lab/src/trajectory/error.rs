@@ -53,3 +53,14 @@ pub enum TrajectoryError {
     #[error("interrupted")]
     Interrupted,
 }
+
+impl TrajectoryError {
+    /// The memory that is missing, if it is that.
+    pub fn room(&self) -> Option<&NoRoom> {
+        match self {
+            TrajectoryError::Memory(room)
+            | TrajectoryError::Ensemble(EnsembleError::Memory(room)) => Some(room),
+            _ => None,
+        }
+    }
+}

@@ -31,6 +31,16 @@ impl FloatType {
         }
     }
 
+    /// The largest number.
+    pub fn largest(self) -> f64 {
+        match self {
+            FloatType::F64 => f64::MAX,
+            FloatType::F32 => f64::from(f32::MAX),
+            FloatType::F16 => half::f16::MAX.to_f64(),
+            FloatType::Bf16 => half::bf16::MAX.to_f64(),
+        }
+    }
+
     /// The float type of that name, if there is one.
     pub fn from_name(name: &str) -> Option<FloatType> {
         FloatType::ALL.into_iter().find(|f| f.name() == name)

@@ -1,7 +1,5 @@
 //! The rows of loops: trajectories under feedback, with clocks and commands that are not ideal.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use bytemuck::Pod;
 use libration::analysis::{Jitter, Latency};
 use libration::control::Schedule;
@@ -13,7 +11,7 @@ use libration::system::{Chosen, Oscillator};
 use libration::{Float, Hamiltonian, Integrator, Model, State, System, with_system};
 
 use super::run::exact;
-use super::{Copies, Ending, Request, TrajectoryError};
+use super::{Copies, Ending, Request, TrajectoryError, Watch};
 use crate::analyze::Stepping;
 use crate::export::{Number, Rows};
 
@@ -33,7 +31,7 @@ pub(super) const MOST_DIMENSIONS: usize = 2;
 pub(super) fn run<S: Float + Pod + Number>(
     request: &Request,
     rows: &mut dyn Rows<S>,
-    stop: &AtomicBool,
+    watch: &dyn Watch,
 ) -> Result<Ending, TrajectoryError> {
     let dimension = request.q.len();
     let wrong = || Err(request.system.entry().wrong_dimension(dimension).into());
@@ -42,7 +40,7 @@ pub(super) fn run<S: Float + Pod + Number>(
         dimension,
         |model, D| {
             if const { D <= MOST_DIMENSIONS } {
-                on_model::<S, D, _>(&model, request, rows, stop)
+                on_model::<S, D, _>(&model, request, rows, watch)
             } else {
                 wrong()
             }
@@ -55,7 +53,7 @@ fn on_model<S: Float + Pod + Number, const D: usize, M: Model<D>>(
     model: &M,
     request: &Request,
     rows: &mut dyn Rows<S>,
-    stop: &AtomicBool,
+    watch: &dyn Watch,
 ) -> Result<Ending, TrajectoryError> {
     let system = model.on::<S>();
     let energy = |state: &State<S, D>| system.energy(state);
@@ -63,8 +61,8 @@ fn on_model<S: Float + Pod + Number, const D: usize, M: Model<D>>(
     let acceleration = |state: &State<S, D>| model.on::<S>().acceleration(state);
     let chosen = Chosen(&acceleration);
     match request.stepping {
-        Stepping::Method(method) => simulated(chosen, method, &energy, request, rows, stop),
-        Stepping::Exact => simulated(chosen, exact(model, request)?, &energy, request, rows, stop),
+        Stepping::Method(method) => simulated(chosen, method, &energy, request, rows, watch),
+        Stepping::Exact => simulated(chosen, exact(model, request)?, &energy, request, rows, watch),
     }
 }
 
@@ -75,7 +73,7 @@ fn simulated<S: Float + Pod + Number, const D: usize>(
     energy: &dyn Fn(&State<S, D>) -> S,
     request: &Request,
     rows: &mut dyn Rows<S>,
-    stop: &AtomicBool,
+    watch: &dyn Watch,
 ) -> Result<Ending, TrajectoryError> {
     let Request { dt, steps, every, timing, record, seed, .. } = request;
     let one = Copies { count: 1, spread: 0.0, threads: 1, instructions: None };
@@ -87,9 +85,10 @@ fn simulated<S: Float + Pod + Number, const D: usize>(
     let recorded = record.as_deref().map_or(Recorded::repeated(&EVEN), Recorded::once);
     let jittered = Jittered(timing.jitter.unwrap_or(none));
     let clocks: Clocks<'_> = (Skewed(timing.skew.unwrap_or(none)), (recorded, jittered));
+    let gains = timing.feedback.unwrap_or_default().per_mass(request.actuation.mass());
     let latency = timing.latency_of(dt.to_f64()).map_err(|steps| late(request, steps))?;
     let setup = Setup::new(All(system), integrator)
-        .controller(StateFeedback::<D>::to_origin(timing.feedback.unwrap_or_default()))
+        .controller(StateFeedback::<D>::to_origin(gains))
         .clock(clocks)
         .delay(Schedule::late(latency));
     let starts: Vec<State<S, D>> = (0..count).map(|n| start(request, copies.scale(n))).collect();
@@ -104,7 +103,7 @@ fn simulated<S: Float + Pod + Number, const D: usize>(
         let step = all.step();
         if step.is_multiple_of(*every) || step == *steps {
             for n in 0..count {
-                if stop.load(Ordering::Relaxed) {
+                if watch.stops() {
                     return Err(TrajectoryError::Interrupted);
                 }
                 let (Some(state), Some(&shown)) = (all.state(n), time.trajectories().q(0).get(n))
@@ -123,17 +122,15 @@ fn simulated<S: Float + Pod + Number, const D: usize>(
         }
         if step == *steps {
             let lost: Vec<usize> = all.trajectories().not_finite().collect();
-            return Ok(match lost.len() {
-                0 => Ending::Whole,
-                count => Ending::NotFinite { count, first: lost.into_iter().take(10).collect() },
-            });
+            return Ok(Ending::of::<S>(request, &lost));
         }
-        if stop.load(Ordering::Relaxed) {
+        if watch.stops() {
             return Err(TrajectoryError::Interrupted);
         }
         let to_next_row = (every - step % every).min(steps - step).min(at_once);
         all.advance(to_next_row)?;
         time.advance(to_next_row)?;
+        watch.reached(all.step());
     }
 }
 

@@ -1,12 +1,10 @@
 //! The rows of an ensemble.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use half::{bf16, f16};
 use libration::Method;
 use libration::ensemble::{BatchFloat, NoRoom};
 
-use super::{Copies, Ending, Request, TrajectoryError, loops};
+use super::{Copies, Ending, Request, TrajectoryError, Watch, loops};
 use crate::export::{Number, Rows};
 
 /// Trajectory steps between two looks at whether to stop: half a second of the slowest kernel.
@@ -26,14 +24,14 @@ pub(super) trait Many: Number {
         method: Method,
         copies: &Copies,
         rows: &mut dyn Rows<Self>,
-        stop: &AtomicBool,
+        watch: &dyn Watch,
     ) -> Result<Ending, TrajectoryError>;
 
     /// Simulates the loops of a request that has been checked.
     fn loops(
         request: &Request,
         rows: &mut dyn Rows<Self>,
-        stop: &AtomicBool,
+        watch: &dyn Watch,
     ) -> Result<Ending, TrajectoryError>;
 }
 
@@ -47,22 +45,24 @@ macro_rules! vectors {
                 method: Method,
                 copies: &Copies,
                 rows: &mut dyn Rows<Self>,
-                stop: &AtomicBool,
+                watch: &dyn Watch,
             ) -> Result<Ending, TrajectoryError> {
-                run::<$float>(request, method, copies, rows, stop)
+                run::<$float>(request, method, copies, rows, watch)
             }
 
             fn loops(
                 request: &Request,
                 rows: &mut dyn Rows<Self>,
-                stop: &AtomicBool,
+                watch: &dyn Watch,
             ) -> Result<Ending, TrajectoryError> {
-                loops::run::<$float>(request, rows, stop)
+                loops::run::<$float>(request, rows, watch)
             }
 
             fn admits(request: &Request, copies: &Copies) -> Result<(), TrajectoryError> {
                 let bytes = <$float>::ensemble_bytes(request.q.len(), copies.count);
-                NoRoom::check(bytes).map_err(TrajectoryError::Memory)
+                // Loops have clocks, and both are made of lists of starts.
+                let alike = if request.looped().is_some() { 4 } else { 1 };
+                NoRoom::check(alike * bytes).map_err(TrajectoryError::Memory)
             }
         }
     )*};
@@ -78,7 +78,7 @@ macro_rules! scalar_only {
                 _: Method,
                 copies: &Copies,
                 _: &mut dyn Rows<Self>,
-                _: &AtomicBool,
+                _: &dyn Watch,
             ) -> Result<Ending, TrajectoryError> {
                 Self::admits(request, copies).map(|()| Ending::Whole)
             }
@@ -86,7 +86,7 @@ macro_rules! scalar_only {
             fn loops(
                 request: &Request,
                 _: &mut dyn Rows<Self>,
-                _: &AtomicBool,
+                _: &dyn Watch,
             ) -> Result<Ending, TrajectoryError> {
                 Err(no_vectors(request))
             }
@@ -115,7 +115,7 @@ fn run<S: BatchFloat + Number>(
     method: Method,
     copies: &Copies,
     rows: &mut dyn Rows<S>,
-    stop: &AtomicBool,
+    watch: &dyn Watch,
 ) -> Result<Ending, TrajectoryError> {
     let Request { system, dt, steps, every, .. } = *request;
     let (dimension, count) = (request.q.len(), copies.count);
@@ -132,7 +132,7 @@ fn run<S: BatchFloat + Number>(
         let time = step as f64 * S::from_f64(dt).to_f64();
         if step.is_multiple_of(every) || step == steps {
             for n in 0..count {
-                if stop.load(Ordering::Relaxed) {
+                if watch.stops() {
                     return Err(TrajectoryError::Interrupted);
                 }
                 values.clear();
@@ -145,15 +145,13 @@ fn run<S: BatchFloat + Number>(
         }
         if step == steps {
             let lost = all.not_finite();
-            return Ok(match lost.len() {
-                0 => Ending::Whole,
-                count => Ending::NotFinite { count, first: lost.into_iter().take(10).collect() },
-            });
+            return Ok(Ending::of::<S>(request, &lost));
         }
-        if stop.load(Ordering::Relaxed) {
+        if watch.stops() {
             return Err(TrajectoryError::Interrupted);
         }
         let to_next_row = (every - step % every).min(steps - step);
         all.advance(method, S::from_f64(dt), to_next_row.min(at_once));
+        watch.reached(all.step());
     }
 }

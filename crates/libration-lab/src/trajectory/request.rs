@@ -1,12 +1,15 @@
 //! What trajectory is asked for.
 
-use libration::catalog::Allowed;
+use libration::catalog::{Actuation, Allowed};
 use libration::ensemble::MOST_THREADS;
 use libration::{AnySystem, Float, with_system};
 
 use super::run::exact;
-use super::{Copies, FloatType, TrajectoryError, loops, units};
+use super::{Copies, FloatType, TrajectoryError, loops};
 use crate::analyze::{Stepping, Timing};
+use crate::units;
+
+use crate::config::limits;
 
 /// Largest number of values in a table: 8 GB of them, 2·10⁸ rows in one dimension.
 const MOST_VALUES: u64 = 1_000_000_000;
@@ -16,6 +19,8 @@ const MOST_VALUES: u64 = 1_000_000_000;
 pub struct Request {
     /// The system.
     pub system: AnySystem,
+    /// The quantity of its commands.
+    pub actuation: Actuation,
     /// How steps are taken.
     pub stepping: Stepping,
     /// The float type in which everything but the time is computed.
@@ -41,6 +46,11 @@ pub struct Request {
 }
 
 impl Request {
+    /// The parameters of the system, as they are given.
+    pub(super) fn parameters(&self) -> Vec<(&'static str, f64)> {
+        self.actuation.parameters(self.system)
+    }
+
     /// The first thing that is asked for which makes it a loop.
     pub(super) fn looped(&self) -> Option<&'static str> {
         self.timing.first().or(self.record.as_ref().map(|_| "time-stamps"))
@@ -90,6 +100,9 @@ impl Request {
             if count == 0 {
                 return Err(wrong(name, count, "at least 1"));
             }
+        }
+        if !limits::TRAJECTORY_STEPS.contains(&self.steps) {
+            return Err(wrong("steps", self.steps, limits::trajectory_steps_allowed()));
         }
         if let Some(copies) = &self.copies {
             self.check_copies::<S>(copies)?;

@@ -1,7 +1,5 @@
 //! From the run-time choice of system, integrator and float type to the loop that steps.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use libration::integrator::Exact;
 use libration::simulation::{Sample, SimulationError, Simulator};
 use libration::system::Chosen;
@@ -10,7 +8,7 @@ use libration::{
 };
 
 use super::many::Many;
-use super::{Ending, Request, Stopped, TrajectoryError};
+use super::{Ending, Request, Stopped, TrajectoryError, Watch, overflow};
 use crate::analyze::Stepping;
 use crate::export::{Number, Rows};
 
@@ -21,23 +19,23 @@ const CHUNK: u64 = 1 << 16;
 pub(super) fn run<S: Many>(
     request: &Request,
     rows: &mut dyn Rows<S>,
-    stop: &AtomicBool,
+    watch: &dyn Watch,
 ) -> Result<Ending, TrajectoryError> {
     if request.looped().is_some() {
-        return S::loops(request, rows, stop);
+        return S::loops(request, rows, watch);
     }
     match (request.copies, request.stepping) {
         (None, _) => {}
         (Some(copies), Stepping::Method(method)) => {
-            return S::many(request, method, &copies, rows, stop);
+            return S::many(request, method, &copies, rows, watch);
         }
-        (Some(_), Stepping::Exact) => return S::loops(request, rows, stop),
+        (Some(_), Stepping::Exact) => return S::loops(request, rows, watch),
     }
     let dimension = request.q.len();
     with_system!(
         request.system,
         dimension,
-        |model, D| on_model::<S, D, _>(&model, request, rows, stop),
+        |model, D| on_model::<S, D, _>(&model, request, rows, watch),
         Err(request.system.entry().wrong_dimension(dimension).into()),
     )
 }
@@ -46,7 +44,7 @@ fn on_model<S: Many, const D: usize, M: Model<D>>(
     model: &M,
     request: &Request,
     rows: &mut dyn Rows<S>,
-    stop: &AtomicBool,
+    watch: &dyn Watch,
 ) -> Result<Ending, TrajectoryError> {
     let system = model.on::<S>();
     let coordinates = |x: &[f64]| core::array::from_fn(|i| x.get(i).map_or(S::zero(), number));
@@ -66,7 +64,7 @@ fn on_model<S: Many, const D: usize, M: Model<D>>(
         Stepping::Method(method) => Box::new(Simulator::new(chosen, method, start, dt)?),
         Stepping::Exact => Box::new(Simulator::new(system, exact(model, request)?, start, dt)?),
     };
-    advance(&mut *simulation, &energy, request, rows, stop)
+    advance(&mut *simulation, &energy, request, rows, watch)
 }
 
 /// Exact steps of a request.
@@ -117,7 +115,7 @@ fn advance<S: Number, const D: usize>(
     energy: &dyn Fn(&State<S, D>) -> S,
     request: &Request,
     rows: &mut dyn Rows<S>,
-    stop: &AtomicBool,
+    watch: &dyn Watch,
 ) -> Result<Ending, TrajectoryError> {
     let Request { steps, every, .. } = *request;
     let mut values = Vec::with_capacity(2 * D + 1);
@@ -130,12 +128,13 @@ fn advance<S: Number, const D: usize>(
     show(simulation.sample())?;
     let (mut step, mut shown) = (0, 0);
     while step < steps {
-        if stop.load(Ordering::Relaxed) {
+        if watch.stops() {
             return Err(TrajectoryError::Interrupted);
         }
         let to_next_row = (every - step % every).min(steps - step);
         let outcome = simulation.run(to_next_row.min(CHUNK));
         step = simulation.sample().step;
+        watch.reached(step);
         let ended = outcome.is_err() || step == steps;
         if step != shown && (ended || step.is_multiple_of(every)) {
             show(simulation.sample())?;
@@ -144,7 +143,11 @@ fn advance<S: Number, const D: usize>(
         match outcome {
             Ok(()) => {}
             Err(SimulationError::NotFinite { step, time: t }) => {
-                let reason = "the state stopped being finite";
+                let reason = "the state stopped being finite".to_owned();
+                let reason = match overflow::cause::<S>(request) {
+                    Some(cause) => reason + ": " + &cause,
+                    None => reason,
+                };
                 return Ok(Ending::Stopped(Stopped { step, t, reason }));
             }
             Err(error) => return Err(error.into()),

@@ -5,32 +5,26 @@ mod periodic;
 mod spectrum;
 mod statistics;
 
-use std::fs::File;
-use std::io::{self, Read as _};
+use std::io;
 use std::path::Path;
 
 use libration::control::clock::{Recorded, RecordedError};
+use libration_data::read_text_bounded;
 use thiserror::Error;
 
 pub use periodic::{Plan, Priority, Wakeups};
 pub use spectrum::{Band, Spectrum};
 pub use statistics::{Lateness, Quantile, Statistics};
 
-/// Bytes of the largest file of time stamps.
-const MOST_TEXT: u64 = 256_000_000;
+/// Bytes of the longest file of time stamps: ten million of them, hours of the fastest loops, take 20 bytes each.
+const LIMIT: u64 = 1 << 28;
 
 /// The time stamps of a file, in s, if they are the record of a clock.
 ///
 /// # Errors
 /// In words: what cannot be read, and what is none.
 pub fn time_stamps(path: &Path) -> Result<Vec<f64>, String> {
-    let mut text = String::new();
-    // A device may have no end.
-    let file = File::open(path).map_err(|error| error.to_string())?;
-    let read = file.take(MOST_TEXT + 1).read_to_string(&mut text);
-    if read.map_err(|error| error.to_string())? as u64 > MOST_TEXT {
-        return Err(format!("it is longer than {} MB", MOST_TEXT / 1_000_000));
-    }
+    let text = read_text_bounded(path, LIMIT).map_err(|error| error.to_string())?;
     let checked = |stamps: Vec<f64>| {
         Recorded::steps_between(&stamps)?;
         Ok::<_, RecordedError>(stamps)

@@ -1,6 +1,7 @@
 //! A loop, and what simulations say of it that know nothing of how advice is found.
 
 use libration::analysis::{Feedback, Imperfections, Jitter, Latency, LqrWeights, Plant};
+use libration::catalog::Actuation;
 use libration::control::clock::{Jittered, Rates};
 use libration::control::controller::StateFeedback;
 use libration::control::{Clock, Controller, Schedule};
@@ -28,6 +29,7 @@ impl Case {
     pub(crate) fn request(self) -> Request {
         Request {
             system: AnySystem::Oscillator(Oscillator { omega2: self.omega2 }),
+            actuation: Actuation::Acceleration,
             q: vec![0.0],
             v: vec![0.0],
             control: Some(Control {

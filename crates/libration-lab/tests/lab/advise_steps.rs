@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use libration::analysis::Feedback;
+use libration::catalog::Actuation;
 use libration::system::{Kepler, Oscillator, Pendulum};
 use libration::{AnySystem, Hamiltonian, Integrator, Method, State, System};
 use libration_lab::advise::{Measure, Request, Tolerance};
@@ -20,6 +21,7 @@ pub(crate) fn free(
 ) -> Request {
     Request {
         system,
+        actuation: Actuation::Acceleration,
         q: q.to_vec(),
         v: v.to_vec(),
         control: None,

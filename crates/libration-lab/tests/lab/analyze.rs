@@ -1,15 +1,18 @@
 //! The analysis of one step, as a user gets it.
 
+use libration::catalog::Actuation;
 use libration::integrator::VelocityVerlet;
 use libration::system::Oscillator;
 use libration::{AnySystem, Hamiltonian, Integrator, Method, State};
 use libration_lab::analyze::{Analysis, AnalyzeError, Criteria, Request, Timing, analyze};
 
-fn request(system: &str, method: Method, dt: f64, q: &[f64], v: &[f64]) -> Request {
+pub(crate) fn request(system: &str, method: Method, dt: f64, q: &[f64], v: &[f64]) -> Request {
     let system = AnySystem::build(system, &[] as &[(&str, f64)]).unwrap();
     let criteria = Criteria::default();
     let (stepping, timing) = (method.into(), Timing::default());
-    Request { system, stepping, dt, q: q.into(), v: v.into(), steps: 1000, criteria, timing }
+    let (q, v) = (q.into(), v.into());
+    let actuation = Actuation::Acceleration;
+    Request { system, actuation, stepping, dt, q, v, steps: 1000, criteria, timing }
 }
 
 fn json(analysis: &Analysis) -> serde_json::Value {

@@ -12,7 +12,7 @@ use libration::rl::start::Between;
 use libration::rl::task::SwingUp;
 use libration::rl::{Environment, Environments, Plan, Rollout};
 use libration::system::Pendulum;
-use libration_lab::dataset::{DataFormat, Dataset, Job, Watch, check, parse, write};
+use libration_lab::dataset::{Check, DataFormat, Dataset, Job, Watch, check, parse, write};
 
 const SETTINGS: &str = "\
 seed = 3
@@ -128,7 +128,7 @@ fn settings_are_read_back_from_a_manifest_whatever_they_are() {
         write(&job, &Count::default()).unwrap();
         let again = Execution::serial().threads(3).unwrap();
         let count = Count::default();
-        let (_, flaws) = check(&out, Some(&again), &count).unwrap();
+        let (_, flaws) = check(&out, Check { replay: Some(&again), repair: None }, &count).unwrap();
         assert_eq!(flaws, [], "{text}");
         assert_eq!(u128::from(count.0.into_inner()), dataset.len());
     }

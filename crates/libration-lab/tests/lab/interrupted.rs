@@ -6,9 +6,10 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use libration_lab::output::Output;
 use libration_lab::page::Page;
 use libration_lab::record::RecordError;
-use libration_lab::session::{self, SessionError};
+use libration_lab::session::{self, Cause, SessionError};
 use libration_lab::study::StudyError;
 use libration_lab::{Config, Effort, Lab, Progress, Record, Study};
+use serde_json::json;
 
 /// Sweeps over a hundred items.
 struct Hundred(&'static str);
@@ -66,8 +67,9 @@ fn run(patience: usize) -> (Result<usize, SessionError>, serde_json::Value) {
     };
     let lab = Lab::new(&config, Effort::Quick, &user, &stop);
     let outcome = session::run(&lab, &[&Hundred("first"), &Hundred("second")], &output);
-    let results = std::fs::read(output.path("results.json")).unwrap();
-    (outcome.map(|r| r.studies.len()), serde_json::from_slice(&results).unwrap())
+    let results = std::fs::read(output.path("results.json"));
+    let results = results.map(|bytes| serde_json::from_slice(&bytes).unwrap());
+    (outcome.map(|r| r.studies.len()), results.unwrap_or_default())
 }
 
 #[test]
@@ -81,30 +83,81 @@ fn a_patient_user_gets_both_studies() {
 #[test]
 fn a_study_that_was_stopped_is_not_in_the_results_but_those_before_it_are() {
     let (outcome, results) = run(110);
-    assert!(matches!(outcome, Err(SessionError::Interrupted)), "{outcome:?}");
+    let cause = outcome.map_err(|error| *error.cause);
+    assert!(matches!(cause, Err(Cause::Interrupted)), "{cause:?}");
     assert_eq!(results["complete"], false);
     assert_eq!(results["studies"].as_array().unwrap().len(), 1);
     assert_eq!(results["studies"][0]["name"], "first");
 }
 
 #[test]
-fn an_older_report_is_gone_and_an_unfinished_one_says_so() {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("patience-0");
-    std::fs::create_dir_all(&folder).unwrap();
-    std::fs::write(folder.join("report.html"), "an older report").unwrap();
-    assert!(run(0).0.is_ok(), "nobody stops a run before its first part");
-    assert!(!std::fs::read_to_string(folder.join("report.html")).unwrap().contains("incomplete"));
-    // Stopped within the first study, and within the second.
-    for (patience, report) in [(10, false), (120, true)] {
+fn an_older_report_stays_until_a_run_ends_and_an_unfinished_one_is_beside_it_and_says_so() {
+    // Stopped never, within the first study, and within the second.
+    for (patience, kept) in [(1001, None), (10, Some(false)), (120, Some(true))] {
         let folder =
             PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("patience-{patience}"));
+        let _ = std::fs::remove_dir_all(&folder);
         std::fs::create_dir_all(&folder).unwrap();
         std::fs::write(folder.join("report.html"), "an older report").unwrap();
-        assert!(run(patience).0.is_err());
-        let found = std::fs::read_to_string(folder.join("report.html"));
-        assert_eq!(found.is_ok(), report);
-        assert!(found.is_err() || found.unwrap().contains("This report is incomplete"));
+        let error = run(patience).0.err();
+        let found = std::fs::read_to_string(folder.join("report.html")).unwrap();
+        let aside = folder.join("libration-unfinished");
+        let Some(kept) = kept else {
+            assert!(found.contains("<html") && !found.contains("incomplete") && !aside.exists());
+            continue;
+        };
+        assert_eq!(found, "an older report");
+        assert_eq!(error.unwrap().kept, kept.then(|| aside.clone()));
+        let partial = std::fs::read_to_string(aside.join("report.html"));
+        assert_eq!(partial.is_ok(), kept);
+        assert!(partial.is_err() || partial.unwrap().contains("This report is incomplete"));
     }
+}
+
+#[test]
+fn a_run_that_was_killed_while_it_replaced_files_is_ended_by_the_next() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("killed");
+    let _ = std::fs::remove_dir_all(&folder);
+    let aside = folder.join("libration-unfinished");
+    let write = |path: &str, text: &str| {
+        let path = folder.join(path);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    };
+    let results = |name: &str, data: &[&str]| {
+        let data: Vec<_> = data.iter().map(|file| json!({ "name": "x", "file": file })).collect();
+        let study = json!({ "name": name, "figures": [], "data": data });
+        let schema = libration_lab::results::SCHEMA;
+        json!({ "schema": schema, "complete": true, "studies": [study] }).to_string()
+    };
+    // Of the newer run one file of two is in place.
+    let (older, newer) = (["data/stays", "data/goes"], ["data/stays", "data/comes"]);
+    older.iter().for_each(|file| write(file, "older"));
+    write("data/mine", "mine");
+    write("results.json", &results("older", &older));
+    write("report.html", "older");
+    write("data/stays", "newer");
+    write("libration-unfinished/data/comes", "newer");
+    write("libration-unfinished/results.json", &results("newer", &newer));
+    write("libration-unfinished/report.html", "newer");
+    drop(Output::open(&folder).unwrap());
+    let read = |file: &str| std::fs::read_to_string(folder.join(file)).ok();
+    for file in ["data/stays", "data/comes", "report.html"] {
+        assert_eq!(read(file).as_deref(), Some("newer"), "{file}");
+    }
+    assert_eq!(read("results.json"), Some(results("newer", &newer)));
+    assert_eq!((read("data/goes"), read("data/mine").as_deref()), (None, Some("mine")));
+    assert!(!aside.exists());
+}
+
+#[test]
+fn one_run_at_a_time_has_a_folder() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("locked");
+    let first = Output::open(&folder).unwrap();
+    let refused = Output::open(&folder).unwrap_err();
+    assert!(refused.to_string().contains("another run writes there"), "{refused}");
+    drop(first);
+    assert!(Output::open(&folder).is_ok());
 }
 
 #[test]

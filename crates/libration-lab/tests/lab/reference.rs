@@ -1,5 +1,6 @@
 //! A million steps against the orbits of exact arithmetic.
 
+use libration::catalog::Actuation;
 use libration::{AnySystem, Method};
 use libration_lab::export::Values;
 use libration_lab::trajectory::{FloatType, Request, simulate};
@@ -56,6 +57,7 @@ fn a_million_steps_stay_within_the_rounding_bound() {
         let steps = STEPS;
         let request = Request {
             system,
+            actuation: Actuation::Acceleration,
             stepping: method.into(),
             float,
             dt,

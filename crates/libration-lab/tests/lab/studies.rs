@@ -268,8 +268,9 @@ fn a_run_repeats_to_the_bit_on_one_thread_and_on_many() {
             continue;
         }
         let b = pool.install(|| study.run(&lab)).unwrap();
-        // The session has added how long the study took and where its figures were written.
-        let a = Record { seconds: b.seconds, figures: b.figures.clone(), ..a.clone() };
+        // The session has added how long the study took and where its figures and data were written.
+        let (figures, data) = (b.figures.clone(), b.data.clone());
+        let a = Record { seconds: b.seconds, figures, data, ..a.clone() };
         if a.name == "efficiency" {
             // It measures time, which does not repeat; the rest does.
             let rest = |r: &Record| {

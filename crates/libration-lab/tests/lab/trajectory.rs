@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use libration::analysis::Jitter;
+use libration::catalog::Actuation;
 use libration::{AnySystem, Method, catalog};
 use libration_lab::analyze::{Stepping, Timing};
 use libration_lab::export::Values;
@@ -16,6 +17,7 @@ fn request(system: &str, method: Method, dt: f64, steps: u64) -> Request {
     let (q, v) = (vec![1.0], vec![0.0]);
     Request {
         system,
+        actuation: Actuation::Acceleration,
         stepping: method.into(),
         float,
         dt,
@@ -136,7 +138,7 @@ fn an_overflow_ends_the_rows_at_the_last_finite_state() {
         let request = request("oscillator", Method::ExplicitEuler, 0.1, 100_000);
         let request = Request { every, ..request };
         let trajectory = simulate(&request).unwrap();
-        let Ending::Stopped(stopped) = trajectory.ending else { panic!("it overflows") };
+        let Ending::Stopped(stopped) = &trajectory.ending else { panic!("it overflows") };
         assert_eq!((stopped.step, stopped.t), (step, step as f64 * 0.1));
         assert_eq!(steps(&trajectory).last(), Some(&(step - 1)));
         assert!(f64s(&trajectory, "q0").iter().all(|q| q.is_finite()));
@@ -238,7 +240,9 @@ fn one_that_overflows_is_named_and_the_others_go_on() {
     let request = Request { every: 20_000, copies, ..unstable };
     let trajectory = simulate(&request).unwrap();
     // The first starts at rest in the origin, where it stays.
-    assert_eq!(trajectory.ending, Ending::NotFinite { count: 2, first: vec![1, 2] });
+    let Ending::NotFinite { count, first, reason } = &trajectory.ending else { panic!() };
+    assert_eq!((*count, &**first), (2, &[1, 2][..]));
+    assert!(reason.as_ref().is_some_and(|why| why.contains("unstable with every time step")));
     assert_eq!(f64s(&trajectory, "q0")[3], 0.0);
     let mut bytes = Vec::new();
     write(&request, Format::Json, &mut bytes, &AtomicBool::new(false)).unwrap();

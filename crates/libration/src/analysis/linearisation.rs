@@ -63,7 +63,7 @@ impl<const D: usize> Linearisation<D> {
     }
 
     /// The Jacobian of the rate of change at `at`.
-    pub(super) fn generator_of(model: impl Model<D>, at: &State<f64, D>) -> UpdateMatrix<Wide, D> {
+    pub fn generator_of(model: impl Model<D>, at: &State<f64, D>) -> UpdateMatrix<Wide, D> {
         let system = model.on::<Dual<Wide>>();
         jacobian(&|state| system.rate(state), &at.map(wide))
     }

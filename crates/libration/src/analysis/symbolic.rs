@@ -25,16 +25,17 @@ impl SymbolicStep {
     /// their exact arithmetic.
     pub fn new(integrator: impl Integrator) -> Option<Self> {
         SymbolicStep::of(integrator, &Oscillator { omega2: UnknownStep::one() })
+            .filter(|step| step.determinant().is_valid())
     }
 
     /// One step of `integrator` on a linear system, in powers of `Δt`; none if the system is not
-    /// linear, or the polynomials outgrow their exact arithmetic.
+    /// linear, or the entries of the matrix outgrow their exact arithmetic. The determinant, which has twice as many digits, may
+    /// be undefined; [`SymbolicStep::stability_windows`] are known also then.
     pub fn of(integrator: impl Integrator, system: &impl System<UnknownStep, 1>) -> Option<Self> {
         let dt = UnknownStep::unknown();
         let matrix = UpdateMatrix::from_map(|e| integrator.step(system, e, dt));
         let valid = matrix.rows().iter().flatten().all(UnknownStep::is_valid);
-        let symbolic = SymbolicStep { matrix };
-        (valid && symbolic.determinant().is_valid()).then_some(symbolic)
+        valid.then_some(SymbolicStep { matrix })
     }
 
     /// `λ₁ + λ₂` as a polynomial.

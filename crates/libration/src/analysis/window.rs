@@ -1,9 +1,9 @@
 //! The time steps at which a step is stable, exactly.
 
-use super::roots::{Dyadic, IntegerPoly, Root, positive_roots};
-use super::{SymbolicStep, UnknownStep};
+use super::SymbolicStep;
+use super::roots::{Dyadic, IntegerPoly, Root, WholePoly, positive_roots};
+use crate::Elementary;
 use crate::number::Wide;
-use crate::{Elementary, Scalar};
 
 /// A largest open interval of time steps at which every orbit stays bounded.
 #[derive(Clone, Copy, Debug)]
@@ -49,16 +49,20 @@ impl SymbolicStep {
     }
 
     fn conditions(&self) -> Option<Conditions> {
-        let (one, trace, determinant) = (UnknownStep::one(), self.trace(), self.determinant());
-        let of = |p: UnknownStep| IntegerPoly::of(&p);
-        let [area, plus, minus] = [
-            of(one - determinant)?,
-            of(one + determinant - trace)?,
-            of(one + determinant + trace)?,
-        ];
-        let [b, c] = [of(self.matrix.entry(0, 1))?, of(self.matrix.entry(1, 0))?];
-        let ([area, plus, minus, b, c], squares) =
-            IntegerPoly::in_squares([&area, &plus, &minus, &b, &c]);
+        let entry = |i, j| self.matrix.entry(i, j);
+        // All of them times `s`, with as many digits as it takes: the determinant may outgrow exact fractions.
+        let ([a, b, c, d], s) = WholePoly::over_one_denominator([
+            &entry(0, 0),
+            &entry(0, 1),
+            &entry(1, 0),
+            &entry(1, 1),
+        ])?;
+        let (one, trace) = (&s * &s, &s * &(&a + &d));
+        let determinant = &(&a * &d) - &(&b * &c);
+        let even = &one + &determinant;
+        let [area, plus, minus] = [&one - &determinant, &even - &trace, &even + &trace];
+        let polynomials = [area, plus, minus, b, c].map(WholePoly::primitive);
+        let ([area, plus, minus, b, c], squares) = IntegerPoly::in_squares(polynomials.each_ref());
         Some(Conditions { area, plus, minus, off_diagonal: [b, c], squares })
     }
 }
@@ -91,18 +95,10 @@ impl Conditions {
 
     /// Whether ±1 is a double eigenvalue at `root` and has a single eigenvector.
     fn defective_at(&self, root: &Root) -> bool {
-        let product =
-            self.polynomials().into_iter().fold(None, |product: Option<IntegerPoly>, p| {
-                if p.is_zero() {
-                    product
-                } else {
-                    Some(product.map_or_else(|| p.clone(), |q| q.times(p)))
-                }
-            });
-        // The interval holds one root of the product, hence at most one of what divides it.
-        let vanishes = |p: &IntegerPoly| {
-            p.is_zero() || product.as_ref().is_some_and(|q| p.gcd(q).vanishes_within(root))
-        };
+        // The interval holds one root of all of them: what shares a root with one that vanishes there does so, too.
+        let mut cut = self.polynomials().into_iter().filter(|p| !p.is_zero());
+        let Some(one) = cut.find(|p| p.vanishes_within(root)) else { return false };
+        let vanishes = |p: &IntegerPoly| p.is_zero() || p.gcd(one).vanishes_within(root);
         vanishes(&self.area)
             && (vanishes(&self.plus) || vanishes(&self.minus))
             && !self.off_diagonal.iter().all(vanishes)
@@ -117,10 +113,7 @@ pub(super) struct Cells {
 impl Cells {
     /// Cut at the roots of `polynomials`; those that are zero everywhere do not cut.
     pub(super) fn of(polynomials: &[&IntegerPoly]) -> Self {
-        let one = IntegerPoly::new(vec![1.into()]);
-        let factors = polynomials.iter().filter(|p| !p.is_zero());
-        let product = factors.fold(one, |product, p| product.times(p));
-        Cells { roots: positive_roots(&product) }
+        Cells { roots: positive_roots(polynomials) }
     }
 
     /// A point within the `i`-th cell, counted from zero upwards.

@@ -1,26 +1,31 @@
 //! The catalogue's table.
 
 use super::entry::Values;
-use super::{Allowed, AnySystem, CatalogError, Entry, Parameter};
+use super::{Actuation, Allowed, AnySystem, CatalogError, Entry, Parameter};
 use crate::system::{
     DampedOscillator, DrivenOscillator, Duffing, HenonHeiles, Kepler, Oscillator, Pendulum,
 };
 
-const MASS: Parameter =
-    Parameter { name: "m", unit: "kg", summary: "mass", default: 1.0, allowed: Allowed::Positive };
+const MASS: Parameter = Parameter {
+    name: "m",
+    unit: "kg",
+    summary: "mass; with `k`, commands are forces in N",
+    default: 1.0,
+    allowed: Allowed::Positive,
+};
 const STIFFNESS: Parameter = Parameter {
     name: "k",
     unit: "N/m",
-    summary: "stiffness of the spring",
+    summary: "stiffness of the spring; 0 for a free mass",
     default: 10.0,
-    allowed: Allowed::Positive,
+    allowed: Allowed::NonNegative,
 };
 const OMEGA2: Parameter = Parameter {
     name: "omega2",
     unit: "s^-2",
-    summary: "squared natural frequency k/m, instead of m and k",
+    summary: "squared natural frequency k/m, instead of m and k: commands are then accelerations",
     default: 10.0,
-    allowed: Allowed::Positive,
+    allowed: Allowed::NonNegative,
 };
 const GAMMA: Parameter = Parameter {
     name: "gamma",
@@ -88,12 +93,24 @@ fn omega2(values: &Values<'_>) -> Result<f64, CatalogError> {
             None => Ok(omega2),
         };
     }
+    if values.given(&MASS).is_some() && values.given(&STIFFNESS).is_none() {
+        return Err(CatalogError::NoStiffness { system });
+    }
     let (m, k) = (values.get(&MASS), values.get(&STIFFNESS));
     let Oscillator { omega2 } = Oscillator::from_mass_and_stiffness(m, k);
-    if Allowed::Positive.admits(omega2) {
+    // A quotient that rounds to zero is no free mass.
+    if omega2.is_finite() && (omega2 > 0.0) == (k > 0.0) {
         Ok(omega2)
     } else {
         Err(CatalogError::Quotient { system, m, k, omega2 })
+    }
+}
+
+/// Whether commands are forces: where mass or stiffness is given.
+pub(super) fn actuation(values: &Values<'_>) -> Actuation {
+    match [MASS, STIFFNESS].iter().any(|p| values.given(p).is_some()) {
+        true => Actuation::Force { mass: values.get(&MASS), stiffness: values.get(&STIFFNESS) },
+        false => Actuation::Acceleration,
     }
 }
 

@@ -54,6 +54,14 @@ pub enum CatalogError {
         /// The parameter that was given together with `omega2`.
         name: &'static str,
     },
+    /// A mass is given, and no stiffness.
+    #[error(
+        "{system}: `m` is given without `k`; expected `k` too, in N/m (0 for a free mass), or `omega2` alone"
+    )]
+    NoStiffness {
+        /// The system.
+        system: &'static str,
+    },
     /// Mass and stiffness are allowed, but their quotient is not.
     #[error(
         "{system}: omega2 = k/m = {k:?}/{m:?} is {omega2:?}, but it must be {}",

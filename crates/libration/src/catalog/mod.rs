@@ -1,14 +1,16 @@
 //! The systems as a value, for callers that choose one at run time.
 
+mod actuation;
 mod entries;
 mod entry;
 mod error;
 
-use crate::Model;
 use crate::system::{
     DampedOscillator, DrivenOscillator, Duffing, HenonHeiles, Kepler, Oscillator, Pendulum,
 };
+use crate::{Method, Model};
 
+pub use actuation::Actuation;
 pub use entry::{Allowed, Entry, Parameter};
 pub use error::CatalogError;
 
@@ -104,19 +106,33 @@ pub fn find(name: &str) -> Result<&'static Entry, CatalogError> {
         .ok_or_else(|| CatalogError::UnknownSystem { name: name.to_owned() })
 }
 
+/// The system of that name, and the quantity of its commands; parameters that are not given take their
+/// defaults.
+///
+/// # Errors
+///
+/// A [`CatalogError`] if the system or a parameter is unknown, if a parameter is given twice or its value
+/// is not allowed, if `omega2` is given together with `m` or `k`, or `m` without `k`.
+pub fn build(
+    name: &str,
+    parameters: &[(impl AsRef<str>, f64)],
+) -> Result<(AnySystem, Actuation), CatalogError> {
+    let entry = find(name)?;
+    let values = entry.resolve(parameters)?;
+    Ok(((entry.build)(&values)?, entries::actuation(&values)))
+}
+
 impl AnySystem {
-    /// The system of that name; parameters that are not given take their defaults.
+    /// The system of that name, whatever its commands are: [`build`] without the [`Actuation`].
     ///
     /// # Errors
     ///
-    /// A [`CatalogError`] if the system or a parameter is unknown, if a parameter is given twice
-    /// or its value is not allowed, or if `omega2` is given together with `m` or `k`.
+    /// Those of [`build`].
     pub fn build(
         name: &str,
         parameters: &[(impl AsRef<str>, f64)],
     ) -> Result<AnySystem, CatalogError> {
-        let entry = find(name)?;
-        (entry.build)(&entry.resolve(parameters)?)
+        build(name, parameters).map(|(system, _)| system)
     }
 
     /// What the catalogue says about this kind of system.
@@ -157,6 +173,32 @@ impl AnySystem {
         }
     }
 
+    /// Whether the force depends on the velocity.
+    pub fn is_damped(self) -> bool {
+        match self {
+            AnySystem::DampedOscillator(s) => s.gamma != 0.0,
+            AnySystem::DrivenOscillator(s) => s.gamma != 0.0,
+            AnySystem::Oscillator(_)
+            | AnySystem::Pendulum(_)
+            | AnySystem::Duffing(_)
+            | AnySystem::Kepler(_)
+            | AnySystem::HenonHeiles(_) => false,
+        }
+    }
+
+    /// What a user of `method` must know about it on this system, in a sentence; none where it is what its name says.
+    pub fn caveat(self, method: Method) -> Option<String> {
+        (method == Method::TextbookVerlet && self.is_damped()).then(|| {
+            format!(
+                "the force of `{}` depends on the velocity, and `{}` takes it at the end of a step with the velocity at its \
+                 beginning: there it is not `{}` with other rounding, but another method with other errors and limits of stability",
+                self.name(),
+                method.name(),
+                Method::VelocityVerlet.name()
+            )
+        })
+    }
+
     /// Whether the acceleration is linear in `(q, v)`: [`Model::LINEAR`].
     pub fn is_linear(self) -> bool {
         fn linear<const D: usize, M: Model<D>>(_: M) -> bool {
@@ -169,13 +211,8 @@ impl AnySystem {
     /// Whether the exact solution conserves the energy with these parameters.
     pub fn conserves_energy(self) -> bool {
         match self {
-            AnySystem::DampedOscillator(s) => s.gamma == 0.0,
-            AnySystem::DrivenOscillator(s) => s.gamma == 0.0 && s.amplitude == 0.0,
-            AnySystem::Oscillator(_)
-            | AnySystem::Pendulum(_)
-            | AnySystem::Duffing(_)
-            | AnySystem::Kepler(_)
-            | AnySystem::HenonHeiles(_) => true,
+            AnySystem::DrivenOscillator(s) => s.amplitude == 0.0 && !self.is_damped(),
+            _ => !self.is_damped(),
         }
     }
 }

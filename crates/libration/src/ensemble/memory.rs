@@ -1,5 +1,6 @@
 //! How much memory there is.
 
+use memmap2::MmapMut;
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
 /// There is not memory enough.
@@ -13,17 +14,21 @@ pub struct NoRoom {
 }
 
 impl NoRoom {
-    /// Whether so many bytes can be had without swapping; also where the system does not tell.
+    /// Whether so many bytes can be had without swapping, and within the limits of this process (`ulimit -v`); also where the system
+    /// does not tell.
     ///
     /// # Errors
     /// If not.
     pub fn check(needed: u128) -> Result<(), NoRoom> {
-        match available_memory() {
-            Some(available) if needed > u128::from(available) => {
-                Err(NoRoom { needed, available: Some(available) })
-            }
-            _ => Ok(()),
-        }
+        let available = available_memory().filter(|&available| needed > u128::from(available));
+        let least = if is_mappable(needed) { None } else { Some(largest_mapping(needed)) };
+        let limits = [available, least].into_iter().flatten();
+        limits.min().map_or(Ok(()), |available| Err(NoRoom { needed, available: Some(available) }))
+    }
+
+    /// Whether more is needed than this machine has, so that no limit or other process is the reason.
+    pub fn is_beyond_machine(&self) -> bool {
+        installed_memory().is_none_or(|installed| self.needed > u128::from(installed))
     }
 
     fn there_is(&self) -> String {
@@ -38,6 +43,29 @@ impl NoRoom {
 fn gigabytes(bytes: u128) -> String {
     let gigabytes = bytes as f64 / 1e9;
     if gigabytes < 1.0 { format!("{gigabytes:.3}") } else { format!("{gigabytes:.1}") }
+}
+
+/// Whether the system gives so many bytes of addresses to this process. They are given back untouched, which takes microseconds.
+fn is_mappable(bytes: u128) -> bool {
+    let len = usize::try_from(bytes).ok().filter(|&len| len < isize::MAX as usize);
+    bytes == 0 || len.is_some_and(|len| MmapMut::map_anon(len).is_ok())
+}
+
+/// The most bytes that it gives of so many, to a thousandth.
+fn largest_mapping(bytes: u128) -> u64 {
+    let (mut given, mut refused) = (0, u64::try_from(bytes).unwrap_or(u64::MAX));
+    while refused - given > refused / 1024 {
+        let middle = given + (refused - given) / 2;
+        if is_mappable(middle.into()) {
+            given = middle
+        } else {
+            refused = middle
+        }
+        if refused < 1024 {
+            break;
+        }
+    }
+    given
 }
 
 /// Bytes that this process can have without swapping, if the system tells: what the machine has, and no more than

@@ -9,6 +9,10 @@ use crate::{Scalar, State, System};
 /// In exact arithmetic it is [`VelocityVerlet`](super::VelocityVerlet) wherever the acceleration
 /// does not depend on the velocity. In floats it rounds differently, with a bias that makes the
 /// energy drift linearly.
+///
+/// Where the acceleration depends on the velocity it is another method: `a'` is that of the new position and of the *old*
+/// velocity, where velocity Verlet takes the velocity half way. Both have order 1 there, and their limits of stability differ: on a
+/// critically damped oscillator it is stable up to `ωΔt = 1`, velocity Verlet up to 2.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TextbookVerlet;
 

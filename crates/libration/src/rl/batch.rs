@@ -126,6 +126,11 @@ where
         let most = parts.saturation;
         ensure("saturation", most, "above 0", |most| T::from_f64(most) > T::zero())?;
         let rates = parts.clock.trajectories();
+        let allowed = "a finite number above 0 whose inverse is one in the float type";
+        ensure("mass", parts.mass, allowed, |mass| {
+            let mobility = T::from_f64(mass.recip());
+            mobility > T::zero() && mobility.is_finite() && mass.is_finite()
+        })?;
         for (what, values, len) in [
             ("systems", parts.systems.count(), len),
             ("rates of clocks", rates, first.saturating_add(len)),

@@ -36,6 +36,8 @@ pub struct Environment<Sys, A, M, K, S, C = Fixed, N = Exact, V = Same> {
     /// The largest command in each degree of freedom, of either sign: whoever asks for more gets, and pays for, that much. Infinite for
     /// none.
     pub saturation: f64,
+    /// What a command moves, in kg: actions are forces, and the system gets `command/mass`. 1 where actions are accelerations.
+    pub mass: f64,
     /// How observations are measured.
     pub sensor: N,
     /// What is different in every episode.
@@ -77,6 +79,7 @@ impl<Sys, A, M, K, S> Environment<Sys, A, M, K, S> {
             clock: Fixed,
             delays: Delays::default(),
             saturation: f64::INFINITY,
+            mass: 1.0,
             sensor: Exact,
             variation: Same,
             severity: Severity::default(),
@@ -111,6 +114,11 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
         Environment { saturation, ..self }
     }
 
+    /// This, with actions that are forces on `mass`, in kg. Tasks see, and limits hold for, the force.
+    pub fn mass(self, mass: f64) -> Self {
+        Environment { mass, ..self }
+    }
+
     /// This, with clocks and sensors that are more or less wrong from episode to episode.
     pub fn severity(self, severity: Severity) -> Self {
         Environment { severity, ..self }
@@ -139,7 +147,7 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
         let Environment { systems, method, dt, substeps, task, start, limit, .. } = self;
         let Environment { autoreset, clock, delays, sensor, variation, severity, system, .. } =
             self;
-        let saturation = self.saturation;
+        let (saturation, mass) = (self.saturation, self.mass);
         let (clock, sensor, variation) = change(clock, sensor, variation);
         Environment {
             systems,
@@ -153,6 +161,7 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
             clock,
             delays,
             saturation,
+            mass,
             sensor,
             variation,
             severity,

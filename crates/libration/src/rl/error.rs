@@ -66,6 +66,15 @@ impl From<NoRoom> for EnvironmentError {
 }
 
 impl EnvironmentError {
+    /// The memory that is missing, if it is that.
+    pub fn room(&self) -> Option<&NoRoom> {
+        match self {
+            EnvironmentError::Room { room, .. } => Some(room),
+            EnvironmentError::Ensemble(EnsembleError::Memory(room)) => Some(room),
+            _ => None,
+        }
+    }
+
     /// Nothing, if there are as many as there must be.
     pub(super) fn shape(name: &'static str, found: usize, wanted: usize) -> Result<(), Self> {
         if found == wanted { Ok(()) } else { Err(EnvironmentError::Shape { name, found, wanted }) }

@@ -27,6 +27,8 @@ pub(super) struct Stage<'s, T, E, P, const O: usize, const D: usize> {
     span: f64,
     /// The largest command.
     pub(super) saturation: T,
+    /// Acceleration per unit of command: `1/mass`.
+    pub(super) mobility: T,
     pub(super) substeps: u64,
     limit: Option<u64>,
     pub(super) autoreset: Autoreset,
@@ -60,6 +62,7 @@ where
             dt: T::from_f64(parts.dt),
             span: parts.dt * f64::from(parts.substeps),
             saturation: T::from_f64(parts.saturation),
+            mobility: T::from_f64(parts.mass.recip()),
             substeps: parts.substeps.into(),
             limit: parts.limit.map(u64::from),
             autoreset: parts.autoreset,
@@ -157,9 +160,9 @@ where
         let (parts, dt) = (self.parts(), self.dt);
         let (mut q, mut v) = (Lines(block.q), Lines(block.v));
         let commands = Lines(self.commands(&out.step.actions));
-        let mut held = Lines(commands.0);
+        let mut held = Lines(self.accelerations(&commands.0));
         if self.history.acts_late() {
-            self.history.act(past, site.place.step, &commands.0);
+            self.history.act(past, site.place.step, &held.0);
         }
         for substep in 0..self.substeps {
             let step = site.place.step * self.substeps + substep;

@@ -59,10 +59,31 @@ where
         dt
     }
 
-    /// Whether nothing is asked of commands but what they are.
+    /// Whether commands are accelerations without a limit.
     #[inline(always)]
     pub(super) fn is_free(&self) -> bool {
-        self.saturation.to_f64() == f64::INFINITY
+        self.saturation.to_f64() == f64::INFINITY && self.is_per_mass()
+    }
+
+    /// Whether commands are accelerations as they are.
+    #[inline(always)]
+    fn is_per_mass(&self) -> bool {
+        self.mobility == T::one()
+    }
+
+    /// What these commands accelerate by.
+    #[inline(always)]
+    pub(super) fn accelerations(&self, commands: &[[T; LANES]; D]) -> [[T; LANES]; D] {
+        let mut accelerations = *commands;
+        if self.is_per_mass() {
+            return accelerations;
+        }
+        for row in &mut accelerations {
+            for x in row {
+                *x = *x * self.mobility;
+            }
+        }
+        accelerations
     }
 
     /// What is to be had of these actions. What is no number stays none.

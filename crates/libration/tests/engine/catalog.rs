@@ -1,6 +1,6 @@
 //! The systems chosen at run time.
 
-use libration::catalog::{self, Allowed, ENTRIES};
+use libration::catalog::{self, Actuation, Allowed, ENTRIES};
 use libration::{AnySystem, CatalogError, Model, State, with_system};
 
 fn build(name: &str, parameters: &[(&str, f64)]) -> Result<AnySystem, CatalogError> {
@@ -67,7 +67,7 @@ fn the_default_kepler_orbit_starts_at_perihelion() {
 fn mass_and_stiffness_make_omega2() {
     for name in ["oscillator", "damped-oscillator", "driven-oscillator"] {
         let omega2 = |given: &[(&str, f64)]| build(name, given).map(|s| s.parameters()[0].1);
-        assert_eq!(omega2(&[("m", 4.0)]).unwrap(), 2.5);
+        assert_eq!(omega2(&[("m", 4.0), ("k", 0.0)]).unwrap(), 0.0);
         assert_eq!(omega2(&[("k", 3.0)]).unwrap(), 3.0);
         assert_eq!(omega2(&[("k", 3.0), ("m", 2.0)]).unwrap(), 1.5);
         assert_eq!(omega2(&[("omega2", 7.0)]).unwrap(), 7.0);
@@ -78,10 +78,27 @@ fn mass_and_stiffness_make_omega2() {
                 assert!(error.to_string().contains(&format!("`{other}`")), "{error}");
             }
         }
+        // The default stiffness is that of the report's mass of 1 kg, and of no other.
+        let error = omega2(&[("m", 4.0)]).unwrap_err();
+        assert!(matches!(error, CatalogError::NoStiffness { .. }), "{error}");
         for (m, k) in [(1e-200, 1e200), (1e200, 1e-200)] {
             let error = omega2(&[("m", m), ("k", k)]).unwrap_err();
             assert!(matches!(error, CatalogError::Quotient { .. }), "{error}");
         }
+    }
+}
+
+#[test]
+fn commands_are_forces_where_mass_or_stiffness_is_given() {
+    let of = |given: &[(&str, f64)]| catalog::build("damped-oscillator", given).unwrap();
+    let (system, actuation) = of(&[("m", 0.3), ("k", 0.7), ("gamma", 0.1)]);
+    assert_eq!(actuation, Actuation::Force { mass: 0.3, stiffness: 0.7 });
+    let parameters = actuation.parameters(system);
+    assert_eq!(parameters, [("m", 0.3), ("k", 0.7), ("gamma", 0.1)]);
+    assert_eq!(of(&parameters), (system, actuation), "to the last bit");
+    assert_eq!(of(&[("k", 3.0)]).1, Actuation::Force { mass: 1.0, stiffness: 3.0 });
+    for given in [&[("omega2", 2.0)][..], &[]] {
+        assert_eq!(of(given).1, Actuation::Acceleration);
     }
 }
 
@@ -125,7 +142,7 @@ fn errors_say_what_there_is() {
     );
     assert_eq!(
         build("oscillator", &[("k", -3.0)]).unwrap_err().to_string(),
-        "oscillator: `k` is -3.0, but it must be finite and greater than 0"
+        "oscillator: `k` is -3.0, but it must be finite and at least 0"
     );
     assert_eq!(
         build("oscillator", &[("omega2", 1.0), ("k", 3.0)]).unwrap_err().to_string(),

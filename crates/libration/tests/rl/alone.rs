@@ -107,7 +107,8 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
             let ratio =
                 if E::Clock::EVEN { ratio } else { ratio + (severity[0] - 1.0) * (ratio - 1.0) };
             let ratio = if ratio < 0.0 { 0.0 } else { ratio };
-            let system = Held { system, command };
+            let mobility = parts.mass.recip() as f32;
+            let system = Held { system, command: command.map(|u| u * mobility) };
             state = parts.method.step(&system, state, parts.dt as f32 * ratio);
             states.push(state);
         }

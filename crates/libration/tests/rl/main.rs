@@ -82,6 +82,7 @@ fn chosen(method: Method) -> impl World<f32, 2, 1> {
         .limit(60)
         .delays(Delays { observation: [0, 4], action: [2, 7] })
         .saturation(2.5)
+        .mass(0.3)
         .clock((Skewed(Jitter::Uniform(0.01)), Jittered(Gaussian(0.2))))
         .sensor(Noisy([Uniform(0.05), Uniform(0.1)]))
         .severity(Severity { clock: [0.0, 2.0], sensor: [0.5, 1.5] })

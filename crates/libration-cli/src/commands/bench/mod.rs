@@ -4,6 +4,7 @@ mod rollouts;
 mod storage;
 
 use std::fmt::Write;
+use std::path::Path;
 
 use libration_lab::bench::{self, BenchFloat, Rate, RolloutCase, Wanted};
 use libration_lab::record::{Finding, Record, Relation, Table, Undecided, Verdict};
@@ -12,8 +13,9 @@ use libration_lab::study::StudyError;
 use libration_lab::{Config, Effort, Lab, Machine, Study};
 use serde_json::{Value, json};
 
+use super::judgement::judge;
 use crate::args::{BenchArgs, simd};
-use crate::error::Failure;
+use crate::error::{Failure, is_unusable};
 use crate::progress::Reporter;
 use crate::{interrupt, terminal};
 
@@ -29,8 +31,9 @@ pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), Failure> {
     config.simd = simd::asked(args.simd)?;
     let wanted = wanted(args)?;
     let reporter = Reporter::new(quiet);
-    let stop = interrupt::listen()?;
+    let stop = interrupt::listen();
     let lab = Lab::new(&config, args.effort, &reporter, stop);
+    let mut records = Vec::new();
     let text = if args.storage {
         let folder = args.folder.clone().unwrap_or_else(std::env::temp_dir);
         if !folder.is_dir() {
@@ -41,26 +44,28 @@ pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), Failure> {
         }
         let rates = bench::storage(&lab, &folder);
         reporter.clear();
-        let rates = rates.map_err(failure)?;
+        let rates = rates.map_err(|error| failure(error, Some(&folder)))?;
         if args.json { storage::json(&rates) } else { storage::text(&rates) }
     } else if args.rollouts {
         let rates = bench::rollouts(&lab, &cases(args));
         reporter.clear();
-        let rates = rates.map_err(failure)?;
+        let rates = rates.map_err(|error| failure(error, None))?;
         if args.json { rollouts::json(&rates) } else { rollouts::text(&rates) }
     } else if wanted.is_empty() {
         let record = Throughput.run(&lab);
         reporter.clear();
-        let record = record.map_err(failure)?;
-        if args.json { report_json(&record) } else { report_text(&record) }
+        let record = record.map_err(|error| failure(error, None))?;
+        let text = if args.json { report_json(&record) } else { report_text(&record) };
+        records.push(record);
+        text
     } else {
         let rates = bench::ladder(&lab, &wanted);
         reporter.clear();
-        let rates = rates.map_err(failure)?;
+        let rates = rates.map_err(|error| failure(error, None))?;
         if args.json { rates_json(&rates) } else { rates_text(&rates) }
     };
     terminal::print(&text)?;
-    Ok(())
+    judge(&records)
 }
 
 /// What is to be timed by itself, if anything is named.
@@ -93,9 +98,13 @@ fn cases(args: &BenchArgs) -> Vec<RolloutCase> {
     RolloutCase::ALL.into_iter().filter(|case| case.bytes() < most).collect()
 }
 
-fn failure(error: StudyError) -> Failure {
+/// The failure that an error amounts to, where `folder` may be the one that --folder names.
+fn failure(error: StudyError, folder: Option<&Path>) -> Failure {
     match error {
         StudyError::Interrupted => Failure::Interrupted("interrupted".to_owned()),
+        StudyError::Dataset(error) if folder.is_some_and(|path| is_unusable(&error, path)) => {
+            Failure::usage(format!("{error} (--folder)"))
+        }
         error => Failure::run(error),
     }
 }

@@ -1,5 +1,7 @@
 //! Whole numbers times powers of two.
 
+use core::cmp::Ordering;
+
 use num_bigint::BigInt;
 
 use crate::Scalar;
@@ -28,6 +30,13 @@ impl Dyadic {
         let exponent = self.exponent.min(other.exponent);
         let aligned = |x: &Self| &x.significand << (x.exponent - exponent) as u64;
         Dyadic { significand: aligned(self) + aligned(other), exponent: exponent - 1 }.reduced()
+    }
+
+    /// Whether this is less than `other`, the same or more.
+    pub(super) fn order(&self, other: &Self) -> Ordering {
+        let exponent = self.exponent.min(other.exponent);
+        let aligned = |x: &Self| &x.significand << (x.exponent - exponent) as u64;
+        aligned(self).cmp(&aligned(other))
     }
 
     /// The same number with an odd significand.

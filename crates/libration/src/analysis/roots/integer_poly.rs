@@ -3,13 +3,13 @@
 use num_bigint::{BigInt, Sign};
 use num_integer::Integer;
 
-use super::Dyadic;
-use crate::number::{Poly, Ratio};
+use super::{Dyadic, WholePoly};
+use crate::number::Poly;
 
 /// A primitive polynomial: whole coefficients without a common factor.
 ///
 /// It stands for all its positive multiples: signs and roots are those of the polynomial that it
-/// was made from, values are not.
+/// was made from, values are not; where those count there is [`WholePoly`].
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct IntegerPoly {
     /// That of `x⁰` first; the last is not zero.
@@ -31,15 +31,8 @@ impl IntegerPoly {
 
     /// The primitive multiple of `p`; none if `p` is undefined.
     pub(crate) fn of<const N: usize>(p: &Poly<N>) -> Option<Self> {
-        let parts: Option<Vec<(BigInt, BigInt, i32)>> =
-            (0..N).map(|k| p.coefficient(k)).map(Ratio::to_big).collect();
-        let parts = parts?;
-        let denominator = parts.iter().fold(BigInt::from(1), |lcm, (_, den, _)| lcm.lcm(den));
-        let lowest = parts.iter().map(|part| part.2).min()?;
-        let scaled = |(num, den, exponent): &(BigInt, BigInt, i32)| {
-            (num * (&denominator / den)) << exponent.abs_diff(lowest)
-        };
-        Some(IntegerPoly::new(parts.iter().map(scaled).collect()))
+        let ([numerator], _) = WholePoly::over_one_denominator([p])?;
+        Some(numerator.primitive())
     }
 
     /// Whether this is the zero polynomial.
@@ -72,21 +65,6 @@ impl IntegerPoly {
 
     pub(super) fn negated(self) -> Self {
         IntegerPoly { coefficients: self.coefficients.into_iter().map(|c| -c).collect() }
-    }
-
-    /// The product.
-    pub(crate) fn times(&self, other: &Self) -> Self {
-        if self.is_zero() || other.is_zero() {
-            return IntegerPoly::new(Vec::new());
-        }
-        let length = self.coefficients.len() + other.coefficients.len() - 1;
-        let mut product = vec![BigInt::ZERO; length];
-        for (i, a) in self.coefficients.iter().enumerate() {
-            for (j, b) in other.coefficients.iter().enumerate() {
-                product[i + j] += a * b;
-            }
-        }
-        IntegerPoly::new(product)
     }
 
     /// A positive multiple of the remainder of the division by `divisor`, which is not zero.
@@ -122,6 +100,12 @@ impl IntegerPoly {
             }
         }
         quotient
+    }
+
+    /// The polynomial with each of its roots once.
+    pub(super) fn square_free(&self) -> Self {
+        let common = self.gcd(&self.derivative());
+        if common.is_constant() { self.clone() } else { self.quotient(&common) }
     }
 
     /// The greatest common divisor.

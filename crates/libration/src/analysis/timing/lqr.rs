@@ -63,7 +63,8 @@ pub enum LqrError {
 
 impl Plant<'_> {
     /// The feedback that costs least over all steps from any state: the linear–quadratic regulator of the
-    /// step that is shipped, with a command that acts at once.
+    /// step that is shipped, with a command that acts at once. The cost is the sum over the samples, which has the minimum of
+    /// [`Plant::cost`] in the limit of short periods only.
     ///
     /// # Errors
     /// [`LqrError`]: weights that are none, or a loop that they do not make stable.
@@ -101,6 +102,12 @@ impl Plant<'_> {
 }
 
 impl LqrWeights {
+    /// The weights of accelerations that cost what these do where the command is a force on `mass`: the
+    /// weight of `u²`, in N⁻² times the unit of the cost, is multiplied by kg².
+    pub fn per_mass(self, mass: f64) -> Self {
+        LqrWeights { command: self.command * mass * mass, ..self }
+    }
+
     /// `Q` and `r`.
     fn checked(self) -> Result<(Matrix, Wide), LqrError> {
         for (of, weight) in [("position", self.position), ("velocity", self.velocity)] {

@@ -7,7 +7,7 @@ use crate::analysis::{Linearisation, UpdateMatrix};
 use crate::number::Wide;
 use crate::{Integrator, Model, Scalar, State};
 
-/// State feedback `u = −K_p·q − K_d·v`.
+/// State feedback `u = −K_p·q − K_d·v`, where `u` is an acceleration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Feedback {
     /// `K_p`, in s⁻².
@@ -17,6 +17,17 @@ pub struct Feedback {
 }
 
 impl Feedback {
+    /// The feedback of accelerations that does what this one does as a force on `mass`: gains in N/m and
+    /// N·s/m, divided by kg.
+    pub fn per_mass(self, mass: f64) -> Self {
+        Feedback { position: self.position / mass, velocity: self.velocity / mass }
+    }
+
+    /// The inverse of [`per_mass`](Feedback::per_mass): gains in N/m and N·s/m.
+    pub fn times_mass(self, mass: f64) -> Self {
+        Feedback { position: self.position * mass, velocity: self.velocity * mass }
+    }
+
     /// `K·y`: minus the command.
     pub(super) fn of(self, y: &State<Wide, 1>) -> Wide {
         Wide::from_f64(self.position) * y.q[0] + Wide::from_f64(self.velocity) * y.v[0]

@@ -1,0 +1,143 @@
+//! The blocks of `libration analyze` that are about a loop.
+
+use std::fmt::Write as _;
+
+use libration_lab::analyze::{CostAnswer, Critical, GrowthAnswer, Timing, TimingAnswer};
+
+/// What feedback, latency, jitter, skew and losses make of a step: a block for each set of conditions under which its
+/// rows hold, with them as its heading.
+pub(super) fn describe_loop(answer: &TimingAnswer, timing: &Timing, text: &mut String) {
+    let late = answer.latency_steps.filter(|steps| *steps > 0.0);
+    let drawn = [
+        ("jitter", timing.jitter.is_some()),
+        ("losses", timing.loss.is_some()),
+        // All that is told of clocks that differ, besides when they fall out of step, is what they cost.
+        ("skew", timing.skew.is_some() && answer.cost.is_some()),
+    ];
+    let drawn: Vec<&str> = drawn.into_iter().filter_map(|(name, is)| is.then_some(name)).collect();
+    let mut lines = Lines { text };
+    let steady: Vec<&str> =
+        [Some("feedback"), late.map(|_| "latency")].into_iter().flatten().collect();
+    if answer.feedback.is_some() {
+        lines.heading("Closed loop", &steady);
+        describe_steady(answer, &mut lines);
+    }
+    match (&answer.feedback, drawn.is_empty()) {
+        (_, true) => {}
+        (Some(_), _) => lines.heading("Closed loop", &[steady, drawn].concat()),
+        (None, _) => lines.heading("Open loop", &drawn),
+    }
+    if let Some(growth) = &answer.growth {
+        describe_growth(growth, answer, timing, &mut lines);
+    }
+    if let Some(cost) = &answer.cost {
+        describe_cost(cost, &mut lines);
+    }
+}
+
+/// Steps after which the mean over clocks of different rates has fallen.
+pub(super) fn dephasing(steps: Option<f64>) -> String {
+    number(steps, "steps")
+}
+
+/// Rows of a name and a value, under headings.
+struct Lines<'a> {
+    text: &'a mut String,
+}
+
+impl Lines<'_> {
+    // Writing into a string cannot fail.
+    fn row(&mut self, name: &str, value: &str) {
+        let _ = writeln!(self.text, "  {name:<22} {value}");
+    }
+
+    fn heading(&mut self, name: &str, with: &[&str]) {
+        let _ = writeln!(self.text, "{name}: with {}", with.join(", "));
+    }
+}
+
+/// What holds of even steps without losses.
+fn describe_steady(answer: &TimingAnswer, lines: &mut Lines<'_>) {
+    if let (Some([kp, kd]), Some(steps)) = (answer.feedback, answer.latency_steps) {
+        let [of_kp, of_kd] = answer.feedback_units.unwrap_or_default();
+        let quantity = answer.command.unwrap_or("command");
+        let law = format!("-({kp:?} {of_kp}) q - ({kd:?} {of_kd}) v");
+        lines.row(quantity, &format!("{law}, {steps:?} steps late"));
+    }
+    if let (Some(radius), Some(excess)) =
+        (answer.closed_loop_spectral_radius, answer.closed_loop_spectral_radius_minus_one)
+    {
+        lines.row("spectral radius", &format!("{radius:?}  (1 {excess:+e})"));
+    }
+    if let Some(critical) = &answer.critical {
+        describe_critical(critical, lines);
+    }
+}
+
+fn describe_critical(critical: &Critical, lines: &mut Lines<'_>) {
+    lines.row("critical latency", &number(critical.critical_latency_steps, "steps"));
+    lines.row("", &number(critical.critical_latency_seconds, "s"));
+    lines.row("of split steps", &number(critical.critical_latency_split_steps, "steps"));
+    let end = |x: Option<f64>| x.map_or("∞".into(), |x| format!("{x:?}"));
+    let windows = critical.latency_windows.iter();
+    let shown: Vec<String> =
+        windows.map(|&(from, to)| format!("{from:?} to {}", end(to))).collect();
+    let shown = if shown.is_empty() { "none".into() } else { shown.join(", ") };
+    lines.row("stable, steps late", &shown);
+    lines.row("continuous margin", &number(critical.delay_margin_seconds, "s"));
+}
+
+fn describe_growth(
+    growth: &GrowthAnswer,
+    answer: &TimingAnswer,
+    timing: &Timing,
+    lines: &mut Lines<'_>,
+) {
+    let grown = growth.mean_square_radius.zip(growth.mean_square_growth);
+    let shown = grown.map(|(radius, growth)| format!("{radius:?} a step  (1 {growth:+e})"));
+    lines.row("second moments grow by", shown.as_deref().unwrap_or(TOO_FAR));
+    if answer.jitter_clips == Some(true) {
+        lines.row("", CLIPPED);
+    }
+    let late = answer.latency_steps.is_some_and(|steps| steps > 0.0);
+    let lost = timing.loss.is_some_and(|loss| loss > 0.0);
+    let typical = match (late, lost) {
+        (true, true) => "not known with a latency and losses".into(),
+        (true, false) => "not known with a latency".into(),
+        (false, true) => "not known with losses".into(),
+        (false, false) => number(growth.lyapunov_exponent, "a step"),
+    };
+    lines.row("a typical run grows", &typical);
+    if timing.skew.is_some() {
+        lines.row("", NOMINAL);
+    }
+}
+
+fn describe_cost(cost: &CostAnswer, lines: &mut Lines<'_>) {
+    let [q, v, u] = cost.cost_weights;
+    let command = if u == 0.0 { String::new() } else { format!(" {u:+?} u²") };
+    let of = format!("{q:?} q² {v:+?} v²{command} under unit noise");
+    let shown = match (cost.cost, cost.cost_infinite) {
+        (Some(cost), _) => format!("{cost:?}, the mean of {of}"),
+        (None, Some(_)) => "infinite: second moments grow".into(),
+        (None, None) => "not known: the loop has to know too many numbers".into(),
+    };
+    lines.row("cost", &shown);
+    if let Some(increase) = cost.cost_increase {
+        lines.row("", &format!("{increase:+e} of that of an ideal clock and link"));
+    }
+}
+
+fn number(x: Option<f64>, unit: &str) -> String {
+    x.map_or_else(|| "none".to_owned(), |x| format!("{x:?} {unit}"))
+}
+
+/// Why there are no second moments.
+const TOO_FAR: &str =
+    "not known: steps turn too far in a deviation, or the latency is above 90 steps";
+
+/// The rule of steps that would be negative.
+const CLIPPED: &str = "some steps would be negative: they are of length zero";
+
+/// What growth is not about.
+const NOMINAL: &str = "both of a clock at its nominal rate, without the skew";

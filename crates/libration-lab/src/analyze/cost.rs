@@ -1,0 +1,57 @@
+//! What a loop costs under noise.
+
+use libration::analysis::{CostError, Feedback, Imperfections, Jitter, Latency, LqrWeights, Plant};
+use serde::Serialize;
+
+use super::Timing;
+
+/// The stationary cost of a loop under white noise of the acceleration of unit intensity.
+#[derive(Debug, Serialize)]
+pub struct CostAnswer {
+    /// The weights `[q, v, u]` of the squares of which the cost is the mean.
+    pub cost_weights: [f64; 3],
+    /// The cost with all that is asked: latency, jitter, skew (half the clocks slow by its rms, half fast) and loss; none where
+    /// it is infinite, or not known.
+    pub cost: Option<f64>,
+    /// Whether it is infinite: the loop is not stable in the mean square. Unknown where the loop is too large.
+    pub cost_infinite: Option<bool>,
+    /// `J/J₀ − 1`, with the cost `J₀` of the same loop with nothing of that; none where one of them is none.
+    pub cost_increase: Option<f64>,
+}
+
+impl CostAnswer {
+    /// This with the weights as they were given.
+    pub(super) fn told_with(self, given: Option<LqrWeights>) -> Self {
+        let weights = given.map(|w| [w.position, w.velocity, w.command]);
+        CostAnswer { cost_weights: weights.unwrap_or(self.cost_weights), ..self }
+    }
+
+    pub(super) fn of(
+        plant: &Plant<'_>,
+        feedback: Feedback,
+        latency: Latency,
+        timing: &Timing,
+    ) -> Self {
+        let weights = timing.weights.unwrap_or_else(|| plant.energy());
+        let cost = |imperfections: &Imperfections| -> Result<f64, CostError> {
+            plant.cost(&feedback.into(), imperfections, weights)
+        };
+        let none = Imperfections::NONE;
+        let jitter = timing.jitter.unwrap_or(none.jitter);
+        let loss = timing.loss.unwrap_or(0.0);
+        let with = |skew| cost(&Imperfections { latency, jitter, skew, loss });
+        let all = match timing.skew.map(Jitter::rms).filter(|&rms| rms > 0.0) {
+            Some(rms) => with(rms).and_then(|slow| Ok(0.5 * (slow + with(-rms)?))),
+            None => with(0.0),
+        };
+        let all = all.ok();
+        let finite = |cost: Option<f64>| cost.filter(|cost| cost.is_finite());
+        let increase = finite(all).zip(finite(cost(&none).ok()));
+        CostAnswer {
+            cost_weights: [weights.position, weights.velocity, weights.command],
+            cost: finite(all),
+            cost_infinite: all.map(f64::is_infinite),
+            cost_increase: increase.map(|(all, ideal)| all / ideal - 1.0),
+        }
+    }
+}
