@@ -37,7 +37,8 @@ fn a_limit_of_memory_ends_a_run_with_a_message_and_never_with_an_abort() {
         )
     };
     let simulate = "--quiet simulate --system oscillator --integrator leapfrog --dt 0.01";
-    for more in [1, 5, 12, 25, 50, 100, 200, 400] {
+    // Where little is left, the allocator asks the system for each piece, and a run takes a second.
+    for more in [1, 12, 50, 200] {
         let megabytes = least + more;
         for format in ["npy", "parquet", "minari"] {
             code(folder, megabytes, &rollout(format, more));
@@ -45,8 +46,8 @@ fn a_limit_of_memory_ends_a_run_with_a_message_and_never_with_an_abort() {
         for (name, flags) in [
             ("x.parquet", "--steps 3e5"),
             ("x.npy", "--steps 3e5"),
-            ("y.npy", "--steps 2 --every 2 --count 1e5 --threads 2"),
-            ("z.npy", "--steps 2 --every 2 --count 3e4 --threads 2 --feedback 10,2 --latency 0.02"),
+            ("y.npy", "--steps 2 --every 2 --count 2e4 --threads 2"),
+            ("z.npy", "--steps 2 --every 2 --count 1e4 --threads 2 --feedback 10,2 --latency 0.02"),
         ] {
             code(folder, megabytes, &format!("{simulate} {flags} --output {name}"));
         }
