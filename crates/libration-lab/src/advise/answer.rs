@@ -156,8 +156,9 @@ impl Advice {
     /// Says the answer, and how to take the steps that are advised.
     pub(super) fn conclude(&mut self, request: &Request, answer: String) {
         self.answer = answer;
-        let chosen = self.chosen().and_then(|(choice, _)| Method::from_name(choice.integrator));
-        self.warnings.extend(chosen.and_then(|method| request.system.caveat(method)));
+        let listed =
+            self.integrators.iter().filter_map(|choice| Method::from_name(choice.integrator));
+        self.warnings.extend(listed.filter_map(|method| request.system.caveat(method)));
         let float = self.float().map_or("f64", |float| float.float);
         self.command =
             self.chosen().map(|(choice, dt)| request.command(choice.integrator, dt, float));

@@ -9,6 +9,7 @@ use super::limits::{Kind, Limit};
 use super::loops::{Loop, LoopError};
 use super::making::sweep;
 use super::regained::Regained;
+use super::remedies::{NEUTRAL, rounded_down};
 use super::request::Request;
 use super::words::swings;
 use super::{AdviseError, TURN};
@@ -83,15 +84,29 @@ impl<M: Model<1>> Loop<M> {
         }
         let told = |mode: &Mode| {
             let how = swings(mode.angle, self.control.period).1;
-            format!("a motion grows by the factor {:.6} a period ({how})", mode.radius)
+            match mode.radius - 1.0 {
+                neutral if neutral.abs() < NEUTRAL => "a motion neither grows nor decays".into(),
+                small if small < 1e-3 => {
+                    format!("a motion grows by the factor 1 + {small:.2e} a period ({how})")
+                }
+                _ => format!("a motion grows by the factor {:.6} a period ({how})", mode.radius),
+            }
         };
-        let remedies = self.remedies(&plant, &none);
-        let shorter = self.stable_period().map_or_else(String::new, |period| {
-            format!(" It is stable with a period of at most {period:.6} s.")
-        });
+        let modes = modes.iter().map(told).collect();
         let gains = [self.units.gains[0], self.units.gains[1]];
+        if self.settles(&plant, &stated) {
+            let remedies = self.remedies(&plant, &none).sentence(gains);
+            let help = format!(
+                "with what is stated it is stable, in a window that less latency leaves: do not rely on it. Without the latency: {remedies}"
+            );
+            return Err(AdviseError::Unstable { modes, help });
+        }
+        let remedies = self.remedies(&plant, &stated);
+        let shorter = self.stable_period().map_or_else(String::new, |period| {
+            format!(" It is stable with a period of {} s.", rounded_down(period))
+        });
         let help = format!("{}{shorter}", remedies.sentence(gains));
-        Err(AdviseError::Unstable { modes: modes.iter().map(told).collect(), help })
+        Err(AdviseError::Unstable { modes, help })
     }
 
     /// Fails where the period is far too short or too long for the motions of the loop.
@@ -99,12 +114,20 @@ impl<M: Model<1>> Loop<M> {
         let Feedback { position, velocity } = self.gains();
         let plant = self.plant().rate();
         let fastest = plant.max(position.abs().sqrt()).max(velocity.abs());
+        if fastest == 0.0 {
+            // Nothing turns, whatever the period.
+            return Ok(());
+        }
         let period = self.control.period;
         let (least, most) = (TURN.start() / fastest, TURN.end() / plant);
         if period >= least && period <= most {
             return Ok(());
         }
-        Err(AdviseError::Period { period, least, most })
+        let allowed = match most.is_finite() {
+            true => format!("{least:.3e} to {most:.3e} s"),
+            false => format!("at least {least:.3e} s"),
+        };
+        Err(AdviseError::Period { period, allowed })
     }
 
     pub(super) fn budgets(

@@ -166,6 +166,12 @@ impl<M: Model<1>> Loop<M> {
         Loop { linear: self.linear.amplified(factor), control: self.control.clone(), ..*self }
     }
 
+    /// This with another period and the same controller.
+    pub(super) fn sampled_every(&self, period: f64) -> Result<Self, NotLinear> {
+        let control = Control { period, ..self.control.clone() };
+        Ok(Loop { linear: self.controller.linear(period)?, control, ..*self })
+    }
+
     /// The plant in exact steps of a period, linearised.
     pub(super) fn plant(&self) -> Plant<'_> {
         Plant::exact(self.model, ORIGIN, self.control.period)

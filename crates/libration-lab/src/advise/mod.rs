@@ -84,15 +84,13 @@ pub enum AdviseError {
     },
     /// The period does not fit the motions of the loop.
     #[error(
-        "the period is {period:e} s; expected {least:.3e} to {most:.3e} s, in which the fastest motion of this loop turns by {TURNS} rad"
+        "the period is {period:e} s; expected {allowed}, in which the fastest motion of this loop turns by {TURNS} rad"
     )]
     Period {
         /// The period, in s.
         period: f64,
-        /// The least, in s.
-        least: f64,
-        /// The largest, in s.
-        most: f64,
+        /// The periods that are allowed, in words.
+        allowed: String,
     },
     /// The tolerance does not fit what is asked.
     #[error("{} cannot be tolerated here: {why}", of.name())]
@@ -114,7 +112,7 @@ pub enum AdviseError {
     },
     /// The loop is unstable without anything wrong with it.
     #[error(
-        "the loop is unstable even without latency, jitter, skew or loss: {}; help: {help}",
+        "the loop is unstable without latency, jitter, skew and loss: {}; help: {help}",
         modes.join("; ")
     )]
     Unstable {

@@ -4,14 +4,17 @@ use libration::Model;
 use libration::analysis::{Feedback, Imperfections, Plant};
 use serde::Serialize;
 
-use super::loops::{Loop, ORIGIN};
+use super::loops::Loop;
 
 /// The smallest changes, each alone, that stabilise a loop; none where no change of that kind was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Remedies {
     /// The factor of all gains that is nearest to 1.
     pub gain_factor: Option<f64>,
-    /// The gains of position and velocity with that factor, in the units of the loop.
+    /// That factor in few digits, with which the loop is stable as well.
+    #[serde(skip)]
+    pub(super) shown_factor: Option<f64>,
+    /// The gains of position and velocity with the factor that is shown, in the units of the loop.
     pub gains: Option<[f64; 2]>,
     /// The largest latency, in s, up to which it is stable with everything else as it is stated.
     pub latency: Option<f64>,
@@ -26,6 +29,9 @@ const OCTAVES: [i32; 2] = [10, 5];
 /// Shares of the latency that are tried.
 const SHARES: u32 = 64;
 
+/// The least rate of growth or decay in a period that is no rounding of the arithmetic.
+pub(super) const NEUTRAL: f64 = 1e-12;
+
 /// Halvings of the interval that holds an end: ends are printed to six digits.
 const HALVINGS: u32 = 30;
 
@@ -33,8 +39,9 @@ impl<M: Model<1>> Loop<M> {
     /// What stabilises the loop with `stated`, with which it is unstable.
     pub(super) fn remedies(&self, plant: &Plant<'_>, stated: &Imperfections) -> Remedies {
         let amplified = |factor: f64| -> bool {
-            // A loop that is too large to be judged is not one to recommend.
-            self.amplified(factor).decays(plant, stated) == Ok(true)
+            let amplified = self.amplified(factor);
+            // What the stated latency alone stabilises is no remedy.
+            amplified.settles(plant, stated) && amplified.settles(plant, &Imperfections::NONE)
         };
         let octaves = |count: i32, sign: f64| {
             let factor = move |i: i32| (sign * f64::from(i) / f64::from(PER_OCTAVE)).exp2();
@@ -48,7 +55,7 @@ impl<M: Model<1>> Loop<M> {
         let late = step * stated.latency.steps();
         let with = |latency: f64| -> bool {
             let Ok(latency) = self.latency(latency / step) else { return false };
-            self.decays(plant, &Imperfections { latency, ..*stated }) == Ok(true)
+            self.settles(plant, &Imperfections { latency, ..*stated })
         };
         // From below: a window that is regained is no remedy.
         let shares = (1..=SHARES).map(|i| late * f64::from(i) / f64::from(SHARES));
@@ -56,21 +63,30 @@ impl<M: Model<1>> Loop<M> {
             true => change(0.0, shares, |latency| !with(latency)).map(|[stable, _]| stable),
             false => None,
         };
-        let gains = gain_factor.map(|factor| {
+        let shown_factor = gain_factor.map(|end| {
+            let few = (4..8).map(|digits| rounded(end, digits, end > 1.0));
+            few.into_iter().find(|factor| amplified(*factor)).unwrap_or(end)
+        });
+        let gains = shown_factor.map(|factor| {
             let Feedback { position, velocity } = self.given_gains();
             [factor * position, factor * velocity]
         });
-        Remedies { gain_factor, gains, latency }
+        Remedies { gain_factor, shown_factor, gains, latency }
     }
 
-    /// The longest period, shorter than that of the loop, with which the ideal loop is stable.
+    /// Whether second moments decay by more than a rounding. A loop that is too large to be judged is not one to recommend.
+    pub(super) fn settles(&self, plant: &Plant<'_>, with: &Imperfections) -> bool {
+        self.decays(plant, with) == Ok(true)
+            && self.growth(plant, with).is_ok_and(|growth| growth < -NEUTRAL)
+    }
+
+    /// The longest period, shorter than that of the loop, with which the loop is stable with what is stated, and the ideal one.
     pub(super) fn stable_period(&self) -> Option<f64> {
         let stable = |period: f64| -> bool {
-            let plant = Plant::exact(self.model, ORIGIN, period);
-            let linear = self.controller.linear(period);
-            linear.is_ok_and(|linear| {
-                plant.mean_square_stable(&linear, &Imperfections::NONE) == Ok(true)
-            })
+            let Ok(other) = self.sampled_every(period) else { return false };
+            let plant = other.plant();
+            other.stated().is_ok_and(|stated| other.settles(&plant, &stated))
+                && other.settles(&plant, &Imperfections::NONE)
         };
         let period = self.control.period;
         let shorter = (1..=SHARES).map(|i| period * (-f64::from(i) / 4.0).exp2());
@@ -100,17 +116,31 @@ fn change(
     None
 }
 
+/// A positive number in so many significant digits, not below it if `up`, else not above it.
+fn rounded(x: f64, digits: i32, up: bool) -> f64 {
+    let exponent = x.log10().floor() as i32 + 1 - digits;
+    let number = x / 10.0_f64.powi(exponent);
+    let number = if up { number.ceil() } else { number.floor() };
+    // By way of a decimal, whose digits are these and no more.
+    format!("{number}e{exponent}").parse().unwrap_or(x)
+}
+
+/// Four digits of a positive number, not above it.
+pub(super) fn rounded_down(x: f64) -> f64 {
+    rounded(x, 4, false)
+}
+
 impl Remedies {
     /// A sentence about them.
     pub(super) fn sentence(&self, gain_units: [&str; 2]) -> String {
-        let gains = self.gain_factor.zip(self.gains).map(|(factor, [position, velocity])| {
-            let bound = if factor < 1.0 { "at most" } else { "at least" };
+        let gains = self.shown_factor.zip(self.gains).map(|(factor, [position, velocity])| {
             format!(
-                "all gains times {bound} {factor:.4} (K_p = {position:.6} {}, K_d = {velocity:.6} {})",
+                "all gains times {factor} (K_p = {position:.6} {}, K_d = {velocity:.6} {})",
                 gain_units[0], gain_units[1]
             )
         });
-        let latency = self.latency.map(|latency| format!("a latency of at most {latency:.6} s"));
+        let latency =
+            self.latency.map(|latency| format!("a latency of at most {} s", rounded_down(latency)));
         let all: Vec<String> = gains.into_iter().chain(latency).collect();
         match all.is_empty() {
             true => format!(

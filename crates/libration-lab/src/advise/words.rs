@@ -47,8 +47,8 @@ pub(super) fn stands(looped: &LoopAdvice, tolerance: &ToleranceAnswer) -> String
     if growth >= 0.0 {
         let remedies = looped.remedies.as_ref();
         return format!(
-            "The loop is unstable with what is stated: its second moments grow by {:.3} % a period. {}",
-            100.0 * growth.exp_m1(),
+            "The loop is unstable with what is stated: its second moments grow by {} % a period. {}",
+            percent(growth.exp_m1()),
             remedies.map_or_else(String::new, |remedies| remedies.sentence(looped.gain_units))
         );
     }
@@ -90,6 +90,12 @@ pub(super) fn stands(looped: &LoopAdvice, tolerance: &ToleranceAnswer) -> String
             &format!(" It costs {:.3} % more than the ideal loop{tolerated}.", 100.0 * increase);
     }
     text
+}
+
+/// A share in percent, of which digits are shown however small it is.
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent < 0.01 { format!("{percent:.2e}") } else { format!("{percent:.3}") }
 }
 
 /// That a loop is stable in a window that is regained, and where it is not.

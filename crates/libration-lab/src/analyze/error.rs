@@ -26,7 +26,7 @@ pub enum AnalyzeError {
     Simulation(#[from] SimulationError),
     /// A criterion was given for a system whose largest time step is not known in closed form.
     #[error(
-        "--{flag} is answered for the system `oscillator` with a spring, not for `{system}` here"
+        "--{flag} is answered for the system `oscillator` with k or omega2 above 0 (--system, --set); this is `{system}`"
     )]
     Criterion {
         /// The flag.
@@ -68,6 +68,16 @@ pub enum AnalyzeError {
         dt: f64,
         /// The angle.
         turn: f64,
+    },
+    /// A number of a loop is too large or too small for theory.
+    #[error("{name} is {value:e}; expected {zero}{:e} to {:e} in size", limits::SIZE.start(), limits::SIZE.end())]
+    Size {
+        /// The parameter, or `dt`.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// The other value that is allowed, if 0 is.
+        zero: &'static str,
     },
     /// There is no such latency.
     #[error("--latency is {steps:?} steps, but must be a number from 0 to {}", Latency::MOST_STEPS)]

@@ -17,7 +17,7 @@ use libration::number::Wide;
 use libration::simulation::{EnergyDrift, Simulator};
 use libration::{AnySystem, Elementary, Integrator, Model, Scalar, State, System, with_system};
 
-use crate::config::limits::MOST_TURN;
+use crate::config::limits::{MOST_TURN, beyond_theory};
 pub use answer::{About, Analysis, Drift, ModifiedHamiltonian};
 pub use cost::CostAnswer;
 pub use criteria::Criteria;
@@ -55,6 +55,7 @@ pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, A
     }
     let dimension = request.q.len();
     turns(request)?;
+    sizes(request)?;
     let timing = timing::answer(request)?;
     with_system!(
         request.system,
@@ -115,6 +116,19 @@ fn turns(request: &Request) -> Result<(), AnalyzeError> {
     };
     let (dt, turn) = (request.dt, rate * request.dt);
     if turn > MOST_TURN { Err(AnalyzeError::Turn { dt, turn }) } else { Ok(()) }
+}
+
+/// Fails if a loop has a parameter or a time step of which floats lose the products.
+fn sizes(request: &Request) -> Result<(), AnalyzeError> {
+    if request.timing.feedback.is_none() && !request.timing.draws() {
+        return Ok(());
+    }
+    let dt = beyond_theory([("dt", request.dt)]).map(|(name, value)| (name, value, ""));
+    let parameter = beyond_theory(request.system.parameters());
+    match dt.or(parameter.map(|(name, value)| (name, value, "0, or "))) {
+        Some((name, value, zero)) => Err(AnalyzeError::Size { name, value, zero }),
+        None => Ok(()),
+    }
 }
 
 /// Fails if exact steps are asked for what they are not.

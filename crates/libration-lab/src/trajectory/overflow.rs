@@ -5,7 +5,7 @@ use libration::system::{DampedOscillator, Oscillator};
 use libration::{AnySystem, Float, Method, Model, State, with_system};
 
 use super::{FloatType, Request};
-use crate::analyze::{self, Criteria, Stepping, stability_windows};
+use crate::analyze::{self, Criteria, Critical, Stepping, stability_windows};
 
 /// Unit roundoffs by which a step may lie beside a limit before rounding decides.
 const MARGIN: f64 = 16.0;
@@ -47,7 +47,7 @@ fn of_step<S: Float>(request: &Request) -> Option<String> {
         None => {
             let omega = start_frequency(request)?;
             let near = AnySystem::Oscillator(Oscillator { omega2: omega * omega });
-            let why = unstable(method, near, dt)?;
+            let why = unstable(method, near, [dt, 1.0])?;
             Some(format!("linearised at the start, {why}"))
         }
     }
@@ -62,24 +62,20 @@ fn looped(request: &Request) -> Option<String> {
     let analysis = analyze::analyze(&step).ok()?;
     let about = if system.is_linear() { "" } else { "linearised at the start, " };
     let answer = analysis.timing?;
-    if let Some(radius) = answer.closed_loop_spectral_radius.filter(|radius| *radius > 1.0) {
-        let critical = answer.critical.and_then(|critical| critical.critical_latency_seconds);
-        let way_out = match critical {
-            Some(latency) => {
-                format!("it is stable up to a --latency of {} s", short_below(latency))
-            }
-            None => "no --latency stabilises it: choose another --feedback or --dt".to_owned(),
-        };
-        let radius = short(radius);
+    if let Some(excess) = answer.closed_loop_spectral_radius_minus_one.filter(|x| *x > 0.0) {
+        let way_out = answer.critical.as_ref().map_or_else(String::new, latencies);
+        // Three digits of a radius near 1 would not tell it from 1.
+        let radius =
+            if excess < 0.01 { format!("1 + {}", short(excess)) } else { short(1.0 + excess) };
         return Some(format!(
             "{about}the closed loop is unstable: its spectral radius is {radius}; {way_out}"
         ));
     }
-    let method = stepping.method();
-    if answer.feedback.is_none()
-        && let Some(why) = method.and_then(|method| unstable(method, system, dt))
-    {
-        return Some(why);
+    if let (None, Some(method)) = (answer.feedback, stepping.method()) {
+        let why = unstable(method, system, [dt, 1.0]).or_else(|| uneven(method, request));
+        if why.is_some() {
+            return why;
+        }
     }
     let growth = answer.growth.and_then(|growth| growth.mean_square_growth);
     growth.filter(|growth| *growth > 0.0).map(|growth| {
@@ -90,6 +86,38 @@ fn looped(request: &Request) -> Option<String> {
     })
 }
 
+/// The latencies with which a loop is stable that is not so with its own.
+fn latencies(critical: &Critical) -> String {
+    if let Some(latency) = critical.critical_latency_seconds {
+        return format!("it is stable up to a --latency of {} s", short_below(latency));
+    }
+    // Windows are those of whole steps.
+    let whole =
+        critical.latency_windows.iter().map(|&(from, to)| (from.ceil(), to.map(f64::floor)));
+    let mut windows = whole.filter(|&(from, to)| to.is_none_or(|to| from <= to));
+    match windows.next() {
+        Some((from, Some(to))) => {
+            format!("it is stable with a --latency from {from}steps to {to}steps")
+        }
+        Some((from, None)) => format!("it is stable with a --latency of at least {from}steps"),
+        None => "no --latency stabilises it: choose another --feedback or --dt".to_owned(),
+    }
+}
+
+/// Why a step is unstable under a clock whose mean or slowest steps are longer than `dt`.
+fn uneven(method: Method, request: &Request) -> Option<String> {
+    let Request { system, dt, timing, record, .. } = request;
+    if let Some(record) = record {
+        let mean = record.iter().sum::<f64>() / record.len() as f64;
+        if let Some(why) = unstable(method, *system, [*dt, mean]) {
+            return Some(format!("of the mean recorded step, {why}"));
+        }
+    }
+    let slowest = 1.0 + timing.skew?.largest();
+    unstable(method, *system, [*dt, slowest])
+        .map(|why| format!("of the slowest clocks' steps, {why}"))
+}
+
 /// Of a linear system: either its step is unstable, or the numbers leave the float type.
 fn of_linear(
     method: Method,
@@ -98,13 +126,19 @@ fn of_linear(
     roundoff: f64,
     float: FloatType,
 ) -> Option<String> {
+    if let AnySystem::Oscillator(Oscillator { omega2: 0.0 })
+    | AnySystem::DampedOscillator(DampedOscillator { omega2: 0.0, gamma: 0.0 }) = system
+    {
+        // A free mass leaves every range; each method steps it exactly.
+        return Some(range(float, "the step"));
+    }
     let margin = MARGIN * roundoff;
     let windows = stability_windows(method, system)?;
     let is_stable = windows.iter().any(|&[from, to]| {
         from.is_none_or(|from| dt >= from * (1.0 + margin))
             && to.is_none_or(|to| dt <= to * (1.0 - margin))
     });
-    if is_stable { Some(range(float, "the step")) } else { unstable(method, system, dt) }
+    if is_stable { Some(range(float, "the step")) } else { unstable(method, system, [dt, 1.0]) }
 }
 
 /// That a stable step leaves the float type.
@@ -118,8 +152,9 @@ fn range(float: FloatType, step: &str) -> String {
     format!("{step} is stable, but a number exceeds the range of {float}, {largest}; {way_out}")
 }
 
-/// Why a step of `dt` seconds is unstable on an oscillator; none if it is stable, or nobody knows.
-fn unstable(method: Method, system: AnySystem, dt: f64) -> Option<String> {
+/// Why a step of `dt` seconds, stretched by a factor, is unstable on an oscillator; none if it is stable, or nobody knows.
+fn unstable(method: Method, system: AnySystem, [dt, stretch]: [f64; 2]) -> Option<String> {
+    let dt = dt * stretch;
     let windows = stability_windows(method, system)?;
     let name = method.name();
     let within = |&&[from, to]: &&[Option<f64>; 2]| {
@@ -128,8 +163,11 @@ fn unstable(method: Method, system: AnySystem, dt: f64) -> Option<String> {
     if windows.iter().any(|window| within(&window)) {
         return None;
     }
-    let below = |window: &&[Option<f64>; 2]| window[1].is_some_and(|to| to <= dt);
-    let Some(&[from, to]) = windows.iter().rfind(below).or_else(|| windows.first()) else {
+    // The window of small steps, where there is one: others may be slivers.
+    let width = |[from, to]: &[Option<f64>; 2]| to.unwrap_or(f64::INFINITY) - from.unwrap_or(0.0);
+    let small = windows.iter().find(|[from, _]| from.is_none_or(|from| from == 0.0));
+    let widest = || windows.iter().max_by(|a, b| width(a).total_cmp(&width(b)));
+    let Some(&[from, to]) = small.or_else(widest) else {
         return Some(format!(
             "{name} is unstable with every time step: a smaller --dt only delays the overflow; choose another --integrator"
         ));
@@ -142,11 +180,12 @@ fn unstable(method: Method, system: AnySystem, dt: f64) -> Option<String> {
     let (from, to) = (from.unwrap_or(0.0), to.unwrap_or(f64::INFINITY));
     let is = format!("{symbol} = {}{unit}", short(omega * dt));
     if from == 0.0 {
-        let (limit, largest) = (short(omega * to), short_below(to));
+        let (limit, largest) = (short(omega * to), short_below(to / stretch));
         Some(format!("{is} is beyond {name}'s limit {limit}{unit}; choose --dt below {largest}"))
     } else {
         let limits = format!("{} to {}{unit}", short(omega * from), short(omega * to));
-        let choice = format!("between {} and {}", short_below(from * 1.01), short_below(to));
+        let choice =
+            format!("between {} and {}", short_above(from / stretch), short_below(to / stretch));
         Some(format!("{is} is outside {name}'s limits {limits}; choose --dt {choice}"))
     }
 }
@@ -179,6 +218,11 @@ fn short_below(x: f64) -> String {
     digits(x, f64::floor)
 }
 
+/// The same, not below it.
+fn short_above(x: f64) -> String {
+    digits(x, f64::ceil)
+}
+
 fn digits(x: f64, round: fn(f64) -> f64) -> String {
     if !(1e-290..1e290).contains(&x) {
         return format!("{x:?}");
@@ -195,17 +239,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_have_three_digits_and_bounds_are_not_above_what_they_bound() {
-        for (x, rounded, below) in [
-            (2.0, "2", "2"),
-            (0.632_455_5, "0.632", "0.632"),
-            (2.828_427_1, "2.83", "2.82"),
-            (1.573_4, "1.57", "1.57"),
-            (12_345.0, "12300", "12300"),
-            (6.329e-9, "6.33e-9", "6.32e-9"),
-            (9.999, "10", "9.99"),
+    fn numbers_have_three_digits_and_bounds_lie_on_the_side_that_they_name() {
+        for (x, rounded, below, above) in [
+            (2.0, "2", "2", "2"),
+            (0.632_455_5, "0.632", "0.632", "0.633"),
+            (2.828_427_1, "2.83", "2.82", "2.83"),
+            (1.573_4, "1.57", "1.57", "1.58"),
+            (12_345.0, "12300", "12300", "12400"),
+            (6.329e-9, "6.33e-9", "6.32e-9", "6.33e-9"),
+            (9.999, "10", "9.99", "10"),
         ] {
-            assert_eq!((&*short(x), &*short_below(x)), (rounded, below));
+            assert_eq!((&*short(x), &*short_below(x), &*short_above(x)), (rounded, below, above));
         }
     }
 }

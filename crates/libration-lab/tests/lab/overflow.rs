@@ -108,3 +108,23 @@ fn several_trajectories_have_the_reason_of_one() {
     let found = reason(&Request { copies, ..of(0.7) }).unwrap();
     assert_eq!(found, "ωΔt = 2.21 is beyond velocity-verlet's limit 2; choose --dt below 0.632");
 }
+
+#[test]
+fn beyond_several_windows_that_of_small_steps_is_recommended() {
+    // Of Suzuki's method on ω² = 100, γ = 3 windows are 0 to 0.40367 and a sliver at 0.791, as NumPy finds them.
+    let parameters = [("omega2", 100.0), ("gamma", 3.0)];
+    let of = |dt| request("damped-oscillator", &parameters, Method::Suzuki4, dt);
+    let found = reason(&of(0.9)).unwrap();
+    assert!(found.ends_with("beyond suzuki4's limit 0.404 s; choose --dt below 0.403"), "{found}");
+    assert_eq!(reason(&of(0.403)), None);
+}
+
+#[test]
+fn a_free_mass_that_leaves_the_float_type_is_not_called_unstable() {
+    let undamped = [("omega2", 0.0), ("gamma", 0.0)];
+    for (system, parameters) in [("oscillator", &undamped[..1]), ("damped-oscillator", &undamped)] {
+        let free = request(system, parameters, Method::Rk4, 10.0);
+        let found = reason(&Request { v: vec![100.0], float: FloatType::F16, ..free }).unwrap();
+        assert!(found.contains("the step is stable, but a number exceeds"), "{found}");
+    }
+}
