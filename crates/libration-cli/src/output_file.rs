@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 use std::fs::{self, File, Metadata, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::process;
 
@@ -13,7 +13,8 @@ const MOST_LINKS: usize = 40;
 ///
 /// What exists and is no regular file (a pipe, `/dev/null`) is written to directly. A file that is
 /// replaced keeps its permissions, its owner and its links: one with several hard links, or of an owner
-/// whose files this user cannot make, is filled with the complete result instead of replaced.
+/// whose files this user cannot make, is filled in place with the complete result instead of replaced. Its
+/// space is reserved first: a full disk leaves the old contents as they were.
 #[derive(Debug)]
 pub(crate) struct OutputFile {
     file: File,
@@ -69,11 +70,12 @@ impl OutputFile {
     /// Gives the complete file its name.
     ///
     /// # Errors
-    /// If the file system refuses; the temporary file is then gone, unless its file is half filled.
+    /// If the file system refuses; the temporary file is then gone, unless the old file is half filled.
     pub(crate) fn keep(mut self) -> io::Result<()> {
         self.file.flush()?;
         match &self.pending {
             Some(Pending { temporary, fill: Some(file), .. }) => {
+                reserve(file, fs::metadata(temporary)?.len())?;
                 if let Err(error) = fill_with(file, temporary) {
                     let whole = format!("{error}; `{}` holds all of it", temporary.display());
                     self.pending = None;
@@ -163,8 +165,61 @@ fn becomes(file: &File, old: &Metadata) -> bool {
     file.set_permissions(old.permissions()).is_ok()
 }
 
+/// Makes a file at least as long as `len`, with zeros that take space on the disk.
+///
+/// # Errors
+/// If the file system refuses; the file is then as it was.
+fn reserve(mut file: &File, len: u64) -> io::Result<()> {
+    let old = file.metadata()?.len();
+    if len <= old {
+        return Ok(());
+    }
+    file.seek(SeekFrom::Start(old))?;
+    let zeros = io::copy(&mut io::repeat(0).take(len - old), &mut file);
+    // Some file systems look for space only when they are asked to write at once.
+    zeros.and_then(|_| file.sync_data()).inspect_err(|_| {
+        // The old contents are whole, even where zeros stay after them.
+        let _ = file.set_len(old);
+    })
+}
+
 /// Makes the bytes of `from` those of a file.
 fn fill_with(mut file: &File, from: &Path) -> io::Result<()> {
+    file.rewind()?;
     let bytes = io::copy(&mut File::open(from)?, &mut file)?;
     file.set_len(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_is_filled_in_place_holds_the_result_whether_that_is_longer_or_shorter() {
+        let folder = tempfile::tempdir().unwrap();
+        let [old, new] = ["old", "new"].map(|name| folder.path().join(name));
+        for len in [0, 1, 999, 1000, 1001, 300_000] {
+            fs::write(&old, [b'o'; 1000]).unwrap();
+            let result: Vec<u8> = (0..len).map(|i| (i % 251) as u8).collect();
+            fs::write(&new, &result).unwrap();
+            let file = OpenOptions::new().write(true).open(&old).unwrap();
+            reserve(&file, len).unwrap();
+            let reserved = fs::read(&old).unwrap();
+            assert_eq!(reserved.len() as u64, len.max(1000));
+            assert!(reserved[..1000] == [b'o'; 1000], "{len}");
+            fill_with(&file, &new).unwrap();
+            assert!(fs::read(&old).unwrap() == result, "{len}");
+        }
+    }
+
+    #[test]
+    fn a_file_whose_space_cannot_be_reserved_keeps_its_contents() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("old");
+        fs::write(&path, "old").unwrap();
+        // Whatever is written to it is refused.
+        let file = OpenOptions::new().read(true).open(&path).unwrap();
+        assert!(reserve(&file, 1 << 20).is_err());
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+    }
 }

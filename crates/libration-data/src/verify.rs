@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 use std::fs::{self, File};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use crate::checksum::checksum_of;
@@ -17,7 +18,7 @@ pub struct Flaw {
     pub path: PathBuf,
     /// What is wrong.
     pub what: String,
-    /// Whether the file is missing or has other bytes than the manifest says.
+    /// Whether the file is missing or has other bytes than the manifest says, and another one can take its place.
     pub broken: bool,
 }
 
@@ -27,9 +28,9 @@ pub fn verify(folder: &Path, manifest: &Manifest, mut go_on: impl FnMut(u64) -> 
     let (mut flaws, mut bytes) = (Vec::new(), 0);
     for chunk in &manifest.chunks {
         for file in &chunk.files {
-            if let Err(what) = sound(folder, file) {
+            if let Err((what, broken)) = sound(folder, file) {
                 let (chunk, path) = (chunk.chunk.clone(), file.path.clone());
-                flaws.push(Flaw { chunk, path, what, broken: true });
+                flaws.push(Flaw { chunk, path, what, broken });
             }
         }
         bytes += chunk.bytes();
@@ -65,11 +66,34 @@ pub fn unlisted(folder: &Path, manifest: &Manifest) -> Result<Vec<PathBuf>, Data
     Ok(found)
 }
 
-fn sound(folder: &Path, file: &Stored) -> Result<(), String> {
-    let found = File::open(folder.join(&file.path)).and_then(checksum_of);
-    let (sum, bytes) = found.map_err(|error| format!("cannot be read: {error}"))?;
+/// Nothing, if a file is what the manifest says.
+///
+/// # Errors
+/// What is wrong, and whether another file can take its place: a folder cannot be replaced by renaming.
+fn sound(folder: &Path, file: &Stored) -> Result<(), (String, bool)> {
+    let path = folder.join(&file.path);
+    if fs::symlink_metadata(&path).is_ok_and(|found| found.is_dir()) {
+        return Err(("is a folder; expected a file".to_owned(), false));
+    }
+    same(&path, file).map_err(|what| (what, true))
+}
+
+/// The same of a path that is no folder.
+fn same(path: &Path, file: &Stored) -> Result<(), String> {
+    let unreadable = |error| format!("cannot be read: {error}");
+    // To open a named pipe waits for its writer, and a device may have no end.
+    let found = fs::metadata(path).map_err(unreadable)?;
+    if !found.is_file() {
+        return Err("is not a regular file".to_owned());
+    }
+    let length = |bytes| format!("has {bytes} bytes; the manifest says {}", file.bytes);
+    if found.len() != file.bytes {
+        return Err(length(found.len()));
+    }
+    let limited = |found: File| checksum_of(found.take(file.bytes.saturating_add(1)));
+    let (sum, bytes) = File::open(path).and_then(limited).map_err(unreadable)?;
     if bytes != file.bytes {
-        return Err(format!("has {bytes} bytes; the manifest says {}", file.bytes));
+        return Err(length(bytes));
     }
     if sum != file.blake3 {
         return Err(format!("has the checksum {sum}; the manifest says {}", file.blake3));

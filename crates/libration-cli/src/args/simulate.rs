@@ -65,7 +65,8 @@ pub(crate) struct SimulateArgs {
     /// Format of the rows [default: that of the extension of --output, or csv]
     #[arg(long, value_parser = formats())]
     pub(crate) format: Option<Format>,
-    /// File to write, whole or not at all; one that is replaced keeps its permissions, owner and links [default: standard output]
+    /// File to write, whole or not at all; one that is replaced keeps its permissions, owner and links; one with several hard links or
+    /// of another owner is filled in place [default: standard output]
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 }

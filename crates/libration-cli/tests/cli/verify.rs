@@ -177,3 +177,113 @@ fn what_the_settings_do_not_lead_to_is_left_as_it_is_and_said() {
     let run = libration("verify set --repair").current_dir(dir.path()).assert().code(2);
     run.stderr(contains("was written by version"));
 }
+
+#[test]
+fn a_length_that_the_settings_do_not_lead_to_is_never_called_repaired() {
+    let dir = settings(SETTINGS);
+    write(&dir, "set", "--format npy").success();
+    let manifest = dir.path().join("set/manifest.jsonl");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let path = dir.path().join("set/reward/000003-00000002.npy");
+    let good = fs::read(&path).unwrap();
+    let sum = libration_data::checksum([&good[..]]);
+    let told = |bytes: usize| format!("\"blake3\":\"{sum}\",\"bytes\":{bytes}");
+    let lie = text.replace(&told(good.len()), &told(good.len() + 1));
+    assert_ne!(lie, text);
+    fs::write(&manifest, &lie).unwrap();
+    let [found, other] = [good.len(), good.len() + 1];
+    let said = || {
+        contains(format!("has {found} bytes; the manifest says {other}"))
+            .and(contains("cannot be repaired: the settings lead to other bytes"))
+    };
+    let run = libration("verify set --repair").current_dir(dir.path()).assert().code(1);
+    run.stdout(is_empty()).stderr(said().and(contains("repaired: chunk").not()));
+    write(&dir, "set", "--format npy --resume").code(1).stderr(said());
+    assert_eq!(fs::read(&path).unwrap(), good);
+    assert_eq!(fs::read_to_string(&manifest).unwrap(), lie);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_regular_file_is_not_read_but_replaced() {
+    use std::os::unix::fs::symlink;
+    use std::process;
+    use std::time::Duration;
+
+    let dir = settings(SETTINGS);
+    write(&dir, "set", "--format npy").success();
+    let path = dir.path().join("set");
+    let whole = contents(&path);
+    let [zeros, pipe] =
+        ["reward", "action"].map(|name| path.join(name).join("000001-00000003.npy"));
+    let replace = || {
+        [&zeros, &pipe].into_iter().for_each(|path| fs::remove_file(path).unwrap());
+        symlink("/dev/zero", &zeros).unwrap();
+        assert!(process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    };
+    let run = |words: &str| {
+        libration(words).current_dir(dir.path()).timeout(Duration::from_secs(60)).assert()
+    };
+    replace();
+    let help = contains("help: `libration verify --repair set`");
+    let named = run("verify set").code(1).stderr(help);
+    let said = String::from_utf8(named.get_output().stderr.clone()).unwrap();
+    assert_eq!(said.matches("000001-00000003.npy is not a regular file").count(), 2, "{said}");
+    run("verify set --repair").success();
+    assert!(contents(&path) == whole);
+    assert!(!zeros.is_symlink());
+    replace();
+    run("--quiet rollout --config set.toml --out set --format npy --resume").success();
+    assert!(contents(&path) == whole);
+}
+
+#[test]
+fn a_folder_in_the_place_of_a_file_is_named_and_left() {
+    let dir = settings(SETTINGS);
+    write(&dir, "set", "--format npy").success();
+    let path = dir.path().join("set/reward/000001-00000003.npy");
+    fs::remove_file(&path).unwrap();
+    fs::create_dir(&path).unwrap();
+    let verify = |words: &str| libration(words).current_dir(dir.path()).assert().code(1);
+    let said = || contains("000001-00000003.npy is a folder; expected a file");
+    verify("verify set").stderr(said().and(contains("--repair").not()));
+    let cannot = || said().and(contains("cannot be repaired; help: remove it first"));
+    verify("verify set --repair").stdout(is_empty()).stderr(cannot());
+    write(&dir, "set", "--format npy --resume").code(1).stderr(cannot());
+    assert!(path.is_dir());
+    fs::remove_dir(&path).unwrap();
+    libration("verify set --repair").current_dir(dir.path()).assert().success();
+}
+
+#[test]
+fn a_manifest_whose_chunks_are_not_the_first_in_order_is_not_said_to_be_continued() {
+    let dir = settings(SETTINGS);
+    write(&dir, "set", "--format npy").success();
+    let path = dir.path().join("set");
+    let whole = contents(&path);
+    let manifest = path.join("manifest.jsonl");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let mut without = lines.clone();
+    without.remove(2);
+    let mut swapped = lines.clone();
+    swapped.swap(2, 3);
+    for lines in [without, swapped] {
+        fs::write(&manifest, lines.join("\n") + "\n").unwrap();
+        let what = "cannot be continued: chunk 000000-00000002 stands where 000000-00000001 should";
+        let said = || contains(what).and(contains("help: delete line 3 and all lines after it"));
+        let run = libration("verify set").current_dir(dir.path()).assert().code(1);
+        run.stderr(said().and(contains("is unfinished").not()));
+        let resumed = write(&dir, "set", "--format npy --resume").code(2);
+        resumed.stderr(said().and(contains("the manifest of set")).and(contains("settings").not()));
+        // The advice leads to the whole data set.
+        fs::write(&manifest, lines[..2].join("\n") + "\n").unwrap();
+        write(&dir, "set", "--format npy --resume").success();
+        assert!(contents(&path) == whole);
+    }
+    // A chunk after the last is one that stands nowhere.
+    let more = lines[30].replace("\"chunk\":\"000005-00000004\"", "\"chunk\":\"000006-00000000\"");
+    fs::write(&manifest, text.clone() + &more + "\n").unwrap();
+    let resumed = write(&dir, "set", "--format npy --resume").code(2);
+    resumed.stderr(contains("chunk 000006-00000000 stands after the last chunk"));
+}

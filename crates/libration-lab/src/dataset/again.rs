@@ -84,6 +84,12 @@ fn whole(
         let (chunk, path) = (String::new(), path.to_owned());
         Flaw { chunk, path, what, broken: false }
     };
+    // Those after the last are named below.
+    let of_settings = manifest.chunks.get(..wanted as usize).unwrap_or(&manifest.chunks);
+    if let Some(what) = misplaced(of_settings, [first, end], chunks) {
+        let what = format!("cannot be continued: {what}");
+        return Ok(vec![of_all(Path::new("manifest.jsonl"), what)]);
+    }
     if found < wanted {
         let what = format!("is unfinished: {found} of {wanted} chunks; --resume goes on");
         return Ok(vec![of_all(Path::new("manifest.jsonl"), what)]);
@@ -98,6 +104,24 @@ fn whole(
     let unlisted = unlisted(folder, manifest)?;
     let unlisted = unlisted.iter().map(|path| of_all(path, "is not in the manifest".to_owned()));
     Ok(extra.chain(unlisted).collect())
+}
+
+/// The first chunk that does not stand where it belongs, in words, if these are not the first ones of some groups in order; each group
+/// has so many chunks.
+pub(super) fn misplaced(all: &[Chunk], [first, end]: [usize; 2], chunks: u64) -> Option<String> {
+    let wanted = |i: usize| {
+        let (group, k) = (first as u64 + i as u64 / chunks, i as u64 % chunks);
+        (group < end as u64).then(|| format!("{group:06}-{k:08}"))
+    };
+    let i = (0..all.len()).find(|&i| wanted(i).as_ref() != Some(&all[i].chunk))?;
+    let place = wanted(i).map_or_else(
+        || "after the last chunk".to_owned(),
+        |wanted| format!("where {wanted} should"),
+    );
+    // The first line has the settings.
+    let (found, line) = (&all[i].chunk, i + 2);
+    let help = format!("delete line {line} and all lines after it, then run with --resume");
+    Some(format!("chunk {found} stands {place}; help: {help}"))
 }
 
 /// The settings in a manifest.

@@ -58,6 +58,14 @@ pub enum DatasetError {
         /// Why.
         what: String,
     },
+    /// The chunks of the manifest are not the first ones in order.
+    #[error("the manifest of {} cannot be continued: {what}", folder.display())]
+    Order {
+        /// Of which folder.
+        folder: PathBuf,
+        /// Which chunk is wrong where, and what to do.
+        what: String,
+    },
     /// It was written by another version, which may compute otherwise.
     #[error("{} was written by version {found}; this is {}, which may compute otherwise", folder.display(), env!("CARGO_PKG_VERSION"))]
     Version {

@@ -36,7 +36,7 @@ pub(super) fn broken(
 }
 
 /// Computes the chunks of broken files again and replaces these files, each whole or not at all. Gives the flaws that stay: those of
-/// files that the settings do not lead to.
+/// files that the settings do not lead to, and folders in the place of files.
 pub(super) fn repair(
     folder: &Folder,
     described: &Described<'_>,
@@ -52,6 +52,11 @@ pub(super) fn repair(
     let mut lost = Vec::new();
     let mut of_groups: BTreeMap<usize, BTreeMap<usize, Vec<&Flaw>>> = BTreeMap::new();
     for flaw in flaws {
+        if !flaw.broken {
+            let what = format!("{}; cannot be repaired; help: remove it first", flaw.what);
+            lost.push(Flaw { what, ..flaw.clone() });
+            continue;
+        }
         match numbers.get(&*flaw.chunk).map(|&number| (first + number / each, number)) {
             Some((group, number)) if group < end => {
                 of_groups.entry(group).or_default().entry(number).or_default().push(flaw);
@@ -131,8 +136,9 @@ impl Visit for Again<'_> {
 fn same(files: &[FileOf<'_>], chunk: &Chunk, path: &Path) -> bool {
     let stored = chunk.files.iter().find(|stored| stored.path == path);
     let again = files.iter().find(|file| file.path == path);
-    let sums = stored
-        .zip(again)
-        .map(|(stored, again)| stored.blake3 == checksum(again.pieces.iter().copied()));
-    sums.unwrap_or(false)
+    let is_same = stored.zip(again).map(|(stored, again)| {
+        let bytes: u64 = again.pieces.iter().map(|piece| piece.len() as u64).sum();
+        stored.bytes == bytes && stored.blake3 == checksum(again.pieces.iter().copied())
+    });
+    is_same.unwrap_or(false)
 }

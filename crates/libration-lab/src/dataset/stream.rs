@@ -10,6 +10,7 @@ use libration::rl::{Plan, Rollout};
 use libration_data::{Flaw, Folder, Manifest, Stored, store};
 use serde_json::{Map, Value, json};
 
+use super::again::misplaced;
 use super::chunk::{Done, Rows};
 use super::episodes::Episodes;
 use super::minari::Before;
@@ -80,15 +81,12 @@ pub fn write(job: &Job<'_>, watch: &dyn Watch) -> Result<Manifest, DatasetError>
     let mut folder = Folder::open(out, &head(dataset, format, [first, end]), resume)?;
     let chunks = dataset.chunks();
     let mut there = folder.manifest().chunks.len() as u64;
-    for (i, chunk) in folder.manifest().chunks.iter().enumerate() {
+    if let Some(what) = misplaced(&folder.manifest().chunks, [first, end], chunks) {
+        return Err(DatasetError::Order { folder: out.to_owned(), what });
+    }
+    for chunk in &folder.manifest().chunks {
         let number = |name: &str| chunk.holds.get(name).and_then(Value::as_u64).unwrap_or(0);
         watch.there(number("transitions"), chunk.bytes());
-        let (group, k) = (first as u64 + i as u64 / chunks, i as u64 % chunks);
-        let wanted = format!("{group:06}-{k:08}");
-        if chunk.chunk != wanted || group >= end as u64 {
-            let what = format!("chunk {} stands where {wanted} should", chunk.chunk);
-            return Err(DatasetError::settings(out)(&what));
-        }
     }
     let flaws = broken(out, folder.manifest(), watch)?;
     let described = Described { dataset, format, groups: [first, end] };
