@@ -135,7 +135,7 @@ def analyze(
         Also say the largest ``dt`` that keeps to these (oscillator): a relative energy drift, a length in m, an error relative to the
         amplitude.
     loss:
-        The probability that a command is lost, at least 0 and below 1; what acts goes on then.
+        The probability that a command is lost, at least 0 and below 1; the last command stays.
     cost_weights:
         Weights of position², velocity² and command² of what the loop costs; by default of its energy.
 

@@ -12,7 +12,7 @@ use crate::bounded::read_bounded;
 /// Its name in the folder.
 pub(crate) const NAME: &str = "manifest.jsonl";
 
-/// Bytes of the longest manifest: a file takes less than 200 of them, so that there is room for five million files.
+/// Bytes of the longest manifest: a file takes less than 200 of them, which leaves room for five million files.
 pub(crate) const LIMIT: u64 = 1 << 30;
 
 /// What a data set consists of: its settings, and the chunks that are there. In its file each has a line of JSON.

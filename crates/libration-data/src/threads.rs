@@ -23,7 +23,7 @@ pub fn on_threads<R: Send>(
         }
     };
     thread::scope(|scope| {
-        // Where the system gives no more threads, those that there are do the work.
+        // Where the system gives no more threads, the ones at hand do the work.
         let start = |_| thread::Builder::new().spawn_scoped(scope, drain).is_ok();
         (1..threads.min(count)).all(start);
         drain();

@@ -88,7 +88,7 @@ fn what_is_open_and_what_is_closed_stands_in_blocks_of_their_own() {
     assert_eq!(radius, number(closed, "spectral radius"));
     let excess = found["closed_loop_spectral_radius_minus_one"].as_f64().unwrap();
     assert!((radius - 1.0 - excess).abs() < 1e-15);
-    // Without a loop there is one block, and the plant of a skewed clock falls out of step by itself.
+    // Without a loop there is one block, and the plant alone loses its phase under a skewed clock.
     let plain = "analyze --system oscillator --integrator rk4 --dt 0.01";
     assert!(!told(plain).contains("loop"));
     let skewed = told(&format!("{plain} --skew gaussian:0.01 --feedback 10,2"));

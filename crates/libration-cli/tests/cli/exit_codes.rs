@@ -122,7 +122,7 @@ fn every_command_that_is_interrupted_says_so_by_its_exit_code() {
         "simulate --system pendulum --integrator rk4 --dt 0.01 --steps 1e9 --every 1e9",
     ] {
         let mut child = start(folder.path(), words, Stdio::null());
-        // Long enough to have begun; whoever is still starting is interrupted all the same.
+        // Long enough to have begun; a process that still starts is interrupted as well.
         sleep(Duration::from_millis(500));
         assert!(child.try_wait().unwrap().is_none(), "{words} ended early");
         interrupt(&child);

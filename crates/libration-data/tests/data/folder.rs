@@ -108,7 +108,7 @@ fn every_flipped_bit_missing_file_and_lie_of_the_manifest_is_named() {
     );
     fs::remove_file(&file).unwrap();
     assert!(verify(&path, &manifest, |_| true)[0].what.contains("cannot be read"));
-    // Whoever has seen enough stops: the first chunk is sound.
+    // The caller may stop early: the first chunk is sound.
     assert_eq!(verify(&path, &manifest, |_| false), []);
     let mut seen = Vec::new();
     verify(&path, &manifest, |bytes| {

@@ -85,7 +85,7 @@ impl<M: Model<1>> Loop<M> {
         let told = |mode: &Mode| {
             let how = swings(mode.angle, self.control.period).1;
             match mode.radius - 1.0 {
-                neutral if neutral.abs() < NEUTRAL => "a motion neither grows nor decays".into(),
+                neutral if neutral < NEUTRAL => "a motion neither grows nor decays".into(),
                 small if small < 1e-3 => {
                     format!("a motion grows by the factor 1 + {small:.2e} a period ({how})")
                 }

@@ -130,7 +130,7 @@ pub fn simulate_until(request: &Request, watch: &dyn Watch) -> Result<Trajectory
     }
 }
 
-/// Simulates what is asked and writes it into `out`, until the end or until `watch` says to stop.
+/// Simulates the request and writes its rows into `out`, until the end or until `watch` says to stop.
 ///
 /// CSV and JSON rows are written as they come, so that a trajectory of any length takes no memory
 /// and a reader that goes away ends the work. (`out` is dynamic so that the loops, some hundreds of

@@ -56,6 +56,12 @@ fn of_step<S: Float>(request: &Request) -> Option<String> {
 /// Why a loop, or a step under an uneven clock, overflows: it is unstable, in the mean square where something is drawn.
 fn looped(request: &Request) -> Option<String> {
     let Request { system, actuation, stepping, dt, timing, .. } = *request;
+    if let (None, Some(method)) = (timing.feedback, stepping.method()) {
+        let why = unstable(method, system, [dt, 1.0]).or_else(|| uneven(method, request));
+        if why.is_some() {
+            return why;
+        }
+    }
     let (q, v, criteria) = (request.q.clone(), request.v.clone(), Criteria::default());
     let step =
         analyze::Request { system, actuation, stepping, dt, q, v, steps: 1, criteria, timing };
@@ -70,12 +76,6 @@ fn looped(request: &Request) -> Option<String> {
         return Some(format!(
             "{about}the closed loop is unstable: its spectral radius is {radius}; {way_out}"
         ));
-    }
-    if let (None, Some(method)) = (answer.feedback, stepping.method()) {
-        let why = unstable(method, system, [dt, 1.0]).or_else(|| uneven(method, request));
-        if why.is_some() {
-            return why;
-        }
     }
     let growth = answer.growth.and_then(|growth| growth.mean_square_growth);
     growth.filter(|growth| *growth > 0.0).map(|growth| {

@@ -128,3 +128,13 @@ fn a_free_mass_that_leaves_the_float_type_is_not_called_unstable() {
         assert!(found.contains("the step is stable, but a number exceeds"), "{found}");
     }
 }
+
+#[test]
+fn recorded_steps_beyond_the_limit_of_the_method_are_named_with_their_mean() {
+    // Steps seven times as long as dt = 0.1: ωΔt = 0.7·√10 = 2.21, and 2/(7·√10) = 0.09035 s is the largest dt.
+    let even = request("oscillator", &[("omega2", 10.0)], Method::VelocityVerlet, 0.1);
+    let slow = Request { record: Some(vec![7.0; 3000]), steps: 3000, every: 3000, ..even };
+    let found = reason(&slow).unwrap();
+    let wanted = "of the mean recorded step, ωΔt = 2.21 is beyond velocity-verlet's limit 2; choose --dt below 0.0903";
+    assert!(found.ends_with(wanted), "{found}");
+}
