@@ -23,3 +23,13 @@ pub(crate) fn target() -> PathBuf {
 pub(crate) fn built(program: &str) -> PathBuf {
     target().join(format!("{program}{}", env::consts::EXE_SUFFIX))
 }
+
+/// The crates of the engine: numbers and physics, which do no input or output.
+pub(crate) const ENGINE: [&str; 4] =
+    ["libration", "libration-analysis", "libration-batch", "libration-core"];
+
+/// Whether a file is a source of the engine.
+pub(crate) fn in_engine(path: &str) -> bool {
+    let file = |name| path.strip_prefix("crates/")?.strip_prefix(name)?.strip_prefix("/src/");
+    ENGINE.into_iter().any(|name| file(name).is_some())
+}

@@ -7,7 +7,8 @@
 use std::error::Error;
 use std::sync::atomic::AtomicBool;
 
-use libration::analysis::{Latency, Plant};
+use libration::analysis::Plant;
+use libration::control::Latency;
 use libration::control::clock::Jittered;
 use libration::control::controller::Luenberger;
 use libration::control::delay::{Order, Packets};

@@ -3,8 +3,8 @@
 use std::ffi::CString;
 use std::ops::RangeInclusive;
 
-use libration::analysis::{Feedback, Jitter, LqrWeights};
 use libration::catalog::{self, Actuation};
+use libration::control::{Feedback, Jitter, LqrWeights};
 use libration::{AnySystem, Method};
 use libration_lab::analyze::{Late, Stepping, Timing};
 use libration_lab::config::limits::{self, MOST_GAIN, MOST_RMS};

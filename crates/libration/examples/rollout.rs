@@ -4,7 +4,8 @@
 //! bound, and what they lose before they do.
 
 use libration::State;
-use libration::analysis::{Feedback, Latency, Plant};
+use libration::analysis::Plant;
+use libration::control::{Feedback, Latency};
 use libration::ensemble::{All, Execution};
 use libration::integrator::VelocityVerlet;
 use libration::rl::policy::Linear;

@@ -4,30 +4,14 @@
 //! is written once; on floats it simulates, on dual numbers it differentiates itself, on
 //! polynomials it yields its own update matrix.
 //!
-//! This crate does no input or output, reads no clock and prints nothing.
+//! This crate is the front of the engine: [`libration_core`] has numbers, integrators, systems and the parts of control loops,
+//! [`libration_analysis`] what is derived from a step, [`libration_batch`] what runs many trajectories at once. None of them does
+//! input or output, reads a clock or prints.
 
-pub mod analysis;
-mod array;
-pub mod catalog;
-pub mod checkpoint;
-pub mod control;
-pub mod elementary;
-pub mod ensemble;
-pub mod integrator;
-mod method;
-pub mod number;
-pub mod random;
-pub mod replay;
-pub mod rl;
-mod scalar;
-pub mod simulation;
-mod state;
-pub mod system;
-
-pub use catalog::{AnySystem, CatalogError};
-pub use ensemble::Ensemble;
-pub use integrator::Integrator;
-pub use method::Method;
-pub use scalar::{Elementary, Float, Scalar};
-pub use state::State;
-pub use system::{Hamiltonian, Model, System};
+pub use libration_analysis as analysis;
+pub use libration_batch::{Ensemble, checkpoint, ensemble, replay, rl};
+pub use libration_core::{
+    AnySystem, CatalogError, Elementary, Float, Hamiltonian, Integrator, Method, Model, Scalar,
+    State, System, catalog, control, elementary, integrator, number, random, simulation, system,
+    with_method, with_system,
+};

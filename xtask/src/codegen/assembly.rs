@@ -13,7 +13,7 @@ use crate::{command, workspace};
 pub(super) fn build() -> Result<PathBuf, String> {
     let folder = workspace::target().join("codegen");
     let mut compile = command::cargo(
-        "rustc --package libration --lib --release --message-format=json-render-diagnostics \
+        "rustc --package libration-batch --lib --release --message-format=json-render-diagnostics \
          -- --emit asm -C symbol-mangling-version=v0",
     );
     compile
@@ -32,7 +32,7 @@ fn of_artifact(messages: &str) -> Option<PathBuf> {
         .split('"')
         .filter(|word| word.ends_with(".rmeta"))
         .map(|path| PathBuf::from(path.replace(r"\\", r"\")))
-        .find(|path| name(path).is_some_and(|name| name.starts_with("liblibration-")))?;
+        .find(|path| name(path).is_some_and(|name| name.starts_with("liblibration_batch-")))?;
     let unit = name(&metadata)?.strip_prefix("lib")?;
     Some(metadata.with_file_name(unit).with_extension("s"))
 }
@@ -48,8 +48,8 @@ mod tests {
     #[test]
     fn the_assembly_lies_beside_the_metadata() {
         let messages = r#"{"filenames":["t/deps/libhalf-1.rlib","t/deps/libhalf-1.rmeta"]}
-{"filenames":["t/liblibration.rlib","t/deps/liblibration-2.rmeta"],"fresh":true}"#;
-        assert_eq!(of_artifact(messages), Some(PathBuf::from("t/deps/libration-2.s")));
+{"filenames":["t/liblibration_batch.rlib","t/deps/liblibration_batch-2.rmeta"],"fresh":true}"#;
+        assert_eq!(of_artifact(messages), Some(PathBuf::from("t/deps/libration_batch-2.s")));
         assert_eq!(of_artifact("{}"), None);
     }
 }

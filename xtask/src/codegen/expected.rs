@@ -49,7 +49,7 @@ pub(super) fn complaints(found: &[(Kernel, Census)]) -> Vec<String> {
                         missing.push(format!(
                             "{instructions} {float} {system} {method} ({kind}): not in the assembly. Is it \
                              a function of its own, and is its method and system made in \
-                             crates/libration/src/ensemble/any.rs?"
+                             crates/libration-batch/src/ensemble/any.rs?"
                         ));
                     }
                 }

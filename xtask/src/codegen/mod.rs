@@ -64,8 +64,8 @@ These are instructions in the loops that take the steps: on single numbers (scal
 are narrower than the widest (narrow), calls, and registers stored and loaded again (spills). A lane
 loop becomes vectors only if the whole step is inlined into it and has no loop of its own: put
 `#[inline(always)]` on what the step calls, call no function of the platform, branch on no data, and
-write out what repeats, as crates/libration/src/integrator/composition.rs does. Where registers are
-spilled, the block is too wide: see `width` in crates/libration/src/ensemble/run.rs, and measure.";
+write out what repeats, as crates/libration-core/src/integrator/composition.rs does. Where registers are
+spilled, the block is too wide: see `width` in crates/libration-batch/src/ensemble/run.rs, and measure.";
 
 /// What is in the kernels of an assembly, by name.
 fn censuses(assembly: &str) -> Vec<(Kernel, Census)> {

@@ -14,14 +14,16 @@ const HEADER: &str = "\
 /// What the kernels follow from.
 pub(super) fn seal() -> Result<String, String> {
     let compiler = command::output(command::program("rustc").arg("--version"))?;
-    let tree = "tree --package libration -e normal --prefix none";
+    let tree = "tree --package libration-batch -e normal --prefix none";
     let tree = command::output(&mut command::cargo(tree))?;
     // Without the folder of the engine itself.
     let tree = tree.lines().map(|line| line.split(" (").next().unwrap_or_default().to_owned());
     let manifest = read(&workspace::root().join("Cargo.toml"))?;
     let profile = manifest.split("\n[").find(|table| table.starts_with("profile.release]"));
     let mut paths = Vec::new();
-    gather(&workspace::root().join("crates/libration/src"), &mut paths)?;
+    for name in ["libration-batch", "libration-core"] {
+        gather(&workspace::root().join("crates").join(name).join("src"), &mut paths)?;
+    }
     paths.sort();
     let sources = paths.iter().map(|path| Ok(code::of(&read(path)?)));
     let sources = sources.collect::<Result<Vec<String>, String>>()?;

@@ -6,7 +6,7 @@ use super::code::{line_of, words};
 use super::finding::Finding;
 use super::source::Source;
 
-const HOME: &str = "crates/libration/src/integrator/";
+const HOME: &str = "crates/libration-core/src/integrator/";
 
 /// Implementations of `Integrator` outside their folder, and second ones of the same type.
 pub(super) fn check(sources: &[Source]) -> Vec<Finding> {
@@ -54,11 +54,11 @@ mod tests {
     }
 
     const EULER: (&str, &str) =
-        ("crates/libration/src/integrator/euler.rs", "impl Integrator for Euler {}\n");
+        ("crates/libration-core/src/integrator/euler.rs", "impl Integrator for Euler {}\n");
 
     #[test]
     fn a_second_definition_is_found() {
-        let again = "crates/libration/src/integrator/euler32.rs";
+        let again = "crates/libration-core/src/integrator/euler32.rs";
         let text = "struct A;\nimpl<const N: usize> crate::Integrator for super::Euler<N> {}\n";
         assert_eq!(places(&[EULER, (again, text)]), [(again.to_owned(), 2)]);
     }
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn one_definition_each_passes() {
-        let other = "crates/libration/src/integrator/composition.rs";
+        let other = "crates/libration-core/src/integrator/composition.rs";
         let text = "// impl Integrator for Euler\nimpl<I: Integrator> Integrator for Both<I> {}\n";
         assert_eq!(places(&[EULER, (other, text)]), []);
     }

@@ -3,6 +3,7 @@
 use super::code::{has_word, line_of, words};
 use super::finding::Finding;
 use super::source::Source;
+use crate::workspace;
 
 const MODULES: [&str; 6] = ["env", "fs", "io", "net", "process", "time"];
 const NAMES: [&str; 9] = [
@@ -19,9 +20,9 @@ const NAMES: [&str; 9] = [
 const ADVICE: &str = "the engine reads and prints nothing and knows no clock: return the value, \
                       and let crates/libration-lab or the command do it";
 
-/// Doors to the outside world in the sources of `crates/libration`.
+/// Doors to the outside world in the sources of the engine.
 pub(super) fn check(source: &Source) -> Vec<Finding> {
-    if !source.path.starts_with("crates/libration/src/") {
+    if !workspace::in_engine(&source.path) {
         return Vec::new();
     }
     let names = source.code_lines().flat_map(|(number, line)| {
@@ -59,7 +60,7 @@ mod tests {
 
     #[test]
     fn doors_to_the_outside_are_found() {
-        let engine = "crates/libration/src/state.rs";
+        let engine = "crates/libration-core/src/state.rs";
         for module in MODULES {
             assert_eq!(lines(engine, &format!("\nuse std::{module};")), [2]);
             assert_eq!(lines(engine, &format!("use std::{{fmt,\n {module}::*}};")), [1]);
@@ -72,7 +73,7 @@ mod tests {
 
     #[test]
     fn mathematics_comments_and_other_crates_pass() {
-        let engine = "crates/libration/src/state.rs";
+        let engine = "crates/libration-core/src/state.rs";
         assert!(lines(engine, "use std::{array, f64::consts};").is_empty());
         assert!(lines(engine, "/// println!(\"{}\", std::env::args())\nlet time = 0;").is_empty());
         assert!(lines("crates/libration-lab/src/lib.rs", "use std::fs;").is_empty());

@@ -3,13 +3,14 @@
 use super::code::{has_word, prefixes};
 use super::finding::Finding;
 use super::source::Source;
+use crate::workspace;
 
 /// Modules that may choose instructions.
 const KERNELS: [&str; 2] = ["ensemble", "kernel"];
 
 /// SIMD in the engine outside the batch kernels.
 pub(super) fn check(source: &Source) -> Vec<Finding> {
-    let in_engine = source.path.starts_with("crates/libration/src/");
+    let in_engine = workspace::in_engine(&source.path);
     if !in_engine || KERNELS.iter().any(|module| source.path.contains(module)) {
         return Vec::new();
     }
@@ -36,7 +37,7 @@ mod tests {
 
     #[test]
     fn simd_outside_the_kernels_is_found() {
-        let physics = "crates/libration/src/integrator/euler.rs";
+        let physics = "crates/libration-core/src/integrator/euler.rs";
         assert_eq!(findings(physics, "use pulp::Arch;"), 1);
         assert_eq!(findings(physics, "#[target_feature(enable = \"avx2\")]"), 1);
         assert_eq!(findings(physics, "let x = _mm256_add_pd(a, b);"), 1);
@@ -44,9 +45,9 @@ mod tests {
 
     #[test]
     fn kernels_comments_and_millimetres_pass() {
-        assert_eq!(findings("crates/libration/src/ensemble/run.rs", "use pulp::Arch;"), 0);
-        assert_eq!(findings("crates/libration/src/state.rs", "// pulp"), 0);
-        assert_eq!(findings("crates/libration/src/state.rs", "let length_mm = 1;"), 0);
+        assert_eq!(findings("crates/libration-batch/src/ensemble/run.rs", "use pulp::Arch;"), 0);
+        assert_eq!(findings("crates/libration-core/src/state.rs", "// pulp"), 0);
+        assert_eq!(findings("crates/libration-core/src/state.rs", "let length_mm = 1;"), 0);
         assert_eq!(findings("crates/libration-lab/src/lib.rs", "use pulp::Arch;"), 0);
     }
 }

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use libration::analysis::{Feedback, Jitter, LqrWeights};
 use libration::catalog;
+use libration::control::{Feedback, Jitter, LqrWeights};
 use libration_lab::advise::{Control, Law, Measure, Request, Tolerance};
 use libration_lab::analyze::Late;
 use libration_lab::setting::Setting;

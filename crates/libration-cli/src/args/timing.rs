@@ -1,7 +1,7 @@
 //! What is asked of the timing of a loop.
 
 use clap::Args;
-use libration::analysis::{Feedback, Jitter, LqrWeights};
+use libration::control::{Feedback, Jitter, LqrWeights};
 use libration_lab::analyze::{Late, Timing};
 use libration_lab::config::limits::{MOST_GAIN, MOST_RMS};
 

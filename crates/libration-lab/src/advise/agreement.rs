@@ -1,6 +1,6 @@
 //! The commands that advice prints, run: `analyze` says of a loop what `advise` says.
 
-use libration::analysis::{Feedback, Jitter};
+use libration::control::{Feedback, Jitter};
 use libration::random::{Address, Purpose};
 use libration::{AnySystem, Model, catalog};
 

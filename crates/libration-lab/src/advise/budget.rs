@@ -1,7 +1,8 @@
 //! What a loop stands of each imperfection alone, and which fails first.
 
 use libration::Model;
-use libration::analysis::{CostError, Feedback, Imperfections, Jitter, Latency, Mode};
+use libration::analysis::{CostError, Imperfections, Mode};
+use libration::control::{Feedback, Jitter, Latency};
 use serde::Serialize;
 
 use super::control::{Control, Law};

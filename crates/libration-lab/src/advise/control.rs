@@ -1,8 +1,9 @@
 //! A control loop: its law, its timing, and what it costs.
 
-use libration::analysis::{Feedback, Jitter, LqrWeights, ObserverNoise};
+use libration::analysis::ObserverNoise;
 use libration::control::clock::{Recorded, RecordedError};
 use libration::control::controller::PidGains;
+use libration::control::{Feedback, Jitter, LqrWeights};
 
 /// A loop and what is wrong with it.
 #[derive(Clone, Debug, PartialEq)]

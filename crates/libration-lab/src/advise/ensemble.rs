@@ -1,6 +1,6 @@
 //! Many loops with all that is stated.
 
-use libration::analysis::Jitter;
+use libration::control::Jitter;
 use libration::control::clock::{Jittered, Rates, Recorded};
 use libration::control::delay::{Order, Packets};
 use libration::control::{Delay, Schedule, WhiteNoise};

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use libration::AnySystem;
-use libration::analysis::{Feedback, Jitter, LqrWeights, ObserverNoise};
+use libration::analysis::ObserverNoise;
 use libration::catalog::{self, Actuation};
 use libration::control::controller::PidGains;
+use libration::control::{Feedback, Jitter, LqrWeights};
 
 use super::AdviseError;
 use super::control::{Control, Correction, Law, Regulator};

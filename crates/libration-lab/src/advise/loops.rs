@@ -1,11 +1,9 @@
 //! The loop that is advised on: its controller, designed and as the linear map that it is.
 
-use libration::analysis::{
-    CostError, Feedback, Imperfections, Latency, LinearController, LqrError, LqrWeights, NotLinear,
-    Plant,
-};
+use libration::analysis::{CostError, Imperfections, LinearController, LqrError, NotLinear, Plant};
 use libration::control::controller::{Luenberger, Pid, PidGains, StateFeedback};
 use libration::control::{ControlError, Controller};
+use libration::control::{Feedback, Latency, LqrWeights};
 use libration::{Float, Model, State, System};
 
 use super::about::About;

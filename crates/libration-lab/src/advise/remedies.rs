@@ -1,7 +1,8 @@
 //! Changes that stabilise an unstable loop.
 
 use libration::Model;
-use libration::analysis::{Feedback, Imperfections, Plant};
+use libration::analysis::{Imperfections, Plant};
+use libration::control::Feedback;
 use serde::Serialize;
 
 use super::loops::Loop;

@@ -1,8 +1,8 @@
 //! What is asked.
 
 use libration::AnySystem;
-use libration::analysis::LqrWeights;
 use libration::catalog::Actuation;
+use libration::control::LqrWeights;
 
 use super::AdviseError;
 use super::control::Control;

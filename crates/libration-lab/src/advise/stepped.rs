@@ -1,7 +1,8 @@
 //! What a simulated loop loses by its integrator.
 
 use bytemuck::Pod;
-use libration::analysis::{Imperfections, Latency, Plant};
+use libration::analysis::{Imperfections, Plant};
+use libration::control::Latency;
 use libration::control::Schedule;
 use libration::ensemble::{All, Loops, Setup};
 use libration::system::Chosen;

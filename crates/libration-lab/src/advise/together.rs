@@ -1,6 +1,7 @@
 //! All that is stated at once: by theory, and simulated.
 
-use libration::analysis::{CostError, Imperfections, LqrWeights, Plant};
+use libration::analysis::{CostError, Imperfections, Plant};
+use libration::control::LqrWeights;
 use libration::{Model, State};
 
 use super::AdviseError;

@@ -1,6 +1,7 @@
 //! What a loop costs under noise.
 
-use libration::analysis::{CostError, Feedback, Imperfections, Jitter, Latency, LqrWeights, Plant};
+use libration::analysis::{CostError, Imperfections, Plant};
+use libration::control::{Feedback, Jitter, Latency, LqrWeights};
 use serde::Serialize;
 
 use super::Timing;

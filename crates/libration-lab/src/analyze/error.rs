@@ -1,7 +1,7 @@
 //! Why there is no analysis.
 
 use libration::CatalogError;
-use libration::analysis::Latency;
+use libration::control::Latency;
 use libration::simulation::SimulationError;
 use thiserror::Error;
 

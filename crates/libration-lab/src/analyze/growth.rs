@@ -1,7 +1,8 @@
 //! How a loop grows where steps or losses are drawn.
 
 use libration::Scalar;
-use libration::analysis::{Feedback, Imperfections, Latency, Plant};
+use libration::analysis::{Imperfections, Plant};
+use libration::control::{Feedback, Latency};
 use libration::number::Wide;
 use serde::Serialize;
 

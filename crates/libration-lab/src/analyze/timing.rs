@@ -1,6 +1,7 @@
 //! What timing does to the loop that a request describes.
 
-use libration::analysis::{Feedback, Jitter, Latency, LqrWeights, Plant};
+use libration::analysis::Plant;
+use libration::control::{Feedback, Jitter, Latency, LqrWeights};
 use libration::number::Wide;
 use libration::{AnySystem, Model, Scalar, State};
 use serde::Serialize;

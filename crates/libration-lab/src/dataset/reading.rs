@@ -1,8 +1,8 @@
 //! Settings from the tables of a file.
 
 use libration::Method;
-use libration::analysis::Jitter;
 use libration::catalog::{self, Actuation};
+use libration::control::Jitter;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Delays};
 

@@ -1,8 +1,8 @@
 //! What environments are made of.
 
 use libration::Method;
-use libration::analysis::Jitter;
 use libration::catalog::Actuation;
+use libration::control::Jitter;
 use libration::rl::{Autoreset, Delays};
 
 use super::task::Seen;

@@ -1,10 +1,10 @@
 //! The rows of loops: trajectories under feedback, with clocks and commands that are not ideal.
 
 use bytemuck::Pod;
-use libration::analysis::{Jitter, Latency};
 use libration::control::Schedule;
 use libration::control::clock::{Jittered, Recorded, Skewed};
 use libration::control::controller::StateFeedback;
+use libration::control::{Jitter, Latency};
 use libration::ensemble::{All, Loops, Setup};
 use libration::integrator::SymplecticEuler;
 use libration::system::{Chosen, Oscillator};

@@ -20,7 +20,7 @@ use std::io::Write;
 use std::sync::atomic::AtomicBool;
 
 use libration::Float;
-use libration::analysis::{Feedback, Jitter, Latency};
+use libration::control::{Feedback, Jitter, Latency};
 use libration::ensemble::NoRoom;
 use serde::Serialize;
 use serde_json::{Value, json};

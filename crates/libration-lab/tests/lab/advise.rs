@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use libration::AnySystem;
-use libration::analysis::{Feedback, Jitter};
+use libration::control::{Feedback, Jitter};
 use libration::system::{Oscillator, Pendulum};
 use libration_lab::advise::{self, Advice, AdviseError, Kind, Law, Measure, Request};
 use libration_lab::{Config, Effort, Lab, Silent};

@@ -1,10 +1,11 @@
 //! The budgets of loops, beside simulations that know nothing of how they were found.
 
 use libration::State;
-use libration::analysis::{Feedback, LqrWeights, ObserverNoise, Plant};
+use libration::analysis::{ObserverNoise, Plant};
 use libration::control::Controller;
 use libration::control::clock::Recorded;
 use libration::control::controller::{Luenberger, Pid, PidGains};
+use libration::control::{Feedback, LqrWeights};
 use libration::system::Oscillator;
 use libration_lab::advise::{self, AdviseError, Budget, Correction, Kind, Law, Regulator};
 

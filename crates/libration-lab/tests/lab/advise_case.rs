@@ -1,10 +1,11 @@
 //! A loop, and what simulations say of it that know nothing of how advice is found.
 
-use libration::analysis::{Feedback, Imperfections, Jitter, Latency, LqrWeights, Plant};
+use libration::analysis::{Imperfections, Plant};
 use libration::catalog::Actuation;
 use libration::control::clock::{Jittered, Rates};
 use libration::control::controller::StateFeedback;
 use libration::control::{Clock, Controller, Schedule};
+use libration::control::{Feedback, Jitter, Latency, LqrWeights};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::Exact;
 use libration::random::{Address, Purpose};

@@ -1,8 +1,8 @@
 //! Where advice could be wrong with confidence: long queues, fast clocks, limits, rare outbursts, what nothing meets.
 
 use libration::AnySystem;
-use libration::analysis::{Feedback, Jitter};
 use libration::control::controller::PidGains;
+use libration::control::{Feedback, Jitter};
 use libration::system::{DampedOscillator, Kepler, Pendulum};
 use libration_lab::advise::{self, Control, Kind, Law, Measure, Request};
 

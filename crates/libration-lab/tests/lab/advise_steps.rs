@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use libration::analysis::Feedback;
 use libration::catalog::Actuation;
+use libration::control::Feedback;
 use libration::system::{Kepler, Oscillator, Pendulum};
 use libration::{AnySystem, Hamiltonian, Integrator, Method, State, System};
 use libration_lab::advise::{Measure, Request, Tolerance};

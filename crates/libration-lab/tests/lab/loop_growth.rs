@@ -1,7 +1,7 @@
 //! How loops grow whose commands are lost, beside a NumPy program that knows nothing of Libration.
 
-use libration::analysis::{Feedback, Jitter};
 use libration::catalog;
+use libration::control::{Feedback, Jitter};
 use libration_lab::analyze::{Criteria, GrowthAnswer, Late, Request, Stepping, Timing, analyze};
 use serde_json::Value;
 

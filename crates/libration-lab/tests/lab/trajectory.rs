@@ -2,8 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
-use libration::analysis::Jitter;
 use libration::catalog::Actuation;
+use libration::control::Jitter;
 use libration::{AnySystem, Method, catalog};
 use libration_lab::analyze::{Stepping, Timing};
 use libration_lab::export::Values;

@@ -1,8 +1,8 @@
 //! Environments and replay buffers.
 
 use libration::State;
-use libration::analysis::Jitter;
 use libration::checkpoint::{Checkpoint, CheckpointError};
+use libration::control::Jitter;
 use libration::control::clock::{Correlated, Drifting, Gaussian, Jittered, Skewed, Uniform};
 use libration::ensemble::{All, Execution};
 use libration::integrator::VelocityVerlet;

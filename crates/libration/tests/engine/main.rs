@@ -8,6 +8,7 @@ mod catalog;
 mod dimensions;
 mod elementary;
 mod ensemble;
+mod exact;
 mod golden;
 mod half;
 mod numpy_parity;

@@ -1,7 +1,8 @@
 //! What timing does to a loop, beside values computed elsewhere with 30 digits.
 
 use libration::State;
-use libration::analysis::{Feedback, Jitter, Latency, Plant, RandomLatency};
+use libration::analysis::Plant;
+use libration::control::{Feedback, Jitter, Latency, RandomLatency};
 use libration::integrator::{ExplicitEuler, Rk4, SymplecticEuler, VelocityVerlet};
 use libration::system::{DampedOscillator, Oscillator};
 use proptest::prelude::*;

@@ -1,7 +1,8 @@
 //! What timing does to loops on the edge, with huge gains, and over long times.
 
 use libration::State;
-use libration::analysis::{Feedback, Imperfections, Jitter, Latency, Plant};
+use libration::analysis::{Imperfections, Plant};
+use libration::control::{Feedback, Jitter, Latency};
 use libration::integrator::{SymplecticEuler, VelocityVerlet};
 use libration::system::Oscillator;
 

@@ -1,6 +1,5 @@
 //! What the bits of a trajectory depend on, and what not.
 
-use libration::analysis::{Feedback, Jitter, Latency, RandomLatency};
 use libration::checkpoint::Checkpoint;
 use libration::control::clock::{
     Correlated, Drifting, Dropped, Gaussian, Jittered, Late, Rates, Skewed, Uniform, Wandering,
@@ -9,6 +8,7 @@ use libration::control::clock::{
 use libration::control::controller::{Force, Pid, PidGains, Saturated, StateFeedback};
 use libration::control::delay::{Latencies, Order, Packets, Random, RecordedLatencies, Schedule};
 use libration::control::{Clock, Controller, Delay};
+use libration::control::{Feedback, Jitter, Latency, RandomLatency};
 use libration::ensemble::{All, Assign, Each, Execution, InstructionSet, Loops, Setup};
 use libration::integrator::{ExplicitEuler, Rk4, SymplecticEuler, VelocityVerlet};
 use libration::system::{Oscillator, Pendulum};

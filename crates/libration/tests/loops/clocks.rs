@@ -1,8 +1,8 @@
 //! What clocks do.
 
 use libration::State;
-use libration::analysis::Jitter;
 use libration::control::Clock;
+use libration::control::Jitter;
 use libration::control::clock::{
     Correlated, Drifting, Dropped, Gaussian, Jittered, Late, Rates, Recorded, Skewed, Uniform,
     Wandering, Waving,

@@ -1,8 +1,8 @@
 //! What controllers command.
 
 use libration::State;
-use libration::analysis::Feedback;
 use libration::control::Controller;
+use libration::control::Feedback;
 use libration::control::controller::{Pid, PidGains, Saturated, StateFeedback};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::Rk4;

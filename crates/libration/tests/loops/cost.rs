@@ -1,12 +1,11 @@
 //! What simulated loops cost under noise, beside the Lyapunov equation.
 
-use libration::analysis::{
-    Feedback, Imperfections, Jitter, Latency, LinearController, LqrWeights, ObserverNoise, Plant,
-};
+use libration::analysis::{Imperfections, LinearController, ObserverNoise, Plant};
 use libration::control::clock::{Jittered, Rates};
 use libration::control::controller::{Luenberger, Pid, PidGains, StateFeedback};
 use libration::control::delay::{Order, Packets};
 use libration::control::{Controller, Schedule, WhiteNoise};
+use libration::control::{Feedback, Jitter, Latency, LqrWeights};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::Exact;
 use libration::random::{Address, Purpose};

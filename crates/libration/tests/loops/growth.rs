@@ -1,8 +1,9 @@
 //! How simulated loops grow, beside their spectral radii.
 
-use libration::analysis::{Feedback, Imperfections, Jitter, Latency, Plant};
+use libration::analysis::{Imperfections, Plant};
 use libration::control::controller::StateFeedback;
 use libration::control::delay::Schedule;
+use libration::control::{Feedback, Jitter, Latency};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::{Exact, Rk4, VelocityVerlet};
 use libration::system::Oscillator;

@@ -9,5 +9,6 @@ mod cost;
 mod delays;
 mod growth;
 mod moments;
+mod noise;
 mod one;
 mod refused;

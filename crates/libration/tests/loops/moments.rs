@@ -1,9 +1,10 @@
 //! Means over many loops, beside theory: each within three standard errors.
 
-use libration::analysis::{Feedback, Jitter, Plant, RandomLatency};
+use libration::analysis::Plant;
 use libration::control::clock::{Jittered, Skewed};
 use libration::control::controller::StateFeedback;
 use libration::control::delay::Random;
+use libration::control::{Feedback, Jitter, RandomLatency};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::{Rk4, SymplecticEuler, VelocityVerlet};
 use libration::system::Oscillator;

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use libration::analysis::{Feedback, Latency};
+use libration::control::{Feedback, Latency};
 use libration::system::{Held, Oscillator};
 use libration::{Integrator, State};
 

@@ -1,7 +1,6 @@
 //! What is refused, in words that name it.
 
 use libration::State;
-use libration::analysis::{Feedback, Jitter, Latency};
 use libration::control::clock::{
     Correlated, Drifting, Dropped, Fixed, Gaussian, Jittered, Late, Rates, Recorded, Skewed,
     Uniform, Wandering, Waving,
@@ -9,6 +8,7 @@ use libration::control::clock::{
 use libration::control::controller::{Pid, PidGains, Saturated, StateFeedback};
 use libration::control::delay::{Latencies, Order, Packets, RecordedLatencies, Schedule};
 use libration::control::{Clock, Controller, Delay};
+use libration::control::{Feedback, Jitter, Latency};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::Rk4;
 use libration::system::Oscillator;

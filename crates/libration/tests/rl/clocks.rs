@@ -1,7 +1,7 @@
 //! Clocks of environments.
 
 use libration::State;
-use libration::analysis::Jitter;
+use libration::control::Jitter;
 use libration::control::clock::{Clock, Drifting, Recorded, Skewed};
 use libration::ensemble::{All, Execution};
 use libration::integrator::SymplecticEuler;

@@ -39,7 +39,7 @@ fn a_perturbed_pendulum_keeps_its_bits_which_are_those_of_python() {
     .limit(70)
     .delays(Delays { observation: [3, 3], action: [2, 6] })
     .saturation(6.0)
-    .clock((Skewed(libration::analysis::Jitter::Gaussian(0.01)), Jittered(Uniform(0.1))))
+    .clock((Skewed(libration::control::Jitter::Gaussian(0.01)), Jittered(Uniform(0.1))))
     .sensor(Noisy([noise; 3]));
     for execution in executions() {
         let mut all = Environments::new(world, COUNT, 0, execution).unwrap();

@@ -53,7 +53,7 @@ fn ideal() -> Spring {
 fn perturbed(
     autoreset: Autoreset,
 ) -> Spring<Uneven, Noisy<Uniform, 2>, impl Variation<f32, Oscillator<f32>, Regulate>> {
-    use libration::analysis::Jitter;
+    use libration::control::Jitter;
     use libration::rl::variation::Varied;
 
     Environment::new(All(SPRING), SymplecticEuler, 0.02, TASK, ANYWHERE)
@@ -75,7 +75,7 @@ fn perturbed(
 
 /// One whose integrator is known only when the program runs.
 fn chosen(method: Method) -> impl World<f32, 2, 1> {
-    use libration::analysis::Jitter;
+    use libration::control::Jitter;
 
     Environment::new(All(SPRING), method, 0.02, TASK, ANYWHERE)
         .substeps(3)

@@ -1,7 +1,8 @@
 //! Energy under clocks of different rates: each trajectory has a band of its own.
 
 use libration::State;
-use libration::analysis::{EnergyBand, Jitter, Linearisation};
+use libration::analysis::{EnergyBand, Linearisation};
+use libration::control::Jitter;
 use libration::integrator::VelocityVerlet;
 
 use super::{Clocks, SEED, run, start};

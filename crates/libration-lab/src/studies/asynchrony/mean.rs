@@ -3,7 +3,8 @@
 use std::f64::consts::{E, SQRT_2};
 
 use libration::State;
-use libration::analysis::{Jitter, Linearisation, QuadraticForm};
+use libration::analysis::{Linearisation, QuadraticForm};
+use libration::control::Jitter;
 use libration::integrator::VelocityVerlet;
 use libration::number::Wide;
 

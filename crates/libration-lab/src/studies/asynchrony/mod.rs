@@ -8,7 +8,8 @@ mod replay;
 mod stable;
 
 use libration::State;
-use libration::analysis::{Jitter, Plant};
+use libration::analysis::Plant;
+use libration::control::Jitter;
 use libration::control::clock::{Gaussian, Jittered, Skewed};
 use libration::ensemble::{All, Setup};
 use libration::integrator::VelocityVerlet;

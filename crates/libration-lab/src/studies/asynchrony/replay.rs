@@ -1,6 +1,6 @@
 //! Whether a run with uneven clocks of different rates can be repeated.
 
-use libration::analysis::Jitter;
+use libration::control::Jitter;
 
 use super::{Clocks, DT, SEED, run, start};
 use crate::Lab;

@@ -1,7 +1,7 @@
 //! Which of many clocks leave their trajectory stable.
 
 use libration::State;
-use libration::analysis::Jitter;
+use libration::control::Jitter;
 use libration::system::Oscillator;
 
 use super::{Clocks, SEED, run, start};

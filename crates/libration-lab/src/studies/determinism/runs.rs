@@ -1,9 +1,9 @@
 //! The runs whose bits are compared.
 
-use libration::analysis::{Feedback, Jitter, Latency};
 use libration::control::Schedule;
 use libration::control::clock::{Gaussian, Jittered, Skewed};
 use libration::control::controller::StateFeedback;
+use libration::control::{Feedback, Jitter, Latency};
 use libration::ensemble::{All, BatchFloat, Execution, Loops, Setup};
 use libration::integrator::SymplecticEuler;
 use libration::system::Oscillator;

@@ -1,9 +1,10 @@
 //! By how much an imperfection makes a loop cost more.
 
-use libration::analysis::{CostError, Imperfections, Jitter, Latency, LqrWeights, Plant};
+use libration::analysis::{CostError, Imperfections, Plant};
 use libration::control::clock::{Fixed, Gaussian, Jittered, Skewed};
 use libration::control::controller::StateFeedback;
 use libration::control::{Clock, Schedule, WhiteNoise};
+use libration::control::{Jitter, Latency, LqrWeights};
 use libration::ensemble::{All, Loops, MeanCost, Setup};
 use libration::integrator::SymplecticEuler;
 use libration::number::Mantissa;

@@ -1,7 +1,8 @@
 //! How far trajectories must come apart.
 
 use libration::State;
-use libration::analysis::{Feedback, Jitter, JitterMargin, Latency, Plant, StepNoise};
+use libration::analysis::{JitterMargin, Plant, StepNoise};
+use libration::control::{Feedback, Jitter, Latency};
 use libration::integrator::SymplecticEuler;
 use libration::system::Oscillator;
 

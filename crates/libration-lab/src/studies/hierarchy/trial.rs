@@ -1,9 +1,10 @@
 //! Disturbed trajectories beside undisturbed ones.
 
-use libration::analysis::{Jitter, Latency, Linearisation, QuadraticForm};
+use libration::analysis::{Linearisation, QuadraticForm};
 use libration::control::clock::{Fixed, Gaussian, Jittered, Skewed};
 use libration::control::controller::Force;
 use libration::control::{Clock, Schedule};
+use libration::control::{Jitter, Latency};
 use libration::ensemble::{All, Loops, Setup};
 use libration::integrator::SymplecticEuler;
 use libration::number::{Mantissa, Wide};

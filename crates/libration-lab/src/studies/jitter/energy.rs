@@ -1,6 +1,7 @@
 //! How the energy walks under jitter.
 
-use libration::analysis::{Jitter, Plant};
+use libration::analysis::Plant;
+use libration::control::Jitter;
 use libration::{Method, State};
 
 use super::setting::{FREE, Setting, Theory};

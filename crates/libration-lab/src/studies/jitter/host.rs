@@ -1,7 +1,8 @@
 //! The clock of a loop that ran: what it would do to an oscillator.
 
-use libration::analysis::{Feedback, Jitter, JitterMargin, Plant};
+use libration::analysis::{JitterMargin, Plant};
 use libration::control::clock::Recorded;
+use libration::control::{Feedback, Jitter};
 use libration::ensemble::{All, Loops, Setup};
 use libration::number::Wide;
 use libration::{Method, State};

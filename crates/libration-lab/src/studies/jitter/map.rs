@@ -1,8 +1,9 @@
 //! Growth over time step and jitter: of a free oscillator, and of one with a damper.
 
-use libration::analysis::{Feedback, Jitter, StepNoise};
+use libration::analysis::StepNoise;
 use libration::control::clock::{Gaussian, Jittered};
 use libration::control::controller::StateFeedback;
+use libration::control::{Feedback, Jitter};
 use libration::ensemble::{All, Setup};
 use libration::integrator::VelocityVerlet;
 use libration::{Method, State};

@@ -1,7 +1,8 @@
 //! How much jitter a loop bears.
 
 use libration::Method;
-use libration::analysis::{Feedback, Jitter, JitterMargin, Plant};
+use libration::analysis::{JitterMargin, Plant};
+use libration::control::{Feedback, Jitter};
 use libration::integrator::VelocityVerlet;
 
 use super::map::{damped, damping};

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, SQRT_2, TAU};
 
-use libration::analysis::Jitter;
+use libration::control::Jitter;
 use libration::system::Oscillator;
 use libration::{Method, State};
 

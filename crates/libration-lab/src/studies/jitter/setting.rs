@@ -1,8 +1,7 @@
 //! A method on the configured oscillator, a time step and the jitter of it.
 
-use libration::analysis::{
-    Feedback, Jitter, Linearisation, Plant, QuadraticForm, Resonance, StepNoise,
-};
+use libration::analysis::{Linearisation, Plant, QuadraticForm, Resonance, StepNoise};
+use libration::control::{Feedback, Jitter};
 use libration::number::Wide;
 use libration::system::Oscillator;
 use libration::{Method, State};

@@ -1,7 +1,8 @@
 //! Two lengths of a step, each stable, that are unstable together.
 
 use libration::Method;
-use libration::analysis::{Feedback, Plant};
+use libration::analysis::Plant;
+use libration::control::Feedback;
 use libration::control::clock::Recorded;
 use libration::control::controller::StateFeedback;
 use libration::ensemble::{All, Setup};

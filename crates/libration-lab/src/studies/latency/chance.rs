@@ -1,7 +1,8 @@
 //! Latencies that are drawn for every step.
 
 use libration::Method;
-use libration::analysis::{Plant, RandomLatency};
+use libration::analysis::Plant;
+use libration::control::RandomLatency;
 use libration::control::controller::StateFeedback;
 use libration::control::delay::Random;
 use libration::ensemble::{All, Loops, Setup};

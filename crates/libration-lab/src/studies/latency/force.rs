@@ -1,9 +1,10 @@
 //! A force that is itself late: the source's experiment.
 
-use libration::analysis::{Feedback, Latency, Plant};
+use libration::analysis::Plant;
 use libration::control::Schedule;
 use libration::control::clock::Fixed;
 use libration::control::controller::Force;
+use libration::control::{Feedback, Latency};
 use libration::ensemble::{All, Loops, Setup};
 use libration::integrator::ExplicitEuler;
 use libration::simulation::{Sample, Simulator};

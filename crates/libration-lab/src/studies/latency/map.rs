@@ -1,7 +1,8 @@
 //! Maps of stability.
 
 use libration::Method;
-use libration::analysis::{Feedback, Windows};
+use libration::analysis::Windows;
+use libration::control::Feedback;
 
 use super::edge::{is_stable, lines};
 use super::onset::GAINS;

@@ -1,7 +1,8 @@
 //! The latency at which a loop begins to grow.
 
 use libration::Method;
-use libration::analysis::{Feedback, Plant};
+use libration::analysis::Plant;
+use libration::control::Feedback;
 use libration::number::Wide;
 
 use super::simulated::{Loop, ORIGIN, SPRING};

@@ -1,8 +1,9 @@
 //! Loops that are simulated, and how fast they grow.
 
-use libration::analysis::{Feedback, Latency, Plant, Windows};
+use libration::analysis::{Plant, Windows};
 use libration::control::Schedule;
 use libration::control::controller::StateFeedback;
+use libration::control::{Feedback, Latency};
 use libration::ensemble::{All, Loops, Setup};
 use libration::number::Wide;
 use libration::system::Oscillator;

@@ -1,7 +1,7 @@
 //! Latencies at which a loop is stable again.
 
 use libration::Method;
-use libration::analysis::Feedback;
+use libration::control::Feedback;
 
 use super::edge::is_stable;
 use super::simulated::Loop;

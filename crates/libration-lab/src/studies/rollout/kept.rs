@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use libration::State;
-use libration::analysis::Jitter;
+use libration::control::Jitter;
 use libration::control::clock::{Gaussian, Jittered, Skewed, Uniform};
 use libration::ensemble::{All, Execution, InstructionSet};
 use libration::integrator::SymplecticEuler;

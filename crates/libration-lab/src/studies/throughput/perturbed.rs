@@ -3,10 +3,10 @@
 use std::hint::black_box;
 
 use bytemuck::Pod;
-use libration::analysis::{Feedback, Jitter, Latency};
 use libration::control::clock::{Gaussian, Jittered, Skewed, Uniform};
 use libration::control::controller::StateFeedback;
 use libration::control::{Clock, Controller, Delay, Schedule};
+use libration::control::{Feedback, Jitter, Latency};
 use libration::ensemble::{All, Loops, Setup};
 use libration::integrator::SymplecticEuler;
 use libration::system::Oscillator;

@@ -1,0 +1,143 @@
+//! What a step does with the forces that it evaluates.
+
+use core::cell::RefCell;
+
+use super::UnknownStep;
+use libration_core::number::Ratio;
+use libration_core::{Integrator, Scalar, State, System};
+
+/// The coefficients of an integrator on `q̈ = a(q)`, by running one step on formal symbols.
+///
+/// ```text
+/// Qᵢ = q + cᵢΔt·v + Δt² Σⱼ aᵢⱼ·a(Qⱼ)
+/// q' = q + Δt·v + Δt² Σ b̄ᵢ·a(Qᵢ),   v' = v + Δt Σ bᵢ·a(Qᵢ)
+/// ```
+///
+/// Hairer, Nørsett, Wanner: Solving Ordinary Differential Equations I, 2nd ed., §II.14.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tableau {
+    /// `cᵢ`, one for each evaluation of the force.
+    pub c: Vec<Ratio>,
+    /// `aᵢⱼ` with `j < i`.
+    pub a: Vec<Vec<Ratio>>,
+    /// `b̄ᵢ`.
+    pub b_position: Vec<Ratio>,
+    /// `bᵢ`.
+    pub b: Vec<Ratio>,
+}
+
+/// A factor of a splitting method, in the order of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Letter {
+    /// `v += w·Δt·a(q)`.
+    Kick(Ratio),
+    /// `q += w·Δt·v`.
+    Drift(Ratio),
+}
+
+/// Powers of the unknown stand for symbols: `q`, `v`, then the forces in turn. With `Δt = 1` a step
+/// only multiplies symbols by constants, so they never mix.
+const POSITION: usize = 1;
+const VELOCITY: usize = 2;
+const FIRST_FORCE: usize = 3;
+
+/// A system whose force is a new symbol at each evaluation.
+struct Symbols {
+    arguments: RefCell<Vec<UnknownStep>>,
+}
+
+impl System<UnknownStep, 1> for Symbols {
+    fn acceleration(&self, state: &State<UnknownStep, 1>) -> [UnknownStep; 1] {
+        let mut arguments = self.arguments.borrow_mut();
+        arguments.push(state.q[0]);
+        [symbol(FIRST_FORCE + arguments.len() - 1)]
+    }
+}
+
+fn symbol(k: usize) -> UnknownStep {
+    UnknownStep::monomial(Ratio::ONE, k)
+}
+
+impl Tableau {
+    /// The tableau of `integrator`; none if it evaluates the force more than 29 times a step.
+    pub fn new(integrator: impl Integrator) -> Option<Self> {
+        let symbols = Symbols { arguments: RefCell::default() };
+        let start = State { q: [symbol(POSITION)], v: [symbol(VELOCITY)] };
+        let State { q: [q], v: [v] } = integrator.step(&symbols, start, UnknownStep::one());
+        let arguments = symbols.arguments.into_inner();
+        let forces = |p: &UnknownStep, n: usize| -> Vec<Ratio> {
+            (0..n).map(|j| p.coefficient(FIRST_FORCE + j)).collect()
+        };
+        let n = arguments.len();
+        (q.is_valid() && v.is_valid()).then(|| Tableau {
+            c: arguments.iter().map(|p| p.coefficient(VELOCITY)).collect(),
+            a: arguments.iter().enumerate().map(|(i, p)| forces(p, i)).collect(),
+            b_position: forces(&q, n),
+            b: forces(&v, n),
+        })
+    }
+
+    /// The word of kicks and drifts that the step is, if it is one: where each force acts for `bᵢ`
+    /// of the step at the time `cᵢ`, and whatever follows moves with the velocity it leaves.
+    pub fn word(&self) -> Option<Vec<Letter>> {
+        let lever = |i: usize, time: Ratio| self.b[i] * (time - self.c[i]);
+        let inner = self
+            .a
+            .iter()
+            .enumerate()
+            .all(|(i, row)| row.iter().enumerate().all(|(j, &a)| a == lever(j, self.c[i])));
+        let outer = (0..self.b.len()).all(|i| self.b_position[i] == lever(i, Ratio::ONE));
+        let mut time = Ratio::ZERO;
+        let mut word = Vec::new();
+        for (&b, &c) in self.b.iter().zip(&self.c) {
+            word.extend([Letter::Drift(c - time), Letter::Kick(b)]);
+            time = c;
+        }
+        word.push(Letter::Drift(Ratio::ONE - time));
+        word.retain(|letter| !letter.weight().is_zero());
+        (inner && outer).then_some(word)
+    }
+}
+
+impl Letter {
+    /// The fraction of the step for which it acts.
+    pub fn weight(self) -> Ratio {
+        match self {
+            Letter::Kick(w) | Letter::Drift(w) => w,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use libration_core::integrator::{
+        ExplicitEuler, Rk4, SymplecticEuler, TextbookVerlet, VelocityVerlet,
+    };
+
+    #[test]
+    fn verlet_is_kick_drift_kick_however_it_is_written() {
+        let half = Letter::Kick(Ratio::new(1, 2));
+        let word = Some(vec![half, Letter::Drift(Ratio::ONE), half]);
+        assert_eq!(Tableau::new(VelocityVerlet).unwrap().word(), word);
+        assert_eq!(Tableau::new(TextbookVerlet).unwrap().word(), word);
+    }
+
+    #[test]
+    fn only_splitting_methods_are_words() {
+        let euler = Tableau::new(SymplecticEuler).unwrap().word().unwrap();
+        assert_eq!(euler, [Letter::Kick(Ratio::ONE), Letter::Drift(Ratio::ONE)]);
+        assert_eq!(Tableau::new(ExplicitEuler).unwrap().word(), None);
+        assert_eq!(Tableau::new(Rk4).unwrap().word(), None);
+    }
+
+    #[test]
+    fn the_tableau_of_rk4_is_that_of_the_textbook() {
+        let rk4 = Tableau::new(Rk4).unwrap();
+        let [half, sixth, third] = [(1, 2), (1, 6), (1, 3)].map(|(n, d)| Ratio::new(n, d));
+        assert_eq!(rk4.c, [Ratio::ZERO, half, half, Ratio::ONE]);
+        assert_eq!(rk4.b, [sixth, third, third, sixth]);
+        assert_eq!(rk4.b_position, [sixth, sixth, sixth, Ratio::ZERO]);
+        assert_eq!(rk4.a[2], [Ratio::new(1, 4), Ratio::ZERO]);
+    }
+}

@@ -1,0 +1,78 @@
+//! What may be wrong with the timing of a loop.
+
+use thiserror::Error;
+
+use libration_core::control::{Jitter, Latency};
+
+/// All that may be wrong with the timing of a loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Imperfections {
+    /// How late each command arrives.
+    pub latency: Latency,
+    /// The law of step times, each drawn for itself.
+    pub jitter: Jitter,
+    /// The part by which all steps are longer than they should be.
+    pub skew: f64,
+    /// The probability that a command is lost on its way, each for itself; what acts goes on then.
+    pub loss: f64,
+}
+
+impl Imperfections {
+    /// Nothing is wrong.
+    pub const NONE: Imperfections = Imperfections {
+        latency: Latency::NONE,
+        jitter: Jitter::Gaussian(0.0),
+        skew: 0.0,
+        loss: 0.0,
+    };
+
+    /// Whether all steps are the same.
+    pub(super) fn repeat(&self) -> bool {
+        self.jitter.rms() == 0.0 && self.loss == 0.0
+    }
+}
+
+/// Why there is no answer.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum CostError {
+    /// A weight is none.
+    #[error("the weight of the {of} is {weight}; it must be a number that is at least 0")]
+    Weight {
+        /// Of what.
+        of: &'static str,
+        /// What was given.
+        weight: f64,
+    },
+    /// The probability of a loss is none.
+    #[error("the probability that a command is lost is {0}; it must be at least 0 and below 1")]
+    Loss(f64),
+    /// Steps would not be above zero.
+    #[error("the skew is {0}; it must be a number above −1")]
+    Skew(f64),
+    /// The matrix would be too large.
+    #[error(
+        "the latency is too many periods long: a loop that has to know {size} numbers, of which most are commands on their way, is too \
+         large; with jitter or losses there may be {MOST_RANDOM}, with a record and losses {MOST_REPLAYED}, with none of them {MOST_REPEATED}"
+    )]
+    Size {
+        /// State, controller and waiting commands.
+        size: usize,
+    },
+    /// A step of a record is none.
+    #[error(
+        "a step of the record is {0} periods long; it must be finite and at least 0, and one of them above 0"
+    )]
+    Step(f64),
+    /// Steps turn too far.
+    #[error("steps turn by more than 2048 rad in a standard deviation of the jitter")]
+    Turn,
+}
+
+/// Coordinates of a loop whose steps are drawn: a growth takes a second.
+pub(super) const MOST_RANDOM: usize = 100;
+
+/// Coordinates of a loop whose clock is replayed and whose commands may be lost: 300 second moments.
+pub(super) const MOST_REPLAYED: usize = 24;
+
+/// Coordinates of a loop whose steps are all the same.
+pub(super) const MOST_REPEATED: usize = 300;

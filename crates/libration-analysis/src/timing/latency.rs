@@ -1,0 +1,88 @@
+//! A loop whose command arrives late.
+
+use super::plant::{fed_back, repeated};
+use super::quasi::Quasi;
+use super::{HeldStep, Plant};
+use crate::UpdateMatrix;
+use libration_core::control::{Feedback, Latency};
+use libration_core::number::Wide;
+use libration_core::{Scalar, State};
+
+impl Plant<'_> {
+    /// The spectral radius of the loop that `feedback` closes with `latency`.
+    ///
+    /// Where the latency has a part of a step, the step splits where the command arrives, into two steps of the
+    /// integrator with a command each.
+    pub fn spectral_radius(&self, feedback: Feedback, latency: Latency) -> Wide {
+        self.characteristic(feedback, latency).radius()
+    }
+
+    /// The characteristic polynomial of the loop; its roots are the eigenvalues of the matrix that takes state
+    /// and waiting commands to the next step.
+    pub(super) fn characteristic(&self, feedback: Feedback, latency: Latency) -> Quasi {
+        let SplitStep { phi, old, new } = self.split(latency.part(), self.dt);
+        match latency.part() == 0.0 {
+            true => polynomial(feedback, latency.whole(), phi, new, State::origin()),
+            false => polynomial(feedback, latency.whole() + 1, phi, old, new),
+        }
+    }
+
+    /// What comes before a part of a step of `dt` seconds, and what after. Of steps on a grid only the one splits in which that is.
+    fn pieces(&self, part: f64, dt: Wide) -> (HeldStep, HeldStep) {
+        let Some((count, fine)) = &self.grid else {
+            let part = dt * Wide::from_f64(part);
+            return ((self.step)(part), (self.step)(dt - part));
+        };
+        let places = part * *count as f64;
+        let (whole, rest) = (places.trunc(), places.fract());
+        let h = dt / Wide::from_f64(*count as f64);
+        let one = fine(h);
+        let first = repeated(&one, whole as u64);
+        if rest == 0.0 {
+            return (first, repeated(&one, count - whole as u64));
+        }
+        let cut = h * Wide::from_f64(rest);
+        let before = first.then(&fine(cut));
+        let after = fine(h - cut).then(&repeated(&one, count - whole as u64 - 1));
+        (before, after)
+    }
+
+    /// A step of `dt` seconds that splits after a part of it.
+    pub(super) fn split(&self, part: f64, dt: Wide) -> SplitStep {
+        if part == 0.0 {
+            let HeldStep { phi, gamma } = (self.step)(dt);
+            return SplitStep { phi, old: State::origin(), new: gamma };
+        }
+        let (before, after) = self.pieces(part, dt);
+        SplitStep {
+            phi: after.phi.after(&before.phi),
+            old: after.phi.apply(&before.gamma),
+            new: after.gamma,
+        }
+    }
+}
+
+/// `y' = Φy + Γ_old·u_old + Γ_new·u_new`: a step within which a command takes over from another.
+pub(super) struct SplitStep {
+    pub(super) phi: UpdateMatrix<Wide, 1>,
+    pub(super) old: State<Wide, 1>,
+    pub(super) new: State<Wide, 1>,
+}
+
+/// `λᵐ·det(λ − Φ) + K·adj(λ − Φ)·(Γ_old + λ·Γ_new)` for `y' = Φy + Γ_old·u₋ₘ + Γ_new·u₁₋ₘ`.
+fn polynomial(
+    feedback: Feedback,
+    m: u64,
+    phi: UpdateMatrix<Wide, 1>,
+    old: State<Wide, 1>,
+    new: State<Wide, 1>,
+) -> Quasi {
+    let trace = phi.trace();
+    // The adjugate of λ − Φ is λ + Φ − trace.
+    let through = |gamma: State<Wide, 1>| {
+        let moved = phi.apply(&gamma).plus(-trace, gamma);
+        [fed_back(feedback, &moved), fed_back(feedback, &gamma)]
+    };
+    let ([old0, old1], [new0, new1]) = (through(old), through(new));
+    Quasi { m, a: [phi.determinant(), -trace], b: [old0, old1 + new0, new1] }
+}

@@ -1,0 +1,85 @@
+//! A plant, how its steps are taken, and the feedback that closes the loop.
+
+use std::rc::Rc;
+
+use super::HeldStep;
+use crate::{Linearisation, UpdateMatrix};
+use libration_core::control::Feedback;
+use libration_core::number::Wide;
+use libration_core::{Integrator, Model, Scalar, State};
+
+/// Steps of any size.
+type Steps<'a> = Rc<dyn Fn(Wide) -> HeldStep + 'a>;
+
+/// A plant with one degree of freedom, linear or linearised, with the step that is taken on it.
+pub struct Plant<'a> {
+    /// A step of any size.
+    pub(super) step: Steps<'a>,
+    /// What that consists of: so many steps of this kind, each as long.
+    pub(super) grid: Option<(u64, Steps<'a>)>,
+    /// The Jacobian of the rate of change.
+    pub(super) generator: UpdateMatrix<Wide, 1>,
+    /// The time step in seconds.
+    pub(super) dt: Wide,
+    /// Whether steps have no error, so that all is known of what lies between their ends.
+    pub(super) exact: bool,
+    /// Whether steps are those of the flow of the generator.
+    pub(super) flows: bool,
+}
+
+impl<'a> Plant<'a> {
+    /// `model` about the state `at`, in steps of `dt` seconds by `integrator`.
+    pub fn new(
+        integrator: impl Integrator + 'a,
+        model: impl Model<1> + 'a,
+        at: State<f64, 1>,
+        dt: f64,
+    ) -> Self {
+        let generator = Linearisation::generator_of(model, &at);
+        let step = Rc::new(move |h| HeldStep::of(integrator, model, &at, h));
+        Plant { step, generator, dt: Wide::from_f64(dt), exact: false, flows: false, grid: None }
+    }
+
+    /// The same without an integrator: each step is exact.
+    pub fn exact(model: impl Model<1> + 'a, at: State<f64, 1>, dt: f64) -> Self {
+        let generator = Linearisation::generator_of(model, &at);
+        let step = Rc::new(move |h| HeldStep::exact(model, &at, h));
+        Plant { step, generator, dt: Wide::from_f64(dt), exact: true, flows: true, grid: None }
+    }
+
+    /// This, with steps that are so many of its own, each as long: what a simulation does within the period of a loop.
+    pub fn substeps(self, count: u64) -> Self {
+        let fine = Rc::clone(&self.step);
+        let one = Rc::clone(&fine);
+        let many = move |h: Wide| repeated(&one(h / Wide::from_f64(count as f64)), count);
+        Plant { step: Rc::new(many), grid: Some((count, fine)), ..self }
+    }
+
+    /// How fast the plant moves by itself, or runs away, in rad/s.
+    pub fn rate(&self) -> f64 {
+        let [aq, av] = [0, 1].map(|j| self.generator.entry(1, j).to_f64().abs());
+        aq.sqrt().max(av)
+    }
+
+    /// This, with noise and cost as a simulation has them though its steps be exact: see [`Plant::cost`].
+    pub fn held(self) -> Self {
+        Plant { exact: false, ..self }
+    }
+
+    /// A step of the loop that `feedback` closes at once, of `dt` seconds.
+    pub(super) fn closed(&self, feedback: Feedback, dt: Wide) -> UpdateMatrix<Wide, 1> {
+        let HeldStep { phi, gamma } = (self.step)(dt);
+        UpdateMatrix::from_map(|e| phi.apply(&e).plus(-fed_back(feedback, &e), gamma))
+    }
+}
+
+/// So many of a step.
+pub(super) fn repeated(step: &HeldStep, count: u64) -> HeldStep {
+    let none = HeldStep { phi: UpdateMatrix::identity(), gamma: State::origin() };
+    (0..count).fold(none, |all, _| all.then(step))
+}
+
+/// `K·y`: minus the command.
+pub(super) fn fed_back(feedback: Feedback, y: &State<Wide, 1>) -> Wide {
+    Wide::from_f64(feedback.position) * y.q[0] + Wide::from_f64(feedback.velocity) * y.v[0]
+}

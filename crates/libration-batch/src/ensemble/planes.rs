@@ -1,0 +1,146 @@
+//! The states of many trajectories as structure of arrays.
+
+use core::array::from_fn;
+use core::mem::take;
+
+use bytemuck::Pod;
+
+use super::assign::padded;
+use super::{Buffer, EnsembleError, Lanes, NoRoom, Pages};
+use libration_core::State;
+
+/// Bytes by which each plane begins later than a multiple of a page would: planes that begin at
+/// the same place in their pages fight for the same few lines of the caches.
+const STAGGER: usize = 5 * 64;
+
+/// A page, and the unit of allocation.
+const PAGE: usize = 4096;
+
+/// `2·D` arrays of equal length in one piece of memory, each aligned to a cache line.
+#[derive(Debug)]
+pub(super) struct Planes<T, const D: usize> {
+    memory: Buffer<T>,
+    /// Elements from the beginning of one plane to that of the next.
+    stride: usize,
+    len: usize,
+}
+
+impl<T: Pod, const D: usize> Planes<T, D> {
+    /// Zeros, in memory that nobody has touched: pages come to be where they are first written.
+    ///
+    /// # Errors
+    /// If there is not so much memory.
+    pub(super) fn new(len: usize) -> Result<Self, EnsembleError> {
+        let refused = || NoRoom { needed: Self::bytes(len), available: None };
+        let stride = Self::plane(len).ok_or_else(refused)? / size_of::<T>();
+        let all = stride.checked_mul(2 * D).ok_or_else(refused)?;
+        let memory = Buffer::new(all, Pages::Huge)?;
+        Ok(Planes { memory, stride, len })
+    }
+
+    /// Bytes in one plane with what follows it.
+    fn plane(len: usize) -> Option<usize> {
+        len.checked_mul(size_of::<T>())?.checked_next_multiple_of(PAGE)?.checked_add(STAGGER)
+    }
+
+    /// Bytes that `len` trajectories take, as if there were room for any number.
+    pub(super) fn bytes(len: usize) -> u128 {
+        let plane = (len as u128 * size_of::<T>() as u128).next_multiple_of(PAGE as u128);
+        (plane + STAGGER as u128) * 2 * D as u128
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Plane `i` of `q₀ … q_{D−1}, v₀ … v_{D−1}`.
+    pub(super) fn plane_of(&self, i: usize) -> &[T] {
+        &self.memory[i * self.stride..][..self.len]
+    }
+
+    /// All planes.
+    pub(super) fn share(&mut self) -> Share<'_, T, D> {
+        let len = self.len;
+        let mut planes = self.memory.chunks_exact_mut(self.stride).map(|plane| &mut plane[..len]);
+        // There are 2·D chunks.
+        let mut next = || planes.next().unwrap_or_default();
+        let q = from_fn(|_| next());
+        Share { first: 0, q, v: from_fn(|_| next()) }
+    }
+}
+
+/// Blocks of `W` neighbouring trajectories: their positions and their velocities.
+type Blocks<'a, T, const D: usize, const W: usize> = ([&'a mut [[T; W]]; D], [&'a mut [[T; W]]; D]);
+
+/// The states of neighbouring trajectories.
+#[derive(Debug)]
+pub(super) struct Share<'a, T, const D: usize> {
+    /// Index of the first of them in the ensemble.
+    pub(super) first: usize,
+    pub(super) q: [&'a mut [T]; D],
+    pub(super) v: [&'a mut [T]; D],
+}
+
+impl<'a, T: Copy, const D: usize> Share<'a, T, D> {
+    /// How many trajectories there are.
+    pub(super) fn len(&self) -> usize {
+        self.q.first().map_or(0, |plane| plane.len())
+    }
+
+    /// Takes off the first `count`, or all if there are fewer.
+    pub(super) fn split_off(&mut self, count: usize) -> Share<'a, T, D> {
+        let count = count.min(self.len());
+        let mut cut = |plane: &mut &'a mut [T]| {
+            let (head, tail) = take(plane).split_at_mut(count);
+            *plane = tail;
+            head
+        };
+        let q = self.q.each_mut().map(&mut cut);
+        let v = self.v.each_mut().map(&mut cut);
+        let first = self.first;
+        self.first += count;
+        Share { first, q, v }
+    }
+
+    /// Blocks of `W`, as many as are full: position `i` of block `b` at `.0[i][b]`.
+    #[inline(always)]
+    pub(super) fn full_blocks<const W: usize>(self) -> Blocks<'a, T, D, W> {
+        let count = self.len() / W;
+        let blocks = |plane: &'a mut [T]| &mut plane.as_chunks_mut::<W>().0[..count];
+        (self.q.map(blocks), self.v.map(blocks))
+    }
+
+    /// All of them in arrays of a fixed size; lanes beyond the last trajectory repeat it.
+    #[inline(always)]
+    pub(super) fn load<const W: usize>(&self) -> ([[T; W]; D], [[T; W]; D]) {
+        (from_fn(|i| padded(self.q[i])), from_fn(|i| padded(self.v[i])))
+    }
+
+    /// Takes back what [`Share::load`] gave.
+    #[inline(always)]
+    pub(super) fn store<const W: usize>(&mut self, q: &[[T; W]; D], v: &[[T; W]; D]) {
+        let count = self.len();
+        for i in 0..D {
+            self.q[i].copy_from_slice(&q[i][..count]);
+            self.v[i].copy_from_slice(&v[i][..count]);
+        }
+    }
+
+    /// What an observer sees of them.
+    pub(super) fn lanes(&self, step: u64) -> Lanes<'_, T, D> {
+        Lanes {
+            first: self.first,
+            step,
+            q: self.q.each_ref().map(|plane| &**plane),
+            v: self.v.each_ref().map(|plane| &**plane),
+        }
+    }
+
+    /// Sets trajectory `n` of these.
+    pub(super) fn set(&mut self, n: usize, state: State<T, D>) {
+        for i in 0..D {
+            self.q[i][n] = state.q[i];
+            self.v[i][n] = state.v[i];
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! The state of a replay buffer, to be left and taken up again.
+
+use bytemuck::Pod;
+use memmap2::MmapMut;
+
+use super::{Capacity, Replay, ReplayError};
+use crate::checkpoint::{Checkpoint, CheckpointError, Trait};
+use libration_core::Float;
+
+impl<T: Float + Pod, const O: usize, const D: usize> Checkpoint for Replay<T, O, D> {
+    fn traits(&self) -> Vec<Trait> {
+        let Capacity { steps, environments, ends, priorities } = self.capacity;
+        vec![
+            ("kind", "replay buffer".to_owned()),
+            ("float type", T::NAME.to_owned()),
+            ("number of dimensions", D.to_string()),
+            ("number of observations", O.to_string()),
+            ("number of steps", steps.to_string()),
+            ("number of environments", environments.to_string()),
+            ("number of ends", ends.to_string()),
+            ("whether there are priorities", priorities.to_string()),
+        ]
+    }
+
+    fn save<E>(&self, mut sink: impl FnMut(&[u8]) -> Result<(), E>) -> Result<(), E> {
+        sink(self.bytes())
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), CheckpointError> {
+        let (found, wanted) = (state.len(), self.bytes().len());
+        if found != wanted {
+            return Err(CheckpointError::Length { found, wanted });
+        }
+        let damaged = |error: &dyn ToString| CheckpointError::Damaged(error.to_string());
+        let mut map = MmapMut::map_anon(wanted).map_err(|error| damaged(&error))?;
+        map.copy_from_slice(state);
+        let opened = Self::open(map).map_err(|error: ReplayError| damaged(&error))?;
+        // It may lie in a file, and stays there.
+        self.memory.take_up(&opened.memory);
+        (self.marks, self.sums) = (opened.marks, opened.sums);
+        Ok(())
+    }
+}

@@ -1,0 +1,258 @@
+//! Many environments.
+
+use bytemuck::Pod;
+
+use super::block::{self, BlockOf, OVER};
+use super::draws::Draws;
+use super::error::NOTHING_DRAWN;
+use super::history::History;
+use super::kernel::LANES;
+use super::start::Episode;
+use super::{Autoreset, Environment, EnvironmentError, Sensor, Start, Task, Variation, World};
+use crate::ensemble::{Assign, EnsembleError, Execution, NoRoom};
+use libration_core::control::Clock;
+use libration_core::control::error::ensure;
+use libration_core::random::Purpose;
+use libration_core::{Float, State};
+
+/// Environments that are stepped together.
+///
+/// ```
+/// use libration::State;
+/// use libration::control::clock::{Gaussian, Jittered};
+/// use libration::ensemble::{All, Execution};
+/// use libration::integrator::SymplecticEuler;
+/// use libration::rl::policy::Linear;
+/// use libration::rl::{Delays, Environment, Environments, Plan, Rollout};
+/// use libration::rl::{start::Between, task::Regulate};
+/// use libration::system::Oscillator;
+///
+/// # fn main() -> Result<(), libration::rl::EnvironmentError> {
+/// let spring = All(Oscillator { omega2: 10.0_f32 });
+/// let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
+/// let start = Between(State { q: [-1.0], v: [0.0] }, State { q: [1.0], v: [0.0] });
+/// let environment = Environment::new(spring, SymplecticEuler, 0.01, task, start)
+///     .limit(200)
+///     .delays(Delays::of(0, 1))
+///     .clock(Jittered(Gaussian(0.1)));
+/// let mut all = Environments::new(environment, 1000, 7, Execution::serial())?;
+/// let policy = Linear { weights: [[-10.0, -2.0]], bias: [0.0] };
+/// let mut rollout = Rollout::new(Plan::new(256, 1000).truncated())?;
+/// all.rollout(policy, &mut rollout)?;
+/// // Every episode was cut off once, and none was lost.
+/// assert_eq!(rollout.finals().len(), 1000);
+/// assert!(rollout.terminated().iter().all(|&over| over == 0));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct Environments<T, E, const O: usize, const D: usize>
+where
+    T: Float,
+    E: World<T, O, D>,
+{
+    pub(super) world: E,
+    pub(super) seed: u64,
+    pub(super) first: usize,
+    pub(super) step: u64,
+    pub(super) len: usize,
+    pub(super) execution: Execution,
+    pub(super) blocks: Vec<BlockOf<T, E, O, D>>,
+    pub(super) history: History,
+    pub(super) past: Vec<T>,
+    /// For clocks, sensors and actions.
+    pub(super) draws: [Draws; 3],
+}
+
+impl<T, E, const O: usize, const D: usize> Environments<T, E, O, D>
+where
+    T: Float + Pod,
+    E: World<T, O, D>,
+{
+    /// `len` environments, each at the start of its first episode; all that is random is drawn from `seed`.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Ensemble`] if the time step is not above zero, there are no substeps, there are more or fewer systems or
+    /// rates of clocks than environments, or there is not so much memory; [`EnvironmentError::Number`] if a number of the
+    /// environment cannot be; [`EnvironmentError::Limit`].
+    pub fn new(
+        world: E,
+        len: usize,
+        seed: u64,
+        execution: Execution,
+    ) -> Result<Self, EnvironmentError> {
+        Environments::shard(world, 0, len, seed, execution)
+    }
+
+    /// A part of more environments, as another process or machine may have the rest: those from number `first` on. Each does
+    /// what it does among all of them.
+    ///
+    /// What is listed for each environment, systems, actions or weights, is listed for those of the shard; rates of
+    /// clocks alone for all up to its last. Ends of episodes are counted from its first.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn shard(
+        world: E,
+        first: usize,
+        len: usize,
+        seed: u64,
+        execution: Execution,
+    ) -> Result<Self, EnvironmentError> {
+        let parts = world.parts();
+        let Environment { dt, substeps, delays, .. } = *parts;
+        if !(dt > 0.0 && T::from_f64(dt) > T::zero() && T::from_f64(dt).is_finite()) {
+            return Err(EnsembleError::TimeStep { dt }.into());
+        }
+        if substeps == 0 {
+            return Err(EnsembleError::Substeps.into());
+        }
+        if parts.limit == Some(0) {
+            return Err(EnvironmentError::Limit);
+        }
+        let allowed = "at most 2⁵³";
+        ensure("number of the first environment", first as f64, allowed, |n| n <= FURTHEST)?;
+        parts.task.check()?;
+        parts.start.check()?;
+        parts.clock.check()?;
+        parts.sensor.check()?;
+        parts.variation.check()?;
+        delays.check()?;
+        let [clock, sensor] = [parts.clock.words(), parts.sensor.words()].map(|n| n as f64);
+        let (timed, seen) = (E::Clock::DRAWS, E::Sensor::DRAWS);
+        ensure("random words of the clock", clock, NOTHING_DRAWN, |n| timed || n == 0.0)?;
+        ensure("random words of the sensor", sensor, NOTHING_DRAWN, |n| seen || n == 0.0)?;
+        parts.severity.check::<T>()?;
+        let most = parts.saturation;
+        ensure("saturation", most, "above 0", |most| T::from_f64(most) > T::zero())?;
+        let rates = parts.clock.trajectories();
+        let allowed = "a finite number above 0 whose inverse is one in the float type";
+        ensure("mass", parts.mass, allowed, |mass| {
+            let mobility = T::from_f64(mass.recip());
+            mobility > T::zero() && mobility.is_finite() && mass.is_finite()
+        })?;
+        for (what, values, len) in [
+            ("systems", parts.systems.count(), len),
+            ("rates of clocks", rates, first.saturating_add(len)),
+        ] {
+            if let Some(values) = values.filter(|&values| values != len) {
+                return Err(EnsembleError::Length { what, values, len }.into());
+            }
+        }
+        let history = History::new(delays, substeps, D);
+        let count = len.div_ceil(LANES);
+        let blocks = room(count, &block::empty::<T, E, O, D>())?;
+        let past = room(count.saturating_mul(history.len()), &T::zero())?;
+        let draws = [Purpose::StepTime, Purpose::Observation, Purpose::Action].map(Draws::new);
+        let step = 0;
+        let mut all =
+            Environments { world, seed, first, step, len, execution, blocks, history, past, draws };
+        for n in 0..len {
+            all.begin(n, Episode { seed, environment: (first + n) as u64, number: 0 });
+        }
+        Ok(all)
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Actions of each so far.
+    pub fn step(&self) -> u64 {
+        self.step
+    }
+
+    /// Where they are stepped from now on, which changes nothing of what they do.
+    pub fn execute(&mut self, execution: Execution) {
+        self.execution = execution;
+    }
+
+    /// What each is.
+    pub fn world(&self) -> &E {
+        &self.world
+    }
+
+    /// The state of environment `n`, if there is one.
+    pub fn state(&self, n: usize) -> Option<State<T, D>> {
+        (n < self.len).then(|| self.blocks[n / LANES].state(n % LANES))
+    }
+
+    /// Begins another episode in every environment for which there is a `true`.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] if there is not one for each.
+    pub fn reset(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
+        EnvironmentError::shape("marks of the reset", which.len(), self.len)?;
+        for n in (0..self.len).filter(|&n| which[n]) {
+            let next = self.blocks[n / LANES].next(n % LANES);
+            self.begin(n, next);
+        }
+        Ok(())
+    }
+
+    /// Ends the episode of every environment for which there is a `true`, as its task might have in the step before: what follows it is what
+    /// follows any.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] if there is not one for each.
+    pub fn end(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
+        EnvironmentError::shape("marks of the ends", which.len(), self.len)?;
+        if self.world.parts().autoreset == Autoreset::SameStep {
+            return self.reset(which);
+        }
+        for n in (0..self.len).filter(|&n| which[n]) {
+            self.blocks[n / LANES].ended[n % LANES] |= OVER;
+        }
+        Ok(())
+    }
+
+    /// Begins a first episode in every environment for which there is a seed: it is then what the only environment of a batch of that
+    /// seed is, at the start of its first episode.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] if there is not one or none for each; [`EnvironmentError::Seeded`] if rates of clocks are listed.
+    pub fn seed(&mut self, seeds: &[Option<u64>]) -> Result<(), EnvironmentError> {
+        EnvironmentError::shape("seeds", seeds.len(), self.len)?;
+        if self.world.parts().clock.trajectories().is_some() {
+            return Err(EnvironmentError::Seeded);
+        }
+        for (n, seed) in seeds.iter().enumerate() {
+            if let &Some(seed) = seed {
+                self.begin(n, Episode { seed, environment: 0, number: 0 });
+            }
+        }
+        Ok(())
+    }
+
+    /// Begins an episode of environment `n`.
+    fn begin(&mut self, n: usize, episode: Episode) {
+        let Environments { world, history, step, .. } = *self;
+        let (b, l) = (n / LANES, n % LANES);
+        let past = &mut self.past[b * history.len()..][..history.len()];
+        block::begin(&mut self.blocks[b], history, past, &world, l, episode, step);
+        self.blocks[b].settle();
+    }
+}
+
+/// The largest number of a first environment: there is room for those after it.
+const FURTHEST: f64 = (1_u64 << 53) as f64;
+
+/// So many of the same.
+///
+/// # Errors
+/// If there is no memory for them.
+fn room<X: Clone>(count: usize, x: &X) -> Result<Vec<X>, EnsembleError> {
+    let mut all = Vec::new();
+    let needed = count as u128 * size_of::<X>() as u128;
+    NoRoom::check(needed)?;
+    let refused = |_| NoRoom { needed, available: None };
+    all.try_reserve_exact(count).map_err(refused)?;
+    all.resize(count, x.clone());
+    Ok(all)
+}

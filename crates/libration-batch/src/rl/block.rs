@@ -1,0 +1,197 @@
+//! Neighbouring environments.
+
+use super::history::History;
+use super::kernel::LANES;
+use super::start::Episode;
+use super::{Start, Variation, World};
+use crate::ensemble::kernel::{at, put};
+use libration_core::control::{Begin, Clock, Memory};
+use libration_core::random::Streams;
+use libration_core::{Float, Scalar, State};
+
+/// Neighbouring environments, of which each has a lane.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Block<T, C, V, const D: usize> {
+    pub(super) q: [[T; LANES]; D],
+    pub(super) v: [[T; LANES]; D],
+    /// What the episode has paid since the last sum was formed.
+    pub(super) paid: [T; LANES],
+    /// And before: a short float would soon hold nothing more.
+    pub(super) banked: [f64; LANES],
+    /// What the clock remembers.
+    pub(super) clock: C,
+    /// What was drawn for the episode.
+    pub(super) numbers: V,
+    /// How bad the clock and the sensor are in the episode.
+    pub(super) severity: [[T; LANES]; 2],
+    /// The latencies of what is seen and of actions.
+    pub(super) delays: [[u32; LANES]; 2],
+    /// The step with which the episode began.
+    pub(super) began: [u64; LANES],
+    /// The first of these steps.
+    pub(super) oldest: u64,
+    /// Its number.
+    pub(super) episode: [u64; LANES],
+    /// From which all that is random is drawn.
+    pub(super) seed: [u64; LANES],
+    /// And the number of the environment there.
+    pub(super) environment: [u64; LANES],
+    /// How it ended, if it did and no other has begun: [`OVER`] and [`CUT`].
+    pub(super) ended: [u8; LANES],
+}
+
+/// Steps whose rewards are summed in the float type.
+const BANKED: u64 = 32;
+
+/// An episode is over: terminated.
+pub(super) const OVER: u8 = 1;
+/// It was cut off: truncated.
+pub(super) const CUT: u8 = 2;
+
+/// In what a block yields: over, since a number of it is none.
+pub(super) const LOST: u8 = 2;
+
+/// The block of a world.
+pub(super) type BlockOf<T, E, const O: usize, const D: usize> =
+    Block<T, ClockLanes<T, E, O, D>, NumberLanes<T, E, O, D>, D>;
+
+/// What its clock remembers of an environment.
+pub(super) type ClockMemory<T, E, const O: usize, const D: usize> =
+    <<E as World<T, O, D>>::Clock as Clock<T>>::Memory;
+type ClockLanes<T, E, const O: usize, const D: usize> =
+    <ClockMemory<T, E, O, D> as Memory<T>>::Lanes<LANES>;
+
+/// What is drawn for an episode.
+pub(super) type Numbers<T, E, const O: usize, const D: usize> =
+    <<E as World<T, O, D>>::Variation as Variation<
+        T,
+        <E as World<T, O, D>>::System,
+        <E as World<T, O, D>>::Task,
+    >>::Numbers;
+/// In lanes.
+pub(super) type NumberLanes<T, E, const O: usize, const D: usize> =
+    <Numbers<T, E, O, D> as Memory<T>>::Lanes<LANES>;
+
+/// A block before any episode.
+pub(super) fn empty<T: Float, E: World<T, O, D>, const O: usize, const D: usize>()
+-> BlockOf<T, E, O, D> {
+    let none = |_: usize| [T::zero(); LANES];
+    Block {
+        q: [[T::zero(); LANES]; D],
+        v: [[T::zero(); LANES]; D],
+        paid: [T::zero(); LANES],
+        banked: [0.0; LANES],
+        clock: ClockMemory::<T, E, O, D>::load(&none),
+        numbers: Numbers::<T, E, O, D>::load(&none),
+        severity: [[T::one(); LANES]; 2],
+        delays: [[0; LANES]; 2],
+        began: [0; LANES],
+        oldest: 0,
+        episode: [0; LANES],
+        seed: [0; LANES],
+        environment: [0; LANES],
+        ended: [0; LANES],
+    }
+}
+
+/// Begins an episode in lane `l` of a block, with the step `now`.
+pub(super) fn begin<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
+    block: &mut BlockOf<T, E, O, D>,
+    history: History,
+    past: &mut [T],
+    world: &E,
+    l: usize,
+    episode: Episode,
+    now: u64,
+) {
+    let parts = world.parts();
+    let state: State<T, D> = parts.start.draw(episode);
+    put(&mut block.q, l, state.q);
+    put(&mut block.v, l, state.v);
+    let begin = Begin::new(episode.seed, episode.environment, episode.number);
+    ClockMemory::<T, E, O, D>::set_lane(&mut block.clock, l, parts.clock.start(begin));
+    Numbers::<T, E, O, D>::set_lane(&mut block.numbers, l, parts.variation.draw(episode));
+    let delays = parts.delays.draw(episode);
+    (0..2).for_each(|i| block.delays[i][l] = delays[i]);
+    let severity = parts.severity.draw(episode);
+    (0..2).for_each(|i| block.severity[i][l] = T::from_f64(severity[i]));
+    (block.paid[l], block.banked[l], block.ended[l]) = (T::zero(), 0.0, 0);
+    (block.began[l], block.episode[l]) = (now, episode.number);
+    (block.seed[l], block.environment[l]) = (episode.seed, episode.environment);
+    history.begin(past, l, &state);
+}
+
+impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
+    /// The state of lane `l`.
+    #[inline(always)]
+    pub(super) fn state(&self, l: usize) -> State<T, D> {
+        State { q: at(&self.q, l), v: at(&self.v, l) }
+    }
+
+    /// The episode of lane `l`.
+    pub(super) fn episode(&self, l: usize) -> Episode {
+        let (seed, environment) = (self.seed[l], self.environment[l]);
+        Episode { seed, environment, number: self.episode[l] }
+    }
+
+    /// The one that follows it.
+    pub(super) fn next(&self, l: usize) -> Episode {
+        let episode = self.episode(l);
+        Episode { number: episode.number + 1, ..episode }
+    }
+
+    /// Lane `l`, which is no environment, is at rest from the step `now` on.
+    pub(super) fn rest(&mut self, l: usize, now: u64)
+    where
+        T: Float,
+    {
+        put(&mut self.q, l, [T::zero(); D]);
+        put(&mut self.v, l, [T::zero(); D]);
+        (self.paid[l], self.began[l]) = (T::zero(), now);
+    }
+
+    /// What was paid goes to what was before, every so many steps.
+    #[inline(always)]
+    pub(super) fn bank(&mut self, step: u64)
+    where
+        T: Float,
+    {
+        if step.is_multiple_of(BANKED) {
+            for l in 0..LANES {
+                self.banked[l] += self.paid[l].to_f64();
+                self.paid[l] = T::zero();
+            }
+        }
+    }
+
+    /// All that the episode of lane `l` has paid.
+    pub(super) fn paid(&self, l: usize) -> f64
+    where
+        T: Float,
+    {
+        self.banked[l] + self.paid[l].to_f64()
+    }
+
+    /// What stands still takes no words of these.
+    pub(super) fn keep_words(&self, words: [&mut Streams<LANES>; 3], before: &[Streams<LANES>; 3]) {
+        for (words, before) in words.into_iter().zip(before) {
+            (0..LANES).filter(|&l| self.ended[l] != 0).for_each(|l| words.take_up(l, before));
+        }
+    }
+
+    /// Episodes have begun.
+    pub(super) fn settle(&mut self) {
+        self.oldest = self.began.iter().copied().fold(u64::MAX, u64::min);
+    }
+
+    /// Lane `l` is as it was. What the clocks of all remember goes on; it is begun anew with the next episode.
+    pub(super) fn stand(&mut self, as_it_was: &Self, l: usize) {
+        let State { q, v } = as_it_was.state(l);
+        put(&mut self.q, l, q);
+        put(&mut self.v, l, v);
+        (self.paid[l], self.banked[l]) = (as_it_was.paid[l], as_it_was.banked[l]);
+        // Its time stands as well.
+        self.began[l] = as_it_was.began[l] + 1;
+    }
+}

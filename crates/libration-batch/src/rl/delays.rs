@@ -1,0 +1,53 @@
+//! How late observations and actions are.
+
+use super::start::{Episode, between};
+use libration_core::control::ControlError;
+use libration_core::control::Latency;
+use libration_core::control::error::ensure;
+use libration_core::random::Purpose;
+
+/// Latencies in steps of the integrator, drawn for every environment at the beginning of every episode: from a least to a
+/// most, each as likely.
+///
+/// What is seen is the state as it was one latency ago, and before an episode began as it was then. An action takes effect one
+/// latency after the look that it follows from; until the first one does, the command is zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Delays {
+    /// Of what is seen: least and most.
+    pub observation: [u32; 2],
+    /// Of actions.
+    pub action: [u32; 2],
+}
+
+impl Delays {
+    /// The same for all.
+    pub fn of(observation: u32, action: u32) -> Self {
+        Delays { observation: [observation; 2], action: [action; 2] }
+    }
+
+    /// Whether there are none.
+    pub fn is_none(&self) -> bool {
+        *self == Delays::default()
+    }
+
+    pub(super) fn check(&self) -> Result<(), ControlError> {
+        for (name, [least, most]) in
+            [("latency of observations", self.observation), ("latency of actions", self.action)]
+        {
+            let allowed = "at most 4096 steps";
+            ensure(name, most.into(), allowed, |most| most <= Latency::MOST_STEPS as f64)?;
+            let allowed = "at most the largest";
+            ensure(name, least.into(), allowed, |least| least <= f64::from(most))?;
+        }
+        Ok(())
+    }
+
+    /// What is drawn for an episode: the latencies of what is seen and of actions.
+    pub(super) fn draw(&self, episode: Episode) -> [u32; 2] {
+        let shares = between::shares::<2>(episode, Purpose::Delay, 0);
+        let drawn = |[least, most]: [u32; 2], share: f64| {
+            least + (share * (f64::from(most - least) + 1.0)) as u32
+        };
+        [drawn(self.observation, shares[0]), drawn(self.action, shares[1])]
+    }
+}

@@ -1,0 +1,101 @@
+//! Ends of episodes.
+
+use super::block::{self, BlockOf, CUT, LOST, OVER};
+use super::kernel::LANES;
+use super::stage::{Site, Stage};
+use super::yields::Yield;
+use super::{Autoreset, Place, Policy, World};
+use crate::ensemble::kernel::at;
+use libration_core::Float;
+use libration_core::random::Streams;
+
+/// The end of an episode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Final<T, const O: usize> {
+    /// In which step of the rollout.
+    pub step: usize,
+    /// Of which environment.
+    pub environment: usize,
+    /// What was seen last, before the next episode began.
+    pub observation: [T; O],
+    /// What the episode paid in all: the sum of sums of at most 32 rewards in the float type.
+    pub episode_return: f64,
+    /// Its actions.
+    pub length: u64,
+    /// Whether the environment was lost: its state, its action or what it was paid was no finite number.
+    pub lost: bool,
+}
+
+impl<T, E, P, const O: usize, const D: usize> Stage<'_, T, E, P, O, D>
+where
+    T: Float,
+    E: World<T, O, D>,
+    P: Policy<T, O, D>,
+{
+    /// Whether no environment of a block stands still.
+    #[inline(always)]
+    pub(super) fn all_move(&self, block: &BlockOf<T, E, O, D>) -> bool {
+        self.autoreset == Autoreset::SameStep || block.ended == [0; LANES]
+    }
+
+    /// What follows where an episode ended, in this step or before: in scalars, since it is rare.
+    #[inline(never)]
+    pub(super) fn end(
+        &self,
+        site: &Site<T, E, O, D>,
+        block: &mut BlockOf<T, E, O, D>,
+        stood: Option<&BlockOf<T, E, O, D>>,
+        past: &mut [T],
+        words: &Streams<LANES>,
+        out: &mut Yield<T, O, D>,
+    ) {
+        let Site { place, count, systems } = *site;
+        let step = place.step + 1;
+        let mut last = [[T::zero(); LANES]; O];
+        // Those that go on will see the same again.
+        let next = Site { place: Place { step, ..place }, count, systems };
+        self.look(&next, block, past, &mut words.clone(), &mut last);
+        for l in count..LANES {
+            // Lanes that are no environments begin anew with every end, or they would be at an end in every step.
+            block.rest(l, step);
+        }
+        for l in 0..count {
+            let environment = place.environment + l;
+            let episode = block.next(l);
+            if let Some(stood) = stood.filter(|stood| stood.ended[l] != 0) {
+                out.step.rewards[l] = T::zero();
+                let flags = if self.autoreset == Autoreset::Disabled { stood.ended[l] } else { 0 };
+                (out.overs[l], out.cuts[l]) = (flags & OVER, (flags & CUT) / CUT);
+                if self.autoreset == Autoreset::Disabled {
+                    block.stand(stood, l);
+                    let steps = place.step * self.substeps..step * self.substeps;
+                    self.history.stand(past, l, steps, &stood.state(l));
+                } else {
+                    block::begin(block, self.history, past, self.world, l, episode, step);
+                }
+                continue;
+            }
+            let lost = out.overs[l] & LOST != 0;
+            out.overs[l] = u8::from(out.overs[l] != 0);
+            let flags = out.overs[l] * OVER + out.cuts[l] * CUT;
+            if flags == 0 {
+                continue;
+            }
+            out.finals.push(Final {
+                step: place.row,
+                environment,
+                observation: at(&last, l),
+                episode_return: block.paid(l),
+                length: step - block.began[l],
+                lost,
+            });
+            match self.autoreset {
+                Autoreset::SameStep => {
+                    block::begin(block, self.history, past, self.world, l, episode, step);
+                }
+                Autoreset::NextStep | Autoreset::Disabled => block.ended[l] = flags,
+            }
+        }
+        block.settle();
+    }
+}

@@ -1,0 +1,185 @@
+//! The transitions of environments over a horizon, tile by tile.
+
+use bytemuck::Pod;
+use pulp::{Simd, WithSimd};
+
+use super::block::BlockOf;
+use super::history::History;
+use super::row::{Records, Writer};
+use super::stage::{Site, Stage};
+use super::strip::Strip;
+use super::yields::Yield;
+use super::{Final, Place, Policy, Sensor, World, Writes};
+use crate::ensemble::Assign;
+use crate::ensemble::instructions::{Target, Targeted};
+use crate::ensemble::stream::Streaming;
+use libration_core::Float;
+use libration_core::random::Streams;
+
+/// Environments of a block. A flag of each is a byte, and that many fill a line of the cache.
+pub(super) const LANES: usize = 64;
+
+/// Environments that go through the horizon together: their rows are long enough to be written at the speed of the memory, and
+/// their states stay in the first cache.
+pub(super) const TILE: usize = 8 * LANES;
+
+/// Neighbouring environments of a thread, in whole blocks.
+pub(super) struct Share<'a, T, B> {
+    pub(super) first: usize,
+    pub(super) len: usize,
+    pub(super) blocks: &'a mut [B],
+    pub(super) past: &'a mut [T],
+    /// The words for clocks, sensors and actions; none where nothing is drawn.
+    pub(super) words: [&'a mut [Streams<LANES>]; 3],
+}
+
+/// What is done with the environments of a share.
+pub(super) struct Horizon<'a, 's, T, E, P, B, const O: usize, const D: usize> {
+    pub(super) world: &'s E,
+    pub(super) policy: P,
+    pub(super) history: History,
+    /// All environments.
+    pub(super) environments: usize,
+    /// Steps taken before.
+    pub(super) step: u64,
+    /// And rows of the rollout written before.
+    pub(super) row: usize,
+    pub(super) share: Share<'a, T, B>,
+    pub(super) strip: Strip<'a, T, O, D>,
+    pub(super) writes: Writes,
+}
+
+impl<T, E, P, const O: usize, const D: usize> Targeted
+    for Horizon<'_, '_, T, E, P, BlockOf<T, E, O, D>, O, D>
+where
+    T: Float + Pod,
+    E: World<T, O, D>,
+    P: Policy<T, O, D>,
+{
+    type Output = Vec<Final<T, O>>;
+
+    fn on<I: Target>(self, target: I) -> Vec<Final<T, O>> {
+        target.run(On(self, target))
+    }
+}
+
+/// Work with the instruction set that it runs on.
+struct On<H, I>(H, I);
+
+impl<T, E, P, I, const O: usize, const D: usize> WithSimd
+    for On<Horizon<'_, '_, T, E, P, BlockOf<T, E, O, D>, O, D>, I>
+where
+    T: Float + Pod,
+    E: World<T, O, D>,
+    P: Policy<T, O, D>,
+    I: Target,
+{
+    type Output = Vec<Final<T, O>>;
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) -> Vec<Final<T, O>> {
+        let On(horizon, target) = self;
+        let Horizon { world, policy, history, environments, step, row: before, .. } = horizon;
+        let Horizon { share, mut strip, writes, .. } = horizon;
+        let writer = Writer { streaming: Streaming::on(target), layout: strip.layout, writes };
+        let parts = *world.parts();
+        let stage = Stage::<T, E, P, O, D>::new(world, policy, history);
+        let brief = stage.is_brief();
+        let steps = strip.steps();
+        // A sensor that draws takes its words at every look.
+        let looks_on = strip.shows() || policy.looks() || const { E::Sensor::DRAWS };
+        let [times, looks, acts] = share.words;
+        let mut none = [Streams::<LANES>::none(); 3];
+        let [no_times, no_looks, no_acts] = &mut none;
+        let mut out = Yield::<T, O, D>::zeros();
+        let mut records = Records::zeros();
+        for (index, blocks) in share.blocks.chunks_mut(TILE / LANES).enumerate() {
+            for t in 0..steps {
+                let row = &mut strip.row(t);
+                for (b, block) in blocks.iter_mut().enumerate() {
+                    let b = index * (TILE / LANES) + b;
+                    let first = share.first + b * LANES;
+                    let count = (share.len - b * LANES).min(LANES);
+                    let systems = parts.systems.lanes::<LANES>(first, count);
+                    let now = step + t as u64;
+                    let place =
+                        Place { environment: first, environments, step: now, row: before + t };
+                    let site = Site { place, count, systems };
+                    block.bank(now);
+                    // What stands still is stepped with its neighbours, and put back.
+                    let stood = (!stage.all_move(block)).then_some(*block);
+                    macro_rules! past {
+                        () => {
+                            &mut share.past[b * history.len()..][..history.len()]
+                        };
+                    }
+                    let acts = acts.get_mut(b).unwrap_or(no_acts);
+                    let looks = looks.get_mut(b).unwrap_or(no_looks);
+                    let times = times.get_mut(b).unwrap_or(no_times);
+                    // And so are its words.
+                    let spoken = stood.is_some().then_some([*times, *looks, *acts]);
+                    let swift = brief && count == LANES && stood.is_none();
+                    let mut ended = if swift {
+                        let overs = &mut out.overs;
+                        stage.brief(parts, &site, block, acts, overs, b, row, &writer, &mut records)
+                    } else {
+                        if looks_on {
+                            stage.look(&site, block, past!(), looks, &mut out.step.seen);
+                        } else {
+                            stage.pass(now, block, past!());
+                        }
+                        stage.act(place, block, acts, &mut out.step);
+                        stage.advance(target, &site, block, past!(), times, &mut out)
+                    };
+                    ended |= stage.limit(now, block, ended != 0 || stood.is_some(), &mut out.cuts);
+                    let whole = ended == 0 && stood.is_none();
+                    if !whole {
+                        if let Some((stood, spoken)) = stood.as_ref().zip(spoken.as_ref()) {
+                            stood.keep_words([times, looks, acts], spoken);
+                        }
+                        stage.end(&site, block, stood.as_ref(), past!(), looks, &mut out);
+                    }
+                    if count < LANES {
+                        if whole {
+                            (out.overs, out.cuts) = NO_FLAGS;
+                        }
+                        row.write_part(writer.layout, b * LANES, count, &out);
+                        continue;
+                    }
+                    if !swift {
+                        // A copy: where both arms write the same, the compiler joins them, and what was in registers
+                        // is in memory.
+                        let step = out.step;
+                        row.write_block(&writer, b, &step, &mut records);
+                    }
+                    let flags = if whole { &NO_FLAGS } else { &(out.overs, out.cuts) };
+                    row.write_flags(&writer, b, &flags.0, &flags.1);
+                }
+            }
+            let (next, now) = (strip.next(), step + steps as u64);
+            if next.is_empty() {
+                continue;
+            }
+            for (b, block) in blocks.iter_mut().enumerate() {
+                let b = index * (TILE / LANES) + b;
+                let first = share.first + b * LANES;
+                let count = (share.len - b * LANES).min(LANES);
+                let systems = parts.systems.lanes::<LANES>(first, count);
+                let place = Place { environment: first, environments, step: now, row: 0 };
+                let past = &mut share.past[b * history.len()..][..history.len()];
+                let words = looks.get(b).unwrap_or(no_looks);
+                stage.show(
+                    &Site { place, count, systems },
+                    block,
+                    past,
+                    words,
+                    &mut next[b * LANES * O..],
+                );
+            }
+        }
+        out.finals
+    }
+}
+
+/// No episode terminated, and none was cut off.
+const NO_FLAGS: ([u8; LANES], [u8; LANES]) = ([0; LANES], [0; LANES]);

@@ -1,0 +1,94 @@
+//! Steps of all lanes of a block whose system and integrator are chosen when the program runs: the choice stands outside the loop, and the
+//! loop is compiled once for whatever has it in common.
+
+use super::kernel::LANES;
+use crate::ensemble::Loop;
+use crate::ensemble::instructions::Target;
+use crate::ensemble::kernel::{at, put};
+use libration_core::integrator::WithIntegrator;
+use libration_core::system::{Held, WithSystem};
+use libration_core::{Float, Integrator, State, System};
+
+/// What a step needs besides system and integrator.
+pub(super) struct Lanes<'a, T, const D: usize> {
+    pub(super) q: &'a mut [[T; LANES]; D],
+    pub(super) v: &'a mut [[T; LANES]; D],
+    pub(super) held: &'a [[T; LANES]; D],
+    /// The length of the step.
+    pub(super) dt: &'a [T; LANES],
+}
+
+/// Lanes that wait for their integrator, their system, or nothing more.
+struct Waiting<'a, T, I, Sys, M, const D: usize> {
+    lanes: Lanes<'a, T, D>,
+    target: I,
+    system: Sys,
+    method: M,
+}
+
+impl<T: Float, const D: usize> Lanes<'_, T, D> {
+    /// Takes a step in each.
+    pub(super) fn step<I: Target, Sys: System<T, D> + Copy, M: Integrator>(
+        self,
+        target: I,
+        system: Sys,
+        method: M,
+    ) {
+        method.known(Waiting { lanes: self, target, system, method: () });
+    }
+}
+
+impl<T, I, Sys, const D: usize> WithIntegrator for Waiting<'_, T, I, Sys, (), D>
+where
+    T: Float,
+    I: Target,
+    Sys: System<T, D> + Copy,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn integrator<M: Integrator>(self, method: M) {
+        let Waiting { lanes, target, system, .. } = self;
+        system.known(Waiting { lanes, target, system: (), method });
+    }
+}
+
+impl<T: Float, I: Target, M: Integrator, const D: usize> WithSystem<T, D>
+    for Waiting<'_, T, I, (), M, D>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn system<Sys: System<T, D> + Copy>(self, system: Sys) {
+        let Waiting { lanes, target, method, .. } = self;
+        target.vectorize(Known { lanes, system, method });
+    }
+}
+
+/// Lanes, of which everything is known.
+struct Known<'a, T, Sys, M, const D: usize> {
+    lanes: Lanes<'a, T, D>,
+    system: Sys,
+    method: M,
+}
+
+impl<T: Float, Sys: System<T, D> + Copy, M: Integrator, const D: usize> Loop
+    for Known<'_, T, Sys, M, D>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Known { lanes: Lanes { q, v, held, dt }, system, method } = self;
+        // Of their own, or every store could change what is read.
+        let (mut new_q, mut new_v, held, dt) = (*q, *v, *held, *dt);
+        for (l, &dt) in dt.iter().enumerate() {
+            let system = Held { system, command: at(&held, l) };
+            let state = State { q: at(&new_q, l), v: at(&new_v, l) };
+            let state = method.step(&system, state, dt);
+            put(&mut new_q, l, state.q);
+            put(&mut new_v, l, state.v);
+        }
+        (*q, *v) = (new_q, new_v);
+    }
+}

@@ -1,0 +1,87 @@
+//! Environments as they are seen from outside.
+
+use bytemuck::Pod;
+
+use super::block::BlockOf;
+use super::kernel::LANES;
+use super::row::interleave;
+use super::stage::{Site, Stage};
+use super::strip::first_of;
+use super::{EnvironmentError, Environments, Place, Policy, Sensor, World, policy};
+use crate::ensemble::Assign;
+use libration_core::Float;
+use libration_core::random::Streams;
+
+impl<T, E, const O: usize, const D: usize> Environments<T, E, O, D>
+where
+    T: Float + Pod,
+    E: World<T, O, D>,
+{
+    /// Writes what is seen now, before the next action: `[n, i]`.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] if that is not the length of `to`.
+    pub fn observe(&mut self, mut to: &mut [T]) -> Result<(), EnvironmentError> {
+        EnvironmentError::shape("numbers to be observed", to.len(), self.len.saturating_mul(O))?;
+        let Environments { world, history, step, len, .. } = *self;
+        let (sensor, systems) = (world.parts().sensor, world.parts().systems);
+        let words = self.draws[1].prepare(&self.blocks, [step, 1], 0, sensor.words());
+        // A look needs no policy.
+        let nobody = policy::Constant([0.0; D]);
+        let stage = Stage::<T, E, _, O, D>::new(&world, nobody, history);
+        let threads = self.execution.threads_for(len as u64);
+        let share = self.blocks.len().div_ceil(threads).max(1);
+        let mut past = &mut self.past[..];
+        let mut shares = Vec::with_capacity(threads);
+        for (i, blocks) in self.blocks.chunks(share).enumerate() {
+            let to = first_of(&mut to, share * LANES * O);
+            shares.push((i * share, blocks, to, first_of(&mut past, share * history.len())));
+        }
+        let words = &*words;
+        self.execution.each(shares, |(from, blocks, to, past)| {
+            for (b, block) in blocks.iter().enumerate() {
+                let environment = (from + b) * LANES;
+                let count = (len - environment).min(LANES);
+                let systems = systems.lanes::<LANES>(environment, count);
+                let place = Place { environment, environments: len, step, row: 0 };
+                let site = Site { place, count, systems };
+                let past = &mut past[b * history.len()..][..history.len()];
+                let none = Streams::none();
+                let words = words.get(from + b).unwrap_or(&none);
+                stage.show(&site, block, past, words, &mut to[b * LANES * O..]);
+            }
+        });
+        Ok(())
+    }
+}
+
+impl<T, E, P, const O: usize, const D: usize> Stage<'_, T, E, P, O, D>
+where
+    T: Float + Pod,
+    E: World<T, O, D>,
+    P: Policy<T, O, D>,
+{
+    /// Writes what is seen of a block before an action, side by side; the words of its sensors are still to be taken.
+    #[inline(always)]
+    pub(super) fn show(
+        &self,
+        site: &Site<T, E, O, D>,
+        block: &BlockOf<T, E, O, D>,
+        past: &mut [T],
+        words: &Streams<LANES>,
+        to: &mut [T],
+    ) {
+        let mut seen = [[T::zero(); LANES]; O];
+        self.look(site, block, past, &mut words.clone(), &mut seen);
+        if const { O == 0 } {
+            return;
+        }
+        if let (LANES, Some(to)) = (site.count, to.as_chunks_mut().0.first_chunk_mut()) {
+            interleave(&seen, to);
+            return;
+        }
+        for (l, row) in to.chunks_exact_mut(O).take(site.count).enumerate() {
+            (0..O).for_each(|i| row[i] = seen[i][l]);
+        }
+    }
+}

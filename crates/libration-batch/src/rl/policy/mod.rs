@@ -1,0 +1,154 @@
+//! Who acts.
+
+mod explore;
+mod given;
+mod linear;
+mod network;
+mod perceptron;
+mod random;
+
+pub use explore::Explore;
+pub use given::Given;
+pub use linear::{Each, Linear};
+pub use network::Network;
+pub use perceptron::{Activation, EachPerceptron, Perceptron};
+pub use random::Random;
+
+use super::EnvironmentError;
+use crate::ensemble::kernel::{at, put};
+use libration_core::Float;
+use libration_core::array::{each, map};
+use libration_core::control::ControlError;
+use libration_core::random::Streams;
+
+/// Chooses an action: an acceleration in each of `D` degrees of freedom, from `O` numbers that are seen.
+pub trait Policy<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
+    /// Whether an environment's action is best asked for by itself: where that is one short formula.
+    const BRIEF: bool = false;
+    /// Whether anything is random.
+    const DRAWS: bool = false;
+
+    /// Whether it can act for so many environments over so many steps.
+    ///
+    /// # Errors
+    /// What is wrong.
+    fn check(&self, environments: usize, horizon: usize) -> Result<(), EnvironmentError> {
+        let _ = (environments, horizon);
+        Ok(())
+    }
+
+    /// Whether its actions depend on what is seen: otherwise nobody looks where nobody else wants to know.
+    fn looks(&self) -> bool {
+        true
+    }
+
+    /// Random words that an action takes: always as many.
+    fn words(&self) -> usize {
+        0
+    }
+
+    /// The action. It branches on nothing but what `self` holds, and is `#[inline(always)]`, or the loops over environments
+    /// are no vectors.
+    fn act(&self, place: Place, seen: &[T; O], word: &mut impl FnMut() -> u32) -> Act<T, D>;
+
+    /// The actions and their log-probabilities of `W` neighbouring environments, the first of which has this place.
+    #[inline(always)]
+    fn act_all<const W: usize>(
+        &self,
+        place: Place,
+        seen: &[[T; W]; O],
+        words: &mut Streams<W>,
+        actions: &mut [[T; W]; D],
+        log_probabilities: &mut [T; W],
+    ) {
+        for (l, log) in log_probabilities.iter_mut().enumerate() {
+            let act = self.act(place.lane(l), &at(seen, l), &mut || words.next(l));
+            put(actions, l, act.action);
+            *log = act.log_probability;
+        }
+    }
+}
+
+/// An action, and how likely it was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Act<T, const D: usize> {
+    /// What is done.
+    pub action: [T; D],
+    /// The logarithm of its probability density; 0 where nothing is drawn.
+    pub log_probability: T,
+}
+
+impl<T: Float, const D: usize> Act<T, D> {
+    /// What is done for sure.
+    #[inline(always)]
+    pub fn sure(action: [T; D]) -> Self {
+        Act { action, log_probability: T::zero() }
+    }
+}
+
+/// Which action is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The number of the environment.
+    pub environment: usize,
+    /// How many environments there are.
+    pub environments: usize,
+    /// Steps since the batch was made.
+    pub step: u64,
+    /// Steps since the rollout began.
+    pub row: usize,
+}
+
+impl Place {
+    /// That of a neighbour, so many environments further.
+    #[inline(always)]
+    pub fn lane(self, l: usize) -> Self {
+        Place { environment: self.environment + l, ..self }
+    }
+}
+
+/// Always the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constant<const D: usize>(
+    /// The action.
+    pub [f64; D],
+);
+
+impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Constant<D> {
+    const BRIEF: bool = true;
+
+    fn check(&self, _: usize, _: usize) -> Result<(), EnvironmentError> {
+        all_finite::<T>("constant action", self.0)
+    }
+
+    fn looks(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn act(&self, _: Place, _: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
+        Act::sure(map(self.0, T::from_f64))
+    }
+}
+
+/// Nothing, if each of these numbers is finite, in the float type as well: a policy with another loses every environment.
+fn all_finite<T: Float>(
+    name: &'static str,
+    numbers: impl IntoIterator<Item = f64>,
+) -> Result<(), EnvironmentError> {
+    let mut numbers = numbers.into_iter().enumerate();
+    let Some((index, value)) = numbers.find(|&(_, x)| !T::from_f64(x).is_finite()) else {
+        return Ok(());
+    };
+    let allowed = "finite in the float type";
+    Err(ControlError { name, index: Some(index), value, allowed }.into())
+}
+
+/// Number `k` of neighbouring environments, from `[k, n]`. Beyond the last environment it does not matter what is done.
+#[inline(always)]
+fn lanes<T: Float, const W: usize>(numbers: &[T], place: Place, k: usize) -> [T; W] {
+    let row = &numbers[k * place.environments..][place.environment..place.environments];
+    // All at once where there are as many.
+    let whole = row.first_chunk().copied();
+    whole.unwrap_or_else(|| each(|l| row.get(l).copied().unwrap_or_else(T::zero)))
+}

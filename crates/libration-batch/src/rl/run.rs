@@ -1,0 +1,219 @@
+//! Environments through a horizon.
+
+use core::array::from_fn;
+use core::mem::swap;
+use core::ops::Range;
+
+use bytemuck::Pod;
+
+use super::error::NOTHING_DRAWN;
+use super::kernel::{Horizon, LANES, Share, TILE};
+use super::strip::{Strip, first_of, rows_of};
+use super::{
+    Autoreset, EnvironmentError, Environments, Final, Layout, Plan, Policy, Rollout, Sensor, World,
+    Writes,
+};
+use crate::ensemble::{EnsembleError, NoRoom};
+use libration_core::Float;
+use libration_core::control::Clock;
+use libration_core::control::error::ensure;
+
+/// Room for what a step leads to.
+#[derive(Debug)]
+pub struct Outcome<'a, T> {
+    /// What is seen after it: `[n, i]`.
+    pub seen: &'a mut [T],
+    /// What it paid.
+    pub reward: &'a mut [T],
+    /// 1 where the episode was over, otherwise 0.
+    pub terminated: &'a mut [u8],
+    /// 1 where it was cut off at the time limit, otherwise 0.
+    pub truncated: &'a mut [u8],
+}
+
+impl<T, E, const O: usize, const D: usize> Environments<T, E, O, D>
+where
+    T: Float + Pod,
+    E: World<T, O, D>,
+{
+    /// Fills `rollout` with what all do under `policy`.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] if it is for another number of environments, or the policy is;
+    /// [`EnvironmentError::Field`] if it has no room for something that has to be said; [`EnvironmentError::Ensemble`] if a record of the
+    /// clock ends before, or if there is no memory for the ends of episodes that the time limit alone makes.
+    pub fn rollout<P: Policy<T, O, D>>(
+        &mut self,
+        policy: P,
+        rollout: &mut Rollout<T, O, D>,
+    ) -> Result<(), EnvironmentError> {
+        let horizon = rollout.plan().horizon;
+        self.fill(policy, rollout, 0..horizon)
+    }
+
+    /// Fills some rows of `rollout`, those before which are full: to do so row by row is to do it at once.
+    ///
+    /// # Errors
+    /// As [`rollout`](Self::rollout), and [`EnvironmentError::Shape`] if there are not so many rows.
+    pub fn fill<P: Policy<T, O, D>>(
+        &mut self,
+        policy: P,
+        rollout: &mut Rollout<T, O, D>,
+        rows: Range<usize>,
+    ) -> Result<(), EnvironmentError> {
+        let plan = rollout.plan();
+        let (horizon, len) = (plan.horizon, self.len);
+        EnvironmentError::shape("environments of the rollout", plan.environments, len)?;
+        EnvironmentError::shape("steps to be filled", rows.end, rows.end.min(horizon))?;
+        let parts = self.world.parts();
+        if parts.limit.is_some() && !plan.truncated {
+            let (why, field) = ("the environments have a time limit", "truncated");
+            return Err(EnvironmentError::Field { why, field });
+        }
+        // So many ends the limit makes, and to gather them takes as much again. To ask the system costs as long as a short rollout: it
+        // is asked where they are more than what the plan was asked for.
+        let cuts = parts.limit.map_or(0, |l| len as u128 * (rows.len() as u128 / u128::from(l)));
+        let needed = cuts.saturating_mul(2 * size_of::<Final<T, O>>() as u128);
+        if needed > plan.bytes(O, D, size_of::<T>()) {
+            NoRoom::check(needed)?;
+        }
+        self.ready(policy, horizon, rows.len())?;
+        if rows.start == 0 {
+            rollout.pauses = parts.autoreset != Autoreset::SameStep;
+            rollout.idle = if rollout.pauses { self.standing() } else { Vec::new() };
+            rollout.finals.clear();
+        }
+        let how = (plan.threads(&self.execution), plan.writes, rows.start);
+        let mut ends = self.advance(policy, rollout.strip(&rows), how);
+        if rollout.finals.is_empty() {
+            // Nothing is copied.
+            swap(&mut rollout.finals, &mut ends);
+        }
+        rollout.finals.append(&mut ends);
+        Ok(())
+    }
+
+    /// One action of each: writes what came of it, and what is seen then. Gives the episodes that ended.
+    ///
+    /// # Errors
+    /// As [`rollout`](Self::rollout), and [`EnvironmentError::Shape`] if the room is for more or fewer.
+    pub fn act<P: Policy<T, O, D>>(
+        &mut self,
+        policy: P,
+        to: Outcome<'_, T>,
+    ) -> Result<Vec<Final<T, O>>, EnvironmentError> {
+        let len = self.len;
+        EnvironmentError::shape("numbers to be observed", to.seen.len(), len.saturating_mul(O))?;
+        for (name, found) in [
+            ("rewards", to.reward.len()),
+            ("marks of what is over", to.terminated.len()),
+            ("marks of what is cut off", to.truncated.len()),
+        ] {
+            EnvironmentError::shape(name, found, len)?;
+        }
+        self.ready(policy, 1, 1)?;
+        let strip = Strip {
+            observation: from_fn(|_| rows_of(&mut [], 1)),
+            action: from_fn(|_| rows_of(&mut [], 1)),
+            reward: rows_of(to.reward, 1),
+            terminated: rows_of(to.terminated, 1),
+            truncated: rows_of(to.truncated, 1),
+            log_probability: rows_of(&mut [], 1),
+            next: rows_of(to.seen, 1),
+            layout: Layout::Interleaved,
+        };
+        let threads = Plan::new(1, len).threads(&self.execution);
+        Ok(self.advance(policy, strip, (threads, Writes::Plain, 0)))
+    }
+
+    /// Nothing, if `policy` can act for so many of the steps of a horizon.
+    fn ready<P: Policy<T, O, D>>(
+        &self,
+        policy: P,
+        horizon: usize,
+        steps: usize,
+    ) -> Result<(), EnvironmentError> {
+        policy.check(self.len, horizon)?;
+        // Who draws may be one of several, of which others do not.
+        let words = policy.words() as f64;
+        ensure("random words of the policy", words, NOTHING_DRAWN, |n| P::DRAWS || n == 0.0)?;
+        let parts = self.world.parts();
+        let asked = self.step.saturating_add(steps as u64).saturating_mul(parts.substeps.into());
+        if let Some(known) = parts.clock.steps().filter(|&known| known < asked) {
+            return Err(EnsembleError::Record { known, asked }.into());
+        }
+        Ok(())
+    }
+
+    /// Goes through all steps of a strip, on so many threads, and so many rows after the first of the rollout.
+    fn advance<'a, P: Policy<T, O, D>>(
+        &'a mut self,
+        policy: P,
+        mut all: Strip<'a, T, O, D>,
+        (threads, writes, row): (usize, Writes, usize),
+    ) -> Vec<Final<T, O>> {
+        let len = self.len;
+        let (steps, substeps) = (all.steps() as u64, u64::from(self.world.parts().substeps));
+        // Whole tiles where there are enough for all threads.
+        let tile = TILE.min(len.div_ceil(threads).next_multiple_of(LANES)).max(LANES);
+        let tiles = len.div_ceil(tile);
+        let counts: Vec<usize> = (0..threads)
+            .map(|i| [i, i + 1].map(|i| (tiles * i / threads * tile).min(len)))
+            .map(|[from, to]| to - from)
+            .collect();
+        let Environments { world, history, step, .. } = *self;
+        let [times, looks, acts] = &mut self.draws;
+        let blocks = &self.blocks[..];
+        let words = world.parts().clock.words();
+        let times = times.prepare(blocks, [step, substeps], steps, words);
+        let words = world.parts().sensor.words();
+        let looks = looks.prepare(blocks, [step, 1], steps, words);
+        let acts = acts.prepare(blocks, [step, 1], steps, policy.words());
+        let mut rest = (&mut self.blocks[..], &mut self.past[..], [times, looks, acts]);
+        let mut first = 0;
+        let mut shares = Vec::with_capacity(counts.len());
+        for &len in &counts {
+            let count = len.div_ceil(LANES);
+            let share = Share {
+                first,
+                len,
+                blocks: first_of(&mut rest.0, count),
+                past: first_of(&mut rest.1, count * history.len()),
+                words: rest.2.each_mut().map(|words| first_of(words, count)),
+            };
+            shares.push((share, all.split_off(len)));
+            first += len;
+        }
+        let instructions = self.execution.instruction_set();
+        let each = self.execution.each(shares, |(share, strip)| {
+            instructions.run(Horizon::<T, E, P, _, O, D> {
+                world: &world,
+                policy,
+                history,
+                environments: len,
+                step,
+                row,
+                share,
+                strip,
+                writes,
+            })
+        });
+        let mut finals = Vec::new();
+        for mut ends in each {
+            if finals.is_empty() {
+                // With one thread these are all, and nothing is copied.
+                swap(&mut finals, &mut ends);
+            }
+            finals.append(&mut ends);
+        }
+        finals.sort_unstable_by_key(|end: &Final<T, O>| (end.step, end.environment));
+        self.step = self.step.saturating_add(steps);
+        finals
+    }
+
+    /// Those that stand still.
+    fn standing(&self) -> Vec<usize> {
+        let stands = |n: &usize| self.blocks[n / LANES].ended[n % LANES] != 0;
+        (0..self.len).filter(stands).collect()
+    }
+}

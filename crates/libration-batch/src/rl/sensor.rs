@@ -1,0 +1,75 @@
+//! How observations are measured.
+
+use libration_core::Float;
+use libration_core::control::ControlError;
+use libration_core::control::clock::Noise;
+use libration_core::control::error::not_negative;
+
+/// What is made of the `O` numbers that a task shows.
+pub trait Sensor<T: Float, const O: usize>: Copy + Send + Sync {
+    /// Whether anything is random.
+    const DRAWS: bool;
+
+    /// Whether its numbers are those of a sensor.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check(&self) -> Result<(), ControlError> {
+        Ok(())
+    }
+
+    /// Random words that a look takes: always as many.
+    fn words(&self) -> usize;
+
+    /// What is measured. It branches on nothing but what `self` holds, and is `#[inline(always)]`, or the loops over environments
+    /// are no vectors.
+    fn measure(&self, seen: [T; O], word: &mut impl FnMut() -> u32) -> [T; O];
+}
+
+/// What is measured is what there is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Exact;
+
+impl<T: Float, const O: usize> Sensor<T, O> for Exact {
+    const DRAWS: bool = false;
+
+    fn words(&self) -> usize {
+        0
+    }
+
+    #[inline(always)]
+    fn measure(&self, seen: [T; O], _: &mut impl FnMut() -> u32) -> [T; O] {
+        seen
+    }
+}
+
+/// Noise on every number, each with its own law, independent of all others and from step to step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noisy<N, const O: usize>(
+    /// The laws.
+    pub [N; O],
+);
+
+impl<T: Float, N: Noise, const O: usize> Sensor<T, O> for Noisy<N, O> {
+    const DRAWS: bool = true;
+
+    fn check(&self) -> Result<(), ControlError> {
+        let each = self.0.iter().enumerate().map(|(index, noise)| {
+            let found = not_negative::<T>("the rms of the noise of observation", noise.law().rms());
+            found.map_err(|error| ControlError { index: Some(index), ..error })
+        });
+        each.collect()
+    }
+
+    fn words(&self) -> usize {
+        self.0.iter().map(Noise::words).sum()
+    }
+
+    #[inline(always)]
+    fn measure(&self, mut seen: [T; O], word: &mut impl FnMut() -> u32) -> [T; O] {
+        for (number, noise) in seen.iter_mut().zip(&self.0) {
+            *number = *number + noise.draw(word);
+        }
+        seen
+    }
+}

@@ -1,0 +1,47 @@
+//! How bad an episode is.
+
+use super::start::{Episode, between};
+use libration_core::Float;
+use libration_core::control::ControlError;
+use libration_core::control::error::not_negative;
+use libration_core::random::Purpose;
+
+/// How much of what the clock and the sensor do wrong there is in an episode: a factor for each, drawn for every environment
+/// at the beginning of every episode, uniformly from a least to a most. 1 is all of it, 0 nothing.
+///
+/// Steps that would be negative are of length zero, as with clocks. Where clock and sensor are exact there is nothing to be severe about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Severity {
+    /// Of how far a step is from its length: least and most.
+    pub clock: [f64; 2],
+    /// Of the noise of what is seen.
+    pub sensor: [f64; 2],
+}
+
+impl Default for Severity {
+    /// All of it, always.
+    fn default() -> Self {
+        Severity { clock: [1.0; 2], sensor: [1.0; 2] }
+    }
+}
+
+impl Severity {
+    pub(super) fn check<T: Float>(&self) -> Result<(), ControlError> {
+        for (name, [least, most]) in
+            [("severity of the clock", self.clock), ("severity of the sensor", self.sensor)]
+        {
+            not_negative::<T>(name, least)?;
+            not_negative::<T>(name, most)?;
+        }
+        let ends = [self.clock, self.sensor].map(|[least, most]| (least, most));
+        between::check("range of the severity", ends)
+    }
+
+    /// What is drawn for an episode: of the clock and of the sensor.
+    pub(super) fn draw(&self, episode: Episode) -> [f64; 2] {
+        // The first two numbers are latencies.
+        let shares = between::shares::<2>(episode, Purpose::Delay, 2);
+        let drawn = |[least, most]: [f64; 2], share| between::at((least, most), share);
+        [drawn(self.clock, shares[0]), drawn(self.sensor, shares[1])]
+    }
+}

@@ -1,0 +1,279 @@
+//! What a step of a block consists of: scalar functions in loops over lanes.
+
+use super::block::{self, BlockOf, LOST, NumberLanes};
+use super::draws::renew;
+use super::history::History;
+use super::kernel::LANES;
+use super::lanes::Lanes;
+use super::wrong::worse;
+use super::yields::{Step, Yield};
+use super::{Autoreset, Parts, Place, Policy, Sensor, Task, Variation, World};
+use crate::ensemble::Assign;
+use crate::ensemble::instructions::Target;
+use crate::ensemble::kernel::{Lines, at, put};
+use libration_core::control::{Clock, Memory};
+use libration_core::random::{Purpose, Streams};
+use libration_core::system::Held;
+use libration_core::{Float, Integrator, State};
+
+/// What all blocks and steps share.
+#[derive(Clone, Copy)]
+pub(super) struct Stage<'s, T, E, P, const O: usize, const D: usize> {
+    pub(super) world: &'s E,
+    pub(super) policy: P,
+    pub(super) history: History,
+    pub(super) dt: T,
+    /// From action to action.
+    span: f64,
+    /// The largest command.
+    pub(super) saturation: T,
+    /// Acceleration per unit of command: `1/mass`.
+    pub(super) mobility: T,
+    pub(super) substeps: u64,
+    limit: Option<u64>,
+    pub(super) autoreset: Autoreset,
+}
+
+/// A block, and the step that it takes.
+pub(super) struct Site<T: Float, E: World<T, O, D>, const O: usize, const D: usize> {
+    /// Of its first lane.
+    pub(super) place: Place,
+    /// Lanes that are environments.
+    pub(super) count: usize,
+    pub(super) systems: Systems<T, E, O, D>,
+}
+
+/// The systems of the lanes of a block.
+type Systems<T, E, const O: usize, const D: usize> =
+    <<E as World<T, O, D>>::Systems as Assign<<E as World<T, O, D>>::System>>::Lanes<LANES>;
+
+impl<'s, T, E, P, const O: usize, const D: usize> Stage<'s, T, E, P, O, D>
+where
+    T: Float,
+    E: World<T, O, D>,
+    P: Policy<T, O, D>,
+{
+    pub(super) fn new(world: &'s E, policy: P, history: History) -> Self {
+        let parts = world.parts();
+        Stage {
+            world,
+            policy,
+            history,
+            dt: T::from_f64(parts.dt),
+            span: parts.dt * f64::from(parts.substeps),
+            saturation: T::from_f64(parts.saturation),
+            mobility: T::from_f64(parts.mass.recip()),
+            substeps: parts.substeps.into(),
+            limit: parts.limit.map(u64::from),
+            autoreset: parts.autoreset,
+        }
+    }
+
+    /// Seconds since an episode began, if anybody asks: steps are as long as they should be.
+    #[inline(always)]
+    pub(super) fn time(&self, now: u64, began: u64) -> T {
+        if const { E::Task::TIMED } {
+            // As many as an episode has: a `u32`, of which processors make floats sooner than of a `u64`.
+            // Short floats hold no large numbers of steps.
+            T::from_f64(f64::from((now - began) as u32) * self.span)
+        } else {
+            T::zero()
+        }
+    }
+
+    /// The environment, as a value of its own: behind a reference the compiler would look for changes after every store.
+    #[inline(always)]
+    pub(super) fn parts(&self) -> Parts<T, E, O, D> {
+        *self.world.parts()
+    }
+
+    /// What is seen at the beginning of a step.
+    #[inline(always)]
+    pub(super) fn look(
+        &self,
+        site: &Site<T, E, O, D>,
+        block: &BlockOf<T, E, O, D>,
+        past: &mut [T],
+        words: &mut Streams<LANES>,
+        seen: &mut [[T; LANES]; O],
+    ) {
+        if const { E::Sensor::DRAWS } {
+            renew(words, block, [site.place.step, 1, 0], Purpose::Observation);
+        }
+        let (mut q, mut v) = (Lines(block.q), Lines(block.v));
+        self.pass(site.place.step, block, past);
+        if self.history.sees_late() {
+            let step = site.place.step * self.substeps;
+            self.history.seen(past, step, &block.delays[0], &mut q.0, &mut v.0);
+        }
+        let parts = self.parts();
+        for l in 0..LANES {
+            let (_, task) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
+            let time = self.time(site.place.step, block.began[l]);
+            let sees = task.observe(time, &State { q: at(&q.0, l), v: at(&v.0, l) });
+            let mut measured = parts.sensor.measure(sees, &mut || words.next(l));
+            if const { E::Sensor::DRAWS } {
+                for i in 0..O {
+                    measured[i] = worse(measured[i], sees[i], block.severity[1][l]);
+                }
+            }
+            put(seen, l, measured);
+        }
+    }
+
+    /// Keeps what is to be seen later.
+    #[inline(always)]
+    pub(super) fn pass(&self, now: u64, block: &BlockOf<T, E, O, D>, past: &mut [T]) {
+        if self.history.sees_late() {
+            self.history.pass(past, now * self.substeps, &block.q, &block.v);
+        }
+    }
+
+    /// What is done about it.
+    #[inline(always)]
+    pub(super) fn act(
+        &self,
+        place: Place,
+        block: &BlockOf<T, E, O, D>,
+        words: &mut Streams<LANES>,
+        out: &mut Step<T, O, D>,
+    ) {
+        if const { P::DRAWS } {
+            renew(words, block, [place.step, 1, 0], Purpose::Action);
+        }
+        let Step { seen, actions, log_probabilities, .. } = out;
+        let policy = self.policy;
+        policy.act_all(place, seen, words, actions, log_probabilities);
+    }
+
+    /// What comes of it.
+    #[inline(always)]
+    pub(super) fn advance<I: Target>(
+        &self,
+        target: I,
+        site: &Site<T, E, O, D>,
+        block: &mut BlockOf<T, E, O, D>,
+        past: &mut [T],
+        words: &mut Streams<LANES>,
+        out: &mut Yield<T, O, D>,
+    ) -> u8 {
+        let (parts, dt) = (self.parts(), self.dt);
+        let (mut q, mut v) = (Lines(block.q), Lines(block.v));
+        let commands = Lines(self.commands(&out.step.actions));
+        let mut held = Lines(self.accelerations(&commands.0));
+        if self.history.acts_late() {
+            self.history.act(past, site.place.step, &held.0);
+        }
+        for substep in 0..self.substeps {
+            let step = site.place.step * self.substeps + substep;
+            if self.history.acts_late() {
+                let late = &block.delays[1];
+                self.history.effective(past, site.place.step, substep, late, &mut held.0);
+            }
+            if substep > 0 && self.history.sees_late() {
+                self.history.pass(past, step, &q.0, &v.0);
+            }
+            if const { E::Clock::DRAWS } {
+                let now = [site.place.step, self.substeps, substep];
+                renew(words, block, now, Purpose::StepTime);
+            }
+            let beat = parts.clock.beat(step);
+            if const { Self::CHOSEN } {
+                let dt = self.lengths(block, beat, words);
+                let (system, _) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, 0);
+                let lanes = Lanes { q: &mut q.0, v: &mut v.0, held: &held.0, dt: &dt.0 };
+                lanes.step(target, system, parts.method);
+                continue;
+            }
+            for l in 0..LANES {
+                let (system, _) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
+                let dt = dt * self.ratio(block, l, beat, words);
+                let system = Held { system, command: at(&held.0, l) };
+                let state = State { q: at(&q.0, l), v: at(&v.0, l) };
+                let state = parts.method.step(&system, state, dt);
+                put(&mut q.0, l, state.q);
+                put(&mut v.0, l, state.v);
+            }
+        }
+        let mut ended = 0;
+        for l in 0..LANES {
+            let (_, task) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
+            let after = State { q: at(&q.0, l), v: at(&v.0, l) };
+            let action = at(&commands.0, l);
+            let acted = is_number(&at(&out.step.actions, l));
+            let time = self.time(site.place.step + 1, block.began[l]);
+            let (reward, over) = judged(&task, acted, time, &block.state(l), &action, &after);
+            out.step.rewards[l] = reward;
+            block.paid[l] = block.paid[l] + reward;
+            out.overs[l] = over;
+            ended |= over;
+        }
+        (block.q, block.v) = (q.0, v.0);
+        ended
+    }
+
+    /// Which episodes are cut off. Most often none can be yet, and nobody asks.
+    #[inline(always)]
+    pub(super) fn limit(
+        &self,
+        now: u64,
+        block: &BlockOf<T, E, O, D>,
+        asked: bool,
+        cuts: &mut [u8; LANES],
+    ) -> u8 {
+        let Some(last) = self.limit.map(|limit| limit - 1) else { return 0 };
+        if !asked && now - block.oldest < last {
+            return 0;
+        }
+        let mut ended = 0;
+        for (cut, began) in cuts.iter_mut().zip(&block.began) {
+            *cut = u8::from(now - began >= last);
+            ended |= *cut;
+        }
+        ended
+    }
+}
+
+/// The system and the task of lane `l`.
+#[inline(always)]
+pub(super) fn lane<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
+    parts: &Parts<T, E, O, D>,
+    systems: &Systems<T, E, O, D>,
+    numbers: &NumberLanes<T, E, O, D>,
+    l: usize,
+) -> (E::System, E::Task) {
+    let numbers = block::Numbers::<T, E, O, D>::lane(numbers, l);
+    parts.variation.apply(&numbers, E::Systems::lane(systems, l), parts.task)
+}
+
+/// What a step pays, and whether all is over with it, or it is [`LOST`]: what is lost pays nothing. What is not finite times zero is
+/// not zero. `acted` is whether the action
+/// was a number.
+#[inline(always)]
+pub(super) fn judged<T: Float, K: Task<T, D, O>, const O: usize, const D: usize>(
+    task: &K,
+    acted: bool,
+    time: T,
+    before: &State<T, D>,
+    action: &[T; D],
+    after: &State<T, D>,
+) -> (T, u8) {
+    let reward = task.reward(time, before, action, after);
+    let mut none = reward * T::zero();
+    for i in 0..D {
+        none = none + (after.q[i] * T::zero() + after.v[i] * T::zero());
+    }
+    let lost = !acted | (none != T::zero());
+    let over = u8::from(task.terminated(time, after)) | (u8::from(lost) * LOST);
+    (if lost { T::zero() } else { reward }, over)
+}
+
+/// Whether each of these is a finite number.
+#[inline(always)]
+fn is_number<T: Float, const D: usize>(action: &[T; D]) -> bool {
+    let mut sum = T::zero();
+    for &number in action {
+        sum = sum + number * T::zero();
+    }
+    sum == T::zero()
+}

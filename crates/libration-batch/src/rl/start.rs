@@ -1,0 +1,143 @@
+//! Where episodes begin.
+
+use core::array::from_fn;
+
+use libration_core::control::ControlError;
+use libration_core::control::error::finite;
+use libration_core::random::{Address, Purpose};
+use libration_core::{Float, State};
+
+/// The address of all that is drawn for an episode once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Episode {
+    /// Of all environments.
+    pub seed: u64,
+    /// Whose episode it is.
+    pub environment: u64,
+    /// How many went before.
+    pub number: u64,
+}
+
+/// Draws of an episode for the same purpose.
+const DRAWS: u64 = 64;
+
+/// Between the epochs of an episode and those of the next: an odd number, so that all of them differ, and as far from any simple share of
+/// 2⁶⁴ as can be, so that they hardly ever come near each other.
+const EPISODES_APART: u64 = 0x9E37_79B9_7F4A_7C15;
+
+impl Episode {
+    /// The address of its `i`-th draw for a purpose.
+    pub(super) fn address(self, purpose: Purpose, i: usize) -> Address {
+        let Episode { seed, environment: trajectory, number } = self;
+        let step = number.wrapping_mul(DRAWS).wrapping_add(i as u64);
+        Address { seed, trajectory, step, purpose }
+    }
+
+    /// The address of the words that follow each other in one of its epochs. Those of the first episode are those of a trajectory.
+    pub(super) fn epoch(self, purpose: Purpose, epoch: u64) -> Address {
+        let Episode { seed, environment: trajectory, number } = self;
+        let step = number.wrapping_mul(EPISODES_APART).wrapping_add(epoch);
+        Address { seed, trajectory, step, purpose }
+    }
+
+    /// Nothing, if so many draws have addresses of their own.
+    pub(super) const fn has(draws: usize) {
+        assert!(draws as u64 <= DRAWS, "more numbers than an episode has addresses");
+    }
+}
+
+/// The start of every episode of every environment.
+pub trait Start<T: Float, const D: usize>: Copy + Send + Sync {
+    /// Whether its numbers are those of a start.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check(&self) -> Result<(), ControlError> {
+        Ok(())
+    }
+
+    /// Where an episode begins.
+    fn draw(&self, episode: Episode) -> State<T, D>;
+}
+
+/// Always there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct At<const D: usize>(
+    /// The start.
+    pub State<f64, D>,
+);
+
+impl<T: Float, const D: usize> Start<T, D> for At<D> {
+    fn check(&self) -> Result<(), ControlError> {
+        self.0.coordinates().try_for_each(|x| finite::<T>("coordinate of the start", x))
+    }
+
+    fn draw(&self, _: Episode) -> State<T, D> {
+        self.0.map(T::from_f64)
+    }
+}
+
+/// Anywhere between two corners, each coordinate uniformly and by itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Between<const D: usize>(
+    /// The lower ends.
+    pub State<f64, D>,
+    /// The upper ends.
+    pub State<f64, D>,
+);
+
+impl<T: Float, const D: usize> Start<T, D> for Between<D> {
+    fn check(&self) -> Result<(), ControlError> {
+        between::check("width of the start", self.0.coordinates().zip(self.1.coordinates()))?;
+        self.0.coordinates().try_for_each(|x| finite::<T>("lower end of the start", x))?;
+        self.1.coordinates().try_for_each(|x| finite::<T>("upper end of the start", x))
+    }
+
+    fn draw(&self, episode: Episode) -> State<T, D> {
+        let positions = between::shares::<D>(episode, Purpose::Start, 0);
+        let velocities = between::shares::<D>(episode, Purpose::Start, D);
+        State {
+            q: from_fn(|i| between::at((self.0.q[i], self.1.q[i]), positions[i])),
+            v: from_fn(|i| between::at((self.0.v[i], self.1.v[i]), velocities[i])),
+        }
+    }
+}
+
+/// Numbers that are uniform between two ends.
+pub(super) mod between {
+    use core::array::from_fn;
+
+    use super::Episode;
+    use libration_core::Float;
+    use libration_core::control::ControlError;
+    use libration_core::random::Purpose;
+
+    /// Every lower end is below its upper one, or both are the same.
+    pub(in crate::rl) fn check(
+        name: &'static str,
+        ends: impl IntoIterator<Item = (f64, f64)>,
+    ) -> Result<(), ControlError> {
+        for (index, (low, high)) in ends.into_iter().enumerate() {
+            if !(low <= high && (high - low).is_finite()) {
+                let (value, allowed) = (high - low, "a finite number of at least 0");
+                return Err(ControlError { name, index: Some(index), value, allowed });
+            }
+        }
+        Ok(())
+    }
+
+    /// Where between its ends each of `N` numbers is, from 0 to 1: those from number `first` on.
+    pub(in crate::rl) fn shares<const N: usize>(
+        episode: Episode,
+        purpose: Purpose,
+        first: usize,
+    ) -> [f64; N] {
+        const { Episode::has(N) };
+        from_fn(|i| episode.address(purpose, first + i).uniform()[0])
+    }
+
+    /// The number there.
+    pub(in crate::rl) fn at<T: Float>((low, high): (f64, f64), share: f64) -> T {
+        T::from_f64(low + share * (high - low))
+    }
+}

@@ -1,0 +1,221 @@
+//! What an environment shows, what it pays, and when it is over.
+
+use libration_core::array::{each, map};
+use libration_core::control::ControlError;
+use libration_core::control::error::{ensure, finite};
+use libration_core::{Elementary, Float, State};
+
+/// A task on a system with `D` degrees of freedom, of which `O` numbers are seen. Nothing in it branches on data, and each
+/// function is `#[inline(always)]`, or the loops over environments are no vectors.
+///
+/// `time` is that since the episode began, in seconds, as an ideal clock counts it.
+pub trait Task<T: Float, const D: usize, const O: usize>: Copy + Send + Sync {
+    /// Whether it asks for the time; 0 is what it is told otherwise.
+    const TIMED: bool = false;
+
+    /// Whether its numbers are those of a task.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check(&self) -> Result<(), ControlError> {
+        Ok(())
+    }
+
+    /// What is seen of a state.
+    fn observe(&self, time: T, state: &State<T, D>) -> [T; O];
+
+    /// What a step from `before` to `after` under `action` pays, at its end.
+    fn reward(&self, time: T, before: &State<T, D>, action: &[T; D], after: &State<T, D>) -> T;
+
+    /// Whether it is over with this state. What is no longer finite is over in any case.
+    fn terminated(&self, time: T, after: &State<T, D>) -> bool;
+}
+
+/// To rest at the origin: a step pays `−(p·q² + r·v² + e·u²)`, and the episode is over beyond a distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Regulate {
+    /// `p`, the price of a distance squared.
+    pub position: f64,
+    /// `r`, that of a velocity squared.
+    pub velocity: f64,
+    /// `e`, that of a command squared.
+    pub effort: f64,
+    /// The distance from the origin, in each degree of freedom, beyond which all is lost; infinite for none.
+    pub bound: f64,
+}
+
+/// The sum of so many terms, of which there is at least one.
+#[inline(always)]
+fn sum<T: Float, const D: usize>(term: impl Fn(usize) -> T) -> T {
+    let mut all = term(0);
+    for i in 1..D {
+        all = all + term(i);
+    }
+    all
+}
+
+macro_rules! regulate {
+    ($d:literal, $o:literal) => {
+        impl<T: Float> Task<T, $d, $o> for Regulate {
+            fn check(&self) -> Result<(), ControlError> {
+                finite::<T>("price of a distance", self.position)?;
+                finite::<T>("price of a velocity", self.velocity)?;
+                finite::<T>("price of an effort", self.effort)?;
+                ensure("bound", self.bound, "above 0", |bound| T::from_f64(bound) > T::zero())
+            }
+
+            #[inline(always)]
+            fn observe(&self, _: T, state: &State<T, $d>) -> [T; $o] {
+                each(|i| if i < $d { state.q[i] } else { state.v[i - $d] })
+            }
+
+            #[inline(always)]
+            fn reward(&self, _: T, _: &State<T, $d>, action: &[T; $d], after: &State<T, $d>) -> T {
+                let [position, velocity, effort] =
+                    map([self.position, self.velocity, self.effort], T::from_f64);
+                let cost = |i: usize| {
+                    let (q, v, u) = (after.q[i], after.v[i], action[i]);
+                    position * (q * q) + velocity * (v * v) + effort * (u * u)
+                };
+                -sum::<T, $d>(cost)
+            }
+
+            #[inline(always)]
+            fn terminated(&self, _: T, after: &State<T, $d>) -> bool {
+                let bound = T::from_f64(self.bound);
+                let mut beyond = false;
+                for i in 0..$d {
+                    beyond |= (after.q[i] > bound) | (after.q[i] < -bound);
+                }
+                beyond
+            }
+        }
+    };
+}
+
+regulate!(1, 2);
+regulate!(2, 4);
+
+/// To stand a pendulum on its head, which hangs at `q = 0`: seen are the cosine and the sine of its angle and its velocity, and
+/// an action pays `cos q − 1 − r·v² − e·u²` of the angle from the top and the velocity that it finds, as that of Gymnasium's
+/// `Pendulum` does. It is never over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SwingUp {
+    /// `r`, the price of a velocity squared.
+    pub velocity: f64,
+    /// `e`, that of a command squared.
+    pub effort: f64,
+}
+
+impl<T: Float + Elementary> Task<T, 1, 3> for SwingUp {
+    fn check(&self) -> Result<(), ControlError> {
+        finite::<T>("price of a velocity", self.velocity)?;
+        finite::<T>("price of an effort", self.effort)
+    }
+
+    #[inline(always)]
+    fn observe(&self, _: T, &State { q: [q], v: [v] }: &State<T, 1>) -> [T; 3] {
+        [-Elementary::cos(q), -Elementary::sin(q), v]
+    }
+
+    #[inline(always)]
+    fn reward(&self, _: T, before: &State<T, 1>, &[u]: &[T; 1], _: &State<T, 1>) -> T {
+        let (velocity, effort) = (T::from_f64(self.velocity), T::from_f64(self.effort));
+        let v = before.v[0];
+        -Elementary::cos(before.q[0]) - T::one() - velocity * (v * v) - effort * (u * u)
+    }
+
+    #[inline(always)]
+    fn terminated(&self, _: T, _: &State<T, 1>) -> bool {
+        false
+    }
+}
+
+/// Where something ought to be.
+pub trait Reference<T: Float>: Copy + Send + Sync {
+    /// Whether its numbers are those of a reference.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check(&self) -> Result<(), ControlError> {
+        Ok(())
+    }
+
+    /// Its position and its velocity.
+    fn at(&self, time: T) -> [T; 2];
+}
+
+/// `A·sin(ω·t + φ)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sine {
+    /// `A`.
+    pub amplitude: f64,
+    /// `ω`, in radians a second.
+    pub angular_frequency: f64,
+    /// `φ`, in radians.
+    pub phase: f64,
+}
+
+impl<T: Float + Elementary> Reference<T> for Sine {
+    fn check(&self) -> Result<(), ControlError> {
+        finite::<T>("amplitude of the reference", self.amplitude)?;
+        finite::<T>("angular frequency of the reference", self.angular_frequency)?;
+        finite::<T>("phase of the reference", self.phase)
+    }
+
+    #[inline(always)]
+    fn at(&self, time: T) -> [T; 2] {
+        let [amplitude, omega, phase] =
+            map([self.amplitude, self.angular_frequency, self.phase], T::from_f64);
+        let angle = omega * time + phase;
+        [amplitude * Elementary::sin(angle), amplitude * omega * Elementary::cos(angle)]
+    }
+}
+
+/// To follow a reference: seen are position and velocity, and those of the reference; a step pays
+/// `−(p·(q − q₀)² + r·(v − v₀)² + e·u²)`, and the episode is over beyond a distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Track<R> {
+    /// The reference, known without delay; a [`Sensor`](super::Sensor) measures it like what else is seen.
+    pub reference: R,
+    /// Prices of distances from it, and the distance from it beyond which all is lost.
+    pub regulate: Regulate,
+}
+
+impl<R> Track<R> {
+    /// A state as the reference sees it.
+    #[inline(always)]
+    fn apart<T: Float>(&self, time: T, state: &State<T, 1>) -> State<T, 1>
+    where
+        R: Reference<T>,
+    {
+        let [q, v] = self.reference.at(time);
+        State { q: [state.q[0] - q], v: [state.v[0] - v] }
+    }
+}
+
+impl<T: Float, R: Reference<T>> Task<T, 1, 4> for Track<R> {
+    const TIMED: bool = true;
+
+    fn check(&self) -> Result<(), ControlError> {
+        self.reference.check()?;
+        Task::<T, 1, 2>::check(&self.regulate)
+    }
+
+    #[inline(always)]
+    fn observe(&self, time: T, state: &State<T, 1>) -> [T; 4] {
+        let [q, v] = self.reference.at(time);
+        [state.q[0], state.v[0], q, v]
+    }
+
+    #[inline(always)]
+    fn reward(&self, time: T, before: &State<T, 1>, action: &[T; 1], after: &State<T, 1>) -> T {
+        // Only where it came to is paid for.
+        self.regulate.reward(time, before, action, &self.apart(time, after))
+    }
+
+    #[inline(always)]
+    fn terminated(&self, time: T, after: &State<T, 1>) -> bool {
+        self.regulate.terminated(time, &self.apart(time, after))
+    }
+}

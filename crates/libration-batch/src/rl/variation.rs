@@ -1,0 +1,95 @@
+//! What is different in every episode.
+
+use super::Spread;
+use super::start::Episode;
+use libration_core::Float;
+use libration_core::array::each;
+use libration_core::control::{ControlError, Memory};
+use libration_core::random::Purpose;
+
+/// Draws numbers at the beginning of every episode and makes the system and the task of them: domain randomisation.
+///
+/// The rate of a clock is drawn by a [`Clock`](libration_core::control::Clock), a latency by [`Delays`](super::Delays), and how bad clock and
+/// sensor are by [`Severity`](super::Severity).
+pub trait Variation<T: Float, Sys, K>: Copy + Send + Sync {
+    /// What is kept of an environment for the episode.
+    type Numbers: Memory<T>;
+
+    /// Whether every episode has the system and the task that there are.
+    const SAME: bool = false;
+
+    /// Whether its numbers are those of a variation.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check(&self) -> Result<(), ControlError> {
+        Ok(())
+    }
+
+    /// What is drawn for an episode.
+    fn draw(&self, episode: Episode) -> Self::Numbers;
+
+    /// The system and the task of the episode. It branches on nothing but what `self` holds, and is `#[inline(always)]`, or the
+    /// loops over environments are no vectors.
+    fn apply(&self, numbers: &Self::Numbers, system: Sys, task: K) -> (Sys, K);
+}
+
+/// Nothing is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Same;
+
+impl<T: Float, Sys, K> Variation<T, Sys, K> for Same {
+    type Numbers = [T; 0];
+
+    const SAME: bool = true;
+
+    fn draw(&self, _: Episode) -> [T; 0] {
+        []
+    }
+
+    #[inline(always)]
+    fn apply(&self, _: &[T; 0], system: Sys, task: K) -> (Sys, K) {
+        (system, task)
+    }
+}
+
+/// `N` numbers, each with its distribution, and what they change.
+///
+/// ```
+/// use libration::rl::{Spread, task::Regulate, variation::Varied};
+/// use libration::system::Oscillator;
+///
+/// let stiffness = Varied {
+///     numbers: [Spread::Uniform(5.0, 15.0)],
+///     apply: |[omega2]: [f32; 1], _: Oscillator<f32>, task: Regulate| (Oscillator { omega2 }, task),
+/// };
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Varied<F, const N: usize> {
+    /// How each is distributed.
+    pub numbers: [Spread; N],
+    /// The system and the task, made of the numbers and of what they would be without.
+    pub apply: F,
+}
+
+impl<T, Sys, K, F, const N: usize> Variation<T, Sys, K> for Varied<F, N>
+where
+    T: Float,
+    F: Fn([T; N], Sys, K) -> (Sys, K) + Copy + Send + Sync,
+{
+    type Numbers = [T; N];
+
+    fn check(&self) -> Result<(), ControlError> {
+        self.numbers.iter().enumerate().try_for_each(|(i, spread)| spread.check::<T>(i))
+    }
+
+    fn draw(&self, episode: Episode) -> [T; N] {
+        const { Episode::has(N) };
+        each(|i| T::from_f64(self.numbers[i].draw(episode, Purpose::Variation, i)))
+    }
+
+    #[inline(always)]
+    fn apply(&self, numbers: &[T; N], system: Sys, task: K) -> (Sys, K) {
+        (self.apply)(*numbers, system, task)
+    }
+}

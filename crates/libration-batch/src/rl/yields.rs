@@ -1,0 +1,40 @@
+//! What blocks yield.
+
+use super::Final;
+use super::kernel::LANES;
+use libration_core::Float;
+
+/// The numbers of a step of a block, before they are written. It begins with a line of the cache, as each of its rows does: no
+/// vector lies across two.
+#[derive(Clone, Copy)]
+pub(super) struct Step<T, const O: usize, const D: usize> {
+    pub(super) seen: [[T; LANES]; O],
+    pub(super) actions: [[T; LANES]; D],
+    pub(super) log_probabilities: [T; LANES],
+    pub(super) rewards: [T; LANES],
+}
+
+impl<T: Float, const O: usize, const D: usize> Step<T, O, D> {
+    #[inline(always)]
+    pub(super) fn zeros() -> Self {
+        let zeros = [T::zero(); LANES];
+        Step { seen: [zeros; O], actions: [zeros; D], log_probabilities: zeros, rewards: zeros }
+    }
+}
+
+/// What a block yields.
+#[repr(C, align(64))]
+pub(super) struct Yield<T, const O: usize, const D: usize> {
+    /// Of a step that was taken in several parts.
+    pub(super) step: Step<T, O, D>,
+    pub(super) overs: [u8; LANES],
+    pub(super) cuts: [u8; LANES],
+    /// The episodes that ended so far.
+    pub(super) finals: Vec<Final<T, O>>,
+}
+
+impl<T: Float, const O: usize, const D: usize> Yield<T, O, D> {
+    pub(super) fn zeros() -> Self {
+        Yield { step: Step::zeros(), overs: [0; LANES], cuts: [0; LANES], finals: Vec::new() }
+    }
+}

@@ -1,0 +1,138 @@
+//! How long a step is.
+
+mod correlated;
+mod dropped;
+mod jittered;
+mod late;
+mod noise;
+mod recorded;
+mod stamps;
+mod steady;
+mod wandering;
+mod waving;
+
+pub use correlated::Correlated;
+pub use dropped::Dropped;
+pub use jittered::Jittered;
+pub use late::Late;
+pub use noise::{Gaussian, Noise, Uniform};
+pub use recorded::{Recorded, RecordedError};
+pub use steady::{Drifting, Fixed, Rates, Skewed};
+pub use wandering::Wandering;
+pub use waving::Waving;
+
+use super::{Begin, ControlError, Memory};
+use crate::Float;
+
+/// Tells of every step of every trajectory how long it is, as a multiple of the time step `Δt`.
+///
+/// No step is negative: where noise would make it so, it is of length zero, since a clock does not go back. Two clocks
+/// in a pair are one, whose steps are the products of theirs.
+pub trait Clock<T: Float>: Copy + Send + Sync {
+    /// What it keeps of a trajectory.
+    type Memory: Memory<T>;
+    /// What is the same for all trajectories at a step.
+    type Beat: Copy;
+
+    /// Whether every step is `Δt` long.
+    const EVEN: bool = false;
+    /// Whether steps are random.
+    const DRAWS: bool = false;
+
+    /// Whether its numbers are those of a clock; `Loops` ask before they begin.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check(&self) -> Result<(), ControlError> {
+        Ok(())
+    }
+
+    /// The memory before the first step.
+    fn start(&self, begin: Begin) -> Self::Memory;
+
+    /// What is the same for all trajectories at `step`.
+    fn beat(&self, step: u64) -> Self::Beat;
+
+    /// How many random words a step takes: the same number for every step and trajectory, and none where nothing is
+    /// drawn.
+    fn words(&self) -> usize {
+        0
+    }
+
+    /// The number of steps of which it knows, if it does not know of all.
+    fn steps(&self) -> Option<u64> {
+        None
+    }
+
+    /// The number of trajectories of which it knows, if it does not know of all.
+    fn trajectories(&self) -> Option<usize> {
+        None
+    }
+
+    /// How many `Δt` the step is long. It branches on nothing but what `self` holds, and is
+    /// `#[inline(always)]`, or its loops are no vectors.
+    fn ratio(
+        &self,
+        memory: &mut Self::Memory,
+        beat: Self::Beat,
+        word: &mut impl FnMut() -> u32,
+    ) -> T;
+}
+
+impl<T: Float, A: Clock<T>, B: Clock<T>> Clock<T> for (A, B) {
+    type Memory = (A::Memory, B::Memory);
+    type Beat = (A::Beat, B::Beat);
+
+    const EVEN: bool = A::EVEN && B::EVEN;
+    const DRAWS: bool = A::DRAWS || B::DRAWS;
+
+    fn check(&self) -> Result<(), ControlError> {
+        self.0.check()?;
+        self.1.check()
+    }
+
+    fn start(&self, begin: Begin) -> Self::Memory {
+        let [first, second] = begin.halves();
+        (self.0.start(first), self.1.start(second))
+    }
+
+    fn beat(&self, step: u64) -> Self::Beat {
+        (self.0.beat(step), self.1.beat(step))
+    }
+
+    fn words(&self) -> usize {
+        self.0.words() + self.1.words()
+    }
+
+    fn steps(&self) -> Option<u64> {
+        fewest(self.0.steps(), self.1.steps())
+    }
+
+    fn trajectories(&self) -> Option<usize> {
+        fewest(self.0.trajectories(), self.1.trajectories())
+    }
+
+    #[inline(always)]
+    fn ratio(
+        &self,
+        memory: &mut Self::Memory,
+        beat: Self::Beat,
+        word: &mut impl FnMut() -> u32,
+    ) -> T {
+        let first = self.0.ratio(&mut memory.0, beat.0, word);
+        first * self.1.ratio(&mut memory.1, beat.1, word)
+    }
+}
+
+/// The smaller of both, where there are limits.
+fn fewest<N: Ord>(a: Option<N>, b: Option<N>) -> Option<N> {
+    a.into_iter().chain(b).min()
+}
+
+/// `1 + ε`, but not below zero.
+#[inline(always)]
+fn forward<T: Float>(epsilon: T) -> T {
+    let ratio = T::one() + epsilon;
+    // What is no number stays none, to be seen.
+    if ratio < T::zero() { T::zero() } else { ratio }
+}

@@ -1,0 +1,52 @@
+//! What a loop decides.
+
+mod force;
+mod luenberger;
+mod open;
+mod pid;
+mod saturated;
+mod state_feedback;
+
+pub use force::Force;
+pub use luenberger::Luenberger;
+pub use open::Open;
+pub use pid::{Pid, PidGains};
+pub use saturated::Saturated;
+pub use state_feedback::StateFeedback;
+
+use super::{ControlError, Memory};
+use crate::{Float, State};
+
+/// Computes commands: an acceleration in each degree of freedom.
+pub trait Controller<T: Float, const D: usize>: Copy + Send + Sync {
+    /// Whether it commands at all.
+    #[doc(hidden)]
+    const ACTS: bool = true;
+
+    /// What it keeps of a trajectory from sample to sample.
+    type Memory: Memory<T>;
+
+    /// Whether its numbers are those of a controller that samples every `period` seconds; `Loops`
+    /// ask before they begin.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check(&self, period: f64) -> Result<(), ControlError> {
+        let _ = period;
+        Ok(())
+    }
+
+    /// The memory before the first sample of a trajectory that begins at `state`.
+    fn start(&self, state: &State<T, D>) -> Self::Memory;
+
+    /// The command that follows from what is observed, `period` seconds after the last sample. It branches on
+    /// nothing but what `self` holds, and is `#[inline(always)]`, or its loops are no vectors.
+    fn command(&self, memory: &mut Self::Memory, observed: &State<T, D>, period: T) -> [T; D];
+}
+
+/// `x`, but not beyond `±most`.
+#[inline(always)]
+fn within<T: Float>(x: T, most: T) -> T {
+    let low = if x < -most { -most } else { x };
+    if low > most { most } else { low }
+}

@@ -1,0 +1,127 @@
+//! When a command arrives.
+
+mod latencies;
+mod packets;
+mod random;
+mod recorded;
+mod schedule;
+
+pub use latencies::Latencies;
+pub use packets::{Order, Packets, PacketsError};
+pub use random::Random;
+pub use recorded::{RecordedLatencies, RecordedLatenciesError};
+pub use schedule::{Event, Schedule, ScheduleError};
+
+use super::{Begin, ControlError, Memory};
+use crate::Float;
+
+/// Tells which command acts.
+///
+/// Either all trajectories share a [`Schedule`], or in each step at most one command arrives, in each trajectory its own.
+pub trait Delay<T: Float>: Copy + Send + Sync {
+    /// Whether there is one schedule for all.
+    const SHARED: bool = false;
+    /// In how many places a step can split: where a command arrives, and where the loop looks.
+    const SPLITS: usize;
+
+    /// What it keeps of a trajectory.
+    type Memory: Memory<T>;
+    /// What is the same for all trajectories at a step.
+    type Beat: Copy;
+
+    /// Whether its numbers are those of a delay; `Loops` ask before they begin.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check(&self) -> Result<(), ControlError> {
+        Ok(())
+    }
+
+    /// The times of samples and commands that all trajectories share. Where they do not, a command is computed in every
+    /// step.
+    fn schedule(&self) -> Schedule {
+        Schedule::EVERY_STEP
+    }
+
+    /// How many commands back the oldest is that may yet arrive.
+    fn longest(&self) -> usize;
+
+    /// The memory before the first step.
+    fn start(&self, begin: Begin) -> Self::Memory;
+
+    /// What is the same for all trajectories at `step`.
+    fn beat(&self, step: u64) -> Self::Beat;
+
+    /// How many random words a step takes: the same number for every step and trajectory.
+    fn words(&self) -> usize {
+        0
+    }
+
+    /// The number of steps of which it knows, if it does not know of all.
+    fn steps(&self) -> Option<u64> {
+        None
+    }
+
+    /// The number of trajectories of which it knows, if it does not know of all.
+    fn trajectories(&self) -> Option<usize> {
+        None
+    }
+
+    /// What arrives in a step, where there is no schedule for all.
+    fn arrival(
+        &self,
+        memory: &mut Self::Memory,
+        beat: Self::Beat,
+        word: &mut impl FnMut() -> u32,
+    ) -> Arrival<T>;
+}
+
+/// What arrives in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival<T> {
+    /// Whether anything does; if not, the command that acted goes on.
+    pub fresh: bool,
+    /// How many steps ago it was computed; what is older than the longest latency never arrives.
+    pub age: u32,
+    /// After which part of the step it arrives; at least 0 and below 1. It is 0 unless steps split.
+    pub part: T,
+    /// After which part of the step the loop looks, and a command is computed that is of age 0 in this step; at least 0 and below 1.
+    /// It is 0 unless steps split in two places, and what arrives in the same step is older.
+    pub looks: T,
+}
+
+impl<T: Float> Arrival<T> {
+    /// A command of `age` steps ago that arrives with the beginning of the step.
+    #[inline(always)]
+    fn of_age(age: u32) -> Self {
+        Arrival { fresh: true, age, part: T::zero(), looks: T::zero() }
+    }
+}
+
+/// A schedule is a delay: the same for all trajectories.
+impl<T: Float> Delay<T> for Schedule {
+    const SHARED: bool = true;
+    const SPLITS: usize = 2;
+
+    type Memory = [T; 0];
+    type Beat = ();
+
+    fn schedule(&self) -> Schedule {
+        *self
+    }
+
+    fn longest(&self) -> usize {
+        self.commands_on_their_way()
+    }
+
+    fn start(&self, _: Begin) -> [T; 0] {
+        []
+    }
+
+    fn beat(&self, _: u64) {}
+
+    #[inline(always)]
+    fn arrival(&self, _: &mut [T; 0], (): (), _: &mut impl FnMut() -> u32) -> Arrival<T> {
+        Arrival::of_age(0)
+    }
+}

@@ -1,0 +1,69 @@
+//! What pushes a plant besides its command.
+
+use super::ControlError;
+use super::error::not_negative;
+use crate::Float;
+use crate::random::normal;
+
+/// An acceleration that nobody commands: process noise.
+pub trait Disturbance: Copy + Send + Sync {
+    /// Whether there is any.
+    #[doc(hidden)]
+    const ACTS: bool = true;
+
+    /// Whether its numbers are those of a disturbance; `Loops` ask before they begin.
+    ///
+    /// # Errors
+    /// The first that is not.
+    fn check<T: Float>(&self) -> Result<(), ControlError> {
+        Ok(())
+    }
+
+    /// How many random words an acceleration takes: the same number for every step and trajectory.
+    fn words(&self) -> usize;
+
+    /// The acceleration in a degree of freedom that is held through a step of `dt` seconds, whether a command arrives within it
+    /// or not.
+    fn acceleration<T: Float>(&self, dt: T, word: &mut impl FnMut() -> u32) -> T;
+}
+
+/// Nothing does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Undisturbed;
+
+impl Disturbance for Undisturbed {
+    const ACTS: bool = false;
+
+    fn words(&self) -> usize {
+        0
+    }
+
+    #[inline(always)]
+    fn acceleration<T: Float>(&self, _: T, _: &mut impl FnMut() -> u32) -> T {
+        T::zero()
+    }
+}
+
+/// White Gaussian noise of this intensity `W`, in (m/s²)²·s, in each degree of freedom by itself: an acceleration with the variance
+/// `W/Δt` that is held through each step, so that the velocity takes up the variance `W` in a second, whatever the steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WhiteNoise(pub f64);
+
+impl Disturbance for WhiteNoise {
+    fn check<T: Float>(&self) -> Result<(), ControlError> {
+        not_negative::<T>("the intensity of the noise", self.0)
+    }
+
+    fn words(&self) -> usize {
+        2
+    }
+
+    #[inline(always)]
+    fn acceleration<T: Float>(&self, dt: T, word: &mut impl FnMut() -> u32) -> T {
+        let drawn = T::from_f64(self.0.sqrt()) * T::from_f64(normal([word(), word()]).into());
+        // A step of length zero moves nothing.
+        let root = dt.sqrt();
+        let share = if root > T::zero() { root.recip() } else { T::zero() };
+        drawn * share
+    }
+}

@@ -1,0 +1,85 @@
+//! Fixed-step integrators, each defined exactly once.
+//!
+//! A splitting method is a word in two letters, *kick* (`v += h·a`) and *drift* (`q += h·v`); a
+//! Runge–Kutta method is a sum of rates. Nothing here knows whether a number is one particle, a
+//! derivative or a polynomial.
+
+mod chosen;
+mod composition;
+mod euler;
+mod exact;
+mod leapfrog;
+mod repeated;
+mod runge_kutta;
+mod splitting;
+mod textbook_verlet;
+mod velocity_verlet;
+
+use crate::{Scalar, State, System};
+
+pub use composition::{Composition, SUZUKI4, Suzuki4, YOSHIDA4, Yoshida4};
+pub use euler::{ExplicitEuler, SymplecticEuler, SymplecticEulerDriftFirst};
+pub use exact::Exact;
+pub use leapfrog::Leapfrog;
+pub use repeated::Repeated;
+pub use runge_kutta::Rk4;
+pub use splitting::Splitting;
+pub use textbook_verlet::TextbookVerlet;
+pub use velocity_verlet::VelocityVerlet;
+
+/// A one-step method `(q, v) ↦ (q', v')`.
+///
+/// A step never fails, allocates, branches on data or reads a clock.
+pub trait Integrator: Copy + Send + Sync {
+    /// Whether a step ends with the force evaluation with which the next begins, so that
+    /// [`Integrator::carried`] saves one.
+    const CARRIES: bool = false;
+
+    /// Vector registers that a step fills besides those of the state and of a force: an
+    /// `Ensemble` makes its blocks narrower by them, and gives the same results.
+    const REGISTERS: usize = 4;
+
+    /// Whether it is one of several integrators, which is known only when the program runs.
+    const CHOSEN: bool = false;
+
+    /// Hands over the integrator that it is, so that a loop can be made for that alone.
+    #[inline(always)]
+    fn known<W: WithIntegrator>(self, with: W) -> W::Output {
+        with.integrator(self)
+    }
+
+    /// Advances `state` by one step of length `dt`.
+    fn step<S: Scalar, const D: usize>(
+        self,
+        system: &impl System<S, D>,
+        state: State<S, D>,
+        dt: S,
+    ) -> State<S, D>;
+
+    /// [`Integrator::step`] from a state whose acceleration is known, to a state and its
+    /// acceleration: the same bits.
+    ///
+    /// Where the method [carries](Integrator::CARRIES), the system must be
+    /// [positional](System::POSITIONAL): the acceleration that is handed on was evaluated before
+    /// the last kick.
+    #[inline(always)]
+    fn carried<S: Scalar, const D: usize>(
+        self,
+        system: &impl System<S, D>,
+        state: State<S, D>,
+        _acceleration: [S; D],
+        dt: S,
+    ) -> (State<S, D>, [S; D]) {
+        let state = self.step(system, state, dt);
+        (state, system.acceleration(&state))
+    }
+}
+
+/// What is to be done with an integrator, whichever it is.
+pub trait WithIntegrator {
+    /// What comes of it.
+    type Output;
+
+    /// Does it.
+    fn integrator<M: Integrator>(self, integrator: M) -> Self::Output;
+}

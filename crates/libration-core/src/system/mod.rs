@@ -1,0 +1,99 @@
+//! Physical systems `q̈ = a(q, v)`, each written once for every number type.
+
+mod chosen;
+mod damped;
+mod driven;
+mod duffing;
+mod force_in;
+mod held;
+mod henon_heiles;
+mod kepler;
+mod oscillator;
+mod pendulum;
+
+use crate::{Elementary, Scalar, State};
+
+pub use chosen::Chosen;
+pub use damped::DampedOscillator;
+pub use driven::DrivenOscillator;
+pub use duffing::Duffing;
+pub use force_in::ForceIn;
+pub use held::Held;
+pub use henon_heiles::HenonHeiles;
+pub use kepler::Kepler;
+pub use oscillator::Oscillator;
+pub use pendulum::Pendulum;
+
+/// A mechanical system with `D` degrees of freedom and equation of motion `q̈ = a(q, v)`.
+///
+/// Time, where a system needs it, is a coordinate with velocity 1 and acceleration 0.
+pub trait System<S: Scalar, const D: usize> {
+    /// Whether the acceleration depends on the positions alone.
+    ///
+    /// An `Ensemble` then hands it from the end of a Verlet step to the next.
+    const POSITIONAL: bool = false;
+
+    /// Vector registers that an evaluation of the force fills besides the state, with its constants and
+    /// with what lies between.
+    ///
+    /// An `Ensemble` makes its blocks narrower by them, and is fastest where this is
+    /// about right; its results do not depend on it.
+    const REGISTERS: usize = 16;
+
+    /// Whether it is one of several systems, which is known only when the program runs.
+    const CHOSEN: bool = false;
+
+    /// Hands over the system that it is, so that a loop can be made for that alone.
+    #[inline(always)]
+    fn known<W: WithSystem<S, D>>(&self, with: W) -> W::Output
+    where
+        Self: Copy,
+    {
+        with.system(*self)
+    }
+
+    /// The acceleration `a(q, v)`.
+    fn acceleration(&self, state: &State<S, D>) -> [S; D];
+
+    /// The rate of change of the state, `(q̇, v̇) = (v, a(q, v))`.
+    #[inline(always)]
+    fn rate(&self, state: State<S, D>) -> State<S, D> {
+        State { q: state.v, v: self.acceleration(&state) }
+    }
+}
+
+/// What is to be done with a system, whichever it is.
+pub trait WithSystem<S: Scalar, const D: usize> {
+    /// What comes of it.
+    type Output;
+
+    /// Does it.
+    fn system<Sys: System<S, D> + Copy>(self, system: Sys) -> Self::Output;
+}
+
+/// A system with an energy, conserved or not.
+pub trait Hamiltonian<S: Scalar, const D: usize>: System<S, D> {
+    /// Kinetic plus potential energy per unit mass.
+    fn energy(&self, state: &State<S, D>) -> S;
+}
+
+/// A system given by `f64` parameters that can be put on any number type.
+///
+/// It is what a laboratory holds: one description, from which it makes the system of floats that
+/// it simulates, the system of dual numbers that it differentiates, and so on.
+pub trait Model<const D: usize>: Copy + Send + Sync {
+    /// The system on numbers of type `S`.
+    type On<S: Elementary>: Hamiltonian<S, D> + Copy;
+
+    /// Whether the acceleration is linear in `(q, v)`, so that one step is a constant matrix.
+    const LINEAR: bool;
+
+    /// The system on numbers of type `S`, its parameters rounded to `S`.
+    fn on<S: Elementary>(&self) -> Self::On<S>;
+}
+
+/// `½ |v|²`, the kinetic energy per unit mass.
+#[inline(always)]
+pub fn kinetic<S: Scalar>(v: &[S]) -> S {
+    v.iter().fold(S::zero(), |sum, &v| sum + v * v).ratio(1, 2)
+}
