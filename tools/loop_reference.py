@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes crates/libration-lab/tests/reference/loops.json: how second moments of control loops grow.
+"""Makes crates/libration-analyze/tests/reference/loops.json: how second moments of control loops grow.
 
 Run it, from anywhere, with a Python that has NumPy and SciPy:
 
@@ -180,7 +180,7 @@ def main():
         one["mean_square_radius"] = float(radius)
         print(f"{radius:.15f} {condition:8.1f} {one}")
     root = Path(__file__).resolve().parent.parent
-    path = root / "crates/libration-lab/tests/reference/loops.json"
+    path = root / "crates/libration-analyze/tests/reference/loops.json"
     path.write_text(json.dumps({"made by": "tools/loop_reference.py", "cases": CASES}, indent=1) + "\n")
 
 

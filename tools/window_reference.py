@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes crates/libration-lab/tests/reference/windows.json: the time steps at which a damped oscillator is stable.
+"""Makes crates/libration-analyze/tests/reference/windows.json: the time steps at which a damped oscillator is stable.
 
 Run it, from anywhere, with a Python that has NumPy:
 
@@ -101,7 +101,7 @@ def main():
             cases.append(dict(integrator=name, omega2=s, gamma=g, windows=found))
             print(cases[-1])
     root = Path(__file__).resolve().parent.parent
-    path = root / "crates/libration-lab/tests/reference/windows.json"
+    path = root / "crates/libration-analyze/tests/reference/windows.json"
     path.write_text(json.dumps({"made by": "tools/window_reference.py", "horizon": HORIZON, "cases": cases}, indent=1) + "\n")
 
 

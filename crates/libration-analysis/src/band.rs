@@ -1,8 +1,9 @@
 //! Between which energies an orbit of a linear step moves.
 
-use super::{QuadraticForm, UpdateMatrix};
 use libration_core::number::Wide;
 use libration_core::{Elementary, Hamiltonian, Model, Scalar, State};
+
+use super::{QuadraticForm, UpdateMatrix};
 
 /// The band of energies of the orbits of a linear step in one dimension.
 ///
@@ -102,10 +103,11 @@ impl EnergyBand {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::Linearisation;
     use libration_core::system::Oscillator;
     use libration_core::{Method, with_method};
+
+    use super::*;
+    use crate::Linearisation;
 
     /// ω² = 10 and Δt = 0.1, so that z² = 0.1.
     fn band(method: Method) -> EnergyBand {

@@ -164,9 +164,10 @@ fn step<'a, I: Integrator, Sys: System<Traced<'a>, D>, const D: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use libration_core::integrator::{ExplicitEuler, Rk4, SymplecticEuler, VelocityVerlet};
     use libration_core::system::Oscillator;
+
+    use super::*;
 
     const OSCILLATOR: Oscillator<f64> = Oscillator { omega2: 10.0 };
 

@@ -4,9 +4,10 @@
 //! (Durand–Kerner). In floats that would be a poor way; with 1024 bits a few hundred are left
 //! after it for matrices as small as those of a time step.
 
-use super::{Complex, UpdateMatrix};
 use libration_core::Scalar;
 use libration_core::number::Wide;
+
+use super::{Complex, UpdateMatrix};
 
 /// Sweeps of the iteration. A double root gains one bit a sweep, a simple one doubles its bits.
 const SWEEPS: usize = 400;
@@ -94,8 +95,9 @@ pub(super) fn roots(coefficients: &[Wide]) -> Vec<Complex> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use libration_core::State;
+
+    use super::*;
 
     #[test]
     fn a_rotation_with_a_shear_has_its_four_eigenvalues() {

@@ -1,8 +1,9 @@
 //! The largest energy drift of a linear system, without simulating it in floats.
 
-use super::UpdateMatrix;
 use libration_core::number::{TwoFloat, Wide};
 use libration_core::{Elementary, Float, Hamiltonian, Model, Scalar, State};
+
+use super::UpdateMatrix;
 
 /// Steps before the last that are tried where the orbit leaves the range of the search; a growing
 /// spiral has its largest energy in its last turn.

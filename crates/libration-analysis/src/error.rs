@@ -1,9 +1,10 @@
 //! The error of a long orbit of the oscillator, without simulating it.
 
-use super::{Complex, Eigenvalues, Spectrum, UpdateMatrix};
 use libration_core::number::Wide;
 use libration_core::system::Oscillator;
 use libration_core::{Elementary, Scalar, State};
+
+use super::{Complex, Eigenvalues, Spectrum, UpdateMatrix};
 
 /// Differences from one below this are rounding of the 1024 bits.
 const ROUNDING: f64 = 1e-250;
@@ -103,9 +104,10 @@ fn geometric(w: Complex, k: u64, n: u64) -> Complex {
 
 #[cfg(test)]
 mod tests {
+    use libration_core::{Method, with_method};
+
     use super::*;
     use crate::Linearisation;
-    use libration_core::{Method, with_method};
 
     fn forecast(method: Method, dt: f64) -> ErrorForecast {
         let (model, start) = (Oscillator { omega2: 10.0 }, State { q: [1.0], v: [0.0] });

@@ -1,7 +1,8 @@
 //! Quadratic forms on a phase space of one degree of freedom.
 
-use super::UpdateMatrix;
 use libration_core::{Scalar, State};
+
+use super::UpdateMatrix;
 
 /// The quadratic form `qq·q² + 2·qv·q·v + vv·v²`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,11 +1,12 @@
 //! The largest time step that meets a criterion, exactly.
 
+use libration_core::number::{Ratio, Wide};
+use libration_core::{Elementary, Scalar};
+
 use super::orbit_start::{NEGLIGIBLE, OrbitStart};
 use super::roots::IntegerPoly;
 use super::window::Cells;
 use super::{SymbolicStep, UnknownStep};
-use libration_core::number::{Ratio, Wide};
-use libration_core::{Elementary, Scalar};
 
 /// What a time step must keep to.
 #[derive(Clone, Copy, Debug)]
@@ -224,8 +225,9 @@ fn root(x: Wide, n: u64) -> Wide {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use libration_core::{Method, State, with_method};
+
+    use super::*;
 
     fn rest() -> OrbitStart {
         OrbitStart::new(&State { q: [1.0], v: [0.0] })
@@ -258,7 +260,10 @@ mod tests {
     fn the_table_of_largest_steps_is_met_to_its_last_digit() {
         // ω² = 10, from (1, 0): an independent brute-force search in NumPy printed six decimals.
         let amplitude = |limit, steps| Criterion::Amplitude { limit, steps, start: rest() };
-        use Method::{ExplicitEuler as E, Rk4 as R, SymplecticEuler as S, VelocityVerlet as V};
+        use Method::ExplicitEuler as E;
+        use Method::Rk4 as R;
+        use Method::SymplecticEuler as S;
+        use Method::VelocityVerlet as V;
         for (method, criterion, dt) in [
             (E, Criterion::Bounded, 0.0),
             (S, Criterion::Bounded, 0.632456),

@@ -1,10 +1,11 @@
 //! One step as a matrix, in 1024 bits.
 
-use super::UpdateMatrix;
-use super::exponential::exponential;
 use libration_core::number::{Dual, Wide};
 use libration_core::system::Chosen;
 use libration_core::{Integrator, Model, State, System};
+
+use super::UpdateMatrix;
+use super::exponential::exponential;
 
 /// A system and one step of an integrator on it, linearised about a state.
 ///

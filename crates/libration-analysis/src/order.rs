@@ -1,8 +1,9 @@
 //! The order of a splitting method, from its word alone.
 
-use super::{Letter, Tableau};
 use libration_core::number::Wide;
 use libration_core::{Integrator, Scalar};
+
+use super::{Letter, Tableau};
 
 /// How far a splitting method is from the flow that it approximates, degree by degree.
 ///
@@ -83,10 +84,11 @@ impl Series {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::{SymbolicStep, UnknownStep};
     use libration_core::integrator::{Composition, Splitting, VelocityVerlet};
     use libration_core::{Method, with_method};
+
+    use super::*;
+    use crate::{SymbolicStep, UnknownStep};
 
     fn order(integrator: impl Integrator) -> Option<usize> {
         OrderCertificate::new(integrator, 6).map(|c| c.order())

@@ -2,10 +2,11 @@
 
 use core::f64::consts::{PI, TAU};
 
-use super::{EnergyBand, LargestStep, Spectrum, SymbolicStep, UpdateMatrix};
 use libration_core::number::Wide;
 use libration_core::system::Oscillator;
 use libration_core::{Elementary, Scalar};
+
+use super::{EnergyBand, LargestStep, Spectrum, SymbolicStep, UpdateMatrix};
 
 /// The error of a step on the oscillator after many of them, in closed form.
 ///
@@ -142,8 +143,9 @@ impl SymbolicStep {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use libration_core::{Method, with_method};
+
+    use super::*;
 
     /// `‖Mⁿ − R(nz)‖₂` from the powers of the matrix itself, the largest within `steps`.
     fn by_powers(step: &SymbolicStep, z: f64, steps: u64) -> f64 {

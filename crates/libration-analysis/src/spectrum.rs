@@ -1,8 +1,9 @@
 //! The eigenvalues of a `2 × 2` matrix, in closed form and without cancellation.
 
-use super::{SymbolicStep, UpdateMatrix};
 use libration_core::number::Wide;
 use libration_core::{Elementary, Scalar};
+
+use super::{SymbolicStep, UpdateMatrix};
 
 /// Differences below this many bits under the leading one are rounding: 1024 bits carry each
 /// operation to `2⁻¹⁰²⁰`, and a step takes far fewer than `2¹²⁰` of them.

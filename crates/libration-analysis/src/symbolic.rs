@@ -1,9 +1,10 @@
 //! One step on a linear system as a matrix of exact polynomials.
 
-use super::{QuadraticForm, UpdateMatrix};
 use libration_core::number::Poly;
 use libration_core::system::Oscillator;
 use libration_core::{Integrator, Scalar, System};
+
+use super::{QuadraticForm, UpdateMatrix};
 
 /// Polynomials in the unknown `z = ωΔt`. Thirty-two coefficients hold the determinant of a
 /// composition of three Verlet steps with room to spare.
@@ -70,10 +71,11 @@ impl SymbolicStep {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use libration_core::integrator::{Rk4, SymplecticEuler, VelocityVerlet};
     use libration_core::number::Ratio;
     use libration_core::system::{DampedOscillator, Pendulum};
+
+    use super::*;
 
     fn coefficients(p: &UnknownStep) -> [f64; 4] {
         [0, 1, 2, 3].map(|k| p.coefficient(k).to_f64())

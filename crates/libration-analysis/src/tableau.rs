@@ -2,9 +2,10 @@
 
 use core::cell::RefCell;
 
-use super::UnknownStep;
 use libration_core::number::Ratio;
 use libration_core::{Integrator, Scalar, State, System};
+
+use super::UnknownStep;
 
 /// The coefficients of an integrator on `q̈ = a(q)`, by running one step on formal symbols.
 ///
@@ -110,10 +111,11 @@ impl Letter {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use libration_core::integrator::{
         ExplicitEuler, Rk4, SymplecticEuler, TextbookVerlet, VelocityVerlet,
     };
+
+    use super::*;
 
     #[test]
     fn verlet_is_kick_drift_kick_however_it_is_written() {

@@ -3,8 +3,9 @@
 use core::cell::RefCell;
 use core::ops::{Add, Mul, Neg, Sub};
 
-use super::data_flow::{Node, Operation};
 use libration_core::{Elementary, Scalar};
+
+use super::data_flow::{Node, Operation};
 
 /// What was done to numbers, each operation once.
 #[derive(Debug, Default)]

@@ -1,9 +1,10 @@
 //! The time steps at which a step is stable, exactly.
 
-use super::SymbolicStep;
-use super::roots::{Dyadic, IntegerPoly, Root, WholePoly, positive_roots};
 use libration_core::Elementary;
 use libration_core::number::Wide;
+
+use super::SymbolicStep;
+use super::roots::{Dyadic, IntegerPoly, Root, WholePoly, positive_roots};
 
 /// A largest open interval of time steps at which every orbit stays bounded.
 #[derive(Clone, Copy, Debug)]
@@ -129,9 +130,10 @@ impl Cells {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use libration_core::integrator::{Composition, VelocityVerlet};
     use libration_core::{Integrator, Method, with_method};
+
+    use super::*;
 
     fn windows(integrator: impl Integrator) -> Vec<(f64, f64)> {
         let ends = |w: &StabilityWindow| (w.from.to_f64(), w.to.unwrap().to_f64());

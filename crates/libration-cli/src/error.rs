@@ -1,12 +1,13 @@
 //! What can end a run, and the exit code of each.
 
 use std::fmt::Display;
-use std::io::{self, ErrorKind};
+use std::io;
+use std::io::ErrorKind;
 use std::path::Path;
 use std::process::ExitCode;
 
 use libration::ensemble::{EnsembleError, MOST_THREADS, NoRoom};
-use libration_lab::dataset::{DataError, DatasetError};
+use libration_env::dataset::{DataError, DatasetError};
 
 use crate::terminal;
 

@@ -8,8 +8,10 @@ use std::sync::atomic::AtomicBool;
 
 use libration::{Elementary, Hamiltonian, Model, State, System};
 use libration_lab::output::Output;
-use libration_lab::studies::{Convergence, Nonlinear, Problem, Subject};
-use libration_lab::{Lab, Record, Silent, config, session};
+use libration_lab::{STUDIES, session};
+use libration_report::Record;
+use libration_study::{Lab, Silent};
+use libration_study_motion::{Convergence, Nonlinear, Problem, Subject};
 
 /// `θ̈ = (Ω² cos θ − ω²) sin θ`, with ω² = g/r and the hoop turning at Ω about its diameter.
 ///
@@ -49,8 +51,8 @@ impl Model<1> for Bead<f64> {
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let config = match arguments.next() {
-        Some(path) => config::parse_bytes(&config::read(path.as_ref())?, &path)?,
-        None => config::parse(include_str!("own_system.toml"), "own_system.toml")?,
+        Some(path) => STUDIES.parse_bytes(&libration_settings::read(path.as_ref())?, &path)?,
+        None => STUDIES.parse(include_str!("own_system.toml"), "own_system.toml")?,
     };
     let output = Output::open(arguments.next().unwrap_or_else(|| "bead-report".into()))?;
 

@@ -1,10 +1,10 @@
 //! What a run found, as `results.json` holds it.
 
+use libration_report::Record;
+use libration_study::{Config, Machine, Unjudged};
 use serde::Serialize;
 
-use crate::tried::Unjudged;
 use crate::untried::Untried;
-use crate::{Config, Machine, Record};
 
 /// Version of the contract that `results.json` keeps.
 pub const SCHEMA: &str = "libration.results/1";

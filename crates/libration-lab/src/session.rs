@@ -5,15 +5,22 @@ use std::time::Instant;
 
 use thiserror::Error;
 
-use crate::export::{ExportError, series_to_parquet};
+pub use crate::series::series_to_parquet;
+use libration_data::TableError;
+use libration_report::page::{Chapter, Page};
+use libration_report::record::{DataFile, FigureFile, RecordError, Series};
+use libration_study::StudyError;
+
+use crate::ledger;
 use crate::output::{Output, OutputError};
-use crate::page::{Chapter, Page};
-use crate::record::{DataFile, FigureFile, RecordError, Series};
 use crate::results::{Results, SCHEMA};
-use crate::study::StudyError;
-use crate::tried::unjudged;
+pub use crate::unjudged::unjudged;
+use libration_report::notation::{number, plural, seconds};
+use libration_report::report::Cover;
+use libration_report::{Record, figure, report};
+use libration_study::{Lab, Machine, Study};
+
 use crate::untried::UNTRIED;
-use crate::{Lab, Machine, Record, Study, figure, report};
 
 /// A run that ended early.
 #[derive(Debug, Error)]
@@ -50,7 +57,7 @@ pub enum Cause {
     },
     /// A series could not be put into a file.
     #[error(transparent)]
-    Export(#[from] ExportError),
+    Series(#[from] TableError),
     /// A file could not be written.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -126,11 +133,47 @@ fn run_all(
         let ended = &studies[..results.studies.len()];
         results.unjudged = unjudged(lab.config, ended, &results.studies);
         results.complete = results.studies.len() == studies.len();
-        output.write("report.html", report::render(results, &chapters).as_bytes())?;
+        output.write(
+            "report.html",
+            report::render(&cover(results, &chapters), &chapters).as_bytes(),
+        )?;
         // After all files that it names.
         write_results(results, output)?;
     }
     Ok(output.put_in_place()?)
+}
+
+/// What stands around the chapters of the report.
+fn cover(results: &Results, chapters: &[Chapter]) -> Cover {
+    let Results { config, machine, .. } = results;
+    let (spring, start) = (config.oscillator, config.start);
+    let setting = format!(
+        "Oscillator, m = {} kg, k = {} N/m, from ({}, {}) · {} · {} · {} · \
+         `libration lab`",
+        number(spring.m, 6),
+        number(spring.k, 6),
+        number(start.q, 6),
+        number(start.v, 6),
+        plural(config.integrators.len(), "integrator"),
+        machine.cpu,
+        seconds(results.seconds, 2),
+    );
+    let host = format!(
+        "{}, {}, {} · Libration {} · {} · all numbers in `results.json`, all series in \
+         `data/`, all figures in `figures/`",
+        machine.cpu,
+        plural(machine.cores, "core"),
+        machine.platform,
+        machine.version,
+        seconds(results.seconds, 2),
+    );
+    Cover {
+        setting,
+        machine: host,
+        complete: results.complete,
+        score: ledger::score(results, chapters),
+        ledger: ledger::render(results, chapters),
+    }
 }
 
 fn write_figures(page: &Page, output: &Output) -> Result<Vec<FigureFile>, OutputError> {

@@ -2,7 +2,7 @@
 
 use libration::ensemble::InstructionSet;
 use libration::rl::policy::{Activation, Network};
-use libration_lab::environments::{Acting, Actor};
+use libration_env::environments::{Acting, Actor};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 

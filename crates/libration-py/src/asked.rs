@@ -3,13 +3,13 @@
 use std::ffi::CString;
 use std::ops::RangeInclusive;
 
-use libration::catalog::{self, Actuation};
+use libration::catalog::Actuation;
 use libration::control::{Feedback, Jitter, LqrWeights};
-use libration::{AnySystem, Method};
-use libration_lab::analyze::{Late, Stepping, Timing};
-use libration_lab::config::limits::{self, MOST_GAIN, MOST_RMS};
-use libration_lab::config::names;
-use libration_lab::setting::Setting;
+use libration::{AnySystem, Method, catalog};
+use libration_analyze::analyze::{Late, Stepping, Timing};
+use libration_settings::limits::{MOST_GAIN, MOST_RMS};
+use libration_settings::setting::Setting;
+use libration_settings::{limits, names};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 

@@ -2,8 +2,8 @@
 
 use libration::Method;
 use libration::catalog::ENTRIES;
-use libration_lab::analyze::Stepping;
-use libration_lab::studies;
+use libration_analyze::analyze::Stepping;
+use libration_lab::STUDIES;
 use pyo3::prelude::*;
 
 use crate::asked::{SystemTold, system};
@@ -37,7 +37,7 @@ pub(crate) fn _integrators() -> Vec<(&'static str, &'static str)> {
 /// All studies of the laboratory, with the questions that they answer.
 #[pyfunction]
 pub(crate) fn _studies() -> Vec<(&'static str, &'static str)> {
-    studies::ALL.iter().map(|study| (study.name(), study.question())).collect()
+    STUDIES.studies.iter().map(|study| (study.name(), study.question())).collect()
 }
 
 /// All parameters of a system, those that were not given as well.

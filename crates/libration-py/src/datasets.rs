@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use libration::ensemble::Execution;
-use libration_lab::dataset::{self, Check, DataFormat, Dataset, Flaw, Job, Watch};
+use libration_env::dataset;
+use libration_env::dataset::{Check, DataFormat, Dataset, Flaw, Job, Watch};
 use pyo3::prelude::*;
 
 use crate::error::{Raised, keywords, refused, unknown};

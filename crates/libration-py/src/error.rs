@@ -4,16 +4,16 @@ use libration::checkpoint::CheckpointError;
 use libration::ensemble::{EnsembleError, NoRoom};
 use libration::replay::ReplayError;
 use libration::rl::EnvironmentError;
+use libration_advise::AdviseError;
+use libration_analyze::analyze::AnalyzeError;
+use libration_analyze::trajectory::TrajectoryError;
 use libration_data::DataError;
-use libration_lab::advise::AdviseError;
-use libration_lab::analyze::AnalyzeError;
-use libration_lab::config::{ConfigError, names};
-use libration_lab::dataset::DatasetError;
+use libration_env::dataset::DatasetError;
 use libration_lab::output::OutputError;
 use libration_lab::session::{Cause, SessionError};
-use libration_lab::setting::SettingError;
-use libration_lab::study::StudyError;
-use libration_lab::trajectory::TrajectoryError;
+use libration_settings::setting::SettingError;
+use libration_settings::{SettingsError, names};
+use libration_study::StudyError;
 use pyo3::exceptions::{
     PyKeyboardInterrupt, PyMemoryError, PyOSError, PyRuntimeError, PyValueError,
 };
@@ -86,7 +86,7 @@ impl Raised for TrajectoryError {
     }
 }
 
-impl Raised for ConfigError {
+impl Raised for SettingsError {
     fn raised(self) -> PyErr {
         let help = self.help().map(|help| format!(" ({help})")).unwrap_or_default();
         refused(format!("{}{help}", self.message()))
@@ -96,7 +96,7 @@ impl Raised for ConfigError {
 impl Raised for AdviseError {
     fn raised(self) -> PyErr {
         match self {
-            AdviseError::Study(error) => error.raised(),
+            AdviseError::Interrupted(_) => interrupted(),
             AdviseError::Ensemble(error) => error.raised(),
             error => refused(error.to_string()),
         }

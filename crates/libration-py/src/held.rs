@@ -6,7 +6,7 @@ use libration::checkpoint::CheckpointError;
 use libration::ensemble::Execution;
 use libration::rl::policy::Given;
 use libration::rl::{EnvironmentError, Outcome, Plan, Rollout};
-use libration_lab::environments::{Actor, Batch, Recipe, Visit};
+use libration_env::environments::{Actor, Batch, Recipe, Visit};
 
 use crate::acts::Acts;
 use crate::array::Number;

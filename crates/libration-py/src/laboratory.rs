@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use libration_lab::advise;
+use libration_advise as advise;
 use libration_lab::output::Output;
-use libration_lab::{Config, Effort, Lab, Progress, Study, config, session, studies};
+use libration_lab::{STUDIES, session};
+use libration_study::{Effort, Lab, Progress, Study};
+use libration_work::Work;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -68,10 +70,10 @@ pub(crate) fn _advise(
 ) -> PyResult<(String, bool, Option<String>)> {
     let mut request = advise::parse(asked, "asked.toml").map_err(Raised::raised)?;
     request.map = page;
-    let (config, told) = (Config::default(), Told::default());
+    let told = Told::default();
     let advice = work(
         py,
-        |stop| advise::advise(&Lab::new(&config, config.effort, &told, stop), &request),
+        |stop| advise::advise(&Work::new(&told, stop), &request),
         |py| told.tell(py, progress.as_ref()),
     )?;
     let advice = advice.map_err(Raised::raised)?;
@@ -92,17 +94,17 @@ pub(crate) fn _run_lab<'py>(
     out: PathBuf,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, Vec<Series<'py>>)> {
-    let mut config = config::parse(asked, "config.toml").map_err(Raised::raised)?;
+    let mut config = STUDIES.parse(asked, "config.toml").map_err(Raised::raised)?;
     config.studies = names.unwrap_or(config.studies);
     config.effort = match effort {
         Some(name) => Effort::from_name(&name)
             .ok_or_else(|| unknown("effort", &name, Effort::ALL.map(Effort::name)))?,
         None => config.effort,
     };
-    config.check().map_err(|error| refused(error.to_string()))?;
+    STUDIES.check(&config).map_err(|error| refused(error.to_string()))?;
     let chosen: Vec<&'static dyn Study> = match config.studies.as_slice() {
-        [] => studies::ALL.to_vec(),
-        names => names.iter().filter_map(|name| studies::by_name(name)).collect(),
+        [] => STUDIES.studies.to_vec(),
+        names => names.iter().filter_map(|name| STUDIES.by_name(name)).collect(),
     };
     let output = Output::open(out).map_err(Raised::raised)?;
     let told = Told::default();

@@ -52,11 +52,11 @@ mod _native {
 
     /// Steps of a simulation.
     #[pymodule_export]
-    const _MOST_STEPS: u64 = *libration_lab::config::limits::TRAJECTORY_STEPS.end();
+    const _MOST_STEPS: u64 = *libration_settings::limits::TRAJECTORY_STEPS.end();
 
     /// Bytes of a file of settings.
     #[pymodule_export]
-    const _SETTINGS_BYTES: u64 = libration_lab::config::limits::SETTINGS_BYTES;
+    const _SETTINGS_BYTES: u64 = libration_settings::limits::SETTINGS_BYTES;
 
     #[pymodule_export]
     #[allow(non_upper_case_globals, reason = "as Python names it")]

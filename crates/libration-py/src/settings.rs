@@ -3,7 +3,7 @@
 use libration::ensemble::Execution;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Delays};
-use libration_lab::environments::{Lone, Noise, Recipe, Task};
+use libration_env::environments::{Lone, Noise, Recipe, Task};
 use pyo3::prelude::*;
 
 use crate::asked::{SystemTold, law, method, system};

@@ -2,10 +2,11 @@
 
 use half::{bf16, f16};
 use libration::control::clock::Recorded;
+use libration_analyze::analyze::Criteria;
+use libration_analyze::trajectory::{Copies, Ending, FloatType, Request, Stopped};
+use libration_analyze::{analyze, trajectory};
 use libration_data::Values;
-use libration_lab::analyze::{self, Criteria};
-use libration_lab::config::limits;
-use libration_lab::trajectory::{self, Copies, Ending, FloatType, Request, Stopped};
+use libration_settings::limits;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

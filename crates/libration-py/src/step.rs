@@ -3,7 +3,7 @@
 use std::iter::repeat_with;
 
 use libration::rl::{Autoreset, Outcome};
-use libration_lab::environments::Recipe;
+use libration_env::environments::Recipe;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;

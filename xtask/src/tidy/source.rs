@@ -14,7 +14,10 @@ const WRITTEN: [&str; 15] = [
 ];
 
 /// Folders that hold products, not sources.
-const PRODUCTS: [&str; 5] = [".git", ".venv", "libration-report", "node_modules", "target"];
+const PRODUCTS: [&str; 4] = [".git", ".venv", "node_modules", "target"];
+
+/// The folder in the root that a report is written to; a crate has the same name.
+const REPORT: &str = "libration-report";
 
 /// One text file of the project.
 pub(super) struct Source {
@@ -87,7 +90,7 @@ fn walk(root: &Path, folder: &str, paths: &mut Vec<String>) -> Result<(), String
         let path = if folder.is_empty() { name.clone() } else { format!("{folder}/{name}") };
         if !entry.path().is_dir() {
             paths.push(path);
-        } else if !PRODUCTS.contains(&name.as_str()) {
+        } else if !PRODUCTS.contains(&name.as_str()) && path != REPORT {
             walk(root, &path, paths)?;
         }
     }

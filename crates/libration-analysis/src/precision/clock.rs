@@ -51,10 +51,10 @@ fn power_of_two_above(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use half::{bf16, f16};
-
-    use super::*;
     use libration_core::Scalar;
     use libration_core::number::{Compensated, Mantissa, TwoFloat};
+
+    use super::*;
 
     fn by_adding<F: Float>(dt: F, ticks: u64) -> F {
         (0..ticks).fold(F::zero(), |t, _| t + dt)

@@ -68,11 +68,11 @@ mod tests {
     use std::collections::HashMap;
 
     use half::f16;
-
-    use super::*;
     use libration_core::Integrator;
     use libration_core::integrator::{TextbookVerlet, VelocityVerlet};
     use libration_core::system::Oscillator;
+
+    use super::*;
 
     #[test]
     fn the_sources_verlet_in_single_precision_comes_back_after_377896_steps() {

@@ -92,12 +92,13 @@ impl LocalRounding {
 mod tests {
     use core::f64::consts::TAU;
 
-    use super::*;
-    use crate::{EnergyBand, Linearisation, QuadraticForm};
     use libration_core::integrator::{TextbookVerlet, VelocityVerlet};
     use libration_core::number::{Compensated, TwoFloat};
     use libration_core::system::Oscillator;
     use libration_core::{Integrator, Model, Scalar};
+
+    use super::*;
+    use crate::{EnergyBand, Linearisation, QuadraticForm};
 
     const START: State<f64, 1> = State { q: [1.0], v: [0.0] };
     const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };

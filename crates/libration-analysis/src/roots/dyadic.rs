@@ -2,10 +2,9 @@
 
 use core::cmp::Ordering;
 
-use num_bigint::BigInt;
-
 use libration_core::Scalar;
 use libration_core::number::Wide;
+use num_bigint::BigInt;
 
 /// `significand · 2^exponent`, exactly.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,10 +1,10 @@
 //! Polynomials with whole coefficients of any size.
 
+use libration_core::number::Poly;
 use num_bigint::{BigInt, Sign};
 use num_integer::Integer;
 
 use super::{Dyadic, WholePoly};
-use libration_core::number::Poly;
 
 /// A primitive polynomial: whole coefficients without a common factor.
 ///

@@ -2,11 +2,11 @@
 
 use core::ops::{Add, Mul, Sub};
 
+use libration_core::number::{Poly, Ratio};
 use num_bigint::BigInt;
 use num_integer::Integer;
 
 use super::IntegerPoly;
-use libration_core::number::{Poly, Ratio};
 
 /// A polynomial with whole coefficients, that of `x⁰` first.
 #[derive(Clone, Debug)]

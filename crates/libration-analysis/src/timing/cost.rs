@@ -1,14 +1,15 @@
 //! What timing costs: the stationary cost of a loop under noise.
 
+use libration_core::Scalar;
+use libration_core::control::LqrWeights;
+use libration_core::number::Wide;
+
 use super::drawn::Drawn;
 use super::imperfections::{MOST_RANDOM, MOST_REPEATED};
 use super::jitter::{Averages, MOST_TURN};
 use super::stage::{Making, Stage};
 use super::waiting::{Matrix, Waiting};
 use super::{CostError, Imperfections, LinearController, Plant};
-use libration_core::Scalar;
-use libration_core::control::LqrWeights;
-use libration_core::number::Wide;
 
 impl Plant<'_> {
     /// The weights of the energy of what moves, `½(ω²q² + v²)`, where a spring with `ω²` pulls back; those of `½v²` where none does.
@@ -155,10 +156,11 @@ fn noise(stages: &[Stage]) -> Matrix {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample::{ORIGIN, textbook};
-    use super::*;
     use libration_core::control::{Feedback, Jitter, Latency, RandomLatency};
     use libration_core::system::Oscillator;
+
+    use super::super::sample::{ORIGIN, textbook};
+    use super::*;
 
     const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };
     const GAINS: Feedback = Feedback { position: 10.0, velocity: 2.0 };

@@ -183,12 +183,13 @@ fn root(f: impl Fn(f64) -> f64, mut low: (f64, f64), mut high: (f64, f64)) -> f6
 
 #[cfg(test)]
 mod tests {
+    use libration_core::control::{Feedback, Jitter, Latency, LqrWeights};
+    use libration_core::system::Oscillator;
+
     use super::super::sample::textbook;
     use super::super::stage::mean_square;
     use super::super::{Imperfections, LinearController, Plant};
     use super::*;
-    use libration_core::control::{Feedback, Jitter, Latency, LqrWeights};
-    use libration_core::system::Oscillator;
 
     const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };
     const GAINS: Feedback = Feedback { position: 4.0, velocity: 1.0 };

@@ -1,10 +1,11 @@
 //! A step under a command that is held.
 
-use crate::exponential::exponential;
-use crate::{Linearisation, UpdateMatrix};
 use libration_core::number::{Dual, Wide};
 use libration_core::system::Held;
 use libration_core::{Integrator, Model, Scalar, State};
+
+use crate::exponential::exponential;
+use crate::{Linearisation, UpdateMatrix};
 
 /// One step of a plant with one degree of freedom, `y' = Φy + Γu`, linearised, in 1024 bits.
 #[derive(Clone, Copy, Debug)]
@@ -72,10 +73,11 @@ impl HeldStep {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use libration_core::Elementary;
     use libration_core::integrator::{Rk4, SymplecticEuler, VelocityVerlet};
     use libration_core::system::{DampedOscillator, Oscillator};
+
+    use super::*;
 
     fn close(a: Wide, b: Wide) {
         assert!((a - b).abs().to_f64() < 1e-280, "{} {}", a.to_f64(), b.to_f64());

@@ -1,9 +1,10 @@
 //! The latency that an integrator adds to a loop.
 
-use super::{HeldStep, Plant};
-use crate::Complex;
 use libration_core::Scalar;
 use libration_core::number::Wide;
+
+use super::{HeldStep, Plant};
+use crate::Complex;
 
 /// By how many steps a held command acts later in a simulated loop than in continuous time, beside any latency that
 /// it is given.
@@ -59,11 +60,12 @@ impl Plant<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample::{ORIGIN, all, textbook};
-    use super::*;
     use libration_core::control::Feedback;
     use libration_core::integrator::{Rk4, SymplecticEulerDriftFirst, VelocityVerlet};
     use libration_core::system::{DampedOscillator, Oscillator};
+
+    use super::super::sample::{ORIGIN, all, textbook};
+    use super::*;
 
     const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };
 

@@ -1,8 +1,7 @@
 //! What may be wrong with the timing of a loop.
 
-use thiserror::Error;
-
 use libration_core::control::{Jitter, Latency};
+use thiserror::Error;
 
 /// All that may be wrong with the timing of a loop.
 #[derive(Clone, Copy, Debug, PartialEq)]

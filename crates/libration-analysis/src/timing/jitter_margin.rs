@@ -1,8 +1,9 @@
 //! How much jitter a loop bears.
 
+use libration_core::control::{Feedback, Jitter};
+
 use super::Plant;
 use crate::Spectrum;
-use libration_core::control::{Feedback, Jitter};
 
 /// Up to which jitter second moments stay bounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,14 +52,15 @@ impl Plant<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample::{ORIGIN, textbook};
-    use super::*;
     use libration_batch::ensemble::{All, Execution, Loops, Setup};
     use libration_core::State;
     use libration_core::control::clock::Jittered;
     use libration_core::control::controller::StateFeedback;
     use libration_core::integrator::VelocityVerlet;
     use libration_core::system::Oscillator;
+
+    use super::super::sample::{ORIGIN, textbook};
+    use super::*;
 
     const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };
 

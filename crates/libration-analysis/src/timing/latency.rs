@@ -1,12 +1,13 @@
 //! A loop whose command arrives late.
 
+use libration_core::control::{Feedback, Latency};
+use libration_core::number::Wide;
+use libration_core::{Scalar, State};
+
 use super::plant::{fed_back, repeated};
 use super::quasi::Quasi;
 use super::{HeldStep, Plant};
 use crate::UpdateMatrix;
-use libration_core::control::{Feedback, Latency};
-use libration_core::number::Wide;
-use libration_core::{Scalar, State};
 
 impl Plant<'_> {
     /// The spectral radius of the loop that `feedback` closes with `latency`.

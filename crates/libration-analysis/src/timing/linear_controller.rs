@@ -1,10 +1,8 @@
 //! A controller as the linear map that it is.
 
-use thiserror::Error;
-
 use libration_core::State;
-use libration_core::control::Feedback;
-use libration_core::control::{Controller, Memory};
+use libration_core::control::{Controller, Feedback, Memory};
+use thiserror::Error;
 
 /// `m' = A·m + B·y` and `u = C·m + D·y`: what a controller makes of its memory `m` and of the state `y = (q, v)` that it sees, near the
 /// origin, where no limit is reached.
@@ -135,8 +133,9 @@ impl From<Feedback> for LinearController {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use libration_core::control::controller::{Force, Pid, PidGains, Saturated, StateFeedback};
+
+    use super::*;
 
     const GAINS: Feedback = Feedback { position: 10.0, velocity: 2.0 };
 

@@ -1,12 +1,13 @@
 //! The feedback that costs least.
 
+use libration_core::control::{Feedback, LqrWeights};
+use libration_core::number::Wide;
+use libration_core::{Scalar, State};
+
 use super::riccati::{DOUBLINGS, Matrix, dot, riccati};
 use super::{HeldStep, Plant};
 use crate::spectrum::negligible;
 use crate::{QuadraticForm, Spectrum};
-use libration_core::control::{Feedback, LqrWeights};
-use libration_core::number::Wide;
-use libration_core::{Scalar, State};
 
 /// The feedback that costs least, and what it costs.
 #[derive(Clone, Copy, Debug)]
@@ -123,10 +124,11 @@ fn out_of_reach(phi: &Matrix, gamma: &State<Wide, 1>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample::{all, textbook};
-    use super::*;
     use libration_core::integrator::VelocityVerlet;
     use libration_core::system::{DampedOscillator, Oscillator};
+
+    use super::super::sample::{all, textbook};
+    use super::*;
 
     const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };
     const WEIGHTS: LqrWeights = LqrWeights { position: 50.0, velocity: 2.0, command: 0.5 };

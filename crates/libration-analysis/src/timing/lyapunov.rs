@@ -2,6 +2,9 @@
 
 use core::f64::consts::{PI, TAU};
 
+use libration_core::Scalar;
+use libration_core::control::{Feedback, Jitter};
+use libration_core::number::Wide;
 use num_complex::Complex;
 
 use super::Plant;
@@ -9,9 +12,6 @@ use super::circle::{Circle, Matrix, norm};
 use super::jitter::{Averages, MOST_TURN};
 use super::linear::solved;
 use crate::QuadraticForm;
-use libration_core::Scalar;
-use libration_core::control::{Feedback, Jitter};
-use libration_core::number::Wide;
 
 /// Fewest and most harmonics of the density of directions that are kept.
 const HARMONICS: [f64; 2] = [32.0, 96.0];

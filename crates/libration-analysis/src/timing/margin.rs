@@ -1,9 +1,10 @@
 //! The loop in continuous time.
 
-use super::Plant;
 use libration_core::control::Feedback;
 use libration_core::number::Wide;
 use libration_core::{Elementary, Scalar};
+
+use super::Plant;
 
 impl Plant<'_> {
     /// The delay margin of the continuous loop that `feedback` closes: the latency in seconds at which it loses

@@ -1,11 +1,12 @@
 //! What random step times do to second moments.
 
-use super::Plant;
-use super::jitter::{Averages, MOST_TURN};
-use crate::eigenvalues::largest_root;
 use libration_core::control::{Feedback, Jitter};
 use libration_core::number::Wide;
 use libration_core::{Scalar, State};
+
+use super::Plant;
+use super::jitter::{Averages, MOST_TURN};
+use crate::eigenvalues::largest_root;
 
 /// What random step times do to second moments.
 #[derive(Clone, Copy, Debug)]

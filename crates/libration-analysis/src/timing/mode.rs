@@ -1,11 +1,12 @@
 //! The motion of a loop that decays last.
 
+use libration_core::Scalar;
+use libration_core::number::Wide;
+
 use super::waiting::{Matrix, growth};
 use super::{CostError, Imperfections, LinearController, Plant};
 use crate::Complex;
 use crate::eigenvalues::{characteristic_polynomial, roots};
-use libration_core::Scalar;
-use libration_core::number::Wide;
 
 /// The motion of a loop that decays last, or grows fastest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,11 +89,12 @@ fn moved(step: &Matrix, state: &[f64]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample::{ORIGIN, textbook};
-    use super::*;
     use libration_core::control::{Feedback, Latency};
     use libration_core::integrator::VelocityVerlet;
     use libration_core::system::Oscillator;
+
+    use super::super::sample::{ORIGIN, textbook};
+    use super::*;
 
     #[test]
     fn without_feedback_it_is_the_oscillator() {

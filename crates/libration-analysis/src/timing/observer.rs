@@ -1,10 +1,11 @@
 //! An observer that is designed from the model.
 
-use super::riccati::riccati;
-use super::{HeldStep, LqrError, Plant};
 use libration_core::control::{LqrWeights, StateObserver};
 use libration_core::number::Wide;
 use libration_core::{Scalar, State};
+
+use super::riccati::riccati;
+use super::{HeldStep, LqrError, Plant};
 
 /// What an observer has to weigh against each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,13 +72,14 @@ impl Plant<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample::{ORIGIN, all};
-    use super::super::{Imperfections, LinearController};
-    use super::*;
     use libration_core::control::Feedback;
     use libration_core::control::controller::Luenberger;
     use libration_core::integrator::VelocityVerlet;
     use libration_core::system::Oscillator;
+
+    use super::super::sample::{ORIGIN, all};
+    use super::super::{Imperfections, LinearController};
+    use super::*;
 
     const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };
     const NOISE: ObserverNoise = ObserverNoise { acceleration: 1.0, position: 1e-4 };

@@ -1,10 +1,11 @@
 //! Steps whose lengths repeat.
 
-use super::Plant;
-use crate::{Spectrum, UpdateMatrix};
 use libration_core::Scalar;
 use libration_core::control::Feedback;
 use libration_core::number::Wide;
+
+use super::Plant;
+use crate::{Spectrum, UpdateMatrix};
 
 /// Steps of Newton's iteration for a root: from 40 good bits each doubles them, up to 1024.
 const NEWTON: usize = 5;
@@ -42,9 +43,10 @@ fn root(x: Wide, n: u64) -> Wide {
 
 #[cfg(test)]
 mod tests {
+    use libration_core::system::Oscillator;
+
     use super::super::sample::{all, textbook};
     use super::*;
-    use libration_core::system::Oscillator;
 
     const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };
 

@@ -2,11 +2,12 @@
 
 use std::rc::Rc;
 
-use super::HeldStep;
-use crate::{Linearisation, UpdateMatrix};
 use libration_core::control::Feedback;
 use libration_core::number::Wide;
 use libration_core::{Integrator, Model, Scalar, State};
+
+use super::HeldStep;
+use crate::{Linearisation, UpdateMatrix};
 
 /// Steps of any size.
 type Steps<'a> = Rc<dyn Fn(Wide) -> HeldStep + 'a>;

@@ -1,8 +1,9 @@
 //! Characteristic polynomials of loops with a delay: long, but with few terms.
 
-use crate::Complex;
 use libration_core::Scalar;
 use libration_core::number::Wide;
+
+use crate::Complex;
 
 /// `λᵐ·a(λ) + b(λ)` with `a = λ² + a₁λ + a₀`, held as `[a₀, a₁]`, and `b = b₂λ² + b₁λ + b₀`, as
 /// `[b₀, b₁, b₂]`.

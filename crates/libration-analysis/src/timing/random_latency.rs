@@ -1,9 +1,10 @@
 //! Commands whose latency is random.
 
-use super::waiting::{Matrix, Waiting, growth, product, symmetric_square, transposed};
-use super::{LinearController, Plant};
 use libration_core::State;
 use libration_core::control::{Feedback, Latency, RandomLatency};
+
+use super::waiting::{Matrix, Waiting, growth, product, symmetric_square, transposed};
+use super::{LinearController, Plant};
 
 impl Plant<'_> {
     /// The factor by which second moments grow in a step of the loop that `feedback` closes with random latencies.

@@ -2,14 +2,15 @@
 
 use std::collections::HashMap;
 
+use libration_core::Scalar;
+use libration_core::control::{Jitter, LqrWeights};
+use libration_core::number::Wide;
+
 use super::drawn::accumulated;
 use super::imperfections::{MOST_RANDOM, MOST_REPLAYED};
 use super::stage::{Making, Stage, mean_square};
 use super::waiting::{Matrix, growth, product, scale, transposed};
 use super::{CostError, Imperfections, LinearController, Plant};
-use libration_core::Scalar;
-use libration_core::control::{Jitter, LqrWeights};
-use libration_core::number::Wide;
 
 /// Steps are rounded to such a part of a period: those of a clock are not known better, and thousands of them are few then.
 const PART: f64 = 1.0 / 16_384.0;
@@ -208,10 +209,11 @@ fn moved(stages: &[Stage], moments: &Matrix) -> Matrix {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample::{ORIGIN, textbook};
-    use super::*;
     use libration_core::control::{Feedback, Latency};
     use libration_core::system::Oscillator;
+
+    use super::super::sample::{ORIGIN, textbook};
+    use super::*;
 
     const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };
     const WEIGHTS: LqrWeights = LqrWeights { position: 5.0, velocity: 0.5, command: 0.1 };

@@ -2,11 +2,12 @@
 
 use core::f64::consts::SQRT_2;
 
-use super::Plant;
-use crate::{Spectrum, UpdateMatrix};
 use libration_core::control::Feedback;
 use libration_core::number::Wide;
 use libration_core::{Elementary, Scalar};
+
+use super::Plant;
+use crate::{Spectrum, UpdateMatrix};
 
 /// Step times `Δt(1 + ε)` whose `ε` remembers the one before: `εₙ₊₁ = φ·εₙ + √(1 − φ²)·ξₙ` with white noise `ξ`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,13 +117,14 @@ fn divided(matrix: &UpdateMatrix<Wide, 1>, by: Wide) -> UpdateMatrix<Wide, 1> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample::textbook;
-    use super::*;
     use libration_core::control::Jitter;
     use libration_core::integrator::{Rk4, SymplecticEuler, VelocityVerlet};
     use libration_core::random::{Address, Purpose};
     use libration_core::system::Oscillator;
     use libration_core::{Integrator, State};
+
+    use super::super::sample::textbook;
+    use super::*;
 
     const FREE: Feedback = Feedback { position: 0.0, velocity: 0.0 };
 

@@ -1,9 +1,10 @@
 //! The discrete Riccati equation.
 
-use crate::UpdateMatrix;
-use crate::spectrum::negligible;
 use libration_core::number::Wide;
 use libration_core::{Elementary, Scalar, State};
+
+use crate::UpdateMatrix;
+use crate::spectrum::negligible;
 
 /// Doublings of the horizon: enough for a loop whose deviations fall by 10⁻¹⁵ a step.
 pub(super) const DOUBLINGS: usize = 64;
@@ -46,10 +47,11 @@ fn size(matrix: &Matrix) -> Wide {
 
 #[cfg(test)]
 mod tests {
+    use libration_core::system::{DampedOscillator, Oscillator};
+
     use super::super::HeldStep;
     use super::super::sample::all;
     use super::*;
-    use libration_core::system::{DampedOscillator, Oscillator};
 
     #[test]
     fn the_solution_solves_the_equation() {

@@ -1,8 +1,9 @@
 //! Plants that tests are tried on.
 
-use super::Plant;
 use libration_core::integrator::{ExplicitEuler, Rk4, SymplecticEuler, VelocityVerlet};
 use libration_core::{Method, Model, State, with_method};
+
+use super::Plant;
 
 pub(super) const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
 

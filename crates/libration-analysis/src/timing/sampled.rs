@@ -1,8 +1,9 @@
 //! What happens between the ends of an exact step: noise that comes in, and what it costs.
 
+use libration_core::control::LqrWeights;
+
 use super::Plant;
 use super::waiting::{Matrix, product};
-use libration_core::control::LqrWeights;
 
 /// An exact step of `h` seconds under white noise of unit intensity.
 #[derive(Clone, Copy, Debug)]
@@ -94,11 +95,12 @@ pub(super) fn exponential(a: Matrix) -> Matrix {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample::ORIGIN;
-    use super::*;
     use libration_core::Scalar;
     use libration_core::number::Wide;
     use libration_core::system::{DampedOscillator, Oscillator};
+
+    use super::super::sample::ORIGIN;
+    use super::*;
 
     const WEIGHTS: LqrWeights = LqrWeights { position: 5.0, velocity: 0.5, command: 0.2 };
 

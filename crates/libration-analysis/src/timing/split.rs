@@ -1,10 +1,11 @@
 //! A step within which a command takes over from another, in `f64`.
 
+use libration_core::number::Wide;
+use libration_core::{Scalar, State};
+
 use super::latency::SplitStep;
 use super::sampled::exponential;
 use super::{HeldStep, Plant};
-use libration_core::number::Wide;
-use libration_core::{Scalar, State};
 
 /// `y' = Φy + γ_old·u_old + γ_new·u_new`.
 #[derive(Clone, Copy, Debug)]
@@ -63,9 +64,10 @@ fn numbers(state: &State<Wide, 1>) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
+    use libration_core::system::DampedOscillator;
+
     use super::super::sample::ORIGIN;
     use super::*;
-    use libration_core::system::DampedOscillator;
 
     #[test]
     fn floats_are_those_of_the_exponential_in_1024_bits() {

@@ -1,10 +1,11 @@
 //! A step of a loop under noise, with what it costs.
 
-use super::waiting::{Matrix, Waiting, symmetric_square};
-use super::{LinearController, Plant};
 use libration_core::Scalar;
 use libration_core::control::{Latency, LqrWeights};
 use libration_core::number::Wide;
+
+use super::waiting::{Matrix, Waiting, symmetric_square};
+use super::{LinearController, Plant};
 
 /// One of the steps that a loop may take, with its probability.
 pub(super) struct Stage {

@@ -1,10 +1,11 @@
 //! The worst order of steps of different lengths.
 
-use super::Plant;
-use super::circle::{Circle, Matrix, largest_norm, norm};
 use libration_core::Scalar;
 use libration_core::control::Feedback;
 use libration_core::number::Wide;
+
+use super::Plant;
+use super::circle::{Circle, Matrix, largest_norm, norm};
 
 /// Bounds on the growth per step of a loop whose steps have some lengths in the worst of all orders: on the joint
 /// spectral radius of its steps.
@@ -169,8 +170,6 @@ fn radius([[a, b], [c, d]]: &Matrix) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample::{ORIGIN, all};
-    use super::*;
     use libration_batch::ensemble::{All, Execution, Loops, Setup};
     use libration_core::State;
     use libration_core::control::clock::Recorded;
@@ -178,6 +177,9 @@ mod tests {
     use libration_core::integrator::Rk4;
     use libration_core::system::{DampedOscillator, Oscillator};
     use proptest::prelude::*;
+
+    use super::super::sample::{ORIGIN, all};
+    use super::*;
 
     const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };
 

@@ -1,9 +1,10 @@
 //! All latencies at which a loop is stable.
 
-use super::Plant;
 use libration_core::control::{Feedback, Latency};
 use libration_core::number::Wide;
 use libration_core::{Elementary, Scalar};
+
+use super::Plant;
 
 /// The intervals of latency, in steps, within which a loop is stable.
 ///

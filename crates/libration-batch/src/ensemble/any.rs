@@ -3,10 +3,10 @@
 use core::fmt::Debug;
 
 use bytemuck::Pod;
-
-use super::{All, Ensemble, EnsembleError, Execution, NoRoom};
 use libration_core::system::Oscillator;
 use libration_core::{AnySystem, Float, Hamiltonian, Method, Model, State, System, with_method};
+
+use super::{All, Ensemble, EnsembleError, Execution, NoRoom};
 
 /// An ensemble of a built-in system in some number of dimensions.
 ///

@@ -1,11 +1,11 @@
 //! The states of ensembles and loops, to be left and taken up again.
 
 use bytemuck::Pod;
+use libration_core::control::{Clock, Controller, Delay, Disturbance};
+use libration_core::{Float, Integrator, System};
 
 use super::{Assign, Ensemble, GRAIN, Loops};
 use crate::checkpoint::{Checkpoint, CheckpointError, Reader, Trait};
-use libration_core::control::{Clock, Controller, Delay, Disturbance};
-use libration_core::{Float, Integrator, System};
 
 impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
     /// Bytes of the step and of all coordinates.

@@ -1,8 +1,9 @@
 //! What can be wrong with an ensemble.
 
-use super::{InstructionSet, NoRoom};
 use libration_core::CatalogError;
 use libration_core::control::ControlError;
+
+use super::{InstructionSet, NoRoom};
 
 /// Why an ensemble cannot be made or run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

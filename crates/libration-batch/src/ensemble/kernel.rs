@@ -3,13 +3,12 @@
 use core::array::from_fn;
 use core::marker::PhantomData;
 
+use libration_core::array::each;
+use libration_core::{Float, Integrator, Scalar, State, System};
 use pulp::{Simd, WithSimd};
 
 use super::assign::Assign;
 use super::planes::Share;
-use libration_core::Scalar;
-use libration_core::array::each;
-use libration_core::{Float, Integrator, State, System};
 
 /// Takes `steps` steps with all trajectories of a block, which stays in registers where it fits.
 ///

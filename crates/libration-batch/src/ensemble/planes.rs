@@ -4,10 +4,10 @@ use core::array::from_fn;
 use core::mem::take;
 
 use bytemuck::Pod;
+use libration_core::State;
 
 use super::assign::padded;
 use super::{Buffer, EnsembleError, Lanes, NoRoom, Pages};
-use libration_core::State;
 
 /// Bytes by which each plane begins later than a multiple of a page would: planes that begin at
 /// the same place in their pages fight for the same few lines of the caches.

@@ -2,6 +2,7 @@
 
 use core::ops::Range;
 
+use libration_core::{Float, Integrator, System};
 use pulp::{Simd, WithSimd};
 
 use super::assign::Assign;
@@ -9,7 +10,6 @@ use super::instructions::{Target, Targeted};
 use super::kernel::{Advance, Pass};
 use super::planes::Share;
 use super::{Lanes, Observer};
-use libration_core::{Float, Integrator, System};
 
 /// What is done with the trajectories of a share.
 pub(super) struct Run<'a, T, M, A, C, Sys, O, const D: usize> {

@@ -1,7 +1,8 @@
 //! Where a batch is written.
 
-use crate::rl::first_of;
 use libration_core::Float;
+
+use crate::rl::first_of;
 
 /// A batch of transitions, allocated once, to be filled again and again.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,11 +1,11 @@
 //! The state of a replay buffer, to be left and taken up again.
 
 use bytemuck::Pod;
+use libration_core::Float;
 use memmap2::MmapMut;
 
 use super::{Capacity, Replay, ReplayError};
 use crate::checkpoint::{Checkpoint, CheckpointError, Trait};
-use libration_core::Float;
 
 impl<T: Float + Pod, const O: usize, const D: usize> Checkpoint for Replay<T, O, D> {
     fn traits(&self) -> Vec<Trait> {

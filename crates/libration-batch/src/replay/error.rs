@@ -1,10 +1,10 @@
 //! What can be wrong with a replay buffer.
 
+use libration_core::control::ControlError;
 use thiserror::Error;
 
 use crate::ensemble::{EnsembleError, NoRoom};
 use crate::rl::EnvironmentError;
-use libration_core::control::ControlError;
 
 /// Why a replay buffer cannot be made, filled or drawn from.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -1,11 +1,11 @@
 //! What an earlier process left in memory.
 
 use bytemuck::Pod;
+use libration_core::Float;
 
 use super::memory::Marks;
 use super::store::{END, NONE};
 use super::{Replay, ReplayError};
-use libration_core::Float;
 
 impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
     /// Marks what a reset parted: whoever died between the end and its mark would part it again.

@@ -3,6 +3,7 @@
 use core::ops::Range;
 
 use bytemuck::Pod;
+use libration_core::Float;
 
 use super::capacity::Fields;
 use super::memory::Marks;
@@ -10,7 +11,6 @@ use super::store::{CUT, END, NONE, OVER};
 use super::{Replay, ReplayError};
 use crate::ensemble::Execution;
 use crate::rl::{Layout, Plan, Rollout};
-use libration_core::Float;
 
 /// Rows that come in.
 struct Rows<'a> {

@@ -4,12 +4,12 @@ use core::ops::Range;
 use core::sync::atomic::{Ordering, fence};
 
 use bytemuck::Pod;
+use libration_core::Float;
 use memmap2::MmapMut;
 
 use super::capacity::{Fields, PAGE};
 use super::{Capacity, ReplayError};
 use crate::ensemble::{Buffer, Pages};
-use libration_core::Float;
 
 /// The first eight bytes.
 const MAGIC: u64 = u64::from_le_bytes(*b"LIBRTNRB");

@@ -3,14 +3,14 @@
 //! T. Schaul, J. Quan, I. Antonoglou, D. Silver, *Prioritized experience replay*, ICLR 2016, section 3.
 
 use bytemuck::Pod;
+use libration_core::Float;
+use libration_core::control::error::{ensure, probability};
 
 use super::memory::Marks;
 use super::power::power;
 use super::store::NONE;
 use super::{Columns, Draw, Lookahead, Replay, ReplayError};
 use crate::ensemble::Execution;
-use libration_core::Float;
-use libration_core::control::error::{ensure, probability};
 
 /// Of so large ones any number of transitions has a finite sum.
 const MOST_WEIGHT: f64 = 1e280;

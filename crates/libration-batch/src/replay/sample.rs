@@ -3,13 +3,13 @@
 use core::ops::Range;
 
 use bytemuck::Pod;
+use libration_core::Float;
+use libration_core::control::error::probability;
 
 use super::memory::Marks;
 use super::store::{CUT, END, NONE, OVER};
 use super::{Columns, Draw, Replay, ReplayError};
 use crate::ensemble::Execution;
-use libration_core::Float;
-use libration_core::control::error::probability;
 
 /// How many steps a transition of a batch goes over.
 ///

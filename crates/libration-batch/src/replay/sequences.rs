@@ -1,11 +1,11 @@
 //! Stretches of steps that are drawn, for learners that remember.
 
 use bytemuck::Pod;
+use libration_core::Float;
 
 use super::store::{CUT, END, NONE, OVER};
 use super::{Draw, Replay, ReplayError};
 use crate::ensemble::Execution;
-use libration_core::Float;
 
 /// Stretches of equally many steps, allocated once, to be filled again and again: each field is `[i, t]`.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,13 +1,13 @@
 //! The replay buffer.
 
 use bytemuck::Pod;
+use libration_core::Float;
 use memmap2::MmapMut;
 
 use super::divide::Divisor;
 use super::memory::{Marks, Memory};
 use super::sums::Sums;
 use super::{Capacity, ReplayError};
-use libration_core::Float;
 
 /// The episode was over after the transition: terminated.
 pub(super) const OVER: u8 = 1;

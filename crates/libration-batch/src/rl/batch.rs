@@ -1,19 +1,21 @@
 //! Many environments.
 
 use bytemuck::Pod;
+use libration_core::control::Clock;
+use libration_core::control::error::ensure;
+use libration_core::random::Purpose;
+use libration_core::{Float, State};
 
-use super::block::{self, BlockOf, OVER};
+use super::block::{BlockOf, OVER};
 use super::draws::Draws;
 use super::error::NOTHING_DRAWN;
 use super::history::History;
 use super::kernel::LANES;
 use super::start::Episode;
-use super::{Autoreset, Environment, EnvironmentError, Sensor, Start, Task, Variation, World};
+use super::{
+    Autoreset, Environment, EnvironmentError, Sensor, Start, Task, Variation, World, block,
+};
 use crate::ensemble::{Assign, EnsembleError, Execution, NoRoom};
-use libration_core::control::Clock;
-use libration_core::control::error::ensure;
-use libration_core::random::Purpose;
-use libration_core::{Float, State};
 
 /// Environments that are stepped together.
 ///

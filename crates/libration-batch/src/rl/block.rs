@@ -1,13 +1,14 @@
 //! Neighbouring environments.
 
+use libration_core::control::{Begin, Clock, Memory};
+use libration_core::random::Streams;
+use libration_core::{Float, Scalar, State};
+
 use super::history::History;
 use super::kernel::LANES;
 use super::start::Episode;
 use super::{Start, Variation, World};
 use crate::ensemble::kernel::{at, put};
-use libration_core::control::{Begin, Clock, Memory};
-use libration_core::random::Streams;
-use libration_core::{Float, Scalar, State};
 
 /// Neighbouring environments, of which each has a lane.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,10 @@
 //! Steps of which there is little to say.
 
 use bytemuck::Pod;
+use libration_core::control::Clock;
+use libration_core::random::{Purpose, Streams};
+use libration_core::system::Held;
+use libration_core::{Float, Integrator};
 
 use super::block::BlockOf;
 use super::draws::renew;
@@ -11,10 +15,6 @@ use super::yields::Step;
 use super::{Parts, Policy, Sensor, Task, World};
 use crate::ensemble::instructions::Target;
 use crate::ensemble::kernel::put;
-use libration_core::control::Clock;
-use libration_core::random::{Purpose, Streams};
-use libration_core::system::Held;
-use libration_core::{Float, Integrator};
 
 impl<T, E, P, const O: usize, const D: usize> Stage<'_, T, E, P, O, D>
 where

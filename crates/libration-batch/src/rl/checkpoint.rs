@@ -1,14 +1,14 @@
 //! The state of environments, to be left and taken up again.
 
 use bytemuck::Pod;
-
-use super::block::{self, BlockOf, CUT, ClockMemory, Numbers, OVER};
-use super::draws::Draws;
-use super::kernel::LANES;
-use super::{Environments, World};
-use crate::checkpoint::{Checkpoint, CheckpointError, Reader, Trait};
 use libration_core::Float;
 use libration_core::control::Memory;
+
+use super::block::{BlockOf, CUT, ClockMemory, Numbers, OVER};
+use super::draws::Draws;
+use super::kernel::LANES;
+use super::{Environments, World, block};
+use crate::checkpoint::{Checkpoint, CheckpointError, Reader, Trait};
 
 impl<T, E, const O: usize, const D: usize> Environments<T, E, O, D>
 where

@@ -1,10 +1,10 @@
 //! How late observations and actions are.
 
-use super::start::{Episode, between};
-use libration_core::control::ControlError;
-use libration_core::control::Latency;
 use libration_core::control::error::ensure;
+use libration_core::control::{ControlError, Latency};
 use libration_core::random::Purpose;
+
+use super::start::{Episode, between};
 
 /// Latencies in steps of the integrator, drawn for every environment at the beginning of every episode: from a least to a
 /// most, each as likely.

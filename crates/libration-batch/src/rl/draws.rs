@@ -3,10 +3,11 @@
 //! What is drawn in a step follows from the episode and from how many steps of it went before: so it is the same whatever follows an
 //! episode, and whenever the others of a block began theirs.
 
-use super::block::Block;
-use super::kernel::LANES;
 use libration_core::Scalar;
 use libration_core::random::{EPOCH, Purpose, Streams};
+
+use super::block::Block;
+use super::kernel::LANES;
 
 /// The words of all blocks for one purpose, as they are before some step.
 #[derive(Clone, Debug)]

@@ -1,13 +1,14 @@
 //! Ends of episodes.
 
-use super::block::{self, BlockOf, CUT, LOST, OVER};
+use libration_core::Float;
+use libration_core::random::Streams;
+
+use super::block::{BlockOf, CUT, LOST, OVER};
 use super::kernel::LANES;
 use super::stage::{Site, Stage};
 use super::yields::Yield;
-use super::{Autoreset, Place, Policy, World};
+use super::{Autoreset, Place, Policy, World, block};
 use crate::ensemble::kernel::at;
-use libration_core::Float;
-use libration_core::random::Streams;
 
 /// The end of an episode.
 #[derive(Clone, Copy, Debug, PartialEq)]

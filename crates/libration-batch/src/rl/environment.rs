@@ -2,13 +2,14 @@
 
 use core::marker::PhantomData;
 
+use libration_core::control::Clock;
+use libration_core::control::clock::Fixed;
+use libration_core::{Float, Integrator, System};
+
 use super::sensor::Exact;
 use super::variation::Same;
 use super::{Delays, Sensor, Severity, Start, Task, Variation};
 use crate::ensemble::Assign;
-use libration_core::control::Clock;
-use libration_core::control::clock::Fixed;
-use libration_core::{Float, Integrator, System};
 
 /// A system with its integrator, a task, a start and a time limit, and what is not ideal about it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,10 +1,10 @@
 //! What can be wrong with environments.
 
+use libration_core::Float;
+use libration_core::control::ControlError;
 use thiserror::Error;
 
 use crate::ensemble::{EnsembleError, NoRoom};
-use libration_core::Float;
-use libration_core::control::ControlError;
 
 /// Why environments or a rollout cannot be made or run.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -1,13 +1,13 @@
 //! What actions were worth, from what was paid.
 
 use bytemuck::Pod;
+use libration_core::Float;
+use libration_core::control::error::probability;
 use ndarray::ArrayViewMut2;
 
 use super::strip::{first_columns, row, rows_of};
 use super::{EnvironmentError, Plan, Rollout};
 use crate::ensemble::{Buffer, EnsembleError, Execution, Loop, Pages};
-use libration_core::Float;
-use libration_core::control::error::probability;
 
 /// Generalised advantage estimation: J. Schulman, P. Moritz, S. Levine, M. Jordan, P. Abbeel, *High-dimensional continuous
 /// control using generalized advantage estimation*, ICLR 2016, equation 16.

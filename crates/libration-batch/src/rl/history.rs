@@ -2,9 +2,10 @@
 
 use core::ops::Range;
 
+use libration_core::{Float, State};
+
 use super::Delays;
 use super::kernel::LANES;
-use libration_core::{Float, State};
 
 /// Where the past of a block lies: states at the beginning of the last steps of the integrator, `2·D` rows each, and the last
 /// actions, `D` rows each, both in a ring.

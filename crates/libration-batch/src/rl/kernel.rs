@@ -1,6 +1,8 @@
 //! The transitions of environments over a horizon, tile by tile.
 
 use bytemuck::Pod;
+use libration_core::Float;
+use libration_core::random::Streams;
 use pulp::{Simd, WithSimd};
 
 use super::block::BlockOf;
@@ -13,8 +15,6 @@ use super::{Final, Place, Policy, Sensor, World, Writes};
 use crate::ensemble::Assign;
 use crate::ensemble::instructions::{Target, Targeted};
 use crate::ensemble::stream::Streaming;
-use libration_core::Float;
-use libration_core::random::Streams;
 
 /// Environments of a block. A flag of each is a byte, and that many fill a line of the cache.
 pub(super) const LANES: usize = 64;

@@ -1,13 +1,14 @@
 //! Steps of all lanes of a block whose system and integrator are chosen when the program runs: the choice stands outside the loop, and the
 //! loop is compiled once for whatever has it in common.
 
+use libration_core::integrator::WithIntegrator;
+use libration_core::system::{Held, WithSystem};
+use libration_core::{Float, Integrator, State, System};
+
 use super::kernel::LANES;
 use crate::ensemble::Loop;
 use crate::ensemble::instructions::Target;
 use crate::ensemble::kernel::{at, put};
-use libration_core::integrator::WithIntegrator;
-use libration_core::system::{Held, WithSystem};
-use libration_core::{Float, Integrator, State, System};
 
 /// What a step needs besides system and integrator.
 pub(super) struct Lanes<'a, T, const D: usize> {

@@ -1,6 +1,8 @@
 //! Environments as they are seen from outside.
 
 use bytemuck::Pod;
+use libration_core::Float;
+use libration_core::random::Streams;
 
 use super::block::BlockOf;
 use super::kernel::LANES;
@@ -9,8 +11,6 @@ use super::stage::{Site, Stage};
 use super::strip::first_of;
 use super::{EnvironmentError, Environments, Place, Policy, Sensor, World, policy};
 use crate::ensemble::Assign;
-use libration_core::Float;
-use libration_core::random::Streams;
 
 impl<T, E, const O: usize, const D: usize> Environments<T, E, O, D>
 where

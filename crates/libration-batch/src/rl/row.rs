@@ -1,13 +1,13 @@
 //! A step of neighbouring environments in a rollout.
 
 use bytemuck::Pod;
+use libration_core::Float;
 
 use super::kernel::LANES;
 use super::yields::{Step, Yield};
 use super::{Layout, Writes};
 use crate::ensemble::instructions::Target;
 use crate::ensemble::stream::Streaming;
-use libration_core::Float;
 
 /// Where a step of neighbouring environments is written.
 #[derive(Debug)]

@@ -5,6 +5,9 @@ use core::mem::swap;
 use core::ops::Range;
 
 use bytemuck::Pod;
+use libration_core::Float;
+use libration_core::control::Clock;
+use libration_core::control::error::ensure;
 
 use super::error::NOTHING_DRAWN;
 use super::kernel::{Horizon, LANES, Share, TILE};
@@ -14,9 +17,6 @@ use super::{
     Writes,
 };
 use crate::ensemble::{EnsembleError, NoRoom};
-use libration_core::Float;
-use libration_core::control::Clock;
-use libration_core::control::error::ensure;
 
 /// Room for what a step leads to.
 #[derive(Debug)]

@@ -1,10 +1,11 @@
 //! How bad an episode is.
 
-use super::start::{Episode, between};
 use libration_core::Float;
 use libration_core::control::ControlError;
 use libration_core::control::error::not_negative;
 use libration_core::random::Purpose;
+
+use super::start::{Episode, between};
 
 /// How much of what the clock and the sensor do wrong there is in an episode: a factor for each, drawn for every environment
 /// at the beginning of every episode, uniformly from a least to a most. 1 is all of it, 0 nothing.

@@ -1,9 +1,10 @@
 //! How numbers differ from episode to episode.
 
-use super::start::Episode;
 use libration_core::Float;
 use libration_core::control::ControlError;
 use libration_core::random::Purpose;
+
+use super::start::Episode;
 
 /// The distribution of a number that is drawn at the beginning of every episode.
 #[derive(Clone, Copy, Debug, PartialEq)]

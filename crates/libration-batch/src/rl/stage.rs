@@ -1,20 +1,21 @@
 //! What a step of a block consists of: scalar functions in loops over lanes.
 
-use super::block::{self, BlockOf, LOST, NumberLanes};
+use libration_core::control::{Clock, Memory};
+use libration_core::random::{Purpose, Streams};
+use libration_core::system::Held;
+use libration_core::{Float, Integrator, State};
+
+use super::block::{BlockOf, LOST, NumberLanes};
 use super::draws::renew;
 use super::history::History;
 use super::kernel::LANES;
 use super::lanes::Lanes;
 use super::wrong::worse;
 use super::yields::{Step, Yield};
-use super::{Autoreset, Parts, Place, Policy, Sensor, Task, Variation, World};
+use super::{Autoreset, Parts, Place, Policy, Sensor, Task, Variation, World, block};
 use crate::ensemble::Assign;
 use crate::ensemble::instructions::Target;
 use crate::ensemble::kernel::{Lines, at, put};
-use libration_core::control::{Clock, Memory};
-use libration_core::random::{Purpose, Streams};
-use libration_core::system::Held;
-use libration_core::{Float, Integrator, State};
 
 /// What all blocks and steps share.
 #[derive(Clone, Copy)]

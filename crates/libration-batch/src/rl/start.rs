@@ -107,10 +107,11 @@ impl<T: Float, const D: usize> Start<T, D> for Between<D> {
 pub(super) mod between {
     use core::array::from_fn;
 
-    use super::Episode;
     use libration_core::Float;
     use libration_core::control::ControlError;
     use libration_core::random::Purpose;
+
+    use super::Episode;
 
     /// Every lower end is below its upper one, or both are the same.
     pub(in crate::rl) fn check(

@@ -1,11 +1,12 @@
 //! What is different in every episode.
 
-use super::Spread;
-use super::start::Episode;
 use libration_core::Float;
 use libration_core::array::each;
 use libration_core::control::{ControlError, Memory};
 use libration_core::random::Purpose;
+
+use super::Spread;
+use super::start::Episode;
 
 /// Draws numbers at the beginning of every episode and makes the system and the task of them: domain randomisation.
 ///

@@ -1,14 +1,15 @@
 //! What is not as it should be: lengths of steps, commands, measurements.
 
+use libration_core::control::{Clock, Memory};
+use libration_core::random::Streams;
+use libration_core::{Float, Integrator, System};
+
 use super::block::{BlockOf, ClockMemory};
 use super::kernel::LANES;
 use super::stage::Stage;
 use super::{Policy, Variation, World};
 use crate::ensemble::Assign;
 use crate::ensemble::kernel::Lines;
-use libration_core::control::{Clock, Memory};
-use libration_core::random::Streams;
-use libration_core::{Float, Integrator, System};
 
 impl<T, E, P, const O: usize, const D: usize> Stage<'_, T, E, P, O, D>
 where

@@ -1,8 +1,9 @@
 //! What blocks yield.
 
+use libration_core::Float;
+
 use super::Final;
 use super::kernel::LANES;
-use libration_core::Float;
 
 /// The numbers of a step of a block, before they are written. It begins with a line of the cache, as each of its rows does: no
 /// vector lies across two.

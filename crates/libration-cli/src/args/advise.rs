@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use libration::catalog;
 use libration::control::{Feedback, Jitter, LqrWeights};
-use libration_lab::advise::{Control, Law, Measure, Request, Tolerance};
-use libration_lab::analyze::Late;
-use libration_lab::setting::Setting;
+use libration_advise::{Control, Law, Measure, Request, Tolerance};
+use libration_analyze::analyze::Late;
+use libration_settings::setting::Setting;
 
 use super::SystemArgs;
 use super::timing::{feedback, finite, latency, law, weights};

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use libration::ensemble::InstructionSet;
-use libration_lab::Effort;
-use libration_lab::bench::{BenchFloat, Implementation, RolloutCase, RolloutTask};
+use libration_study::Effort;
+use libration_study_batch::bench::{BenchFloat, Implementation, RolloutCase, RolloutTask};
 
 use super::number::count;
 use super::{efforts, simd};

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use libration_lab::wakeups::{Plan, Priority};
+use libration_advise::wakeups::{Plan, Priority};
 
 /// What `measure-jitter` takes.
 #[derive(Args, Debug)]

@@ -17,7 +17,8 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
 use libration::ensemble::InstructionSet;
-use libration_lab::{Effort, studies};
+use libration_lab::STUDIES;
+use libration_study::Effort;
 
 use crate::error::Failure;
 
@@ -169,9 +170,10 @@ fn asked_color(words: &[OsString]) -> ColorChoice {
 }
 
 fn study_names() -> PossibleValuesParser {
-    let value =
-        |study: &&dyn libration_lab::Study| PossibleValue::new(study.name()).help(study.question());
-    PossibleValuesParser::new(studies::ALL.iter().map(value).collect::<Vec<_>>())
+    let value = |study: &&dyn libration_study::Study| {
+        PossibleValue::new(study.name()).help(study.question())
+    };
+    PossibleValuesParser::new(STUDIES.studies.iter().map(value).collect::<Vec<_>>())
 }
 
 fn efforts() -> impl TypedValueParser<Value = Effort> {

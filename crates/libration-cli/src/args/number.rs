@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use libration_lab::config::limits;
+use libration_settings::limits;
 
 /// The coordinates of one flag.
 #[derive(Clone, Debug, PartialEq)]

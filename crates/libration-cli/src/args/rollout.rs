@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args};
-use libration_lab::dataset::DataFormat;
+use libration_env::dataset::DataFormat;
 
 use super::number::whole_number;
 

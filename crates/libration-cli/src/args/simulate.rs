@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use libration::ensemble::InstructionSet;
-use libration_lab::trajectory::{FloatType, Format};
+use libration_analyze::trajectory::{FloatType, Format};
 
 use super::number::{count, trajectory_steps, whole_number};
 use super::timing::TimingArgs;

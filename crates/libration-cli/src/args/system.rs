@@ -2,12 +2,12 @@
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use libration::catalog::{self, ENTRIES, Entry};
+use libration::catalog::{ENTRIES, Entry};
 use libration::integrator::Exact;
-use libration::{CatalogError, Method};
-use libration_lab::analyze::Stepping;
-use libration_lab::config::names;
-use libration_lab::setting::Setting;
+use libration::{CatalogError, Method, catalog};
+use libration_analyze::analyze::Stepping;
+use libration_settings::names;
+use libration_settings::setting::Setting;
 
 use super::number::{Coordinates, assignment, coordinates, time_step};
 use crate::error::Failure;

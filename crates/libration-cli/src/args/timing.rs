@@ -2,8 +2,8 @@
 
 use clap::Args;
 use libration::control::{Feedback, Jitter, LqrWeights};
-use libration_lab::analyze::{Late, Timing};
-use libration_lab::config::limits::{MOST_GAIN, MOST_RMS};
+use libration_analyze::analyze::{Late, Timing};
+use libration_settings::limits::{MOST_GAIN, MOST_RMS};
 
 /// The loop, and what happens to its clock and its commands.
 #[derive(Args, Clone, Copy, Debug)]

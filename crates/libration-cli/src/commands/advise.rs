@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 
-use libration_lab::advise::{self, Advice, AdviseError, Budget, LoopAdvice, Request};
-use libration_lab::study::StudyError;
-use libration_lab::{Config, Lab};
+use libration_advise as advise;
+use libration_advise::{Advice, AdviseError, Budget, LoopAdvice, Request};
+use libration_work::Work;
 
 use super::{config_file, time_stamps};
 use crate::args::AdviseArgs;
@@ -31,10 +31,8 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
         Err(error) => Err(Failure::usage(unwritable(path, &error))),
     });
     let file = file.transpose()?;
-    let config = Config::default();
     let reporter = Reporter::new(quiet);
-    let lab = Lab::new(&config, config.effort, &reporter, stop);
-    let advice = advise::advise(&lab, &request);
+    let advice = advise::advise(&Work::new(&reporter, stop), &request);
     reporter.clear();
     let advice = advice.map_err(failure)?;
     let text = match args.json {
@@ -71,9 +69,7 @@ fn asked(args: &AdviseArgs) -> Result<Request, Failure> {
 
 fn failure(error: AdviseError) -> Failure {
     match error {
-        AdviseError::Study(StudyError::Interrupted) => {
-            Failure::Interrupted("interrupted".to_owned())
-        }
+        AdviseError::Interrupted(error) => Failure::Interrupted(error.to_string()),
         AdviseError::Value { name, value, allowed } => {
             let flag = match name.rsplit('.').next().unwrap_or(name) {
                 "cost" => "cost-weights",
@@ -81,7 +77,6 @@ fn failure(error: AdviseError) -> Failure {
             };
             Failure::usage(format!("--{flag} is {value:?}, but it must be {allowed}"))
         }
-        AdviseError::Study(error) => Failure::run(error),
         error
         @ (AdviseError::Unstable { .. } | AdviseError::Late(_) | AdviseError::Ensemble(_)) => {
             Failure::run(error)

@@ -1,13 +1,15 @@
 //! `libration analyze`.
 
 use std::fmt::Write as _;
-use std::io::{self, Write as _};
+use std::io;
+use std::io::Write as _;
 
-use libration_lab::analyze::{
-    self, Analysis, Criteria, ModifiedHamiltonian, Request, Stepping, Timing,
+use libration_analyze::analyze;
+use libration_analyze::analyze::{
+    Analysis, Criteria, ModifiedHamiltonian, Request, Stepping, Timing,
 };
-use libration_lab::config::limits;
-use libration_lab::setting::Setting;
+use libration_settings::limits;
+use libration_settings::setting::Setting;
 
 use super::closed_loop::{dephasing, describe_loop};
 use crate::args::{AnalyzeArgs, CostArgs};

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use libration_lab::analyze::{CostAnswer, Critical, GrowthAnswer, Timing, TimingAnswer};
+use libration_analyze::analyze::{CostAnswer, Critical, GrowthAnswer, Timing, TimingAnswer};
 
 /// What feedback, latency, jitter, skew and losses make of a step: a block for each set of conditions under which its
 /// rows hold, with them as its heading.

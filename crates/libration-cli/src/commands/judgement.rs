@@ -1,6 +1,6 @@
 //! Whether findings agree with theory, as an exit code says it.
 
-use libration_lab::record::{Finding, Record};
+use libration_report::record::{Finding, Record};
 
 use crate::error::Failure;
 use crate::terminal;
@@ -26,7 +26,7 @@ fn disagreement(finding: &Finding) -> String {
 
 #[cfg(test)]
 mod tests {
-    use libration_lab::record::Tolerance;
+    use libration_report::record::Tolerance;
 
     use super::*;
 

@@ -4,10 +4,11 @@ use std::fmt::Write;
 use std::path::Path;
 
 use libration_lab::output::{Output, OutputError};
-use libration_lab::record::{Record, Verdict};
 use libration_lab::results::Results;
-use libration_lab::session::{self, Cause};
-use libration_lab::{Config, Lab, Study, config, studies};
+use libration_lab::session::Cause;
+use libration_lab::{STUDIES, session};
+use libration_report::record::{Record, Verdict};
+use libration_study::{Config, Lab, Study};
 
 use super::judgement::judge;
 use crate::args::{LabArgs, simd};
@@ -18,10 +19,10 @@ use crate::{interrupt, terminal};
 /// Runs studies and writes a report, or prints what describes a configuration.
 pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
     if args.print_config {
-        return Ok(terminal::print(config::DEFAULT)?);
+        return Ok(terminal::print(&STUDIES.text())?);
     }
     if args.schema {
-        return Ok(terminal::print(&format!("{:#}\n", config::schema()))?);
+        return Ok(terminal::print(&format!("{:#}\n", STUDIES.schema()))?);
     }
     let config = configure(args)?;
     let output = Output::open(&args.out).map_err(|error| unwritable(&args.out, &error))?;
@@ -48,22 +49,23 @@ fn show(report: &Path) {
 fn configure(args: &LabArgs) -> Result<Config, Failure> {
     let mut config = match &args.config {
         Some(path) => read(path)?,
-        None => Config::default(),
+        None => STUDIES.config(),
     };
     if !args.studies.is_empty() {
         config.studies.clone_from(&args.studies);
     }
     config.effort = args.effort.unwrap_or(config.effort);
     config.simd = simd::asked(args.simd)?.or(config.simd);
-    config.check().map_err(Failure::usage)?;
+    STUDIES.check(&config).map_err(Failure::usage)?;
     Ok(config)
 }
 
 fn read(path: &Path) -> Result<Config, Failure> {
-    let bytes = config::read(path).map_err(|error| {
+    let bytes = libration_settings::read(path).map_err(|error| {
         Failure::usage(format!("cannot read `{}` (--config): {error}", path.display()))
     })?;
-    config::parse_bytes(&bytes, &path.to_string_lossy())
+    STUDIES
+        .parse_bytes(&bytes, &path.to_string_lossy())
         .map_err(|error| Failure::Shown(error.render_styled()))
 }
 
@@ -79,9 +81,9 @@ fn unwritable(folder: &Path, error: &OutputError) -> Failure {
 /// The studies that the configuration names, in its order.
 fn chosen(config: &Config) -> Vec<&'static dyn Study> {
     if config.studies.is_empty() {
-        return studies::ALL.to_vec();
+        return STUDIES.studies.to_vec();
     }
-    config.studies.iter().filter_map(|name| studies::by_name(name)).collect()
+    config.studies.iter().filter_map(|name| STUDIES.by_name(name)).collect()
 }
 
 fn investigate(config: &Config, output: &Output, reporter: &Reporter) -> Result<Results, Failure> {
@@ -122,8 +124,8 @@ fn agreement(record: &Record) -> String {
 
 #[cfg(test)]
 mod tests {
-    use libration_lab::Machine;
-    use libration_lab::record::{Finding, Tolerance};
+    use libration_report::record::{Finding, Tolerance};
+    use libration_study::Machine;
 
     use super::*;
 
@@ -139,7 +141,7 @@ mod tests {
         Results {
             schema: libration_lab::results::SCHEMA,
             machine: Machine::detect(),
-            config: Config::default(),
+            config: STUDIES.config(),
             seconds: 13.0,
             complete: true,
             untried: &[],

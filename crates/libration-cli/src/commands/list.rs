@@ -3,7 +3,8 @@
 use libration::Method;
 use libration::catalog::{ENTRIES, Entry};
 use libration::integrator::Exact;
-use libration_lab::{Study, studies};
+use libration_lab::STUDIES;
+use libration_study::Study;
 use serde_json::{Value, json};
 
 use crate::args::ListArgs;
@@ -23,7 +24,7 @@ fn as_json() -> Value {
     // Its error is that of no order.
     let exact = json!({ "name": Exact::NAME, "order": null, "summary": Exact::SUMMARY });
     json!({
-        "studies": studies::ALL.iter().map(study).collect::<Vec<_>>(),
+        "studies": STUDIES.studies.iter().map(study).collect::<Vec<_>>(),
         "systems": ENTRIES.map(system_json),
         "integrators": Method::ALL.into_iter().map(integrator).chain([exact]).collect::<Vec<_>>(),
     })
@@ -50,7 +51,7 @@ fn system_json(entry: &Entry) -> Value {
 }
 
 fn as_text() -> String {
-    let studies: Vec<_> = studies::ALL.iter().map(|s| (s.name(), s.question())).collect();
+    let studies: Vec<_> = STUDIES.studies.iter().map(|s| (s.name(), s.question())).collect();
     let integrators = Method::ALL.into_iter().map(|m| (m.name(), m.summary()));
     let integrators: Vec<_> = integrators.chain([(Exact::NAME, Exact::SUMMARY)]).collect();
     let systems: String = ENTRIES.iter().map(|entry| system_text(entry)).collect();

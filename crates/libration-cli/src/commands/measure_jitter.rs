@@ -5,7 +5,7 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use libration::control::clock::Recorded;
-use libration_lab::wakeups::{Plan, Priority, Quantile, Statistics, WakeupError, Wakeups};
+use libration_advise::wakeups::{Plan, Priority, Quantile, Statistics, WakeupError, Wakeups};
 use serde_json::{Value, json};
 
 use super::time_stamps;

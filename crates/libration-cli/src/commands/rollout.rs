@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use libration::ensemble::Execution;
 use libration::rl::EnvironmentError;
-use libration_lab::dataset::{self, Check, Dataset, DatasetError, Flaw, Job, Watch};
+use libration_env::dataset;
+use libration_env::dataset::{Check, Dataset, DatasetError, Flaw, Job, Watch};
 
 use super::config_file;
 use crate::args::{RolloutArgs, VerifyArgs};
@@ -125,7 +126,7 @@ fn threads(threads: usize) -> Result<Execution, Failure> {
 
 /// What is wrong with the input is known before any work; all else went wrong meanwhile.
 fn failed(error: DatasetError, folder: &Path) -> Failure {
-    use libration_lab::dataset::DataError;
+    use libration_env::dataset::DataError;
     if let Some(room) = error.room() {
         return Failure::room(room, &error);
     }

@@ -1,16 +1,18 @@
 //! `libration simulate`.
 
-use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
+use std::io;
+use std::io::{BufWriter, ErrorKind, IsTerminal, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use indicatif::ProgressBar;
 use libration::control::clock::Recorded;
-use libration_lab::export::ExportError;
-use libration_lab::setting::Setting;
-use libration_lab::trajectory::{
-    self, Copies, Ending, Format, Request, Stopped, TrajectoryError, Watch,
+use libration_analyze::export::ExportError;
+use libration_analyze::trajectory;
+use libration_analyze::trajectory::{
+    Copies, Ending, Format, Request, Stopped, TrajectoryError, Watch,
 };
+use libration_settings::setting::Setting;
 
 use super::time_stamps;
 use crate::args::{SimulateArgs, simd};

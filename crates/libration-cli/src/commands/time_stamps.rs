@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use libration::control::clock::RecordedError;
-use libration_lab::wakeups;
+use libration_advise::wakeups;
 
 use crate::error::Failure;
 

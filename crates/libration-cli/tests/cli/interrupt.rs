@@ -23,7 +23,7 @@ pub(crate) fn interrupt(child: &Child) {
 
 #[test]
 fn an_interrupted_run_leaves_valid_results() {
-    let Some(study) = libration_lab::studies::by_name("drift") else { return };
+    let Some(study) = libration_lab::STUDIES.by_name("drift") else { return };
     let folder = tempfile::tempdir().unwrap();
     // Hours of work, in parts of a fraction of a second.
     let dt: Vec<String> = (1..=2000).map(|i| format!("{:?}", 1e-5 * f64::from(i))).collect();

@@ -2,7 +2,8 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command as Process, Stdio};
+use std::process::Command as Process;
+use std::process::Stdio;
 
 use assert_cmd::Command;
 use assert_cmd::assert::Assert;
@@ -82,7 +83,7 @@ fn wrong_flags_are_named_with_what_is_allowed() {
 #[test]
 fn a_study_that_is_nearly_right_is_guessed() {
     let folder = folder();
-    for study in libration_lab::studies::ALL {
+    for study in libration_lab::STUDIES.studies {
         let nearly = format!("{}x", study.name());
         assert_wrong(&folder, &["lab", &nearly], &[&format!("'{}'", study.name())]);
     }
@@ -144,8 +145,8 @@ fn the_printed_configuration_is_accepted() {
     let text = stdout(&printed.stderr(""));
     assert!(text.contains("k = 10.0  # stiffness in N/m"), "{text}");
     assert_eq!(
-        libration_lab::config::parse(&text, ""),
-        Ok(libration_lab::Config::default()),
+        libration_lab::STUDIES.parse(&text, ""),
+        Ok(libration_study::Config::default()),
         "{text}"
     );
     assert!(entries(folder.path()).is_empty());
@@ -169,7 +170,7 @@ fn the_list_fits_the_page_and_names_everything() {
     let integrators = libration::Method::ALL.map(libration::Method::name);
     let integrators = integrators.into_iter().chain(["exact"]);
     let systems = libration::catalog::ENTRIES.map(|entry| entry.name);
-    let studies = libration_lab::studies::ALL.iter().map(|study| study.name());
+    let studies = libration_lab::STUDIES.studies.iter().map(|study| study.name());
     for name in integrators.chain(systems).chain(studies) {
         assert!(text.contains(&format!("\n  {name} ")), "{name} is not in\n{text}");
     }
@@ -188,7 +189,7 @@ fn the_list_as_json_has_stable_keys() {
     assert_eq!(system["dimensions"], serde_json::json!({ "max": 8, "min": 1 }));
     let parameter = keys(&system["parameters"][0]);
     assert_eq!(parameter, ["allowed", "default", "name", "summary", "unit"]);
-    assert_eq!(list["studies"].as_array().unwrap().len(), libration_lab::studies::ALL.len());
+    assert_eq!(list["studies"].as_array().unwrap().len(), libration_lab::STUDIES.studies.len());
 }
 
 #[test]

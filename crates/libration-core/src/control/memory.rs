@@ -1,8 +1,9 @@
 //! What is remembered of a trajectory from step to step.
 
+use core::fmt::Debug;
+
 use crate::Scalar;
 use crate::array::each;
-use core::fmt::Debug;
 
 /// Numbers that a clock, a delay or a controller keeps of every trajectory: part of the state of a loop.
 ///

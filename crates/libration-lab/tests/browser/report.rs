@@ -6,7 +6,8 @@ use std::sync::atomic::AtomicBool;
 use std::{env, fs};
 
 use libration_lab::output::Output;
-use libration_lab::{Config, Effort, Lab, Silent, session, studies};
+use libration_lab::{STUDIES, session};
+use libration_study::{Effort, Lab, Silent};
 
 /// The page of one quick run of all studies: made once, unless `LIBRATION_REPORT` names a folder that holds one.
 pub(crate) fn file() -> &'static Path {
@@ -16,9 +17,9 @@ pub(crate) fn file() -> &'static Path {
         }
         let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("browser");
         let _ = fs::remove_dir_all(&folder);
-        let (config, stop) = (Config::default(), AtomicBool::new(false));
+        let (config, stop) = (STUDIES.config(), AtomicBool::new(false));
         let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
-        session::run(&lab, studies::ALL, &Output::open(&folder).unwrap()).unwrap();
+        session::run(&lab, STUDIES.studies, &Output::open(&folder).unwrap()).unwrap();
         folder.join("report.html")
     });
     &FILE

@@ -3,8 +3,9 @@
 use std::sync::atomic::AtomicBool;
 
 use libration::Method;
-use libration_lab::config::{Spring, Start};
-use libration_lab::{Config, Effort, Lab, Record, Silent, Study, studies};
+use libration_lab::STUDIES;
+use libration_report::Record;
+use libration_study::{Config, Effort, Lab, Silent, Spring, Start, Study};
 
 use crate::default_run::{measured, predicted, records};
 
@@ -61,7 +62,7 @@ fn run(study: &dyn Study, config: &Config) -> Record {
 
 #[test]
 fn findings_agree_for_other_springs_starts_and_methods() {
-    let base = Config::default();
+    let base = STUDIES.config();
     let spring = |k: f64| Spring { m: 1.0, k };
     for (what, config) in [
         ("a soft spring", Config { oscillator: spring(0.5), ..base.clone() }),
@@ -77,7 +78,9 @@ fn findings_agree_for_other_springs_starts_and_methods() {
         ("RK4 alone", Config { integrators: vec![Method::Rk4], ..base.clone() }),
         ("a method that is not jittered", Config { integrators: vec![Method::Leapfrog], ..base }),
     ] {
-        for study in [&studies::Jitter as &dyn Study, &studies::Asynchrony] {
+        for study in
+            [&libration_study_loops::Jitter as &dyn Study, &libration_study_loops::Asynchrony]
+        {
             let record = run(study, &config);
             let broken: Vec<_> = record.disagreements().collect();
             assert!(broken.is_empty(), "{what}: {broken:#?}");

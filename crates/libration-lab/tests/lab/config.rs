@@ -1,28 +1,30 @@
 //! Configuration files: what is read, and what is said about what cannot be read.
 
 use libration::Method;
-use libration_lab::config::{ConfigError, DEFAULT, parse, parse_bytes, schema};
-use libration_lab::{Config, Effort};
+use libration_lab::STUDIES;
+use libration_settings::SettingsError;
+use libration_study::Effort;
+use libration_study_motion::{DriftSettings, SpectrumSettings};
 use serde_json::{Value, json};
 
-fn error(text: &str) -> ConfigError {
-    parse(text, "mine.toml").unwrap_err()
+fn error(text: &str) -> SettingsError {
+    STUDIES.parse(text, "mine.toml").unwrap_err()
 }
 
 /// The characters that the error points at.
-fn marked(error: &ConfigError) -> &str {
+fn marked(error: &SettingsError) -> &str {
     &error.source_text()[error.span()]
 }
 
 #[test]
 fn the_printed_default_is_the_default() {
-    assert_eq!(parse(DEFAULT, "default.toml").unwrap(), Config::default());
+    assert_eq!(STUDIES.parse(&STUDIES.text(), "default.toml").unwrap(), STUDIES.config());
 }
 
 #[test]
 fn every_key_has_a_default() {
     for text in ["", "# nothing\n", "\u{feff}", "[oscillator]\n[start]\n[drift]\n[spectrum]\n"] {
-        assert_eq!(parse(text, "").unwrap(), Config::default(), "{text:?}");
+        assert_eq!(STUDIES.parse(text, "").unwrap(), STUDIES.config(), "{text:?}");
     }
 }
 
@@ -30,13 +32,16 @@ fn every_key_has_a_default() {
 fn values_are_read() {
     let text = "\u{feff}effort = 'quick'\r\nintegrators = ['leapfrog']\r\noscillator.k = 4\r\n\
                 start = { q = 0, v = -1 }\r\n[drift]\r\n\tdt = [1, 0.5]\r\n\tsteps = 1e3\r\n";
-    let config = parse(text, "").unwrap();
+    let config = STUDIES.parse(text, "").unwrap();
     assert_eq!(config.effort, Effort::Quick);
     assert_eq!(config.integrators, [Method::Leapfrog]);
     assert_eq!((config.oscillator.m, config.oscillator.k), (1.0, 4.0));
     assert_eq!((config.start.q, config.start.v), (0.0, -1.0));
-    assert_eq!((config.drift.dt, config.drift.steps), (vec![0.5, 1.0], 1000));
-    assert_eq!(config.spectrum, Config::default().spectrum);
+    assert_eq!(
+        (config.get::<DriftSettings>().dt, config.get::<DriftSettings>().steps),
+        (vec![0.5, 1.0], 1000)
+    );
+    assert_eq!(config.get::<SpectrumSettings>(), STUDIES.config().get::<SpectrumSettings>());
 }
 
 /// Each case: a file, the characters that it is wrong about, a part of the message.
@@ -159,7 +164,7 @@ fn names_are_suggested() {
     assert!(help("integrators = ['verlet']").starts_with("did you mean `velocity-verlet`?"));
     assert!(help("integrators = ['RK-4']").starts_with("did you mean `rk4`?"));
     assert_eq!(help("effort = ''"), "the efforts are `quick`, `standard`, `thorough`");
-    for study in libration_lab::studies::ALL {
+    for study in STUDIES.studies {
         let text = format!("studies = ['{}x']", study.name());
         assert!(help(&text).starts_with(&format!("did you mean `{}`?", study.name())), "{text}");
     }
@@ -207,14 +212,14 @@ error: invalid basic string, expected `\"`
 fn bytes_that_are_not_text_are_shown() {
     for start in [&b""[..], b"\xEF\xBB\xBF"] {
         let bytes = [start, b"# \xC3\xA9t\xE9\n[drift]\n"].concat();
-        let error = parse_bytes(&bytes, "latin1.toml").unwrap_err();
+        let error = STUDIES.parse_bytes(&bytes, "latin1.toml").unwrap_err();
         assert_eq!(marked(&error), "\u{fffd}");
         assert!(error.to_string().contains("latin1.toml:1:5"), "{error}");
         assert!(error.message().contains("byte 0xE9"), "{error}");
     }
-    let utf16 = parse_bytes(b"\xFF\xFE[\0d\0", "wide.toml").unwrap_err();
+    let utf16 = STUDIES.parse_bytes(b"\xFF\xFE[\0d\0", "wide.toml").unwrap_err();
     assert!(utf16.help().unwrap().contains("UTF-16"), "{utf16}");
-    assert_eq!(parse_bytes(b"", "").unwrap(), Config::default());
+    assert_eq!(STUDIES.parse_bytes(b"", "").unwrap(), STUDIES.config());
 }
 
 #[test]
@@ -226,8 +231,8 @@ fn only_the_styled_error_has_colours() {
 
 #[test]
 fn the_schema_admits_the_default_and_refuses_what_the_parser_refuses() {
-    let validator = jsonschema::validator_for(&schema()).unwrap();
-    let mut config = serde_json::to_value(Config::default()).unwrap();
+    let validator = jsonschema::validator_for(&STUDIES.schema()).unwrap();
+    let mut config = serde_json::to_value(STUDIES.config()).unwrap();
     // Fails here if the schema and `Config` have different keys.
     validator.validate(&config).unwrap();
     for (pointer, bad) in [
@@ -262,7 +267,7 @@ fn the_schema_describes_every_key() {
             assert_described(property);
         }
     }
-    let schema = schema();
+    let schema = STUDIES.schema();
     assert_eq!(schema["properties"].as_object().unwrap().len(), 18);
     assert_described(&schema);
 }

@@ -1,13 +1,15 @@
 //! No text, however strange, makes the parser of configurations panic or point outside the text.
 
-use libration_lab::Config;
-use libration_lab::config::{ConfigError, DEFAULT, parse, parse_bytes};
+use libration_lab::STUDIES;
+use libration_settings::SettingsError;
+use libration_study::Config;
+use libration_study_motion::DriftSettings;
 use proptest::prelude::*;
 
 /// What holds of every outcome.
-fn check(outcome: Result<Config, ConfigError>) -> Result<(), TestCaseError> {
+fn check(outcome: Result<Config, SettingsError>) -> Result<(), TestCaseError> {
     match outcome {
-        Ok(config) => prop_assert_eq!(config.check(), Ok(())),
+        Ok(config) => prop_assert_eq!(STUDIES.check(&config), Ok(())),
         Err(error) => {
             // Fails if the span is outside the text or splits a character.
             prop_assert!(error.source_text().get(error.span()).is_some());
@@ -39,17 +41,17 @@ proptest! {
 
     #[test]
     fn arbitrary_text(text in any::<String>()) {
-        check(parse(&text, "name.toml"))?;
+        check(STUDIES.parse(&text, "name.toml"))?;
     }
 
     #[test]
     fn arbitrary_bytes(bytes in any::<Vec<u8>>()) {
-        check(parse_bytes(&bytes, "name.toml"))?;
+        check(STUDIES.parse_bytes(&bytes, "name.toml"))?;
     }
 
     #[test]
     fn arbitrary_pieces(pieces in prop::collection::vec(piece(), 0..12)) {
-        check(parse(&pieces.concat(), "name.toml"))?;
+        check(STUDIES.parse(&pieces.concat(), "name.toml"))?;
     }
 
     #[test]
@@ -58,11 +60,12 @@ proptest! {
         length in 0_usize..20,
         piece in piece(),
     ) {
-        let start = at.index(DEFAULT.len() + 1);
-        let end = (start + length).min(DEFAULT.len());
-        let text = format!("{}{piece}{}", &DEFAULT[..start], &DEFAULT[end..]);
-        check(parse(&text, "name.toml"))?;
-        check(parse(&text.replace('\n', "\r\n"), "name.toml"))?;
+        let default = STUDIES.text();
+        let start = at.index(default.len() + 1);
+        let end = (start + length).min(default.len());
+        let text = format!("{}{piece}{}", &default[..start], &default[end..]);
+        check(STUDIES.parse(&text, "name.toml"))?;
+        check(STUDIES.parse(&text.replace('\n', "\r\n"), "name.toml"))?;
     }
 
     #[test]
@@ -72,8 +75,8 @@ proptest! {
         let text = format!(
             "oscillator = {{ m = {m:?}, k = {k:?} }}\ndrift = {{ dt = [{dt:?}], steps = {steps} }}"
         );
-        let config = parse(&text, "").map_err(|e| TestCaseError::fail(e.to_string()))?;
+        let config = STUDIES.parse(&text, "").map_err(|e| TestCaseError::fail(e.to_string()))?;
         prop_assert_eq!((config.oscillator.m, config.oscillator.k), (m, k));
-        prop_assert_eq!((config.drift.dt, config.drift.steps), (vec![dt], steps));
+        prop_assert_eq!((config.get::<DriftSettings>().dt, config.get::<DriftSettings>().steps), (vec![dt], steps));
     }
 }

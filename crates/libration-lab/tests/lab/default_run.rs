@@ -6,16 +6,18 @@ use std::sync::LazyLock;
 use std::sync::atomic::AtomicBool;
 
 use libration_lab::output::Output;
-use libration_lab::record::Finding;
-use libration_lab::{Config, Effort, Lab, Record, Silent, session, studies};
+use libration_lab::{STUDIES, session};
+use libration_report::Record;
+use libration_report::record::Finding;
+use libration_study::{Effort, Lab, Silent};
 
 /// The folder that was written, and the records that it was written from.
 static RUN: LazyLock<(PathBuf, Vec<Record>)> = LazyLock::new(|| {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("default-run");
     let _ = fs::remove_dir_all(&folder);
-    let (config, stop) = (Config::default(), AtomicBool::new(false));
+    let (config, stop) = (STUDIES.config(), AtomicBool::new(false));
     let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
-    let results = session::run(&lab, studies::ALL, &Output::open(&folder).unwrap()).unwrap();
+    let results = session::run(&lab, STUDIES.studies, &Output::open(&folder).unwrap()).unwrap();
     (folder, results.studies)
 });
 

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use libration_lab::output::Output;
-use libration_lab::page::Page;
-use libration_lab::record::RecordError;
-use libration_lab::session::{self, Cause, SessionError};
-use libration_lab::study::StudyError;
-use libration_lab::{Config, Effort, Lab, Progress, Record, Study};
+use libration_lab::session::{Cause, SessionError};
+use libration_lab::{STUDIES, session};
+use libration_report::Record;
+use libration_report::page::Page;
+use libration_report::record::RecordError;
+use libration_study::{Effort, Lab, Progress, Study, StudyError};
 use serde_json::json;
 
 /// Sweeps over a hundred items.
@@ -58,7 +59,7 @@ impl Progress for Impatient<'_> {
 fn run(patience: usize) -> (Result<usize, SessionError>, serde_json::Value) {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("patience-{patience}"));
     let output = Output::open(folder).unwrap();
-    let (config, stop) = (Config::default(), AtomicBool::new(false));
+    let (config, stop) = (STUDIES.config(), AtomicBool::new(false));
     let user = Impatient {
         patience,
         done: AtomicUsize::new(0),

@@ -6,10 +6,11 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use libration::Method;
-use libration_lab::config::{Drift, Error, Nonlinear, Spring};
 use libration_lab::output::Output;
-use libration_lab::tried::unjudged;
-use libration_lab::{Config, Effort, Lab, Silent, Study, session, studies};
+use libration_lab::session::unjudged;
+use libration_lab::{STUDIES, session};
+use libration_study::{Config, Effort, Lab, Silent, Spring, Study};
+use libration_study_motion::{DriftSettings, ErrorSettings, NonlinearSettings};
 use serde_json::Value;
 
 /// `results.json` and the page of a quick run.
@@ -25,18 +26,21 @@ fn report(name: &str, config: &Config, studies: &[&dyn Study]) -> (Value, String
 
 /// The default, but for runs short enough for a test.
 fn short() -> Config {
-    Config {
-        drift: Drift { dt: vec![1e-3, 1e-2], steps: 2_000 },
-        error: Error { dt: 1e-3, steps: 2_000 },
-        nonlinear: Nonlinear { turns: 100, ..Config::default().nonlinear },
-        ..Config::default()
-    }
+    STUDIES
+        .config()
+        .with(DriftSettings { dt: vec![1e-3, 1e-2], steps: 2_000 })
+        .with(ErrorSettings { dt: 1e-3, steps: 2_000 })
+        .with(NonlinearSettings { turns: 100, ..STUDIES.config().get::<NonlinearSettings>() })
 }
 
 #[test]
 fn a_claim_that_cannot_be_judged_is_listed_with_the_reason() {
     let config = Config { oscillator: Spring { m: 1.0, k: 1.0 }, ..short() };
-    let (results, page) = report("stiffness-1", &config, &[&studies::Drift, &studies::Error]);
+    let (results, page) = report(
+        "stiffness-1",
+        &config,
+        &[&libration_study_motion::Drift, &libration_study_motion::Error],
+    );
     let unjudged = results["unjudged"].as_array().unwrap();
     let ledger = page.split("id=\"ledger\"").nth(1).unwrap().split("</section>").next().unwrap();
     let listed = ledger.split("Not judged with this configuration").nth(1).unwrap();
@@ -59,7 +63,7 @@ fn a_claim_that_cannot_be_judged_is_listed_with_the_reason() {
 
 #[test]
 fn a_ledger_in_which_nothing_could_be_judged_is_there_all_the_same() {
-    let (_, page) = report("nothing-judged", &short(), &[&studies::Error]);
+    let (_, page) = report("nothing-judged", &short(), &[&libration_study_motion::Error]);
     assert!(page.contains("No claim of the source report was judged"));
     assert!(page.contains("<span id=\"C74\">"));
 }
@@ -71,7 +75,11 @@ fn a_report_on_one_integrator_shows_no_empty_figure_and_no_empty_answer() {
         let (results, page) = report(
             &format!("only-{}", method.name()),
             &config,
-            &[&studies::Spectrum, &studies::Drift, &studies::Nonlinear::CONFIGURED],
+            &[
+                &libration_study_motion::Spectrum,
+                &libration_study_motion::Drift,
+                &libration_study_motion::Nonlinear::CONFIGURED,
+            ],
         );
         assert!(page.contains(" · 1 integrator · "));
         let figures: Vec<&str> = page.split("<figure ").skip(1).collect();
@@ -96,12 +104,12 @@ fn a_claim_that_is_not_judged_says_why() {
         let all = unjudged(config, studies, &[]);
         all.into_iter().find(|claim| claim.id == id).map(|claim| claim.because)
     };
-    let all = studies::ALL;
-    let leapfrog = Config { integrators: vec![Method::Leapfrog], ..Config::default() };
+    let all = STUDIES.studies;
+    let leapfrog = Config { integrators: vec![Method::Leapfrog], ..STUDIES.config() };
     let why = because(&leapfrog, "C16", all).unwrap_or_default();
     assert!(why.ends_with("left out: velocity Verlet, RK4"), "{why}");
-    let why = because(&Config::default(), "C16", all).unwrap_or_default();
+    let why = because(&STUDIES.config(), "C16", all).unwrap_or_default();
     assert!(why.contains("the source’s own run"), "{why}");
-    let why = because(&Config::default(), "C16", &[]).unwrap_or_default();
+    let why = because(&STUDIES.config(), "C16", &[]).unwrap_or_default();
     assert_eq!(why, "its study, `drift`, was not run");
 }

@@ -4,8 +4,10 @@ use std::sync::atomic::AtomicBool;
 
 use libration::system::{DampedOscillator, Duffing};
 use libration::{Method, State};
-use libration_lab::studies::{Convergence, Nonlinear, Problem, Subject};
-use libration_lab::{Config, Effort, Lab, Record, Silent, Study};
+use libration_lab::STUDIES;
+use libration_report::Record;
+use libration_study::{Config, Effort, Lab, Silent, Study};
+use libration_study_motion::{Convergence, Nonlinear, Problem, Subject};
 
 #[track_caller]
 fn all_agree(records: &[Record], what: &str) {
@@ -20,7 +22,7 @@ fn a_system_of_ones_own_goes_through_the_same_studies() {
     let start = State { q: [1.2], v: [0.4] };
     let problem = Problem::new("my well", well, start, 3.6).about(State::origin());
     let own: [&dyn Subject; 1] = [&problem];
-    let config = Config { integrators: Method::ALL.to_vec(), ..Config::default() };
+    let config = Config { integrators: Method::ALL.to_vec(), ..STUDIES.config() };
     let stop = AtomicBool::new(false);
     let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
     let records =
@@ -33,7 +35,7 @@ fn a_system_of_ones_own_goes_through_the_same_studies() {
     assert!((limit.measured - 2.0_f64.sqrt()).abs() < 1e-3, "{limit:?}");
     for record in &records {
         assert!(record.findings.iter().all(|f| f.id.contains(".my-well.")));
-        let mut page = libration_lab::page::Page::default();
+        let mut page = libration_report::page::Page::default();
         match record.name.as_str() {
             "convergence" => Convergence::of(&own).render(record, &mut page).unwrap(),
             _ => Nonlinear::of(&own).render(record, &mut page).unwrap(),
@@ -48,7 +50,7 @@ fn a_force_that_depends_on_the_velocity_is_promised_no_order_by_a_splitting_meth
     let start = State { q: [1.0], v: [0.2] };
     let problem = Problem::new("damped", damped, start, 6.3);
     let own: [&dyn Subject; 1] = [&problem];
-    let config = Config::default();
+    let config = STUDIES.config();
     let stop = AtomicBool::new(false);
     let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
     let record = Convergence::of(&own).run(&lab).unwrap();

@@ -3,22 +3,24 @@
 use std::sync::atomic::AtomicBool;
 
 use libration::Method;
-use libration_lab::config::{Precision, Spring, Start};
-use libration_lab::{Config, Effort, Lab, Record, Silent, Study, studies};
+use libration_lab::STUDIES;
+use libration_report::Record;
+use libration_study::{Config, Effort, Lab, Silent, Spring, Start, Study};
+use libration_study_motion::PrecisionSettings;
 
 use crate::default_run::{measured, predicted, records};
 
 fn run(config: &Config) -> Record {
     let stop = AtomicBool::new(false);
-    studies::Precision.run(&Lab::new(config, Effort::Quick, &Silent, &stop)).unwrap()
+    libration_study_motion::Precision.run(&Lab::new(config, Effort::Quick, &Silent, &stop)).unwrap()
 }
 
 fn default_record() -> &'static Record {
     records().iter().find(|record| record.name == "precision").unwrap()
 }
 
-fn short(dt: &[f64]) -> Precision {
-    Precision { dt: dt.to_vec(), steps: 50_000 }
+fn short(dt: &[f64]) -> PrecisionSettings {
+    PrecisionSettings { dt: dt.to_vec(), steps: 50_000 }
 }
 
 #[test]
@@ -70,33 +72,27 @@ fn a_force_in_single_precision_costs_a_small_part_of_a_state_in_it() {
 
 #[test]
 fn findings_agree_wherever_a_prediction_is_made() {
-    let base = Config { integrators: Method::ALL.to_vec(), ..Config::default() };
+    let base = Config { integrators: Method::ALL.to_vec(), ..STUDIES.config() };
     let spring = |k: f64| Spring { m: 1.0, k };
     let configs = [
-        (
-            "a soft spring",
-            Config { oscillator: spring(1.0), precision: short(&[0.01]), ..base.clone() },
-        ),
+        ("a soft spring", Config { oscillator: spring(1.0), ..base.clone() }.with(short(&[0.01]))),
         (
             "a start in motion",
             Config {
                 oscillator: Spring { m: 2.5, k: 3.0 },
                 start: Start { q: 0.3, v: -1.2 },
-                precision: short(&[0.004, 0.03]),
                 ..base.clone()
-            },
+            }
+            .with(short(&[0.004, 0.03])),
         ),
-        (
-            "large steps and a dyadic one",
-            Config { precision: short(&[0.015625, 0.3]), ..base.clone() },
-        ),
-        ("no stable step", Config { precision: short(&[10.0]), ..base.clone() }),
-        ("steps too small to count", Config { precision: short(&[1e-9]), ..base.clone() }),
+        ("large steps and a dyadic one", base.clone().with(short(&[0.015625, 0.3]))),
+        ("no stable step", base.clone().with(short(&[10.0]))),
+        ("steps too small to count", base.clone().with(short(&[1e-9]))),
         (
             "a start beyond single precision",
-            Config { start: Start { q: 1e100, v: 0.0 }, precision: short(&[0.01]), ..base.clone() },
+            Config { start: Start { q: 1e100, v: 0.0 }, ..base.clone() }.with(short(&[0.01])),
         ),
-        ("one step", Config { precision: Precision { dt: vec![0.01], steps: 1 }, ..base }),
+        ("one step", base.with(PrecisionSettings { dt: vec![0.01], steps: 1 })),
     ];
     for (what, config) in &configs {
         let record = run(config);

@@ -1,7 +1,7 @@
 //! The studies of rollouts: what they are to tell is there. How fast a machine is, no test asks.
 
-use libration_lab::Record;
-use libration_lab::record::Verdict;
+use libration_report::Record;
+use libration_report::record::Verdict;
 
 use crate::default_run::{measured, predicted, records};
 

@@ -3,9 +3,11 @@
 use std::sync::atomic::AtomicBool;
 
 use libration::Method;
-use libration_lab::config::{Drift, Spectrum, Spring};
-use libration_lab::record::{Finding, Verdict};
-use libration_lab::{Config, Effort, Lab, Record, Silent, Study, studies};
+use libration_lab::STUDIES;
+use libration_report::Record;
+use libration_report::record::{Finding, Verdict};
+use libration_study::{Config, Effort, Lab, Silent, Spring, Study};
+use libration_study_motion::{DriftSettings, SpectrumSettings};
 
 use crate::default_run::records;
 
@@ -14,8 +16,8 @@ fn run(study: &dyn Study, config: &Config) -> Record {
     study.run(&Lab::new(config, Effort::Quick, &Silent, &stop)).unwrap()
 }
 
-fn drift(dt: &[f64], steps: u64) -> Drift {
-    Drift { dt: dt.to_vec(), steps }
+fn drift(dt: &[f64], steps: u64) -> DriftSettings {
+    DriftSettings { dt: dt.to_vec(), steps }
 }
 
 fn spring(k: f64) -> Spring {
@@ -42,9 +44,9 @@ fn judged(record: &Record, id: &str) -> bool {
 fn an_orbit_that_closes_after_a_few_points_drifts_as_predicted() {
     // z = 1 and √3: six and three points. The slip of the phase counts there to first order.
     for (k, dt) in [(1e6, 1e-3), (100.0, 0.1), (3e6, 1e-3), (4.0, 0.2)] {
-        let base = Config { oscillator: spring(k), ..Config::default() };
-        let config = Config { drift: drift(&[dt], 1_000_000), ..base };
-        let record = agrees(&studies::Drift, &config, &format!("k = {k}"));
+        let base = Config { oscillator: spring(k), ..STUDIES.config() };
+        let config = base.with(drift(&[dt], 1_000_000));
+        let record = agrees(&libration_study_motion::Drift, &config, &format!("k = {k}"));
         let id = format!("drift.velocity-verlet.dt-{dt}.largest");
         // 10⁶ steps slip by 8uz·10⁶ = 10⁻⁹ rad: a tolerance far below the drift of 0.2.
         assert!(tolerance(record.finding(&id).unwrap()) < 1e-8, "{id}");
@@ -54,12 +56,10 @@ fn an_orbit_that_closes_after_a_few_points_drifts_as_predicted() {
 #[test]
 fn rounding_of_round_numbers_is_biased_and_covered() {
     // Δt·ω² = 1 and 2: the additions of Verlet round in a pattern, 0.006 and 0.024 u a step.
-    let config = Config {
-        integrators: vec![Method::VelocityVerlet, Method::Leapfrog],
-        drift: drift(&[0.1, 0.2], 10_000_000),
-        ..Config::default()
-    };
-    let record = agrees(&studies::Drift, &config, "10⁷ steps");
+    let config =
+        Config { integrators: vec![Method::VelocityVerlet, Method::Leapfrog], ..STUDIES.config() }
+            .with(drift(&[0.1, 0.2], 10_000_000));
+    let record = agrees(&libration_study_motion::Drift, &config, "10⁷ steps");
     let strayed = record.finding("drift.velocity-verlet.dt-0.2.invariant").unwrap();
     // 12·√n·e^z·u is what independent roundings would leave.
     assert!(strayed.measured > 12.0 * 1e7_f64.sqrt() * 1.88 * 1.1e-16, "{}", strayed.measured);
@@ -68,11 +68,11 @@ fn rounding_of_round_numbers_is_biased_and_covered() {
 #[test]
 fn findings_agree_up_to_the_limit_of_stability_and_at_it() {
     let dts = [0.6324, 0.632455, 0.6324555320336759];
-    let config = Config { drift: drift(&dts, 100_000), ..Config::default() };
-    agrees(&studies::Drift, &config, "drift");
+    let config = STUDIES.config().with(drift(&dts, 100_000));
+    agrees(&libration_study_motion::Drift, &config, "drift");
     for dt in dts {
-        let config = Config { spectrum: Spectrum { dt }, ..Config::default() };
-        agrees(&studies::Spectrum, &config, &format!("spectrum at {dt}"));
+        let config = STUDIES.config().with(SpectrumSettings { dt });
+        agrees(&libration_study_motion::Spectrum, &config, &format!("spectrum at {dt}"));
     }
 }
 
@@ -82,23 +82,24 @@ fn a_composition_rounds_in_each_of_its_substeps() {
     let config = Config {
         integrators: Method::ALL.to_vec(),
         oscillator: spring(0.1272938754405746),
-        spectrum: Spectrum { dt: 4.562678649912722 },
-        ..Config::default()
-    };
-    agrees(&studies::Spectrum, &config, "z = 1.63");
+        ..STUDIES.config()
+    }
+    .with(SpectrumSettings { dt: 4.562678649912722 });
+    agrees(&libration_study_motion::Spectrum, &config, "z = 1.63");
 }
 
 #[test]
 fn an_extreme_step_ends_no_study_and_takes_no_longer() {
     for (k, dt) in [(10.0, 1e-30), (10.0, 1e-9), (1e-30, 0.01), (10.0, 1e9), (1e300, 1e308)] {
-        let spectrum = Spectrum { dt };
-        let config = Config { oscillator: spring(k), spectrum, ..Config::default() };
-        agrees(&studies::Spectrum, &config, &format!("k = {k}, Δt = {dt}"));
+        let spectrum = SpectrumSettings { dt };
+        let config = Config { oscillator: spring(k), ..STUDIES.config() }.with(spectrum);
+        agrees(&libration_study_motion::Spectrum, &config, &format!("k = {k}, Δt = {dt}"));
     }
     for (k, dt) in [(10.0, 1e-30), (10.0, 1e-300), (1e-30, 0.1)] {
         let drift = drift(&[dt], 100_000);
-        let config = Config { oscillator: spring(k), drift, ..Config::default() };
-        let record = agrees(&studies::Drift, &config, &format!("k = {k}, Δt = {dt}"));
+        let config = Config { oscillator: spring(k), ..STUDIES.config() }.with(drift);
+        let record =
+            agrees(&libration_study_motion::Drift, &config, &format!("k = {k}, Δt = {dt}"));
         let longest = record.series.iter().map(|series| series.name.len()).max();
         assert!(longest.unwrap() < 60);
     }
@@ -127,8 +128,8 @@ fn what_a_symplectic_step_conserves_strays_by_rounding_alone() {
 #[test]
 fn where_no_form_is_definite_there_is_no_envelope_and_no_verdict_from_it() {
     // z = 2.85, beyond the limits of all methods.
-    let config = Config { drift: drift(&[0.9], 1000), ..Config::default() };
-    let record = agrees(&studies::Drift, &config, "z = 2.85");
+    let config = STUDIES.config().with(drift(&[0.9], 1000));
+    let record = agrees(&libration_study_motion::Drift, &config, "z = 2.85");
     assert!(record.finding("drift.velocity-verlet.dt-0.9.envelope").is_err());
     assert!(record.finding("drift.rk4.dt-0.9.envelope").is_ok());
     assert!(!judged(&record, "C34") && !judged(&record, "C10") && !judged(&record, "C12"));
@@ -136,16 +137,16 @@ fn where_no_form_is_definite_there_is_no_envelope_and_no_verdict_from_it() {
 
 #[test]
 fn a_claim_about_the_source_s_runs_is_judged_at_its_own_setting_alone() {
-    let base = Config { drift: drift(&[1e-3], 1_000_000), ..Config::default() };
-    let own = run(&studies::Drift, &base);
+    let base = STUDIES.config().with(drift(&[1e-3], 1_000_000));
+    let own = run(&libration_study_motion::Drift, &base);
     let others = [
         Config { oscillator: spring(1e5), ..base.clone() },
-        Config { drift: drift(&[1e-3], 10), ..base.clone() },
-        Config { drift: drift(&[2e-3], 1_000_000), ..base.clone() },
-        Config { start: libration_lab::config::Start { q: 0.0, v: 1.0 }, ..base },
+        base.clone().with(drift(&[1e-3], 10)),
+        base.clone().with(drift(&[2e-3], 1_000_000)),
+        Config { start: libration_study::Start { q: 0.0, v: 1.0 }, ..base },
     ];
     for config in others {
-        let record = run(&studies::Drift, &config);
+        let record = run(&libration_study_motion::Drift, &config);
         for id in ["C03", "C16", "C25", "C73"] {
             assert!(judged(&own, id) && !judged(&record, id), "{id} at {config:?}");
         }
@@ -155,8 +156,8 @@ fn a_claim_about_the_source_s_runs_is_judged_at_its_own_setting_alone() {
 #[test]
 fn a_drift_that_is_no_more_than_rounding_confirms_nothing() {
     // RK4 loses z⁶/72 = 1.4·10⁻¹⁷ a step at Δt = 1 ms.
-    let config = Config { drift: drift(&[1e-3], 10), ..Config::default() };
-    let record = agrees(&studies::Drift, &config, "ten steps");
+    let config = STUDIES.config().with(drift(&[1e-3], 10));
+    let record = agrees(&libration_study_motion::Drift, &config, "ten steps");
     assert!(["C15", "C22", "C33"].iter().all(|id| !judged(&record, id)));
 }
 
@@ -164,8 +165,8 @@ fn a_drift_that_is_no_more_than_rounding_confirms_nothing() {
 fn verlet_overtakes_rk4_at_the_step_that_its_own_orbit_says() {
     // z = 1.0000007 and nearly √3: orbits that go round their curve in 10⁶ steps.
     for (dt, steps) in [(0.316228, 100), (0.547722, 10)] {
-        let config = Config { drift: drift(&[dt], steps), ..Config::default() };
-        let record = agrees(&studies::Drift, &config, &format!("Δt = {dt}"));
+        let config = STUDIES.config().with(drift(&[dt], steps));
+        let record = agrees(&libration_study_motion::Drift, &config, &format!("Δt = {dt}"));
         let crossover = record.finding(&format!("drift.crossover.dt-{dt}.measured")).unwrap();
         assert_eq!(crossover.verdict, Verdict::Agrees, "{crossover:?}");
     }
@@ -173,9 +174,10 @@ fn verlet_overtakes_rk4_at_the_step_that_its_own_orbit_says() {
 
 #[test]
 fn an_error_whose_square_overflows_is_still_an_error() {
-    let error = libration_lab::config::Error { dt: 0.01, steps: 1_000_000 };
-    let config = Config { integrators: vec![Method::ExplicitEuler], error, ..Config::default() };
-    let record = agrees(&studies::Error, &config, "10²¹⁵ m");
+    let error = libration_study_motion::ErrorSettings { dt: 0.01, steps: 1_000_000 };
+    let config =
+        Config { integrators: vec![Method::ExplicitEuler], ..STUDIES.config() }.with(error);
+    let record = agrees(&libration_study_motion::Error, &config, "10²¹⁵ m");
     assert!(record.finding("error.explicit-euler.late").unwrap().measured > 1e200);
 }
 
@@ -183,10 +185,12 @@ fn an_error_whose_square_overflows_is_still_an_error() {
 fn a_search_that_slips_past_its_limit_by_visiting_few_phases_is_expected_to() {
     // z = 1.37, where a turn is nearly four steps.
     for steps in [127, 129, 130] {
-        let stability =
-            libration_lab::config::Stability { tolerances: vec![2.17], steps: vec![steps] };
-        let config = Config { stability, ..Config::default() };
-        agrees(&studies::Stability, &config, &format!("{steps} steps"));
+        let stability = libration_study_motion::StabilitySettings {
+            tolerances: vec![2.17],
+            steps: vec![steps],
+        };
+        let config = STUDIES.config().with(stability);
+        agrees(&libration_study_motion::Stability, &config, &format!("{steps} steps"));
     }
 }
 
@@ -194,9 +198,11 @@ fn a_search_that_slips_past_its_limit_by_visiting_few_phases_is_expected_to() {
 fn an_orbit_that_does_not_turn_is_no_test_of_a_drift() {
     // At z = 2 the start (1, 0) is an eigenvector of Verlet: its energy never changes.
     for tolerance in [1.0, 2.0] {
-        let efficiency =
-            libration_lab::config::Efficiency { periods: vec![10], tolerances: vec![tolerance] };
-        let config = Config { efficiency, ..Config::default() };
-        agrees(&studies::Efficiency, &config, &format!("{tolerance}"));
+        let efficiency = libration_study_motion::EfficiencySettings {
+            periods: vec![10],
+            tolerances: vec![tolerance],
+        };
+        let config = STUDIES.config().with(efficiency);
+        agrees(&libration_study_motion::Efficiency, &config, &format!("{tolerance}"));
     }
 }

@@ -4,11 +4,12 @@ use std::collections::HashSet;
 use std::sync::atomic::AtomicBool;
 
 use libration::Method;
-use libration_lab::config::{Drift, Precision, Spring, Start};
-use libration_lab::record::ClaimVerdict::{self, Conditional, Confirmed, NotReproducible, Refuted};
-use libration_lab::record::Verdict;
-use libration_lab::studies;
-use libration_lab::{Config, Effort, Lab, Record, Silent};
+use libration_lab::STUDIES;
+use libration_report::Record;
+use libration_report::record::ClaimVerdict::{Conditional, Confirmed, NotReproducible, Refuted};
+use libration_report::record::{ClaimVerdict, Verdict};
+use libration_study::{Config, Effort, Lab, Silent, Spring, Start};
+use libration_study_motion::{DriftSettings, PrecisionSettings};
 
 use crate::default_run::{measured, predicted, records};
 
@@ -195,10 +196,11 @@ fn a_conditional_verdict_says_its_condition_and_no_other_has_one() {
 
 #[test]
 fn findings_agree_for_other_springs_starts_methods_and_steps() {
-    let defaults = Config::default();
-    let precision = Precision { steps: 50_000, ..defaults.precision.clone() };
-    let base = Config { precision, ..defaults };
-    let drift = |dt: &[f64], steps| Drift { dt: dt.to_vec(), steps };
+    let defaults = STUDIES.config();
+    let precision =
+        PrecisionSettings { steps: 50_000, ..defaults.get::<PrecisionSettings>().clone() };
+    let base = defaults.with(precision);
+    let drift = |dt: &[f64], steps| DriftSettings { dt: dt.to_vec(), steps };
     let all = Method::ALL.to_vec();
     let configs = [
         ("RK4 alone", Config { integrators: vec![Method::Rk4], ..base.clone() }),
@@ -207,29 +209,25 @@ fn findings_agree_for_other_springs_starts_methods_and_steps() {
             Config {
                 integrators: all.clone(),
                 oscillator: Spring { m: 1.0, k: 1.0 },
-                drift: drift(&[0.0009765625, 0.7, 1.0], 200_000),
                 ..base.clone()
-            },
+            }
+            .with(drift(&[0.0009765625, 0.7, 1.0], 200_000)),
         ),
         (
             "a start in motion",
             Config {
                 oscillator: Spring { m: 2.5, k: 3.0 },
                 start: Start { q: 0.3, v: -1.2 },
-                drift: drift(&[0.004, 0.03], 300_000),
                 ..base.clone()
-            },
+            }
+            .with(drift(&[0.004, 0.03], 300_000)),
         ),
         (
             "beyond every limit of stability",
-            Config {
-                integrators: all,
-                start: Start { q: 0.0, v: 1.0 },
-                drift: drift(&[0.7, 1.5], 5_000),
-                ..base.clone()
-            },
+            Config { integrators: all, start: Start { q: 0.0, v: 1.0 }, ..base.clone() }
+                .with(drift(&[0.7, 1.5], 5_000)),
         ),
-        ("a single step", Config { drift: drift(&[1e-6], 1), ..base }),
+        ("a single step", base.with(drift(&[1e-6], 1))),
     ];
     let stop = AtomicBool::new(false);
     for (what, config) in &configs {
@@ -248,7 +246,7 @@ fn findings_agree_for_other_springs_starts_methods_and_steps() {
             "rollout",
             "storage",
         ];
-        let own = studies::ALL.iter().filter(|s| !others.contains(&s.name()));
+        let own = STUDIES.studies.iter().filter(|s| !others.contains(&s.name()));
         let records: Vec<Record> = own.map(|study| study.run(&lab).unwrap()).collect();
         all_agree(&records, what);
     }
@@ -256,10 +254,10 @@ fn findings_agree_for_other_springs_starts_methods_and_steps() {
 
 #[test]
 fn a_run_repeats_to_the_bit_on_one_thread_and_on_many() {
-    let (config, stop) = (Config::default(), AtomicBool::new(false));
+    let (config, stop) = (STUDIES.config(), AtomicBool::new(false));
     let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    for (study, a) in studies::ALL.iter().zip(records()) {
+    for (study, a) in STUDIES.studies.iter().zip(records()) {
         // That ensembles of loops repeat on any number of threads the engine's tests show, and `determinism`; `throughput`,
         // `memory`, `rollout` and `storage` measure time.
         let others =

@@ -3,9 +3,11 @@
 
 use std::sync::atomic::AtomicBool;
 
-use libration_lab::bench::{BenchFloat, Implementation, Wanted, ladder};
-use libration_lab::record::Verdict;
-use libration_lab::{Config, Effort, Lab, Record, Silent};
+use libration_lab::STUDIES;
+use libration_report::Record;
+use libration_report::record::Verdict;
+use libration_study::{Effort, Lab, Silent};
+use libration_study_batch::bench::{BenchFloat, Implementation, Wanted, ladder};
 
 use crate::default_run::{measured, records};
 
@@ -79,7 +81,7 @@ fn every_implementation_has_a_curve_in_both_floats_and_every_curve_its_regimes()
 
 #[test]
 fn what_is_wanted_is_timed_in_its_order() {
-    let (config, stop) = (Config::default(), AtomicBool::new(false));
+    let (config, stop) = (STUDIES.config(), AtomicBool::new(false));
     let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
     let of = |implementation, count| Wanted { implementation, float: BenchFloat::F64, count };
     let wanted = [of(Implementation::Fused, 100), of(Implementation::InPlace, 7)];

@@ -2,9 +2,11 @@
 
 use std::sync::atomic::AtomicBool;
 
-use libration_lab::config::{Drift, Stability};
-use libration_lab::record::{Claim, ClaimVerdict};
-use libration_lab::{Config, Effort, Lab, Record, Silent, Study, studies};
+use libration_lab::STUDIES;
+use libration_report::Record;
+use libration_report::record::{Claim, ClaimVerdict};
+use libration_study::{Config, Effort, Lab, Silent, Study};
+use libration_study_motion::{DriftSettings, StabilitySettings};
 
 fn run(study: &dyn Study, config: &Config) -> Record {
     let stop = AtomicBool::new(false);
@@ -12,8 +14,8 @@ fn run(study: &dyn Study, config: &Config) -> Record {
 }
 
 fn stability(tolerance: f64, steps: u64) -> Record {
-    let stability = Stability { tolerances: vec![tolerance], steps: vec![steps] };
-    run(&studies::Stability, &Config { stability, ..Config::default() })
+    let stability = StabilitySettings { tolerances: vec![tolerance], steps: vec![steps] };
+    run(&libration_study_motion::Stability, &STUDIES.config().with(stability))
 }
 
 fn claim<'a>(record: &'a Record, id: &str) -> Option<&'a Claim> {
@@ -49,8 +51,8 @@ fn a_tolerance_that_bounds_nothing_decides_nothing_about_verlet() {
 #[test]
 fn runs_of_a_few_steps_judge_no_claim_about_long_ones() {
     for (dt, steps) in [(1e-3, 1), (0.6, 3)] {
-        let drift = Drift { dt: vec![dt], steps };
-        let record = run(&studies::Drift, &Config { drift, ..Config::default() });
+        let drift = DriftSettings { dt: vec![dt], steps };
+        let record = run(&libration_study_motion::Drift, &STUDIES.config().with(drift));
         for id in ["C10", "C12", "C15", "C22", "C33", "C34"] {
             assert!(claim(&record, id).is_none(), "{id} after {steps} steps");
         }
@@ -60,8 +62,8 @@ fn runs_of_a_few_steps_judge_no_claim_about_long_ones() {
 #[test]
 fn a_gain_of_energy_is_no_loss_of_rk4() {
     // On both sides of z = 2√2.
-    let drift = Drift { dt: vec![0.89, 0.9], steps: 1000 };
-    let record = run(&studies::Drift, &Config { drift, ..Config::default() });
+    let drift = DriftSettings { dt: vec![0.89, 0.9], steps: 1000 };
+    let record = run(&libration_study_motion::Drift, &STUDIES.config().with(drift));
     let c15 = claim(&record, "C15").unwrap();
     assert!(c15.findings.iter().all(|id| !id.contains("dt-0.9.")), "{:?}", c15.findings);
 }

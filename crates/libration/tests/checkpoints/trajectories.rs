@@ -2,10 +2,9 @@
 
 use libration::State;
 use libration::checkpoint::{Checkpoint, CheckpointError};
-use libration::control::Schedule;
 use libration::control::clock::{Correlated, Drifting, Gaussian, Jittered};
 use libration::control::controller::StateFeedback;
-use libration::control::{Feedback, Jitter, Latency};
+use libration::control::{Feedback, Jitter, Latency, Schedule};
 use libration::ensemble::{All, Ensemble, Execution, Loops, Setup};
 use libration::integrator::VelocityVerlet;
 use libration::system::{HenonHeiles, Oscillator};

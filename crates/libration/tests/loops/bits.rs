@@ -7,8 +7,7 @@ use libration::control::clock::{
 };
 use libration::control::controller::{Force, Pid, PidGains, Saturated, StateFeedback};
 use libration::control::delay::{Latencies, Order, Packets, Random, RecordedLatencies, Schedule};
-use libration::control::{Clock, Controller, Delay};
-use libration::control::{Feedback, Jitter, Latency, RandomLatency};
+use libration::control::{Clock, Controller, Delay, Feedback, Jitter, Latency, RandomLatency};
 use libration::ensemble::{All, Assign, Each, Execution, InstructionSet, Loops, Setup};
 use libration::integrator::{ExplicitEuler, Rk4, SymplecticEuler, VelocityVerlet};
 use libration::system::{Oscillator, Pendulum};

@@ -1,12 +1,11 @@
 //! What clocks do.
 
 use libration::State;
-use libration::control::Clock;
-use libration::control::Jitter;
 use libration::control::clock::{
     Correlated, Drifting, Dropped, Gaussian, Jittered, Late, Rates, Recorded, Skewed, Uniform,
     Wandering, Waving,
 };
+use libration::control::{Clock, Jitter};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::SymplecticEuler;
 use libration::system::Oscillator;

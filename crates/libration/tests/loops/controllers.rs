@@ -1,9 +1,8 @@
 //! What controllers command.
 
 use libration::State;
-use libration::control::Controller;
-use libration::control::Feedback;
 use libration::control::controller::{Pid, PidGains, Saturated, StateFeedback};
+use libration::control::{Controller, Feedback};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::Rk4;
 use libration::system::DampedOscillator;

@@ -4,8 +4,7 @@ use libration::analysis::{Imperfections, LinearController, ObserverNoise, Plant}
 use libration::control::clock::{Jittered, Rates};
 use libration::control::controller::{Luenberger, Pid, PidGains, StateFeedback};
 use libration::control::delay::{Order, Packets};
-use libration::control::{Controller, Schedule, WhiteNoise};
-use libration::control::{Feedback, Jitter, Latency, LqrWeights};
+use libration::control::{Controller, Feedback, Jitter, Latency, LqrWeights, Schedule, WhiteNoise};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::Exact;
 use libration::random::{Address, Purpose};

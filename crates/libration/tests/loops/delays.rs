@@ -1,10 +1,9 @@
 //! An analytical test for each kind of delay.
 
 use libration::State;
-use libration::control::Delay;
 use libration::control::controller::StateFeedback;
 use libration::control::delay::{Latencies, Order, Packets, Random, RecordedLatencies, Schedule};
-use libration::control::{Feedback, Latency, RandomLatency};
+use libration::control::{Delay, Feedback, Latency, RandomLatency};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::VelocityVerlet;
 use libration::system::Oscillator;

@@ -7,8 +7,7 @@ use libration::control::clock::{
 };
 use libration::control::controller::{Pid, PidGains, Saturated, StateFeedback};
 use libration::control::delay::{Latencies, Order, Packets, RecordedLatencies, Schedule};
-use libration::control::{Clock, Controller, Delay};
-use libration::control::{Feedback, Jitter, Latency};
+use libration::control::{Clock, Controller, Delay, Feedback, Jitter, Latency};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::Rk4;
 use libration::system::Oscillator;

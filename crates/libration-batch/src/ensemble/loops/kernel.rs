@@ -4,6 +4,11 @@ use core::array::from_fn;
 use core::ops::Range;
 
 use bytemuck::Pod;
+use libration_core::control::delay::Event;
+use libration_core::control::{Clock, Controller, Delay, Disturbance, Memory};
+use libration_core::random::{EPOCH, Purpose, Streams};
+use libration_core::system::Held;
+use libration_core::{Float, Integrator, State, System};
 use pulp::{Simd, WithSimd};
 
 use super::lane::{ratio, stepped};
@@ -12,11 +17,6 @@ use super::setup::{Layout, Setup};
 use crate::ensemble::Assign;
 use crate::ensemble::kernel::{Lines, at, put};
 use crate::ensemble::planes::Share;
-use libration_core::control::delay::Event;
-use libration_core::control::{Clock, Controller, Delay, Disturbance, Memory};
-use libration_core::random::{EPOCH, Purpose, Streams};
-use libration_core::system::Held;
-use libration_core::{Float, Integrator, State, System};
 
 /// What is the same for all blocks.
 pub(super) struct Common<'s, T, A, M, K, C, L, N> {

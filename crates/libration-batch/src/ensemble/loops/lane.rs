@@ -1,9 +1,10 @@
 //! What a step of one lane consists of.
 
-use crate::ensemble::kernel::{Lines, at, put};
 use libration_core::control::{Clock, Memory};
 use libration_core::random::Streams;
 use libration_core::{Float, Integrator, State, System};
+
+use crate::ensemble::kernel::{Lines, at, put};
 
 /// How many `dt` a step is long in lane `l`.
 #[inline(always)]

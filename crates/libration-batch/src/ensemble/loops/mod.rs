@@ -13,7 +13,6 @@ use bytemuck::Pod;
 
 pub use setup::Setup;
 
-use super::{Assign, Ensemble, EnsembleError, Execution, GRAIN, Nobody, Observer, chunk, shares};
 use kernel::Common;
 use libration_core::control::error::finite;
 use libration_core::control::{Begin, Clock, Controller, Delay, Disturbance, Memory, Undisturbed};
@@ -21,6 +20,8 @@ use libration_core::{Float, Integrator, State, System};
 use rows::Memories;
 use run::Run;
 use setup::Layout;
+
+use super::{Assign, Ensemble, EnsembleError, Execution, GRAIN, Nobody, Observer, chunk, shares};
 
 /// Trajectories of a plant with `D` degrees of freedom under control.
 ///

@@ -4,6 +4,8 @@ use core::marker::PhantomData;
 use core::ops::Range;
 
 use bytemuck::Pod;
+use libration_core::control::{Clock, Controller, Delay, Disturbance, Memory};
+use libration_core::{Float, Integrator, System};
 
 use super::kernel::{Common, Steps};
 use super::rows::Rows;
@@ -11,8 +13,6 @@ use crate::ensemble::instructions::{Baseline, Target, Targeted};
 use crate::ensemble::planes::Share;
 use crate::ensemble::run::{Observe, widest};
 use crate::ensemble::{Assign, Observer};
-use libration_core::control::{Clock, Controller, Delay, Disturbance, Memory};
-use libration_core::{Float, Integrator, System};
 
 /// What is done with the loops of a share.
 pub(super) struct Run<'a, 's, T, A, M, K, C, L, N, Sys, O, const D: usize> {

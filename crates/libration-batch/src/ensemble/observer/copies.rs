@@ -2,8 +2,9 @@
 
 use core::ops::Range;
 
-use super::{Lanes, Observer};
 use libration_core::State;
+
+use super::{Lanes, Observer};
 
 /// Keeps the states of trajectories at every step that it sees.
 ///

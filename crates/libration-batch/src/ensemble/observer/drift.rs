@@ -3,9 +3,10 @@
 use core::marker::PhantomData;
 use core::ops::Range;
 
+use libration_core::{Float, Hamiltonian};
+
 use super::super::Assign;
 use super::{Lanes, Observer};
-use libration_core::{Float, Hamiltonian};
 
 /// Keeps, for every trajectory, the largest change `|E − E₀|` of its energy at the steps that it sees,
 /// where `E₀` is its energy when it is first seen.

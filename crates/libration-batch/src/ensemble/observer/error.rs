@@ -2,8 +2,9 @@
 
 use core::ops::Range;
 
-use super::{Lanes, Observer};
 use libration_core::{Float, State};
+
+use super::{Lanes, Observer};
 
 /// Keeps, for every trajectory, the mean square of its distance from a solution that is known, over the
 /// steps that it sees: the squared ℓ² error of positions, and of velocities.

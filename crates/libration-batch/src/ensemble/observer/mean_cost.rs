@@ -2,9 +2,10 @@
 
 use core::ops::Range;
 
-use super::{Lanes, Observer};
 use libration_core::Float;
 use libration_core::control::LqrWeights;
+
+use super::{Lanes, Observer};
 
 /// Keeps the mean of `position·q² + velocity·v²` over the steps that it sees, of each trajectory by itself.
 #[derive(Clone, Debug)]
@@ -49,11 +50,12 @@ impl<T: Float, const D: usize> Observer<T, D> for MeanCost<D> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::ensemble::{All, Execution, Loops, Setup};
     use libration_core::State;
     use libration_core::integrator::VelocityVerlet;
     use libration_core::system::Oscillator;
+
+    use super::*;
+    use crate::ensemble::{All, Execution, Loops, Setup};
 
     #[test]
     fn the_mean_is_that_of_the_states_seen_whatever_the_threads() {

@@ -1,7 +1,8 @@
 //! Means and variances over trajectories.
 
-use super::{Lanes, Observer};
 use libration_core::{Float, State};
+
+use super::{Lanes, Observer};
 
 /// Keeps the mean and the variance of every coordinate over the trajectories, at every step that it
 /// sees; those of all observers of an ensemble are [merged](Moments::merged).

@@ -1,9 +1,10 @@
 //! Exploration.
 
-use super::{Act, Place, Policy};
-use crate::rl::EnvironmentError;
 use libration_core::Float;
 use libration_core::random::{Streams, normal};
+
+use super::{Act, Place, Policy};
+use crate::rl::EnvironmentError;
 
 /// A policy with Gaussian noise on each of its actions; the log-probability is that of the noise. A policy that is itself random
 /// has none that were known, and does not compile.

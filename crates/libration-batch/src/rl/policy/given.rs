@@ -1,9 +1,10 @@
 //! Actions from outside.
 
-use super::{Act, Place, Policy};
-use crate::rl::EnvironmentError;
 use libration_core::Float;
 use libration_core::array::each;
+
+use super::{Act, Place, Policy};
+use crate::rl::EnvironmentError;
 
 /// Actions for a whole horizon: `[t, n, i]`.
 ///

@@ -1,10 +1,11 @@
 //! Linear feedback.
 
-use super::{Act, Place, Policy, all_finite, lanes};
-use crate::rl::EnvironmentError;
 use libration_core::Float;
 use libration_core::array::each;
 use libration_core::random::Streams;
+
+use super::{Act, Place, Policy, all_finite, lanes};
+use crate::rl::EnvironmentError;
 
 /// `u = W·seen + b`: proportional-derivative control, LQR.
 #[derive(Clone, Copy, Debug, PartialEq)]

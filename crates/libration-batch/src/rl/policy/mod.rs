@@ -14,12 +14,13 @@ pub use network::Network;
 pub use perceptron::{Activation, EachPerceptron, Perceptron};
 pub use random::Random;
 
-use super::EnvironmentError;
-use crate::ensemble::kernel::{at, put};
 use libration_core::Float;
 use libration_core::array::{each, map};
 use libration_core::control::ControlError;
 use libration_core::random::Streams;
+
+use super::EnvironmentError;
+use crate::ensemble::kernel::{at, put};
 
 /// Chooses an action: an acceleration in each of `D` degrees of freedom, from `O` numbers that are seen.
 pub trait Policy<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {

@@ -1,11 +1,12 @@
 //! A neural network whose sizes are known when the program runs.
 
-use super::perceptron::{self, Activation};
-use super::{Act, Place, Policy, all_finite};
-use crate::ensemble::{InstructionSet, Loop};
-use crate::rl::EnvironmentError;
 use libration_core::random::Streams;
 use libration_core::{Elementary, Float};
+
+use super::perceptron::Activation;
+use super::{Act, Place, Policy, all_finite, perceptron};
+use crate::ensemble::{InstructionSet, Loop};
+use crate::rl::EnvironmentError;
 
 /// A multilayer perceptron of any hidden layers, whose last layer is linear: what a [`Perceptron`](super::Perceptron) is where they are all
 /// as wide.

@@ -1,9 +1,10 @@
 //! A small neural network.
 
-use super::{Act, Place, Policy, all_finite, lanes};
-use crate::rl::EnvironmentError;
 use libration_core::random::Streams;
 use libration_core::{Elementary, Float};
+
+use super::{Act, Place, Policy, all_finite, lanes};
+use crate::rl::EnvironmentError;
 
 /// What the hidden layers of a [`Perceptron`] apply to each of their sums.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

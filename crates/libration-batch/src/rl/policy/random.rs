@@ -1,11 +1,12 @@
 //! Actions that follow from nothing.
 
-use super::{Act, Place, Policy};
-use crate::rl::EnvironmentError;
 use libration_core::Float;
 use libration_core::array::each;
 use libration_core::control::error::finite;
 use libration_core::random::{UNIT, odd};
+
+use super::{Act, Place, Policy};
+use crate::rl::EnvironmentError;
 
 /// Uniform between two ends in each degree of freedom, drawn by address.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! What the shared flags take, and what they say about what they do not take.
 
 use clap::Parser;
-use libration_lab::trajectory::FloatType;
+use libration_analyze::trajectory::FloatType;
 
 use super::*;
 use crate::args::SimulateArgs;

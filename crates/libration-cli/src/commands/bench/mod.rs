@@ -3,14 +3,15 @@
 mod rollouts;
 mod storage;
 
+use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 
-use libration_lab::bench::{self, BenchFloat, Rate, RolloutCase, Wanted};
-use libration_lab::record::{Finding, Record, Relation, Table, Undecided, Verdict};
-use libration_lab::studies::Throughput;
-use libration_lab::study::StudyError;
-use libration_lab::{Config, Effort, Lab, Machine, Study};
+use libration_env::dataset::DatasetError;
+use libration_report::record::{Finding, Record, Relation, Table, Undecided, Verdict};
+use libration_study::{Config, Effort, Lab, Machine, Study, StudyError};
+use libration_study_batch::bench::{BenchFloat, Rate, RolloutCase, Wanted};
+use libration_study_batch::{Throughput, bench};
 use serde_json::{Value, json};
 
 use super::judgement::judge;
@@ -27,8 +28,7 @@ const COUNTS: [usize; 3] = [1_000, 100_000, 10_000_000];
 
 /// Times this machine, and prints what came out.
 pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), Failure> {
-    let mut config = Config { effort: args.effort, ..Config::default() };
-    config.simd = simd::asked(args.simd)?;
+    let config = Config::new(args.effort, simd::asked(args.simd)?);
     let wanted = wanted(args)?;
     let reporter = Reporter::new(quiet);
     let stop = interrupt::listen();
@@ -102,11 +102,17 @@ fn cases(args: &BenchArgs) -> Vec<RolloutCase> {
 fn failure(error: StudyError, folder: Option<&Path>) -> Failure {
     match error {
         StudyError::Interrupted => Failure::Interrupted("interrupted".to_owned()),
-        StudyError::Dataset(error) if folder.is_some_and(|path| is_unusable(&error, path)) => {
+        StudyError::Other(error) if is_about(&*error, folder) => {
             Failure::usage(format!("{error} (--folder)"))
         }
         error => Failure::run(error),
     }
+}
+
+/// Whether an error is about the folder that --folder names.
+fn is_about(error: &(dyn Error + 'static), folder: Option<&Path>) -> bool {
+    let error = error.downcast_ref::<DatasetError>();
+    error.zip(folder).is_some_and(|(error, folder)| is_unusable(error, folder))
 }
 
 fn report_json(record: &Record) -> String {

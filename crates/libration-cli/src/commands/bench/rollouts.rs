@@ -1,8 +1,8 @@
 //! Rates of rollouts, as text and as JSON.
 
 use libration::rl::{Layout, Writes};
-use libration_lab::Machine;
-use libration_lab::bench::RolloutRate;
+use libration_study::Machine;
+use libration_study_batch::bench::RolloutRate;
 use serde_json::{Value, json};
 
 use super::{SCHEMA, columns};

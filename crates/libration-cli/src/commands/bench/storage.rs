@@ -1,7 +1,7 @@
 //! Rates of replay buffers, data sets and checkpoints, as text and as JSON.
 
-use libration_lab::Machine;
-use libration_lab::bench::StorageRate;
+use libration_study::Machine;
+use libration_study_batch::bench::StorageRate;
 use serde_json::{Value, json};
 
 use super::{SCHEMA, columns};

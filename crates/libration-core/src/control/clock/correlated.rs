@@ -2,9 +2,8 @@
 
 use super::{Clock, Gaussian, Noise, forward};
 use crate::Float;
-use crate::control::Jitter;
 use crate::control::error::{ensure, not_negative};
-use crate::control::{Begin, ControlError};
+use crate::control::{Begin, ControlError, Jitter};
 use crate::random::Purpose;
 
 /// Steps of `1 + ε`, where `ε` is an autoregressive process of first order: `εₙ₊₁ = φ·εₙ + √(1 − φ²)·σ·ξ` with

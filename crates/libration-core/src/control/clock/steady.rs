@@ -2,9 +2,8 @@
 
 use super::{Clock, forward};
 use crate::Float;
-use crate::control::Jitter;
 use crate::control::error::{law, none_negative};
-use crate::control::{Begin, ControlError};
+use crate::control::{Begin, ControlError, Jitter};
 use crate::random::Purpose;
 
 /// Every step is as long as the others.

@@ -2,9 +2,8 @@
 
 use super::Controller;
 use crate::array::{each, map};
-use crate::control::ControlError;
 use crate::control::error::finite;
-use crate::control::{Feedback, StateObserver};
+use crate::control::{ControlError, Feedback, StateObserver};
 use crate::{Float, State};
 
 /// `u = −K_p·(q̂ − r) − K_d·v̂`, of a state that a Luenberger observer estimates from the position, which is all that is seen: the

@@ -2,9 +2,8 @@
 
 use super::Controller;
 use crate::array::{each, map};
-use crate::control::ControlError;
-use crate::control::Feedback;
 use crate::control::error::finite;
+use crate::control::{ControlError, Feedback};
 use crate::{Float, State};
 
 /// `u = −K_p·(q − r) − K_d·v`, the same gains in each degree of freedom: PD control, or what

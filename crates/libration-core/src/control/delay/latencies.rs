@@ -2,8 +2,7 @@
 
 use super::{Arrival, Delay};
 use crate::Float;
-use crate::control::Latency;
-use crate::control::{Begin, ControlError};
+use crate::control::{Begin, ControlError, Latency};
 
 /// Latencies of the command, and of what is observed, for each trajectory, of any length: steps split where the loop looks and
 /// where commands arrive.

@@ -2,8 +2,7 @@
 
 use super::{Arrival, Delay};
 use crate::Float;
-use crate::control::Begin;
-use crate::control::RandomLatency;
+use crate::control::{Begin, RandomLatency};
 use crate::random::{Purpose, uniform};
 
 /// In every step a latency from a table with probabilities, or with the hold probability the one of the step before: what

@@ -4,8 +4,7 @@ use thiserror::Error;
 
 use super::{Arrival, Delay};
 use crate::Float;
-use crate::control::Begin;
-use crate::control::Latency;
+use crate::control::{Begin, Latency};
 
 /// A latency for each step, the same for all trajectories: in step `k` the command of `⌊latency⌋` steps ago arrives, after
 /// the part of the step that is left. A run that is longer than the record is refused.

@@ -1,0 +1,235 @@
+//! What a simulation without a loop loses.
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+use libration::integrator::{Exact, SUZUKI4};
+use libration::system::Chosen;
+use libration::{AnySystem, Float, Hamiltonian, Integrator, Method, Model, State, System};
+use libration_work::Work;
+
+use super::AdviseError;
+use super::choice::Trial;
+use super::request::{Measure, Request};
+
+/// A system from its start, over a horizon.
+pub(super) struct Free<M, const D: usize> {
+    pub(super) model: M,
+    pub(super) start: State<f64, D>,
+    pub(super) horizon: f64,
+    pub(super) of: Measure,
+    /// What makes a velocity comparable with a length, in rad/s.
+    omega: f64,
+    /// At most, in rad/s.
+    fastest: f64,
+}
+
+/// Steps of a run: a search takes hundreds of such runs.
+const MOST_STEPS: f64 = 2e7;
+
+/// The same where each has to be compared with finer ones.
+pub(super) const MOST_COMPARED: f64 = 1e6;
+
+/// Finer steps of order four beside each that is compared: their error is a four-thousandth of that of a step of such a method.
+const FINER: u32 = 8;
+
+/// What is found beside those is told so many times as large: a step that is advised meets its tolerance beside what is true, too.
+const WIDER: f64 = 1.001;
+
+/// Steps between two looks at whether to stop.
+const LOOK: u64 = 1 << 16;
+
+impl<M: Model<D>, const D: usize> Free<M, D> {
+    /// What `request` asks of it.
+    pub(super) fn new(work: &Work<'_>, model: M, request: &Request) -> Result<Self, AdviseError> {
+        let start = State {
+            q: core::array::from_fn(|i| request.q[i]),
+            v: core::array::from_fn(|i| request.v[i]),
+        };
+        let of = request.tolerance.of;
+        let wrong = |why: &str| Err(AdviseError::Tolerance { of, why: why.into() });
+        if of == Measure::Cost {
+            return wrong(
+                "only a loop costs; give a controller, or tolerate energy, phase or trajectory",
+            );
+        }
+        let loses = matches!(
+            request.system,
+            AnySystem::DampedOscillator(_) | AnySystem::DrivenOscillator(_)
+        );
+        if of == Measure::Energy && loses {
+            return wrong("its true motion does not conserve it; tolerate trajectory or phase");
+        }
+        if of == Measure::Phase && D > 1 {
+            return wrong("a phase is told of one degree of freedom");
+        }
+        if of == Measure::Energy && model.on::<f64>().energy(&start) == 0.0 {
+            return wrong("the energy at the start is zero, so that no error is a part of it");
+        }
+        let free = Free { model, start, horizon: request.horizon, of, omega: 1.0, fastest: 1.0 };
+        let [omega, fastest] = free.rates(work)?;
+        let free = Free { omega, fastest, ..free };
+        let [least, longest] = free.steps();
+        if least > longest {
+            let why = format!(
+                "its motion needs steps of at most {longest:.3e} s, of which the horizon has {:.1e}, and a search can take {:.0e} of \
+                 them; give a shorter horizon",
+                free.horizon / longest,
+                free.horizon / least
+            );
+            return wrong(&why);
+        }
+        Ok(free)
+    }
+
+    /// Of a step of `dt` seconds: by how many radians the fastest motion turns in it.
+    pub(super) fn turn(&self, dt: f64) -> f64 {
+        self.fastest * dt
+    }
+
+    /// The shortest and the longest step that are tried.
+    pub(super) fn steps(&self) -> [f64; 2] {
+        let compared = self.of != Measure::Energy && !M::LINEAR;
+        let most = if compared { MOST_COMPARED } else { MOST_STEPS };
+        let longest = (4.0 / self.fastest).min(self.horizon);
+        [self.horizon / most, longest]
+    }
+
+    /// What is lost in numbers of type `S`.
+    pub(super) fn lost_in<S: Float>(
+        &self,
+        work: &Work<'_>,
+        method: Method,
+        dt: f64,
+        most: f64,
+    ) -> Result<f64, AdviseError> {
+        let acceleration = |state: &State<S, D>| self.model.on::<S>().acceleration(state);
+        let true_acceleration = |state: &State<f64, D>| self.model.on::<f64>().acceleration(state);
+        let steps = (self.horizon / dt).round().max(1.0) as u64;
+        let follow = Follow {
+            system: Chosen(&acceleration),
+            method,
+            start: self.start.map(S::from_f64),
+            dt: S::from_f64(dt),
+            steps,
+        };
+        match self.of {
+            Measure::Energy => {
+                let model = self.model.on::<f64>();
+                let first = model.energy(&self.start);
+                let energy = |state: &State<f64, D>| ((model.energy(state) - first) / first).abs();
+                follow.largest(work, most, &mut |state| energy(state))
+            }
+            _ => {
+                let system = Chosen(&true_acceleration);
+                match Exact::new(self.model, dt) {
+                    Some(exact) => {
+                        self.beside(work, &follow, most, &|state| exact.step(&system, state, dt))
+                    }
+                    None => {
+                        let fine = dt / f64::from(FINER);
+                        let step = |state| {
+                            (0..FINER).fold(state, |state, _| SUZUKI4.step(&system, state, fine))
+                        };
+                        Ok(self.beside(work, &follow, most / WIDER, &step)? * WIDER)
+                    }
+                }
+            }
+        }
+    }
+
+    /// The distance from what is true, or the angle between the two in the end.
+    fn beside<S: Float>(
+        &self,
+        work: &Work<'_>,
+        follow: &Follow<'_, S, D>,
+        most: f64,
+        step: &dyn Fn(State<f64, D>) -> State<f64, D>,
+    ) -> Result<f64, AdviseError> {
+        let mut truth = self.start;
+        let mut size = self.size(&truth);
+        // The angle that the state is ahead, with all its turns: a whole turn is no agreement.
+        let mut ahead = 0.0_f64;
+        let lost = follow.largest(work, most, &mut |state| {
+            truth = step(truth);
+            size = size.max(self.size(&truth));
+            if self.of == Measure::Phase {
+                let share = self.size(state) / self.size(&truth);
+                let turn = self.angle(state, &truth) - ahead;
+                ahead += turn - TAU * (turn / TAU).round();
+                // What is twice as large or half has no phase to speak of, and what is far off does not come back.
+                let lost = !(0.5..2.0).contains(&share) || ahead.abs() > 4.0 * most + 2.0;
+                return if lost { f64::INFINITY } else { 0.0 };
+            }
+            self.size(&State {
+                q: core::array::from_fn(|i| state.q[i] - truth.q[i]),
+                v: core::array::from_fn(|i| state.v[i] - truth.v[i]),
+            }) / size
+        })?;
+        Ok(if self.of == Measure::Phase && lost == 0.0 { ahead.abs() } else { lost })
+    }
+
+    /// With velocities in units of lengths.
+    fn size(&self, state: &State<f64, D>) -> f64 {
+        let squares = |x: &[f64; D]| x.iter().map(|x| x * x).sum::<f64>();
+        (squares(&state.q) + squares(&state.v) / self.omega.powi(2)).sqrt()
+    }
+
+    /// The angle from one state to another in the plane of position and velocity.
+    fn angle(&self, a: &State<f64, D>, b: &State<f64, D>) -> f64 {
+        let (aq, av) = (a.q[0], a.v[0] / self.omega);
+        let (bq, bv) = (b.q[0], b.v[0] / self.omega);
+        (aq * bv - av * bq).atan2(aq * bq + av * bv)
+    }
+}
+
+impl<M: Model<D>, const D: usize> Trial for Free<M, D> {
+    fn lost(
+        &self,
+        work: &Work<'_>,
+        method: Method,
+        dt: f64,
+        most: f64,
+    ) -> Result<f64, AdviseError> {
+        self.lost_in::<f64>(work, method, dt, most)
+    }
+}
+
+/// A trajectory to be followed.
+struct Follow<'a, S, const D: usize> {
+    system: Chosen<'a, S, D>,
+    method: Method,
+    start: State<S, D>,
+    dt: S,
+    steps: u64,
+}
+
+impl<S: Float, const D: usize> Follow<'_, S, D> {
+    /// The largest of what is seen after each step, or the first that is more than `most`; infinite where the state is lost.
+    fn largest(
+        &self,
+        work: &Work<'_>,
+        most: f64,
+        see: &mut dyn FnMut(&State<f64, D>) -> f64,
+    ) -> Result<f64, AdviseError> {
+        let (mut state, mut largest) = (self.start, 0.0_f64);
+        let mut one = |step: u64| -> Result<ControlFlow<()>, AdviseError> {
+            if step.is_multiple_of(LOOK) {
+                work.check()?;
+            }
+            state = self.method.step(&self.system, state, self.dt);
+            let here = see(&state.map(S::to_f64));
+            largest = if here.is_finite() { largest.max(here) } else { f64::INFINITY };
+            Ok(match largest > most || largest.is_infinite() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            })
+        };
+        for step in 1..=self.steps {
+            if one(step)?.is_break() {
+                break;
+            }
+        }
+        Ok(largest)
+    }
+}

@@ -1,0 +1,292 @@
+//! The loop that is advised on: its controller, designed and as the linear map that it is.
+
+use libration::analysis::{CostError, Imperfections, LinearController, LqrError, NotLinear, Plant};
+use libration::control::controller::{Luenberger, Pid, PidGains, StateFeedback};
+use libration::control::{ControlError, Controller, Feedback, Latency, LqrWeights};
+use libration::{Float, Model, State, System};
+use libration_settings::units;
+use libration_settings::units::Units;
+
+use super::about::About;
+use super::control::{Control, Correction, Law, Regulator};
+use super::request::Request;
+
+/// A controller, chosen when the program runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum AnyController {
+    Feedback(StateFeedback<1>),
+    Pid(Pid<1>),
+    Observer(Luenberger<1>),
+}
+
+impl<T: Float> Controller<T, 1> for AnyController {
+    /// That of the one that remembers most.
+    type Memory = ([T; 1], ([T; 1], [T; 1]));
+
+    fn check(&self, period: f64) -> Result<(), ControlError> {
+        match self {
+            AnyController::Feedback(own) => Controller::<T, 1>::check(own, period),
+            AnyController::Pid(own) => Controller::<T, 1>::check(own, period),
+            AnyController::Observer(own) => Controller::<T, 1>::check(own, period),
+        }
+    }
+
+    fn start(&self, state: &State<T, 1>) -> Self::Memory {
+        let none = [T::zero()];
+        match self {
+            AnyController::Feedback(_) => (none, (none, none)),
+            AnyController::Pid(own) => own.start(state),
+            AnyController::Observer(own) => {
+                let (far, speed) = own.start(state);
+                (far, (speed, none))
+            }
+        }
+    }
+
+    fn command(&self, memory: &mut Self::Memory, observed: &State<T, 1>, period: T) -> [T; 1] {
+        match self {
+            AnyController::Feedback(own) => own.command(&mut [], observed, period),
+            AnyController::Pid(own) => own.command(memory, observed, period),
+            AnyController::Observer(own) => {
+                let mut estimated = (memory.0, memory.1.0);
+                let command = own.command(&mut estimated, observed, period);
+                (memory.0, memory.1.0) = estimated;
+                command
+            }
+        }
+    }
+}
+
+impl AnyController {
+    /// The linear map that it is at samples `period` seconds apart.
+    pub(super) fn linear(&self, period: f64) -> Result<LinearController, NotLinear> {
+        match self {
+            AnyController::Feedback(own) => LinearController::of(own, period),
+            AnyController::Pid(own) => LinearController::of(own, period),
+            AnyController::Observer(own) => LinearController::of(own, period),
+        }
+    }
+}
+
+/// A loop about its operating point.
+pub(super) struct Loop<M> {
+    pub(super) model: About<M, 1>,
+    pub(super) controller: AnyController,
+    pub(super) linear: LinearController,
+    pub(super) control: Control,
+    pub(super) weights: LqrWeights,
+    /// What a command of the request moves, in kg; all other numbers here are per unit of it.
+    mass: f64,
+    pub(super) units: Units,
+}
+
+/// Why a loop cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum LoopError {
+    /// There is no regulator.
+    #[error(transparent)]
+    Lqr(#[from] LqrError),
+    /// A controller has a number that cannot be.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// It is not linear where it is to be.
+    #[error(transparent)]
+    NotLinear(#[from] NotLinear),
+    /// The loop is too large, or a number of its timing cannot be.
+    #[error(transparent)]
+    Cost(#[from] CostError),
+    /// The limit of the command is too low.
+    #[error("a command of {held} {unit} holds the operating point, and the limit is {most} {unit}")]
+    Weak {
+        /// The limit.
+        most: f64,
+        /// The command that holds the operating point.
+        held: f64,
+        /// The unit of both.
+        unit: &'static str,
+    },
+    /// The latency cannot be.
+    #[error(
+        "the latency is {steps} periods of the loop; it must be at least 0 and at most {} periods",
+        Latency::MOST_STEPS
+    )]
+    Latency {
+        /// In periods.
+        steps: f64,
+    },
+}
+
+pub(super) const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
+
+impl<M: Model<1>> Loop<M> {
+    /// Designs what is to be designed.
+    pub(super) fn new(model: M, request: &Request, control: &Control) -> Result<Self, LoopError> {
+        let at = request.q[0];
+        let (mass, units) =
+            (request.actuation.mass(), units::of(request.system, request.actuation));
+        let model = About { model, at: [at] };
+        let plant = Plant::exact(model, ORIGIN, control.period);
+        let [held] = model.model.on::<f64>().acceleration(&State { q: [at], v: [0.0] });
+        let feedback = |gains: Feedback| AnyController::Feedback(StateFeedback::to_origin(gains));
+        let controller = match control.law.per_mass(mass) {
+            Law::Pd(gains) => feedback(gains),
+            Law::Pid(gains) => {
+                // The command that holds the operating point takes its part of what the motor can do.
+                let most = gains.most - held.abs();
+                if most <= 0.0 {
+                    let (most, held, unit) = (gains.most * mass, -held * mass, units.command);
+                    return Err(LoopError::Weak { most, held, unit });
+                }
+                AnyController::Pid(Pid::new(PidGains { most, ..gains })?)
+            }
+            Law::Lqr(weights) => feedback(plant.lqr(weights)?),
+            Law::Observer { feedback, correction } => {
+                let gains = match feedback {
+                    Regulator::Gains(gains) => gains,
+                    Regulator::Lqr(weights) => plant.lqr(weights)?,
+                };
+                let observer = match correction {
+                    Correction::Gains(correction) => plant.observer_with(correction),
+                    Correction::Kalman(noise) => plant.observer(noise)?,
+                };
+                AnyController::Observer(Luenberger::to_origin(gains, observer))
+            }
+        };
+        Controller::<f64, 1>::check(&controller, control.period)?;
+        let linear = controller.linear(control.period)?;
+        let weights = control.weights.map(|weights| weights.per_mass(mass));
+        let weights = weights.unwrap_or_else(|| plant.energy());
+        Ok(Loop { model, controller, linear, control: control.clone(), weights, mass, units })
+    }
+
+    /// This with all gains of its linear map times `factor`.
+    pub(super) fn amplified(&self, factor: f64) -> Self {
+        Loop { linear: self.linear.amplified(factor), control: self.control.clone(), ..*self }
+    }
+
+    /// This with another period and the same controller.
+    pub(super) fn sampled_every(&self, period: f64) -> Result<Self, NotLinear> {
+        let control = Control { period, ..self.control.clone() };
+        Ok(Loop { linear: self.controller.linear(period)?, control, ..*self })
+    }
+
+    /// The plant in exact steps of a period, linearised.
+    pub(super) fn plant(&self) -> Plant<'_> {
+        Plant::exact(self.model, ORIGIN, self.control.period)
+    }
+
+    /// What is wrong with it, as it is stated.
+    pub(super) fn stated(&self) -> Result<Imperfections, LoopError> {
+        self.scaled(1.0)
+    }
+
+    /// All of that, so many times as large.
+    pub(super) fn scaled(&self, share: f64) -> Result<Imperfections, LoopError> {
+        let Control { latency, period, jitter, skew, loss, .. } = self.control;
+        // Seconds are fewer periods of a slow clock, and more of a fast one.
+        let periods = share * latency / (period * (1.0 + share * skew));
+        Ok(Imperfections {
+            latency: self.latency(periods)?,
+            jitter: jitter.with_rms(share * jitter.rms()),
+            skew: share * skew,
+            loss: share * loss,
+        })
+    }
+
+    /// The steps of the record, their deviations stretched to another rms; none without a record, or without jitter. Those that
+    /// would be negative are of length zero, as those of a law are.
+    fn replayed(&self, rms: f64) -> Option<Vec<f64>> {
+        let record = self.control.record.as_ref().filter(|_| rms > 0.0)?;
+        let share = rms / self.control.jitter.rms();
+        Some(record.iter().map(|step| (1.0 + share * (step - 1.0)).max(0.0)).collect())
+    }
+
+    /// The rate at which second moments grow in a period: by the law of steps, or through the record.
+    pub(super) fn growth(&self, plant: &Plant<'_>, with: &Imperfections) -> Result<f64, CostError> {
+        match self.replayed(with.jitter.rms()) {
+            Some(steps) => plant.replayed_growth(&self.linear, with, &steps),
+            None => plant.mean_square_growth(&self.linear, with),
+        }
+    }
+
+    /// Whether they decay.
+    pub(super) fn decays(
+        &self,
+        plant: &Plant<'_>,
+        with: &Imperfections,
+    ) -> Result<bool, CostError> {
+        match self.replayed(with.jitter.rms()) {
+            Some(steps) => Ok(plant.replayed_growth(&self.linear, with, &steps)? < 0.0),
+            None => plant.mean_square_stable(&self.linear, with),
+        }
+    }
+
+    /// What the loop costs.
+    pub(super) fn cost(
+        &self,
+        plant: &Plant<'_>,
+        with: &Imperfections,
+        weights: LqrWeights,
+    ) -> Result<f64, CostError> {
+        match self.replayed(with.jitter.rms()) {
+            Some(steps) => plant.replayed_cost(&self.linear, with, &steps, weights),
+            None => plant.cost(&self.linear, with, weights),
+        }
+    }
+
+    /// The latency that is stated, of an even clock.
+    pub(super) fn late(&self) -> Result<Latency, LoopError> {
+        self.latency(self.control.latency / self.control.period)
+    }
+
+    /// A latency in periods.
+    pub(super) fn latency(&self, periods: f64) -> Result<Latency, LoopError> {
+        // As seconds are turned into steps everywhere.
+        let period = self.control.period;
+        Latency::of_seconds(periods * period, period).ok_or(LoopError::Latency { steps: periods })
+    }
+}
+
+impl<M> Loop<M> {
+    /// The gains of position and velocity, of a command that is an acceleration.
+    pub(super) fn gains(&self) -> Feedback {
+        match &self.controller {
+            AnyController::Feedback(own) => own.gains,
+            AnyController::Observer(own) => own.gains,
+            AnyController::Pid(_) => self.linear.gains(),
+        }
+    }
+
+    /// The gains of position and velocity, in the units of the request.
+    pub(super) fn given_gains(&self) -> Feedback {
+        match self.control.law {
+            Law::Pd(gains) => gains,
+            _ => self.gains().times_mass(self.mass),
+        }
+    }
+
+    /// Who commands, in words.
+    pub(super) fn told(&self) -> String {
+        let Feedback { position, velocity } = self.given_gains();
+        let Units { command, gains: [of_position, of_velocity, of_integral], .. } = self.units;
+        let gains = format!("K_p = {position:.6} {of_position}, K_d = {velocity:.6} {of_velocity}");
+        match (self.control.law, &self.controller) {
+            (Law::Pd(_), _) => format!("PD, {gains}"),
+            (Law::Lqr(_), _) => format!("LQR, designed: {gains}"),
+            (Law::Pid(g), _) => format!(
+                "PID, K_p = {} {of_position}, K_i = {} {of_integral}, K_d = {} {of_velocity}, filter {} s, limit {} {command}",
+                g.proportional, g.integral, g.derivative, g.filter, g.most
+            ),
+            (Law::Observer { feedback, correction }, AnyController::Observer(own)) => {
+                let [q, v] = own.observer.correction;
+                let designed = |is: bool| if is { ", designed" } else { "" };
+                format!(
+                    "feedback of an estimate{}: {gains}; observer{}: L = ({q:.6}, {v:.6} s⁻¹)",
+                    designed(matches!(feedback, Regulator::Lqr(_))),
+                    designed(matches!(correction, Correction::Kalman(_)))
+                )
+            }
+            (Law::Observer { .. }, _) => gains,
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Where a loop is stable, about where it stands.
+
+use libration::Model;
+use libration::analysis::Imperfections;
+use libration_report::figure::Grid;
+use libration_work::Work;
+
+use super::AdviseError;
+use super::loops::{Loop, LoopError};
+
+/// The growth of a loop over latencies and gains.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Map {
+    /// Over latencies in s, and factors of all gains: the logarithm of the growth in a period.
+    pub growth: Grid,
+    /// The latency that is stated, in s.
+    pub latency: f64,
+}
+
+/// Latencies and gains that are tried.
+const SIZE: [usize; 2] = [48, 32];
+
+/// Periods of latency that are drawn, unless more are stated.
+const MOST_PERIODS: f64 = 24.0;
+
+impl<M: Model<1>> Loop<M> {
+    /// From no latency to half as much again as the limit, and from a quarter of the gains to four times as much.
+    pub(super) fn map(&self, work: &Work<'_>, limit: Option<f64>) -> Result<Map, AdviseError> {
+        let period = self.control.period;
+        let stated = self.control.latency;
+        let reach = limit.unwrap_or(8.0 * period).max(1.2 * stated).max(0.5 * period);
+        let reach = (1.5 * reach).min(MOST_PERIODS * period).max(1.2 * stated);
+        // Long queues are costly: of those every second line is enough.
+        let coarser = if reach > 1.5 * MOST_PERIODS * period { 2 } else { 1 };
+        let [columns, rows] = SIZE.map(|size| size / coarser + 1);
+        let even = |i: usize, of: usize| i as f64 / (of - 1) as f64;
+        let x: Vec<f64> = (0..columns).map(|i| reach * even(i, columns)).collect();
+        let y: Vec<f64> = (0..rows).map(|i| 4.0_f64.powf(2.0 * even(i, rows) - 1.0)).collect();
+        let lines = work.sweep("the map of stability", &y, |&factor| {
+            let linear = self.linear.amplified(factor);
+            let plant = self.plant();
+            let at = |latency: &f64| -> Result<f64, LoopError> {
+                let latency = self.latency(latency / period)?;
+                let late = Imperfections { latency, ..Imperfections::NONE };
+                Ok(plant.mean_square_growth(&linear, &late)? / 2.0)
+            };
+            Ok::<_, AdviseError>(x.iter().map(at).collect::<Result<Vec<f64>, LoopError>>()?)
+        })?;
+        Ok(Map { growth: Grid { x, y, z: lines.concat() }, latency: stated })
+    }
+}

@@ -1,0 +1,226 @@
+//! The answer as a page.
+
+use libration_report::figure::{Axis, ColorMap, Colors, Dash, Figure, Ink, Mark, Marker, Panel};
+use libration_report::notation::number;
+use libration_report::page::Page;
+use libration_report::record::{Cell, Table};
+use libration_report::report;
+
+use super::answer::{Advice, LoopAdvice};
+use super::budget::Budget;
+use super::map::Map;
+
+/// All of it as HTML.
+pub fn page(advice: &Advice) -> String {
+    let mut page = Page { title: "What can be afforded".into(), ..Page::default() };
+    page.answer.clone_from(&advice.answer);
+    for warning in &advice.warnings {
+        page.note(format!("Mind: {warning}."));
+    }
+    if let Some(looped) = &advice.looped {
+        of_loop(&mut page, looped, advice.map.as_ref());
+    }
+    integrators(&mut page, advice);
+    let parameters: Vec<String> =
+        advice.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let place = if advice.looped.is_some() { "held at" } else { "from" };
+    let sub = format!(
+        "{} ({}), {place} q = {:?}, v = {:?} · {} ≤ {} · {} s · `libration advise`",
+        advice.system,
+        parameters.join(", "),
+        advice.q,
+        advice.v,
+        advice.tolerance.of,
+        number(advice.tolerance.most, 3),
+        number(advice.horizon, 4),
+    );
+    report::sheet(&page, &sub)
+}
+
+fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&Map>) {
+    page.heading("What the loop stands of each alone");
+    page.paragraph(format!(
+        "{}; a sample every {} s; a {} of {} {} holds the operating point. A limit is where the loop, in exact steps of a \
+         period, begins to grow (in the mean square where something is drawn), or where its cost is no longer tolerated.",
+        looped.controller,
+        number(looped.period, 4),
+        looped.command,
+        number(looped.held_command, 4),
+        looped.command_unit
+    ));
+    let columns =
+        ["imperfection", "stated", "stable up to", "tolerated up to", "used (%)", "unit", "how"];
+    let mut table = Table::new("budget", &columns);
+    for budget in &looped.budgets {
+        table.push(row(budget));
+    }
+    page.table(&table, 4);
+    page.paragraph(
+        "To see it again: the commands print the growth at the limit, which is zero there, or at the largest size that was tried.",
+    );
+    for budget in &looped.budgets {
+        page.paragraph(format!("`{}`", budget.command));
+    }
+    if let Some(map) = map {
+        page.figure(figure(map));
+    }
+    page.heading("All of it together");
+    let together = &looped.together;
+    let mut table = Table::new("together", &["what", "value", "how"]);
+    let mut line = |what: &str, value: Cell, how: &str| {
+        table.push([what.into(), value, how.into()]);
+    };
+    line(
+        "growth of second moments in a period",
+        Cell::rounded(together.growth.exp_m1(), 4),
+        "exact: E[M ⊗ M]",
+    );
+    let room =
+        together.room.map_or_else(|| Cell::absent("none found"), |room| Cell::rounded(room, 4));
+    line("all of it may become so many times as large", room, "exact, in proportion");
+    line(
+        "cost of the ideal loop",
+        Cell::rounded(together.ideal_cost, 6),
+        "exact: Lyapunov equation",
+    );
+    let infinite = || Cell::absent("infinite");
+    line(
+        "cost with all of it",
+        together.cost.map_or_else(infinite, |cost| Cell::rounded(cost, 6)),
+        "exact: Lyapunov equation of the jump system",
+    );
+    line(
+        "ΔJ/J₀",
+        together.cost_increase.map_or_else(infinite, |rise| Cell::rounded(rise, 4)),
+        "from these two",
+    );
+    if let Some(simulated) = &together.simulated {
+        line(
+            "cost of the simulation, noise held for a period, without commands",
+            Cell::rounded(simulated.cost, 6),
+            &format!(
+                "± {}, simulated: {} loops, {} periods",
+                number(simulated.error, 2),
+                simulated.loops,
+                simulated.periods
+            ),
+        );
+        line("what theory says of just that", Cell::rounded(simulated.predicted, 6), "exact");
+    }
+    if let Some(returns) = &together.returns {
+        line(
+            "returns from up to",
+            Cell::rounded(returns.up_to, 4),
+            &format!(
+                "simulated, up to {}: of {} starts {} off, {} return",
+                number(returns.tried_up_to, 3),
+                returns.of_asked[1],
+                number(returns.asked, 3),
+                returns.of_asked[0]
+            ),
+        );
+    }
+    page.table(&table, 4);
+}
+
+fn row(budget: &Budget) -> [Cell; 7] {
+    let beyond = format!("above {}", number(budget.tried_up_to, 3));
+    let limit = |limit: Option<f64>| limit.map_or_else(|| Cell::absent(beyond.clone()), Cell::from);
+    [
+        budget.kind.name().into(),
+        budget.stated.into(),
+        limit(budget.stable_up_to),
+        budget.tolerated_up_to.map_or_else(|| Cell::absent(""), limit),
+        match (budget.used, budget.regained) {
+            (_, Some(_)) => Cell::absent("regained"),
+            (Some(used), None) => Cell::rounded(100.0 * used, 3),
+            (None, None) => Cell::absent(""),
+        },
+        budget.unit.into(),
+        budget.how.into(),
+    ]
+}
+
+fn figure(map: &Map) -> Figure {
+    let grid = map.growth.clone();
+    // Strong colours for what is three times as strong as most.
+    let sizes = grid.z.iter().filter(|z| z.is_finite()).map(|z| z.abs());
+    let reach = (3.0 * sizes.sum::<f64>() / grid.z.len() as f64).clamp(1e-6, 1.0);
+    let mut shown = grid.clone();
+    shown.z.iter_mut().for_each(|z| *z = z.clamp(-reach, reach));
+    let colors = Colors::new("growth a period, ln ρ").map(ColorMap::Diverging).range(-reach, reach);
+    let last = grid.x.last().copied().unwrap_or(1.0);
+    let panel = Panel::new(
+        Axis::linear("latency of the command").unit("s").range(0.0, last),
+        Axis::log("gain of the command, times").range(0.25, 4.0),
+    )
+    .mark(Mark::raster(shown, colors))
+    .mark(Mark::contour(grid, [0.0]).ink(Ink::Theory).dash(Dash::Solid).label("edge of stability"))
+    .mark(
+        Mark::points([map.latency], [1.0])
+            .ink(Ink::Neutral)
+            .marker(Marker::Circle)
+            .radius(5.0)
+            .label("as stated"),
+    );
+    Figure::new("stability-map", "Where the loop is stable, and where it stands")
+        .caption("Blue decays, red grows; in exact steps of a period, without jitter and losses.")
+        .description(
+            "A map of the growth of the loop over latency and gain, with the operating point.",
+        )
+        .panel(panel)
+}
+
+fn integrators(page: &mut Page, advice: &Advice) {
+    if advice.integrators.is_empty() {
+        return;
+    }
+    page.heading("Integrator, step and float type");
+    if let Some(why) = &advice.runner_up {
+        page.paragraph(format!("Runner-up: {why}."));
+    }
+    if let Some(command) = &advice.command {
+        let what =
+            if advice.looped.is_some() { "To see all of it again" } else { "To take these steps" };
+        page.paragraph(format!("{what}: `{command}`"));
+    }
+    let columns = [
+        "integrator",
+        "largest step (s)",
+        "steps a period",
+        "lost",
+        "lost with the next longer",
+        "force evaluations a second",
+    ];
+    let mut table = Table::new("integrators", &columns);
+    let known = |x: Option<f64>, words: &str| x.map_or_else(|| Cell::absent(words), Cell::from);
+    for choice in &advice.integrators {
+        table.push([
+            choice.integrator.into(),
+            known(choice.dt, "none"),
+            choice.substeps.map_or_else(|| Cell::absent(""), Cell::from),
+            choice.lost.into(),
+            known(choice.lost_beyond, ""),
+            known(choice.evaluations, ""),
+        ]);
+    }
+    page.table(&table, 4);
+    if !advice.floats.is_empty() {
+        let mut table = Table::new("float types", &["float type", "lost", "tolerated"]);
+        for float in &advice.floats {
+            let meets = if float.meets { "yes" } else { "no" };
+            table.push([float.float.into(), float.lost.into(), meets.into()]);
+        }
+        page.table(&table, 4);
+    }
+    if let Some(throughput) = &advice.throughput {
+        page.paragraph(format!(
+            "On this machine one core takes {} such steps of the plant alone a second with {} trajectories at a time, measured now; a rollout of {} \
+             steps of each takes {} MB in `f32`.",
+            number(throughput.steps_a_second, 3),
+            throughput.trajectories,
+            throughput.steps,
+            number(throughput.bytes as f64 / 1e6, 4)
+        ));
+    }
+}

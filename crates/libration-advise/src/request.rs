@@ -1,0 +1,199 @@
+//! What is asked.
+
+use libration::AnySystem;
+use libration::catalog::Actuation;
+use libration::control::LqrWeights;
+use libration_settings::limits;
+
+use super::AdviseError;
+use super::control::Control;
+
+/// A plant, who controls it, what it may lose and what its surroundings are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// The system.
+    pub system: AnySystem,
+    /// The quantity of its commands, and so the units of gains and limits of commands.
+    pub actuation: Actuation,
+    /// Positions at the start; of a loop those of the operating point.
+    pub q: Vec<f64>,
+    /// Velocities at the start.
+    pub v: Vec<f64>,
+    /// The loop, if there is one.
+    pub control: Option<Control>,
+    /// What is tolerated.
+    pub tolerance: Tolerance,
+    /// For how long, in s.
+    pub horizon: f64,
+    /// What is to be rolled out: environments, and steps of each.
+    pub rollout: [usize; 2],
+    /// Whether a map of stability is wanted.
+    pub map: bool,
+    /// The command that asks this again, without where it writes and how.
+    pub asked_by: String,
+}
+
+/// What may be lost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Of what.
+    pub of: Measure,
+    /// How much of it.
+    pub most: f64,
+}
+
+/// What is measured of a simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// The largest relative error of the energy.
+    Energy,
+    /// The error of the phase in the end, in rad.
+    Phase,
+    /// The largest distance from the true trajectory, over its size.
+    Trajectory,
+    /// The rise of the stationary cost of a loop, `ΔJ/J₀`.
+    Cost,
+}
+
+impl Measure {
+    /// All of them.
+    pub const ALL: [Measure; 4] =
+        [Measure::Energy, Measure::Phase, Measure::Trajectory, Measure::Cost];
+
+    /// Its name in files and flags.
+    pub fn name(self) -> &'static str {
+        match self {
+            Measure::Energy => "energy",
+            Measure::Phase => "phase",
+            Measure::Trajectory => "trajectory",
+            Measure::Cost => "cost",
+        }
+    }
+
+    /// What it is.
+    pub fn title(self) -> &'static str {
+        match self {
+            Measure::Energy => "largest relative error of the energy",
+            Measure::Phase => "error of the phase in the end (rad)",
+            Measure::Trajectory => "largest distance from the true trajectory, over its size",
+            Measure::Cost => "rise of the cost, ΔJ/J₀",
+        }
+    }
+}
+
+impl Request {
+    /// The parameters of the system, as flags.
+    pub(super) fn parameters(&self) -> String {
+        let each = self.actuation.parameters(self.system).into_iter();
+        each.map(|(name, value)| format!(" --set {name}={value}")).collect()
+    }
+
+    /// The command that takes the steps that are advised, and says what they lose where that can be said.
+    pub(super) fn command(&self, integrator: &str, dt: f64, float: &str) -> String {
+        match (&self.control, self.tolerance.of) {
+            (None, Measure::Energy) => {
+                format!("libration analyze {}", self.steps(integrator, dt))
+            }
+            _ => self.simulation(integrator, dt, float),
+        }
+    }
+
+    /// The command that takes steps in a float type; of a loop the one that asks again.
+    pub(super) fn simulation(&self, integrator: &str, dt: f64, float: &str) -> String {
+        match &self.control {
+            Some(_) => format!("{} --json", self.asked_by),
+            None => {
+                let every = (self.horizon / dt).round().max(1.0);
+                let steps = self.steps(integrator, dt);
+                format!("libration simulate {steps} --every {every} --float {float}")
+            }
+        }
+    }
+
+    fn steps(&self, integrator: &str, dt: f64) -> String {
+        let list = |x: &[f64]| x.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        format!(
+            "--system {}{} --q {} --v {} --integrator {integrator} --dt {dt} --steps {}",
+            self.system.name(),
+            self.parameters(),
+            list(&self.q),
+            list(&self.v),
+            (self.horizon / dt).round().max(1.0)
+        )
+    }
+
+    /// Checks all numbers.
+    ///
+    /// # Errors
+    /// [`AdviseError::Value`](super::AdviseError::Value): the first that cannot be.
+    pub fn check(&self) -> Result<(), AdviseError> {
+        let ensure = |name, value: f64, allowed, holds: bool| match holds {
+            true => Ok(()),
+            false => Err(AdviseError::Value { name, value, allowed }),
+        };
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        let above = "a finite number above 0";
+        ensure("tolerance", self.tolerance.most, above, positive(self.tolerance.most))?;
+        let parameters = self.actuation.parameters(self.system);
+        if let Some((name, value)) = limits::beyond_theory(parameters) {
+            return Err(AdviseError::Parameter { system: self.system.name(), name, value });
+        }
+        let time = |x: f64| limits::SIZE.contains(&x);
+        let seconds = "from 1e-60 to 1e60 s";
+        ensure("asked.horizon", self.horizon, seconds, time(self.horizon))?;
+        for count in self.rollout {
+            ensure(
+                "asked.rollout",
+                count as f64,
+                "from 1 to 1e9",
+                (1..=1_000_000_000).contains(&count),
+            )?;
+        }
+        for &x in self.q.iter().chain(&self.v) {
+            ensure("start.q", x, "a finite number", x.is_finite())?;
+        }
+        let Some(control) = &self.control else { return Ok(()) };
+        let Control { period, latency, jitter, skew, loss, deviation, .. } = *control;
+        ensure("loop.period", period, seconds, time(period))?;
+        ensure(
+            "loop.latency",
+            latency,
+            "a finite number of at least 0",
+            (0.0..f64::INFINITY).contains(&latency),
+        )?;
+        if let Some(LqrWeights { position, velocity, command }) = control.weights {
+            let all = [position, velocity, command];
+            for weight in all {
+                ensure(
+                    "loop.cost",
+                    weight,
+                    "finite and at least 0",
+                    weight >= 0.0 && weight.is_finite(),
+                )?;
+            }
+            let none = all.iter().all(|weight| *weight == 0.0);
+            ensure("loop.cost", 0.0, "above 0 for one of the three", !none)?;
+        }
+        ensure(
+            "loop.jitter",
+            jitter.rms(),
+            "a relative rms from 0 to 1",
+            control.record.is_some() || (0.0..=1.0).contains(&jitter.rms()),
+        )?;
+        let near = control.record.is_none() || (-0.5..=1.0).contains(&skew);
+        let wanted = "time stamps a period apart, or at most twice and at least half of that";
+        ensure("loop.time_stamps", period * (1.0 + skew), wanted, near)?;
+        ensure("loop.skew", skew, "above -1 and below 8", skew > -1.0 && skew < 8.0)?;
+        ensure(
+            "loop.loss",
+            loss,
+            "a probability of at least 0 and below 1",
+            (0.0..1.0).contains(&loss),
+        )?;
+        ensure("loop.deviation", deviation, above, positive(deviation))?;
+        for &v in &self.v {
+            ensure("start.v", v, "0", v == 0.0)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,89 @@
+//! What rollouts of the system may be expected to take.
+
+use std::time::Instant;
+
+use libration::Method;
+use libration::ensemble::{BatchFloat, Execution};
+use libration::rl::Plan;
+use libration_work::Work;
+
+use super::AdviseError;
+use super::request::Request;
+
+/// What rollouts take on this machine.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Throughput {
+    /// Environments.
+    pub environments: usize,
+    /// Trajectories of which the speed was measured.
+    pub trajectories: usize,
+    /// Steps of each.
+    pub steps: usize,
+    /// Bytes of the tensors of a rollout in `f32`.
+    pub bytes: u128,
+    /// Steps of the chosen integrator that this machine takes in a second with so many trajectories in the chosen float type, on one core:
+    /// measured now.
+    pub steps_a_second: f64,
+    /// Seconds of simulated time that it goes through in a second, of all trajectories together.
+    pub simulated_a_second: f64,
+}
+
+/// Trajectories that are measured.
+const MOST: usize = 1 << 16;
+
+/// How long it is measured, in s.
+const LONG: f64 = 0.05;
+
+impl Throughput {
+    /// Measured with the integrator and the step that were chosen.
+    pub(super) fn measure(
+        work: &Work<'_>,
+        request: &Request,
+        method: Method,
+        dt: f64,
+        narrow: bool,
+    ) -> Result<Throughput, AdviseError> {
+        let [environments, steps] = request.rollout;
+        let speed = match narrow {
+            true => speed::<f32>(work, request, method, dt as f32)?,
+            false => speed::<f64>(work, request, method, dt)?,
+        };
+        let dimension = request.q.len();
+        let bytes =
+            Plan::new(steps, environments).bytes(2 * dimension, dimension, size_of::<f32>());
+        Ok(Throughput {
+            environments,
+            trajectories: environments.min(MOST),
+            steps,
+            bytes,
+            steps_a_second: speed,
+            simulated_a_second: speed * dt,
+        })
+    }
+}
+
+fn speed<T: BatchFloat>(
+    work: &Work<'_>,
+    request: &Request,
+    method: Method,
+    dt: T,
+) -> Result<f64, AdviseError> {
+    let Request { system, q, v, rollout: [count, _], .. } = request;
+    let count = (*count).clamp(1, MOST);
+    let start = |_: usize, i: usize| {
+        let coordinate = q.iter().chain(v).nth(i).copied().unwrap_or(0.0);
+        T::from_f64(coordinate)
+    };
+    let execution: Execution = work.serial()?;
+    let mut all = T::ensemble(*system, q.len(), count, execution, &start)?;
+    let mut steps = 16;
+    loop {
+        let begun = Instant::now();
+        all.advance(method, dt, steps);
+        let seconds = begun.elapsed().as_secs_f64();
+        if seconds > LONG || steps > 1 << 30 {
+            return Ok(count as f64 * steps as f64 / seconds);
+        }
+        steps *= 2;
+    }
+}

@@ -1,0 +1,10 @@
+//! Budgets of loops and simulations.
+
+#![allow(clippy::unwrap_used)]
+
+mod budgets;
+mod case;
+mod edges;
+mod page;
+mod requests;
+mod steps;

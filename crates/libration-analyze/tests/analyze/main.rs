@@ -1,0 +1,11 @@
+//! Analyses and trajectories of systems that are chosen at run time.
+
+#![allow(clippy::unwrap_used)]
+
+mod analyze;
+mod export;
+mod loop_growth;
+mod overflow;
+mod reference;
+mod stability_windows;
+mod trajectory;

@@ -1,0 +1,79 @@
+//! The time steps at which a damped oscillator is stable, beside a NumPy program that scans for them.
+
+use libration::{AnySystem, Method};
+use libration_analyze::analyze::{Request, analyze};
+use serde_json::Value;
+
+use super::analyze::request;
+
+#[test]
+fn windows_of_damped_oscillators_are_those_that_numpy_finds() {
+    let reference: Value = serde_json::from_str(include_str!("../reference/windows.json")).unwrap();
+    let horizon = reference["horizon"].as_f64().unwrap();
+    for case in reference["cases"].as_array().unwrap() {
+        let number = |key: &str| case[key].as_f64().unwrap();
+        let (omega2, gamma) = (number("omega2"), number("gamma"));
+        let system =
+            AnySystem::build("damped-oscillator", &[("omega2", omega2), ("gamma", gamma)]).unwrap();
+        let method = Method::from_name(case["integrator"].as_str().unwrap()).unwrap();
+        let asked =
+            Request { system, ..request("damped-oscillator", method, 0.01, &[1.0], &[0.0]) };
+        let found = analyze(&asked).unwrap().stability_windows.unwrap();
+        let number = |end: &Option<f64>| end.unwrap();
+        // Up to where the program looked.
+        let found: Vec<[f64; 2]> =
+            found.iter().map(|window| window.each_ref().map(number)).collect();
+        let found: Vec<_> =
+            found.into_iter().filter(|[from, _]| *from < horizon / omega2.sqrt()).collect();
+        let wanted = case["windows"].as_array().unwrap();
+        assert_eq!(found.len(), wanted.len(), "{found:?} {case}");
+        for (found, wanted) in
+            found.iter().flatten().zip(wanted.iter().flat_map(|w| w.as_array().unwrap()))
+        {
+            let wanted = wanted.as_f64().unwrap();
+            // A part of 10⁻⁹ of the step changes the radius by 10⁻¹² or more, and LAPACK's is right to 2·10⁻¹⁴: the program
+            // asserts the one, and rounding of entries below 30 is the other.
+            assert!((found - wanted).abs() <= 2e-11 * wanted, "{found} {wanted} {case}");
+        }
+    }
+}
+
+#[test]
+fn windows_are_known_for_any_damping_that_is_not_extreme() {
+    for (omega2, gamma) in
+        [(10.0, 1e-12), (1e-9, 0.3), (7.1e8, 0.123), (std::f64::consts::PI, 0.1), (0.1, 1e5)]
+    {
+        let system =
+            AnySystem::build("damped-oscillator", &[("omega2", omega2), ("gamma", gamma)]).unwrap();
+        let asked = Request {
+            system,
+            ..request("damped-oscillator", Method::Suzuki4, 1e-7, &[1.0], &[0.0])
+        };
+        assert!(analyze(&asked).unwrap().stability_windows.is_some(), "{omega2} {gamma}");
+    }
+}
+
+#[test]
+fn textbook_verlet_is_said_to_be_another_method_where_forces_depend_on_velocities() {
+    let note = |system: &str, parameters: &[(&str, f64)], method| {
+        let system = AnySystem::build(system, parameters).unwrap();
+        let (q, v) = if system.name() == "driven-oscillator" {
+            (&[1.0, 0.0][..], &[0.0, 1.0][..])
+        } else {
+            (&[1.0][..], &[0.0][..])
+        };
+        analyze(&Request { system, ..request(system.name(), method, 0.01, q, v) })
+            .unwrap()
+            .about
+            .note
+    };
+    for system in ["damped-oscillator", "driven-oscillator"] {
+        let told = note(system, &[], Method::TextbookVerlet).unwrap();
+        assert!(told.contains("another method"), "{told}");
+        let told = note(system, &[], Method::VelocityVerlet).unwrap_or_default();
+        assert!(!told.contains("another method"), "{told}");
+        let told = note(system, &[("gamma", 0.0)], Method::TextbookVerlet).unwrap_or_default();
+        assert!(!told.contains("another method"), "{told}");
+    }
+    assert_eq!(note("oscillator", &[], Method::TextbookVerlet), None);
+}

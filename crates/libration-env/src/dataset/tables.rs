@@ -1,0 +1,212 @@
+//! The tables of a file of settings.
+
+use std::collections::BTreeMap;
+
+use libration_settings::{Count, Number};
+use serde::Deserialize;
+
+/// Settings as they stand in a file.
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct File {
+    pub(super) seed: Count,
+    pub(super) float: String,
+    pub(super) environments: Count,
+    pub(super) steps: Count,
+    pub(super) integrator: String,
+    pub(super) dt: Number,
+    pub(super) substeps: Count,
+    pub(super) limit: Count,
+    pub(super) chunk: ChunkTable,
+    pub(super) system: BTreeMap<String, BTreeMap<String, Number>>,
+    pub(super) task: TaskTable,
+    pub(super) start: StartTable,
+    pub(super) delays: DelaysTable,
+    pub(super) noise: NoiseTable,
+    pub(super) policy: PolicyTable,
+}
+
+/// A piece of the data set.
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct ChunkTable {
+    pub(super) environments: Count,
+    pub(super) steps: Count,
+}
+
+/// What is seen, paid, and over.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum TaskTable {
+    Regulate(RegulateTable),
+    SwingUp(SwingUpTable),
+    Track(TrackTable),
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct RegulateTable {
+    pub(super) position: Number,
+    pub(super) velocity: Number,
+    pub(super) effort: Number,
+    pub(super) bound: Number,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct SwingUpTable {
+    pub(super) velocity: Number,
+    pub(super) effort: Number,
+}
+
+/// To follow a sine.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct TrackTable {
+    pub(super) amplitude: Number,
+    pub(super) angular_frequency: Number,
+    pub(super) phase: Number,
+    pub(super) position: Number,
+    pub(super) velocity: Number,
+    pub(super) effort: Number,
+    pub(super) bound: Number,
+}
+
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct StartTable {
+    pub(super) q: [Number; 2],
+    pub(super) v: [Number; 2],
+}
+
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct DelaysTable {
+    pub(super) observation: [Count; 2],
+    pub(super) action: [Count; 2],
+}
+
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct NoiseTable {
+    pub(super) jitter: Number,
+    pub(super) skew: Number,
+    pub(super) observation: Number,
+}
+
+/// Who acts.
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum PolicyTable {
+    Linear(LinearTable),
+    Random(RandomTable),
+    Constant(ConstantTable),
+}
+
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct LinearTable {
+    pub(super) weights: Vec<Number>,
+    pub(super) bias: Number,
+}
+
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct RandomTable {
+    pub(super) low: Number,
+    pub(super) high: Number,
+}
+
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct ConstantTable {
+    pub(super) action: Number,
+}
+
+impl Default for File {
+    fn default() -> Self {
+        let parameters = [("m", 1.0), ("k", 10.0)];
+        let parameters = parameters.map(|(name, value)| (name.to_owned(), Number(value)));
+        File {
+            seed: Count(0),
+            float: "f32".into(),
+            environments: Count(4096),
+            steps: Count(1024),
+            integrator: "symplectic-euler".into(),
+            dt: Number(0.01),
+            substeps: Count(1),
+            limit: Count(0),
+            chunk: ChunkTable::default(),
+            system: [("oscillator".to_owned(), parameters.into())].into(),
+            task: TaskTable::Regulate(RegulateTable::default()),
+            start: StartTable::default(),
+            delays: DelaysTable::default(),
+            noise: NoiseTable::default(),
+            policy: PolicyTable::Linear(LinearTable::default()),
+        }
+    }
+}
+
+impl Default for ChunkTable {
+    fn default() -> Self {
+        ChunkTable { environments: Count(4096), steps: Count(1024) }
+    }
+}
+
+impl Default for RegulateTable {
+    fn default() -> Self {
+        let [position, velocity, effort, bound] = [1.0, 0.1, 0.0, 10.0].map(Number);
+        RegulateTable { position, velocity, effort, bound }
+    }
+}
+
+impl Default for SwingUpTable {
+    fn default() -> Self {
+        SwingUpTable { velocity: Number(0.1), effort: Number(0.001) }
+    }
+}
+
+impl Default for TrackTable {
+    fn default() -> Self {
+        let RegulateTable { position, velocity, effort, bound } = RegulateTable::default();
+        let [amplitude, angular_frequency, phase] = [1.0, 1.0, 0.0].map(Number);
+        TrackTable { amplitude, angular_frequency, phase, position, velocity, effort, bound }
+    }
+}
+
+impl Default for StartTable {
+    fn default() -> Self {
+        StartTable { q: [Number(1.0); 2], v: [Number(0.0); 2] }
+    }
+}
+
+impl Default for DelaysTable {
+    fn default() -> Self {
+        DelaysTable { observation: [Count(0); 2], action: [Count(0); 2] }
+    }
+}
+
+impl Default for NoiseTable {
+    fn default() -> Self {
+        let [jitter, skew, observation] = [0.0; 3].map(Number);
+        NoiseTable { jitter, skew, observation }
+    }
+}
+
+impl Default for LinearTable {
+    fn default() -> Self {
+        LinearTable { weights: [-2.0, 0.0].map(Number).to_vec(), bias: Number(0.0) }
+    }
+}
+
+impl Default for RandomTable {
+    fn default() -> Self {
+        RandomTable { low: Number(-1.0), high: Number(1.0) }
+    }
+}
+
+impl Default for ConstantTable {
+    fn default() -> Self {
+        ConstantTable { action: Number(0.0) }
+    }
+}

@@ -1,0 +1,136 @@
+//! Data sets beside the engine that they come from.
+
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use libration::State;
+use libration::ensemble::{All, Execution};
+use libration::integrator::VelocityVerlet;
+use libration::rl::policy::Linear;
+use libration::rl::start::Between;
+use libration::rl::task::SwingUp;
+use libration::rl::{Environment, Environments, Plan, Rollout};
+use libration::system::Pendulum;
+use libration_env::dataset::{Check, DataFormat, Dataset, Job, Watch, check, parse, write};
+
+const SETTINGS: &str = "\
+seed = 3
+environments = 100
+steps = 75
+limit = 40
+integrator = \"velocity-verlet\"
+dt = 0.05
+[chunk]
+environments = 64
+steps = 30
+[system.pendulum]
+omega2 = 4.0
+[task.swing-up]
+velocity = 0.2
+effort = 0.01
+[start]
+q = [-0.5, 0.5]
+[policy.linear]
+weights = [1.0, 0.5, -0.25]
+bias = 0.125
+";
+
+/// Counts what is done.
+#[derive(Default)]
+struct Count(AtomicU64, AtomicU64);
+
+impl Watch for Count {
+    fn done(&self, transitions: u64, bytes: u64) {
+        self.0.fetch_add(transitions, Ordering::Relaxed);
+        self.1.fetch_add(bytes, Ordering::Relaxed);
+    }
+}
+
+/// The numbers of an array of floats.
+fn floats(path: &Path) -> Vec<f32> {
+    let bytes = fs::read(path).unwrap();
+    let header = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+    let (numbers, rest) = bytes[header..].as_chunks();
+    assert!(rest.is_empty());
+    numbers.iter().map(|&four| f32::from_le_bytes(four)).collect()
+}
+
+#[test]
+fn a_data_set_holds_the_bits_of_the_environments_of_the_engine() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("set");
+    let dataset = parse(SETTINGS, "set.toml").unwrap();
+    assert_eq!((dataset.len(), dataset.share([1, 2]), dataset.share([2, 2])), (7500, 4800, 2700));
+    let job = Job {
+        dataset: &dataset,
+        format: DataFormat::Npy,
+        shard: [1, 1],
+        out: &out,
+        resume: false,
+        execution: Execution::serial(),
+    };
+    let count = Count::default();
+    let manifest = write(&job, &count).unwrap();
+    assert_eq!(count.0.into_inner(), 7500);
+    let bytes: u64 = manifest.chunks.iter().flat_map(|c| &c.files).map(|file| file.bytes).sum();
+    assert_eq!(count.1.into_inner(), bytes);
+
+    let task = SwingUp { velocity: 0.2, effort: 0.01 };
+    let start = Between(State { q: [-0.5], v: [0.0] }, State { q: [0.5], v: [0.0] });
+    let pendulum = All(Pendulum { omega2: 4.0_f32 });
+    let world = Environment::new(pendulum, VelocityVerlet, 0.05, task, start).limit(40);
+    let mut all = Environments::<f32, _, 3, 1>::new(world, 100, 3, Execution::serial()).unwrap();
+    let mut rollout = Rollout::new(Plan::new(75, 100).truncated()).unwrap();
+    let policy = Linear { weights: [[1.0, 0.5, -0.25]], bias: [0.125] };
+    all.rollout(policy, &mut rollout).unwrap();
+    for (group, first, len) in [(0, 0, 64), (1, 64, 36)] {
+        for (chunk, from, steps) in [(0, 0, 30), (1, 30, 30), (2, 60, 15)] {
+            let file =
+                |folder: &str| floats(&out.join(format!("{folder}/{group:06}-{chunk:08}.npy")));
+            let (seen, done, paid) = (file("observation"), file("action"), file("reward"));
+            assert_eq!(
+                [seen.len(), done.len(), paid.len()],
+                [3 * steps * len, steps * len, steps * len]
+            );
+            for at in 0..steps * len {
+                let (t, n) = (from + at / len, first + at % len);
+                assert_eq!(seen[3 * at..][..3], rollout.seen(t, n));
+                assert_eq!(
+                    (done[at], paid[at]),
+                    (rollout.done(t, n)[0], rollout.reward()[t * 100 + n])
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn settings_are_read_back_from_a_manifest_whatever_they_are() {
+    for text in [
+        "",
+        SETTINGS,
+        "float = \"f64\"\nenvironments = 3\nsteps = 5\n[task.regulate]\nbound = inf\n[policy.constant]\naction = -1",
+        "environments = 3\nsteps = 5\n[system.duffing]\n[task.track]\nphase = 0.1\n[policy.random]\n[noise]\nskew = 0.1",
+    ] {
+        let dir = tempfile::tempdir().unwrap();
+        let out = dir.path().join("set");
+        let dataset = parse(text, "set.toml").unwrap();
+        let dataset = if text.is_empty() { dataset.transitions(4096).unwrap() } else { dataset };
+        let job = Job {
+            dataset: &dataset,
+            format: DataFormat::Parquet,
+            shard: [1, 1],
+            out: &out,
+            resume: false,
+            execution: Execution::serial(),
+        };
+        write(&job, &Count::default()).unwrap();
+        let again = Execution::serial().threads(3).unwrap();
+        let count = Count::default();
+        let (_, flaws) = check(&out, Check { replay: Some(&again), repair: None }, &count).unwrap();
+        assert_eq!(flaws, [], "{text}");
+        assert_eq!(u128::from(count.0.into_inner()), dataset.len());
+    }
+    assert_eq!(Dataset::default().len(), 4096 * 1024);
+}

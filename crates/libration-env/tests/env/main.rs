@@ -1,0 +1,5 @@
+//! Data sets of rollouts.
+
+#![allow(clippy::unwrap_used)]
+
+mod dataset;

@@ -1,0 +1,10 @@
+//! Records of findings, figures, pages, and the HTML report. Nothing here knows physics.
+
+pub mod figure;
+pub mod notation;
+pub mod page;
+pub mod record;
+pub mod report;
+pub mod text;
+
+pub use record::Record;

@@ -1,0 +1,116 @@
+//! From what is wrong to the characters that say it.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue, Error};
+
+use super::{Fault, SettingsError, names};
+
+/// A TOML file whose syntax is right, and which knows where everything stands.
+pub struct Document<'a> {
+    file: &'a str,
+    text: &'a str,
+    table: Spanned<DeTable<'a>>,
+}
+
+impl<'a> Document<'a> {
+    /// Reads `text`.
+    pub fn parse(text: &'a str, file: &'a str) -> Result<Self, SettingsError> {
+        match DeTable::parse(text) {
+            Ok(table) => Ok(Document { file, text, table }),
+            Err(error) => {
+                let span = error.span().unwrap_or_default();
+                Err(SettingsError::new(file, text, span, error.message(), None))
+            }
+        }
+    }
+
+    /// Checks that each key at the root is one of `known`.
+    ///
+    /// # Errors
+    /// The first that is not.
+    pub fn check_keys(&self, known: &[&str]) -> Result<(), SettingsError> {
+        let unknown = |key: &&Spanned<_>| !known.contains(&AsRef::<str>::as_ref(key.get_ref()));
+        match self.table.get_ref().keys().filter(unknown).min_by_key(|key| key.span().start) {
+            None => Ok(()),
+            Some(key) => {
+                let help = names::suggest("keys", key.get_ref(), known.iter().copied());
+                let message = format!("unknown key `{}`", key.get_ref());
+                Err(SettingsError::new(self.file, self.text, key.span(), message, Some(help)))
+            }
+        }
+    }
+
+    /// The error of a value that is not allowed.
+    pub fn locate(&self, fault: Fault) -> SettingsError {
+        let span = self.find(fault.key, fault.index);
+        SettingsError::new(self.file, self.text, span, fault.message, fault.help)
+    }
+
+    /// The error of a key that does not exist or a value of the wrong type.
+    pub fn explain(&self, error: &Error) -> SettingsError {
+        let span = error.span().unwrap_or_default();
+        let message = error.message();
+        let (message, help) = match unknown_key(message) {
+            Some((key, known)) => {
+                let known = known.iter().copied();
+                (format!("unknown key `{key}`"), Some(names::suggest("keys", key, known)))
+            }
+            None => match key_around(self.table.get_ref(), &span) {
+                Some(key) => (format!("`{key}`: {message}"), None),
+                None => (message.to_owned(), None),
+            },
+        };
+        SettingsError::new(self.file, self.text, span, message, help)
+    }
+
+    /// Where the value of `key` stands; if it is a default, then the first value that stands in
+    /// its table, or else the table.
+    fn find(&self, key: &str, index: Option<usize>) -> Range<usize> {
+        let mut table = self.table.get_ref();
+        let mut span = 0..0;
+        for part in key.split('.') {
+            let Some((name, value)) = table.iter().find(|(name, _)| name.get_ref() == part) else {
+                return table.values().next().map_or(span, Spanned::span);
+            };
+            match value.get_ref() {
+                DeValue::Table(inner) => {
+                    span = name.span();
+                    table = inner;
+                }
+                DeValue::Array(items) => {
+                    let item = index.and_then(|i| items.get(i));
+                    return item.map_or(value.span(), Spanned::span);
+                }
+                _ => return value.span(),
+            }
+        }
+        span
+    }
+}
+
+/// The unknown key, and those that there are, in the words of serde.
+fn unknown_key(message: &str) -> Option<(&str, Vec<&str>)> {
+    let words = message.strip_prefix("unknown field `")?;
+    let (key, rest) = words.split_once("`, expected ")?;
+    // Every second piece stands between backquotes.
+    Some((key, rest.split('`').skip(1).step_by(2).collect()))
+}
+
+/// The dotted key of the innermost value that `span` lies in.
+fn key_around(table: &DeTable<'_>, span: &Range<usize>) -> Option<String> {
+    let around = |value: &Spanned<DeValue<'_>>| {
+        value.span().start <= span.start && span.end <= value.span().end
+    };
+    table.iter().find_map(|(key, value)| {
+        let inner = match value.get_ref() {
+            DeValue::Table(inner) => key_around(inner, span),
+            _ => None,
+        };
+        match inner {
+            Some(inner) => Some(format!("{}.{inner}", key.get_ref())),
+            None => around(value).then(|| key.get_ref().to_string()),
+        }
+    })
+}

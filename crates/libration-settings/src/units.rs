@@ -1,0 +1,56 @@
+//! Units of coordinates, commands and gains.
+
+use libration::AnySystem;
+use libration::catalog::Actuation;
+
+/// Units of a system's coordinates, of its commands, and of the gains of controllers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Units {
+    /// Of time.
+    pub time: &'static str,
+    /// Of positions.
+    pub position: &'static str,
+    /// Of velocities.
+    pub velocity: &'static str,
+    /// Of the energy per unit mass.
+    pub energy: &'static str,
+    /// Of commands.
+    pub command: &'static str,
+    /// Of the gains of position, velocity and the integral of the position.
+    pub gains: [&'static str; 3],
+}
+
+/// The units of `system` where commands are `actuation`.
+pub fn of(system: AnySystem, actuation: Actuation) -> Units {
+    let (position, velocity, energy, acceleration) = match system {
+        AnySystem::Oscillator(_)
+        | AnySystem::DampedOscillator(_)
+        | AnySystem::DrivenOscillator(_)
+        | AnySystem::Duffing(_)
+        | AnySystem::Kepler(_) => ("m", "m/s", "J/kg", "m/s²"),
+        AnySystem::Pendulum(_) => ("rad", "rad/s", "rad^2 s^-2", "rad/s²"),
+        AnySystem::HenonHeiles(_) => ("1", "1", "1", "1"),
+    };
+    let time = if matches!(system, AnySystem::HenonHeiles(_)) { "1" } else { "s" };
+    let (command, gains) = match actuation {
+        Actuation::Force { .. } => ("N", ["N/m", "N·s/m", "N/(m·s)"]),
+        Actuation::Acceleration if time == "1" => ("1", ["1"; 3]),
+        Actuation::Acceleration => (acceleration, ["s⁻²", "s⁻¹", "s⁻³"]),
+    };
+    Units { time, position, velocity, energy, command, gains }
+}
+
+/// Units of `step`, `t`, the positions, the velocities and the energy per mass.
+pub fn of_columns(system: AnySystem, dimension: usize) -> Vec<&'static str> {
+    let Units { time, position, velocity, energy, .. } = of(system, Actuation::Acceleration);
+    let mut units = vec!["1", time];
+    units.extend(std::iter::repeat_n(position, dimension));
+    units.extend(std::iter::repeat_n(velocity, dimension));
+    units.push(energy);
+    if matches!(system, AnySystem::DrivenOscillator(_)) && dimension == 2 {
+        // Its second coordinate is time.
+        units[3] = "s";
+        units[5] = "1";
+    }
+    units
+}

@@ -1,0 +1,161 @@
+//! Fused steps on one core, beside independent arithmetic in the same proportion.
+
+use std::hint::black_box;
+
+use libration::analysis::{DataFlow, Operation};
+use libration::ensemble::{Execution, InstructionSet};
+use libration::system::Oscillator;
+use libration::{Method, with_method};
+use libration_report::record::{Record, Table};
+use libration_study::StudyError;
+
+use crate::bench::{Bench, BenchFloat, Contestant, Mix, Rates, stepping, widths, with_float};
+use crate::desk::{Desk, judge};
+
+/// Trajectories whose states stay in a cache of the core, in whole blocks of most widths.
+pub(super) const RESIDENT: usize = 49_920;
+
+/// Steps of a pass: enough that loading a block costs nothing.
+pub(super) const STEPS: u64 = 200;
+
+/// Rounds of a loop between two looks at the clock.
+const ROUNDS: u64 = 10_000;
+
+/// Share of independent arithmetic that a method is to reach, where 32 registers hold a block.
+fn bar(method: Method, set: InstructionSet) -> Option<f64> {
+    match method {
+        _ if set.registers() < 32 => None,
+        Method::SymplecticEuler => Some(0.85),
+        Method::VelocityVerlet | Method::Rk4 => Some(0.75),
+        _ => None,
+    }
+}
+
+/// What a step of a method needs, and the loop that does as much with independent operands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Peak {
+    mix: Mix,
+    /// Lanes at which that loop is fastest.
+    width: usize,
+    /// Operations of a step.
+    operations: usize,
+}
+
+/// The peak for steps of `flow` on floats of type `T`: the fastest of all widths.
+pub(super) fn peak<T: Bench>(desk: &Desk<'_>, flow: &DataFlow) -> Result<Peak, StudyError> {
+    let (set, mix) = (desk.set(), Mix::of(flow));
+    let operations = arithmetic(flow);
+    let offered: Vec<usize> = widths::<T>(set).collect();
+    let peaks = offered.iter().map(|&width| Peak { mix, width, operations });
+    let peaks: Vec<Peak> = peaks.collect();
+    let mut contestants: Vec<_> = peaks.iter().map(|peak| peak.contestant::<T>(set)).collect();
+    let rates = desk.look_at(&mut contestants)?;
+    let fastest = rates.iter().zip(peaks).max_by(|a, b| a.0.median().total_cmp(&b.0.median()));
+    let (_, peak) = fastest.ok_or(StudyError::Exact("no loop fits the registers".into()))?;
+    Ok(peak)
+}
+
+impl Peak {
+    /// The same for steps of so many operations more.
+    pub(super) fn with(self, operations: usize) -> Self {
+        Peak { operations: self.operations + operations, ..self }
+    }
+
+    /// Steps a second that this arithmetic amounts to.
+    pub(super) fn contestant<T: Bench>(self, set: InstructionSet) -> Contestant<'static> {
+        Contestant::new(self.work(), move |times| {
+            black_box(self.mix.run::<T>(set, self.width, times * ROUNDS));
+        })
+    }
+
+    /// The same on all threads of `execution` at once.
+    pub(super) fn on_threads<T: Bench>(self, execution: &Execution) -> Contestant<'static> {
+        let execution = execution.clone();
+        let (set, threads) = (execution.instruction_set(), execution.thread_count());
+        Contestant::new(self.work() * threads as f64, move |times| {
+            execution.each(vec![(); threads], |()| {
+                black_box(self.mix.run::<T>(set, self.width, times * ROUNDS));
+            });
+        })
+    }
+
+    /// Steps in `ROUNDS` rounds.
+    fn work(self) -> f64 {
+        let operations = ROUNDS as usize * self.width * self.mix.operations();
+        operations as f64 / self.operations as f64
+    }
+
+    /// Operations of a step.
+    pub(super) fn operations(self) -> usize {
+        self.operations
+    }
+}
+
+/// Races every method against its peak, and leaves the rates of the peaks in a table.
+pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
+    let mut table = Table::new(
+        "fused steps",
+        &[
+            "integrator",
+            "float",
+            "× and + a step",
+            "fused (10⁹ steps/s)",
+            "independent arithmetic (10⁹ steps/s)",
+            "share",
+            "spread",
+        ],
+    );
+    for &method in &desk.lab.config.integrators {
+        for float in BenchFloat::ALL {
+            let (peak, rates) = with_float!(float, T => against_peak::<T>(desk, method))?;
+            let [fused, arithmetic] = &rates;
+            let share = fused.over(arithmetic);
+            let name = float.name();
+            judge(
+                record,
+                format!("throughput.{}.{name}", method.name()),
+                format!(
+                    "{}, {name}, one core: steps a second, all of a pass fused, over those that \
+                     independent multiplications and additions amount to",
+                    method.title()
+                ),
+                bar(method, desk.set()),
+                &share,
+            );
+            table.push([
+                method.title().into(),
+                name.into(),
+                (peak.operations() as u64).into(),
+                (fused.median() / 1e9).into(),
+                (arithmetic.median() / 1e9).into(),
+                share.median().into(),
+                share.spread().into(),
+            ]);
+        }
+    }
+    record.tables.push(table);
+    Ok(())
+}
+
+/// Multiplications and additions.
+pub(super) fn arithmetic(flow: &DataFlow) -> usize {
+    [Operation::Multiplication, Operation::Addition].map(|op| flow.count(op)).iter().sum()
+}
+
+/// The operations of a step of `method` on an oscillator.
+pub(super) fn flow(desk: &Desk<'_>, method: Method) -> DataFlow {
+    let task = desk.task(1);
+    let system = Oscillator { omega2: task.omega2 };
+    with_method!(method, |m| DataFlow::of_step::<_, 1>(m, &system, task.dt))
+}
+
+/// The peak of a method, and its rates: fused steps, and the peak.
+fn against_peak<T: Bench>(
+    desk: &Desk<'_>,
+    method: Method,
+) -> Result<(Peak, [Rates; 2]), StudyError> {
+    let peak = peak::<T>(desk, &flow(desk, method))?;
+    let fused = stepping::<T>(method, desk.task(RESIDENT), STEPS, &desk.serial)?;
+    let rates = desk.race([fused, peak.contestant::<T>(desk.set())])?;
+    Ok((peak, rates))
+}

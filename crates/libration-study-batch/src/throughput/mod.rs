@@ -1,0 +1,89 @@
+//! What this machine can do: how fast many trajectories advance, and what limits them.
+
+mod bandwidth;
+mod claims;
+mod comparison;
+mod faults;
+mod figures;
+mod fused;
+mod latency;
+mod machine;
+mod one_step;
+mod peers;
+mod perturbed;
+mod regime;
+mod render;
+mod roofline;
+mod scaling;
+mod settings;
+mod sine;
+mod threads;
+mod tried;
+
+use libration_study::Tried;
+
+pub use self::settings::ThroughputSettings;
+use self::tried::TRIED;
+use libration_report::Record;
+use libration_report::page::Page;
+use libration_report::record::RecordError;
+use libration_study::{Lab, Section, Study, StudyError};
+
+use crate::desk::Desk;
+
+pub use scaling::{Rate, Wanted, ladder};
+
+/// The study `throughput`.
+#[derive(Clone, Copy, Debug)]
+pub struct Throughput;
+
+impl Study for Throughput {
+    fn name(&self) -> &'static str {
+        "throughput"
+    }
+
+    fn question(&self) -> &'static str {
+        "How fast do many trajectories advance on this machine, and what limits them?"
+    }
+
+    fn tries(&self) -> &'static [Tried] {
+        TRIED
+    }
+
+    fn settings(&self) -> Option<Section> {
+        Some(Section::of::<ThroughputSettings>())
+    }
+
+    fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
+        let desk = Desk::new(lab)?;
+        let mut record = Record::new(self.name(), self.question());
+        let parts: [(&str, Part); 11] = [
+            ("fused steps against independent arithmetic", fused::measure),
+            ("threads", threads::measure),
+            ("a lone trajectory", latency::measure),
+            ("sines", sine::measure),
+            ("clocks and delays", perturbed::measure),
+            ("memory", bandwidth::measure),
+            ("one step a pass", one_step::measure),
+            ("page faults", faults::measure),
+            ("steps a pass", roofline::measure),
+            ("implementations", scaling::measure),
+            ("peers", peers::measure),
+        ];
+        for (what, part) in parts {
+            lab.part(what, || part(&desk, &mut record))?;
+        }
+        regime::detect(&mut record)?;
+        comparison::compare(&mut record)?;
+        claims::judge(&mut record);
+        machine::describe(&desk, &mut record)?;
+        Ok(record)
+    }
+
+    fn render(&self, record: &Record, page: &mut Page) -> Result<(), RecordError> {
+        render::render(record, page)
+    }
+}
+
+/// A part of the study.
+type Part = fn(&Desk<'_>, &mut Record) -> Result<(), StudyError>;

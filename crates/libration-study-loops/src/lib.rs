@@ -1,0 +1,13 @@
+//! Studies of control loops: latency, jitter, clocks and hierarchies.
+
+mod asynchrony;
+mod hierarchy;
+mod jitter;
+mod latency;
+mod sample;
+mod swarm;
+
+pub use asynchrony::Asynchrony;
+pub use hierarchy::Hierarchy;
+pub use jitter::{Jitter, JitterSettings};
+pub use latency::Latency;

@@ -1,0 +1,273 @@
+//! The order of every method, on linear and nonlinear systems.
+
+mod claims;
+mod render;
+mod settings;
+mod trap;
+mod tried;
+mod words;
+
+pub use self::settings::ConvergenceSettings;
+use self::tried::TRIED;
+use libration::Method;
+use libration_report::Record;
+use libration_report::page::Page;
+use libration_report::record::{Cell, Finding, RecordError, Relation, Series, Table, Tolerance};
+use libration_study::{Fit, Lab, Section, Study, StudyError, Tried};
+
+use super::subject::{Errors, Halvings, Kind, Law, ROUNDING, Subject, configured};
+
+/// The study `convergence`.
+#[derive(Clone, Copy)]
+pub struct Convergence<'a> {
+    own: &'a [&'a dyn Subject],
+}
+
+impl Convergence<'static> {
+    /// Of the systems that the configuration names.
+    pub const CONFIGURED: Self = Convergence { own: &[] };
+}
+
+impl<'a> Convergence<'a> {
+    /// Of systems of the user's own, whatever the configuration names.
+    pub fn of(own: &'a [&'a dyn Subject]) -> Self {
+        Convergence { own }
+    }
+}
+
+impl Study for Convergence<'_> {
+    fn name(&self) -> &'static str {
+        "convergence"
+    }
+
+    fn question(&self) -> &'static str {
+        "Does the error fall with the power of the time step that each method promises?"
+    }
+
+    fn tries(&self) -> &'static [Tried] {
+        // The source says nothing of a user's own systems.
+        if self.own.is_empty() { TRIED } else { &[] }
+    }
+
+    fn settings(&self) -> Option<Section> {
+        Some(Section::of::<ConvergenceSettings>())
+    }
+
+    fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
+        let mut record = Record::new(self.name(), self.question());
+        let configured = configured(lab.config, &lab.config.get::<ConvergenceSettings>().systems)?;
+        let configured: Vec<&dyn Subject> = configured.iter().map(AsRef::as_ref).collect();
+        let subjects = if self.own.is_empty() { &configured } else { self.own };
+        orders(lab, subjects, &mut record)?;
+        symmetries(lab, subjects, &mut record)?;
+        if self.own.is_empty() {
+            trap::set(lab, &mut record)?;
+            words::certify(lab, &mut record)?;
+            claims::judge(&mut record);
+        }
+        Ok(record)
+    }
+
+    fn render(&self, record: &Record, page: &mut Page) -> Result<(), RecordError> {
+        render::render(record, page)
+    }
+}
+
+/// The time steps that this effort affords.
+fn halvings(lab: &Lab<'_>) -> Halvings {
+    let coarsest = lab.config.get::<ConvergenceSettings>().coarsest;
+    // Five points make a fit, whatever the largest step.
+    let finest = lab.effort.choose(1 << 14, 1 << 16, 1 << 18).max(16 * coarsest);
+    Halvings { coarsest, finest }
+}
+
+/// One method on one system.
+struct Trial<'a> {
+    subject: &'a dyn Subject,
+    law: Law,
+    method: Method,
+}
+
+/// The order that theory promises: `p` and `p + 1` of a step; none where the force depends on the
+/// velocity, since a kick is then no exact flow and splitting methods lose their order.
+fn promised(law: Law, method: Method, kind: Kind) -> Option<f64> {
+    let splits = !matches!(method, Method::ExplicitEuler | Method::Rk4);
+    let order = f64::from(method.order());
+    (!(splits && law.velocity_dependent)).then_some(match kind {
+        Kind::Global | Kind::FromStart => order,
+        Kind::Local => order + 1.0,
+    })
+}
+
+/// Fits the order of every method on every system.
+fn orders(lab: &Lab<'_>, subjects: &[&dyn Subject], record: &mut Record) -> Result<(), StudyError> {
+    let laws = lab.sweep("reference orbits", subjects, |subject| Ok(subject.law()))?;
+    let trials: Vec<Trial<'_>> = subjects
+        .iter()
+        .zip(laws)
+        .flat_map(|(&subject, law)| {
+            lab.config.integrators.iter().map(move |&method| Trial { subject, law, method })
+        })
+        .collect();
+    let found = lab.sweep("errors at ever smaller steps", &trials, |trial| {
+        let errors = |kind| trial.subject.errors(kind, trial.method, halvings(lab));
+        Ok([errors(Kind::Global)?, errors(Kind::Local)?])
+    })?;
+    let columns = [
+        "system",
+        "integrator",
+        "global: q",
+        "global: v",
+        "global: q, v",
+        "global: ±",
+        "local: q",
+        "local: v",
+        "local: q, v",
+        "local: ±",
+    ];
+    let mut table = Table::new("orders", &columns);
+    for (trial, [global, local]) in trials.iter().zip(&found) {
+        let mut row: Vec<Cell> = vec![trial.subject.title().into(), trial.method.title().into()];
+        row.extend(trial.order(Kind::Global, global, record));
+        row.extend(trial.order(Kind::Local, local, record));
+        table.push(row);
+    }
+    record.tables.push(table);
+    let per_subject = found.chunks(lab.config.integrators.len().max(1));
+    for (subject, errors) in subjects.iter().zip(per_subject) {
+        let smallest = errors.iter().flat_map(|[global, _]| &global.together);
+        record.find(reference(*subject, smallest.copied().fold(f64::INFINITY, f64::min)));
+        for (kind, name) in [(0, "global"), (1, "local")] {
+            let errors = errors.iter().map(|both| &both[kind]);
+            let methods = lab.config.integrators.iter().copied().zip(errors);
+            record.series.push(series(format!("{name}-{}", subject.name()), methods));
+        }
+    }
+    let titles = subjects.iter().map(|s| (s.name(), s.title()));
+    let mut systems = Table::new("systems", &["name", "system"]);
+    titles.for_each(|(name, title)| systems.push([name.into(), title.into()]));
+    record.tables.push(systems);
+    Ok(())
+}
+
+impl Trial<'_> {
+    /// Adds what was found of one kind of error; gives the cells of the table.
+    fn order(&self, kind: Kind, errors: &Errors, record: &mut Record) -> [Cell; 4] {
+        let (name, of) = match kind {
+            Kind::Global | Kind::FromStart => ("global", "orbits over more than half a turn"),
+            Kind::Local => ("local", "one step"),
+        };
+        let parts = [
+            ("-position", "position", &errors.position),
+            ("-velocity", "velocity", &errors.velocity),
+            ("", "position and velocity", &errors.together),
+        ];
+        let mut cells = [const { None }; 4];
+        for (cell, (suffix, part, errors_of)) in parts.into_iter().enumerate() {
+            let Some(fit) = Fit::new(&errors.dt, errors_of) else { continue };
+            cells[cell] = Some(fit.exponent);
+            cells[3] = Some(fit.uncertainty());
+            let (subject, method) = (self.subject, self.method);
+            let id =
+                format!("convergence.{}.{}.{name}-order{suffix}", subject.name(), method.name());
+            let text = format!(
+                "{}, {}: exponent of Δt in the error of {of}, in {part}",
+                method.title(),
+                subject.title()
+            );
+            record.find(match promised(self.law, method, kind) {
+                Some(order) => {
+                    Finding::predicted(id, text, "1", order, fit.exponent, fit.tolerance())
+                }
+                None => Finding::measured(id, text, "1", fit.exponent),
+            });
+        }
+        cells.map(Cell::from)
+    }
+}
+
+/// The reference must be far better than the smallest error that is taken against it.
+fn reference(subject: &dyn Subject, smallest: f64) -> Finding {
+    Finding::related(
+        format!("convergence.{}.reference", subject.name()),
+        format!(
+            "{}: what halving its pieces changes in the reference orbit, relative to its size",
+            subject.title()
+        ),
+        "1",
+        Relation::AtMost,
+        0.0,
+        subject.reference_error(),
+        Tolerance::absolute(
+            (1e-3 * smallest).min(1e-20),
+            "a thousandth of the smallest error that is taken against it shifts no digit shown",
+        ),
+    )
+}
+
+/// The errors of all methods, padded where a method needed no smaller steps.
+fn series<'a>(name: String, methods: impl Iterator<Item = (Method, &'a Errors)>) -> Series {
+    let methods: Vec<_> = methods.collect();
+    let longest = methods.iter().max_by_key(|(_, errors)| errors.dt.len());
+    let dt = longest.map(|(_, errors)| errors.dt.clone()).unwrap_or_default();
+    let padded = |values: &[f64]| {
+        let mut values = values.to_vec();
+        values.resize(dt.len(), f64::NAN);
+        values
+    };
+    let columns: Vec<_> = methods
+        .iter()
+        .flat_map(|(method, errors)| {
+            let named = |part: &str| format!("{} {part}", method.name());
+            [
+                (named("position"), padded(&errors.position)),
+                (named("velocity"), padded(&errors.velocity)),
+                (named("together"), padded(&errors.together)),
+            ]
+        })
+        .collect();
+    columns
+        .into_iter()
+        .fold(Series::new(name).with("dt", "s", dt), |s, (name, x)| s.with(name, "", x))
+}
+
+/// The symmetries of velocity Verlet on nonlinear systems.
+fn symmetries(
+    lab: &Lab<'_>,
+    subjects: &[&dyn Subject],
+    record: &mut Record,
+) -> Result<(), StudyError> {
+    let method = Method::VelocityVerlet;
+    if !lab.config.integrators.contains(&method) {
+        return Ok(());
+    }
+    let found = lab.sweep("symmetries of Verlet", subjects, |subject| {
+        let law = subject.law();
+        Ok((!law.linear && !law.velocity_dependent)
+            .then(|| subject.symmetry(method, lab.config.get::<ConvergenceSettings>().coarsest)))
+    })?;
+    for (subject, symmetry) in subjects.iter().zip(found) {
+        let Some(symmetry) = symmetry else { continue };
+        for (quantity, what, measured) in [
+            ("symplecticity", "‖MᵀJM − J‖", symmetry.symplecticity),
+            ("reversibility", "‖M(−Δt)M(Δt) − 1‖", symmetry.reversibility),
+        ] {
+            record.find(Finding::predicted(
+                format!("convergence.{}.{}.{quantity}", subject.name(), method.name()),
+                format!(
+                    "{}, {}: {what} of the Jacobian of one step, in 1024 bits",
+                    method.title(),
+                    subject.title()
+                ),
+                "1",
+                0.0,
+                measured,
+                Tolerance::absolute(ROUNDING, SYMMETRY),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Where the bound on a defect that vanishes comes from.
+const SYMMETRY: &str = "2⁻⁹⁰⁰: 1024 bits, less what a step and its products can lose of them";

@@ -1,0 +1,214 @@
+//! The chapter on orders.
+
+use libration::Method;
+use libration_report::figure::{Axis, Dash, Figure, Ink, Mark, Panel};
+use libration_report::notation::number;
+use libration_report::page::{Highlight, Page};
+use libration_report::record::{Record, RecordError, Series};
+
+use crate::ink::ink;
+
+/// Writes the chapter.
+pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
+    page.title = "Order".into();
+    let systems = systems(record)?;
+    summary(record, page, &systems);
+    page.paragraph(
+        "Every method runs in double-double, where no rounding is seen, at ever smaller steps: until \
+         the slopes between successive errors settle. The reference is the flow itself to about \
+         thirty digits, extrapolated from a midpoint rule that shares no line with the methods. \
+         Errors are taken over a whole orbit, because at single points they may be of higher order \
+         by accident: a closed orbit forgives a phase error at its turning point.",
+    );
+    page.figure(errors(record, &systems, "global")?);
+    page.table(record.table("orders")?, 4);
+    page.paragraph(
+        "The exponents are least-squares slopes through the five smallest steps of each line. A \
+         step errs by one order more than the orbit, since an orbit has 1/Δt steps.",
+    );
+    page.figure(errors(record, &systems, "local")?);
+    if let Ok(trap) = record.series("trap") {
+        page.heading("A trap");
+        page.paragraph(
+            "Symplectic Euler is of order 1. Started where the force vanishes, its positions are \
+             those of a Verlet orbit that begins half a kick later, and converge like one: whoever \
+             looks at positions alone finds order 2. The velocity tells.",
+        );
+        page.figure(trapped(trap)?);
+    }
+    if let Ok(words) = record.table("words") {
+        page.heading("What no oscillator can tell");
+        page.paragraph(
+            "A splitting method is a word of kicks and drifts. Its exponentials, multiplied out in two \
+             letters that do not commute, must agree with `e^(K + D)` on all words of up to p letters; \
+             then the order is p on every system, without a run. On an oscillator words with a \
+             repeated letter vanish: the lookalike, whose weights fit all others, has order 4 there \
+             and order 3 on a pendulum, as its word says.",
+        );
+        page.table(words, 3);
+    }
+    Ok(())
+}
+
+/// The systems studied: name and title.
+fn systems(record: &Record) -> Result<Vec<(String, String)>, RecordError> {
+    let rows = &record.table("systems")?.rows;
+    Ok(rows.iter().map(|row| (row[0].typeset(6), row[1].typeset(6))).collect())
+}
+
+/// The answer: the range of the exponents of each method.
+fn summary(record: &Record, page: &mut Page, systems: &[(String, String)]) {
+    let range = |method: Method| {
+        let order = |(system, _): &(String, String)| {
+            let id = format!("convergence.{system}.{}.global-order", method.name());
+            record.finding(&id).ok().map(|f| f.measured)
+        };
+        let orders: Vec<f64> = systems.iter().filter_map(order).collect();
+        let low = orders.iter().copied().reduce(f64::min)?;
+        let high = orders.iter().copied().reduce(f64::max)?;
+        let (low, high) = (format!("{low:.2}"), format!("{high:.2}"));
+        Some(if low == high { low } else { format!("{low} to {high}") })
+    };
+    let found: Vec<(Method, String)> =
+        Method::ALL.into_iter().filter_map(|m| Some((m, range(m)?))).collect();
+    let shown: Vec<String> = found.iter().map(|(m, r)| format!("{} {r}", m.title())).collect();
+    let names: Vec<&str> = systems.iter().map(|(_, title)| title.as_str()).collect();
+    if shown.is_empty() {
+        return;
+    }
+    page.answer = format!(
+        "Order of the error over an orbit, fitted on {}: {}.",
+        names.join("; "),
+        shown.join(", ")
+    );
+    let off = record.findings.iter().filter(|f| f.id.ends_with("-order"));
+    let distances = off.filter_map(|f| Some((f.measured - f.predicted?).abs()));
+    if let Some(worst) = distances.reduce(f64::max) {
+        page.highlights.push(Highlight {
+            value: number(worst, 2),
+            text: "largest distance of a fitted order from the promised one, in phase space".into(),
+        });
+    }
+}
+
+/// Errors against the step, one panel a system, with guide slopes.
+fn errors(
+    record: &Record,
+    systems: &[(String, String)],
+    kind: &str,
+) -> Result<Figure, RecordError> {
+    let (of, rise) = match kind {
+        "global" => ("an orbit", "p"),
+        _ => ("one step", "p + 1"),
+    };
+    let mut figure = Figure::new(
+        format!("order-{kind}"),
+        format!("Error of {of} against the time step"),
+    )
+    .caption(format!(
+        "{} Thin lines: whole slopes through the smallest step. Error in phase space, velocities \
+         in units of 2π/turn.",
+        slopes(record, systems, kind, rise)
+    ))
+    .description(format!("Log-log: the error of {of} against Δt for each method and system."))
+    .columns(if systems.len() > 1 { 2 } else { 1 })
+    .aspect(if systems.len() > 1 { 1.25 } else { 1.75 });
+    for (name, title) in systems {
+        let series = record.series(&format!("{kind}-{name}"))?;
+        figure = figure.panel(panel(series, title, kind == "local")?);
+    }
+    Ok(figure)
+}
+
+/// What the fitted orders say of the lines: theory promises nothing where forces depend on velocities.
+fn slopes(record: &Record, systems: &[(String, String)], kind: &str, rise: &str) -> String {
+    let end = format!(".{kind}-order");
+    let orders = || record.findings.iter().filter(|f| f.id.ends_with(&end));
+    let everywhere = if systems.len() > 1 { ", on every system alike" } else { "" };
+    match (orders().any(|f| f.agrees()), orders().all(|f| f.agrees())) {
+        (true, true) => format!("Each line falls with the slope {rise} of its method{everywhere}."),
+        (true, false) => format!(
+            "Lines fall with the slope {rise} of their method where theory promises it and the \
+             table says so."
+        ),
+        _ => "No line was found to fall with a promised slope.".into(),
+    }
+}
+
+fn panel(series: &Series, title: &str, local: bool) -> Result<Panel, RecordError> {
+    let dt = series.column("dt")?;
+    let mut panel =
+        Panel::new(Axis::log("time step Δt").unit("s"), Axis::log("error")).title(title);
+    for method in Method::ALL {
+        let Ok(errors) = series.column(&format!("{} together", method.name())) else { continue };
+        let order = method.order() + u32::from(local);
+        let guide = guide(dt, errors, order);
+        panel = panel
+            .mark(Mark::line(dt, guide).ink(Ink::Theory).dash(Dash::Solid).width(0.8))
+            .mark(Mark::line(dt, errors).ink(ink(method)).label(method.title()));
+    }
+    Ok(panel)
+}
+
+/// The power `order` of the step through the last error.
+fn guide(dt: &[f64], errors: &[f64], order: u32) -> Vec<f64> {
+    let last = dt.iter().zip(errors).rfind(|(_, e)| e.is_finite());
+    let Some((&at, &error)) = last else { return vec![f64::NAN; dt.len()] };
+    let law = |&h: &f64| error * (h / at).powi(order as i32);
+    dt.iter().zip(errors).map(|(h, e)| if e.is_finite() { law(h) } else { f64::NAN }).collect()
+}
+
+/// Symplectic Euler from the equilibrium.
+fn trapped(series: &Series) -> Result<Figure, RecordError> {
+    let dt = series.column("dt")?;
+    let line = |part: &str, label: &str, accent| -> Result<Mark, RecordError> {
+        Ok(Mark::line(dt, series.column(part)?).ink(Ink::Accent(accent)).label(label))
+    };
+    let guide = |part: &str, order| -> Result<Mark, RecordError> {
+        let guide = guide(dt, series.column(part)?, order);
+        Ok(Mark::line(dt, guide).ink(Ink::Theory).dash(Dash::Solid).width(0.8))
+    };
+    Ok(Figure::new("order-trap", "Symplectic Euler from a start without force")
+        .caption(
+            "The error in position falls with the second power of the step, that in velocity with \
+             the first. Thin lines: slopes two and one.",
+        )
+        .description("Log-log: errors of symplectic Euler in position and in velocity against Δt.")
+        .panel(
+            Panel::new(Axis::log("time step Δt").unit("s"), Axis::log("error (m, m/s)"))
+                .mark(guide("position", 2)?)
+                .mark(guide("velocity", 1)?)
+                .mark(line("position", "position", 0)?)
+                .mark(line("velocity", "velocity", 1)?),
+        ))
+}
+
+#[cfg(test)]
+mod tests {
+    use libration_report::record::{Finding, Tolerance};
+
+    use super::*;
+
+    #[test]
+    fn a_caption_promises_a_slope_only_where_it_was_found() {
+        let mut record = Record::new("convergence", "?");
+        let systems = [("a".to_owned(), "a".to_owned())];
+        let caption = |record: &Record| slopes(record, &systems, "global", "p");
+        assert!(caption(&record).starts_with("No line"));
+        let tolerance = Tolerance::absolute(0.1, "");
+        let id = "convergence.a.rk4.global-order";
+        record.find(Finding::predicted(id, "", "1", 4.0, 4.01, tolerance));
+        assert_eq!(caption(&record), "Each line falls with the slope p of its method.");
+        // A splitting method under friction, of which no order is promised.
+        let id = "convergence.a.leapfrog.global-order";
+        record.find(Finding::measured(id, "", "1", 1.0));
+        assert!(caption(&record).contains("where theory promises it"));
+    }
+
+    #[test]
+    fn a_guide_passes_through_the_smallest_step_with_its_slope() {
+        let drawn = guide(&[0.4, 0.2, 0.1], &[9.0, 5.0, f64::NAN], 2);
+        assert_eq!(drawn[..2], [20.0, 5.0]);
+        assert!(drawn[2].is_nan());
+    }
+}

@@ -1,0 +1,60 @@
+//! What accuracy costs: force evaluations and time against stability and errors.
+
+mod answers;
+mod claims;
+mod cost;
+mod demand;
+mod render;
+mod settings;
+mod tried;
+mod work;
+
+use libration_study::Tried;
+
+pub use self::settings::EfficiencySettings;
+use self::tried::TRIED;
+use libration::State;
+use libration_report::Record;
+use libration_report::page::Page;
+use libration_report::record::RecordError;
+use libration_study::{Config, Lab, Section, Study, StudyError};
+
+/// The study `efficiency`.
+#[derive(Clone, Copy, Debug)]
+pub struct Efficiency;
+
+impl Study for Efficiency {
+    fn name(&self) -> &'static str {
+        "efficiency"
+    }
+
+    fn question(&self) -> &'static str {
+        "Which integrator gives the accuracy I need for the least work?"
+    }
+
+    fn tries(&self) -> &'static [Tried] {
+        TRIED
+    }
+
+    fn settings(&self) -> Option<Section> {
+        Some(Section::of::<EfficiencySettings>())
+    }
+
+    fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
+        let mut record = Record::new(self.name(), self.question());
+        let costs = cost::measure(lab, &mut record)?;
+        work::measure(lab, &costs, &mut record)?;
+        answers::give(lab, &costs, &mut record)?;
+        claims::judge(&mut record);
+        Ok(record)
+    }
+
+    fn render(&self, record: &Record, page: &mut Page) -> Result<(), RecordError> {
+        render::render(record, page)
+    }
+}
+
+/// The start in units in which `ω = 1`.
+fn start(config: &Config) -> State<f64, 1> {
+    State { q: [config.start.q], v: [config.start.v / config.oscillator.omega()] }
+}

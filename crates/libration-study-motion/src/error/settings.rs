@@ -1,0 +1,60 @@
+//! Settings of the study `error`.
+
+use libration_settings::check::{number, steps};
+use libration_settings::{Count, Fault, Number, limits};
+use libration_study::{Settings, schema};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Settings of the study `error`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ErrorSettings {
+    /// The time step, in s.
+    pub dt: f64,
+    /// Number of steps.
+    pub steps: u64,
+}
+
+impl Default for ErrorSettings {
+    fn default() -> Self {
+        ErrorSettings { dt: 1e-3, steps: 1_000_000 }
+    }
+}
+
+/// The study of the error against the exact solution.
+#[derive(Deserialize, JsonSchema, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Table {
+    /// Time step in s.
+    #[schemars(schema_with = "schema::time_step")]
+    dt: Number,
+    /// Number of steps.
+    #[schemars(schema_with = "schema::steps")]
+    steps: Count,
+}
+
+impl Default for Table {
+    fn default() -> Self {
+        ErrorSettings::default().table()
+    }
+}
+
+impl Settings for ErrorSettings {
+    const NAME: &'static str = "error";
+    const TEXT: &'static str = include_str!("default.toml");
+    type Table = Table;
+
+    fn table(&self) -> Table {
+        Table { dt: Number(self.dt), steps: Count(self.steps.into()) }
+    }
+
+    fn from_table(table: Table) -> Result<Self, Fault> {
+        Ok(ErrorSettings { dt: table.dt.0, steps: steps("error.steps", table.steps.0)? })
+    }
+
+    fn check(&self) -> Result<(), Fault> {
+        number("error.dt", limits::TIME_STEP, self.dt)?;
+        steps("error.steps", self.steps.into())?;
+        Ok(())
+    }
+}

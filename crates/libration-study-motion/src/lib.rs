@@ -1,0 +1,28 @@
+//! Studies of free motion: stability, drift, errors, orders and rounding.
+
+mod convergence;
+mod coverage;
+mod drift;
+mod efficiency;
+mod error;
+mod growth;
+mod ink;
+mod nonlinear;
+mod precision;
+mod rounding;
+mod spectrum;
+mod stability;
+mod subject;
+
+pub use convergence::{Convergence, ConvergenceSettings};
+pub use drift::{Drift, DriftSettings};
+pub use efficiency::{Efficiency, EfficiencySettings};
+pub use error::{Error, ErrorSettings};
+pub use nonlinear::{Nonlinear, NonlinearSettings};
+pub use precision::{Precision, PrecisionSettings};
+pub use spectrum::{Spectrum, SpectrumSettings};
+pub use stability::{Stability, StabilitySettings};
+pub use subject::{
+    Change, Changes, Errors, Halvings, Horizon, Kind, Law, Orbits, Portrait, Problem, SYSTEMS,
+    Subject, Symmetry,
+};

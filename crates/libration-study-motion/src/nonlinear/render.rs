@@ -1,0 +1,210 @@
+//! The chapter on nonlinear systems.
+
+use libration::Method;
+use libration_report::figure::{Axis, Dash, Figure, Ink, Mark, Panel};
+use libration_report::notation::{number, seconds};
+use libration_report::page::{Highlight, Page};
+use libration_report::record::{Column, Record, RecordError};
+
+use super::words::{growths, rates, step_of_portraits};
+use crate::ink::ink;
+
+/// Writes the chapter.
+pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
+    page.title = "Nonlinear systems".into();
+    let systems = systems(record)?;
+    summary(record, page, &systems)?;
+    page.paragraph(
+        "Where forces are not linear no matrix says what a million steps do. What theory does say \
+         are powers: a symplectic method of order p keeps the energy within a band that shrinks as \
+         Δt^p and does not widen with time; the others drift, and the drift grows with the \
+         horizon.",
+    );
+    page.figure(growth(record, &systems)?);
+    page.table(record.table("growth")?, 3);
+    page.figure(swings(record, &systems)?);
+    if let Some(rates) = rates(record) {
+        page.paragraph(format!(
+            "Within one turn the energy of a method of order p swings by Δt^p, where forces are not \
+             linear. What is left after a turn is another matter: of an even order p the term Δt^p \
+             is odd under time reversal, so that a closed orbit gives back on one half what it took \
+             on the other. In a turn of a closed orbit the energy therefore drifts by {rates}."
+        ));
+    }
+    page.heading("One step");
+    page.paragraph(
+        "Duals of 1024 bits carry the Jacobian of each shipped step along the orbit. A defect is \
+         either zero to all bits, or a power of Δt; the sizes are those at 256 steps a turn.",
+    );
+    page.table(record.table("defects")?, 3);
+    page.heading("Where stability ends");
+    page.paragraph(
+        "Close to an equilibrium a step is stable as far as on the oscillator of the same highest \
+         frequency, and simulation finds the limit there. From the configured start it ends where \
+         it ends: the search scans upward, then again below the first loss with a finer grid and \
+         longer runs, since resonances open narrow gaps.",
+    );
+    page.table(record.table("limits")?, 4);
+    page.figure(portraits(record, &systems)?);
+    Ok(())
+}
+
+/// The systems studied: name and title.
+fn systems(record: &Record) -> Result<Vec<(String, String)>, RecordError> {
+    let rows = &record.table("systems")?.rows;
+    Ok(rows.iter().map(|row| (row[0].typeset(6), row[1].typeset(6))).collect())
+}
+
+/// The answer, from the drifts over the whole horizon.
+pub(super) fn summary(
+    record: &Record,
+    page: &mut Page,
+    systems: &[(String, String)],
+) -> Result<(), RecordError> {
+    let found = |system: &str, method: Method, quantity: &str| {
+        let id = format!("nonlinear.{system}.{}.{quantity}", method.name());
+        record.finding(&id).ok().map(|f| f.measured)
+    };
+    let rows = &record.table("growth")?.rows;
+    let largest: Vec<String> = systems
+        .iter()
+        .filter_map(|(_, title)| {
+            // A run that left the floats has no size, and says so in the table.
+            let of = |m: Method| {
+                let row =
+                    rows.iter().find(|r| r[0].typeset(6) == *title && r[1].typeset(6) == m.title());
+                Some(format!("{} {}", m.title(), row?[2].typeset(2)))
+            };
+            let all: Vec<String> = Method::ALL.into_iter().filter_map(of).collect();
+            (!all.is_empty()).then(|| format!("{title}: {}", all.join(", ")))
+        })
+        .collect();
+    if !largest.is_empty() {
+        page.answer = format!(
+            "Largest relative energy drift over the whole horizon: {}.",
+            largest.join("; ")
+        );
+    }
+    let growths = |keep: fn(&f64) -> bool| {
+        let growth = record.findings.iter().filter(|f| f.id.ends_with(".growth"));
+        growth.filter(move |f| f.predicted.as_ref().is_some_and(keep)).map(|f| f.measured)
+    };
+    if let Some(worst) = growths(|&p| p == 0.0).reduce(f64::max) {
+        page.highlights.push(Highlight {
+            value: format!("t^{{{:.2}}}", worst.max(0.0)),
+            text: "fastest growth of a symplectic method’s energy drift".into(),
+        });
+    }
+    let rate = |(name, title): &(String, String)| {
+        Some((found(name, Method::Rk4, "rate-order")?, title.clone()))
+    };
+    if let Some((rate, title)) = systems.iter().find_map(rate) {
+        page.highlights.push(Highlight {
+            value: format!("Δt^{{{}}}", number(rate, 3)),
+            text: format!("mean energy change of RK4 in a turn: {title}"),
+        });
+    }
+    Ok(())
+}
+
+/// A figure with a panel for each system.
+fn figure(id: &str, title: &str, systems: &[(String, String)]) -> Figure {
+    let figure = Figure::new(id, title);
+    match systems.len() {
+        1 => figure,
+        _ => figure.columns(2).aspect(1.25),
+    }
+}
+
+/// What is worth drawing: an energy beyond a thousand times its start has left the figure.
+fn shown(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|&y| if y < 1e3 { y } else { f64::NAN }).collect()
+}
+
+/// The running maxima against time.
+fn growth(record: &Record, systems: &[(String, String)]) -> Result<Figure, RecordError> {
+    let title = "Largest energy drift so far";
+    let mut figure = figure("nonlinear-growth", title, systems)
+        .caption(growths(record)?)
+        .description("Log-log: the running maximum of the energy drift against turns.");
+    for (name, title) in systems {
+        let series = record.series(&format!("growth-{name}"))?;
+        let turns = series.column("turns")?;
+        let mut panel =
+            Panel::new(Axis::log("turns"), Axis::log("largest |E − E₀|/|E₀|")).title(title);
+        for method in Method::ALL {
+            let Ok(largest) = series.column(method.name()) else { continue };
+            let line = Mark::line(turns, shown(largest));
+            panel = panel.mark(line.ink(ink(method)).label(method.title()));
+        }
+        figure = figure.panel(panel);
+    }
+    Ok(figure)
+}
+
+/// The swing within a turn and the mean change of a turn against the step.
+fn swings(record: &Record, systems: &[(String, String)]) -> Result<Figure, RecordError> {
+    let title = "Energy drift against the time step";
+    let mut figure = figure("nonlinear-swing", title, systems)
+        .caption(match record.series.iter().any(|series| series.name.starts_with("rate-")) {
+            true => {
+                "Lines: the largest drift within a turn. Crosses: the mean change in a turn, of what \
+                 does not keep areas of phase space."
+            }
+            false => "Lines: the largest drift within a turn.",
+        })
+        .description("Log-log: energy drift within a turn against Δt, one line a method.");
+    for (name, title) in systems {
+        let mut panel = Panel::new(Axis::log("time step Δt").unit("s"), Axis::log("|E − E₀|/|E₀|"))
+            .title(title);
+        for method in Method::ALL {
+            let name = format!("{name}-{}", method.name());
+            let Ok(swing) = record.series(&format!("swing-{name}")) else { continue };
+            let line = Mark::line(swing.column("dt")?, shown(swing.column("swing")?));
+            panel = panel.mark(line.ink(ink(method)).label(method.title()));
+            let Ok(rate) = record.series(&format!("rate-{name}")) else { continue };
+            let points = Mark::points(rate.column("dt")?, shown(rate.column("rate")?));
+            panel =
+                panel.mark(points.ink(ink(method)).marker(libration_report::figure::Marker::Cross));
+        }
+        figure = figure.panel(panel);
+    }
+    Ok(figure)
+}
+
+/// Orbits at a large step: velocity Verlet beside RK4.
+fn portraits(record: &Record, systems: &[(String, String)]) -> Result<Figure, RecordError> {
+    let mut figure = Figure::new("nonlinear-portraits", "Orbits at a large step")
+        .caption(format!(
+            "{} Position and velocity in one dimension, the plane of motion in two. Thin line: the \
+             same start in small steps.",
+            step_of_portraits(record, systems)
+        ))
+        .description("Points of orbits, one panel for each system and method.")
+        .columns(2)
+        .aspect(1.35);
+    for (name, title) in systems {
+        for method in [Method::VelocityVerlet, Method::Rk4] {
+            let Ok(series) = record.series(&format!("portrait-{name}-{}", method.name())) else {
+                continue;
+            };
+            let path = record.series(&format!("path-{name}"))?;
+            let [x, y, dt, ..] = &series.columns[..] else { continue };
+            let path = |column: &Column| path.column(&column.name).map(<[f64]>::to_vec);
+            let (path_x, path_y) = (path(x)?, path(y)?);
+            let reach = 1.3 * path_x.iter().chain(&path_y).fold(0.0_f64, |a, x| a.max(x.abs()));
+            let dt = dt.values.first().copied().unwrap_or(f64::NAN);
+            figure = figure.panel(
+                Panel::new(
+                    Axis::linear(x.name.clone()).range(-reach, reach),
+                    Axis::linear(y.name.clone()).range(-reach, reach),
+                )
+                .title(format!("{title}: {}, Δt = {}", method.title(), seconds(dt, 2)))
+                .equal()
+                .mark(Mark::points(x.values.clone(), y.values.clone()).ink(ink(method)).radius(1.4))
+                .mark(Mark::line(path_x, path_y).ink(Ink::Neutral).dash(Dash::Solid).width(0.7)),
+            );
+        }
+    }
+    Ok(figure)
+}

@@ -1,0 +1,146 @@
+//! The chapter on stable time steps.
+
+use libration::Method;
+use libration_report::figure::{Axis, Dash, Figure, Ink, Mark, Panel};
+use libration_report::notation::number;
+use libration_report::page::{Highlight, Page};
+use libration_report::record::{Cell, Record, RecordError, Series};
+
+use crate::ink::ink;
+
+/// Writes the chapter.
+pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
+    page.title = "Stable time steps".into();
+    summary(record, page)?;
+    page.paragraph(
+        "Without a tolerance, stable means that every orbit stays bounded. The polynomials of the \
+         shipped step decide it: by Jury’s criterion stability can change only at their roots, which \
+         Sturm’s theorem isolates in exact arithmetic. No gap is too narrow for that. A sweep on a \
+         grid, with short runs, is another matter; the last column is what it reports.",
+    );
+    page.table(record.table("windows")?, 15);
+    page.figure(windows(record)?);
+    page.paragraph(
+        "With a tolerance, the answer depends on what is tolerated and for how long. The energy of a \
+         symplectic step stays between two multiples of the form that it conserves; that of RK4 and \
+         of explicit Euler changes by the determinant, step after step. Either way the largest step \
+         is a root of a polynomial. The table has what a search by simulation found.",
+    );
+    page.figure(against_horizon(record)?.number("9.5"));
+    page.table(record.table("largest steps")?, 5);
+    page.paragraph(
+        "The largest step of Verlet does not shrink with the horizon, that of RK4 does, with its \
+         sixth root. So for every tolerance ε below one there is a number of steps N*(ε) up to which \
+         RK4 allows the larger step, and beyond which Verlet does; from rest it is about 9/(8ε²). \
+         Count force evaluations, two against four here, and Verlet leads earlier.",
+    );
+    Ok(())
+}
+
+/// The answer, from the windows and the longest horizon.
+fn summary(record: &Record, page: &mut Page) -> Result<(), RecordError> {
+    let crossovers = record.series("crossovers");
+    let Ok(series) = crossovers else { return Ok(()) };
+    let tolerance = series.column("tolerance")?;
+    let steps = series.column("steps")?;
+    let ties: Vec<String> = tolerance
+        .iter()
+        .zip(steps)
+        .map(|(e, n)| format!("{} steps for a drift of {}", number(*n, 3), number(*e, 2)))
+        .collect();
+    if ties.is_empty() {
+        return Ok(());
+    }
+    page.answer = format!(
+        "“Verlet allows a larger step than RK4” is true of an energy tolerance over long enough runs: \
+         RK4’s largest step falls below Verlet’s after {}. Of boundedness alone it is false.",
+        ties.join(", ")
+    );
+    if let (Some(e), Some(n)) = (tolerance.first(), steps.first()) {
+        page.highlights.push(Highlight {
+            value: format!("{} steps", number(*n, 3)),
+            text: format!(
+                "until Verlet allows a larger step than RK4, at a drift of {}",
+                number(*e, 2)
+            ),
+        });
+    }
+    Ok(())
+}
+
+/// The windows as bars.
+fn windows(record: &Record) -> Result<Figure, RecordError> {
+    let series = record.series("windows")?;
+    let named = record.table("windows")?.rows.iter().filter_map(|row| match row.first()? {
+        Cell::Text(name) => Some(name.clone()),
+        Cell::Number(_) => None,
+    });
+    let names: Vec<String> = named.collect();
+    let (rows, from, to) = (series.column("row")?, series.column("from")?, series.column("to")?);
+    let last = to.iter().copied().filter(|x| x.is_finite()).fold(1.0, f64::max);
+    let mut panel = Panel::new(
+        Axis::linear("z = ωΔt").range(0.0, 1.04 * last),
+        Axis::names("", names.iter().cloned()),
+    );
+    for (i, name) in names.iter().enumerate() {
+        let y = -(i as f64);
+        let of = |row: f64| row as usize == i;
+        let colour =
+            Method::ALL.into_iter().find(|m| m.title() == name).map_or(Ink::Accent(3), ink);
+        for ((&row, &from), &to) in rows.iter().zip(from).zip(to) {
+            if of(row) {
+                let bar = Mark::line([from, to], [y, y]);
+                panel = panel.mark(bar.ink(colour).dash(Dash::Solid).width(7.0));
+            }
+        }
+    }
+    Ok(Figure::new("windows", "The steps at which every orbit stays bounded")
+        .caption(
+            "Bars: windows of stability, isolated exactly. The composition of three nearly equal \
+             Verlet steps loses stability for a moment near z = π, where its substeps conspire, and \
+             finds it again: a sweep would never notice, a long run would.",
+        )
+        .description("A bar for each interval of stable steps, a row for each integrator.")
+        .aspect(2.6)
+        .panel(panel))
+}
+
+/// The largest step against the horizon, a panel for each criterion.
+fn against_horizon(record: &Record) -> Result<Figure, RecordError> {
+    let mut figure = Figure::new("fig-9-5", "Largest time step against the length of the run")
+        .caption(
+            "Lines: roots of the criterion. Dots: found by search, with simulations. Under a \
+             tolerance on the energy RK4 starts above Verlet and falls below; under one on the \
+             amplitude, the usual test for explosions, RK4 allows the largest step for ever.",
+        )
+        .description("Log-log: the largest step of each method against the number of steps.")
+        .columns(2)
+        .aspect(1.25);
+    for series in record.series.iter().filter(|s| s.name.starts_with("limit-")) {
+        figure = figure.panel(horizon(record, series)?);
+    }
+    Ok(figure)
+}
+
+fn horizon(record: &Record, series: &Series) -> Result<Panel, RecordError> {
+    let tag = &series.name["limit-".len()..];
+    let title = match tag.strip_prefix("drift-").and_then(|e| e.parse::<f64>().ok()) {
+        Some(tolerance) => format!("Energy drift below {}", number(tolerance, 3)),
+        None => "Amplitude below ten times the start".into(),
+    };
+    let mut panel = Panel::new(Axis::log("steps"), Axis::log("largest Δt").unit("s")).title(title);
+    let steps = series.column("steps")?;
+    for method in Method::ALL {
+        let Ok(dt) = series.column(method.name()) else { continue };
+        let prefix = format!("stability.{}.{tag}.steps-", method.name());
+        let searched = record.findings.iter().filter_map(|f| {
+            let steps: f64 = f.id.strip_prefix(&prefix)?.parse().ok()?;
+            Some((steps, f.measured))
+        });
+        let (x, y): (Vec<f64>, Vec<f64>) = searched.unzip();
+        panel = panel
+            .mark(Mark::line(steps, dt).ink(ink(method)).label(method.title()))
+            .mark(Mark::points(x, y).ink(ink(method)).radius(3.0));
+    }
+    Ok(panel)
+}

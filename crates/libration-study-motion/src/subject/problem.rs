@@ -1,0 +1,191 @@
+//! A model with a start, and how long a turn takes.
+
+use std::sync::OnceLock;
+
+use libration::analysis::Linearisation;
+use libration::ensemble::Execution;
+use libration::number::TwoFloat;
+use libration::simulation::{Sample, SimulationError, Simulator};
+use libration::system::Chosen;
+use libration::{Float, Method, Model, Scalar, State, System, integrator, with_method};
+use libration_study::StudyError;
+
+use super::errors::Orbit;
+use super::{
+    Change, Changes, Errors, Halvings, Horizon, Kind, Law, Loss, Orbits, Portrait, Subject,
+    Symmetry, energy, errors, portrait, stability, symmetry,
+};
+
+/// A system of any kind under study: all that the laboratory must know of it.
+///
+/// ```
+/// use libration::{State, system::Duffing};
+/// use libration_lab::studies::{Convergence, Nonlinear, Problem, Subject};
+///
+/// let wells = Duffing { alpha: -1.0, beta: 1.0 };
+/// let problem = Problem::new("wells", wells, State { q: [1.5], v: [0.0] }, 4.4);
+/// let own = [&problem as &dyn Subject];
+/// let studies = (Convergence::of(&own), Nonlinear::of(&own));
+/// # let _ = studies;
+/// ```
+#[derive(Debug)]
+pub struct Problem<M, const D: usize> {
+    name: String,
+    title: String,
+    pub(super) model: M,
+    pub(super) start: State<f64, D>,
+    pub(super) turn: f64,
+    pub(super) equilibrium: Option<State<f64, D>>,
+    orbit: OnceLock<Orbit<D>>,
+}
+
+impl<M: Model<D>, const D: usize> Problem<M, D> {
+    /// `model` from `start`; a revolution takes about `turn` seconds.
+    ///
+    /// What is no letter or digit in `name` becomes a hyphen.
+    pub fn new(name: &str, model: M, start: State<f64, D>, turn: f64) -> Self {
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+        Problem {
+            name: name.chars().map(plain).collect(),
+            title: name.into(),
+            model,
+            start,
+            turn,
+            equilibrium: None,
+            orbit: OnceLock::new(),
+        }
+    }
+
+    /// With a name for running text.
+    #[must_use]
+    pub fn titled(mut self, title: &str) -> Self {
+        self.title = title.into();
+        self
+    }
+
+    /// With a stable equilibrium, about which the step of lost stability is predicted.
+    #[must_use]
+    pub fn about(mut self, equilibrium: State<f64, D>) -> Self {
+        self.equilibrium = Some(equilibrium);
+        self
+    }
+
+    /// The reference orbit, computed once.
+    pub(super) fn orbit(&self) -> &Orbit<D> {
+        self.orbit.get_or_init(|| {
+            let turn = TwoFloat::from_f64(self.turn);
+            Orbit::new(&self.model.on(), self.start.map(TwoFloat::from_f64), turn)
+        })
+    }
+
+    /// `turn / steps` on numbers of type `S`.
+    pub(super) fn step<S: Scalar>(&self, steps: u64) -> S {
+        S::from_f64(self.turn).ratio(1, i32::try_from(steps).unwrap_or(i32::MAX))
+    }
+
+    /// Runs `method` and gives the last state; `watch` sees every sample.
+    ///
+    /// But for `sweep` the one place in which a method becomes a type: what watches is dynamic.
+    pub(super) fn run<S: Float>(
+        &self,
+        method: Method,
+        start: State<S, D>,
+        dt: S,
+        steps: u64,
+        watch: &mut dyn FnMut(&Sample<S, D>),
+    ) -> Result<State<S, D>, SimulationError> {
+        let watch = &mut |sample: &Sample<S, D>| watch(sample);
+        if const { size_of::<S>() > size_of::<f64>() } {
+            // What each operation takes is more than a call.
+            let acceleration = |state: &State<S, D>| self.model.on::<S>().acceleration(state);
+            let mut simulator = Simulator::new(Chosen(&acceleration), method, start, dt)?;
+            simulator.run(steps, watch)?;
+            return Ok(simulator.sample().state);
+        }
+        let system = self.model.on::<S>();
+        with_method!(method, |m| {
+            let mut simulator = Simulator::new(system, m, start, dt)?;
+            simulator.run(steps, watch)?;
+            Ok(simulator.sample().state)
+        })
+    }
+}
+
+impl<M: Model<D>, const D: usize> Subject for Problem<M, D>
+where
+    // Threads share it where many orbits are tried at once.
+    M::On<f64>: Send + Sync,
+{
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn title(&self) -> &str {
+        &self.title
+    }
+
+    fn dimension(&self) -> usize {
+        D
+    }
+
+    fn turn(&self) -> f64 {
+        self.turn
+    }
+
+    fn law(&self) -> Law {
+        let depends = |state: &State<TwoFloat, D>| {
+            // The generator does not depend on the integrator or the step.
+            let at = state.map(Float::to_f64);
+            let any = Linearisation::new(integrator::Leapfrog, self.model, &at, self.turn);
+            any.generator.dv.iter().any(|column| column.v.iter().any(|x| !x.is_zero()))
+        };
+        Law { linear: M::LINEAR, velocity_dependent: self.orbit().states().iter().any(depends) }
+    }
+
+    fn reference_error(&self) -> f64 {
+        self.orbit().uncertainty()
+    }
+
+    fn errors(&self, kind: Kind, method: Method, halvings: Halvings) -> Result<Errors, StudyError> {
+        errors::measure(self, kind, method, halvings)
+    }
+
+    fn changes(
+        &self,
+        change: Change,
+        method: Method,
+        halvings: Halvings,
+    ) -> Result<Changes, StudyError> {
+        energy::changes(self, change, method, halvings)
+    }
+
+    fn horizon(&self, method: Method, steps: u64, turns: u64) -> Result<Horizon, StudyError> {
+        energy::horizon(self, method, steps, turns)
+    }
+
+    fn closes(&self) -> bool {
+        energy::closes(self)
+    }
+
+    fn frequency(&self) -> Option<f64> {
+        stability::frequency(self)
+    }
+
+    fn loss(
+        &self,
+        execution: &Execution,
+        orbits: Orbits,
+        method: Method,
+        steps: u64,
+    ) -> Result<Option<Loss>, StudyError> {
+        stability::loss(self, execution, orbits, method, steps)
+    }
+
+    fn portrait(&self, method: Method, dt: f64, steps: u64) -> Result<Portrait, StudyError> {
+        portrait::trace(self, method, dt, steps)
+    }
+
+    fn symmetry(&self, method: Method, steps: u64) -> Symmetry {
+        symmetry::measure(self, method, steps)
+    }
+}

@@ -1,0 +1,164 @@
+//! The time step at which a method loses an orbit, searched for by simulation.
+
+use libration::analysis::{Complex, Eigenvalues, Linearisation, Spectrum, eigenvalues};
+use libration::ensemble::Execution;
+use libration::{Method, Model, State, integrator};
+use libration_study::StudyError;
+
+use super::Problem;
+use super::sweep::{distance, first_lost};
+
+/// `ωΔt` up to which a search goes; no integrator here is stable as far as that.
+const FURTHEST: f64 = 8.0;
+
+/// The displacement of a small orbit, as a share of the configured start's.
+const SMALL: f64 = 1e-6;
+
+/// From where an orbit starts that may be lost, and how one knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Orbits {
+    /// From the configured start: lost if the energy has changed by as much as there was, or is no
+    /// number.
+    Configured,
+    /// Close to the equilibrium: lost if it has grown a thousandfold.
+    Small,
+}
+
+/// The highest angular frequency of small oscillations about the equilibrium, in rad/s; none if
+/// there is no equilibrium or nothing oscillates.
+pub(super) fn frequency<M: Model<D>, const D: usize>(problem: &Problem<M, D>) -> Option<f64> {
+    let at = problem.equilibrium?;
+    // The generator does not depend on the integrator or the step.
+    let any = Linearisation::new(integrator::Leapfrog, problem.model, &at, problem.turn);
+    let imaginary: Vec<f64> = match any.generator.decoupled() {
+        Some(modes) => modes
+            .iter()
+            .map(|mode| match Spectrum::new(mode).eigenvalues {
+                Eigenvalues::Complex { im, .. } => im.to_f64(),
+                _ => 0.0,
+            })
+            .collect(),
+        None => eigenvalues(&any.generator).iter().map(|Complex { im, .. }| im.to_f64()).collect(),
+    };
+    imaginary.into_iter().reduce(f64::max).filter(|&omega| omega > 0.0)
+}
+
+/// Up to where orbits were not lost.
+#[derive(Clone, Copy, Debug)]
+pub struct Loss {
+    /// The largest time step in s up to which no step that was tried lost its orbit; zero if the
+    /// smallest did.
+    pub dt: f64,
+    /// How far apart the steps that were tried are, in s: of a narrower gap nothing is known.
+    pub apart: f64,
+}
+
+/// Time steps of the fine scan.
+const FINE: u32 = 8192;
+
+/// Parts into which the interval of the first loss is cut, again and again.
+const PARTS: u32 = 64;
+
+/// The first loss of an orbit of `steps` steps as the time step rises; none if nothing is lost however
+/// large the step.
+///
+/// A scan finds a first loss. Orbits from the configured start may be lost far below it: in gaps about
+/// resonances, or at single steps in chaos that takes its time. A second scan begins at a hundredth of
+/// the first loss, much finer and with runs four times as long. Then the last interval is narrowed
+/// down; bisection alone would find some end of some gap.
+pub(super) fn loss<M: Model<D>, const D: usize>(
+    problem: &Problem<M, D>,
+    execution: &Execution,
+    orbits: Orbits,
+    method: Method,
+    steps: u64,
+) -> Result<Option<Loss>, StudyError>
+where
+    M::On<f64>: Send + Sync,
+{
+    let Some((omega, start)) = begin(problem, orbits) else { return Ok(None) };
+    // The first of `count` equidistant steps that loses the orbit.
+    let scan = |from: f64, width: f64, count: u32, steps: u64| {
+        let z = |i: u32| from + width * f64::from(i);
+        let dts: Vec<f64> = (1..=count).map(|i| z(i) / omega).collect();
+        let lost = first_lost(execution, problem, orbits, &start, method, &dts, steps)?;
+        Ok::<_, StudyError>(lost.map(|i| z(i as u32 + 1)))
+    };
+    let mut width = 0.05;
+    let Some(mut first) = scan(0.0, width, (FURTHEST / width).round() as u32, steps)? else {
+        return Ok(None);
+    };
+    if first <= width {
+        return Ok(Some(Loss { dt: 0.0, apart: width / omega }));
+    }
+    // About the equilibrium growth is monotone in the step: there are no gaps to be found.
+    let steps = if orbits == Orbits::Configured { 4 * steps } else { steps };
+    if orbits == Orbits::Configured {
+        let from = 0.01 * first;
+        width = (first - from) / f64::from(FINE);
+        first = scan(from, width, FINE, steps)?.unwrap_or(first);
+    }
+    let (mut low, mut high) = (first - width, first);
+    while high - low > 1e-6 * high {
+        // The lowest of many points that is lost, not the one in the middle.
+        let part = (high - low) / f64::from(PARTS);
+        match scan(low, part, PARTS - 1, steps)? {
+            Some(z) => (low, high) = (z - part, z),
+            None => low = high - part,
+        }
+    }
+    Ok(Some(Loss { dt: low / omega, apart: width / omega }))
+}
+
+/// The frequency in which time steps are counted, and a start; none of small orbits without an
+/// equilibrium about which something oscillates.
+fn begin<M: Model<D>, const D: usize>(
+    problem: &Problem<M, D>,
+    orbits: Orbits,
+) -> Option<(f64, State<f64, D>)> {
+    match orbits {
+        Orbits::Configured => Some((std::f64::consts::TAU / problem.turn, problem.start)),
+        Orbits::Small => {
+            let omega = frequency(problem)?;
+            Some((omega, displaced(problem, omega)?))
+        }
+    }
+}
+
+/// A state near the equilibrium, off it in every coordinate.
+fn displaced<M: Model<D>, const D: usize>(
+    problem: &Problem<M, D>,
+    omega: f64,
+) -> Option<State<f64, D>> {
+    let at = problem.equilibrium?;
+    let reach = distance(&problem.start, &at, omega).max(f64::MIN_POSITIVE) * SMALL;
+    let off = |i: usize| reach * (1.0 + 0.3 * i as f64);
+    Some(State {
+        q: core::array::from_fn(|i| at.q[i] + off(i)),
+        v: core::array::from_fn(|i| at.v[i] - omega * off(i + D)),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use libration::system::{Kepler, Pendulum};
+
+    use super::*;
+
+    /// Velocity Verlet loses single orbits in gaps of about 10⁻⁵ s, which a scan in steps of 1 ms and
+    /// of 0.3 ms does not see: such scans find 0.2046 s and 0.3919 s.
+    #[test]
+    fn narrow_gaps_are_seen() {
+        let (orbits, method) = (Orbits::Configured, Method::VelocityVerlet);
+        let start = State { q: [0.4, 0.0], v: [0.0, 2.0] };
+        let kepler = Problem::new("kepler", Kepler { mu: 1.0 }, start, std::f64::consts::TAU);
+        let found = loss(&kepler, &Execution::serial(), orbits, method, 1_000).unwrap().unwrap();
+        assert!(found.dt < 0.2010 && found.apart < 4e-5, "{found:?}");
+
+        let start = State { q: [2.0], v: [0.0] };
+        let turn = std::f64::consts::TAU / 9.81_f64.sqrt();
+        let pendulum = Problem::new("pendulum", Pendulum { omega2: 9.81 }, start, turn);
+        let found = loss(&pendulum, &Execution::serial(), orbits, method, 1_000).unwrap().unwrap();
+        assert!(found.dt < 0.3903 && found.apart < 1e-4, "{found:?}");
+    }
+}

@@ -1,0 +1,113 @@
+//! The studies that a laboratory has, and their common configuration.
+
+use libration_settings::{Document, Fault, SettingsError};
+use schemars::generate::SchemaSettings;
+use schemars::json_schema;
+use serde_json::{Value, json};
+
+use crate::file::{File, KEYS, TEXT};
+use crate::settings::{Misread, Section};
+use crate::{Config, Study, schema};
+
+/// The studies that a laboratory has, in the order of its report.
+#[derive(Clone, Copy)]
+pub struct Registry {
+    /// All of them.
+    pub studies: &'static [&'static dyn Study],
+}
+
+impl Registry {
+    /// The study of that name, if there is one.
+    pub fn by_name(&self, name: &str) -> Option<&'static dyn Study> {
+        self.studies.iter().copied().find(|study| study.name() == name)
+    }
+
+    /// The names of the studies.
+    pub fn names(&self) -> Vec<&'static str> {
+        self.studies.iter().map(|study| study.name()).collect()
+    }
+
+    /// The default configuration: the setting of the source report (§4.3, §9.1).
+    pub fn config(&self) -> Config {
+        let mut config = Config::default();
+        self.sections().for_each(|section| config.settings.put((section.default)()));
+        config
+    }
+
+    /// The default configuration as a TOML file with comments, ready to edit.
+    pub fn text(&self) -> String {
+        let tables = self.sections().map(|section| format!("\n{}", section.text));
+        [TEXT.to_owned()].into_iter().chain(tables).collect()
+    }
+
+    /// Checks every value of a configuration; the order of lists is free.
+    ///
+    /// # Errors
+    /// The first value that is not allowed.
+    pub fn check(&self, config: &Config) -> Result<(), Fault> {
+        config.check(&self.names())
+    }
+
+    /// Reads a configuration; keys that are not given take their defaults.
+    ///
+    /// # Errors
+    /// What is wrong with `text`, and where; `file_name` is only shown.
+    pub fn parse(&self, text: &str, file_name: &str) -> Result<Config, SettingsError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let document = Document::parse(text, file_name)?;
+        let sections: Vec<Section> = self.sections().collect();
+        let keys: Vec<&str> =
+            KEYS.into_iter().chain(sections.iter().map(|section| section.name)).collect();
+        document.check_keys(&keys)?;
+        let file: File = toml::from_str(text).map_err(|error| document.explain(&error))?;
+        let mut config = Config::try_from(file).map_err(|fault| document.locate(fault))?;
+        for section in sections {
+            let settings = (section.read)(text).map_err(|misread| match misread {
+                Misread::Shape(error) => document.explain(&error),
+                Misread::Value(fault) => document.locate(fault),
+            })?;
+            config.settings.put(settings);
+        }
+        self.check(&config).map_err(|fault| document.locate(fault))?;
+        Ok(config.sorted())
+    }
+
+    /// Reads a configuration from the bytes of a file.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse), and if the bytes are not UTF-8.
+    pub fn parse_bytes(&self, bytes: &[u8], file_name: &str) -> Result<Config, SettingsError> {
+        match std::str::from_utf8(bytes) {
+            Ok(text) => self.parse(text, file_name),
+            Err(error) => Err(SettingsError::not_utf8(bytes, error, file_name)),
+        }
+    }
+
+    /// The JSON schema of a configuration file.
+    pub fn schema(&self) -> Value {
+        let settings = SchemaSettings::draft2020_12().with(|s| s.inline_subschemas = true);
+        let mut generator = settings.into_generator();
+        let mut root = generator.root_schema_for::<File>();
+        root.insert("additionalProperties".to_owned(), json!(false));
+        let studies = json_schema!({
+            "default": [],
+            "description": "The studies to run, in this order; all of them if empty.",
+            "type": "array",
+            "uniqueItems": true,
+            "items": schema::one_of(&self.names()),
+        });
+        let properties = root.ensure_object().get_mut("properties").and_then(Value::as_object_mut);
+        if let Some(properties) = properties {
+            properties.insert("studies".to_owned(), studies.to_value());
+            for section in self.sections() {
+                let schema = (section.schema)(&mut generator).to_value();
+                properties.insert(section.name.to_owned(), schema);
+            }
+        }
+        root.to_value()
+    }
+
+    fn sections(&self) -> impl Iterator<Item = Section> {
+        self.studies.iter().filter_map(|study| study.settings())
+    }
+}
