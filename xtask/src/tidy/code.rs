@@ -81,7 +81,8 @@ fn raw_string(rest: &str) -> Option<usize> {
     Some(rest.len() - body.len() + length)
 }
 
-fn is_word(c: char) -> bool {
+/// Whether `c` can be part of a name.
+pub(super) fn is_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
@@ -100,6 +101,12 @@ pub(super) fn prefixes<'a>(code: &'a str, prefix: &'a str) -> impl Iterator<Item
 /// Whether `word` stands in `code`.
 pub(super) fn has_word(code: &str, word: &str) -> bool {
     words(code, word).next().is_some()
+}
+
+/// The name that `code` begins with, after blanks; empty where there is none.
+pub(super) fn leading_name(code: &str) -> &str {
+    let code = code.trim_start();
+    &code[..code.find(|c| !is_word(c)).unwrap_or(code.len())]
 }
 
 /// The line of the character at `offset`, counted from one.

@@ -2,16 +2,24 @@
 //!
 //! A finding names the place and says what to change. One file a rule, its test at the foot.
 
+mod circles;
 pub(crate) mod code;
+mod crate_file;
+mod crate_modules;
 mod finding;
 mod integrator;
+mod layers;
 mod length;
 mod machine;
 mod manifest;
+mod paths;
 mod purity;
 mod safety;
 mod simd;
+mod size;
 mod source;
+mod studies;
+mod test_items;
 mod unfinished;
 mod whitespace;
 
@@ -31,12 +39,18 @@ const RULES: [fn(&Source) -> Vec<Finding>; 8] = [
     whitespace::check,
 ];
 
+/// Rules that look at all files together.
+const COMMON_RULES: [CommonRule; 5] =
+    [circles::check, integrator::check, layers::check, size::check, studies::check];
+
+type CommonRule = fn(&[Source]) -> Vec<Finding>;
+
 /// Reads the tracked sources and prints what breaks a rule.
 pub(crate) fn run() -> Outcome {
     let sources = source::tracked(&workspace::root())?;
     let mut findings: Vec<Finding> =
         sources.iter().flat_map(|source| RULES.iter().flat_map(|rule| rule(source))).collect();
-    findings.extend(integrator::check(&sources));
+    findings.extend(COMMON_RULES.iter().flat_map(|rule| rule(&sources)));
     findings.sort();
     for finding in &findings {
         println!("{finding}");

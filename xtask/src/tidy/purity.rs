@@ -72,6 +72,15 @@ mod tests {
     }
 
     #[test]
+    fn every_crate_of_the_engine_is_covered() {
+        for name in ["libration", "libration-analysis", "libration-batch", "libration-core"] {
+            for file in ["lib.rs", "a/b.rs"] {
+                assert_eq!(lines(&format!("crates/{name}/src/{file}"), "use std::fs;"), [1]);
+            }
+        }
+    }
+
+    #[test]
     fn mathematics_comments_and_other_crates_pass() {
         let engine = "crates/libration-core/src/state.rs";
         assert!(lines(engine, "use std::{array, f64::consts};").is_empty());

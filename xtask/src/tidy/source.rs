@@ -46,6 +46,14 @@ impl Source {
         (1..).zip(self.code.lines())
     }
 
+    /// The folder `…/src/` of the crate whose Rust this is; none for tests and examples.
+    pub(super) fn crate_folder(&self) -> Option<&str> {
+        let crates = if self.path.starts_with("xtask/") { "" } else { "crates/" };
+        let (name, _) = self.path.strip_prefix(crates)?.split_once("/src/")?;
+        let is_crate = self.path.ends_with(".rs") && !name.contains('/');
+        is_crate.then(|| &self.path[..crates.len() + name.len() + "/src/".len()])
+    }
+
     /// The name without folders.
     pub(super) fn file_name(&self) -> &str {
         self.path.rsplit('/').next().unwrap_or_default()
