@@ -4,11 +4,12 @@ use libration_core::Scalar;
 use libration_core::control::LqrWeights;
 use libration_core::number::Wide;
 
+use super::dense_matrix::Matrix;
 use super::drawn::Drawn;
 use super::imperfections::{MOST_RANDOM, MOST_REPEATED};
 use super::jitter::{Averages, MOST_TURN};
 use super::stage::{Making, Stage};
-use super::waiting::{Matrix, Waiting};
+use super::waiting::Waiting;
 use super::{CostError, Imperfections, LinearController, Plant};
 
 impl Plant<'_> {

@@ -1,8 +1,8 @@
 //! Second moments of a loop whose steps are drawn.
 
+use super::dense_matrix::{Matrix, decays, growth, product, scale, transposed};
 use super::linear::solved;
 use super::stage::Stage;
-use super::waiting::{Matrix, decays, growth, product, scale, transposed};
 
 /// The steps of a loop, each drawn for itself: their mean, and in which few rows and how far each is off.
 ///

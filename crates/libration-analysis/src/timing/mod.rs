@@ -5,6 +5,7 @@
 
 mod circle;
 mod cost;
+mod dense_matrix;
 mod drawn;
 mod held_step;
 mod hidden_latency;

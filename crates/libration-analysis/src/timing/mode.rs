@@ -3,7 +3,7 @@
 use libration_core::Scalar;
 use libration_core::number::Wide;
 
-use super::waiting::{Matrix, growth};
+use super::dense_matrix::{Matrix, growth};
 use super::{CostError, Imperfections, LinearController, Plant};
 use crate::Complex;
 use crate::eigenvalues::{characteristic_polynomial, roots};

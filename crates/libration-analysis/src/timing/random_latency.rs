@@ -3,7 +3,8 @@
 use libration_core::State;
 use libration_core::control::{Feedback, Latency, RandomLatency};
 
-use super::waiting::{Matrix, Waiting, growth, product, symmetric_square, transposed};
+use super::dense_matrix::{Matrix, growth, product, symmetric_square, transposed};
+use super::waiting::Waiting;
 use super::{LinearController, Plant};
 
 impl Plant<'_> {

@@ -6,10 +6,10 @@ use libration_core::Scalar;
 use libration_core::control::{Jitter, LqrWeights};
 use libration_core::number::Wide;
 
+use super::dense_matrix::{Matrix, growth, product, scale, transposed};
 use super::drawn::accumulated;
 use super::imperfections::{MOST_RANDOM, MOST_REPLAYED};
 use super::stage::{Making, Stage, mean_square};
-use super::waiting::{Matrix, growth, product, scale, transposed};
 use super::{CostError, Imperfections, LinearController, Plant};
 
 /// Steps are rounded to such a part of a period: those of a clock are not known better, and thousands of them are few then.

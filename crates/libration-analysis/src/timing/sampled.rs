@@ -3,7 +3,7 @@
 use libration_core::control::LqrWeights;
 
 use super::Plant;
-use super::waiting::{Matrix, product};
+use super::dense_matrix::exponential;
 
 /// An exact step of `h` seconds under white noise of unit intensity.
 #[derive(Clone, Copy, Debug)]
@@ -69,28 +69,6 @@ impl Plant<'_> {
 fn last_column<const N: usize>(a: &[[f64; N]; N], h: f64) -> [f64; N] {
     let power = exponential(a.iter().map(|row| row.iter().map(|x| x * h).collect()).collect());
     core::array::from_fn(|i| power[i][N - 1])
-}
-
-/// `exp(a)`, by Taylor's series of a small part, squared as often as it takes.
-pub(super) fn exponential(a: Matrix) -> Matrix {
-    // A part of norm below ½ has terms that fall by a half and a factorial: 2⁻²⁰/20! is 4·10⁻²⁵.
-    const TERMS: u32 = 20;
-    let n = a.len();
-    let norm = a.iter().map(|row| row.iter().map(|x| x.abs()).sum::<f64>()).fold(0.0, f64::max);
-    let halvings = if norm > 0.5 { (norm.log2().ceil() as i32 + 1).clamp(0, 1000) } else { 0 };
-    let scale = 2.0_f64.powi(-halvings);
-    let small: Matrix = a.iter().map(|row| row.iter().map(|x| x * scale).collect()).collect();
-    let unit: Matrix =
-        (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();
-    // Horner's rule: 1 + s(1 + s/2(1 + s/3(…))).
-    let mut sum = unit.clone();
-    for k in (1..=TERMS).rev() {
-        sum = product(&small, &sum);
-        for (row, unit) in sum.iter_mut().zip(&unit) {
-            row.iter_mut().zip(unit).for_each(|(x, unit)| *x = *x / f64::from(k) + unit);
-        }
-    }
-    (0..halvings).fold(sum, |power, _| product(&power, &power))
 }
 
 #[cfg(test)]

@@ -3,8 +3,8 @@
 use libration_core::number::Wide;
 use libration_core::{Scalar, State};
 
+use super::dense_matrix::exponential;
 use super::latency::SplitStep;
-use super::sampled::exponential;
 use super::{HeldStep, Plant};
 
 /// `y' = Φy + γ_old·u_old + γ_new·u_new`.

@@ -4,7 +4,8 @@ use libration_core::Scalar;
 use libration_core::control::{Latency, LqrWeights};
 use libration_core::number::Wide;
 
-use super::waiting::{Matrix, Waiting, symmetric_square};
+use super::dense_matrix::{Matrix, symmetric_square};
+use super::waiting::Waiting;
 use super::{LinearController, Plant};
 
 /// One of the steps that a loop may take, with its probability.

@@ -7,10 +7,10 @@ use libration_core::random::Purpose;
 use libration_core::{Float, State};
 
 use super::block::{BlockOf, OVER};
+use super::block_size::LANES;
 use super::draws::Draws;
 use super::error::NOTHING_DRAWN;
 use super::history::History;
-use super::kernel::LANES;
 use super::start::Episode;
 use super::{
     Autoreset, Environment, EnvironmentError, Sensor, Start, Task, Variation, World, block,

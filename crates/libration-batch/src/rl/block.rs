@@ -4,8 +4,8 @@ use libration_core::control::{Begin, Clock, Memory};
 use libration_core::random::Streams;
 use libration_core::{Float, Scalar, State};
 
+use super::block_size::LANES;
 use super::history::History;
-use super::kernel::LANES;
 use super::start::Episode;
 use super::{Start, Variation, World};
 use crate::ensemble::kernel::{at, put};

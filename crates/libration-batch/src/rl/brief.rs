@@ -7,8 +7,8 @@ use libration_core::system::Held;
 use libration_core::{Float, Integrator};
 
 use super::block::BlockOf;
+use super::block_size::LANES;
 use super::draws::renew;
-use super::kernel::LANES;
 use super::row::{Records, Row, Writer};
 use super::stage::{Site, Stage, judged, lane};
 use super::yields::Step;

@@ -5,8 +5,8 @@ use libration_core::Float;
 use libration_core::control::Memory;
 
 use super::block::{BlockOf, CUT, ClockMemory, Numbers, OVER};
+use super::block_size::LANES;
 use super::draws::Draws;
-use super::kernel::LANES;
 use super::{Environments, World, block};
 use crate::checkpoint::{Checkpoint, CheckpointError, Reader, Trait};
 

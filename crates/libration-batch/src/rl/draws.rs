@@ -7,7 +7,7 @@ use libration_core::Scalar;
 use libration_core::random::{EPOCH, Purpose, Streams};
 
 use super::block::Block;
-use super::kernel::LANES;
+use super::block_size::LANES;
 
 /// The words of all blocks for one purpose, as they are before some step.
 #[derive(Clone, Debug)]

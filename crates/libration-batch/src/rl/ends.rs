@@ -4,28 +4,11 @@ use libration_core::Float;
 use libration_core::random::Streams;
 
 use super::block::{BlockOf, CUT, LOST, OVER};
-use super::kernel::LANES;
+use super::block_size::LANES;
 use super::stage::{Site, Stage};
 use super::yields::Yield;
-use super::{Autoreset, Place, Policy, World, block};
+use super::{Autoreset, Final, Place, Policy, World, block};
 use crate::ensemble::kernel::at;
-
-/// The end of an episode.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Final<T, const O: usize> {
-    /// In which step of the rollout.
-    pub step: usize,
-    /// Of which environment.
-    pub environment: usize,
-    /// What was seen last, before the next episode began.
-    pub observation: [T; O],
-    /// What the episode paid in all: the sum of sums of at most 32 rewards in the float type.
-    pub episode_return: f64,
-    /// Its actions.
-    pub length: u64,
-    /// Whether the environment was lost: its state, its action or what it was paid was no finite number.
-    pub lost: bool,
-}
 
 impl<T, E, P, const O: usize, const D: usize> Stage<'_, T, E, P, O, D>
 where

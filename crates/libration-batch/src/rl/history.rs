@@ -5,7 +5,7 @@ use core::ops::Range;
 use libration_core::{Float, State};
 
 use super::Delays;
-use super::kernel::LANES;
+use super::block_size::LANES;
 
 /// Where the past of a block lies: states at the beginning of the last steps of the integrator, `2·D` rows each, and the last
 /// actions, `D` rows each, both in a ring.

@@ -6,6 +6,7 @@ use libration_core::random::Streams;
 use pulp::{Simd, WithSimd};
 
 use super::block::BlockOf;
+use super::block_size::{LANES, TILE};
 use super::history::History;
 use super::row::{Records, Writer};
 use super::stage::{Site, Stage};
@@ -15,13 +16,6 @@ use super::{Final, Place, Policy, Sensor, World, Writes};
 use crate::ensemble::Assign;
 use crate::ensemble::instructions::{Target, Targeted};
 use crate::ensemble::stream::Streaming;
-
-/// Environments of a block. A flag of each is a byte, and that many fill a line of the cache.
-pub(super) const LANES: usize = 64;
-
-/// Environments that go through the horizon together: their rows are long enough to be written at the speed of the memory, and
-/// their states stay in the first cache.
-pub(super) const TILE: usize = 8 * LANES;
 
 /// Neighbouring environments of a thread, in whole blocks.
 pub(super) struct Share<'a, T, B> {

@@ -5,7 +5,7 @@ use libration_core::integrator::WithIntegrator;
 use libration_core::system::{Held, WithSystem};
 use libration_core::{Float, Integrator, State, System};
 
-use super::kernel::LANES;
+use super::block_size::LANES;
 use crate::ensemble::Loop;
 use crate::ensemble::instructions::Target;
 use crate::ensemble::kernel::{at, put};

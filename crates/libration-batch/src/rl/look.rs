@@ -5,7 +5,7 @@ use libration_core::Float;
 use libration_core::random::Streams;
 
 use super::block::BlockOf;
-use super::kernel::LANES;
+use super::block_size::LANES;
 use super::row::interleave;
 use super::stage::{Site, Stage};
 use super::strip::first_of;

@@ -13,12 +13,15 @@
 
 mod batch;
 mod block;
+mod block_size;
 mod brief;
 mod checkpoint;
 mod delays;
+mod deviation;
 mod draws;
 mod ends;
 mod environment;
+mod episode_end;
 mod error;
 mod estimates;
 mod history;
@@ -43,8 +46,8 @@ mod yields;
 
 pub use batch::Environments;
 pub use delays::Delays;
-pub use ends::Final;
 pub use environment::{Autoreset, Environment, Parts, World};
+pub use episode_end::Final;
 pub use error::EnvironmentError;
 pub use estimates::{Discounts, Estimates};
 pub use plan::{Layout, Plan, Writes};

@@ -1,6 +1,6 @@
 //! How large a rollout is to be.
 
-use super::kernel::LANES;
+use super::block_size::LANES;
 use crate::ensemble::Execution;
 
 /// The shortest steps that take as long as a transition.

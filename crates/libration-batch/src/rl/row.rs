@@ -3,7 +3,7 @@
 use bytemuck::Pod;
 use libration_core::Float;
 
-use super::kernel::LANES;
+use super::block_size::LANES;
 use super::yields::{Step, Yield};
 use super::{Layout, Writes};
 use crate::ensemble::instructions::Target;

@@ -9,8 +9,9 @@ use libration_core::Float;
 use libration_core::control::Clock;
 use libration_core::control::error::ensure;
 
+use super::block_size::{LANES, TILE};
 use super::error::NOTHING_DRAWN;
-use super::kernel::{Horizon, LANES, Share, TILE};
+use super::kernel::{Horizon, Share};
 use super::strip::{Strip, first_of, rows_of};
 use super::{
     Autoreset, EnvironmentError, Environments, Final, Layout, Plan, Policy, Rollout, Sensor, World,

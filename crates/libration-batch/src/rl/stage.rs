@@ -6,11 +6,11 @@ use libration_core::system::Held;
 use libration_core::{Float, Integrator, State};
 
 use super::block::{BlockOf, LOST, NumberLanes};
+use super::block_size::LANES;
+use super::deviation::worse;
 use super::draws::renew;
 use super::history::History;
-use super::kernel::LANES;
 use super::lanes::Lanes;
-use super::wrong::worse;
 use super::yields::{Step, Yield};
 use super::{Autoreset, Parts, Place, Policy, Sensor, Task, Variation, World, block};
 use crate::ensemble::Assign;

@@ -5,7 +5,8 @@ use libration_core::random::Streams;
 use libration_core::{Float, Integrator, System};
 
 use super::block::{BlockOf, ClockMemory};
-use super::kernel::LANES;
+use super::block_size::LANES;
+use super::deviation::worse;
 use super::stage::Stage;
 use super::{Policy, Variation, World};
 use crate::ensemble::Assign;
@@ -103,10 +104,4 @@ where
         }
         commands
     }
-}
-
-/// What is, if it is so many times as far from what should be: with a factor of 1, what is to the last bit.
-#[inline(always)]
-pub(super) fn worse<T: Float>(is: T, should_be: T, factor: T) -> T {
-    is + (factor - T::one()) * (is - should_be)
 }

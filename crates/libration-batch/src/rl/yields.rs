@@ -3,7 +3,7 @@
 use libration_core::Float;
 
 use super::Final;
-use super::kernel::LANES;
+use super::block_size::LANES;
 
 /// The numbers of a step of a block, before they are written. It begins with a line of the cache, as each of its rows does: no
 /// vector lies across two.

@@ -2,6 +2,7 @@
 
 mod bits;
 mod compensated;
+mod conversion;
 mod dual;
 mod float;
 mod half;

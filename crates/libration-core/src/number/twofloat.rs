@@ -2,7 +2,6 @@
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::Wide;
 use crate::{Elementary, Float, Scalar};
 
 /// The unevaluated sum `hi + lo` of two `f64`, with `hi` its value rounded to nearest.
@@ -186,14 +185,6 @@ const INVERSE_FACTORIAL: [TwoFloat; 2 * TERMS] = {
     }
     table
 };
-
-impl From<Wide> for TwoFloat {
-    /// The nearest double-double.
-    fn from(x: Wide) -> Self {
-        let hi = x.to_f64();
-        TwoFloat::from_sum(hi, (x - Wide::from_f64(hi)).to_f64())
-    }
-}
 
 impl Add for TwoFloat {
     type Output = Self;

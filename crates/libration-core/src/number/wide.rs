@@ -8,7 +8,6 @@ use bnum::cast::As;
 use bnum::types::{U1024, U2048};
 
 use super::bits::{decode, nearest_f64};
-use super::{Ratio, TwoFloat};
 use crate::Scalar;
 
 mod functions;
@@ -30,7 +29,7 @@ const LIMIT: i64 = 1 << 61;
 ///
 /// `+`, `-` and `*` round to nearest: their relative error is at most 2⁻¹⁰²⁴(1 + 2⁻¹²⁵), also when
 /// terms nearly cancel; the last factor is for sums of terms more than 127 bits apart. `/`, `sqrt`
-/// and the conversion from [`Ratio`] err by at most 2⁻¹⁰²²; the functions state their own bounds.
+/// and the conversion from [`Ratio`](super::Ratio) err by at most 2⁻¹⁰²²; the functions state their own bounds.
 /// There is no infinity: what has no value (`1/0`, `√−1`, an exponent beyond
 /// ±2⁶¹) is NaN, which propagates and compares with nothing.
 #[derive(Clone, Copy)]
@@ -50,7 +49,11 @@ impl Wide {
     pub const NAN: Self = Wide { negative: false, exponent: 1, significand: U1024::MIN };
 
     /// `±magnitude · 2^exponent`, rounded to nearest.
-    fn rounded<const N: usize>(negative: bool, magnitude: Uint<N>, exponent: i64) -> Self {
+    pub(super) fn rounded<const N: usize>(
+        negative: bool,
+        magnitude: Uint<N>,
+        exponent: i64,
+    ) -> Self {
         let width = magnitude.bit_width();
         if width == 0 {
             return Wide::ZERO;
@@ -260,21 +263,6 @@ impl Neg for Wide {
     type Output = Self;
     fn neg(self) -> Self {
         Wide { negative: !self.negative && !self.significand.is_zero(), ..self }
-    }
-}
-
-impl From<Ratio> for Wide {
-    fn from(ratio: Ratio) -> Self {
-        let Some((negative, num, den, exponent)) = ratio.parts() else { return Wide::NAN };
-        let den = Wide::rounded(false, den, 0);
-        Wide::rounded(negative, num, 0).scaled(exponent.into()) / den
-    }
-}
-
-impl From<TwoFloat> for Wide {
-    /// Exact.
-    fn from(x: TwoFloat) -> Self {
-        Wide::from_f64(x.hi()) + Wide::from_f64(x.lo())
     }
 }
 
