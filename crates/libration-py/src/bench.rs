@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use libration::rl::{EnvironmentError, Outcome, Plan};
+use libration::rl::{EnvironmentError, Plan, StepBuffers};
 use pyo3::prelude::*;
 
 use crate::acts::{Acts, Told};
@@ -72,7 +72,7 @@ fn timed<T: Number>(table: &mut dyn Table<T>, len: usize, steps: usize) -> PyRes
     let (mut terminated, mut truncated) = (vec![0; len], vec![0; len]);
     let start = Instant::now();
     for _ in 0..steps {
-        let to = Outcome {
+        let to = StepBuffers {
             seen: &mut seen,
             reward: &mut reward,
             terminated: &mut terminated,

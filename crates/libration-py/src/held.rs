@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use libration::checkpoint::CheckpointError;
 use libration::ensemble::Execution;
-use libration::rl::policy::Given;
-use libration::rl::{EnvironmentError, Outcome, Plan, Rollout};
+use libration::rl::policy::ActionSequence;
+use libration::rl::{EnvironmentError, Plan, Rollout, StepBuffers};
 use libration_env::environments::{Actor, Batch, Recipe, Visit};
 
 use crate::acts::Acts;
@@ -26,7 +26,7 @@ pub(crate) struct Ends<T> {
 pub(crate) trait Table<T>: Send {
     fn observations(&self) -> usize;
 
-    fn act(&mut self, actions: &[T], to: Outcome<'_, T>) -> Result<Ends<T>, EnvironmentError>;
+    fn act(&mut self, actions: &[T], to: StepBuffers<'_, T>) -> Result<Ends<T>, EnvironmentError>;
 
     fn tensors(&self, plan: Plan) -> Result<Box<dyn Tensors<T>>, EnvironmentError>;
 
@@ -59,8 +59,8 @@ impl<T: Number, const O: usize> Table<T> for Box<dyn Batch<T, O>> {
         O
     }
 
-    fn act(&mut self, actions: &[T], to: Outcome<'_, T>) -> Result<Ends<T>, EnvironmentError> {
-        let ends = (**self).act(Actor::Given(Given(actions)), to)?;
+    fn act(&mut self, actions: &[T], to: StepBuffers<'_, T>) -> Result<Ends<T>, EnvironmentError> {
+        let ends = (**self).act(Actor::Given(ActionSequence(actions)), to)?;
         Ok(Ends {
             environments: ends.iter().map(|end| end.environment).collect(),
             seen: ends.iter().flat_map(|end| end.observation).collect(),

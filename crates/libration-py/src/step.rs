@@ -2,7 +2,7 @@
 
 use std::iter::repeat_with;
 
-use libration::rl::{Autoreset, Outcome};
+use libration::rl::{Autoreset, StepBuffers};
 use libration_env::environments::Recipe;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -185,7 +185,7 @@ pub(crate) fn take<'py, T: Number>(
     };
     let (seen, reward) = (room(seen), room(reward));
     let (terminated, truncated) = (bytes_of(terminated), bytes_of(truncated));
-    let to = Outcome { seen, reward, terminated: &mut *terminated, truncated: &mut *truncated };
+    let to = StepBuffers { seen, reward, terminated: &mut *terminated, truncated: &mut *truncated };
     let act = || table.act(actions, to);
     let ends = if books.len.saturating_mul(books.substeps) > WORTH_A_LOCK {
         py.detach(act)

@@ -3,7 +3,7 @@
 use std::any::Any;
 
 use libration::ensemble::Execution;
-use libration::rl::{Discounts, EnvironmentError, Estimates, Final, Plan, Rollout};
+use libration::rl::{Discounts, EnvironmentError, EpisodeEnd, Estimates, Plan, Rollout};
 
 use crate::array::Number;
 
@@ -72,8 +72,8 @@ impl<T: Number, const O: usize> Tensors<T> for Rollout<T, O, 1> {
 
     fn ends(&self) -> Ended<T> {
         fn column<X, T, const O: usize>(
-            ends: &[Final<T, O>],
-            of: impl Fn(&Final<T, O>) -> X,
+            ends: &[EpisodeEnd<T, O>],
+            of: impl Fn(&EpisodeEnd<T, O>) -> X,
         ) -> Vec<X> {
             ends.iter().map(of).collect()
         }

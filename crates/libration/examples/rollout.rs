@@ -9,7 +9,7 @@ use libration::control::{Feedback, Latency};
 use libration::ensemble::{All, Execution};
 use libration::integrator::VelocityVerlet;
 use libration::rl::policy::Linear;
-use libration::rl::start::Between;
+use libration::rl::start::UniformStart;
 use libration::rl::task::Regulate;
 use libration::rl::{Delays, Environment, Environments, Plan, Rollout};
 use libration::system::Oscillator;
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (count, horizon) = (1024, 4000);
     let system = Oscillator { omega2: 10.0_f32 };
     let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.01, bound: 3.0 };
-    let start = Between(State { q: [-1.0], v: [-1.0] }, State { q: [1.0], v: [1.0] });
+    let start = UniformStart(State { q: [-1.0], v: [-1.0] }, State { q: [1.0], v: [1.0] });
     let policy = Linear { weights: [[-GAINS.position, -GAINS.velocity]], bias: [0.0] };
     let model = Oscillator { omega2: 10.0 };
     let plant = Plant::new(VelocityVerlet, model, State { q: [0.0], v: [0.0] }, DT);

@@ -6,7 +6,7 @@ use libration::control::clock::{Gaussian, Jittered};
 use libration::ensemble::{All, Ensemble, Execution};
 use libration::integrator::{Rk4, VelocityVerlet};
 use libration::rl::policy::Linear;
-use libration::rl::start::At;
+use libration::rl::start::FixedStart;
 use libration::rl::task::Regulate;
 use libration::rl::{Delays, Environment, Environments, Plan, Rollout};
 use libration::simulation::{EnergyDrift, Simulator};
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.01, bound: 10.0 };
     let spring = All(Oscillator { omega2: 10.0_f32 });
-    let robot = Environment::new(spring, VelocityVerlet, 0.01, task, At(start))
+    let robot = Environment::new(spring, VelocityVerlet, 0.01, task, FixedStart(start))
         .limit(200)
         .delays(Delays::of(0, 2))
         .clock(Jittered(Gaussian(0.1)));

@@ -1,6 +1,6 @@
 //! Values that trajectories share or have each for themselves.
 
-/// A value for every trajectory of an ensemble: [one for all](All) or [one each](Each).
+/// A value for every trajectory of an ensemble: [one for all](All) or [one each](PerTrajectory).
 pub trait Assign<X>: Copy + Send + Sync {
     /// The values of a block of `W` neighbouring trajectories.
     type Lanes<const W: usize>: Copy;
@@ -27,7 +27,7 @@ pub struct All<X>(pub X);
 
 /// A value of its own for each trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Each<'a, X>(pub &'a [X]);
+pub struct PerTrajectory<'a, X>(pub &'a [X]);
 
 impl<X: Copy + Send + Sync> Assign<X> for All<X> {
     type Lanes<const W: usize> = X;
@@ -55,7 +55,7 @@ impl<X: Copy + Send + Sync> Assign<X> for All<X> {
     }
 }
 
-impl<X: Copy + Send + Sync> Assign<X> for Each<'_, X> {
+impl<X: Copy + Send + Sync> Assign<X> for PerTrajectory<'_, X> {
     type Lanes<const W: usize> = [X; W];
 
     #[inline(always)]

@@ -31,7 +31,7 @@ use bytemuck::Pod;
 
 #[cfg(not(test))]
 pub use any::{AnyEnsemble, BatchFloat};
-pub use assign::{All, Assign, Each};
+pub use assign::{All, Assign, PerTrajectory};
 pub use buffer::{Buffer, Pages};
 pub use error::EnsembleError;
 pub use execution::{Execution, MOST_THREADS};

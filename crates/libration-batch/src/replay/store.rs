@@ -30,13 +30,13 @@ pub(super) const NONE: u8 = 8;
 /// use libration::replay::{Batch, Capacity, Draw, Lookahead, Replay};
 /// use libration::rl::policy::Random;
 /// use libration::rl::{Environment, Environments, Plan, Rollout};
-/// use libration::rl::{start::At, task::Regulate};
+/// use libration::rl::{start::FixedStart, task::Regulate};
 /// use libration::system::Oscillator;
 ///
 /// # fn main() -> Result<(), libration::replay::ReplayError> {
 /// let spring = All(Oscillator { omega2: 10.0_f32 });
 /// let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
-/// let start = At(State { q: [1.0], v: [0.0] });
+/// let start = FixedStart(State { q: [1.0], v: [0.0] });
 /// let environment = Environment::new(spring, VelocityVerlet, 0.01, task, start).limit(200);
 /// let mut all = Environments::new(environment, 64, 7, Execution::serial())?;
 /// let mut rollout = Rollout::new(Plan::new(100, 64).truncated())?;

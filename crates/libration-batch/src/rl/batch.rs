@@ -8,7 +8,7 @@ use libration_core::{Float, State};
 
 use super::block::{BlockOf, OVER};
 use super::block_size::LANES;
-use super::draws::Draws;
+use super::episode_streams::EpisodeStreams;
 use super::error::NOTHING_DRAWN;
 use super::history::History;
 use super::start::Episode;
@@ -26,13 +26,13 @@ use crate::ensemble::{Assign, EnsembleError, Execution, NoRoom};
 /// use libration::integrator::SymplecticEuler;
 /// use libration::rl::policy::Linear;
 /// use libration::rl::{Delays, Environment, Environments, Plan, Rollout};
-/// use libration::rl::{start::Between, task::Regulate};
+/// use libration::rl::{start::UniformStart, task::Regulate};
 /// use libration::system::Oscillator;
 ///
 /// # fn main() -> Result<(), libration::rl::EnvironmentError> {
 /// let spring = All(Oscillator { omega2: 10.0_f32 });
 /// let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
-/// let start = Between(State { q: [-1.0], v: [0.0] }, State { q: [1.0], v: [0.0] });
+/// let start = UniformStart(State { q: [-1.0], v: [0.0] }, State { q: [1.0], v: [0.0] });
 /// let environment = Environment::new(spring, SymplecticEuler, 0.01, task, start)
 ///     .limit(200)
 ///     .delays(Delays::of(0, 1))
@@ -63,7 +63,7 @@ where
     pub(super) history: History,
     pub(super) past: Vec<T>,
     /// For clocks, sensors and actions.
-    pub(super) draws: [Draws; 3],
+    pub(super) draws: [EpisodeStreams; 3],
 }
 
 impl<T, E, const O: usize, const D: usize> Environments<T, E, O, D>
@@ -124,7 +124,7 @@ where
         let (timed, seen) = (E::Clock::DRAWS, E::Sensor::DRAWS);
         ensure("random words of the clock", clock, NOTHING_DRAWN, |n| timed || n == 0.0)?;
         ensure("random words of the sensor", sensor, NOTHING_DRAWN, |n| seen || n == 0.0)?;
-        parts.severity.check::<T>()?;
+        parts.error_scale.check::<T>()?;
         let most = parts.saturation;
         ensure("saturation", most, "above 0", |most| T::from_f64(most) > T::zero())?;
         let rates = parts.clock.trajectories();
@@ -145,7 +145,8 @@ where
         let count = len.div_ceil(LANES);
         let blocks = room(count, &block::empty::<T, E, O, D>())?;
         let past = room(count.saturating_mul(history.len()), &T::zero())?;
-        let draws = [Purpose::StepTime, Purpose::Observation, Purpose::Action].map(Draws::new);
+        let draws =
+            [Purpose::StepTime, Purpose::Observation, Purpose::Action].map(EpisodeStreams::new);
         let step = 0;
         let mut all =
             Environments { world, seed, first, step, len, execution, blocks, history, past, draws };

@@ -25,7 +25,7 @@ pub(super) struct Block<T, C, V, const D: usize> {
     /// What was drawn for the episode.
     pub(super) numbers: V,
     /// How bad the clock and the sensor are in the episode.
-    pub(super) severity: [[T; LANES]; 2],
+    pub(super) error_scale: [[T; LANES]; 2],
     /// The latencies of what is seen and of actions.
     pub(super) delays: [[u32; LANES]; 2],
     /// The step with which the episode began.
@@ -85,7 +85,7 @@ pub(super) fn empty<T: Float, E: World<T, O, D>, const O: usize, const D: usize>
         banked: [0.0; LANES],
         clock: ClockMemory::<T, E, O, D>::load(&none),
         numbers: Numbers::<T, E, O, D>::load(&none),
-        severity: [[T::one(); LANES]; 2],
+        error_scale: [[T::one(); LANES]; 2],
         delays: [[0; LANES]; 2],
         began: [0; LANES],
         oldest: 0,
@@ -115,8 +115,8 @@ pub(super) fn begin<T: Float, E: World<T, O, D>, const O: usize, const D: usize>
     Numbers::<T, E, O, D>::set_lane(&mut block.numbers, l, parts.variation.draw(episode));
     let delays = parts.delays.draw(episode);
     (0..2).for_each(|i| block.delays[i][l] = delays[i]);
-    let severity = parts.severity.draw(episode);
-    (0..2).for_each(|i| block.severity[i][l] = T::from_f64(severity[i]));
+    let error_scale = parts.error_scale.draw(episode);
+    (0..2).for_each(|i| block.error_scale[i][l] = T::from_f64(error_scale[i]));
     (block.paid[l], block.banked[l], block.ended[l]) = (T::zero(), 0.0, 0);
     (block.began[l], block.episode[l]) = (now, episode.number);
     (block.seed[l], block.environment[l]) = (episode.seed, episode.environment);
@@ -175,7 +175,11 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
     }
 
     /// What stands still takes no words of these.
-    pub(super) fn keep_words(&self, words: [&mut Streams<LANES>; 3], before: &[Streams<LANES>; 3]) {
+    pub(super) fn restore_words(
+        &self,
+        words: [&mut Streams<LANES>; 3],
+        before: &[Streams<LANES>; 3],
+    ) {
         for (words, before) in words.into_iter().zip(before) {
             (0..LANES).filter(|&l| self.ended[l] != 0).for_each(|l| words.take_up(l, before));
         }
@@ -187,7 +191,7 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
     }
 
     /// Lane `l` is as it was. What the clocks of all remember goes on; it is begun anew with the next episode.
-    pub(super) fn stand(&mut self, as_it_was: &Self, l: usize) {
+    pub(super) fn hold(&mut self, as_it_was: &Self, l: usize) {
         let State { q, v } = as_it_was.state(l);
         put(&mut self.q, l, q);
         put(&mut self.v, l, v);

@@ -6,7 +6,7 @@ use libration_core::control::Memory;
 
 use super::block::{BlockOf, CUT, ClockMemory, Numbers, OVER};
 use super::block_size::LANES;
-use super::draws::Draws;
+use super::episode_streams::EpisodeStreams;
 use super::{Environments, World, block};
 use crate::checkpoint::{Checkpoint, CheckpointError, Reader, Trait};
 
@@ -15,7 +15,7 @@ where
     T: Float + Pod,
     E: World<T, O, D>,
 {
-    /// Numbers of a block: coordinates, payment, severity, what its clock remembers and what was drawn for the episode.
+    /// Numbers of a block: coordinates, payment, error_scale, what its clock remembers and what was drawn for the episode.
     const NUMBERS: usize = 2 * D + 3 + ClockMemory::<T, E, O, D>::LEN + Numbers::<T, E, O, D>::LEN;
 
     /// Bytes of a block.
@@ -25,7 +25,7 @@ where
         block: &BlockOf<T, E, O, D>,
         mut sink: impl FnMut(&[u8]) -> Result<(), X>,
     ) -> Result<(), X> {
-        for row in block.q.iter().chain(&block.v).chain([&block.paid]).chain(&block.severity) {
+        for row in block.q.iter().chain(&block.v).chain([&block.paid]).chain(&block.error_scale) {
             sink(bytemuck::cast_slice(row))?;
         }
         let mut rows = Vec::new();
@@ -41,12 +41,12 @@ where
         sink(&block.ended)
     }
 
-    fn take_up(block: &mut BlockOf<T, E, O, D>, from: &mut Reader<'_>) {
+    fn load_block(block: &mut BlockOf<T, E, O, D>, from: &mut Reader<'_>) {
         for row in block.q.iter_mut().chain(&mut block.v) {
             from.fill(row);
         }
         from.fill(&mut block.paid);
-        block.severity.iter_mut().for_each(|row| from.fill(row));
+        block.error_scale.iter_mut().for_each(|row| from.fill(row));
         let mut rows = |count: usize| -> Vec<[T; LANES]> {
             let mut rows = vec![[T::zero(); LANES]; count];
             rows.iter_mut().for_each(|row| from.fill(row));
@@ -117,7 +117,7 @@ where
             return Err(CheckpointError::Damaged(format!("its step is {step}")));
         }
         let mut blocks = self.blocks.clone();
-        blocks.iter_mut().for_each(|block| Self::take_up(block, &mut from));
+        blocks.iter_mut().for_each(|block| Self::load_block(block, &mut from));
         let most = self.world.parts().delays;
         let most = [most.observation[1], most.action[1]];
         for (n, block) in blocks.iter().enumerate() {
@@ -132,7 +132,7 @@ where
             }
         }
         (self.step, self.blocks) = (step, blocks);
-        self.draws.iter_mut().for_each(Draws::forget);
+        self.draws.iter_mut().for_each(EpisodeStreams::invalidate);
         from.fill(&mut self.past);
         Ok(())
     }
@@ -153,7 +153,7 @@ fn clear<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
     ClockMemory::<T, E, O, D>::set_lane(&mut block.clock, l, clock);
     let numbers = Numbers::<T, E, O, D>::lane(&none.numbers, l);
     Numbers::<T, E, O, D>::set_lane(&mut block.numbers, l, numbers);
-    block.severity.iter_mut().for_each(|row| row[l] = T::one());
+    block.error_scale.iter_mut().for_each(|row| row[l] = T::one());
     block.delays.iter_mut().for_each(|row| row[l] = 0);
     (block.banked[l], block.began[l], block.episode[l], block.ended[l]) = (0.0, 0, 0, 0);
     (block.seed[l], block.environment[l]) = (0, 0);

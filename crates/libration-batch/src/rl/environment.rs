@@ -7,14 +7,14 @@ use libration_core::control::clock::Fixed;
 use libration_core::{Float, Integrator, System};
 
 use super::sensor::Exact;
-use super::variation::Same;
-use super::{Delays, Sensor, Severity, Start, Task, Variation};
+use super::variation::NoVariation;
+use super::{Delays, ErrorScale, Sensor, Start, Task, Variation};
 use crate::ensemble::Assign;
 
 /// A system with its integrator, a task, a start and a time limit, and what is not ideal about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Environment<Sys, A, M, K, S, C = Fixed, N = Exact, V = Same> {
-    /// The system of every environment: [`All`](crate::ensemble::All) or [`Each`](crate::ensemble::Each).
+pub struct Environment<Sys, A, M, K, S, C = Fixed, N = Exact, V = NoVariation> {
+    /// The system of every environment: [`All`](crate::ensemble::All) or [`PerTrajectory`](crate::ensemble::PerTrajectory).
     pub systems: A,
     /// The integrator.
     pub method: M,
@@ -44,7 +44,7 @@ pub struct Environment<Sys, A, M, K, S, C = Fixed, N = Exact, V = Same> {
     /// What is different in every episode.
     pub variation: V,
     /// And how bad the clock and the sensor are in it.
-    pub severity: Severity,
+    pub error_scale: ErrorScale,
     pub(super) system: PhantomData<Sys>,
 }
 
@@ -82,8 +82,8 @@ impl<Sys, A, M, K, S> Environment<Sys, A, M, K, S> {
             saturation: f64::INFINITY,
             mass: 1.0,
             sensor: Exact,
-            variation: Same,
-            severity: Severity::default(),
+            variation: NoVariation,
+            error_scale: ErrorScale::default(),
             system: PhantomData,
         }
     }
@@ -121,8 +121,8 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
     }
 
     /// This, with clocks and sensors that are more or less wrong from episode to episode.
-    pub fn severity(self, severity: Severity) -> Self {
-        Environment { severity, ..self }
+    pub fn error_scale(self, error_scale: ErrorScale) -> Self {
+        Environment { error_scale, ..self }
     }
 
     /// This, with steps of another clock.
@@ -146,8 +146,9 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
         change: impl FnOnce(C, N, V) -> (C2, N2, V2),
     ) -> Environment<Sys, A, M, K, S, C2, N2, V2> {
         let Environment { systems, method, dt, substeps, task, start, limit, .. } = self;
-        let Environment { autoreset, clock, delays, sensor, variation, severity, system, .. } =
-            self;
+        let Environment {
+            autoreset, clock, delays, sensor, variation, error_scale, system, ..
+        } = self;
         let (saturation, mass) = (self.saturation, self.mass);
         let (clock, sensor, variation) = change(clock, sensor, variation);
         Environment {
@@ -165,7 +166,7 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
             mass,
             sensor,
             variation,
-            severity,
+            error_scale,
             system,
         }
     }

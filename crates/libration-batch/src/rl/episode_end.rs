@@ -2,7 +2,7 @@
 
 /// The end of an episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Final<T, const O: usize> {
+pub struct EpisodeEnd<T, const O: usize> {
     /// In which step of the rollout.
     pub step: usize,
     /// Of which environment.

@@ -5,7 +5,7 @@ use libration_core::Float;
 use libration_core::control::error::probability;
 use ndarray::ArrayViewMut2;
 
-use super::strip::{first_columns, row, rows_of};
+use super::rollout_slice::{first_columns, row, rows_of};
 use super::{EnvironmentError, Plan, Rollout};
 use crate::ensemble::{Buffer, EnsembleError, Execution, Loop, Pages};
 
@@ -94,17 +94,26 @@ impl<T: Float + Pod> Estimates<T> {
         for len in counts {
             let advantages = first_columns(&mut advantages, len);
             let returns = first_columns(&mut returns, len);
-            parts.push(Strip { discounts, rollout, next, last, first, len, advantages, returns });
+            parts.push(EstimateSlice {
+                discounts,
+                rollout,
+                next,
+                last,
+                first,
+                len,
+                advantages,
+                returns,
+            });
             first += len;
         }
         let instructions = execution.instruction_set();
-        execution.each(parts, |strip| instructions.vectorize(strip));
+        execution.each(parts, |slice| instructions.vectorize(slice));
         Ok(())
     }
 }
 
 /// Neighbouring environments, from the last step to the first.
-struct Strip<'a, T, const O: usize, const D: usize> {
+struct EstimateSlice<'a, T, const O: usize, const D: usize> {
     discounts: Discounts,
     rollout: &'a Rollout<T, O, D>,
     next: &'a [T],
@@ -115,13 +124,21 @@ struct Strip<'a, T, const O: usize, const D: usize> {
     returns: ArrayViewMut2<'a, T>,
 }
 
-impl<T: Float + Pod, const O: usize, const D: usize> Loop for Strip<'_, T, O, D> {
+impl<T: Float + Pod, const O: usize, const D: usize> Loop for EstimateSlice<'_, T, O, D> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        let Strip { discounts, rollout, next, last, first, len, mut advantages, mut returns } =
-            self;
+        let EstimateSlice {
+            discounts,
+            rollout,
+            next,
+            last,
+            first,
+            len,
+            mut advantages,
+            mut returns,
+        } = self;
         let n = rollout.plan().environments;
         let (gamma, both) =
             (T::from_f64(discounts.rewards), T::from_f64(discounts.rewards * discounts.errors));

@@ -33,12 +33,12 @@ impl History {
     }
 
     /// Whether what is seen is late.
-    pub(super) fn sees_late(&self) -> bool {
+    pub(super) fn delays_observations(&self) -> bool {
         self.states > 0
     }
 
     /// Whether actions are.
-    pub(super) fn acts_late(&self) -> bool {
+    pub(super) fn delays_actions(&self) -> bool {
         self.actions > 0
     }
 
@@ -73,7 +73,7 @@ impl History {
     }
 
     /// Lane `l` stood still in these steps of the integrator.
-    pub(super) fn stand<T: Float, const D: usize>(
+    pub(super) fn hold<T: Float, const D: usize>(
         &self,
         past: &mut [T],
         l: usize,
@@ -81,7 +81,7 @@ impl History {
         state: &State<T, D>,
     ) {
         let rows = past.as_chunks_mut::<LANES>().0;
-        for step in steps.filter(|_| self.sees_late()) {
+        for step in steps.filter(|_| self.delays_observations()) {
             let rows = &mut rows[ring(step, self.states) * 2 * D..][..2 * D];
             rows.iter_mut().zip(state.coordinates()).for_each(|(row, x)| row[l] = x);
         }

@@ -6,13 +6,13 @@ use libration_core::random::Streams;
 use pulp::{Simd, WithSimd};
 
 use super::block::BlockOf;
+use super::block_output::BlockOutput;
 use super::block_size::{LANES, TILE};
 use super::history::History;
-use super::row::{Records, Writer};
-use super::stage::{Site, Stage};
-use super::strip::Strip;
-use super::yields::Yield;
-use super::{Final, Place, Policy, Sensor, World, Writes};
+use super::rollout_row::{Records, Writer};
+use super::rollout_slice::RolloutSlice;
+use super::stepper::{Site, Stepper};
+use super::{EpisodeEnd, Policy, Sensor, StepIndex, World, Writes};
 use crate::ensemble::Assign;
 use crate::ensemble::instructions::{Target, Targeted};
 use crate::ensemble::stream::Streaming;
@@ -39,7 +39,7 @@ pub(super) struct Horizon<'a, 's, T, E, P, B, const O: usize, const D: usize> {
     /// And rows of the rollout written before.
     pub(super) row: usize,
     pub(super) share: Share<'a, T, B>,
-    pub(super) strip: Strip<'a, T, O, D>,
+    pub(super) slice: RolloutSlice<'a, T, O, D>,
     pub(super) writes: Writes,
 }
 
@@ -50,9 +50,9 @@ where
     E: World<T, O, D>,
     P: Policy<T, O, D>,
 {
-    type Output = Vec<Final<T, O>>;
+    type Output = Vec<EpisodeEnd<T, O>>;
 
-    fn on<I: Target>(self, target: I) -> Vec<Final<T, O>> {
+    fn on<I: Target>(self, target: I) -> Vec<EpisodeEnd<T, O>> {
         target.run(On(self, target))
     }
 }
@@ -68,28 +68,29 @@ where
     P: Policy<T, O, D>,
     I: Target,
 {
-    type Output = Vec<Final<T, O>>;
+    type Output = Vec<EpisodeEnd<T, O>>;
 
     #[inline(always)]
-    fn with_simd<V: Simd>(self, _: V) -> Vec<Final<T, O>> {
+    fn with_simd<V: Simd>(self, _: V) -> Vec<EpisodeEnd<T, O>> {
         let On(horizon, target) = self;
         let Horizon { world, policy, history, environments, step, row: before, .. } = horizon;
-        let Horizon { share, mut strip, writes, .. } = horizon;
-        let writer = Writer { streaming: Streaming::on(target), layout: strip.layout, writes };
+        let Horizon { share, mut slice, writes, .. } = horizon;
+        let writer = Writer { streaming: Streaming::on(target), layout: slice.layout, writes };
         let parts = *world.parts();
-        let stage = Stage::<T, E, P, O, D>::new(world, policy, history);
-        let brief = stage.is_brief();
-        let steps = strip.steps();
+        let stepper = Stepper::<T, E, P, O, D>::new(world, policy, history);
+        let fused = stepper.is_fused();
+        let steps = slice.steps();
         // A sensor that draws takes its words at every look.
-        let looks_on = strip.shows() || policy.looks() || const { E::Sensor::DRAWS };
+        let is_observed =
+            slice.has_observations() || policy.uses_observations() || const { E::Sensor::DRAWS };
         let [times, looks, acts] = share.words;
         let mut none = [Streams::<LANES>::none(); 3];
         let [no_times, no_looks, no_acts] = &mut none;
-        let mut out = Yield::<T, O, D>::zeros();
+        let mut out = BlockOutput::<T, O, D>::zeros();
         let mut records = Records::zeros();
         for (index, blocks) in share.blocks.chunks_mut(TILE / LANES).enumerate() {
             for t in 0..steps {
-                let row = &mut strip.row(t);
+                let row = &mut slice.row(t);
                 for (b, block) in blocks.iter_mut().enumerate() {
                     let b = index * (TILE / LANES) + b;
                     let first = share.first + b * LANES;
@@ -97,11 +98,11 @@ where
                     let systems = parts.systems.lanes::<LANES>(first, count);
                     let now = step + t as u64;
                     let place =
-                        Place { environment: first, environments, step: now, row: before + t };
+                        StepIndex { environment: first, environments, step: now, row: before + t };
                     let site = Site { place, count, systems };
                     block.bank(now);
                     // What stands still is stepped with its neighbours, and put back.
-                    let stood = (!stage.all_move(block)).then_some(*block);
+                    let stood = (!stepper.all_running(block)).then_some(*block);
                     macro_rules! past {
                         () => {
                             &mut share.past[b * history.len()..][..history.len()]
@@ -112,26 +113,37 @@ where
                     let times = times.get_mut(b).unwrap_or(no_times);
                     // And so are its words.
                     let spoken = stood.is_some().then_some([*times, *looks, *acts]);
-                    let swift = brief && count == LANES && stood.is_none();
+                    let swift = fused && count == LANES && stood.is_none();
                     let mut ended = if swift {
                         let overs = &mut out.overs;
-                        stage.brief(parts, &site, block, acts, overs, b, row, &writer, &mut records)
+                        stepper.fused_step(
+                            parts,
+                            &site,
+                            block,
+                            acts,
+                            overs,
+                            b,
+                            row,
+                            &writer,
+                            &mut records,
+                        )
                     } else {
-                        if looks_on {
-                            stage.look(&site, block, past!(), looks, &mut out.step.seen);
+                        if is_observed {
+                            stepper.observe(&site, block, past!(), looks, &mut out.step.seen);
                         } else {
-                            stage.pass(now, block, past!());
+                            stepper.pass(now, block, past!());
                         }
-                        stage.act(place, block, acts, &mut out.step);
-                        stage.advance(target, &site, block, past!(), times, &mut out)
+                        stepper.act(place, block, acts, &mut out.step);
+                        stepper.advance(target, &site, block, past!(), times, &mut out)
                     };
-                    ended |= stage.limit(now, block, ended != 0 || stood.is_some(), &mut out.cuts);
+                    ended |=
+                        stepper.limit(now, block, ended != 0 || stood.is_some(), &mut out.cuts);
                     let whole = ended == 0 && stood.is_none();
                     if !whole {
                         if let Some((stood, spoken)) = stood.as_ref().zip(spoken.as_ref()) {
-                            stood.keep_words([times, looks, acts], spoken);
+                            stood.restore_words([times, looks, acts], spoken);
                         }
-                        stage.end(&site, block, stood.as_ref(), past!(), looks, &mut out);
+                        stepper.end(&site, block, stood.as_ref(), past!(), looks, &mut out);
                     }
                     if count < LANES {
                         if whole {
@@ -150,7 +162,7 @@ where
                     row.write_flags(&writer, b, &flags.0, &flags.1);
                 }
             }
-            let (next, now) = (strip.next(), step + steps as u64);
+            let (next, now) = (slice.next(), step + steps as u64);
             if next.is_empty() {
                 continue;
             }
@@ -159,10 +171,10 @@ where
                 let first = share.first + b * LANES;
                 let count = (share.len - b * LANES).min(LANES);
                 let systems = parts.systems.lanes::<LANES>(first, count);
-                let place = Place { environment: first, environments, step: now, row: 0 };
+                let place = StepIndex { environment: first, environments, step: now, row: 0 };
                 let past = &mut share.past[b * history.len()..][..history.len()];
                 let words = looks.get(b).unwrap_or(no_looks);
-                stage.show(
+                stepper.write_observations(
                     &Site { place, count, systems },
                     block,
                     past,

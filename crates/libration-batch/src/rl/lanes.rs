@@ -20,7 +20,7 @@ pub(super) struct Lanes<'a, T, const D: usize> {
 }
 
 /// Lanes that wait for their integrator, their system, or nothing more.
-struct Waiting<'a, T, I, Sys, M, const D: usize> {
+struct Dispatch<'a, T, I, Sys, M, const D: usize> {
     lanes: Lanes<'a, T, D>,
     target: I,
     system: Sys,
@@ -35,11 +35,11 @@ impl<T: Float, const D: usize> Lanes<'_, T, D> {
         system: Sys,
         method: M,
     ) {
-        method.known(Waiting { lanes: self, target, system, method: () });
+        method.known(Dispatch { lanes: self, target, system, method: () });
     }
 }
 
-impl<T, I, Sys, const D: usize> WithIntegrator for Waiting<'_, T, I, Sys, (), D>
+impl<T, I, Sys, const D: usize> WithIntegrator for Dispatch<'_, T, I, Sys, (), D>
 where
     T: Float,
     I: Target,
@@ -49,19 +49,19 @@ where
 
     #[inline(always)]
     fn integrator<M: Integrator>(self, method: M) {
-        let Waiting { lanes, target, system, .. } = self;
-        system.known(Waiting { lanes, target, system: (), method });
+        let Dispatch { lanes, target, system, .. } = self;
+        system.known(Dispatch { lanes, target, system: (), method });
     }
 }
 
 impl<T: Float, I: Target, M: Integrator, const D: usize> WithSystem<T, D>
-    for Waiting<'_, T, I, (), M, D>
+    for Dispatch<'_, T, I, (), M, D>
 {
     type Output = ();
 
     #[inline(always)]
     fn system<Sys: System<T, D> + Copy>(self, system: Sys) {
-        let Waiting { lanes, target, method, .. } = self;
+        let Dispatch { lanes, target, method, .. } = self;
         target.vectorize(Known { lanes, system, method });
     }
 }

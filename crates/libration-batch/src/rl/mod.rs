@@ -2,7 +2,7 @@
 //!
 //! An [`Environment`] is a system with its integrator, a [`Task`] that sees, rewards and ends, a [`Start`] and a time
 //! limit, and what is not ideal about it: a [`Clock`](libration_core::control::Clock), [`Delays`], a [`Sensor`], a [`Variation`] and a
-//! [`Severity`] from episode to episode. [`Environments`] are many of them. A [`Rollout`] holds what they do under a [`Policy`] over a horizon.
+//! [`ErrorScale`] from episode to episode. [`Environments`] are many of them. A [`Rollout`] holds what they do under a [`Policy`] over a horizon.
 //!
 //! What environment `i` does follows from its number, the seed, the policy and the steps taken: not from the number of
 //! environments or threads, the instruction set, the layout of the rollout or how many steps are taken at a time.
@@ -11,53 +11,54 @@
 //! All is computed in the float type of the rollout. An `f16` is for looking at what that does to an environment: of increments
 //! that are smaller than its spacing nothing is left, and advantages round like all else.
 
+mod actuation;
 mod batch;
 mod block;
+mod block_output;
 mod block_size;
-mod brief;
 mod checkpoint;
 mod delays;
 mod deviation;
-mod draws;
-mod ends;
+mod distribution;
 mod environment;
 mod episode_end;
+mod episode_reset;
+mod episode_streams;
 mod error;
+mod error_scale;
 mod estimates;
+mod fused_step;
 mod history;
 mod kernel;
 mod lanes;
-mod look;
+mod observation;
 mod plan;
 pub mod policy;
 mod rollout;
-mod row;
-mod run;
+mod rollout_row;
+mod rollout_run;
+mod rollout_slice;
 pub mod sensor;
-mod severity;
-mod spread;
-mod stage;
 pub mod start;
-mod strip;
+mod step_length;
+mod stepper;
 pub mod task;
 pub mod variation;
-mod wrong;
-mod yields;
 
 pub use batch::Environments;
 pub use delays::Delays;
+pub use distribution::Distribution;
 pub use environment::{Autoreset, Environment, Parts, World};
-pub use episode_end::Final;
+pub use episode_end::EpisodeEnd;
 pub use error::EnvironmentError;
+pub use error_scale::ErrorScale;
 pub use estimates::{Discounts, Estimates};
 pub use plan::{Layout, Plan, Writes};
-pub use policy::{Act, Place, Policy};
+pub use policy::{ActionSample, Policy, StepIndex};
 pub use rollout::Rollout;
-pub use run::Outcome;
+pub use rollout_run::StepBuffers;
+pub(crate) use rollout_slice::first_of;
 pub use sensor::Sensor;
-pub use severity::Severity;
-pub use spread::Spread;
 pub use start::{Episode, Start};
-pub(crate) use strip::first_of;
 pub use task::Task;
 pub use variation::Variation;

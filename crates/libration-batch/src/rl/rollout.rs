@@ -5,8 +5,8 @@ use core::ops::Range;
 
 use bytemuck::Pod;
 
-use super::strip::{Strip, planes, rows_of, some_rows};
-use super::{EnvironmentError, Final, Layout, Plan};
+use super::rollout_slice::{RolloutSlice, planes, rows_of, some_rows};
+use super::{EnvironmentError, EpisodeEnd, Layout, Plan};
 use crate::ensemble::{Buffer, NoRoom, Pages};
 
 /// What environments did over a horizon: allocated once, to be filled again and again.
@@ -24,7 +24,7 @@ pub struct Rollout<T, const O: usize, const D: usize> {
     log_probability: Buffer<T>,
     value: Buffer<T>,
     /// Ends of episodes, by step and environment.
-    pub(super) finals: Vec<Final<T, O>>,
+    pub(super) finals: Vec<EpisodeEnd<T, O>>,
     /// Environments whose first step was none.
     pub(super) idle: Vec<usize>,
     /// Whether the step after an end is none.
@@ -109,7 +109,7 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
     }
 
     /// The episodes that ended, by step and environment: memory for them is taken as they end, beside that of the plan.
-    pub fn finals(&self) -> &[Final<T, O>] {
+    pub fn finals(&self) -> &[EpisodeEnd<T, O>] {
         &self.finals
     }
 
@@ -178,11 +178,11 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
     }
 
     /// Some of its rows, to be written.
-    pub(super) fn strip(&mut self, rows: &Range<usize>) -> Strip<'_, T, O, D> {
+    pub(super) fn slice(&mut self, rows: &Range<usize>) -> RolloutSlice<'_, T, O, D> {
         let Plan { horizon, layout, .. } = self.plan;
         let part = |all| some_rows(all, rows);
         let flags = |all| some_rows(all, rows);
-        Strip {
+        RolloutSlice {
             observation: planes(&mut self.observation, layout, horizon).map(part),
             action: planes(&mut self.action, layout, horizon).map(part),
             reward: part(rows_of(&mut self.reward, horizon)),

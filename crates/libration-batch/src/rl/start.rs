@@ -18,7 +18,7 @@ pub struct Episode {
     pub number: u64,
 }
 
-/// Draws of an episode for the same purpose.
+/// EpisodeStreams of an episode for the same purpose.
 const DRAWS: u64 = 64;
 
 /// Between the epochs of an episode and those of the next: an odd number, so that all of them differ, and as far from any simple share of
@@ -62,12 +62,12 @@ pub trait Start<T: Float, const D: usize>: Copy + Send + Sync {
 
 /// Always there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct At<const D: usize>(
+pub struct FixedStart<const D: usize>(
     /// The start.
     pub State<f64, D>,
 );
 
-impl<T: Float, const D: usize> Start<T, D> for At<D> {
+impl<T: Float, const D: usize> Start<T, D> for FixedStart<D> {
     fn check(&self) -> Result<(), ControlError> {
         self.0.coordinates().try_for_each(|x| finite::<T>("coordinate of the start", x))
     }
@@ -79,14 +79,14 @@ impl<T: Float, const D: usize> Start<T, D> for At<D> {
 
 /// Anywhere between two corners, each coordinate uniformly and by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Between<const D: usize>(
+pub struct UniformStart<const D: usize>(
     /// The lower ends.
     pub State<f64, D>,
     /// The upper ends.
     pub State<f64, D>,
 );
 
-impl<T: Float, const D: usize> Start<T, D> for Between<D> {
+impl<T: Float, const D: usize> Start<T, D> for UniformStart<D> {
     fn check(&self) -> Result<(), ControlError> {
         between::check("width of the start", self.0.coordinates().zip(self.1.coordinates()))?;
         self.0.coordinates().try_for_each(|x| finite::<T>("lower end of the start", x))?;

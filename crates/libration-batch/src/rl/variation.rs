@@ -5,13 +5,13 @@ use libration_core::array::each;
 use libration_core::control::{ControlError, Memory};
 use libration_core::random::Purpose;
 
-use super::Spread;
+use super::Distribution;
 use super::start::Episode;
 
-/// Draws numbers at the beginning of every episode and makes the system and the task of them: domain randomisation.
+/// EpisodeStreams numbers at the beginning of every episode and makes the system and the task of them: domain randomisation.
 ///
 /// The rate of a clock is drawn by a [`Clock`](libration_core::control::Clock), a latency by [`Delays`](super::Delays), and how bad clock and
-/// sensor are by [`Severity`](super::Severity).
+/// sensor are by [`ErrorScale`](super::ErrorScale).
 pub trait Variation<T: Float, Sys, K>: Copy + Send + Sync {
     /// What is kept of an environment for the episode.
     type Numbers: Memory<T>;
@@ -37,9 +37,9 @@ pub trait Variation<T: Float, Sys, K>: Copy + Send + Sync {
 
 /// Nothing is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Same;
+pub struct NoVariation;
 
-impl<T: Float, Sys, K> Variation<T, Sys, K> for Same {
+impl<T: Float, Sys, K> Variation<T, Sys, K> for NoVariation {
     type Numbers = [T; 0];
 
     const SAME: bool = true;
@@ -57,23 +57,23 @@ impl<T: Float, Sys, K> Variation<T, Sys, K> for Same {
 /// `N` numbers, each with its distribution, and what they change.
 ///
 /// ```
-/// use libration::rl::{Spread, task::Regulate, variation::Varied};
+/// use libration::rl::{Distribution, task::Regulate, variation::RandomParameters};
 /// use libration::system::Oscillator;
 ///
-/// let stiffness = Varied {
-///     numbers: [Spread::Uniform(5.0, 15.0)],
+/// let stiffness = RandomParameters {
+///     numbers: [Distribution::Uniform(5.0, 15.0)],
 ///     apply: |[omega2]: [f32; 1], _: Oscillator<f32>, task: Regulate| (Oscillator { omega2 }, task),
 /// };
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Varied<F, const N: usize> {
+pub struct RandomParameters<F, const N: usize> {
     /// How each is distributed.
-    pub numbers: [Spread; N],
+    pub numbers: [Distribution; N],
     /// The system and the task, made of the numbers and of what they would be without.
     pub apply: F,
 }
 
-impl<T, Sys, K, F, const N: usize> Variation<T, Sys, K> for Varied<F, N>
+impl<T, Sys, K, F, const N: usize> Variation<T, Sys, K> for RandomParameters<F, N>
 where
     T: Float,
     F: Fn([T; N], Sys, K) -> (Sys, K) + Copy + Send + Sync,
@@ -81,7 +81,7 @@ where
     type Numbers = [T; N];
 
     fn check(&self) -> Result<(), ControlError> {
-        self.numbers.iter().enumerate().try_for_each(|(i, spread)| spread.check::<T>(i))
+        self.numbers.iter().enumerate().try_for_each(|(i, distribution)| distribution.check::<T>(i))
     }
 
     fn draw(&self, episode: Episode) -> [T; N] {

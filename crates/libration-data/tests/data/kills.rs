@@ -14,7 +14,7 @@ use libration::ensemble::{All, Execution};
 use libration::integrator::SymplecticEuler;
 use libration::replay::{Batch, Capacity, Draw, Lookahead};
 use libration::rl::policy::Random;
-use libration::rl::start::Between;
+use libration::rl::start::UniformStart;
 use libration::rl::task::Regulate;
 use libration::rl::{Environment, Environments, Plan, Rollout, World};
 use libration::system::Oscillator;
@@ -27,7 +27,7 @@ const STEPS: usize = 5;
 
 fn world() -> impl World<f32, 2, 1> {
     let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 1.3 };
-    let start = Between(State { q: [-1.0], v: [-2.0] }, State { q: [1.0], v: [2.0] });
+    let start = UniformStart(State { q: [-1.0], v: [-2.0] }, State { q: [1.0], v: [2.0] });
     let spring = All(Oscillator { omega2: 10.0_f32 });
     Environment::new(spring, SymplecticEuler, 0.05, task, start).limit(11)
 }

@@ -7,7 +7,7 @@ use libration::ensemble::{All, Execution};
 use libration::integrator::SymplecticEuler;
 use libration::replay::Capacity;
 use libration::rl::policy::Random;
-use libration::rl::start::At;
+use libration::rl::start::FixedStart;
 use libration::rl::task::Regulate;
 use libration::rl::{Environment, Environments, Plan, Rollout};
 use libration::system::Oscillator;
@@ -19,7 +19,7 @@ type Kept = ReplayFile<f32, 2, 1>;
 /// Inserts so many rollouts of five steps.
 fn fill(replay: &mut Kept, rollouts: usize) {
     let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
-    let start = At(State { q: [1.0], v: [0.0] });
+    let start = FixedStart(State { q: [1.0], v: [0.0] });
     let world =
         Environment::new(All(Oscillator { omega2: 10.0_f32 }), SymplecticEuler, 0.01, task, start);
     let mut all = Environments::new(world.limit(7), 8, 1, Execution::serial()).unwrap();

@@ -224,7 +224,7 @@ impl<T: Number, const O: usize> Done<T, O> {
         };
         let open: Vec<usize> = (0..n).filter(goes_on).collect();
         let finals = rollout.finals();
-        let at = |end: &libration::rl::Final<T, O>| end.step * n + end.environment;
+        let at = |end: &libration::rl::EpisodeEnd<T, O>| end.step * n + end.environment;
         let both = |a: Vec<u8>, b: u8| {
             Values::Bool(
                 a.into_iter().chain(core::iter::repeat_n(b, open.len())).collect::<Vec<_>>().into(),

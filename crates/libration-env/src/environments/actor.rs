@@ -1,8 +1,8 @@
 //! Who acts, chosen when the program runs.
 
 use libration::random::Streams;
-use libration::rl::policy::{Constant, Given, Linear, Network, Random};
-use libration::rl::{Act, EnvironmentError, Place, Policy};
+use libration::rl::policy::{ActionSequence, Constant, Linear, Network, Random};
+use libration::rl::{ActionSample, EnvironmentError, Policy, StepIndex};
 use libration::{Elementary, Float};
 
 /// A policy, and its numbers.
@@ -46,8 +46,8 @@ pub enum Actor<'a, T, const O: usize> {
     Random(Random<1>),
     /// See [`Constant`].
     Constant(Constant<1>),
-    /// See [`Given`].
-    Given(Given<'a, T>),
+    /// See [`ActionSequence`].
+    Given(ActionSequence<'a, T>),
     /// See [`Network`].
     Network(Network<'a, T>),
 }
@@ -86,8 +86,8 @@ impl<T: Float + Elementary, const O: usize> Policy<T, O, 1> for Actor<'_, T, O> 
         with!(self, policy => Policy::<T, O, 1>::check(policy, environments, horizon))
     }
 
-    fn looks(&self) -> bool {
-        with!(self, policy => Policy::<T, O, 1>::looks(policy))
+    fn uses_observations(&self) -> bool {
+        with!(self, policy => Policy::<T, O, 1>::uses_observations(policy))
     }
 
     fn words(&self) -> usize {
@@ -95,7 +95,12 @@ impl<T: Float + Elementary, const O: usize> Policy<T, O, 1> for Actor<'_, T, O> 
     }
 
     #[inline(always)]
-    fn act(&self, place: Place, seen: &[T; O], word: &mut impl FnMut() -> u32) -> Act<T, 1> {
+    fn act(
+        &self,
+        place: StepIndex,
+        seen: &[T; O],
+        word: &mut impl FnMut() -> u32,
+    ) -> ActionSample<T, 1> {
         with!(self, policy => policy.act(place, seen, word))
     }
 
@@ -103,7 +108,7 @@ impl<T: Float + Elementary, const O: usize> Policy<T, O, 1> for Actor<'_, T, O> 
     #[inline(always)]
     fn act_all<const W: usize>(
         &self,
-        place: Place,
+        place: StepIndex,
         seen: &[[T; W]; O],
         words: &mut Streams<W>,
         actions: &mut [[T; W]; 1],

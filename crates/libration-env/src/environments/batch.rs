@@ -5,7 +5,7 @@ use std::ops::Range;
 use bytemuck::Pod;
 use libration::checkpoint::{Checkpoint, CheckpointError};
 use libration::ensemble::Execution;
-use libration::rl::{EnvironmentError, Environments, Final, Outcome, Rollout, World};
+use libration::rl::{EnvironmentError, Environments, EpisodeEnd, Rollout, StepBuffers, World};
 use libration::{Elementary, Float};
 
 use super::Actor;
@@ -51,8 +51,8 @@ pub trait Batch<T, const O: usize>: Send + Sync {
     fn act(
         &mut self,
         actor: Actor<'_, T, O>,
-        to: Outcome<'_, T>,
-    ) -> Result<Vec<Final<T, O>>, EnvironmentError>;
+        to: StepBuffers<'_, T>,
+    ) -> Result<Vec<EpisodeEnd<T, O>>, EnvironmentError>;
 
     /// Writes what is seen now: `[n, i]`.
     ///
@@ -127,8 +127,8 @@ where
     fn act(
         &mut self,
         actor: Actor<'_, T, O>,
-        to: Outcome<'_, T>,
-    ) -> Result<Vec<Final<T, O>>, EnvironmentError> {
+        to: StepBuffers<'_, T>,
+    ) -> Result<Vec<EpisodeEnd<T, O>>, EnvironmentError> {
         Environments::act(self, actor, to)
     }
 

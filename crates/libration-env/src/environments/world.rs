@@ -5,7 +5,7 @@ use libration::control::ControlError;
 use libration::control::clock::{Jittered, Skewed};
 use libration::ensemble::{All, Execution};
 use libration::rl::sensor::Noisy;
-use libration::rl::start::Between;
+use libration::rl::start::UniformStart;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Environment, EnvironmentError, Environments};
 use libration::{Elementary, Float, State, rl};
@@ -96,7 +96,7 @@ impl Recipe {
             }
         }
         let [q, v] = self.start;
-        let start = Between(State { q: [q[0]], v: [v[0]] }, State { q: [q[1]], v: [v[1]] });
+        let start = UniformStart(State { q: [q[0]], v: [v[0]] }, State { q: [q[1]], v: [v[1]] });
         let plant = Plant::<T>::new(self.system);
         let mut world = Environment::new(All(plant), self.method, self.dt, task, start)
             .substeps(self.substeps)

@@ -6,7 +6,7 @@ use libration::State;
 use libration::ensemble::{All, Buffer, EnsembleError, Execution, NoRoom, Pages, stream_again};
 use libration::integrator::SymplecticEuler;
 use libration::rl::policy::{Linear, Random};
-use libration::rl::start::{At, Between};
+use libration::rl::start::{FixedStart, UniformStart};
 use libration::rl::task::{Regulate, SwingUp};
 use libration::rl::{
     Environment, EnvironmentError, Environments, Layout, Plan, Policy, Rollout, World, Writes,
@@ -196,7 +196,8 @@ pub(crate) fn regulating() -> impl World<f32, 2, 1> + 'static {
 /// The same from another place.
 pub(crate) fn regulating_from(q: f64) -> impl World<f32, 2, 1> + 'static {
     let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
-    let (system, start) = (All(Oscillator { omega2: OMEGA2 }), At(State { q: [q], v: [0.0] }));
+    let (system, start) =
+        (All(Oscillator { omega2: OMEGA2 }), FixedStart(State { q: [q], v: [0.0] }));
     Environment::new(system, SymplecticEuler, 0.01, task, start)
 }
 
@@ -216,7 +217,7 @@ pub(crate) fn rollout(
         RolloutTask::SwingUp => {
             let task = SwingUp { velocity: 0.1, effort: 0.001 };
             let corner = |sign: f64| State { q: [sign * 3.0], v: [sign] };
-            let start = Between(corner(-1.0), corner(1.0));
+            let start = UniformStart(corner(-1.0), corner(1.0));
             let policy = Random::between([-2.0], [2.0]);
             let system = All(Pendulum { omega2: OMEGA2 });
             let world = Environment::new(system, SymplecticEuler, 0.05, task, start).limit(200);

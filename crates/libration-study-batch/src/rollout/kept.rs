@@ -7,13 +7,13 @@ use libration::control::Jitter;
 use libration::control::clock::{Gaussian, Jittered, Skewed, Uniform};
 use libration::ensemble::{All, Execution, InstructionSet};
 use libration::integrator::SymplecticEuler;
-use libration::rl::policy::{Explore, Linear};
+use libration::rl::policy::{GaussianExploration, Linear};
 use libration::rl::sensor::Noisy;
-use libration::rl::start::Between;
+use libration::rl::start::UniformStart;
 use libration::rl::task::Regulate;
-use libration::rl::variation::Varied;
+use libration::rl::variation::RandomParameters;
 use libration::rl::{
-    Delays, Environment, Environments, Layout, Plan, Rollout, Spread, World, Writes,
+    Delays, Distribution, Environment, Environments, Layout, Plan, Rollout, World, Writes,
 };
 use libration::system::Oscillator;
 use libration_report::record::{Finding, Record, Tolerance};
@@ -48,13 +48,13 @@ fn world() -> impl World<f32, 2, 1> {
     let corner = |sign: f64| State { q: [sign], v: [2.0 * sign] };
     let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.01, bound: 1.2 };
     let spring = All(Oscillator { omega2: 10.0 });
-    Environment::new(spring, SymplecticEuler, 0.06, task, Between(corner(-1.0), corner(1.0)))
+    Environment::new(spring, SymplecticEuler, 0.06, task, UniformStart(corner(-1.0), corner(1.0)))
         .limit(60)
         .delays(Delays { observation: [0, 2], action: [1, 3] })
         .clock((Skewed(Jitter::Uniform(0.01)), Jittered(Gaussian(0.2))))
         .sensor(Noisy([Uniform(0.05), Uniform(0.1)]))
-        .variation(Varied {
-            numbers: [Spread::Uniform(8.0, 12.0), Spread::Uniform(1.0, 1.4)],
+        .variation(RandomParameters {
+            numbers: [Distribution::Uniform(8.0, 12.0), Distribution::Uniform(1.0, 1.4)],
             apply: |[omega2, bound]: [f32; 2], _: Oscillator<f32>, task: Regulate| {
                 (Oscillator { omega2 }, Regulate { bound: bound.into(), ..task })
             },
@@ -62,8 +62,8 @@ fn world() -> impl World<f32, 2, 1> {
 }
 
 /// Feedback, and noise to explore with.
-const POLICY: Explore<Linear<2, 1>, 1> =
-    Explore { policy: Linear { weights: [[-3.0, 0.5]], bias: [0.25] }, sigma: [0.5] };
+const POLICY: GaussianExploration<Linear<2, 1>, 1> =
+    GaussianExploration { policy: Linear { weights: [[-3.0, 0.5]], bias: [0.25] }, sigma: [0.5] };
 
 /// A rollout of these environments over so many steps.
 pub(super) fn rolled(

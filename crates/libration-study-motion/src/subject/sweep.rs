@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use libration::ensemble::{All, Each, EnsembleError, Execution, Lanes, Observer};
+use libration::ensemble::{All, EnsembleError, Execution, Lanes, Observer, PerTrajectory};
 use libration::{Ensemble, Hamiltonian, Method, Model, State, with_method};
 
 use super::{Orbits, Problem};
@@ -37,7 +37,7 @@ where
         let mut ensemble = Ensemble::from_fn(dts.len(), execution.clone(), |_| *start)?;
         // The one place in which a method becomes a type for many trajectories.
         let watched = with_method!(method, |m| {
-            ensemble.observe(m, All(system), Each(dts), steps, 1, watch)
+            ensemble.observe(m, All(system), PerTrajectory(dts), steps, 1, watch)
         })?;
         let mut stays = watched.iter().flat_map(|watch| &watch.stays);
         if let Some(lost) = stays.position(|stays| !stays) {

@@ -7,13 +7,13 @@ use libration::control::clock::{Correlated, Drifting, Gaussian, Jittered, Skewed
 use libration::ensemble::{All, Execution};
 use libration::integrator::VelocityVerlet;
 use libration::replay::{Batch, Capacity, Draw, Lookahead, Replay};
-use libration::rl::policy::{Explore, Linear};
+use libration::rl::policy::{GaussianExploration, Linear};
 use libration::rl::sensor::Noisy;
-use libration::rl::start::Between;
+use libration::rl::start::UniformStart;
 use libration::rl::task::Regulate;
-use libration::rl::variation::Varied;
+use libration::rl::variation::RandomParameters;
 use libration::rl::{
-    Autoreset, Delays, Environment, Environments, Plan, Rollout, Severity, Spread, World,
+    Autoreset, Delays, Distribution, Environment, Environments, ErrorScale, Plan, Rollout, World,
 };
 use libration::system::Oscillator;
 
@@ -24,7 +24,7 @@ const COUNT: usize = 150;
 /// With all that an environment can remember.
 fn world(autoreset: Autoreset) -> impl World<f32, 2, 1> {
     let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.01, bound: 1.5 };
-    let start = Between(State { q: [-1.0], v: [-2.0] }, State { q: [1.0], v: [2.0] });
+    let start = UniformStart(State { q: [-1.0], v: [-2.0] }, State { q: [1.0], v: [2.0] });
     let jittered = (Jittered(Gaussian(0.1)), Correlated { rms: 0.1, correlation: 0.9 });
     let uneven = (Skewed(Jitter::Uniform(0.01)), Drifting(Jitter::Gaussian(1e-4)));
     Environment::new(All(Oscillator { omega2: 10.0_f32 }), VelocityVerlet, 0.02, task, start)
@@ -34,9 +34,9 @@ fn world(autoreset: Autoreset) -> impl World<f32, 2, 1> {
         .delays(Delays { observation: [0, 4], action: [2, 7] })
         .clock((uneven, jittered))
         .sensor(Noisy([Uniform(0.05), Uniform(0.1)]))
-        .severity(Severity { clock: [0.0, 2.0], sensor: [0.5, 1.5] })
-        .variation(Varied {
-            numbers: [Spread::Uniform(8.0, 12.0)],
+        .error_scale(ErrorScale { clock: [0.0, 2.0], sensor: [0.5, 1.5] })
+        .variation(RandomParameters {
+            numbers: [Distribution::Uniform(8.0, 12.0)],
             apply: |[omega2]: [f32; 1], _: Oscillator<f32>, task: Regulate| {
                 (Oscillator { omega2 }, task)
             },
@@ -47,7 +47,10 @@ type Told = (Vec<f32>, Vec<f32>, Vec<f32>, Vec<u8>, Vec<(usize, usize, f64, u64)
 
 /// What they do in so many steps.
 fn told<E: World<f32, 2, 1>>(all: &mut Environments<f32, E, 2, 1>, steps: usize) -> Told {
-    let policy = Explore { policy: Linear { weights: [[-3.0, 0.5]], bias: [0.25] }, sigma: [2.0] };
+    let policy = GaussianExploration {
+        policy: Linear { weights: [[-3.0, 0.5]], bias: [0.25] },
+        sigma: [2.0],
+    };
     let mut rollout =
         Rollout::new(Plan::new(steps, all.len()).truncated().log_probabilities()).unwrap();
     all.rollout(policy, &mut rollout).unwrap();

@@ -1,7 +1,8 @@
 //! Every lane of an ensemble is the lone scalar trajectory, bit for bit.
 
 use libration::ensemble::{
-    All, BatchFloat, Each, Ensemble, EnsembleError, Execution, InstructionSet, Lanes, Observer,
+    All, BatchFloat, Ensemble, EnsembleError, Execution, InstructionSet, Lanes, Observer,
+    PerTrajectory,
 };
 use libration::integrator::{Rk4, Splitting, VelocityVerlet};
 use libration::system::{DampedOscillator, Oscillator, Pendulum};
@@ -135,7 +136,7 @@ fn a_step_and_a_system_of_its_own_for_each_trajectory_are_taken_as_they_are() {
     let start = State { q: [1.0_f32], v: [0.5] };
     for execution in executions() {
         let mut all = Ensemble::new(&vec![start; len], execution).unwrap();
-        all.advance(Rk4, Each(&systems), Each(&dts), 50).unwrap();
+        all.advance(Rk4, PerTrajectory(&systems), PerTrajectory(&dts), 50).unwrap();
         for n in 0..len {
             let lone = (0..50).fold(start, |s, _| Rk4.step(&systems[n], s, dts[n]));
             assert_eq!(all.state(n), Some(lone), "{n}");
@@ -278,7 +279,7 @@ fn what_cannot_be_run_is_refused_in_words() {
     let states = [State { q: [1.0_f32], v: [0.0] }; 3];
     let mut all = Ensemble::new(&states, Execution::serial()).unwrap();
     let system = All(Oscillator { omega2: 1.0 });
-    let error = all.advance(Rk4, system, Each(&[0.1; 2]), 1).unwrap_err();
+    let error = all.advance(Rk4, system, PerTrajectory(&[0.1; 2]), 1).unwrap_err();
     assert!(error.to_string().contains("2 time steps for 3 trajectories"), "{error}");
     let far = usize::MAX / 64;
     let error = Ensemble::<f64, 1>::from_fn(far, Execution::serial(), |_| unreachable!());

@@ -1,7 +1,7 @@
 //! What the observers of an ensemble tell is what lone trajectories tell, wherever it runs.
 
 use libration::ensemble::{
-    All, Copies, Drift, Each, Execution, InstructionSet, MeanSquareError, Moments,
+    All, Copies, Drift, Execution, InstructionSet, MeanSquareError, Moments, PerTrajectory,
 };
 use libration::integrator::VelocityVerlet;
 use libration::system::Pendulum;
@@ -58,7 +58,9 @@ fn everywhere<R: PartialEq + std::fmt::Debug>(
 #[test]
 fn copies_are_the_states_of_lone_trajectories() {
     let copies = everywhere(|mut ensemble, systems| {
-        ensemble.observe(VelocityVerlet, Each(systems), All(DT), STEPS, EVERY, Copies::new).unwrap()
+        ensemble
+            .observe(VelocityVerlet, PerTrajectory(systems), All(DT), STEPS, EVERY, Copies::new)
+            .unwrap()
     });
     let of = |n: usize| copies.iter().find_map(|copies| copies.states(n));
     // Runs of 512: a sixteenth would be less.
@@ -73,9 +75,10 @@ fn copies_are_the_states_of_lone_trajectories() {
 #[test]
 fn the_largest_drift_is_that_of_lone_trajectories() {
     let drifts = everywhere(|mut ensemble, systems| {
-        let watch = |range| Drift::<f64, Pendulum<f64>, _>::new(range, Each(systems));
-        let watched =
-            ensemble.observe(VelocityVerlet, Each(systems), All(DT), STEPS, EVERY, watch).unwrap();
+        let watch = |range| Drift::<f64, Pendulum<f64>, _>::new(range, PerTrajectory(systems));
+        let watched = ensemble
+            .observe(VelocityVerlet, PerTrajectory(systems), All(DT), STEPS, EVERY, watch)
+            .unwrap();
         watched.iter().flat_map(Drift::largest).collect::<Vec<f64>>()
     });
     assert_eq!(drifts.len(), COUNT);
@@ -90,8 +93,9 @@ fn the_largest_drift_is_that_of_lone_trajectories() {
 fn an_energy_that_is_no_number_is_not_forgotten() {
     let mut ensemble = Ensemble::from_fn(3, Execution::serial(), start).unwrap();
     let wild = [system(0), Pendulum { omega2: f64::NAN }, system(2)];
-    let watch = |range| Drift::<f64, Pendulum<f64>, _>::new(range, Each(&wild));
-    let watched = ensemble.observe(VelocityVerlet, Each(&wild), All(DT), 3, 1, watch).unwrap();
+    let watch = |range| Drift::<f64, Pendulum<f64>, _>::new(range, PerTrajectory(&wild));
+    let watched =
+        ensemble.observe(VelocityVerlet, PerTrajectory(&wild), All(DT), 3, 1, watch).unwrap();
     let drifts: Vec<f64> = watched.iter().flat_map(Drift::largest).collect();
     assert!(drifts[0].is_finite() && drifts[1].is_nan() && drifts[2].is_finite(), "{drifts:?}");
 }
@@ -101,8 +105,9 @@ fn the_mean_square_error_is_that_of_lone_trajectories() {
     let exact = |n: usize, step: u64| State { q: [n as f64 * 1e-3], v: [step as f64 * 1e-2] };
     let means = everywhere(|mut ensemble, systems| {
         let watch = |range| MeanSquareError::new(range, exact);
-        let watched =
-            ensemble.observe(VelocityVerlet, Each(systems), All(DT), STEPS, EVERY, watch).unwrap();
+        let watched = ensemble
+            .observe(VelocityVerlet, PerTrajectory(systems), All(DT), STEPS, EVERY, watch)
+            .unwrap();
         watched.iter().flat_map(MeanSquareError::means).collect::<Vec<_>>()
     });
     for n in [0, 4095, COUNT - 1] {
@@ -123,8 +128,9 @@ fn the_mean_square_error_is_that_of_lone_trajectories() {
 fn moments_are_those_of_all_trajectories_at_each_step() {
     let summaries = everywhere(|mut ensemble, systems| {
         let watch = |_| Moments::new();
-        let parts =
-            ensemble.observe(VelocityVerlet, Each(systems), All(DT), STEPS, EVERY, watch).unwrap();
+        let parts = ensemble
+            .observe(VelocityVerlet, PerTrajectory(systems), All(DT), STEPS, EVERY, watch)
+            .unwrap();
         Moments::merged(parts).summaries().collect::<Vec<_>>()
     });
     assert_eq!(summaries.len(), 9);

@@ -8,7 +8,7 @@ use libration::control::clock::{
 use libration::control::controller::{Force, Pid, PidGains, Saturated, StateFeedback};
 use libration::control::delay::{Latencies, Order, Packets, Random, RecordedLatencies, Schedule};
 use libration::control::{Clock, Controller, Delay, Feedback, Jitter, Latency, RandomLatency};
-use libration::ensemble::{All, Assign, Each, Execution, InstructionSet, Loops, Setup};
+use libration::ensemble::{All, Assign, Execution, InstructionSet, Loops, PerTrajectory, Setup};
 use libration::integrator::{ExplicitEuler, Rk4, SymplecticEuler, VelocityVerlet};
 use libration::system::{Oscillator, Pendulum};
 use libration::{Integrator, State, System};
@@ -156,7 +156,7 @@ fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_whatever_the_cont
         (0..333).map(|n| Oscillator { omega2: 1.0 + n as f32 / 100.0 }).collect();
     let rates: Vec<f64> = (0..333).map(|n| 1.0 + f64::from(n) * 1e-4).collect();
     let all = |count: usize| {
-        Setup::new(Each(&systems[..count]), Rk4)
+        Setup::new(PerTrajectory(&systems[..count]), Rk4)
             .controller(Saturated { controller: StateFeedback::to_origin(GAINS), most: 1.0 })
             .clock((Rates(&rates[..count]), Dropped { probability: 0.1 }))
             .delay(Latencies::of_commands(&latencies[..count]).and_observations(&seen[..count]))

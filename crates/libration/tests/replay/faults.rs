@@ -142,13 +142,13 @@ fn a_buffer_of_wider_numbers_and_more_dimensions_keeps_them() {
     use libration::ensemble::All;
     use libration::integrator::VelocityVerlet;
     use libration::rl::policy::Random;
-    use libration::rl::start::At;
+    use libration::rl::start::FixedStart;
     use libration::rl::task::Regulate;
     use libration::rl::{Environment, Environments};
     use libration::system::HenonHeiles;
 
     let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
-    let start = At(State { q: [0.1, 0.2], v: [0.0, 0.1] });
+    let start = FixedStart(State { q: [0.1, 0.2], v: [0.0, 0.1] });
     let world =
         Environment::new(All(HenonHeiles { lambda: 1.0 }), VelocityVerlet, 0.01, task, start)
             .limit(50);

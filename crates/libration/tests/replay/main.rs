@@ -14,7 +14,7 @@ use libration::ensemble::{All, Execution};
 use libration::integrator::SymplecticEuler;
 use libration::replay::{Capacity, Replay};
 use libration::rl::policy::Random;
-use libration::rl::start::Between;
+use libration::rl::start::UniformStart;
 use libration::rl::task::Regulate;
 use libration::rl::{Autoreset, Environment, Environments, Layout, Plan, Rollout};
 use libration::system::Oscillator;
@@ -22,10 +22,11 @@ use libration::system::Oscillator;
 const SPRING: Oscillator<f32> = Oscillator { omega2: 10.0 };
 /// Actions of a few units throw it out before the time limit, now and then.
 const TASK: Regulate = Regulate { position: 1.0, velocity: 0.1, effort: 0.01, bound: 1.2 };
-const ANYWHERE: Between<1> = Between(State { q: [-1.0], v: [-2.0] }, State { q: [1.0], v: [2.0] });
+const ANYWHERE: UniformStart<1> =
+    UniformStart(State { q: [-1.0], v: [-2.0] }, State { q: [1.0], v: [2.0] });
 
 type World =
-    Environment<Oscillator<f32>, All<Oscillator<f32>>, SymplecticEuler, Regulate, Between<1>>;
+    Environment<Oscillator<f32>, All<Oscillator<f32>>, SymplecticEuler, Regulate, UniformStart<1>>;
 type Replay21 = Replay<f32, 2, 1>;
 
 fn environments(autoreset: Autoreset, count: usize) -> Environments<f32, World, 2, 1> {

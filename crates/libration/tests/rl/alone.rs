@@ -3,7 +3,7 @@
 use libration::control::{Begin, Clock};
 use libration::random::{Address, EPOCH, Purpose, Streams};
 use libration::rl::{
-    Autoreset, Episode, Parts, Place, Policy, Sensor, Severity, Start, Task, Variation, World,
+    Autoreset, Episode, ErrorScale, Parts, Policy, Sensor, Start, StepIndex, Task, Variation, World,
 };
 use libration::system::Held;
 use libration::{Integrator, State};
@@ -75,20 +75,20 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
         let numbers = parts.variation.draw(address(number));
         let systems = libration::ensemble::Assign::of(parts.systems, n);
         let (system, task) = parts.variation.apply(&numbers, systems, parts.task);
-        let severity = severity(&parts.severity, address(number));
+        let error_scale = error_scale(&parts.error_scale, address(number));
         let [late, effect] = delays(&parts.delays, address(number));
         let see = |states: &[State<f32, 1>], looks: &mut Words, age: u64| {
             looks.before(age, number);
             let shown = states[states.len().saturating_sub(1 + late)];
             let seen = task.observe(0.0, &shown);
             let measured = parts.sensor.measure(seen, &mut || looks.stream.next(0));
-            let noisy = |i: usize| measured[i] + (severity[1] - 1.0) * (measured[i] - seen[i]);
+            let noisy = |i: usize| measured[i] + (error_scale[1] - 1.0) * (measured[i] - seen[i]);
             if E::Sensor::DRAWS { [noisy(0), noisy(1)] } else { measured }
         };
         let words = [&times, &looks, &acts].map(|words| words.stream);
         let seen = see(&states, &mut looks, age);
         acts.before(age, number);
-        let place = Place { environment: n, environments, step, row: 0 };
+        let place = StepIndex { environment: n, environments, step, row: 0 };
         let act = policy.act(place, &seen, &mut || acts.stream.next(0));
         let before = *states.last().unwrap();
         let most = parts.saturation as f32;
@@ -105,7 +105,7 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
             let ratio =
                 parts.clock.ratio(memory, parts.clock.beat(at), &mut || times.stream.next(0));
             let ratio =
-                if E::Clock::EVEN { ratio } else { ratio + (severity[0] - 1.0) * (ratio - 1.0) };
+                if E::Clock::EVEN { ratio } else { ratio + (error_scale[0] - 1.0) * (ratio - 1.0) };
             let ratio = if ratio < 0.0 { 0.0 } else { ratio };
             let mobility = parts.mass.recip() as f32;
             let system = Held { system, command: command.map(|u| u * mobility) };
@@ -149,7 +149,7 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
 }
 
 /// How bad the clock and the sensor of an episode are.
-fn severity(severity: &Severity, episode: Episode) -> [f32; 2] {
+fn error_scale(error_scale: &ErrorScale, episode: Episode) -> [f32; 2] {
     let one = |i: u64, [least, most]: [f64; 2]| {
         let place = Address {
             seed: episode.seed,
@@ -159,7 +159,7 @@ fn severity(severity: &Severity, episode: Episode) -> [f32; 2] {
         };
         (least + place.uniform()[0] * (most - least)) as f32
     };
-    [one(0, severity.clock), one(1, severity.sensor)]
+    [one(0, error_scale.clock), one(1, error_scale.sensor)]
 }
 
 /// The latencies of an episode: as many shares of the interval as there are whole numbers in it.

@@ -4,14 +4,15 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use libration::ensemble::Execution;
-use libration::rl::policy::{Explore, Linear, Random};
+use libration::rl::policy::{GaussianExploration, Linear, Random};
 use libration::rl::{Autoreset, Environments, Layout, Plan, Policy, Rollout, Task, World, Writes};
 
 use crate::alone::{Told, alone};
 use crate::{chosen, executions, ideal, perturbed};
 
 pub(crate) const POLICY: Linear<2, 1> = Linear { weights: [[-3.0, 0.5]], bias: [0.25] };
-pub(crate) const EXPLORING: Explore<Linear<2, 1>, 1> = Explore { policy: POLICY, sigma: [0.5] };
+pub(crate) const EXPLORING: GaussianExploration<Linear<2, 1>, 1> =
+    GaussianExploration { policy: POLICY, sigma: [0.5] };
 
 /// What these environments tell of so many steps, in as many rollouts as there are horizons.
 pub(crate) fn told<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
@@ -119,10 +120,10 @@ fn a_step_is_the_same_by_the_short_way_as_by_the_long() {
     impl Policy<f32, 2, 1> for Long {
         fn act(
             &self,
-            place: libration::rl::Place,
+            place: libration::rl::StepIndex,
             seen: &[f32; 2],
             word: &mut impl FnMut() -> u32,
-        ) -> libration::rl::Act<f32, 1> {
+        ) -> libration::rl::ActionSample<f32, 1> {
             self.0.act(place, seen, word)
         }
     }

@@ -6,7 +6,7 @@ use libration::control::clock::{Clock, Drifting, Recorded, Skewed};
 use libration::ensemble::{All, Execution};
 use libration::integrator::SymplecticEuler;
 use libration::rl::policy::Constant;
-use libration::rl::start::At;
+use libration::rl::start::FixedStart;
 use libration::rl::task::Regulate;
 use libration::rl::{Environment, Environments, Plan, Rollout};
 use libration::system::Oscillator;
@@ -17,7 +17,7 @@ use crate::TASK;
 fn steps<C: Clock<f32>>(clock: C, limit: u32, horizon: usize, count: usize) -> Vec<Vec<f32>> {
     let free = Oscillator { omega2: 0.0_f32 };
     let task = Regulate { bound: f64::INFINITY, ..TASK };
-    let start = At(State { q: [0.0], v: [1.0] });
+    let start = FixedStart(State { q: [0.0], v: [1.0] });
     let world =
         Environment::new(All(free), SymplecticEuler, 1.0, task, start).limit(limit).clock(clock);
     let mut all = Environments::new(world, count, 3, Execution::serial()).unwrap();

@@ -4,7 +4,7 @@ use libration::State;
 use libration::ensemble::{All, Execution};
 use libration::integrator::SymplecticEuler;
 use libration::rl::policy::Constant;
-use libration::rl::start::At;
+use libration::rl::start::FixedStart;
 use libration::rl::task::Regulate;
 use libration::rl::{Autoreset, Delays, Environment, Environments, Layout, Plan, Rollout, Task};
 
@@ -41,7 +41,7 @@ fn an_episode_that_ends_is_kept_with_what_was_seen_last_and_what_it_paid() {
 fn what_is_no_longer_finite_is_over_pays_nothing_and_begins_again() {
     // Beyond z = 2 symplectic Euler grows without end.
     let task = Regulate { bound: f64::INFINITY, ..TASK };
-    let start = At(State { q: [1.0], v: [0.0] });
+    let start = FixedStart(State { q: [1.0], v: [0.0] });
     let environment = Environment::new(All(SPRING), SymplecticEuler, 1e6, task, start);
     let mut all = Environments::new(environment, 3, 0, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(20, 3)).unwrap();
@@ -57,14 +57,14 @@ fn what_is_no_longer_finite_is_over_pays_nothing_and_begins_again() {
 #[test]
 fn an_action_or_a_reward_that_is_no_number_ends_the_episode_of_its_environment_and_touches_no_other()
  {
-    use libration::rl::policy::Given;
+    use libration::rl::policy::ActionSequence;
     let run = |bad: Option<f32>, delays| {
         let environment = ideal().delays(delays);
         let mut all = Environments::new(environment, 70, 1, Execution::serial()).unwrap();
         let mut actions = vec![0.5_f32; 70 * 6];
         bad.into_iter().for_each(|action| actions[2 * 70 + 33] = action);
         let mut rollout = Rollout::new(Plan::new(6, 70).truncated()).unwrap();
-        all.rollout(Given(&actions), &mut rollout).unwrap();
+        all.rollout(ActionSequence(&actions), &mut rollout).unwrap();
         rollout
     };
     // Also where its effect would come later.
@@ -87,14 +87,14 @@ fn an_action_or_a_reward_that_is_no_number_ends_the_episode_of_its_environment_a
 
 #[test]
 fn what_is_lost_is_seen_so_in_no_transition_and_begins_again() {
-    use libration::rl::policy::Given;
+    use libration::rl::policy::ActionSequence;
     for autoreset in [Autoreset::NextStep, Autoreset::Disabled] {
         let mut all =
             Environments::new(ideal().autoreset(autoreset), 70, 1, Execution::serial()).unwrap();
         let mut actions = vec![0.5_f32; 70 * 6];
         actions[2 * 70 + 33] = f32::INFINITY;
         let mut rollout = Rollout::new(Plan::new(6, 70).truncated()).unwrap();
-        all.rollout(Given(&actions), &mut rollout).unwrap();
+        all.rollout(ActionSequence(&actions), &mut rollout).unwrap();
         assert!(rollout.finals().iter().any(|end| end.lost && end.environment == 33));
         assert!(rollout.reward().iter().all(|reward| reward.is_finite()));
         for (t, n) in (0..6).flat_map(|t| (0..70).map(move |n| (t, n))) {
@@ -106,7 +106,7 @@ fn what_is_lost_is_seen_so_in_no_transition_and_begins_again() {
         assert_eq!(moves, [false, autoreset == Autoreset::NextStep]);
         if autoreset == Autoreset::Disabled {
             all.reset(&[true; 70]).unwrap();
-            all.rollout(Given(&[0.5; 70 * 6]), &mut rollout).unwrap();
+            all.rollout(ActionSequence(&[0.5; 70 * 6]), &mut rollout).unwrap();
             assert!(rollout.observation().iter().all(|x| x.is_finite()));
         }
     }
@@ -130,7 +130,7 @@ fn what_is_finite_is_not_lost_however_large() {
         }
     }
     // Of no two of these numbers there is a sum in this type.
-    let start = At(State { q: [40_000.0], v: [40_000.0] });
+    let start = FixedStart(State { q: [40_000.0], v: [40_000.0] });
     let still = libration::system::Oscillator { omega2: f16::ZERO };
     let environment = Environment::new(All(still), SymplecticEuler, 1e-7, Nothing, start);
     let mut all = Environments::new(environment, 64, 0, Execution::serial()).unwrap();

@@ -4,15 +4,16 @@ use libration::State;
 use libration::control::clock::{Gaussian, Jittered, Recorded, Uniform};
 use libration::ensemble::{All, Execution};
 use libration::rl::policy::{
-    Activation, Constant, Each, EachPerceptron, Explore, Given, Linear, Perceptron, Random,
+    ActionSequence, Activation, Constant, GaussianExploration, Linear, LinearPerEnvironment,
+    Perceptron, PerceptronPerEnvironment, Random,
 };
 use libration::rl::sensor::Noisy;
-use libration::rl::start::Between;
+use libration::rl::start::UniformStart;
 use libration::rl::task::Regulate;
-use libration::rl::variation::Varied;
+use libration::rl::variation::RandomParameters;
 use libration::rl::{
-    Act, Delays, Environment, Environments, Estimates, Place, Plan, Policy, Rollout, Severity,
-    Spread, World, Writes,
+    ActionSample, Delays, Distribution, Environment, Environments, ErrorScale, Estimates, Plan,
+    Policy, Rollout, StepIndex, World, Writes,
 };
 use libration::system::Oscillator;
 
@@ -41,7 +42,7 @@ fn an_environment_that_cannot_be_is_refused() {
         "the time limit is 0 actions; it must be at least 1, or there must be none"
     );
     let mut turned = ideal();
-    turned.start = Between(ANYWHERE.1, ANYWHERE.0);
+    turned.start = UniformStart(ANYWHERE.1, ANYWHERE.0);
     assert_eq!(
         refused(turned),
         "width of the start 0 is -2; it must be a finite number of at least 0"
@@ -61,41 +62,41 @@ fn an_environment_that_cannot_be_is_refused() {
         refused(noisy),
         "the rms of the noise of observation 1 is -0.1; it must be a finite number of at least 0"
     );
-    let varied = |spread| {
+    let varied = |distribution| {
         let apply = |_: [f32; 1], system: Oscillator<f32>, task: Regulate| (system, task);
-        refused(ideal().variation(Varied { numbers: [spread], apply }))
+        refused(ideal().variation(RandomParameters { numbers: [distribution], apply }))
     };
-    for (spread, wanted) in [
+    for (distribution, wanted) in [
         (
-            Spread::Uniform(2.0, 1.0),
+            Distribution::Uniform(2.0, 1.0),
             "width of the variation 0 is -1; it must be a finite number of at least 0",
         ),
         (
-            Spread::LogUniform(0.0, 1.0),
+            Distribution::LogUniform(0.0, 1.0),
             "lower end of the variation 0 is 0; it must be above 0 in the float type",
         ),
         (
-            Spread::LogUniform(1e-300, 1.0),
+            Distribution::LogUniform(1e-300, 1.0),
             "lower end of the variation 0 is 1e-300; it must be above 0 in the float type",
         ),
         (
-            Spread::LogUniform(2.0, 1.0),
+            Distribution::LogUniform(2.0, 1.0),
             "upper end of the variation 0 is 1; it must be at least the lower",
         ),
         (
-            Spread::Normal(0.0, -1.0),
+            Distribution::Normal(0.0, -1.0),
             "standard deviation of the variation 0 is -1; it must be at least 0",
         ),
         (
-            Spread::Normal(f64::NAN, 1.0),
+            Distribution::Normal(f64::NAN, 1.0),
             "mean of the variation 0 is NaN; it must be finite in the float type",
         ),
         (
-            Spread::Either(1.5, [0.0; 2]),
+            Distribution::Either(1.5, [0.0; 2]),
             "probability of the variation 0 is 1.5; it must be from 0 to 1",
         ),
     ] {
-        assert_eq!(varied(spread), wanted);
+        assert_eq!(varied(distribution), wanted);
     }
     // The latency of an observation may be longer than any episode: it sees the start.
     assert!(made(late([4096; 2], [4096; 2])).is_ok());
@@ -141,12 +142,15 @@ fn a_policy_that_cannot_act_is_refused() {
         let mut rollout = Rollout::new(Plan::new(5, 2).truncated()).unwrap();
         two.rollout(policy, &mut rollout).unwrap_err().to_string()
     }
-    assert_eq!(told(Given(&[0.0; 9])), "the number of actions is 9; it must be 10");
-    assert_eq!(told(Each(&[0.0; 5])), "the number of weights of the policy is 5; it must be 6");
+    assert_eq!(told(ActionSequence(&[0.0; 9])), "the number of actions is 9; it must be 10");
+    assert_eq!(
+        told(LinearPerEnvironment(&[0.0; 5])),
+        "the number of weights of the policy is 5; it must be 6"
+    );
     let network = Perceptron::<f32, 8> { parameters: &[0.0; 34], activation: Activation::Tanh };
     assert_eq!(told(network), "the number of parameters of the network is 34; it must be 105");
     assert_eq!(
-        told(Explore { policy: POLICY, sigma: [0.0] }),
+        told(GaussianExploration { policy: POLICY, sigma: [0.0] }),
         "standard deviation of exploration 0 is 0; it must be a finite number above 0"
     );
     assert_eq!(
@@ -159,13 +163,15 @@ fn a_policy_that_cannot_act_is_refused() {
     );
     let mut weights = [0.0; 6];
     weights[4] = f32::INFINITY;
-    assert!(told(Each(&weights)).contains("weight of the policy 4 is inf"));
+    assert!(told(LinearPerEnvironment(&weights)).contains("weight of the policy 4 is inf"));
     let mut parameters = [0.0; Perceptron::<f32, 8>::parameters(2, 1, 1)];
     parameters[32] = f32::NAN;
     let network = Perceptron::<f32, 8> { parameters: &parameters, activation: Activation::Relu };
     assert!(told(network).contains("parameter of the network 32 is NaN"));
-    let networks =
-        EachPerceptron::<f32, 8> { parameters: &parameters, activation: Activation::Relu };
+    let networks = PerceptronPerEnvironment::<f32, 8> {
+        parameters: &parameters,
+        activation: Activation::Relu,
+    };
     assert_eq!(told(networks), "the number of parameters of the networks is 33; it must be 66");
     assert_eq!(
         told(Random::between([1.0], [0.0])),
@@ -188,17 +194,18 @@ fn tasks_and_starts_that_cannot_be_are_refused() {
     let told = with(Regulate { velocity: 1e300, ..crate::TASK }, ANYWHERE);
     let wanted = "price of a velocity is 1e300; it must be small enough for the float type";
     assert!(told.contains(wanted), "{told}");
-    let far = Between(State { q: [0.0], v: [0.0] }, State { q: [1e300], v: [0.0] });
+    let far = UniformStart(State { q: [0.0], v: [0.0] }, State { q: [1e300], v: [0.0] });
     let told = with(crate::TASK, far);
     assert!(told.contains("upper end of the start is 1e300"), "{told}");
-    let kind = Severity { clock: [-0.5, 1.0], ..Severity::default() };
-    let told = refused(ideal().severity(kind));
+    let kind = ErrorScale { clock: [-0.5, 1.0], ..ErrorScale::default() };
+    let told = refused(ideal().error_scale(kind));
     assert!(
-        told.contains("severity of the clock is -0.5; it must be a finite number of at least 0"),
+        told.contains("error scale of the clock is -0.5; it must be a finite number of at least 0"),
         "{told}"
     );
-    let told = refused(ideal().severity(Severity { sensor: [0.0, 1e39], ..Severity::default() }));
-    assert!(told.contains("severity of the sensor is 1e39; it must be small enough"), "{told}");
+    let told =
+        refused(ideal().error_scale(ErrorScale { sensor: [0.0, 1e39], ..ErrorScale::default() }));
+    assert!(told.contains("error scale of the sensor is 1e39; it must be small enough"), "{told}");
     let far = Environments::<f32, _, 2, 1>::shard(ideal(), usize::MAX, 3, 0, Execution::serial());
     assert!(far.unwrap_err().to_string().contains("number of the first environment"));
     // Most plans are larger than any memory, and some than any number.
@@ -221,8 +228,13 @@ fn a_policy_that_draws_without_saying_so_is_refused() {
             self.0
         }
 
-        fn act(&self, _: Place, _: &[f32; 2], word: &mut impl FnMut() -> u32) -> Act<f32, 1> {
-            Act::sure([word() as f32])
+        fn act(
+            &self,
+            _: StepIndex,
+            _: &[f32; 2],
+            word: &mut impl FnMut() -> u32,
+        ) -> ActionSample<f32, 1> {
+            ActionSample::deterministic([word() as f32])
         }
     }
     let mut all = made(ideal()).unwrap();
@@ -238,7 +250,8 @@ fn a_policy_that_draws_without_saying_so_is_refused() {
 fn systems_must_be_as_many_as_environments() {
     let three = [crate::SPRING; 3];
     let Environment { method, dt, task, start, .. } = ideal();
-    let each = Environment::new(libration::ensemble::Each(&three), method, dt, task, start);
+    let each =
+        Environment::new(libration::ensemble::PerTrajectory(&three), method, dt, task, start);
     assert!(refused(each).contains("3 systems for 2 trajectories"));
     let one = Environment::new(All(crate::SPRING), method, dt, task, start);
     assert!(made(one).is_ok());

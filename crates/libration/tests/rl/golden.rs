@@ -6,11 +6,11 @@ use libration::State;
 use libration::control::clock::{Gaussian, Jittered, Skewed, Uniform};
 use libration::ensemble::All;
 use libration::integrator::VelocityVerlet;
-use libration::rl::policy::Given;
+use libration::rl::policy::ActionSequence;
 use libration::rl::sensor::Noisy;
-use libration::rl::start::Between;
+use libration::rl::start::UniformStart;
 use libration::rl::task::SwingUp;
-use libration::rl::{Delays, Environment, Environments, Outcome};
+use libration::rl::{Delays, Environment, Environments, StepBuffers};
 use libration::system::Pendulum;
 
 use crate::executions;
@@ -27,7 +27,7 @@ fn a_perturbed_pendulum_keeps_its_bits_which_are_those_of_python() {
     const COUNT: usize = 5;
     let noise = Gaussian(0.02);
     let task = SwingUp { velocity: 0.1, effort: 0.001 };
-    let start = Between(State { q: [-PI], v: [-1.0] }, State { q: [PI], v: [1.0] });
+    let start = UniformStart(State { q: [-PI], v: [-1.0] }, State { q: [PI], v: [1.0] });
     let world = Environment::new(
         All(Pendulum { omega2: 15.0_f32 }),
         VelocityVerlet,
@@ -49,13 +49,13 @@ fn a_perturbed_pendulum_keeps_its_bits_which_are_those_of_python() {
         let mut found = 0xcbf2_9ce4_8422_2325;
         for t in 0..300_u16 {
             let action = [0.5 * f32::from(t % 13) - 3.0; COUNT];
-            let to = Outcome {
+            let to = StepBuffers {
                 seen: &mut seen,
                 reward: &mut reward,
                 terminated: &mut terminated,
                 truncated: &mut truncated,
             };
-            all.act(Given(&action), to).unwrap();
+            all.act(ActionSequence(&action), to).unwrap();
             found = hash(seen.iter().chain(&reward).flat_map(|x: &f32| x.to_le_bytes()), found);
             found = hash(truncated, found);
         }

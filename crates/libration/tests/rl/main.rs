@@ -18,24 +18,25 @@ use libration::control::clock::{Fixed, Gaussian, Jittered, Skewed, Uniform};
 use libration::ensemble::{All, Execution, InstructionSet};
 use libration::integrator::SymplecticEuler;
 use libration::rl::sensor::{Exact, Noisy};
-use libration::rl::start::Between;
+use libration::rl::start::UniformStart;
 use libration::rl::task::Regulate;
-use libration::rl::variation::Same;
-use libration::rl::{Autoreset, Delays, Environment, Severity, Spread, Variation, World};
+use libration::rl::variation::NoVariation;
+use libration::rl::{Autoreset, Delays, Distribution, Environment, ErrorScale, Variation, World};
 use libration::system::Oscillator;
 use libration::{Method, State};
 
 const SPRING: Oscillator<f32> = Oscillator { omega2: 10.0 };
 const TASK: Regulate = Regulate { position: 1.0, velocity: 0.1, effort: 0.01, bound: 1.2 };
-const ANYWHERE: Between<1> = Between(State { q: [-1.0], v: [-2.0] }, State { q: [1.0], v: [2.0] });
+const ANYWHERE: UniformStart<1> =
+    UniformStart(State { q: [-1.0], v: [-2.0] }, State { q: [1.0], v: [2.0] });
 
 /// A spring in one degree of freedom.
-type Spring<C = Fixed, N = Exact, V = Same> = Environment<
+type Spring<C = Fixed, N = Exact, V = NoVariation> = Environment<
     Oscillator<f32>,
     All<Oscillator<f32>>,
     SymplecticEuler,
     Regulate,
-    Between<1>,
+    UniformStart<1>,
     C,
     N,
     V,
@@ -54,7 +55,7 @@ fn perturbed(
     autoreset: Autoreset,
 ) -> Spring<Uneven, Noisy<Uniform, 2>, impl Variation<f32, Oscillator<f32>, Regulate>> {
     use libration::control::Jitter;
-    use libration::rl::variation::Varied;
+    use libration::rl::variation::RandomParameters;
 
     Environment::new(All(SPRING), SymplecticEuler, 0.02, TASK, ANYWHERE)
         .substeps(3)
@@ -64,9 +65,9 @@ fn perturbed(
         .saturation(2.5)
         .clock((Skewed(Jitter::Uniform(0.01)), Jittered(Gaussian(0.2))))
         .sensor(Noisy([Uniform(0.05), Uniform(0.1)]))
-        .severity(Severity { clock: [0.0, 2.0], sensor: [0.5, 1.5] })
-        .variation(Varied {
-            numbers: [Spread::Uniform(8.0, 12.0), Spread::Uniform(1.0, 1.4)],
+        .error_scale(ErrorScale { clock: [0.0, 2.0], sensor: [0.5, 1.5] })
+        .variation(RandomParameters {
+            numbers: [Distribution::Uniform(8.0, 12.0), Distribution::Uniform(1.0, 1.4)],
             apply: |[omega2, bound]: [f32; 2], _: Oscillator<f32>, task: Regulate| {
                 (Oscillator { omega2 }, Regulate { bound: bound.into(), ..task })
             },
@@ -85,7 +86,7 @@ fn chosen(method: Method) -> impl World<f32, 2, 1> {
         .mass(0.3)
         .clock((Skewed(Jitter::Uniform(0.01)), Jittered(Gaussian(0.2))))
         .sensor(Noisy([Uniform(0.05), Uniform(0.1)]))
-        .severity(Severity { clock: [0.0, 2.0], sensor: [0.5, 1.5] })
+        .error_scale(ErrorScale { clock: [0.0, 2.0], sensor: [0.5, 1.5] })
 }
 
 /// On every instruction set, alone and with more threads than a small machine has cores.

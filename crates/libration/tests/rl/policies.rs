@@ -2,7 +2,8 @@
 
 use libration::ensemble::Execution;
 use libration::rl::policy::{
-    Activation, Each, EachPerceptron, Explore, Given, Linear, Perceptron, Random,
+    ActionSequence, Activation, GaussianExploration, Linear, LinearPerEnvironment, Perceptron,
+    PerceptronPerEnvironment, Random,
 };
 use libration::rl::{Environments, Plan, Policy, Rollout};
 
@@ -23,7 +24,7 @@ fn rollout<P: Policy<f32, 2, 1>>(
 #[test]
 fn actions_that_were_recorded_and_are_given_again_lead_to_the_same() {
     let first = rollout(POLICY, 70, Execution::serial());
-    let again = rollout(Given(first.action()), 70, Execution::serial());
+    let again = rollout(ActionSequence(first.action()), 70, Execution::serial());
     assert_eq!(first.observation(), again.observation());
     assert_eq!(first.reward(), again.reward());
 }
@@ -32,7 +33,7 @@ fn actions_that_were_recorded_and_are_given_again_lead_to_the_same() {
 fn weights_for_each_environment_act_as_the_same_for_all() {
     let weights: Vec<f32> = [-3.0, 0.5, 0.25].iter().flat_map(|&w| [w; 70]).collect();
     for execution in executions() {
-        let each = rollout(Each(&weights), 70, execution);
+        let each = rollout(LinearPerEnvironment(&weights), 70, execution);
         let all = rollout(POLICY, 70, Execution::serial());
         // The bias is added first here as there.
         assert_eq!(each.observation(), all.observation());
@@ -42,7 +43,7 @@ fn weights_for_each_environment_act_as_the_same_for_all() {
     for at in [40, 110, 180] {
         other[at] = 0.0;
     }
-    let other = rollout(Each(&other), 70, Execution::serial());
+    let other = rollout(LinearPerEnvironment(&other), 70, Execution::serial());
     let all = rollout(POLICY, 70, Execution::serial());
     for n in 0..70 {
         assert_eq!(other.done(5, n) == all.done(5, n), n != 40);
@@ -53,7 +54,8 @@ fn weights_for_each_environment_act_as_the_same_for_all() {
 #[test]
 fn exploration_has_the_deviation_and_the_log_probability_that_it_says() {
     let sigma = 0.7;
-    let found = rollout(Explore { policy: POLICY, sigma: [sigma] }, 256, Execution::serial());
+    let found =
+        rollout(GaussianExploration { policy: POLICY, sigma: [sigma] }, 256, Execution::serial());
     let mean = Linear { weights: [[-3.0_f64, 0.5]], bias: [0.25] };
     let (mut sum, mut squares) = (0.0, 0.0);
     for t in 0..300 {
@@ -94,10 +96,10 @@ fn a_network_acts_alike_on_every_instruction_set_and_beside_any_number_of_others
         let wanted = told(ideal(), network, 0..130, Execution::serial(), &[100], how);
         // Networks for each, which happen to be the same; and where one is not, it alone does something else.
         let mut copies: Vec<f32> = parameters.iter().flat_map(|&p| [p; 130]).collect();
-        let each = EachPerceptron::<f32, 16> { parameters: &copies, activation };
+        let each = PerceptronPerEnvironment::<f32, 16> { parameters: &copies, activation };
         assert_eq!(told(ideal(), each, 0..130, Execution::serial(), &[100], how), wanted);
         copies[(COUNT - 1) * 130 + 77] += 0.5;
-        let each = EachPerceptron::<f32, 16> { parameters: &copies, activation };
+        let each = PerceptronPerEnvironment::<f32, 16> { parameters: &copies, activation };
         let found = told(ideal(), each, 0..130, Execution::serial(), &[100], how);
         for n in 0..130 {
             assert_eq!(found[n] == wanted[n], n != 77);

@@ -3,7 +3,7 @@
 use libration::control::clock::Rates;
 use libration::ensemble::Execution;
 use libration::random::EPOCH;
-use libration::rl::policy::{Explore, Linear};
+use libration::rl::policy::{GaussianExploration, Linear};
 use libration::rl::{
     Autoreset, EnvironmentError, Environments, Layout, Plan, Rollout, World, Writes,
 };
@@ -17,7 +17,10 @@ fn transitions(autoreset: Autoreset, limit: u32) -> Vec<Vec<Told>> {
     let world = perturbed(autoreset).limit(limit);
     let way = (Layout::Interleaved, Writes::Plain);
     // Energy is taken out: many episodes reach the limit.
-    let policy = Explore { policy: Linear { weights: [[-3.0, -0.5]], bias: [0.25] }, sigma: [0.5] };
+    let policy = GaussianExploration {
+        policy: Linear { weights: [[-3.0, -0.5]], bias: [0.25] },
+        sigma: [0.5],
+    };
     let mut all = told(world, policy, 0..70, Execution::serial(), &[700], way);
     all.iter_mut().for_each(|told| told.retain(|now| now.moved));
     all

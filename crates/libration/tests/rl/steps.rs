@@ -1,9 +1,9 @@
 //! One step at a time is the same as many.
 
 use libration::ensemble::Execution;
-use libration::rl::policy::Given;
+use libration::rl::policy::ActionSequence;
 use libration::rl::{
-    Autoreset, EnvironmentError, Environments, Final, Outcome, Plan, Rollout, World,
+    Autoreset, EnvironmentError, Environments, EpisodeEnd, Plan, Rollout, StepBuffers, World,
 };
 
 use crate::bits::EXPLORING;
@@ -37,19 +37,19 @@ fn compare<E: World<f32, 2, 1>>(world: E, count: usize, execution: &Execution) {
     let make = || Environments::new(world, count, 5, execution.clone()).unwrap();
     let (mut one, mut other) = (make(), make());
     let wanted = whole(&mut one);
-    let mut finals: Vec<Final<f32, 2>> = Vec::new();
+    let mut finals: Vec<EpisodeEnd<f32, 2>> = Vec::new();
     let (mut seen, mut reward) = (vec![f32::NAN; 2 * count], vec![f32::NAN; count]);
     let (mut terminated, mut truncated) = (vec![9; count], vec![9; count]);
     for t in 0..STEPS {
         let row = t * count..(t + 1) * count;
-        let to = Outcome {
+        let to = StepBuffers {
             seen: &mut seen,
             reward: &mut reward,
             terminated: &mut terminated,
             truncated: &mut truncated,
         };
-        let ends = other.act(Given(&wanted.action()[row.clone()]), to).unwrap();
-        finals.extend(ends.into_iter().map(|end| Final { step: t, ..end }));
+        let ends = other.act(ActionSequence(&wanted.action()[row.clone()]), to).unwrap();
+        finals.extend(ends.into_iter().map(|end| EpisodeEnd { step: t, ..end }));
         assert_eq!(reward, wanted.reward()[row.clone()]);
         assert_eq!(terminated, wanted.terminated()[row.clone()]);
         assert_eq!(truncated, wanted.truncated()[row]);
@@ -100,8 +100,8 @@ fn a_step_whose_room_is_for_more_or_fewer_is_refused_and_nothing_has_moved() {
     let mut all = Environments::new(ideal(), 3, 0, executions().remove(0)).unwrap();
     let mut refused = |seen: &mut [f32], reward: &mut [f32], flags: &mut [u8], actions: &[f32]| {
         let mut other = vec![0; flags.len()];
-        let to = Outcome { seen, reward, terminated: flags, truncated: &mut other };
-        all.act(Given(actions), to).unwrap_err()
+        let to = StepBuffers { seen, reward, terminated: flags, truncated: &mut other };
+        all.act(ActionSequence(actions), to).unwrap_err()
     };
     for (error, name, found, wanted) in [
         (

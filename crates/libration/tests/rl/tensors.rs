@@ -1,10 +1,10 @@
 //! Rollouts as memory.
 
 use bytemuck::Pod;
-use libration::ensemble::{All, Each, Execution};
+use libration::ensemble::{All, Execution, PerTrajectory};
 use libration::integrator::{Integrator, Rk4};
 use libration::rl::policy::Constant;
-use libration::rl::start::At;
+use libration::rl::start::FixedStart;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Environment, Environments, Plan, Rollout};
 use libration::system::{Held, Oscillator, Pendulum};
@@ -14,8 +14,9 @@ use libration::{Float, State};
 fn each_environment_has_its_own_system_and_tasks_see_what_they_say() {
     let systems: Vec<Pendulum<f64>> =
         (0..70).map(|n| Pendulum { omega2: 1.0 + f64::from(n) }).collect();
-    let (task, start) = (SwingUp { velocity: 0.1, effort: 0.0 }, At(State { q: [0.5], v: [0.0] }));
-    let environment = Environment::new(Each(&systems), Rk4, 0.05, task, start).substeps(2);
+    let (task, start) =
+        (SwingUp { velocity: 0.1, effort: 0.0 }, FixedStart(State { q: [0.5], v: [0.0] }));
+    let environment = Environment::new(PerTrajectory(&systems), Rk4, 0.05, task, start).substeps(2);
     let mut all = Environments::new(environment, 70, 0, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(10, 70)).unwrap();
     all.rollout(Constant([0.125]), &mut rollout).unwrap();
@@ -43,7 +44,7 @@ fn each_environment_has_its_own_system_and_tasks_see_what_they_say() {
 fn a_reference_is_seen_and_paid_for_at_the_time_of_the_episode() {
     let reference = Sine { amplitude: 0.5, angular_frequency: 3.0, phase: 0.25 };
     let regulate = Regulate { position: 2.0, velocity: 0.5, effort: 0.0, bound: 0.75 };
-    let (task, start) = (Track { reference, regulate }, At(State { q: [0.0], v: [0.0] }));
+    let (task, start) = (Track { reference, regulate }, FixedStart(State { q: [0.0], v: [0.0] }));
     let system = Oscillator { omega2: 1.0_f64 };
     for autoreset in [Autoreset::SameStep, Autoreset::NextStep, Autoreset::Disabled] {
         let environment = Environment::new(All(system), Rk4, 0.05, task, start)
@@ -221,7 +222,7 @@ fn short_and_long_floats_are_environments_too() {
     use libration::rl::policy::Linear;
     fn last<T: Float + Pod>(omega2: T, set: InstructionSet) -> Vec<f64> {
         let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
-        let start = At(State { q: [1.0], v: [0.0] });
+        let start = FixedStart(State { q: [1.0], v: [0.0] });
         let environment =
             Environment::new(All(Oscillator { omega2 }), SymplecticEuler, 0.0625, task, start);
         let execution = Execution::serial().instructions(set).unwrap();

@@ -5,10 +5,10 @@ use half::f16;
 use libration::ensemble::All;
 use libration::integrator::{Integrator, VelocityVerlet};
 use libration::rl::policy::{Linear, Policy};
-use libration::rl::start::Between;
+use libration::rl::start::UniformStart;
 use libration::rl::task::{Regulate, Task};
 use libration::rl::{
-    Environment, Environments, Episode, Layout, Place, Plan, Rollout, Start, Writes,
+    Environment, Environments, Episode, Layout, Plan, Rollout, Start, StepIndex, Writes,
 };
 use libration::system::{Held, HenonHeiles};
 use libration::{Float, State};
@@ -19,12 +19,12 @@ use crate::executions;
 fn a_short_float_holds_the_return_of_a_long_episode() {
     use libration::ensemble::Execution;
     use libration::rl::policy::Constant;
-    use libration::rl::start::At;
+    use libration::rl::start::FixedStart;
     use libration::system::Oscillator;
 
     let free = All(Oscillator { omega2: f16::ZERO });
     let task = Regulate { position: 1.0, velocity: 0.0, effort: 0.0, bound: 2.0 };
-    let start = At(State { q: [1.0], v: [0.0] });
+    let start = FixedStart(State { q: [1.0], v: [0.0] });
     let world = Environment::new(free, VelocityVerlet, 0.01, task, start).limit(5000);
     let mut all = Environments::<f16, _, 2, 1>::new(world, 3, 0, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(5000, 3).truncated()).unwrap();
@@ -36,8 +36,8 @@ fn a_short_float_holds_the_return_of_a_long_episode() {
 const POLICY: Linear<4, 2> =
     Linear { weights: [[-1.0, 0.25, -0.5, 0.0], [0.5, -2.0, 0.0, -0.75]], bias: [0.125, -0.25] };
 const TASK: Regulate = Regulate { position: 1.0, velocity: 0.5, effort: 0.125, bound: 0.75 };
-const START: Between<2> =
-    Between(State { q: [-0.5; 2], v: [-1.0; 2] }, State { q: [0.5; 2], v: [1.0; 2] });
+const START: UniformStart<2> =
+    UniformStart(State { q: [-0.5; 2], v: [-1.0; 2] }, State { q: [0.5; 2], v: [1.0; 2] });
 const LIMIT: u64 = 40;
 const STEPS: usize = 90;
 
@@ -51,7 +51,7 @@ type Told<T> = ([T; 4], [T; 2], T, u8, u8);
 /// What environment `n` does, in a loop of scalars.
 fn alone<T: Float>(n: usize) -> Vec<Told<T>> {
     let start = |number| START.draw(Episode { seed: 5, environment: n as u64, number });
-    let place = Place { environment: n, environments: n + 1, step: 0, row: 0 };
+    let place = StepIndex { environment: n, environments: n + 1, step: 0, row: 0 };
     let (mut state, mut number, mut taken): (State<T, 2>, u64, u64) = (start(0), 0, 0);
     (0..STEPS)
         .map(|_| {
@@ -127,7 +127,8 @@ fn short_floats_know_how_late_it_is() {
             false
         }
     }
-    let start = Between(State { q: [0.0; 2], v: [0.0; 2] }, State { q: [0.0; 2], v: [0.0; 2] });
+    let start =
+        UniformStart(State { q: [0.0; 2], v: [0.0; 2] }, State { q: [0.0; 2], v: [0.0; 2] });
     let environment = Environment::new(All(system::<f16>()), VelocityVerlet, 0.01, Now, start);
     let mut all = Environments::new(environment, 64, 0, Default::default()).unwrap();
     // Beyond 2048, an f16 does not hold every number of steps.

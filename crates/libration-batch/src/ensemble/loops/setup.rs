@@ -8,7 +8,7 @@ use libration_core::control::{Clock, Controller, Delay, Memory, Schedule, Undist
 /// A plant with its integrator, and what drives and disturbs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setup<A, M, K = Open, C = Fixed, L = Schedule, N = Undisturbed> {
-    /// The plant of every trajectory: [`All`](super::super::All) or [`Each`](super::super::Each).
+    /// The plant of every trajectory: [`All`](super::super::All) or [`PerTrajectory`](super::super::PerTrajectory).
     pub systems: A,
     /// The integrator.
     pub method: M,

@@ -4,7 +4,7 @@ use libration_core::Float;
 use libration_core::array::each;
 use libration_core::random::Streams;
 
-use super::{Act, Place, Policy, all_finite, lanes};
+use super::{ActionSample, Policy, StepIndex, all_finite, lanes};
 use crate::rl::EnvironmentError;
 
 /// `u = W·seen + b`: proportional-derivative control, LQR.
@@ -17,7 +17,7 @@ pub struct Linear<const O: usize, const D: usize> {
 }
 
 impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Linear<O, D> {
-    const BRIEF: bool = true;
+    const CLOSED_FORM: bool = true;
 
     fn check(&self, _: usize, _: usize) -> Result<(), EnvironmentError> {
         all_finite::<T>("weight of the policy", self.weights.as_flattened().iter().copied())?;
@@ -25,8 +25,8 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Linear<O, D> 
     }
 
     #[inline(always)]
-    fn act(&self, _: Place, seen: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
-        Act::sure(each(|i| {
+    fn act(&self, _: StepIndex, seen: &[T; O], _: &mut impl FnMut() -> u32) -> ActionSample<T, D> {
+        ActionSample::deterministic(each(|i| {
             let mut sum = T::from_f64(self.bias[i]);
             for (weight, &x) in self.weights[i].iter().zip(seen) {
                 sum = sum + T::from_f64(*weight) * x;
@@ -39,12 +39,12 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Linear<O, D> 
 /// [`Linear`] with weights for each environment, as evolution strategies want: `[k, n]`, where number `k` of environment `n` is
 /// that of `O` weights and a bias for each degree of freedom in turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Each<'a, T>(
+pub struct LinearPerEnvironment<'a, T>(
     /// The weights.
     pub &'a [T],
 );
 
-impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Each<'_, T> {
+impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for LinearPerEnvironment<'_, T> {
     fn check(&self, environments: usize, _: usize) -> Result<(), EnvironmentError> {
         let wanted = environments.saturating_mul(D * (O + 1));
         EnvironmentError::shape("weights of the policy", self.0.len(), wanted)?;
@@ -52,9 +52,14 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Each<'_, T> {
     }
 
     #[inline(always)]
-    fn act(&self, place: Place, seen: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
+    fn act(
+        &self,
+        place: StepIndex,
+        seen: &[T; O],
+        _: &mut impl FnMut() -> u32,
+    ) -> ActionSample<T, D> {
         let number = |k: usize| self.0[k * place.environments + place.environment];
-        Act::sure(each(|i| {
+        ActionSample::deterministic(each(|i| {
             let mut sum = number(i * (O + 1) + O);
             for (k, &x) in seen.iter().enumerate() {
                 sum = sum + number(i * (O + 1) + k) * x;
@@ -66,7 +71,7 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Each<'_, T> {
     #[inline(always)]
     fn act_all<const W: usize>(
         &self,
-        place: Place,
+        place: StepIndex,
         seen: &[[T; W]; O],
         _: &mut Streams<W>,
         actions: &mut [[T; W]; D],

@@ -1,17 +1,17 @@
 //! Who acts.
 
-mod explore;
-mod given;
+mod action_sequence;
+mod exploration;
 mod linear;
 mod network;
 mod perceptron;
 mod random;
 
-pub use explore::Explore;
-pub use given::Given;
-pub use linear::{Each, Linear};
+pub use action_sequence::ActionSequence;
+pub use exploration::GaussianExploration;
+pub use linear::{Linear, LinearPerEnvironment};
 pub use network::Network;
-pub use perceptron::{Activation, EachPerceptron, Perceptron};
+pub use perceptron::{Activation, Perceptron, PerceptronPerEnvironment};
 pub use random::Random;
 
 use libration_core::Float;
@@ -25,7 +25,7 @@ use crate::ensemble::kernel::{at, put};
 /// Chooses an action: an acceleration in each of `D` degrees of freedom, from `O` numbers that are seen.
 pub trait Policy<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
     /// Whether an environment's action is best asked for by itself: where that is one short formula.
-    const BRIEF: bool = false;
+    const CLOSED_FORM: bool = false;
     /// Whether anything is random.
     const DRAWS: bool = false;
 
@@ -39,7 +39,7 @@ pub trait Policy<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
     }
 
     /// Whether its actions depend on what is seen: otherwise nobody looks where nobody else wants to know.
-    fn looks(&self) -> bool {
+    fn uses_observations(&self) -> bool {
         true
     }
 
@@ -50,13 +50,18 @@ pub trait Policy<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
 
     /// The action. It branches on nothing but what `self` holds, and is `#[inline(always)]`, or the loops over environments
     /// are no vectors.
-    fn act(&self, place: Place, seen: &[T; O], word: &mut impl FnMut() -> u32) -> Act<T, D>;
+    fn act(
+        &self,
+        place: StepIndex,
+        seen: &[T; O],
+        word: &mut impl FnMut() -> u32,
+    ) -> ActionSample<T, D>;
 
     /// The actions and their log-probabilities of `W` neighbouring environments, the first of which has this place.
     #[inline(always)]
     fn act_all<const W: usize>(
         &self,
-        place: Place,
+        place: StepIndex,
         seen: &[[T; W]; O],
         words: &mut Streams<W>,
         actions: &mut [[T; W]; D],
@@ -72,24 +77,24 @@ pub trait Policy<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
 
 /// An action, and how likely it was.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Act<T, const D: usize> {
+pub struct ActionSample<T, const D: usize> {
     /// What is done.
     pub action: [T; D],
     /// The logarithm of its probability density; 0 where nothing is drawn.
     pub log_probability: T,
 }
 
-impl<T: Float, const D: usize> Act<T, D> {
+impl<T: Float, const D: usize> ActionSample<T, D> {
     /// What is done for sure.
     #[inline(always)]
-    pub fn sure(action: [T; D]) -> Self {
-        Act { action, log_probability: T::zero() }
+    pub fn deterministic(action: [T; D]) -> Self {
+        ActionSample { action, log_probability: T::zero() }
     }
 }
 
 /// Which action is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct StepIndex {
     /// The number of the environment.
     pub environment: usize,
     /// How many environments there are.
@@ -100,11 +105,11 @@ pub struct Place {
     pub row: usize,
 }
 
-impl Place {
+impl StepIndex {
     /// That of a neighbour, so many environments further.
     #[inline(always)]
     pub fn lane(self, l: usize) -> Self {
-        Place { environment: self.environment + l, ..self }
+        StepIndex { environment: self.environment + l, ..self }
     }
 }
 
@@ -116,19 +121,19 @@ pub struct Constant<const D: usize>(
 );
 
 impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Constant<D> {
-    const BRIEF: bool = true;
+    const CLOSED_FORM: bool = true;
 
     fn check(&self, _: usize, _: usize) -> Result<(), EnvironmentError> {
         all_finite::<T>("constant action", self.0)
     }
 
-    fn looks(&self) -> bool {
+    fn uses_observations(&self) -> bool {
         false
     }
 
     #[inline(always)]
-    fn act(&self, _: Place, _: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
-        Act::sure(map(self.0, T::from_f64))
+    fn act(&self, _: StepIndex, _: &[T; O], _: &mut impl FnMut() -> u32) -> ActionSample<T, D> {
+        ActionSample::deterministic(map(self.0, T::from_f64))
     }
 }
 
@@ -147,7 +152,7 @@ fn all_finite<T: Float>(
 
 /// Number `k` of neighbouring environments, from `[k, n]`. Beyond the last environment it does not matter what is done.
 #[inline(always)]
-fn lanes<T: Float, const W: usize>(numbers: &[T], place: Place, k: usize) -> [T; W] {
+fn lanes<T: Float, const W: usize>(numbers: &[T], place: StepIndex, k: usize) -> [T; W] {
     let row = &numbers[k * place.environments..][place.environment..place.environments];
     // All at once where there are as many.
     let whole = row.first_chunk().copied();

@@ -4,7 +4,7 @@ use libration_core::random::Streams;
 use libration_core::{Elementary, Float};
 
 use super::perceptron::Activation;
-use super::{Act, Place, Policy, all_finite, perceptron};
+use super::{ActionSample, Policy, StepIndex, all_finite, perceptron};
 use crate::ensemble::{InstructionSet, Loop};
 use crate::rl::EnvironmentError;
 
@@ -56,14 +56,19 @@ where
     }
 
     #[inline(always)]
-    fn act(&self, place: Place, seen: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
+    fn act(
+        &self,
+        place: StepIndex,
+        seen: &[T; O],
+        _: &mut impl FnMut() -> u32,
+    ) -> ActionSample<T, D> {
         perceptron::alone(self, place, seen)
     }
 
     /// A function of its own, compiled once for whoever acts.
     fn act_all<const W: usize>(
         &self,
-        _: Place,
+        _: StepIndex,
         seen: &[[T; W]; O],
         _: &mut Streams<W>,
         actions: &mut [[T; W]; D],
@@ -148,7 +153,7 @@ mod tests {
         assert_eq!(count, Network::<f32>::parameters(3, &[5, 5], 1));
         let seen: [[f32; 70]; 3] =
             core::array::from_fn(|i| core::array::from_fn(|l| ((i + 3 * l) as f32).sin()));
-        let place = Place { environment: 0, environments: 70, step: 0, row: 0 };
+        let place = StepIndex { environment: 0, environments: 70, step: 0, row: 0 };
         for activation in [Activation::Tanh, Activation::Relu] {
             let wanted = Perceptron::<f32, 5> { parameters: &parameters, activation };
             let mut streams = Streams::none();
@@ -160,7 +165,8 @@ mod tests {
                 let mut found = [[0.0; 70]; 1];
                 network.act_all(place, &seen, &mut streams, &mut found, &mut log);
                 assert_eq!(found, expected);
-                let alone: Act<f32, 1> = network.act(place, &seen.map(|row| row[9]), &mut || 0);
+                let alone: ActionSample<f32, 1> =
+                    network.act(place, &seen.map(|row| row[9]), &mut || 0);
                 assert_eq!(alone.action[0], expected[0][9]);
             }
         }

@@ -3,7 +3,7 @@
 use libration_core::random::Streams;
 use libration_core::{Elementary, Float};
 
-use super::{Act, Place, Policy, all_finite, lanes};
+use super::{ActionSample, Policy, StepIndex, all_finite, lanes};
 use crate::rl::EnvironmentError;
 
 /// What the hidden layers of a [`Perceptron`] apply to each of their sums.
@@ -27,7 +27,7 @@ pub struct Perceptron<'a, T, const H: usize> {
 
 /// A [`Perceptron`] with parameters for each environment, as evolution strategies want.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EachPerceptron<'a, T, const H: usize> {
+pub struct PerceptronPerEnvironment<'a, T, const H: usize> {
     /// `[k, n]`, where number `k` of environment `n` is that of a [`Perceptron`].
     pub parameters: &'a [T],
     /// Of the hidden layers.
@@ -70,14 +70,19 @@ where
     }
 
     #[inline(always)]
-    fn act(&self, place: Place, seen: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
+    fn act(
+        &self,
+        place: StepIndex,
+        seen: &[T; O],
+        _: &mut impl FnMut() -> u32,
+    ) -> ActionSample<T, D> {
         alone(self, place, seen)
     }
 
     #[inline(always)]
     fn act_all<const W: usize>(
         &self,
-        _: Place,
+        _: StepIndex,
         seen: &[[T; W]; O],
         _: &mut Streams<W>,
         actions: &mut [[T; W]; D],
@@ -90,7 +95,8 @@ where
     }
 }
 
-impl<T, const O: usize, const H: usize, const D: usize> Policy<T, O, D> for EachPerceptron<'_, T, H>
+impl<T, const O: usize, const H: usize, const D: usize> Policy<T, O, D>
+    for PerceptronPerEnvironment<'_, T, H>
 where
     T: Float + Elementary,
 {
@@ -104,14 +110,19 @@ where
     }
 
     #[inline(always)]
-    fn act(&self, place: Place, seen: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
+    fn act(
+        &self,
+        place: StepIndex,
+        seen: &[T; O],
+        _: &mut impl FnMut() -> u32,
+    ) -> ActionSample<T, D> {
         alone(self, place, seen)
     }
 
     #[inline(always)]
     fn act_all<const W: usize>(
         &self,
-        place: Place,
+        place: StepIndex,
         seen: &[[T; W]; O],
         _: &mut Streams<W>,
         actions: &mut [[T; W]; D],
@@ -128,13 +139,13 @@ where
 #[inline(always)]
 pub(super) fn alone<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize>(
     policy: &P,
-    place: Place,
+    place: StepIndex,
     seen: &[T; O],
-) -> Act<T, D> {
+) -> ActionSample<T, D> {
     let (mut actions, mut likely) = ([[T::zero(); 1]; D], [T::zero()]);
     let mut words = Streams::none();
     policy.act_all(place, &seen.map(|x| [x]), &mut words, &mut actions, &mut likely);
-    Act::sure(actions.map(|[x]| x))
+    ActionSample::deterministic(actions.map(|[x]| x))
 }
 
 /// What networks answer, whose `k`-th parameters are known.
@@ -264,8 +275,8 @@ mod tests {
                 .map(function);
             let wanted = p[12] * second[0] + p[13] * second[1] + p[14];
             let network = Perceptron::<f64, 2> { parameters: p, activation };
-            let place = Place { environment: 0, environments: 1, step: 0, row: 0 };
-            let act: Act<f64, 1> = network.act(place, &[0.5, -2.0], &mut || 0);
+            let place = StepIndex { environment: 0, environments: 1, step: 0, row: 0 };
+            let act: ActionSample<f64, 1> = network.act(place, &[0.5, -2.0], &mut || 0);
             assert!((act.action[0] - wanted).abs() < 1e-15, "{activation:?} {act:?} {wanted}");
         }
         let short = Perceptron::<f64, 2> { parameters: &p[..14], activation: Activation::Relu };

@@ -5,7 +5,7 @@ use libration_core::array::each;
 use libration_core::control::error::finite;
 use libration_core::random::{UNIT, odd};
 
-use super::{Act, Place, Policy};
+use super::{ActionSample, Policy, StepIndex};
 use crate::rl::EnvironmentError;
 
 /// Uniform between two ends in each degree of freedom, drawn by address.
@@ -26,7 +26,7 @@ impl<const D: usize> Random<D> {
 }
 
 impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Random<D> {
-    const BRIEF: bool = true;
+    const CLOSED_FORM: bool = true;
     const DRAWS: bool = true;
 
     fn check(&self, _: usize, _: usize) -> Result<(), EnvironmentError> {
@@ -38,7 +38,7 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Random<D> {
         Ok(())
     }
 
-    fn looks(&self) -> bool {
+    fn uses_observations(&self) -> bool {
         false
     }
 
@@ -47,12 +47,12 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Random<D> {
     }
 
     #[inline(always)]
-    fn act(&self, _: Place, _: &[T; O], word: &mut impl FnMut() -> u32) -> Act<T, D> {
+    fn act(&self, _: StepIndex, _: &[T; O], word: &mut impl FnMut() -> u32) -> ActionSample<T, D> {
         let action = each(|i| {
             let half = 0.5 * (self.high[i] - self.low[i]);
             let (middle, unit) = (self.low[i] + half, half * f64::from(UNIT));
             T::from_f64(middle) + T::from_f64(unit) * T::from_f64(odd(word()).into())
         });
-        Act { action, log_probability: T::from_f64(self.log_probability) }
+        ActionSample { action, log_probability: T::from_f64(self.log_probability) }
     }
 }

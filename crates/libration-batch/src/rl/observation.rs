@@ -6,10 +6,10 @@ use libration_core::random::Streams;
 
 use super::block::BlockOf;
 use super::block_size::LANES;
-use super::row::interleave;
-use super::stage::{Site, Stage};
-use super::strip::first_of;
-use super::{EnvironmentError, Environments, Place, Policy, Sensor, World, policy};
+use super::rollout_row::interleave;
+use super::rollout_slice::first_of;
+use super::stepper::{Site, Stepper};
+use super::{EnvironmentError, Environments, Policy, Sensor, StepIndex, World, policy};
 use crate::ensemble::Assign;
 
 impl<T, E, const O: usize, const D: usize> Environments<T, E, O, D>
@@ -28,7 +28,7 @@ where
         let words = self.draws[1].prepare(&self.blocks, [step, 1], 0, sensor.words());
         // A look needs no policy.
         let nobody = policy::Constant([0.0; D]);
-        let stage = Stage::<T, E, _, O, D>::new(&world, nobody, history);
+        let stepper = Stepper::<T, E, _, O, D>::new(&world, nobody, history);
         let threads = self.execution.threads_for(len as u64);
         let share = self.blocks.len().div_ceil(threads).max(1);
         let mut past = &mut self.past[..];
@@ -43,19 +43,19 @@ where
                 let environment = (from + b) * LANES;
                 let count = (len - environment).min(LANES);
                 let systems = systems.lanes::<LANES>(environment, count);
-                let place = Place { environment, environments: len, step, row: 0 };
+                let place = StepIndex { environment, environments: len, step, row: 0 };
                 let site = Site { place, count, systems };
                 let past = &mut past[b * history.len()..][..history.len()];
                 let none = Streams::none();
                 let words = words.get(from + b).unwrap_or(&none);
-                stage.show(&site, block, past, words, &mut to[b * LANES * O..]);
+                stepper.write_observations(&site, block, past, words, &mut to[b * LANES * O..]);
             }
         });
         Ok(())
     }
 }
 
-impl<T, E, P, const O: usize, const D: usize> Stage<'_, T, E, P, O, D>
+impl<T, E, P, const O: usize, const D: usize> Stepper<'_, T, E, P, O, D>
 where
     T: Float + Pod,
     E: World<T, O, D>,
@@ -63,7 +63,7 @@ where
 {
     /// Writes what is seen of a block before an action, side by side; the words of its sensors are still to be taken.
     #[inline(always)]
-    pub(super) fn show(
+    pub(super) fn write_observations(
         &self,
         site: &Site<T, E, O, D>,
         block: &BlockOf<T, E, O, D>,
@@ -72,7 +72,7 @@ where
         to: &mut [T],
     ) {
         let mut seen = [[T::zero(); LANES]; O];
-        self.look(site, block, past, &mut words.clone(), &mut seen);
+        self.observe(site, block, past, &mut words.clone(), &mut seen);
         if const { O == 0 } {
             return;
         }

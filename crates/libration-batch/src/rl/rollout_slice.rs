@@ -7,11 +7,11 @@ use core::ops::Range;
 use ndarray::{ArrayViewMut2, Axis};
 
 use super::Layout;
-use super::row::Row;
+use super::rollout_row::RolloutRow;
 
 /// Where all steps of neighbouring environments are written. To divide and to read it allocates nothing: for a short rollout
 /// a list of its rows took as long as the steps.
-pub(super) struct Strip<'a, T, const O: usize, const D: usize> {
+pub(super) struct RolloutSlice<'a, T, const O: usize, const D: usize> {
     /// The planes, or all numbers in the first.
     pub(super) observation: [ArrayViewMut2<'a, T>; O],
     pub(super) action: [ArrayViewMut2<'a, T>; D],
@@ -25,12 +25,12 @@ pub(super) struct Strip<'a, T, const O: usize, const D: usize> {
     pub(super) layout: Layout,
 }
 
-impl<'a, T, const O: usize, const D: usize> Strip<'a, T, O, D> {
+impl<'a, T, const O: usize, const D: usize> RolloutSlice<'a, T, O, D> {
     /// Takes off the first `count` environments.
-    pub(super) fn split_off(&mut self, count: usize) -> Strip<'a, T, O, D> {
+    pub(super) fn split_off(&mut self, count: usize) -> RolloutSlice<'a, T, O, D> {
         let layout = self.layout;
         let width = |n| if layout == Layout::Interleaved { n } else { 1 };
-        Strip {
+        RolloutSlice {
             observation: self
                 .observation
                 .each_mut()
@@ -56,13 +56,13 @@ impl<'a, T, const O: usize, const D: usize> Strip<'a, T, O, D> {
     }
 
     /// Whether it is asked what is seen before each step.
-    pub(super) fn shows(&self) -> bool {
+    pub(super) fn has_observations(&self) -> bool {
         self.observation.iter().any(|plane| !plane.is_empty())
     }
 
     /// Step `t`.
-    pub(super) fn row(&mut self, t: usize) -> Row<'_, T, O, D> {
-        Row {
+    pub(super) fn row(&mut self, t: usize) -> RolloutRow<'_, T, O, D> {
+        RolloutRow {
             observation: self.observation.each_mut().map(|all| row(all, t)),
             action: self.action.each_mut().map(|all| row(all, t)),
             reward: row(&mut self.reward, t),
@@ -102,7 +102,7 @@ pub(super) fn some_rows<'a, X>(
     rest.split_at(Axis(0), rows.len()).0
 }
 
-/// Row `t` of columns.
+/// RolloutRow `t` of columns.
 pub(super) fn row<'r, X>(columns: &'r mut ArrayViewMut2<'_, X>, t: usize) -> &'r mut [X] {
     columns.index_axis_mut(Axis(0), t).into_slice().unwrap_or_default()
 }

@@ -7,26 +7,26 @@ use libration_core::system::Held;
 use libration_core::{Float, Integrator};
 
 use super::block::BlockOf;
+use super::block_output::Step;
 use super::block_size::LANES;
-use super::draws::renew;
-use super::row::{Records, Row, Writer};
-use super::stage::{Site, Stage, judged, lane};
-use super::yields::Step;
+use super::episode_streams::begin_epochs;
+use super::rollout_row::{Records, RolloutRow, Writer};
+use super::stepper::{Site, Stepper, evaluate, lane};
 use super::{Parts, Policy, Sensor, Task, World};
 use crate::ensemble::instructions::Target;
 use crate::ensemble::kernel::put;
 
-impl<T, E, P, const O: usize, const D: usize> Stage<'_, T, E, P, O, D>
+impl<T, E, P, const O: usize, const D: usize> Stepper<'_, T, E, P, O, D>
 where
     T: Float + Pod,
     E: World<T, O, D>,
     P: Policy<T, O, D>,
 {
     /// Whether nothing but a short formula comes between what is seen and what it leads to.
-    pub(super) fn is_brief(&self) -> bool {
-        let ideal = const { P::BRIEF && !E::Sensor::DRAWS && E::Clock::EVEN };
-        let timely = !self.history.sees_late() && !self.history.acts_late();
-        ideal && timely && self.substeps == 1 && self.is_free()
+    pub(super) fn is_fused(&self) -> bool {
+        let ideal = const { P::CLOSED_FORM && !E::Sensor::DRAWS && E::Clock::EVEN };
+        let timely = !self.history.delays_observations() && !self.history.delays_actions();
+        ideal && timely && self.substeps == 1 && self.is_unlimited_acceleration()
     }
 
     /// All of an ideal step of a whole block, and its numbers where they belong: what one loop computes stays in registers until
@@ -34,7 +34,7 @@ where
     #[inline(always)]
     // Gathered in a struct, arguments would stay in memory.
     #[allow(clippy::too_many_arguments, clippy::needless_range_loop)]
-    pub(super) fn brief<I: Target>(
+    pub(super) fn fused_step<I: Target>(
         &self,
         parts: Parts<T, E, O, D>,
         site: &Site<T, E, O, D>,
@@ -42,12 +42,12 @@ where
         words: &mut Streams<LANES>,
         overs: &mut [u8; LANES],
         b: usize,
-        row: &mut Row<'_, T, O, D>,
+        row: &mut RolloutRow<'_, T, O, D>,
         writer: &Writer<I>,
         records: &mut Records<T, O, D>,
     ) -> u8 {
         if const { P::DRAWS } {
-            renew(words, block, [site.place.step, 1, 0], Purpose::Action);
+            begin_epochs(words, block, [site.place.step, 1, 0], Purpose::Action);
         }
         let (policy, dt) = (self.policy, self.dt);
         let mut ended = 0;
@@ -68,7 +68,7 @@ where
             let after = parts.method.step(&system, before, dt);
             // An action that is no number leaves no state that is one.
             let time = self.time(site.place.step + 1, block.began[l]);
-            let (reward, over) = judged(&task, true, time, &before, &act.action, &after);
+            let (reward, over) = evaluate(&task, true, time, &before, &act.action, &after);
             put(&mut out.seen, l, seen);
             put(&mut out.actions, l, act.action);
             out.log_probabilities[l] = act.log_probability;

@@ -4,13 +4,13 @@ use libration_core::Float;
 use libration_core::random::Streams;
 
 use super::block::{BlockOf, CUT, LOST, OVER};
+use super::block_output::BlockOutput;
 use super::block_size::LANES;
-use super::stage::{Site, Stage};
-use super::yields::Yield;
-use super::{Autoreset, Final, Place, Policy, World, block};
+use super::stepper::{Site, Stepper};
+use super::{Autoreset, EpisodeEnd, Policy, StepIndex, World, block};
 use crate::ensemble::kernel::at;
 
-impl<T, E, P, const O: usize, const D: usize> Stage<'_, T, E, P, O, D>
+impl<T, E, P, const O: usize, const D: usize> Stepper<'_, T, E, P, O, D>
 where
     T: Float,
     E: World<T, O, D>,
@@ -18,7 +18,7 @@ where
 {
     /// Whether no environment of a block stands still.
     #[inline(always)]
-    pub(super) fn all_move(&self, block: &BlockOf<T, E, O, D>) -> bool {
+    pub(super) fn all_running(&self, block: &BlockOf<T, E, O, D>) -> bool {
         self.autoreset == Autoreset::SameStep || block.ended == [0; LANES]
     }
 
@@ -31,14 +31,14 @@ where
         stood: Option<&BlockOf<T, E, O, D>>,
         past: &mut [T],
         words: &Streams<LANES>,
-        out: &mut Yield<T, O, D>,
+        out: &mut BlockOutput<T, O, D>,
     ) {
         let Site { place, count, systems } = *site;
         let step = place.step + 1;
         let mut last = [[T::zero(); LANES]; O];
         // Those that go on will see the same again.
-        let next = Site { place: Place { step, ..place }, count, systems };
-        self.look(&next, block, past, &mut words.clone(), &mut last);
+        let next = Site { place: StepIndex { step, ..place }, count, systems };
+        self.observe(&next, block, past, &mut words.clone(), &mut last);
         for l in count..LANES {
             // Lanes that are no environments begin anew with every end, or they would be at an end in every step.
             block.rest(l, step);
@@ -51,9 +51,9 @@ where
                 let flags = if self.autoreset == Autoreset::Disabled { stood.ended[l] } else { 0 };
                 (out.overs[l], out.cuts[l]) = (flags & OVER, (flags & CUT) / CUT);
                 if self.autoreset == Autoreset::Disabled {
-                    block.stand(stood, l);
+                    block.hold(stood, l);
                     let steps = place.step * self.substeps..step * self.substeps;
-                    self.history.stand(past, l, steps, &stood.state(l));
+                    self.history.hold(past, l, steps, &stood.state(l));
                 } else {
                     block::begin(block, self.history, past, self.world, l, episode, step);
                 }
@@ -65,7 +65,7 @@ where
             if flags == 0 {
                 continue;
             }
-            out.finals.push(Final {
+            out.finals.push(EpisodeEnd {
                 step: place.row,
                 environment,
                 observation: at(&last, l),

@@ -3,15 +3,15 @@
 use bytemuck::Pod;
 use libration_core::Float;
 
+use super::block_output::{BlockOutput, Step};
 use super::block_size::LANES;
-use super::yields::{Step, Yield};
 use super::{Layout, Writes};
 use crate::ensemble::instructions::Target;
 use crate::ensemble::stream::Streaming;
 
 /// Where a step of neighbouring environments is written.
 #[derive(Debug)]
-pub(super) struct Row<'a, T, const O: usize, const D: usize> {
+pub(super) struct RolloutRow<'a, T, const O: usize, const D: usize> {
     /// The planes, or all numbers in the first.
     pub(super) observation: [&'a mut [T]; O],
     pub(super) action: [&'a mut [T]; D],
@@ -42,7 +42,7 @@ pub(super) struct Writer<I: Target> {
     pub(super) writes: Writes,
 }
 
-impl<T: Float + Pod, const O: usize, const D: usize> Row<'_, T, O, D> {
+impl<T: Float + Pod, const O: usize, const D: usize> RolloutRow<'_, T, O, D> {
     /// Writes the numbers of the `b`-th block, all of whose lanes are in the row.
     #[inline(always)]
     pub(super) fn write_block<I: Target>(
@@ -82,7 +82,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Row<'_, T, O, D> {
         layout: Layout,
         from: usize,
         count: usize,
-        out: &Yield<T, O, D>,
+        out: &BlockOutput<T, O, D>,
     ) {
         fn numbers<T: Copy, const N: usize>(
             layout: Layout,

@@ -2,7 +2,7 @@
 
 use libration_core::Float;
 
-use super::Final;
+use super::EpisodeEnd;
 use super::block_size::LANES;
 
 /// The numbers of a step of a block, before they are written. It begins with a line of the cache, as each of its rows does: no
@@ -25,17 +25,17 @@ impl<T: Float, const O: usize, const D: usize> Step<T, O, D> {
 
 /// What a block yields.
 #[repr(C, align(64))]
-pub(super) struct Yield<T, const O: usize, const D: usize> {
+pub(super) struct BlockOutput<T, const O: usize, const D: usize> {
     /// Of a step that was taken in several parts.
     pub(super) step: Step<T, O, D>,
     pub(super) overs: [u8; LANES],
     pub(super) cuts: [u8; LANES],
     /// The episodes that ended so far.
-    pub(super) finals: Vec<Final<T, O>>,
+    pub(super) finals: Vec<EpisodeEnd<T, O>>,
 }
 
-impl<T: Float, const O: usize, const D: usize> Yield<T, O, D> {
+impl<T: Float, const O: usize, const D: usize> BlockOutput<T, O, D> {
     pub(super) fn zeros() -> Self {
-        Yield { step: Step::zeros(), overs: [0; LANES], cuts: [0; LANES], finals: Vec::new() }
+        BlockOutput { step: Step::zeros(), overs: [0; LANES], cuts: [0; LANES], finals: Vec::new() }
     }
 }

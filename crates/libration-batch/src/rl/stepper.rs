@@ -3,23 +3,23 @@
 use libration_core::control::{Clock, Memory};
 use libration_core::random::{Purpose, Streams};
 use libration_core::system::Held;
-use libration_core::{Float, Integrator, State};
+use libration_core::{Float, Integrator, State, System};
 
 use super::block::{BlockOf, LOST, NumberLanes};
+use super::block_output::{BlockOutput, Step};
 use super::block_size::LANES;
-use super::deviation::worse;
-use super::draws::renew;
+use super::deviation::scale_deviation;
+use super::episode_streams::begin_epochs;
 use super::history::History;
 use super::lanes::Lanes;
-use super::yields::{Step, Yield};
-use super::{Autoreset, Parts, Place, Policy, Sensor, Task, Variation, World, block};
+use super::{Autoreset, Parts, Policy, Sensor, StepIndex, Task, Variation, World, block};
 use crate::ensemble::Assign;
 use crate::ensemble::instructions::Target;
 use crate::ensemble::kernel::{Lines, at, put};
 
 /// What all blocks and steps share.
 #[derive(Clone, Copy)]
-pub(super) struct Stage<'s, T, E, P, const O: usize, const D: usize> {
+pub(super) struct Stepper<'s, T, E, P, const O: usize, const D: usize> {
     pub(super) world: &'s E,
     pub(super) policy: P,
     pub(super) history: History,
@@ -38,7 +38,7 @@ pub(super) struct Stage<'s, T, E, P, const O: usize, const D: usize> {
 /// A block, and the step that it takes.
 pub(super) struct Site<T: Float, E: World<T, O, D>, const O: usize, const D: usize> {
     /// Of its first lane.
-    pub(super) place: Place,
+    pub(super) place: StepIndex,
     /// Lanes that are environments.
     pub(super) count: usize,
     pub(super) systems: Systems<T, E, O, D>,
@@ -48,15 +48,21 @@ pub(super) struct Site<T: Float, E: World<T, O, D>, const O: usize, const D: usi
 type Systems<T, E, const O: usize, const D: usize> =
     <<E as World<T, O, D>>::Systems as Assign<<E as World<T, O, D>>::System>>::Lanes<LANES>;
 
-impl<'s, T, E, P, const O: usize, const D: usize> Stage<'s, T, E, P, O, D>
+impl<'s, T, E, P, const O: usize, const D: usize> Stepper<'s, T, E, P, O, D>
 where
     T: Float,
     E: World<T, O, D>,
     P: Policy<T, O, D>,
 {
+    /// Whether a loop over lanes is made when the system and the integrator are known.
+    const CHOSEN: bool = {
+        let chosen = <E::System as System<T, D>>::CHOSEN || E::Method::CHOSEN;
+        chosen && E::Systems::UNIFORM && E::Variation::SAME
+    };
+
     pub(super) fn new(world: &'s E, policy: P, history: History) -> Self {
         let parts = world.parts();
-        Stage {
+        Stepper {
             world,
             policy,
             history,
@@ -90,7 +96,7 @@ where
 
     /// What is seen at the beginning of a step.
     #[inline(always)]
-    pub(super) fn look(
+    pub(super) fn observe(
         &self,
         site: &Site<T, E, O, D>,
         block: &BlockOf<T, E, O, D>,
@@ -99,11 +105,11 @@ where
         seen: &mut [[T; LANES]; O],
     ) {
         if const { E::Sensor::DRAWS } {
-            renew(words, block, [site.place.step, 1, 0], Purpose::Observation);
+            begin_epochs(words, block, [site.place.step, 1, 0], Purpose::Observation);
         }
         let (mut q, mut v) = (Lines(block.q), Lines(block.v));
         self.pass(site.place.step, block, past);
-        if self.history.sees_late() {
+        if self.history.delays_observations() {
             let step = site.place.step * self.substeps;
             self.history.seen(past, step, &block.delays[0], &mut q.0, &mut v.0);
         }
@@ -115,7 +121,7 @@ where
             let mut measured = parts.sensor.measure(sees, &mut || words.next(l));
             if const { E::Sensor::DRAWS } {
                 for i in 0..O {
-                    measured[i] = worse(measured[i], sees[i], block.severity[1][l]);
+                    measured[i] = scale_deviation(measured[i], sees[i], block.error_scale[1][l]);
                 }
             }
             put(seen, l, measured);
@@ -125,7 +131,7 @@ where
     /// Keeps what is to be seen later.
     #[inline(always)]
     pub(super) fn pass(&self, now: u64, block: &BlockOf<T, E, O, D>, past: &mut [T]) {
-        if self.history.sees_late() {
+        if self.history.delays_observations() {
             self.history.pass(past, now * self.substeps, &block.q, &block.v);
         }
     }
@@ -134,13 +140,13 @@ where
     #[inline(always)]
     pub(super) fn act(
         &self,
-        place: Place,
+        place: StepIndex,
         block: &BlockOf<T, E, O, D>,
         words: &mut Streams<LANES>,
         out: &mut Step<T, O, D>,
     ) {
         if const { P::DRAWS } {
-            renew(words, block, [place.step, 1, 0], Purpose::Action);
+            begin_epochs(words, block, [place.step, 1, 0], Purpose::Action);
         }
         let Step { seen, actions, log_probabilities, .. } = out;
         let policy = self.policy;
@@ -156,27 +162,27 @@ where
         block: &mut BlockOf<T, E, O, D>,
         past: &mut [T],
         words: &mut Streams<LANES>,
-        out: &mut Yield<T, O, D>,
+        out: &mut BlockOutput<T, O, D>,
     ) -> u8 {
         let (parts, dt) = (self.parts(), self.dt);
         let (mut q, mut v) = (Lines(block.q), Lines(block.v));
         let commands = Lines(self.commands(&out.step.actions));
         let mut held = Lines(self.accelerations(&commands.0));
-        if self.history.acts_late() {
+        if self.history.delays_actions() {
             self.history.act(past, site.place.step, &held.0);
         }
         for substep in 0..self.substeps {
             let step = site.place.step * self.substeps + substep;
-            if self.history.acts_late() {
+            if self.history.delays_actions() {
                 let late = &block.delays[1];
                 self.history.effective(past, site.place.step, substep, late, &mut held.0);
             }
-            if substep > 0 && self.history.sees_late() {
+            if substep > 0 && self.history.delays_observations() {
                 self.history.pass(past, step, &q.0, &v.0);
             }
             if const { E::Clock::DRAWS } {
                 let now = [site.place.step, self.substeps, substep];
-                renew(words, block, now, Purpose::StepTime);
+                begin_epochs(words, block, now, Purpose::StepTime);
             }
             let beat = parts.clock.beat(step);
             if const { Self::CHOSEN } {
@@ -203,7 +209,7 @@ where
             let action = at(&commands.0, l);
             let acted = is_number(&at(&out.step.actions, l));
             let time = self.time(site.place.step + 1, block.began[l]);
-            let (reward, over) = judged(&task, acted, time, &block.state(l), &action, &after);
+            let (reward, over) = evaluate(&task, acted, time, &block.state(l), &action, &after);
             out.step.rewards[l] = reward;
             block.paid[l] = block.paid[l] + reward;
             out.overs[l] = over;
@@ -251,7 +257,7 @@ pub(super) fn lane<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
 /// not zero. `acted` is whether the action
 /// was a number.
 #[inline(always)]
-pub(super) fn judged<T: Float, K: Task<T, D, O>, const O: usize, const D: usize>(
+pub(super) fn evaluate<T: Float, K: Task<T, D, O>, const O: usize, const D: usize>(
     task: &K,
     acted: bool,
     time: T,

@@ -3,32 +3,34 @@
 use libration_core::Float;
 use libration_core::array::each;
 
-use super::{Act, Place, Policy};
+use super::{ActionSample, Policy, StepIndex};
 use crate::rl::EnvironmentError;
 
 /// Actions for a whole horizon: `[t, n, i]`.
 ///
 /// What is no finite number is taken as it is: the environment it is given to is lost, and no other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Given<'a, T>(
+pub struct ActionSequence<'a, T>(
     /// The actions.
     pub &'a [T],
 );
 
-impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Given<'_, T> {
+impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for ActionSequence<'_, T> {
     fn check(&self, environments: usize, horizon: usize) -> Result<(), EnvironmentError> {
         let wanted = environments.saturating_mul(horizon).saturating_mul(D);
         EnvironmentError::shape("actions", self.0.len(), wanted)
     }
 
-    fn looks(&self) -> bool {
+    fn uses_observations(&self) -> bool {
         false
     }
 
     #[inline(always)]
-    fn act(&self, place: Place, _: &[T; O], _: &mut impl FnMut() -> u32) -> Act<T, D> {
+    fn act(&self, place: StepIndex, _: &[T; O], _: &mut impl FnMut() -> u32) -> ActionSample<T, D> {
         // Lanes beyond the last environment find nothing.
         let first = (place.row * place.environments + place.environment) * D;
-        Act::sure(each(|i| self.0.get(first + i).copied().unwrap_or_else(T::zero)))
+        ActionSample::deterministic(each(|i| {
+            self.0.get(first + i).copied().unwrap_or_else(T::zero)
+        }))
     }
 }

@@ -12,16 +12,16 @@ use libration_core::control::error::ensure;
 use super::block_size::{LANES, TILE};
 use super::error::NOTHING_DRAWN;
 use super::kernel::{Horizon, Share};
-use super::strip::{Strip, first_of, rows_of};
+use super::rollout_slice::{RolloutSlice, first_of, rows_of};
 use super::{
-    Autoreset, EnvironmentError, Environments, Final, Layout, Plan, Policy, Rollout, Sensor, World,
-    Writes,
+    Autoreset, EnvironmentError, Environments, EpisodeEnd, Layout, Plan, Policy, Rollout, Sensor,
+    World, Writes,
 };
 use crate::ensemble::{EnsembleError, NoRoom};
 
 /// Room for what a step leads to.
 #[derive(Debug)]
-pub struct Outcome<'a, T> {
+pub struct StepBuffers<'a, T> {
     /// What is seen after it: `[n, i]`.
     pub seen: &'a mut [T],
     /// What it paid.
@@ -74,18 +74,18 @@ where
         // So many ends the limit makes, and to gather them takes as much again. To ask the system costs as long as a short rollout: it
         // is asked where they are more than what the plan was asked for.
         let cuts = parts.limit.map_or(0, |l| len as u128 * (rows.len() as u128 / u128::from(l)));
-        let needed = cuts.saturating_mul(2 * size_of::<Final<T, O>>() as u128);
+        let needed = cuts.saturating_mul(2 * size_of::<EpisodeEnd<T, O>>() as u128);
         if needed > plan.bytes(O, D, size_of::<T>()) {
             NoRoom::check(needed)?;
         }
         self.ready(policy, horizon, rows.len())?;
         if rows.start == 0 {
             rollout.pauses = parts.autoreset != Autoreset::SameStep;
-            rollout.idle = if rollout.pauses { self.standing() } else { Vec::new() };
+            rollout.idle = if rollout.pauses { self.stopped() } else { Vec::new() };
             rollout.finals.clear();
         }
         let how = (plan.threads(&self.execution), plan.writes, rows.start);
-        let mut ends = self.advance(policy, rollout.strip(&rows), how);
+        let mut ends = self.advance(policy, rollout.slice(&rows), how);
         if rollout.finals.is_empty() {
             // Nothing is copied.
             swap(&mut rollout.finals, &mut ends);
@@ -101,8 +101,8 @@ where
     pub fn act<P: Policy<T, O, D>>(
         &mut self,
         policy: P,
-        to: Outcome<'_, T>,
-    ) -> Result<Vec<Final<T, O>>, EnvironmentError> {
+        to: StepBuffers<'_, T>,
+    ) -> Result<Vec<EpisodeEnd<T, O>>, EnvironmentError> {
         let len = self.len;
         EnvironmentError::shape("numbers to be observed", to.seen.len(), len.saturating_mul(O))?;
         for (name, found) in [
@@ -113,7 +113,7 @@ where
             EnvironmentError::shape(name, found, len)?;
         }
         self.ready(policy, 1, 1)?;
-        let strip = Strip {
+        let slice = RolloutSlice {
             observation: from_fn(|_| rows_of(&mut [], 1)),
             action: from_fn(|_| rows_of(&mut [], 1)),
             reward: rows_of(to.reward, 1),
@@ -124,7 +124,7 @@ where
             layout: Layout::Interleaved,
         };
         let threads = Plan::new(1, len).threads(&self.execution);
-        Ok(self.advance(policy, strip, (threads, Writes::Plain, 0)))
+        Ok(self.advance(policy, slice, (threads, Writes::Plain, 0)))
     }
 
     /// Nothing, if `policy` can act for so many of the steps of a horizon.
@@ -146,13 +146,13 @@ where
         Ok(())
     }
 
-    /// Goes through all steps of a strip, on so many threads, and so many rows after the first of the rollout.
+    /// Goes through all steps of a slice, on so many threads, and so many rows after the first of the rollout.
     fn advance<'a, P: Policy<T, O, D>>(
         &'a mut self,
         policy: P,
-        mut all: Strip<'a, T, O, D>,
+        mut all: RolloutSlice<'a, T, O, D>,
         (threads, writes, row): (usize, Writes, usize),
-    ) -> Vec<Final<T, O>> {
+    ) -> Vec<EpisodeEnd<T, O>> {
         let len = self.len;
         let (steps, substeps) = (all.steps() as u64, u64::from(self.world.parts().substeps));
         // Whole tiles where there are enough for all threads.
@@ -186,7 +186,7 @@ where
             first += len;
         }
         let instructions = self.execution.instruction_set();
-        let each = self.execution.each(shares, |(share, strip)| {
+        let each = self.execution.each(shares, |(share, slice)| {
             instructions.run(Horizon::<T, E, P, _, O, D> {
                 world: &world,
                 policy,
@@ -195,7 +195,7 @@ where
                 step,
                 row,
                 share,
-                strip,
+                slice,
                 writes,
             })
         });
@@ -207,13 +207,13 @@ where
             }
             finals.append(&mut ends);
         }
-        finals.sort_unstable_by_key(|end: &Final<T, O>| (end.step, end.environment));
+        finals.sort_unstable_by_key(|end: &EpisodeEnd<T, O>| (end.step, end.environment));
         self.step = self.step.saturating_add(steps);
         finals
     }
 
     /// Those that stand still.
-    fn standing(&self) -> Vec<usize> {
+    fn stopped(&self) -> Vec<usize> {
         let stands = |n: &usize| self.blocks[n / LANES].ended[n % LANES] != 0;
         (0..self.len).filter(stands).collect()
     }

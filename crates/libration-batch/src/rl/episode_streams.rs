@@ -11,20 +11,20 @@ use super::block_size::LANES;
 
 /// The words of all blocks for one purpose, as they are before some step.
 #[derive(Clone, Debug)]
-pub(super) struct Draws {
+pub(super) struct EpisodeStreams {
     purpose: Purpose,
     streams: Vec<Streams<LANES>>,
     /// The step, and how many words each takes.
     ready: Option<(u64, usize)>,
 }
 
-impl Draws {
+impl EpisodeStreams {
     pub(super) fn new(purpose: Purpose) -> Self {
-        Draws { purpose, streams: Vec::new(), ready: None }
+        EpisodeStreams { purpose, streams: Vec::new(), ready: None }
     }
 
     /// Other episodes have taken the place of those that were.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn invalidate(&mut self) {
         self.ready = None;
     }
 
@@ -42,7 +42,7 @@ impl Draws {
             return &mut [];
         }
         if self.ready != Some((step, words)) || self.streams.len() != blocks.len() {
-            let at = |block| resumed(block, [step, parts, 0], self.purpose, words);
+            let at = |block| streams_at(block, [step, parts, 0], self.purpose, words);
             self.streams = blocks.iter().map(at).collect();
         }
         self.ready = Some((step + steps, words));
@@ -51,7 +51,7 @@ impl Draws {
 }
 
 /// The words of a block as they are before part `part` of step `now`, where each of its `parts` took so many.
-fn resumed<T: Scalar, C: Copy, V, const D: usize>(
+fn streams_at<T: Scalar, C: Copy, V, const D: usize>(
     block: &Block<T, C, V, D>,
     [now, parts, part]: [u64; 3],
     purpose: Purpose,
@@ -70,7 +70,7 @@ fn resumed<T: Scalar, C: Copy, V, const D: usize>(
 
 /// Before part `part` of step `now`, of which each has so many: whose episode enters an epoch draws by address.
 #[inline(always)]
-pub(super) fn renew<T: Scalar, C: Copy, V, const D: usize>(
+pub(super) fn begin_epochs<T: Scalar, C: Copy, V, const D: usize>(
     streams: &mut Streams<LANES>,
     block: &Block<T, C, V, D>,
     [now, parts, part]: [u64; 3],
@@ -83,13 +83,13 @@ pub(super) fn renew<T: Scalar, C: Copy, V, const D: usize>(
         due |= age.wrapping_add(part as u32).is_multiple_of(EPOCH as u32);
     }
     if due {
-        seat(streams, block, [now, parts, part], purpose);
+        begin_due_epochs(streams, block, [now, parts, part], purpose);
     }
 }
 
 #[cold]
 #[inline(never)]
-fn seat<T: Scalar, C: Copy, V, const D: usize>(
+fn begin_due_epochs<T: Scalar, C: Copy, V, const D: usize>(
     streams: &mut Streams<LANES>,
     block: &Block<T, C, V, D>,
     [now, parts, part]: [u64; 3],

@@ -3,20 +3,20 @@
 use libration_core::Float;
 use libration_core::random::{Streams, normal};
 
-use super::{Act, Place, Policy};
+use super::{ActionSample, Policy, StepIndex};
 use crate::rl::EnvironmentError;
 
 /// A policy with Gaussian noise on each of its actions; the log-probability is that of the noise. A policy that is itself random
 /// has none that were known, and does not compile.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Explore<P, const D: usize> {
+pub struct GaussianExploration<P, const D: usize> {
     /// The policy, whose actions are the means.
     pub policy: P,
     /// The standard deviations, above zero.
     pub sigma: [f64; D],
 }
 
-impl<P, const D: usize> Explore<P, D> {
+impl<P, const D: usize> GaussianExploration<P, D> {
     /// The log-probability of the mean.
     fn highest(&self) -> f64 {
         let log = |sigma: f64| libm::log(sigma) + 0.5 * libm::log(core::f64::consts::TAU);
@@ -25,7 +25,7 @@ impl<P, const D: usize> Explore<P, D> {
 }
 
 impl<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize> Policy<T, O, D>
-    for Explore<P, D>
+    for GaussianExploration<P, D>
 {
     const DRAWS: bool = true;
 
@@ -43,7 +43,12 @@ impl<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize> Policy<T, O, 
     }
 
     #[inline(always)]
-    fn act(&self, place: Place, seen: &[T; O], word: &mut impl FnMut() -> u32) -> Act<T, D> {
+    fn act(
+        &self,
+        place: StepIndex,
+        seen: &[T; O],
+        word: &mut impl FnMut() -> u32,
+    ) -> ActionSample<T, D> {
         let mut act = self.policy.act(place, seen, word);
         act.log_probability = act.log_probability + T::from_f64(self.highest());
         for i in 0..D {
@@ -57,7 +62,7 @@ impl<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize> Policy<T, O, 
     #[inline(always)]
     fn act_all<const W: usize>(
         &self,
-        place: Place,
+        place: StepIndex,
         seen: &[[T; W]; O],
         words: &mut Streams<W>,
         actions: &mut [[T; W]; D],

@@ -8,7 +8,7 @@ use super::start::Episode;
 
 /// The distribution of a number that is drawn at the beginning of every episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Spread {
+pub enum Distribution {
     /// Anywhere between two ends.
     Uniform(f64, f64),
     /// Between two ends above zero, each power of it as likely: for what may be several times too large or too small.
@@ -19,7 +19,7 @@ pub enum Spread {
     Either(f64, [f64; 2]),
 }
 
-impl Spread {
+impl Distribution {
     /// Whether its numbers are those of a distribution, in the float type as well.
     pub(super) fn check<T: Float>(&self, index: usize) -> Result<(), ControlError> {
         let ensure = |name, value, allowed, holds: bool| {
@@ -30,7 +30,7 @@ impl Spread {
             ensure(name, value, "finite in the float type", T::from_f64(value).is_finite())
         };
         match *self {
-            Spread::Uniform(low, high) => {
+            Distribution::Uniform(low, high) => {
                 let (width, allowed) = (high - low, "a finite number of at least 0");
                 ensure(
                     "width of the variation",
@@ -41,13 +41,13 @@ impl Spread {
                 finite("lower end of the variation", low)?;
                 finite("upper end of the variation", high)
             }
-            Spread::LogUniform(low, high) => {
+            Distribution::LogUniform(low, high) => {
                 let held = T::from_f64(low) > T::zero();
                 ensure("lower end of the variation", low, "above 0 in the float type", held)?;
                 ensure("upper end of the variation", high, "at least the lower", high >= low)?;
                 finite("upper end of the variation", high)
             }
-            Spread::Normal(mean, deviation) => {
+            Distribution::Normal(mean, deviation) => {
                 finite("mean of the variation", mean)?;
                 let (name, allowed) = ("standard deviation of the variation", "at least 0");
                 ensure(name, deviation, allowed, deviation >= 0.0)?;
@@ -56,7 +56,7 @@ impl Spread {
                     mean.abs() + 8.6 * deviation,
                 )
             }
-            Spread::Either(first, values) => {
+            Distribution::Either(first, values) => {
                 let holds = (0.0..=1.0).contains(&first);
                 ensure("probability of the variation", first, "from 0 to 1", holds)?;
                 values.into_iter().try_for_each(|value| finite("value of the variation", value))
@@ -69,14 +69,14 @@ impl Spread {
         let address = episode.address(purpose, i);
         let [share, _] = address.uniform();
         match *self {
-            Spread::Uniform(low, high) => low + share * (high - low),
-            Spread::LogUniform(low, high) => {
+            Distribution::Uniform(low, high) => low + share * (high - low),
+            Distribution::LogUniform(low, high) => {
                 let (least, most) = (libm::log(low), libm::log(high));
                 // Rounded, the ends themselves may be passed.
                 libm::exp(least + share * (most - least)).clamp(low, high)
             }
-            Spread::Normal(mean, deviation) => mean + deviation * address.gaussian()[0],
-            Spread::Either(first, [a, b]) => {
+            Distribution::Normal(mean, deviation) => mean + deviation * address.gaussian()[0],
+            Distribution::Either(first, [a, b]) => {
                 if share < first {
                     a
                 } else {
@@ -92,10 +92,10 @@ mod tests {
     use super::*;
 
     /// The mean and the variance of what is drawn, and its smallest and largest.
-    fn drawn(spread: Spread) -> [f64; 4] {
+    fn drawn(distribution: Distribution) -> [f64; 4] {
         const COUNT: u64 = 1 << 16;
         let episode = |number| Episode { seed: 11, environment: 3, number };
-        let numbers = (0..COUNT).map(|k| spread.draw(episode(k), Purpose::Variation, 2));
+        let numbers = (0..COUNT).map(|k| distribution.draw(episode(k), Purpose::Variation, 2));
         let mut told = [0.0, 0.0, f64::INFINITY, f64::NEG_INFINITY];
         for x in numbers {
             told = [told[0] + x, told[1] + x * x, told[2].min(x), told[3].max(x)];
@@ -108,23 +108,28 @@ mod tests {
     fn numbers_have_the_mean_and_the_variance_of_their_distribution() {
         let (log, ratio) = (4.0_f64.ln(), 0.3);
         // Means, variances, and the ends that are not passed.
-        for (spread, mean, variance, ends) in [
-            (Spread::Uniform(1.0, 4.0), 2.5, 0.75, [1.0, 4.0]),
-            (Spread::LogUniform(1.0, 4.0), 3.0 / log, 7.5 / log - 9.0 / (log * log), [1.0, 4.0]),
-            (Spread::Normal(1.0, 0.5), 1.0, 0.25, [1.0 - 4.3, 1.0 + 4.3]),
-            (Spread::Either(ratio, [2.0, 5.0]), 4.1, 9.0 * ratio * (1.0 - ratio), [2.0, 5.0]),
+        for (distribution, mean, variance, ends) in [
+            (Distribution::Uniform(1.0, 4.0), 2.5, 0.75, [1.0, 4.0]),
+            (
+                Distribution::LogUniform(1.0, 4.0),
+                3.0 / log,
+                7.5 / log - 9.0 / (log * log),
+                [1.0, 4.0],
+            ),
+            (Distribution::Normal(1.0, 0.5), 1.0, 0.25, [1.0 - 4.3, 1.0 + 4.3]),
+            (Distribution::Either(ratio, [2.0, 5.0]), 4.1, 9.0 * ratio * (1.0 - ratio), [2.0, 5.0]),
         ] {
-            let found = drawn(spread);
+            let found = drawn(distribution);
             // Four standard errors of 2¹⁶ draws, whose fourth moments are at most three squared variances.
             assert!(
                 (found[0] - mean).abs() < 4.0 * variance.sqrt() / 256.0,
-                "{spread:?} {found:?}"
+                "{distribution:?} {found:?}"
             );
             assert!(
                 (found[1] - variance).abs() < 4.0 * variance * 2.0_f64.sqrt() / 256.0,
-                "{spread:?} {found:?}"
+                "{distribution:?} {found:?}"
             );
-            assert!(found[2] >= ends[0] && found[3] <= ends[1], "{spread:?} {found:?}");
+            assert!(found[2] >= ends[0] && found[3] <= ends[1], "{distribution:?} {found:?}");
         }
     }
 }

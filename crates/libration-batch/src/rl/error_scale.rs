@@ -12,30 +12,30 @@ use super::start::{Episode, between};
 ///
 /// Steps that would be negative are of length zero, as with clocks. Where clock and sensor are exact there is nothing to be severe about.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Severity {
+pub struct ErrorScale {
     /// Of how far a step is from its length: least and most.
     pub clock: [f64; 2],
     /// Of the noise of what is seen.
     pub sensor: [f64; 2],
 }
 
-impl Default for Severity {
+impl Default for ErrorScale {
     /// All of it, always.
     fn default() -> Self {
-        Severity { clock: [1.0; 2], sensor: [1.0; 2] }
+        ErrorScale { clock: [1.0; 2], sensor: [1.0; 2] }
     }
 }
 
-impl Severity {
+impl ErrorScale {
     pub(super) fn check<T: Float>(&self) -> Result<(), ControlError> {
         for (name, [least, most]) in
-            [("severity of the clock", self.clock), ("severity of the sensor", self.sensor)]
+            [("error scale of the clock", self.clock), ("error scale of the sensor", self.sensor)]
         {
             not_negative::<T>(name, least)?;
             not_negative::<T>(name, most)?;
         }
         let ends = [self.clock, self.sensor].map(|[least, most]| (least, most));
-        between::check("range of the severity", ends)
+        between::check("range of the error scale", ends)
     }
 
     /// What is drawn for an episode: of the clock and of the sensor.
