@@ -4,8 +4,8 @@ use libration::control::clock::{Jittered, Rates, Recorded};
 use libration::control::delay::{Order, Packets};
 use libration::control::{Delay, Jitter, Schedule, WhiteNoise};
 use libration::ensemble::{All, EnsembleError, Loops, MeanCost, Setup};
-use libration::integrator::{Exact, Repeated, Rk4};
-use libration::system::Chosen;
+use libration::integrator::{Exact, Rk4, Substeps};
+use libration::system::DynSystem;
 use libration::{Integrator, Model, State, System};
 use libration_work::Work;
 
@@ -48,7 +48,7 @@ impl<M: Model<1>> Loop<M> {
             None => {
                 let turn = self.plant().rate() * self.control.period * longest;
                 let count = (turn / 0.05).ceil().clamp(4.0, 256.0) as i32;
-                self.run_by(work, run, delay, Repeated { method: Rk4, count })
+                self.run_by(work, run, delay, Substeps { method: Rk4, count })
             }
         }
     }
@@ -74,7 +74,7 @@ impl<M: Model<1>> Loop<M> {
             let rates = vec![1.0 + self.control.skew; starts.len()];
             let mut own = recorded.to_vec();
             own.rotate_left(group * recorded.len() / groups);
-            let setup = Setup::new(All(Chosen(&acceleration)), method)
+            let setup = Setup::new(All(DynSystem(&acceleration)), method)
                 .controller(self.controller)
                 .clock((Rates(&rates), (Recorded::repeated(&own), Jittered(jitter))))
                 .delay(delay)

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use libration::integrator::{Exact, SUZUKI4};
-use libration::system::Chosen;
+use libration::system::DynSystem;
 use libration::{AnySystem, Float, Hamiltonian, Integrator, Method, Model, State, System};
 use libration_work::Work;
 
@@ -107,7 +107,7 @@ impl<M: Model<D>, const D: usize> Free<M, D> {
         let true_acceleration = |state: &State<f64, D>| self.model.on::<f64>().acceleration(state);
         let steps = (self.horizon / dt).round().max(1.0) as u64;
         let follow = Follow {
-            system: Chosen(&acceleration),
+            system: DynSystem(&acceleration),
             method,
             start: self.start.map(S::from_f64),
             dt: S::from_f64(dt),
@@ -121,7 +121,7 @@ impl<M: Model<D>, const D: usize> Free<M, D> {
                 follow.largest(work, most, &mut |state| energy(state))
             }
             _ => {
-                let system = Chosen(&true_acceleration);
+                let system = DynSystem(&true_acceleration);
                 match Exact::new(self.model, dt) {
                     Some(exact) => {
                         self.beside(work, &follow, most, &|state| exact.step(&system, state, dt))
@@ -197,7 +197,7 @@ impl<M: Model<D>, const D: usize> Trial for Free<M, D> {
 
 /// A trajectory to be followed.
 struct Follow<'a, S, const D: usize> {
-    system: Chosen<'a, S, D>,
+    system: DynSystem<'a, S, D>,
     method: Method,
     start: State<S, D>,
     dt: S,

@@ -204,7 +204,7 @@ impl<M: Model<1>> Loop<M> {
     /// The rate at which second moments grow in a period: by the law of steps, or through the record.
     pub(super) fn growth(&self, plant: &Plant<'_>, with: &Imperfections) -> Result<f64, CostError> {
         match self.replayed(with.jitter.rms()) {
-            Some(steps) => plant.replayed_growth(&self.linear, with, &steps),
+            Some(steps) => plant.recorded_growth(&self.linear, with, &steps),
             None => plant.mean_square_growth(&self.linear, with),
         }
     }
@@ -216,7 +216,7 @@ impl<M: Model<1>> Loop<M> {
         with: &Imperfections,
     ) -> Result<bool, CostError> {
         match self.replayed(with.jitter.rms()) {
-            Some(steps) => Ok(plant.replayed_growth(&self.linear, with, &steps)? < 0.0),
+            Some(steps) => Ok(plant.recorded_growth(&self.linear, with, &steps)? < 0.0),
             None => plant.mean_square_stable(&self.linear, with),
         }
     }
@@ -229,7 +229,7 @@ impl<M: Model<1>> Loop<M> {
         weights: LqrWeights,
     ) -> Result<f64, CostError> {
         match self.replayed(with.jitter.rms()) {
-            Some(steps) => plant.replayed_cost(&self.linear, with, &steps, weights),
+            Some(steps) => plant.recorded_cost(&self.linear, with, &steps, weights),
             None => plant.cost(&self.linear, with, weights),
         }
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use libration::integrator::{Exact, SUZUKI4};
-use libration::system::Chosen;
+use libration::system::DynSystem;
 use libration::{Integrator, Model, State, System};
 use libration_work::Work;
 
@@ -27,7 +27,7 @@ impl<M: Model<D>, const D: usize> Free<M, D> {
             return Ok([rate, rate.max(damped)]);
         }
         let acceleration = |state: &State<f64, D>| self.model.on::<f64>().acceleration(state);
-        let system = Chosen(&acceleration);
+        let system = DynSystem(&acceleration);
         // A motion that repeats is known long before the horizon.
         let long = if begins > 0.0 { MOTIONS * TAU / begins } else { self.horizon };
         let long = self.horizon.min(long);

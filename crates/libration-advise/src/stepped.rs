@@ -4,7 +4,7 @@ use bytemuck::Pod;
 use libration::analysis::{Imperfections, Plant};
 use libration::control::{Latency, Schedule};
 use libration::ensemble::{All, Loops, Setup};
-use libration::system::Chosen;
+use libration::system::DynSystem;
 use libration::{Float, Method, Model, State, System};
 use libration_work::Work;
 
@@ -142,7 +142,7 @@ impl<M: Model<1>> Stepped<'_, M> {
         let latency = one.late()?.steps();
         let schedule = Schedule::new(substeps as f64, 0.0, latency * substeps as f64);
         let schedule = schedule.map_err(|_| LoopError::Latency { steps: latency })?;
-        let setup = Setup::new(All(Chosen(&acceleration)), method)
+        let setup = Setup::new(All(DynSystem(&acceleration)), method)
             .controller(one.controller)
             .delay(schedule);
         let start = [State { q: [S::from_f64(one.control.deviation)], v: [S::zero()] }];

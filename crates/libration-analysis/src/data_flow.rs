@@ -3,7 +3,7 @@
 use libration_core::elementary::sine32;
 use libration_core::{Integrator, Model, State, System};
 
-use super::traced::{Trace, Traced};
+use super::operation_trace::{OperationTrace, TracedScalar};
 
 /// An operation of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -58,20 +58,26 @@ impl DataFlow {
         model: &M,
         dt: f64,
     ) -> Self {
-        let trace = Trace::default();
+        let trace = OperationTrace::default();
         let input = |_| trace.input();
         let state = State { q: [(); D].map(input), v: [(); D].map(input) };
-        let flow = step(integrator, model.on::<Traced<'_>>(), state, Traced::Constant(dt), input);
-        let outputs = flow.into_iter().map(Traced::node).collect();
+        let flow = step(
+            integrator,
+            model.on::<TracedScalar<'_>>(),
+            state,
+            TracedScalar::Constant(dt),
+            input,
+        );
+        let outputs = flow.into_iter().map(TracedScalar::node).collect();
         DataFlow { nodes: trace.into_nodes(), outputs }
     }
 
     /// The arithmetic of [`sine32::sin`]; what it does with bits is not counted.
     pub fn of_sine32() -> Self {
-        let trace = Trace::default();
+        let trace = OperationTrace::default();
         // The integer is among the outputs: with its bits one of the other two is chosen.
         let (integer, [sine, cosine]) = sine32::arithmetic(trace.input());
-        let outputs = [integer, sine, cosine].map(Traced::node).into();
+        let outputs = [integer, sine, cosine].map(TracedScalar::node).into();
         DataFlow { nodes: trace.into_nodes(), outputs }
     }
 
@@ -147,13 +153,13 @@ impl DataFlow {
 }
 
 /// The state after a step, coordinate by coordinate, with its acceleration where that is handed on.
-fn step<'a, I: Integrator, Sys: System<Traced<'a>, D>, const D: usize>(
+fn step<'a, I: Integrator, Sys: System<TracedScalar<'a>, D>, const D: usize>(
     integrator: I,
     system: Sys,
-    state: State<Traced<'a>, D>,
-    dt: Traced<'a>,
-    input: impl Fn(()) -> Traced<'a>,
-) -> Vec<Traced<'a>> {
+    state: State<TracedScalar<'a>, D>,
+    dt: TracedScalar<'a>,
+    input: impl Fn(()) -> TracedScalar<'a>,
+) -> Vec<TracedScalar<'a>> {
     if I::CARRIES && Sys::POSITIONAL {
         let (state, acceleration) = integrator.carried(&system, state, [(); D].map(input), dt);
         state.coordinates().chain(acceleration).collect()

@@ -5,7 +5,7 @@ use libration_core::{Elementary, Scalar};
 
 use super::orbit_start::{NEGLIGIBLE, OrbitStart};
 use super::roots::IntegerPoly;
-use super::window::Cells;
+use super::stability_window::Cells;
 use super::{SymbolicStep, UnknownStep};
 
 /// What a time step must keep to.

@@ -3,49 +3,49 @@
 //! Nothing here is typed in from a textbook: the step is run on numbers that carry a derivative,
 //! on polynomials in the time step, or with 1024 bits, and the answer is read off.
 
-mod band;
 mod complex;
 mod data_flow;
+mod drift_forecast;
 mod eigenvalues;
-mod energy;
-mod error;
+mod energy_band;
+mod error_forecast;
 mod exponential;
-mod form;
 mod largest_step;
 mod linearisation;
-mod matrix;
+mod operation_trace;
+mod orbit_error;
 mod orbit_start;
-mod order;
+mod order_certificate;
 mod precision;
+mod quadratic_form;
 mod roots;
-mod slip;
 mod spectrum;
-mod symbolic;
+mod stability_window;
+mod symbolic_step;
 mod tableau;
 mod timing;
-mod traced;
-mod window;
+mod update_matrix;
 
-pub use band::EnergyBand;
 pub use complex::Complex;
 pub use data_flow::{DataFlow, Operation};
+pub use drift_forecast::{DriftForecast, forecast_drift};
 pub use eigenvalues::{determinant, eigenvalues};
-pub use energy::{DriftForecast, forecast_drift};
-pub use error::ErrorForecast;
-pub use form::QuadraticForm;
+pub use energy_band::EnergyBand;
+pub use error_forecast::ErrorForecast;
 pub use largest_step::{Criterion, LargestStep};
 pub use linearisation::Linearisation;
-pub use matrix::UpdateMatrix;
+pub use orbit_error::OrbitError;
 pub use orbit_start::OrbitStart;
-pub use order::OrderCertificate;
+pub use order_certificate::OrderCertificate;
 pub use precision::{Cycle, LocalRounding, float_clock};
-pub use slip::Slip;
+pub use quadratic_form::QuadraticForm;
 pub use spectrum::{Eigenvalues, Spectrum};
-pub use symbolic::{SymbolicStep, UnknownStep};
+pub use stability_window::StabilityWindow;
+pub use symbolic_step::{SymbolicStep, UnknownStep};
 pub use tableau::{Letter, Tableau};
 pub use timing::{
-    CostError, HeldStep, HiddenLatency, Imperfections, JitterMargin, LinearController, LqrError,
-    MeanSquare, Mode, NotLinear, ObserverNoise, Plant, Regulator, Resonance, StepNoise, Switching,
-    SwitchingError, Windows,
+    CostError, HiddenLatency, Imperfections, JitterMargin, LatencyWindows, LinearController,
+    LqrError, MeanSquare, Mode, NotLinear, ObserverNoise, Plant, Regulator, Resonance, StepNoise,
+    Switching, SwitchingError, ZohStep,
 };
-pub use window::StabilityWindow;
+pub use update_matrix::UpdateMatrix;

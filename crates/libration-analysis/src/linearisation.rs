@@ -1,7 +1,7 @@
 //! One step as a matrix, in 1024 bits.
 
 use libration_core::number::{Dual, Wide};
-use libration_core::system::Chosen;
+use libration_core::system::DynSystem;
 use libration_core::{Integrator, Model, State, System};
 
 use super::UpdateMatrix;
@@ -42,7 +42,7 @@ impl<const D: usize> Linearisation<D> {
         let rate = |state| system.rate(state);
         // A call is nothing beside numbers so long, and steps of any system are compiled once.
         let acceleration = |state: &_| model.on::<Dual<Wide>>().acceleration(state);
-        let chosen = Chosen(&acceleration);
+        let chosen = DynSystem(&acceleration);
         let step = |state, h| integrator.step(&chosen, state, h);
         Linearisation::of(&rate, &step, at.map(wide), wide(dt))
     }

@@ -6,7 +6,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::process::ExitCode;
 
-use libration::ensemble::{EnsembleError, MOST_THREADS, NoRoom};
+use libration::ensemble::{EnsembleError, InsufficientMemory, MOST_THREADS};
 use libration_env::dataset::{DataError, DatasetError};
 
 use crate::terminal;
@@ -47,7 +47,7 @@ impl Failure {
     }
 
     /// Not enough memory: wrong input if this machine could never have it, a failed run otherwise.
-    pub(crate) fn room(room: &NoRoom, message: impl Display) -> Self {
+    pub(crate) fn room(room: &InsufficientMemory, message: impl Display) -> Self {
         if room.is_beyond_machine() { Failure::usage(message) } else { Failure::run(message) }
     }
 

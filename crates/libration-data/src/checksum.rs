@@ -36,14 +36,14 @@ pub(crate) fn checksum_of(mut from: impl Read) -> io::Result<(String, u64)> {
 
 /// What is written to a file, and its checksum; large pieces are summed on all threads.
 #[derive(Debug)]
-pub(crate) struct Summed<W> {
+pub(crate) struct ChecksumWriter<W> {
     to: W,
     sum: Hasher,
 }
 
-impl<W> Summed<W> {
+impl<W> ChecksumWriter<W> {
     pub(crate) fn new(to: W) -> Self {
-        Summed { to, sum: Hasher::new() }
+        ChecksumWriter { to, sum: Hasher::new() }
     }
 
     /// Of all that was written.
@@ -56,7 +56,7 @@ impl<W> Summed<W> {
     }
 }
 
-impl<W: Write> Write for Summed<W> {
+impl<W: Write> Write for ChecksumWriter<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let count = self.to.write(bytes)?;
         add(&mut self.sum, &bytes[..count]);
@@ -101,7 +101,7 @@ mod tests {
         assert_eq!(checksum_of(&b"abc"[..]).unwrap(), (abc.to_owned(), 3));
         assert_eq!(checksum_at_once(b"abc"), abc);
         let large = vec![7; 3 * LARGE];
-        let mut written = Summed::new(Vec::new());
+        let mut written = ChecksumWriter::new(Vec::new());
         written.write_all(&large[..5]).unwrap();
         written.write_all(&large[5..]).unwrap();
         assert_eq!(written.sum(), checksum([&large[..]]));

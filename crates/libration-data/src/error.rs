@@ -29,7 +29,7 @@ pub enum DataError {
     Exists(PathBuf),
     /// There is something else.
     #[error("{} holds {found}, which is no part of a data set; choose an empty folder", folder.display())]
-    Strange {
+    ForeignFile {
         /// Where.
         folder: PathBuf,
         /// What lies there.

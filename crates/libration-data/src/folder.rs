@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value};
 
-use crate::bounded::read_rest;
-use crate::durable::{named, remove_parts, sync_folder};
+use crate::bounded_read::read_rest;
+use crate::durable_file::{named, remove_parts, sync_folder};
 use crate::lock::open_locked;
 use crate::manifest::{LIMIT, NAME};
-use crate::{Chunk, DataError, Manifest, Stored, on_threads, write_file};
+use crate::{Chunk, DataError, Manifest, Stored, run_on_threads, write_file};
 
 /// Files that are written at once: to wait for the disk takes as long for one as for all of them.
 const AT_ONCE: usize = 16;
@@ -28,7 +28,7 @@ pub struct Folder {
 
 /// A file of a chunk that is to be written: where, and its bytes.
 #[derive(Clone, Debug)]
-pub struct FileOf<'a> {
+pub struct NewFile<'a> {
     /// Seen from the folder.
     pub path: PathBuf,
     /// One after the other.
@@ -54,7 +54,7 @@ impl Folder {
             let mut entries = fs::read_dir(path).map_err(DataError::io("read", path))?;
             if let Some(Ok(entry)) = entries.next() {
                 let found = entry.file_name().to_string_lossy().into_owned();
-                return Err(DataError::Strange { folder: path.to_owned(), found });
+                return Err(DataError::ForeignFile { folder: path.to_owned(), found });
             }
         }
         let log = open_locked(&name).map_err(|error| match error {
@@ -68,7 +68,10 @@ impl Folder {
             // A first line that was cut off is the beginning of ours, or not ours to overwrite.
             let line = Value::Object(settings.clone()).to_string();
             if !line.as_bytes().starts_with(&text) {
-                return Err(DataError::Strange { folder: path, found: format!("another {NAME}") });
+                return Err(DataError::ForeignFile {
+                    folder: path,
+                    found: format!("another {NAME}"),
+                });
             }
             let manifest = Manifest { settings: settings.clone(), chunks: Vec::new() };
             let mut folder = Folder { path, manifest, log };
@@ -82,7 +85,7 @@ impl Folder {
         if !resume {
             return Err(DataError::Exists(path));
         }
-        same(&path, &manifest.settings, settings)?;
+        ensure_same_settings(&path, &manifest.settings, settings)?;
         let mut folder = Folder { path, manifest, log };
         folder.cut(len as u64)?;
         remove_parts(&folder.path)?;
@@ -107,17 +110,17 @@ impl Folder {
         &mut self,
         chunk: &str,
         holds: Map<String, Value>,
-        files: &[FileOf<'_>],
+        files: &[NewFile<'_>],
     ) -> Result<(), DataError> {
-        let stored = store(&self.path, files)?;
-        self.tell(chunk, holds, stored)
+        let stored = write_files(&self.path, files)?;
+        self.record(chunk, holds, stored)
     }
 
-    /// A chunk whose files are [there](store) is in the manifest when this returns.
+    /// A chunk whose files are [there](write_files) is in the manifest when this returns.
     ///
     /// # Errors
     /// If the system refuses, as when the disk is full; what was there before is there still.
-    pub fn tell(
+    pub fn record(
         &mut self,
         chunk: &str,
         holds: Map<String, Value>,
@@ -151,7 +154,7 @@ impl Folder {
 ///
 /// # Errors
 /// If the system refuses, as when the disk is full.
-pub fn store(folder: &Path, files: &[FileOf<'_>]) -> Result<Vec<Stored>, DataError> {
+pub fn write_files(folder: &Path, files: &[NewFile<'_>]) -> Result<Vec<Stored>, DataError> {
     // Every folder that has something new in it, the innermost first.
     let mut folders = BTreeSet::new();
     for file in files {
@@ -167,10 +170,10 @@ pub fn store(folder: &Path, files: &[FileOf<'_>]) -> Result<Vec<Stored>, DataErr
         let (blake3, bytes) = write_file(&folder.join(&path), &files[i].pieces)?;
         Ok(Stored { path, bytes, blake3 })
     };
-    let stored = on_threads(at_once, files.len(), one);
+    let stored = run_on_threads(at_once, files.len(), one);
     let stored = stored.into_iter().collect::<Result<_, _>>()?;
     let folders: Vec<_> = folders.into_iter().collect();
-    let synced = on_threads(at_once, folders.len(), |i| sync_folder(&folders[i].0));
+    let synced = run_on_threads(at_once, folders.len(), |i| sync_folder(&folders[i].0));
     synced.into_iter().collect::<Result<Vec<()>, _>>()?;
     Ok(stored)
 }
@@ -179,7 +182,7 @@ pub fn store(folder: &Path, files: &[FileOf<'_>]) -> Result<Vec<Stored>, DataErr
 ///
 /// # Errors
 /// [`DataError::Other`] with the first that is not.
-pub fn same(
+pub fn ensure_same_settings(
     folder: &Path,
     found: &Map<String, Value>,
     wanted: &Map<String, Value>,

@@ -1,38 +1,38 @@
 //! Numbers in files: formats that others read, data sets that are larger than memory, and states from which to go on.
 //!
 //! A [`Folder`] takes one chunk of a data set after the other. Whatever is in its manifest is on the disk, whole, with a checksum;
-//! whoever is stopped goes on after the last chunk. A state is [kept](keep) in one file, and [taken up](take_up) only if all of it is
+//! whoever is stopped goes on after the last chunk. A state is [kept](save_state) in one file, and [taken up](load_state) only if all of it is
 //! as it was.
 //!
 //! Nothing here knows of physics.
 
-mod bounded;
+mod bounded_read;
 mod checksum;
-mod direct;
-mod durable;
+mod direct_write;
+mod durable_file;
 mod error;
 mod folder;
 mod lock;
 mod manifest;
-mod mapped;
 mod npy;
 mod parquet;
-mod state;
+mod replay_file;
+mod state_file;
 mod table;
-mod threads;
+mod thread_work;
 mod verify;
 
-pub use bounded::{read_bounded, read_text_bounded};
+pub use bounded_read::{read_bounded, read_text_bounded};
 pub use checksum::checksum;
-pub use durable::{write_file, write_past};
+pub use durable_file::{write_direct, write_file};
 pub use error::{DataError, TableError};
-pub use folder::{FileOf, Folder, same, store};
+pub use folder::{Folder, NewFile, ensure_same_settings, write_files};
 pub use lock::open_locked;
 pub use manifest::{Chunk, Manifest, Stored};
-pub use mapped::ReplayFile;
 pub use npy::{npy_array, write_npy};
 pub use parquet::{parquet_bytes, write_parquet};
-pub use state::{keep, take_up};
+pub use replay_file::ReplayFile;
+pub use state_file::{load_state, save_state};
 pub use table::{Column, Table, Values};
-pub use threads::on_threads;
-pub use verify::{Flaw, unlisted, verify};
+pub use thread_work::run_on_threads;
+pub use verify::{Flaw, find_unlisted, verify};

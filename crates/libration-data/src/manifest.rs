@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::DataError;
-use crate::bounded::read_bounded;
+use crate::bounded_read::read_bounded;
 
 /// Its name in the folder.
 pub(crate) const NAME: &str = "manifest.jsonl";

@@ -18,7 +18,7 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterPrope
 use parquet::file::writer::{SerializedFileWriter, SerializedPageWriter, TrackedWrite};
 use parquet::schema::types::{ColumnDescPtr, ColumnPath, Type, TypePtr};
 
-use crate::{Column, Table, TableError, Values, on_threads};
+use crate::{Column, Table, TableError, Values, run_on_threads};
 
 /// Rows that are compressed, and can be skipped, together.
 const ROW_GROUP: usize = 1 << 20;
@@ -51,7 +51,7 @@ pub fn write_parquet(
             encoded(columns[i].clone(), properties.clone(), values, start, end)
         };
         let mut group = file.next_row_group()?;
-        for column in on_threads(threads, columns.len(), encode) {
+        for column in run_on_threads(threads, columns.len(), encode) {
             let (bytes, close) = column?;
             group.append_column(&bytes, close)?;
         }

@@ -45,7 +45,7 @@ pub fn verify(folder: &Path, manifest: &Manifest, mut go_on: impl FnMut(u64) -> 
 ///
 /// # Errors
 /// If a folder cannot be read.
-pub fn unlisted(folder: &Path, manifest: &Manifest) -> Result<Vec<PathBuf>, DataError> {
+pub fn find_unlisted(folder: &Path, manifest: &Manifest) -> Result<Vec<PathBuf>, DataError> {
     let files = manifest.chunks.iter().flat_map(|chunk| &chunk.files);
     let mut listed: HashSet<&Path> = files.map(|file| &*file.path).collect();
     listed.insert(Path::new(NAME));

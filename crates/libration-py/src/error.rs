@@ -1,7 +1,7 @@
 //! What goes wrong, as Python has it.
 
 use libration::checkpoint::CheckpointError;
-use libration::ensemble::{EnsembleError, NoRoom};
+use libration::ensemble::{EnsembleError, InsufficientMemory};
 use libration::replay::ReplayError;
 use libration::rl::EnvironmentError;
 use libration_advise::AdviseError;
@@ -163,7 +163,7 @@ pub(crate) fn unknown<'a>(
 
 /// Nothing, if there is room for so many bytes.
 pub(crate) fn room_for(bytes: u128) -> PyResult<()> {
-    NoRoom::check(bytes).map_err(|error| PyMemoryError::new_err(error.to_string()))
+    InsufficientMemory::check(bytes).map_err(|error| PyMemoryError::new_err(error.to_string()))
 }
 
 /// A sentence about flags, as one about keywords: what is `--max-drift` there is `max_drift` here, and a flag that goes on with something is

@@ -4,12 +4,12 @@ use libration_core::Scalar;
 use libration_core::control::LqrWeights;
 use libration_core::number::Wide;
 
+use super::augmented_state::AugmentedState;
 use super::dense_matrix::Matrix;
-use super::drawn::Drawn;
 use super::imperfections::{MOST_RANDOM, MOST_REPEATED};
 use super::jitter::{Averages, MOST_TURN};
-use super::stage::{Making, Stage};
-use super::waiting::Waiting;
+use super::random_stages::RandomStages;
+use super::stage::{Stage, StageOptions};
 use super::{CostError, Imperfections, LinearController, Plant};
 
 impl Plant<'_> {
@@ -38,7 +38,7 @@ impl Plant<'_> {
         weights: LqrWeights,
     ) -> Result<f64, CostError> {
         let stages = self.stages(controller, imperfections, Some(weights))?;
-        let drawn = Drawn::new(&stages);
+        let drawn = RandomStages::new(&stages);
         if !drawn.is_stable() {
             return Ok(f64::INFINITY);
         }
@@ -63,7 +63,7 @@ impl Plant<'_> {
         controller: &LinearController,
         imperfections: &Imperfections,
     ) -> Result<f64, CostError> {
-        Ok(Drawn::new(&self.stages(controller, imperfections, None)?).growth())
+        Ok(RandomStages::new(&self.stages(controller, imperfections, None)?).growth())
     }
 
     /// Whether that is below zero, which is known sooner: the loop is stable in the mean square, and its cost is finite.
@@ -75,7 +75,7 @@ impl Plant<'_> {
         controller: &LinearController,
         imperfections: &Imperfections,
     ) -> Result<bool, CostError> {
-        Ok(Drawn::new(&self.stages(controller, imperfections, None)?).is_stable())
+        Ok(RandomStages::new(&self.stages(controller, imperfections, None)?).is_stable())
     }
 
     /// The steps that the loop may take.
@@ -88,7 +88,7 @@ impl Plant<'_> {
         let Imperfections { latency, jitter, skew, loss } = *imperfections;
         let waiting = self.waiting(controller, imperfections, weights)?;
         let turn = 2.0 * self.turn(jitter) * (1.0 + skew);
-        let making = Making { waiting, controller, latency, weights };
+        let options = StageOptions { waiting, controller, latency, weights };
         let one = Wide::one();
         let dt = self.dt * (one + Wide::from_f64(skew));
         // One step, where all are alike: second moments of a large loop would take minutes.
@@ -98,7 +98,7 @@ impl Plant<'_> {
             let h = dt * (one + Wide::from_f64(epsilon));
             let arrives = [(1.0 - loss, false), (loss, true)];
             for (share, lost) in arrives.into_iter().filter(|(share, _)| *share > 0.0) {
-                stages.push(self.stage(making, weight * share, h, lost));
+                stages.push(self.stage(options, weight * share, h, lost));
             }
         }
         Ok(stages)
@@ -110,7 +110,7 @@ impl Plant<'_> {
         controller: &LinearController,
         imperfections: &Imperfections,
         weights: Option<LqrWeights>,
-    ) -> Result<Waiting, CostError> {
+    ) -> Result<AugmentedState, CostError> {
         let Imperfections { latency, jitter, skew, loss } = *imperfections;
         if let Some(LqrWeights { position, velocity, command }) = weights {
             let all = [("position", position), ("velocity", velocity), ("command", command)];
@@ -125,7 +125,7 @@ impl Plant<'_> {
         if !(skew.is_finite() && skew > -1.0) {
             return Err(CostError::Skew(skew));
         }
-        let waiting = Waiting {
+        let waiting = AugmentedState {
             memory: controller.remembers(),
             commands: latency.whole() as usize,
             acting: latency.part() > 0.0 || loss > 0.0,

@@ -4,14 +4,14 @@
 pub(super) type Matrix = Vec<Vec<f64>>;
 
 /// Rows for columns.
-pub(super) fn transposed(m: &Matrix) -> Matrix {
+pub(super) fn transpose(m: &Matrix) -> Matrix {
     (0..m.len()).map(|i| m.iter().map(|row| row[i]).collect()).collect()
 }
 
 /// The logarithm of the spectral radius: the growth of the norm of higher and higher powers (I. Gelfand, 1941), each the square of
 /// the one before. After 50 of them what norm and radius differ by is divided by 2⁵⁰. Where several of the largest eigenvalues meet,
 /// rounding parts them, and three digits may be all that are right.
-pub(super) fn growth(mut power: Matrix) -> f64 {
+pub(super) fn log_spectral_radius(mut power: Matrix) -> f64 {
     let (mut logarithm, mut share) = (0.0, 1.0);
     for _ in 0..50 {
         // Squares of it could overflow.
@@ -32,7 +32,7 @@ pub(super) fn growth(mut power: Matrix) -> f64 {
 
 /// Whether the spectral radius is below 1, which is known sooner than what it is: a power of norm below 1 says yes, and one whose
 /// eigenvalues add up to more than there are of them says no.
-pub(super) fn decays(matrix: &Matrix) -> bool {
+pub(super) fn is_schur_stable(matrix: &Matrix) -> bool {
     let (mut power, mut logarithm) = (matrix.clone(), 0.0);
     for _ in 0..50 {
         let row_sum = |row: &Vec<f64>| row.iter().map(|x| x.abs()).sum::<f64>();
@@ -52,7 +52,7 @@ pub(super) fn decays(matrix: &Matrix) -> bool {
         power = product(&power, &power);
     }
     // Within a part of 10⁻¹⁵ of the edge.
-    growth(matrix.clone()) < 0.0
+    log_spectral_radius(matrix.clone()) < 0.0
 }
 
 /// Divides all entries; those that are nothing beside the largest become zero, since products of them would be numbers with which

@@ -3,7 +3,7 @@
 use libration_core::Scalar;
 use libration_core::number::Wide;
 
-use super::{HeldStep, Plant};
+use super::{Plant, ZohStep};
 use crate::Complex;
 
 /// By how many steps a held command acts later in a simulated loop than in continuous time, beside any latency that
@@ -36,7 +36,7 @@ impl Plant<'_> {
 
     /// The same at the frequency at which a step has this angle.
     fn shift(&self, angle: Wide) -> Option<HiddenLatency> {
-        let HeldStep { phi, gamma } = (self.step)(self.dt);
+        let ZohStep { phi, gamma } = (self.step)(self.dt);
         // adj(λ − Φ)Γ = λΓ + (Φ − trace)Γ.
         let rest = phi.apply(&gamma).plus(-phi.trace(), gamma);
         let (im, re) = angle.sin_cos();

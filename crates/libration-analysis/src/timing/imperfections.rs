@@ -51,7 +51,7 @@ pub enum CostError {
     /// The matrix would be too large.
     #[error(
         "the latency is too many periods long: a loop that has to know {size} numbers, of which most are commands on their way, is too \
-         large; with jitter or losses there may be {MOST_RANDOM}, with a record and losses {MOST_REPLAYED}, with none of them {MOST_REPEATED}"
+         large; with jitter or losses there may be {MOST_RANDOM}, with a record and losses {MOST_RECORDED}, with none of them {MOST_REPEATED}"
     )]
     Size {
         /// State, controller and waiting commands.
@@ -71,7 +71,7 @@ pub enum CostError {
 pub(super) const MOST_RANDOM: usize = 100;
 
 /// Coordinates of a loop whose clock is replayed and whose commands may be lost: 300 second moments.
-pub(super) const MOST_REPLAYED: usize = 24;
+pub(super) const MOST_RECORDED: usize = 24;
 
 /// Coordinates of a loop whose steps are all the same.
 pub(super) const MOST_REPEATED: usize = 300;

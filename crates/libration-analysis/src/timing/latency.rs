@@ -4,9 +4,9 @@ use libration_core::control::{Feedback, Latency};
 use libration_core::number::Wide;
 use libration_core::{Scalar, State};
 
+use super::delay_polynomial::DelayPolynomial;
 use super::plant::{fed_back, repeated};
-use super::quasi::Quasi;
-use super::{HeldStep, Plant};
+use super::{Plant, ZohStep};
 use crate::UpdateMatrix;
 
 impl Plant<'_> {
@@ -20,7 +20,7 @@ impl Plant<'_> {
 
     /// The characteristic polynomial of the loop; its roots are the eigenvalues of the matrix that takes state
     /// and waiting commands to the next step.
-    pub(super) fn characteristic(&self, feedback: Feedback, latency: Latency) -> Quasi {
+    pub(super) fn characteristic(&self, feedback: Feedback, latency: Latency) -> DelayPolynomial {
         let SplitStep { phi, old, new } = self.split(latency.part(), self.dt);
         match latency.part() == 0.0 {
             true => polynomial(feedback, latency.whole(), phi, new, State::origin()),
@@ -29,7 +29,7 @@ impl Plant<'_> {
     }
 
     /// What comes before a part of a step of `dt` seconds, and what after. Of steps on a grid only the one splits in which that is.
-    fn pieces(&self, part: f64, dt: Wide) -> (HeldStep, HeldStep) {
+    fn pieces(&self, part: f64, dt: Wide) -> (ZohStep, ZohStep) {
         let Some((count, fine)) = &self.grid else {
             let part = dt * Wide::from_f64(part);
             return ((self.step)(part), (self.step)(dt - part));
@@ -51,7 +51,7 @@ impl Plant<'_> {
     /// A step of `dt` seconds that splits after a part of it.
     pub(super) fn split(&self, part: f64, dt: Wide) -> SplitStep {
         if part == 0.0 {
-            let HeldStep { phi, gamma } = (self.step)(dt);
+            let ZohStep { phi, gamma } = (self.step)(dt);
             return SplitStep { phi, old: State::origin(), new: gamma };
         }
         let (before, after) = self.pieces(part, dt);
@@ -77,7 +77,7 @@ fn polynomial(
     phi: UpdateMatrix<Wide, 1>,
     old: State<Wide, 1>,
     new: State<Wide, 1>,
-) -> Quasi {
+) -> DelayPolynomial {
     let trace = phi.trace();
     // The adjugate of λ − Φ is λ + Φ − trace.
     let through = |gamma: State<Wide, 1>| {
@@ -85,5 +85,5 @@ fn polynomial(
         [fed_back(feedback, &moved), fed_back(feedback, &gamma)]
     };
     let ([old0, old1], [new0, new1]) = (through(old), through(new));
-    Quasi { m, a: [phi.determinant(), -trace], b: [old0, old1 + new0, new1] }
+    DelayPolynomial { m, a: [phi.determinant(), -trace], b: [old0, old1 + new0, new1] }
 }

@@ -5,7 +5,7 @@ use libration_core::number::Wide;
 use libration_core::{Scalar, State};
 
 use super::riccati::{DOUBLINGS, Matrix, dot, riccati};
-use super::{HeldStep, Plant};
+use super::{Plant, ZohStep};
 use crate::spectrum::negligible;
 use crate::{QuadraticForm, Spectrum};
 
@@ -72,7 +72,7 @@ impl Plant<'_> {
     /// [`LqrError`]: weights that are none, or a loop that they do not make stable.
     pub fn regulator(&self, weights: LqrWeights) -> Result<Regulator, LqrError> {
         let (state, command) = checked(weights)?;
-        let HeldStep { phi, gamma } = (self.step)(self.dt);
+        let ZohStep { phi, gamma } = (self.step)(self.dt);
         if out_of_reach(&phi, &gamma) {
             return Err(LqrError::OutOfReach);
         }

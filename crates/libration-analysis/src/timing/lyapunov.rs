@@ -8,7 +8,7 @@ use libration_core::number::Wide;
 use num_complex::Complex;
 
 use super::Plant;
-use super::circle::{Circle, Matrix, norm};
+use super::circular_coordinates::{CircularCoordinates, Matrix, norm};
 use super::jitter::{Averages, MOST_TURN};
 use super::linear::solved;
 use crate::QuadraticForm;
@@ -54,7 +54,7 @@ impl Plant<'_> {
         }
         // The form that the mean step carries along is a circle in these coordinates.
         let form = QuadraticForm::carried_by(&mean);
-        let circle = Circle::of(&form.map(|x| (x / form.vv).to_f64()));
+        let circle = CircularCoordinates::of(&form.map(|x| (x / form.vv).to_f64()));
         let steps: Vec<(f64, Matrix)> = jitter
             .nodes(turn)
             .into_iter()

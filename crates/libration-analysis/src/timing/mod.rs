@@ -3,16 +3,18 @@
 //! The plant has one degree of freedom. A command `u = −K_p q − K_d v` is computed from the state at the
 //! beginning of a step, arrives later, and is held until the next one arrives.
 
-mod circle;
+mod augmented_state;
+mod circular_coordinates;
 mod cost;
+mod delay_polynomial;
 mod dense_matrix;
-mod drawn;
-mod held_step;
+mod float_step;
 mod hidden_latency;
 mod imperfections;
 mod jitter;
 mod jitter_margin;
 mod latency;
+mod latency_windows;
 mod linear;
 mod linear_controller;
 mod lqr;
@@ -23,25 +25,23 @@ mod mode;
 mod observer;
 mod periodic;
 mod plant;
-mod quasi;
 mod random_latency;
-mod replayed;
+mod random_stages;
+mod recorded_schedule;
 mod resonance;
 mod riccati;
 #[cfg(test)]
 mod sample;
-mod sampled;
 mod skew;
-mod split;
 mod stage;
+mod step_integrals;
 mod switching;
-mod waiting;
-mod windows;
+mod zoh_step;
 
-pub use held_step::HeldStep;
 pub use hidden_latency::HiddenLatency;
 pub use imperfections::{CostError, Imperfections};
 pub use jitter_margin::JitterMargin;
+pub use latency_windows::LatencyWindows;
 pub use linear_controller::{LinearController, NotLinear};
 pub use lqr::{LqrError, Regulator};
 pub use mean_square::MeanSquare;
@@ -50,4 +50,4 @@ pub use observer::ObserverNoise;
 pub use plant::Plant;
 pub use resonance::{Resonance, StepNoise};
 pub use switching::{Switching, SwitchingError};
-pub use windows::Windows;
+pub use zoh_step::ZohStep;

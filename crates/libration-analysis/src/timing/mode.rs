@@ -3,7 +3,7 @@
 use libration_core::Scalar;
 use libration_core::number::Wide;
 
-use super::dense_matrix::{Matrix, growth};
+use super::dense_matrix::{Matrix, log_spectral_radius};
 use super::{CostError, Imperfections, LinearController, Plant};
 use crate::Complex;
 use crate::eigenvalues::{characteristic_polynomial, roots};
@@ -69,7 +69,7 @@ impl Plant<'_> {
         }
         let next = moved(step, &state);
         let last = moved(step, &next);
-        let radius = growth(step.clone()).exp();
+        let radius = log_spectral_radius(step.clone()).exp();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let (xx, xy, yy) = (dot(&state, &state), dot(&state, &next), dot(&next, &next));
         // Of a pair λ² = 2ρ cos θ·λ − ρ²; of one that is real all three lie on a line.

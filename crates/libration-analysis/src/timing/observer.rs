@@ -5,7 +5,7 @@ use libration_core::number::Wide;
 use libration_core::{Scalar, State};
 
 use super::riccati::riccati;
-use super::{HeldStep, LqrError, Plant};
+use super::{LqrError, Plant, ZohStep};
 
 /// What an observer has to weigh against each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ impl Plant<'_> {
         if !(position.is_finite() && position > 0.0) {
             return Err(LqrError::CommandWeight(position));
         }
-        let HeldStep { phi, gamma } = (self.step)(self.dt);
+        let ZohStep { phi, gamma } = (self.step)(self.dt);
         let gamma = [gamma.q[0], gamma.v[0]].map(Wide::to_f64);
         let entries = self.noise_of(gamma).map(|row| row.map(|x| Wide::from_f64(x * acceleration)));
         let covariance = super::riccati::Matrix {
@@ -51,7 +51,7 @@ impl Plant<'_> {
 
     /// The observer that corrects what was foretold by so much of what the position is off.
     pub fn observer_with(&self, correction: [f64; 2]) -> StateObserver {
-        let HeldStep { phi, gamma } = (self.step)(self.dt);
+        let ZohStep { phi, gamma } = (self.step)(self.dt);
         let gamma = [gamma.q[0], gamma.v[0]].map(Wide::to_f64);
         let phi = [0, 1].map(|i| [0, 1].map(|j| phi.entry(i, j).to_f64()));
         StateObserver { phi, gamma, correction }
@@ -63,7 +63,7 @@ impl Plant<'_> {
         match self.exact {
             true => {
                 let nothing = LqrWeights { position: 0.0, velocity: 0.0, command: 0.0 };
-                self.sampled(nothing, dt).noise
+                self.step_integrals(nothing, dt).noise
             }
             false => Plant::held_noise(gain, dt),
         }
@@ -117,7 +117,7 @@ mod tests {
         let best = plant.observer(NOISE).unwrap();
         // The covariance of what is foretold, by plain iteration: P ← Φ(1 − LC)P(1 − LC)ᵀΦᵀ + ΦLrLᵀΦᵀ + W.
         let weights = LqrWeights { position: 0.0, velocity: 0.0, command: 0.0 };
-        let noise = plant.sampled(weights, 0.05).noise;
+        let noise = plant.step_integrals(weights, 0.05).noise;
         let off = |correction: [f64; 2]| {
             let mut p = [[0.0; 2]; 2];
             for _ in 0..2000 {

@@ -6,11 +6,11 @@ use libration_core::control::Feedback;
 use libration_core::number::Wide;
 use libration_core::{Integrator, Model, Scalar, State};
 
-use super::HeldStep;
+use super::ZohStep;
 use crate::{Linearisation, UpdateMatrix};
 
 /// Steps of any size.
-type Steps<'a> = Rc<dyn Fn(Wide) -> HeldStep + 'a>;
+type Steps<'a> = Rc<dyn Fn(Wide) -> ZohStep + 'a>;
 
 /// A plant with one degree of freedom, linear or linearised, with the step that is taken on it.
 pub struct Plant<'a> {
@@ -37,14 +37,14 @@ impl<'a> Plant<'a> {
         dt: f64,
     ) -> Self {
         let generator = Linearisation::generator_of(model, &at);
-        let step = Rc::new(move |h| HeldStep::of(integrator, model, &at, h));
+        let step = Rc::new(move |h| ZohStep::of(integrator, model, &at, h));
         Plant { step, generator, dt: Wide::from_f64(dt), exact: false, flows: false, grid: None }
     }
 
     /// The same without an integrator: each step is exact.
     pub fn exact(model: impl Model<1> + 'a, at: State<f64, 1>, dt: f64) -> Self {
         let generator = Linearisation::generator_of(model, &at);
-        let step = Rc::new(move |h| HeldStep::exact(model, &at, h));
+        let step = Rc::new(move |h| ZohStep::exact(model, &at, h));
         Plant { step, generator, dt: Wide::from_f64(dt), exact: true, flows: true, grid: None }
     }
 
@@ -69,14 +69,14 @@ impl<'a> Plant<'a> {
 
     /// A step of the loop that `feedback` closes at once, of `dt` seconds.
     pub(super) fn closed(&self, feedback: Feedback, dt: Wide) -> UpdateMatrix<Wide, 1> {
-        let HeldStep { phi, gamma } = (self.step)(dt);
+        let ZohStep { phi, gamma } = (self.step)(dt);
         UpdateMatrix::from_map(|e| phi.apply(&e).plus(-fed_back(feedback, &e), gamma))
     }
 }
 
 /// So many of a step.
-pub(super) fn repeated(step: &HeldStep, count: u64) -> HeldStep {
-    let none = HeldStep { phi: UpdateMatrix::identity(), gamma: State::origin() };
+pub(super) fn repeated(step: &ZohStep, count: u64) -> ZohStep {
+    let none = ZohStep { phi: UpdateMatrix::identity(), gamma: State::origin() };
     (0..count).fold(none, |all, _| all.then(step))
 }
 

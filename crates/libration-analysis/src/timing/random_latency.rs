@@ -3,8 +3,8 @@
 use libration_core::State;
 use libration_core::control::{Feedback, Latency, RandomLatency};
 
-use super::dense_matrix::{Matrix, growth, product, symmetric_square, transposed};
-use super::waiting::Waiting;
+use super::augmented_state::AugmentedState;
+use super::dense_matrix::{Matrix, log_spectral_radius, product, symmetric_square, transpose};
 use super::{LinearController, Plant};
 
 impl Plant<'_> {
@@ -24,7 +24,7 @@ impl Plant<'_> {
             latency.follows(i, j) * squares[i][r][c]
         };
         let all = (0..m * size).map(|r| (0..m * size).map(|c| entry(r, c)).collect()).collect();
-        growth(all).exp()
+        log_spectral_radius(all).exp()
     }
 
     /// `E[q²]`, `E[qv]` and `E[v²]` after so many steps of that loop from `state`, where nothing acts before the first
@@ -47,7 +47,7 @@ impl Plant<'_> {
             let moved: Vec<Matrix> = maps
                 .iter()
                 .zip(&moments)
-                .map(|(map, moment)| transposed(&product(map, &transposed(&product(map, moment)))))
+                .map(|(map, moment)| transpose(&product(map, &transpose(&product(map, moment)))))
                 .collect();
             let entry = |j: usize, r: usize, c: usize| -> f64 {
                 moved.iter().enumerate().map(|(i, m)| latency.follows(i, j) * m[r][c]).sum()
@@ -71,6 +71,6 @@ impl Plant<'_> {
 }
 
 /// What a step has to know.
-fn waiting(latency: &RandomLatency) -> Waiting {
-    Waiting { memory: 0, commands: latency.longest(), acting: latency.splits_steps() }
+fn waiting(latency: &RandomLatency) -> AugmentedState {
+    AugmentedState { memory: 0, commands: latency.longest(), acting: latency.splits_steps() }
 }

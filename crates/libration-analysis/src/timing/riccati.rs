@@ -49,7 +49,7 @@ fn size(matrix: &Matrix) -> Wide {
 mod tests {
     use libration_core::system::{DampedOscillator, Oscillator};
 
-    use super::super::HeldStep;
+    use super::super::ZohStep;
     use super::super::sample::all;
     use super::*;
 
@@ -65,7 +65,7 @@ mod tests {
         let stable = all(Oscillator { omega2: 10.0 }, 0.1);
         let unstable = all(DampedOscillator { omega2: -4.0, gamma: -0.5 }, 0.2);
         for (name, plant) in stable.into_iter().chain(unstable) {
-            let HeldStep { phi, gamma } = (plant.step)(plant.dt);
+            let ZohStep { phi, gamma } = (plant.step)(plant.dt);
             let x = riccati(phi, gamma, q, r).unwrap();
             // With the row ΓᵀXΦ and the number r + ΓᵀXΓ.
             let row = phi.transposed().after(&x).apply(&gamma);

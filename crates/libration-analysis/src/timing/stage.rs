@@ -4,8 +4,8 @@ use libration_core::Scalar;
 use libration_core::control::{Latency, LqrWeights};
 use libration_core::number::Wide;
 
+use super::augmented_state::AugmentedState;
 use super::dense_matrix::{Matrix, symmetric_square};
-use super::waiting::Waiting;
 use super::{LinearController, Plant};
 
 /// One of the steps that a loop may take, with its probability.
@@ -34,8 +34,8 @@ impl Stage {
 
 /// What a step is to be made of.
 #[derive(Clone, Copy)]
-pub(super) struct Making<'a> {
-    pub(super) waiting: Waiting,
+pub(super) struct StageOptions<'a> {
+    pub(super) waiting: AugmentedState,
     pub(super) controller: &'a LinearController,
     pub(super) latency: Latency,
     /// Of what it costs, if that is asked.
@@ -44,8 +44,14 @@ pub(super) struct Making<'a> {
 
 impl Plant<'_> {
     /// A step of `h` seconds in which the command arrives, or is lost.
-    pub(super) fn stage(&self, making: Making<'_>, weight: f64, h: Wide, lost: bool) -> Stage {
-        let Making { waiting, controller, latency, weights } = making;
+    pub(super) fn stage(
+        &self,
+        options: StageOptions<'_>,
+        weight: f64,
+        h: Wide,
+        lost: bool,
+    ) -> Stage {
+        let StageOptions { waiting, controller, latency, weights } = options;
         let split = self.split_in_floats(latency.part(), h);
         let d = (!lost).then_some(latency.whole() as usize);
         let step = waiting.step(&split, controller, d);
@@ -81,11 +87,11 @@ impl Plant<'_> {
             row
         });
         let [q, v] = moved;
-        let first = self.sampled(weights, seconds * part).cost;
-        let second = self.sampled(weights, seconds * (1.0 - part)).cost;
+        let first = self.step_integrals(weights, seconds * part).cost;
+        let second = self.step_integrals(weights, seconds * (1.0 - part)).cost;
         add_form(&mut cost, first, [&coordinate(0), &coordinate(1), &held]);
         add_form(&mut cost, second, [&q, &v, &arriving]);
-        let whole = self.sampled(weights, seconds);
+        let whole = self.step_integrals(weights, seconds);
         Stage { weight, step, noise: whole.noise, cost, constant: whole.constant, length: seconds }
     }
 }

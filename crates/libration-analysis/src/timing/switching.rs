@@ -5,7 +5,7 @@ use libration_core::control::Feedback;
 use libration_core::number::Wide;
 
 use super::Plant;
-use super::circle::{Circle, Matrix, largest_norm, norm};
+use super::circular_coordinates::{CircularCoordinates, Matrix, largest_norm, norm};
 
 /// Bounds on the growth per step of a loop whose steps have some lengths in the worst of all orders: on the joint
 /// spectral radius of its steps.
@@ -82,7 +82,7 @@ impl Plant<'_> {
         if !steps.iter().flatten().flatten().all(|x| x.is_finite()) {
             return Err(SwitchingError::Range);
         }
-        let circle = Circle::smallest(&steps, self.dt.to_f64());
+        let circle = CircularCoordinates::smallest(&steps, self.dt.to_f64());
         let steps: Vec<Matrix> = steps.into_iter().map(|step| circle.turned(step)).collect();
         let scale = largest_norm(&steps);
         if scale.is_infinite() {

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::TryReserveError;
 
-use libration::ensemble::NoRoom;
+use libration::ensemble::InsufficientMemory;
 
 use super::Request;
 use crate::export::{Column, ExportError, Number, Rows, Table, Values};
@@ -27,8 +27,8 @@ impl<S: Number> Columns<S> {
     }
 
     /// Empty columns with room for what is asked.
-    pub(super) fn new(request: &Request) -> Result<Self, NoRoom> {
-        let refused = || NoRoom { needed: Self::bytes(request), available: None };
+    pub(super) fn new(request: &Request) -> Result<Self, InsufficientMemory> {
+        let refused = || InsufficientMemory { needed: Self::bytes(request), available: None };
         let rows = usize::try_from(request.rows()).map_err(|_| refused())?;
         let columns = || {
             Ok(Columns {

@@ -1,7 +1,7 @@
 //! What can be wrong with a request, and what can go wrong with a trajectory.
 
 use libration::CatalogError;
-use libration::ensemble::{EnsembleError, NoRoom};
+use libration::ensemble::{EnsembleError, InsufficientMemory};
 use libration::simulation::SimulationError;
 use thiserror::Error;
 
@@ -45,7 +45,7 @@ pub enum TrajectoryError {
     Ensemble(#[from] EnsembleError),
     /// There is not memory enough.
     #[error("{0} (--count, --every, --float)")]
-    Memory(NoRoom),
+    Memory(InsufficientMemory),
     /// The result could not be written or kept.
     #[error(transparent)]
     Export(#[from] ExportError),
@@ -56,7 +56,7 @@ pub enum TrajectoryError {
 
 impl TrajectoryError {
     /// The memory that is missing, if it is that.
-    pub fn room(&self) -> Option<&NoRoom> {
+    pub fn room(&self) -> Option<&InsufficientMemory> {
         match self {
             TrajectoryError::Memory(room)
             | TrajectoryError::Ensemble(EnsembleError::Memory(room)) => Some(room),

@@ -6,7 +6,7 @@ use libration::control::controller::StateFeedback;
 use libration::control::{Jitter, Latency, Schedule};
 use libration::ensemble::{All, Loops, Setup};
 use libration::integrator::SymplecticEuler;
-use libration::system::{Chosen, Oscillator};
+use libration::system::{DynSystem, Oscillator};
 use libration::{Float, Hamiltonian, Integrator, Model, State, System, with_system};
 
 use super::run::exact;
@@ -58,7 +58,7 @@ fn on_model<S: Float + Pod + Number, const D: usize, M: Model<D>>(
     let energy = |state: &State<S, D>| system.energy(state);
     // The model, which threads can share, says it anew for every step.
     let acceleration = |state: &State<S, D>| model.on::<S>().acceleration(state);
-    let chosen = Chosen(&acceleration);
+    let chosen = DynSystem(&acceleration);
     match request.stepping {
         Stepping::Method(method) => simulated(chosen, method, &energy, request, rows, watch),
         Stepping::Exact => simulated(chosen, exact(model, request)?, &energy, request, rows, watch),
@@ -67,7 +67,7 @@ fn on_model<S: Float + Pod + Number, const D: usize, M: Model<D>>(
 
 /// The loops, and beside them what only moves with time: their clocks.
 fn simulated<S: Float + Pod + Number, const D: usize>(
-    system: Chosen<'_, S, D>,
+    system: DynSystem<'_, S, D>,
     integrator: impl Integrator,
     energy: &dyn Fn(&State<S, D>) -> S,
     request: &Request,

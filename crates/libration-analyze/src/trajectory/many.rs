@@ -2,7 +2,7 @@
 
 use half::{bf16, f16};
 use libration::Method;
-use libration::ensemble::{BatchFloat, NoRoom};
+use libration::ensemble::{BatchFloat, InsufficientMemory};
 
 use super::{Copies, Ending, Request, TrajectoryError, Watch, loops};
 use crate::export::{Number, Rows};
@@ -62,7 +62,7 @@ macro_rules! vectors {
                 let bytes = <$float>::ensemble_bytes(request.q.len(), copies.count);
                 // Loops have clocks, and both are made of lists of starts.
                 let alike = if request.looped().is_some() { 4 } else { 1 };
-                NoRoom::check(alike * bytes).map_err(TrajectoryError::Memory)
+                InsufficientMemory::check(alike * bytes).map_err(TrajectoryError::Memory)
             }
         }
     )*};

@@ -22,7 +22,7 @@ use std::sync::atomic::AtomicBool;
 use columns::Columns;
 use libration::Float;
 use libration::control::{Feedback, Jitter, Latency};
-use libration::ensemble::NoRoom;
+use libration::ensemble::InsufficientMemory;
 use libration_settings::units;
 use many::Many;
 use serde::Serialize;
@@ -161,7 +161,7 @@ fn keep<S: Many>(
     admit::<S>(request)?;
     let bytes = Columns::<S>::bytes(request);
     let needed = bytes + encoding(request.rows(), bytes);
-    NoRoom::check(needed).map_err(TrajectoryError::Memory)?;
+    InsufficientMemory::check(needed).map_err(TrajectoryError::Memory)?;
     let mut columns = Columns::<S>::new(request).map_err(TrajectoryError::Memory)?;
     let ending = run::run(request, &mut columns, watch)?;
     Ok(Trajectory { table: columns.into_table(request)?, ending })

@@ -2,7 +2,7 @@
 
 use libration::integrator::Exact;
 use libration::simulation::{Sample, SimulationError, Simulator};
-use libration::system::Chosen;
+use libration::system::DynSystem;
 use libration::{
     Float, Hamiltonian, Integrator, Model, Scalar, State, System, with_method, with_system,
 };
@@ -53,7 +53,7 @@ fn on_model<S: Many, const D: usize, M: Model<D>>(
     let energy = |state: &State<S, D>| system.energy(state);
     // The model, which threads can share, says it anew for every step.
     let acceleration = |state: &State<S, D>| model.on::<S>().acceleration(state);
-    let chosen = Chosen(&acceleration);
+    let chosen = DynSystem(&acceleration);
     // A loop of its own for each method, where it is worth its compilation.
     let mut simulation: Box<dyn Simulation<S, D> + '_> = match request.stepping {
         Stepping::Method(method) if const { S::WIDE && D <= 2 } => {

@@ -55,7 +55,7 @@ pub type Trait = (&'static str, String);
 ///
 /// # Errors
 /// The first that is different.
-pub fn agree<'a>(
+pub fn ensure_same_traits<'a>(
     found: impl IntoIterator<Item = (&'a str, &'a str)> + Clone,
     wanted: &[Trait],
 ) -> Result<(), CheckpointError> {

@@ -6,7 +6,7 @@ use bytemuck::Pod;
 use libration_core::system::Oscillator;
 use libration_core::{AnySystem, Float, Hamiltonian, Method, Model, State, System, with_method};
 
-use super::{All, Ensemble, EnsembleError, Execution, NoRoom};
+use super::{All, Ensemble, EnsembleError, Execution, InsufficientMemory};
 
 /// An ensemble of a built-in system in some number of dimensions.
 ///
@@ -105,7 +105,7 @@ macro_rules! batch_float {
                         };
                         let needed = Self::ensemble_bytes(dimension, len);
                         let all = len.checked_mul(dimension);
-                        let all = all.ok_or(NoRoom { needed, available: None })?;
+                        let all = all.ok_or(InsufficientMemory { needed, available: None })?;
                         let coordinates = Ensemble::from_fn(all, execution, coordinate)?;
                         let system = Model::<1>::on::<$float>(&model);
                         Box::new(Isotropic { system, dimension, coordinates })

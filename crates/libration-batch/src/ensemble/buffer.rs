@@ -6,7 +6,7 @@ use core::ops::{Deref, DerefMut};
 use bytemuck::Pod;
 use memmap2::MmapMut;
 
-use super::{EnsembleError, NoRoom};
+use super::{EnsembleError, InsufficientMemory};
 
 /// From so many bytes on huge pages are asked for: below, the last one would be half empty.
 const HUGE: usize = 4 << 20;
@@ -46,9 +46,9 @@ impl<T: Pod> Buffer<T> {
     pub fn new(len: usize, pages: Pages) -> Result<Self, EnsembleError> {
         let bytes = len as u128 * size_of::<T>() as u128;
         if bytes >= ASKED {
-            NoRoom::check(bytes)?;
+            InsufficientMemory::check(bytes)?;
         }
-        let refused = || NoRoom { needed: bytes, available: None };
+        let refused = || InsufficientMemory { needed: bytes, available: None };
         let size = usize::try_from(bytes).ok().filter(|&size| size < isize::MAX as usize);
         let memory = MmapMut::map_anon(size.ok_or_else(refused)?).map_err(|_| refused())?;
         #[cfg(target_os = "linux")]

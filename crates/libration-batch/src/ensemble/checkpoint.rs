@@ -13,7 +13,7 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         size_of::<u64>() + 2 * D * self.len() * size_of::<T>()
     }
 
-    fn take_up(&mut self, from: &mut Reader<'_>) {
+    fn load(&mut self, from: &mut Reader<'_>) {
         self.step = from.next();
         let share = self.planes.share();
         share.q.into_iter().chain(share.v).for_each(|plane| from.fill(plane));
@@ -37,7 +37,7 @@ impl<T: Float + Pod, const D: usize> Checkpoint for Ensemble<T, D> {
 
     fn restore(&mut self, state: &[u8]) -> Result<(), CheckpointError> {
         let mut from = Reader::new(state, self.state_len())?;
-        self.take_up(&mut from);
+        self.load(&mut from);
         Ok(())
     }
 }
@@ -61,14 +61,14 @@ where
             ("number of trajectories", self.len().to_string()),
             ("seed", self.seed().to_string()),
             ("time step", format!("{:?}", self.dt().to_f64())),
-            ("number of what loops remember", self.remembered().len().to_string()),
+            ("number of what loops remember", self.memories().len().to_string()),
         ]
     }
 
     fn save<E>(&self, mut sink: impl FnMut(&[u8]) -> Result<(), E>) -> Result<(), E> {
         self.trajectories().save(&mut sink)?;
         // Of what lies beyond the last trajectory nobody knows what it is.
-        let all = self.remembered();
+        let all = self.memories();
         let whole = self.len() / GRAIN * (all.len() / self.len().div_ceil(GRAIN).max(1));
         let (whole, part) = all.split_at(whole);
         sink(bytemuck::cast_slice(whole))?;
@@ -80,10 +80,10 @@ where
     }
 
     fn restore(&mut self, state: &[u8]) -> Result<(), CheckpointError> {
-        let wanted = self.trajectories().state_len() + size_of_val(self.remembered());
+        let wanted = self.trajectories().state_len() + size_of_val(self.memories());
         let mut from = Reader::new(state, wanted)?;
         let (trajectories, memories) = self.state_mut();
-        trajectories.take_up(&mut from);
+        trajectories.load(&mut from);
         from.fill(memories);
         Ok(())
     }

@@ -3,14 +3,14 @@
 use libration_core::CatalogError;
 use libration_core::control::ControlError;
 
-use super::{InstructionSet, NoRoom};
+use super::{InstructionSet, InsufficientMemory};
 
 /// Why an ensemble cannot be made or run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EnsembleError {
     /// There is not memory enough.
     #[error(transparent)]
-    Memory(#[from] NoRoom),
+    Memory(#[from] InsufficientMemory),
     /// The processor lacks the instruction set.
     #[error("this processor has no {}, only {}", asked.name(), available())]
     Instructions {

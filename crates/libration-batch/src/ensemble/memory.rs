@@ -6,24 +6,26 @@ use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 /// There is not memory enough.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{} GB of memory are needed, {}: take fewer at a time, or a shorter float", gigabytes(*needed), self.there_is())]
-pub struct NoRoom {
+pub struct InsufficientMemory {
     /// Bytes that are needed.
     pub needed: u128,
     /// Bytes that can be had without swapping, if the system tells.
     pub available: Option<u64>,
 }
 
-impl NoRoom {
+impl InsufficientMemory {
     /// Whether so many bytes can be had without swapping, and within the limits of this process (`ulimit -v`); also where the system
     /// does not tell.
     ///
     /// # Errors
     /// If not.
-    pub fn check(needed: u128) -> Result<(), NoRoom> {
+    pub fn check(needed: u128) -> Result<(), InsufficientMemory> {
         let available = available_memory().filter(|&available| needed > u128::from(available));
         let least = if is_mappable(needed) { None } else { Some(largest_mapping(needed)) };
         let limits = [available, least].into_iter().flatten();
-        limits.min().map_or(Ok(()), |available| Err(NoRoom { needed, available: Some(available) }))
+        limits.min().map_or(Ok(()), |available| {
+            Err(InsufficientMemory { needed, available: Some(available) })
+        })
     }
 
     /// Whether more is needed than this machine has, so that no limit or other process is the reason.
@@ -98,10 +100,11 @@ mod tests {
     #[test]
     fn what_does_not_fit_is_refused_with_both_figures_and_a_way_out() {
         let Some(available) = available_memory() else { return };
-        assert_eq!(NoRoom::check(0), Ok(()));
-        let refused = NoRoom::check(1 << 60).expect_err("nobody has an exbibyte");
+        assert_eq!(InsufficientMemory::check(0), Ok(()));
+        let refused = InsufficientMemory::check(1 << 60).expect_err("nobody has an exbibyte");
         assert!(refused.available.is_some_and(|there_is| there_is >= available / 2));
-        let text = NoRoom { needed: 8_000_000_000, available: Some(250_000_000) }.to_string();
+        let text =
+            InsufficientMemory { needed: 8_000_000_000, available: Some(250_000_000) }.to_string();
         assert_eq!(
             text,
             "8.0 GB of memory are needed, of which 0.250 GB are available: take fewer at a time, or a \

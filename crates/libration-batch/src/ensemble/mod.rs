@@ -37,9 +37,9 @@ pub use error::EnsembleError;
 pub use execution::{Execution, MOST_THREADS};
 pub use instructions::{InstructionSet, Loop};
 pub use loops::{Loops, Setup};
-pub use memory::{NoRoom, available_memory, installed_memory};
+pub use memory::{InsufficientMemory, available_memory, installed_memory};
 pub use observer::{Copies, Drift, Lanes, MeanCost, MeanSquareError, Moments, Observer, Summary};
-pub use stream::{stream, stream_again};
+pub use stream::{stream, stream_repeatedly};
 
 use libration_core::{Float, Integrator, State, System};
 use planes::{Planes, Share};

@@ -7,7 +7,7 @@ use bytemuck::Pod;
 use libration_core::State;
 
 use super::assign::padded;
-use super::{Buffer, EnsembleError, Lanes, NoRoom, Pages};
+use super::{Buffer, EnsembleError, InsufficientMemory, Lanes, Pages};
 
 /// Bytes by which each plane begins later than a multiple of a page would: planes that begin at
 /// the same place in their pages fight for the same few lines of the caches.
@@ -31,7 +31,7 @@ impl<T: Pod, const D: usize> Planes<T, D> {
     /// # Errors
     /// If there is not so much memory.
     pub(super) fn new(len: usize) -> Result<Self, EnsembleError> {
-        let refused = || NoRoom { needed: Self::bytes(len), available: None };
+        let refused = || InsufficientMemory { needed: Self::bytes(len), available: None };
         let stride = Self::plane(len).ok_or_else(refused)? / size_of::<T>();
         let all = stride.checked_mul(2 * D).ok_or_else(refused)?;
         let memory = Buffer::new(all, Pages::Huge)?;

@@ -16,7 +16,7 @@ use super::instructions::{Target, Targeted};
 /// If the lengths differ.
 pub fn stream<T: Pod>(from: &[T], to: &mut [T]) {
     assert_eq!(from.len(), to.len(), "lengths of source and destination");
-    stream_again(from, to);
+    stream_repeatedly(from, to);
 }
 
 /// Fills `to` with one copy of `from` after the other, past the caches as [`stream`] does: where `from` fits the first cache,
@@ -24,7 +24,7 @@ pub fn stream<T: Pod>(from: &[T], to: &mut [T]) {
 ///
 /// # Panics
 /// If there is something to fill and nothing to fill it with.
-pub fn stream_again<T: Pod>(from: &[T], to: &mut [T]) {
+pub fn stream_repeatedly<T: Pod>(from: &[T], to: &mut [T]) {
     InstructionSet::widest().run(Copy { from, to });
 }
 

@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::ReplayError;
-use crate::ensemble::NoRoom;
+use crate::ensemble::InsufficientMemory;
 
 /// What a replay buffer holds, and the memory that it takes, before anything is allocated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,7 +90,7 @@ impl Capacity {
         for (range, size) in ranges.iter_mut().zip(sizes) {
             let needed = at.saturating_add(size);
             if needed >= last - PAGE as u128 {
-                return Err(NoRoom { needed, available: None }.into());
+                return Err(InsufficientMemory { needed, available: None }.into());
             }
             *range = at as usize..needed as usize;
             at = needed.next_multiple_of(PAGE as u128);

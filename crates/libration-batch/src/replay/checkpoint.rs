@@ -36,7 +36,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Checkpoint for Replay<T, O,
         map.copy_from_slice(state);
         let opened = Self::open(map).map_err(|error: ReplayError| damaged(&error))?;
         // It may lie in a file, and stays there.
-        self.memory.take_up(&opened.memory);
+        self.memory.copy_from(&opened.memory);
         (self.marks, self.sums) = (opened.marks, opened.sums);
         Ok(())
     }

@@ -3,7 +3,7 @@
 use libration_core::control::ControlError;
 use thiserror::Error;
 
-use crate::ensemble::{EnsembleError, NoRoom};
+use crate::ensemble::{EnsembleError, InsufficientMemory};
 use crate::rl::EnvironmentError;
 
 /// Why a replay buffer cannot be made, filled or drawn from.
@@ -61,8 +61,8 @@ pub enum ReplayError {
     Damaged(String),
 }
 
-impl From<NoRoom> for ReplayError {
-    fn from(error: NoRoom) -> Self {
+impl From<InsufficientMemory> for ReplayError {
+    fn from(error: InsufficientMemory) -> Self {
         EnvironmentError::from(error).into()
     }
 }

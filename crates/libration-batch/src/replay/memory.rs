@@ -191,7 +191,7 @@ impl Memory {
     }
 
     /// Holds from now on what another holds, which is as large.
-    pub(super) fn take_up(&mut self, other: &Memory) {
+    pub(super) fn copy_from(&mut self, other: &Memory) {
         let len = self.fields.len;
         self.map[..len].copy_from_slice(&other.map[..len]);
         self.sequence = other.sequence;

@@ -3,7 +3,7 @@
 use bytemuck::Pod;
 use libration_core::Float;
 
-use super::store::{CUT, END, NONE, OVER};
+use super::replay_buffer::{CUT, END, NONE, OVER};
 use super::{Draw, Replay, ReplayError};
 use crate::ensemble::Execution;
 

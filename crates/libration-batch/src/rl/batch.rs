@@ -15,7 +15,7 @@ use super::start::Episode;
 use super::{
     Autoreset, Environment, EnvironmentError, Sensor, Start, Task, Variation, World, block,
 };
-use crate::ensemble::{Assign, EnsembleError, Execution, NoRoom};
+use crate::ensemble::{Assign, EnsembleError, Execution, InsufficientMemory};
 
 /// Environments that are stepped together.
 ///
@@ -253,8 +253,8 @@ const FURTHEST: f64 = (1_u64 << 53) as f64;
 fn room<X: Clone>(count: usize, x: &X) -> Result<Vec<X>, EnsembleError> {
     let mut all = Vec::new();
     let needed = count as u128 * size_of::<X>() as u128;
-    NoRoom::check(needed)?;
-    let refused = |_| NoRoom { needed, available: None };
+    InsufficientMemory::check(needed)?;
+    let refused = |_| InsufficientMemory { needed, available: None };
     all.try_reserve_exact(count).map_err(refused)?;
     all.resize(count, x.clone());
     Ok(all)

@@ -1,6 +1,6 @@
 //! Neighbouring environments.
 
-use libration_core::control::{Begin, Clock, Memory};
+use libration_core::control::{Clock, Memory, StartAddress};
 use libration_core::random::Streams;
 use libration_core::{Float, Scalar, State};
 
@@ -110,7 +110,7 @@ pub(super) fn begin<T: Float, E: World<T, O, D>, const O: usize, const D: usize>
     let state: State<T, D> = parts.start.draw(episode);
     put(&mut block.q, l, state.q);
     put(&mut block.v, l, state.v);
-    let begin = Begin::new(episode.seed, episode.environment, episode.number);
+    let begin = StartAddress::new(episode.seed, episode.environment, episode.number);
     ClockMemory::<T, E, O, D>::set_lane(&mut block.clock, l, parts.clock.start(begin));
     Numbers::<T, E, O, D>::set_lane(&mut block.numbers, l, parts.variation.draw(episode));
     let delays = parts.delays.draw(episode);
@@ -181,7 +181,7 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
         before: &[Streams<LANES>; 3],
     ) {
         for (words, before) in words.into_iter().zip(before) {
-            (0..LANES).filter(|&l| self.ended[l] != 0).for_each(|l| words.take_up(l, before));
+            (0..LANES).filter(|&l| self.ended[l] != 0).for_each(|l| words.copy_lane(l, before));
         }
     }
 

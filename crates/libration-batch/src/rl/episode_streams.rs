@@ -60,7 +60,7 @@ fn streams_at<T: Scalar, C: Copy, V, const D: usize>(
     let mut streams = Streams::none();
     for l in 0..LANES {
         let age = (now - block.began[l]).wrapping_mul(parts).wrapping_add(part);
-        streams.seat(l, block.episode(l).epoch(purpose, age / EPOCH));
+        streams.begin_epoch(l, block.episode(l).epoch(purpose, age / EPOCH));
         for _ in 0..(age % EPOCH) as usize * words {
             streams.next(l);
         }
@@ -98,7 +98,7 @@ fn begin_due_epochs<T: Scalar, C: Copy, V, const D: usize>(
     for l in 0..LANES {
         let age = (now - block.began[l]).wrapping_mul(parts).wrapping_add(part);
         if age.is_multiple_of(EPOCH) {
-            streams.seat(l, block.episode(l).epoch(purpose, age / EPOCH));
+            streams.begin_epoch(l, block.episode(l).epoch(purpose, age / EPOCH));
         }
     }
 }

@@ -4,7 +4,7 @@ use libration_core::Float;
 use libration_core::control::ControlError;
 use thiserror::Error;
 
-use crate::ensemble::{EnsembleError, NoRoom};
+use crate::ensemble::{EnsembleError, InsufficientMemory};
 
 /// Why environments or a rollout cannot be made or run.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -46,7 +46,7 @@ pub enum EnvironmentError {
         /// Bytes of a transition.
         bytes: usize,
         /// What is missing.
-        room: NoRoom,
+        room: InsufficientMemory,
     },
     /// What is listed by number is asked for where numbers are no more.
     #[error(
@@ -59,15 +59,15 @@ pub enum EnvironmentError {
     Limit,
 }
 
-impl From<NoRoom> for EnvironmentError {
-    fn from(error: NoRoom) -> Self {
+impl From<InsufficientMemory> for EnvironmentError {
+    fn from(error: InsufficientMemory) -> Self {
         EnsembleError::from(error).into()
     }
 }
 
 impl EnvironmentError {
     /// The memory that is missing, if it is that.
-    pub fn room(&self) -> Option<&NoRoom> {
+    pub fn room(&self) -> Option<&InsufficientMemory> {
         match self {
             EnvironmentError::Room { room, .. } => Some(room),
             EnvironmentError::Ensemble(EnsembleError::Memory(room)) => Some(room),
@@ -99,7 +99,7 @@ impl EnvironmentError {
 pub(super) const NOTHING_DRAWN: &str = "0, unless it says that it draws";
 
 /// What would fit.
-fn advice(bytes: usize, horizon: usize, environments: usize, room: &NoRoom) -> String {
+fn advice(bytes: usize, horizon: usize, environments: usize, room: &InsufficientMemory) -> String {
     let Some(available) = room.available else {
         return "A horizon can be run in pieces, one after the other".to_owned();
     };

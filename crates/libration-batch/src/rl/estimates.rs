@@ -37,8 +37,8 @@ impl<T: Float + Pod> Estimates<T> {
     /// [`EnvironmentError::Ensemble`] if there is not so much.
     pub fn new(plan: Plan) -> Result<Self, EnvironmentError> {
         let needed = plan.transitions().saturating_mul(2 * size_of::<T>() as u128);
-        crate::ensemble::NoRoom::check(needed)?;
-        let refused = crate::ensemble::NoRoom { needed, available: None };
+        crate::ensemble::InsufficientMemory::check(needed)?;
+        let refused = crate::ensemble::InsufficientMemory { needed, available: None };
         let all = plan.horizon.checked_mul(plan.environments);
         let all = all.filter(|_| plan.horizon <= isize::MAX as usize).ok_or(refused)?;
         let buffer = || -> Result<Buffer<T>, EnsembleError> { Buffer::new(all, Pages::Huge) };

@@ -3,7 +3,7 @@
 use bytemuck::Pod;
 use libration_core::control::Clock;
 use libration_core::random::{Purpose, Streams};
-use libration_core::system::Held;
+use libration_core::system::CommandedSystem;
 use libration_core::{Float, Integrator};
 
 use super::block::BlockOf;
@@ -64,7 +64,7 @@ where
             let time = self.time(site.place.step, block.began[l]);
             let seen = task.observe(time, &before);
             let act = policy.act(site.place.lane(l), &seen, &mut || drawn.next(l));
-            let system = Held { system, command: act.action };
+            let system = CommandedSystem { system, command: act.action };
             let after = parts.method.step(&system, before, dt);
             // An action that is no number leaves no state that is one.
             let time = self.time(site.place.step + 1, block.began[l]);

@@ -2,7 +2,7 @@
 //! loop is compiled once for whatever has it in common.
 
 use libration_core::integrator::WithIntegrator;
-use libration_core::system::{Held, WithSystem};
+use libration_core::system::{CommandedSystem, WithSystem};
 use libration_core::{Float, Integrator, State, System};
 
 use super::block_size::LANES;
@@ -35,7 +35,7 @@ impl<T: Float, const D: usize> Lanes<'_, T, D> {
         system: Sys,
         method: M,
     ) {
-        method.known(Dispatch { lanes: self, target, system, method: () });
+        method.dispatch(Dispatch { lanes: self, target, system, method: () });
     }
 }
 
@@ -50,7 +50,7 @@ where
     #[inline(always)]
     fn integrator<M: Integrator>(self, method: M) {
         let Dispatch { lanes, target, system, .. } = self;
-        system.known(Dispatch { lanes, target, system: (), method });
+        system.dispatch(Dispatch { lanes, target, system: (), method });
     }
 }
 
@@ -84,7 +84,7 @@ impl<T: Float, Sys: System<T, D> + Copy, M: Integrator, const D: usize> Loop
         // Of their own, or every store could change what is read.
         let (mut new_q, mut new_v, held, dt) = (*q, *v, *held, *dt);
         for (l, &dt) in dt.iter().enumerate() {
-            let system = Held { system, command: at(&held, l) };
+            let system = CommandedSystem { system, command: at(&held, l) };
             let state = State { q: at(&new_q, l), v: at(&new_v, l) };
             let state = method.step(&system, state, dt);
             put(&mut new_q, l, state.q);

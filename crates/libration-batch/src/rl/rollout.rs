@@ -7,7 +7,7 @@ use bytemuck::Pod;
 
 use super::rollout_slice::{RolloutSlice, planes, rows_of, some_rows};
 use super::{EnvironmentError, EpisodeEnd, Layout, Plan};
-use crate::ensemble::{Buffer, NoRoom, Pages};
+use crate::ensemble::{Buffer, InsufficientMemory, Pages};
 
 /// What environments did over a horizon: allocated once, to be filled again and again.
 ///
@@ -41,10 +41,10 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
         let number = size_of::<T>();
         let (needed, bytes) = (plan.bytes(O, D, number), plan.bytes_each(O, D, number));
         let refused = |room| EnvironmentError::Room { horizon, environments, bytes, room };
-        NoRoom::check(needed).map_err(refused)?;
+        InsufficientMemory::check(needed).map_err(refused)?;
         let all = horizon.checked_mul(environments).filter(|_| horizon <= isize::MAX as usize);
         let all = all.filter(|n| n.checked_mul(O.max(D)).is_some());
-        let all = all.ok_or_else(|| refused(NoRoom { needed, available: None }))?;
+        let all = all.ok_or_else(|| refused(InsufficientMemory { needed, available: None }))?;
         let room = |asked| if asked { all } else { 0 };
         let numbers = |count| Buffer::new(count, Pages::Huge);
         let flags = |count| Buffer::new(count, Pages::Huge);

@@ -17,7 +17,7 @@ use super::{
     Autoreset, EnvironmentError, Environments, EpisodeEnd, Layout, Plan, Policy, Rollout, Sensor,
     World, Writes,
 };
-use crate::ensemble::{EnsembleError, NoRoom};
+use crate::ensemble::{EnsembleError, InsufficientMemory};
 
 /// Room for what a step leads to.
 #[derive(Debug)]
@@ -76,7 +76,7 @@ where
         let cuts = parts.limit.map_or(0, |l| len as u128 * (rows.len() as u128 / u128::from(l)));
         let needed = cuts.saturating_mul(2 * size_of::<EpisodeEnd<T, O>>() as u128);
         if needed > plan.bytes(O, D, size_of::<T>()) {
-            NoRoom::check(needed)?;
+            InsufficientMemory::check(needed)?;
         }
         self.ready(policy, horizon, rows.len())?;
         if rows.start == 0 {

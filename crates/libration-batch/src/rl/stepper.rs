@@ -2,7 +2,7 @@
 
 use libration_core::control::{Clock, Memory};
 use libration_core::random::{Purpose, Streams};
-use libration_core::system::Held;
+use libration_core::system::CommandedSystem;
 use libration_core::{Float, Integrator, State, System};
 
 use super::block::{BlockOf, LOST, NumberLanes};
@@ -55,8 +55,8 @@ where
     P: Policy<T, O, D>,
 {
     /// Whether a loop over lanes is made when the system and the integrator are known.
-    const CHOSEN: bool = {
-        let chosen = <E::System as System<T, D>>::CHOSEN || E::Method::CHOSEN;
+    const DISPATCHES: bool = {
+        let chosen = <E::System as System<T, D>>::DISPATCHES || E::Method::DISPATCHES;
         chosen && E::Systems::UNIFORM && E::Variation::SAME
     };
 
@@ -185,7 +185,7 @@ where
                 begin_epochs(words, block, now, Purpose::StepTime);
             }
             let beat = parts.clock.beat(step);
-            if const { Self::CHOSEN } {
+            if const { Self::DISPATCHES } {
                 let dt = self.lengths(block, beat, words);
                 let (system, _) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, 0);
                 let lanes = Lanes { q: &mut q.0, v: &mut v.0, held: &held.0, dt: &dt.0 };
@@ -195,7 +195,7 @@ where
             for l in 0..LANES {
                 let (system, _) = lane::<T, E, O, D>(&parts, &site.systems, &block.numbers, l);
                 let dt = dt * self.ratio(block, l, beat, words);
-                let system = Held { system, command: at(&held.0, l) };
+                let system = CommandedSystem { system, command: at(&held.0, l) };
                 let state = State { q: at(&q.0, l), v: at(&v.0, l) };
                 let state = parts.method.step(&system, state, dt);
                 put(&mut q.0, l, state.q);

@@ -29,9 +29,9 @@ pub trait Disturbance: Copy + Send + Sync {
 
 /// Nothing does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Undisturbed;
+pub struct NoDisturbance;
 
-impl Disturbance for Undisturbed {
+impl Disturbance for NoDisturbance {
     const ACTS: bool = false;
 
     fn words(&self) -> usize {

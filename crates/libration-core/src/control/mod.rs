@@ -4,7 +4,6 @@
 //! what nobody commands.
 //! `Loops` runs them.
 
-mod begin;
 pub mod clock;
 pub mod controller;
 pub mod delay;
@@ -16,12 +15,12 @@ mod latency;
 mod memory;
 mod observer;
 mod random_latency;
+mod start_address;
 
-pub use begin::Begin;
 pub use clock::Clock;
 pub use controller::Controller;
 pub use delay::{Delay, Schedule};
-pub use disturbance::{Disturbance, Undisturbed, WhiteNoise};
+pub use disturbance::{Disturbance, NoDisturbance, WhiteNoise};
 pub use error::ControlError;
 pub use feedback::{Feedback, LqrWeights};
 pub use jitter::Jitter;
@@ -29,3 +28,4 @@ pub use latency::Latency;
 pub use memory::Memory;
 pub use observer::StateObserver;
 pub use random_latency::{LatencyTableError, RandomLatency};
+pub use start_address::StartAddress;

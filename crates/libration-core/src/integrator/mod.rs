@@ -4,14 +4,14 @@
 //! Runge–Kutta method is a sum of rates. Nothing here knows whether a number is one particle, a
 //! derivative or a polynomial.
 
-mod chosen;
 mod composition;
+mod dispatch;
 mod euler;
 mod exact;
 mod leapfrog;
-mod repeated;
 mod runge_kutta;
 mod splitting;
+mod substeps;
 mod textbook_verlet;
 mod velocity_verlet;
 
@@ -21,9 +21,9 @@ pub use composition::{Composition, SUZUKI4, Suzuki4, YOSHIDA4, Yoshida4};
 pub use euler::{ExplicitEuler, SymplecticEuler, SymplecticEulerDriftFirst};
 pub use exact::Exact;
 pub use leapfrog::Leapfrog;
-pub use repeated::Repeated;
 pub use runge_kutta::Rk4;
 pub use splitting::Splitting;
+pub use substeps::Substeps;
 pub use textbook_verlet::TextbookVerlet;
 pub use velocity_verlet::VelocityVerlet;
 
@@ -40,11 +40,11 @@ pub trait Integrator: Copy + Send + Sync {
     const REGISTERS: usize = 4;
 
     /// Whether it is one of several integrators, which is known only when the program runs.
-    const CHOSEN: bool = false;
+    const DISPATCHES: bool = false;
 
     /// Hands over the integrator that it is, so that a loop can be made for that alone.
     #[inline(always)]
-    fn known<W: WithIntegrator>(self, with: W) -> W::Output {
+    fn dispatch<W: WithIntegrator>(self, with: W) -> W::Output {
         with.integrator(self)
     }
 

@@ -26,14 +26,14 @@ impl<const W: usize> Streams<W> {
         let mut streams = Streams { low: [0; W], high: [0; W] };
         for l in 0..W {
             let trajectory = first + l as u64;
-            streams.seat(l, Address { seed, trajectory, step: epoch, purpose });
+            streams.begin_epoch(l, Address { seed, trajectory, step: epoch, purpose });
         }
         streams
     }
 
     /// The `l`-th of them begins an epoch that has an address of its own.
     #[inline(always)]
-    pub fn seat(&mut self, l: usize, epoch: Address) {
+    pub fn begin_epoch(&mut self, l: usize, epoch: Address) {
         let [low, high, ..] = epoch.bits();
         // A state of zeros would stay one.
         (self.low[l], self.high[l]) = (low, high | 1);
@@ -41,7 +41,7 @@ impl<const W: usize> Streams<W> {
 
     /// The `l`-th of them goes on as it does there.
     #[inline(always)]
-    pub fn take_up(&mut self, l: usize, from: &Self) {
+    pub fn copy_lane(&mut self, l: usize, from: &Self) {
         (self.low[l], self.high[l]) = (from.low[l], from.high[l]);
     }
 
@@ -53,7 +53,7 @@ impl<const W: usize> Streams<W> {
     /// The generators of the trajectories from `first` on, at `step`, if each step takes so many words: none were
     /// taken where no step does.
     #[inline(always)]
-    pub fn resumed(seed: u64, first: u64, step: u64, purpose: Purpose, words: usize) -> Self {
+    pub fn at_step(seed: u64, first: u64, step: u64, purpose: Purpose, words: usize) -> Self {
         if words == 0 {
             return Streams::none();
         }

@@ -1,9 +1,9 @@
 //! One trajectory, stepped with a fixed time step and watched by observers.
 
-mod counted;
+mod evaluation_counter;
 mod observer;
 mod simulator;
 
-pub use counted::Counted;
+pub use evaluation_counter::CountedSystem;
 pub use observer::{EnergyDrift, Every, Observer, Sample};
 pub use simulator::{SimulationError, Simulator};

@@ -4,7 +4,7 @@ use core::cell::Cell;
 
 use thiserror::Error;
 
-use super::{Counted, Observer, Sample};
+use super::{CountedSystem, Observer, Sample};
 use crate::{Float, Integrator, State, System};
 
 /// Why a simulation cannot start or go on.
@@ -83,7 +83,7 @@ where
             observer.observe(&self.sample());
         }
         for _ in 0..steps {
-            let counted = Counted::new(self.system, &self.evaluations);
+            let counted = CountedSystem::new(self.system, &self.evaluations);
             let next = self.integrator.step(&counted, self.state, self.dt);
             if !next.coordinates().all(Float::is_finite) {
                 let step = self.step + 1;

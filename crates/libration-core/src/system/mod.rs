@@ -1,26 +1,26 @@
 //! Physical systems `q̈ = a(q, v)`, each written once for every number type.
 
-mod chosen;
-mod damped;
-mod driven;
+mod commanded_system;
+mod damped_oscillator;
+mod driven_oscillator;
 mod duffing;
-mod force_in;
-mod held;
+mod dyn_system;
 mod henon_heiles;
 mod kepler;
+mod mixed_precision;
 mod oscillator;
 mod pendulum;
 
 use crate::{Elementary, Scalar, State};
 
-pub use chosen::Chosen;
-pub use damped::DampedOscillator;
-pub use driven::DrivenOscillator;
+pub use commanded_system::CommandedSystem;
+pub use damped_oscillator::DampedOscillator;
+pub use driven_oscillator::DrivenOscillator;
 pub use duffing::Duffing;
-pub use force_in::ForceIn;
-pub use held::Held;
+pub use dyn_system::DynSystem;
 pub use henon_heiles::HenonHeiles;
 pub use kepler::Kepler;
+pub use mixed_precision::MixedPrecision;
 pub use oscillator::Oscillator;
 pub use pendulum::Pendulum;
 
@@ -41,11 +41,11 @@ pub trait System<S: Scalar, const D: usize> {
     const REGISTERS: usize = 16;
 
     /// Whether it is one of several systems, which is known only when the program runs.
-    const CHOSEN: bool = false;
+    const DISPATCHES: bool = false;
 
     /// Hands over the system that it is, so that a loop can be made for that alone.
     #[inline(always)]
-    fn known<W: WithSystem<S, D>>(&self, with: W) -> W::Output
+    fn dispatch<W: WithSystem<S, D>>(&self, with: W) -> W::Output
     where
         Self: Copy,
     {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use libration_data::{DataError, FileOf, Folder, Manifest, verify};
+use libration_data::{DataError, Folder, Manifest, NewFile, verify};
 use serde_json::{Map, Value, json};
 use tempfile::TempDir;
 
@@ -21,7 +21,7 @@ fn settings() -> Map<String, Value> {
 /// Chunk `i`.
 fn commit(folder: &mut Folder, i: usize) -> Result<(), DataError> {
     let [body, more] = [vec![i as u8; 1000 + i], vec![!(i as u8); 10]];
-    let file = |kind: &str, body| FileOf {
+    let file = |kind: &str, body| NewFile {
         path: format!("{kind}/{i}.bin").into(),
         pieces: vec![b"head", body],
     };
@@ -179,7 +179,7 @@ fn what_cannot_be_written_costs_nothing_that_was() {
     // Where a folder ought to be there is a file.
     let mut folder = Folder::open(&path, &settings(), true).unwrap();
     let body = [b"head".as_slice()];
-    let bad = FileOf { path: "manifest.jsonl/2.bin".into(), pieces: body.to_vec() };
+    let bad = NewFile { path: "manifest.jsonl/2.bin".into(), pieces: body.to_vec() };
     let error = folder.commit("2", Map::new(), &[bad]).unwrap_err().to_string();
     assert!(error.contains("cannot create"), "{error}");
     assert!(contents(&path) == before);

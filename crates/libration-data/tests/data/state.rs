@@ -7,7 +7,7 @@ use libration::checkpoint::Checkpoint;
 use libration::ensemble::{All, Ensemble, Execution};
 use libration::integrator::VelocityVerlet;
 use libration::system::Pendulum;
-use libration_data::{keep, take_up};
+use libration_data::{load_state, save_state};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -23,9 +23,9 @@ fn a_state_goes_through_a_file_with_its_note() {
     let mut one = swings(100);
     one.advance(VelocityVerlet, All(Pendulum { omega2: 9.81 }), All(0.01), 77).unwrap();
     let note = json!({ "of": "a test" });
-    keep(&path, &one, &note).unwrap();
+    save_state(&path, &one, &note).unwrap();
     let mut other = swings(100);
-    assert_eq!(take_up(&path, &mut other).unwrap(), note);
+    assert_eq!(load_state(&path, &mut other).unwrap(), note);
     assert!(other.to_bytes() == one.to_bytes());
     // Only the file itself stays.
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
@@ -35,14 +35,14 @@ fn a_state_goes_through_a_file_with_its_note() {
 fn a_file_that_is_cut_off_changed_of_another_version_or_of_something_else_is_refused() {
     let dir = TempDir::new().unwrap();
     let path = dir.path().join("swings.state");
-    keep(&path, &swings(100), &Value::Null).unwrap();
+    save_state(&path, &swings(100), &Value::Null).unwrap();
     let good = fs::read(&path).unwrap();
     let mut other = swings(100);
     other.advance(VelocityVerlet, All(Pendulum { omega2: 9.81 }), All(0.01), 5).unwrap();
     let before = other.to_bytes();
     let mut refused = |bytes: &[u8]| {
         fs::write(&path, bytes).unwrap();
-        let error = take_up(&path, &mut other).unwrap_err().to_string();
+        let error = load_state(&path, &mut other).unwrap_err().to_string();
         assert!(other.to_bytes() == before);
         assert!(error.contains("swings.state"), "{error}");
         error
@@ -71,6 +71,6 @@ fn a_file_that_is_cut_off_changed_of_another_version_or_of_something_else_is_ref
     let error = refused(&changed("\"ensemble\"", "\"octopus!\""));
     assert!(error.contains("its kind is octopus!; it must be ensemble"), "{error}");
     fs::remove_file(&path).unwrap();
-    let error = take_up(&path, &mut swings(1)).unwrap_err().to_string();
+    let error = load_state(&path, &mut swings(1)).unwrap_err().to_string();
     assert!(error.contains("cannot read"), "{error}");
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use libration::ensemble::Execution;
-use libration_data::{Chunk, Flaw, Folder, Manifest, checksum, unlisted};
+use libration_data::{Chunk, Flaw, Folder, Manifest, checksum, find_unlisted};
 use serde_json::Value;
 
 use super::minari::Before;
@@ -101,7 +101,7 @@ fn whole(
         what: "tells of it after the last that the settings lead to".to_owned(),
         broken: false,
     });
-    let unlisted = unlisted(folder, manifest)?;
+    let unlisted = find_unlisted(folder, manifest)?;
     let unlisted = unlisted.iter().map(|path| of_all(path, "is not in the manifest".to_owned()));
     Ok(extra.chain(unlisted).collect())
 }
@@ -145,7 +145,11 @@ pub(super) fn settings(
     if groups[0] > groups[1] || groups[1] > dataset.groups() {
         return Err(refused(&format!("`groups` is {groups:?}")));
     }
-    libration_data::same(folder, &manifest.settings, &head(&dataset, format, groups))?;
+    libration_data::ensure_same_settings(
+        folder,
+        &manifest.settings,
+        &head(&dataset, format, groups),
+    )?;
     Ok((dataset, format, groups))
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use libration::rl::{Layout, Rollout};
 use libration_data::{
-    Column, FileOf, Table, TableError, Values, npy_array, write_npy, write_parquet,
+    Column, NewFile, Table, TableError, Values, npy_array, write_npy, write_parquet,
 };
 use serde_json::{Map, Value, json};
 
@@ -65,10 +65,10 @@ pub(super) struct Files<'a> {
 
 impl Files<'_> {
     /// As a folder takes them.
-    pub(super) fn list(&self) -> Vec<FileOf<'_>> {
+    pub(super) fn list(&self) -> Vec<NewFile<'_>> {
         self.files
             .iter()
-            .map(|(path, pieces)| FileOf {
+            .map(|(path, pieces)| NewFile {
                 path: path.clone(),
                 pieces: pieces.iter().map(|piece| &**piece).collect(),
             })

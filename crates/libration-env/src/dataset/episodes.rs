@@ -1,6 +1,6 @@
 //! What environments did, episode by episode.
 
-use libration::ensemble::NoRoom;
+use libration::ensemble::InsufficientMemory;
 use libration::rl::Rollout;
 
 use super::world::Number;
@@ -33,7 +33,7 @@ impl<T, const O: usize> Episode<T, O> {
     }
 
     /// Room for one more step.
-    fn grow(&mut self) -> Result<(), NoRoom> {
+    fn grow(&mut self) -> Result<(), InsufficientMemory> {
         let grown = self
             .observation
             .try_reserve(2 * O)
@@ -41,7 +41,7 @@ impl<T, const O: usize> Episode<T, O> {
             .and_then(|()| self.reward.try_reserve(1));
         let needed =
             2 * (self.observation.capacity() + 2 * self.action.capacity()) * size_of::<T>();
-        grown.map_err(|_| NoRoom { needed: needed as u128, available: None })
+        grown.map_err(|_| InsufficientMemory { needed: needed as u128, available: None })
     }
 
     /// How many actions it has.
@@ -74,7 +74,7 @@ impl<T: Number, const O: usize> Episodes<T, O> {
         &mut self,
         first: u64,
         rollout: &Rollout<T, O, 1>,
-    ) -> Result<Vec<Episode<T, O>>, NoRoom> {
+    ) -> Result<Vec<Episode<T, O>>, InsufficientMemory> {
         let n = self.open.len();
         let mut ended = Vec::new();
         let mut finals = rollout.finals().iter().peekable();

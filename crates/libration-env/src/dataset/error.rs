@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use libration::ensemble::{EnsembleError, NoRoom};
+use libration::ensemble::{EnsembleError, InsufficientMemory};
 use libration::rl::EnvironmentError;
 use libration_data::{DataError, TableError};
 use thiserror::Error;
@@ -20,7 +20,7 @@ pub enum DatasetError {
     #[error("{room} (chunk.steps is {steps}, chunk.environments {environments})")]
     Room {
         /// How much is needed, and there.
-        room: NoRoom,
+        room: InsufficientMemory,
         /// Steps of a chunk.
         steps: usize,
         /// Environments of a chunk.
@@ -95,7 +95,7 @@ impl From<EnsembleError> for DatasetError {
 
 impl DatasetError {
     /// The memory that is missing, if it is that.
-    pub fn room(&self) -> Option<&NoRoom> {
+    pub fn room(&self) -> Option<&InsufficientMemory> {
         match self {
             DatasetError::Room { room, .. } => Some(room),
             DatasetError::Environment(error) => error.room(),

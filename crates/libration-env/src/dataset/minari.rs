@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use std::path::PathBuf;
 
 use libration_analyze::trajectory::FloatType;
-use libration_data::{Chunk, Table, TableError, Values, on_threads, write_parquet};
+use libration_data::{Chunk, Table, TableError, Values, run_on_threads, write_parquet};
 use serde_json::{Value, json};
 
 use super::DataFormat;
@@ -82,7 +82,7 @@ pub(super) fn files<T: Number, const O: usize>(
     threads: usize,
     dataset: &Dataset,
 ) -> Result<Vec<NamedFile<'static>>, TableError> {
-    let each = on_threads(threads, episodes.len(), |i| {
+    let each = run_on_threads(threads, episodes.len(), |i| {
         let (episode, id) = (&episodes[i], first + i as u64);
         let mut bytes = Vec::new();
         write_parquet(&rows(episode, dataset)?, &[], 1, &mut bytes)?;

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use libration::ensemble::Execution;
-use libration_data::{Chunk, FileOf, Flaw, Folder, Manifest, checksum, store, verify};
+use libration_data::{Chunk, Flaw, Folder, Manifest, NewFile, checksum, verify, write_files};
 
 use super::minari::Before;
 use super::stream::Course;
@@ -120,9 +120,9 @@ impl Visit for Again<'_> {
                 let (mended, others): (Vec<&Flaw>, Vec<&Flaw>) =
                     flaws.iter().partition(|flaw| mends(flaw));
                 let is_mended =
-                    |file: &&FileOf<'_>| mended.iter().any(|flaw| flaw.path == file.path);
+                    |file: &&NewFile<'_>| mended.iter().any(|flaw| flaw.path == file.path);
                 let files: Vec<_> = files.iter().filter(is_mended).cloned().collect();
-                store(folder.path(), &files)?;
+                write_files(folder.path(), &files)?;
                 mended.into_iter().for_each(|flaw| watch.repaired(flaw));
                 lost.extend(others.into_iter().map(stays));
             }
@@ -133,7 +133,7 @@ impl Visit for Again<'_> {
 }
 
 /// Whether a file that was computed again is what the manifest says.
-fn same(files: &[FileOf<'_>], chunk: &Chunk, path: &Path) -> bool {
+fn same(files: &[NewFile<'_>], chunk: &Chunk, path: &Path) -> bool {
     let stored = chunk.files.iter().find(|stored| stored.path == path);
     let again = files.iter().find(|file| file.path == path);
     let is_same = stored.zip(again).map(|(stored, again)| {

@@ -1,6 +1,6 @@
 //! Whether a data set can be computed here.
 
-use libration::ensemble::NoRoom;
+use libration::ensemble::InsufficientMemory;
 use libration::rl::{Plan, Rollout};
 use libration_data::parquet_bytes;
 
@@ -41,7 +41,7 @@ impl Try<'_> {
 }
 
 /// That chunks do not fit into memory.
-pub(super) fn missing(dataset: &Dataset, room: NoRoom) -> DatasetError {
+pub(super) fn missing(dataset: &Dataset, room: InsufficientMemory) -> DatasetError {
     let Chunk { steps, environments } = dataset.chunk;
     DatasetError::Room { room, steps, environments }
 }
@@ -58,7 +58,7 @@ impl Visit for Try<'_> {
         let horizon = steps.min(chunk.steps as u64) as usize;
         let plan = Plan::new(horizon, all.len()).truncated();
         let needed = self.bytes(plan.transitions() as u64, plan.bytes(O, 1, size_of::<T>()));
-        NoRoom::check(needed).map_err(|room| missing(self.dataset, room))?;
+        InsufficientMemory::check(needed).map_err(|room| missing(self.dataset, room))?;
         let mut rollout = Rollout::new(Plan::new(1, all.len()).truncated())?;
         Ok(all.rollout(actor, &mut rollout)?)
     }

@@ -7,7 +7,7 @@ use std::{io, thread};
 
 use libration::ensemble::{EnsembleError, Execution};
 use libration::rl::{Plan, Rollout};
-use libration_data::{Flaw, Folder, Manifest, Stored, store};
+use libration_data::{Flaw, Folder, Manifest, Stored, write_files};
 use serde_json::{Map, Value, json};
 
 use super::again::misplaced;
@@ -218,7 +218,7 @@ impl Visit for Stream<'_> {
                     let turn = turn.join().unwrap_or(Err(DatasetError::Interrupted))?;
                     let Written { done, after, holds, files } = turn;
                     let bytes = files.iter().map(|file| file.bytes).sum();
-                    folder.tell(&done.name(), holds, files)?;
+                    folder.record(&done.name(), holds, files)?;
                     watch.done(done.rollout.plan().transitions() as u64, bytes);
                     // Whoever computes may have come to the end.
                     let _ = give_back.send((done, after));
@@ -284,6 +284,6 @@ fn stored<T: Number, const O: usize>(
 ) -> Result<Written<T, O>, DatasetError> {
     let holds = done.holds(dataset, format, before);
     let files = done.files(dataset, format, threads, before)?;
-    let (after, files) = (files.after, store(folder, &files.list())?);
+    let (after, files) = (files.after, write_files(folder, &files.list())?);
     Ok(Written { done, after, holds, files })
 }

@@ -51,10 +51,10 @@ impl<T: Elementary> Plant<T> {
 }
 
 impl<T: Elementary> System<T, 1> for Plant<T> {
-    const CHOSEN: bool = true;
+    const DISPATCHES: bool = true;
 
     #[inline(always)]
-    fn known<W: WithSystem<T, 1>>(&self, with: W) -> W::Output {
+    fn dispatch<W: WithSystem<T, 1>>(&self, with: W) -> W::Output {
         match *self {
             Plant::Oscillator(system) => with.system(system),
             Plant::Damped(system) => with.system(system),

@@ -3,7 +3,9 @@
 use std::hint::black_box;
 
 use libration::State;
-use libration::ensemble::{All, Buffer, EnsembleError, Execution, NoRoom, Pages, stream_again};
+use libration::ensemble::{
+    All, Buffer, EnsembleError, Execution, InsufficientMemory, Pages, stream_repeatedly,
+};
 use libration::integrator::SymplecticEuler;
 use libration::rl::policy::{Linear, Random};
 use libration::rl::start::{FixedStart, UniformStart};
@@ -72,7 +74,7 @@ impl RolloutCase {
     /// # Errors
     /// If there is not the memory: that of the rollout in both ways to write it, and as much for each of two fills.
     pub fn check(&self) -> Result<(), EnsembleError> {
-        Ok(NoRoom::check(4 * self.all_bytes())?)
+        Ok(InsufficientMemory::check(4 * self.all_bytes())?)
     }
 
     /// How many transitions it has.
@@ -266,7 +268,7 @@ pub(crate) fn fill(
     Ok(Contestant::new(case.transitions() as f64, move |times| {
         for _ in 0..times {
             execution.each(memory.chunks_mut(part).collect(), |part: &mut [u8]| match writes {
-                Writes::Past => stream_again(&pattern, part),
+                Writes::Past => stream_repeatedly(&pattern, part),
                 // In pieces: with all at once the library might go past the caches as well.
                 Writes::Plain => part.chunks_mut(PATTERN).for_each(|piece| piece.fill(2)),
             });

@@ -9,7 +9,7 @@ use libration::checkpoint::Checkpoint;
 use libration::ensemble::{All, Ensemble, Execution};
 use libration::integrator::VelocityVerlet;
 use libration::system::Pendulum;
-use libration_data::{DataError, Manifest, keep, take_up};
+use libration_data::{DataError, Manifest, load_state, save_state};
 use libration_env::dataset;
 use libration_env::dataset::{DataFormat, Dataset, DatasetError, Job, Watch};
 use libration_report::record::{Finding, Record, Tolerance};
@@ -192,10 +192,10 @@ fn checkpoint(lab: &Lab<'_>, folder: &Path, record: &mut Record) -> Result<(), S
     let mut first = make(alone.clone(), 3.0)?;
     go(&mut first)?;
     let path = folder.join("state");
-    keep(&path, &first, &Value::Null).map_err(failed)?;
+    save_state(&path, &first, &Value::Null).map_err(failed)?;
     go(&mut first)?;
     let mut second = make(alone.threads(3)?, 0.0)?;
-    take_up(&path, &mut second).map_err(failed)?;
+    load_state(&path, &mut second).map_err(failed)?;
     go(&mut second)?;
     let [one, two] = [first.to_bytes(), second.to_bytes()];
     let differ =

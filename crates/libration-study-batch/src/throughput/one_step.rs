@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use libration::ensemble::{Buffer, Execution, NoRoom, Pages};
+use libration::ensemble::{Buffer, Execution, InsufficientMemory, Pages};
 use libration::{Ensemble, Method};
 use libration_report::record::{Record, Table};
 use libration_study::StudyError;
@@ -34,7 +34,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     for &count in counts {
         // The ensemble, and the planes of the loop.
         let bytes = Ensemble::<f32, 1>::bytes(count);
-        if NoRoom::check(2 * bytes).is_err() {
+        if InsufficientMemory::check(2 * bytes).is_err() {
             continue;
         }
         for execution in [&desk.serial, &desk.parallel] {

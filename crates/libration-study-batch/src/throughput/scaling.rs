@@ -1,6 +1,6 @@
 //! Every implementation at every number of trajectories.
 
-use libration::ensemble::{Execution, NoRoom};
+use libration::ensemble::{Execution, InsufficientMemory};
 use libration_report::record::{Record, Series, Table};
 use libration_study::{Lab, StudyError};
 
@@ -32,10 +32,10 @@ impl Wanted {
     /// Whether there is memory enough.
     ///
     /// # Errors
-    /// [`NoRoom`] if not.
-    pub fn check(self) -> Result<(), NoRoom> {
+    /// [`InsufficientMemory`] if not.
+    pub fn check(self) -> Result<(), InsufficientMemory> {
         let numbers = arrays(self.implementation) as u128 * self.count as u128;
-        NoRoom::check(numbers * self.float.bytes() as u128)
+        InsufficientMemory::check(numbers * self.float.bytes() as u128)
     }
 }
 

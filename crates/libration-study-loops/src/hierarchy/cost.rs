@@ -8,7 +8,7 @@ use libration::ensemble::{All, Loops, MeanCost, Setup};
 use libration::integrator::SymplecticEuler;
 use libration::number::Mantissa;
 use libration::random::{Address, Purpose};
-use libration::system::{Held, Oscillator};
+use libration::system::{CommandedSystem, Oscillator};
 use libration::{Float, Integrator, State};
 use libration_report::record::{Finding, Record, Tolerance};
 use libration_study::{Lab, StudyError};
@@ -155,7 +155,7 @@ fn rounded<T: Float>(trajectory: u64, steps: u64) -> f64 {
         let [noise, _] =
             Address { seed: SEED, trajectory, step, purpose: Purpose::Disturbance }.gaussian();
         let command = [-(kp * q) - kd * v + T::from_f64(noise / DT.sqrt())];
-        state = SymplecticEuler.step(&Held { system, command }, state, dt);
+        state = SymplecticEuler.step(&CommandedSystem { system, command }, state, dt);
         if step >= BEFORE {
             let [q, v] = [state.q[0], state.v[0]].map(T::to_f64);
             sum += ENERGY.position * q * q + ENERGY.velocity * v * v;

@@ -3,7 +3,7 @@
 use std::f64::consts::{SQRT_2, TAU};
 
 use libration::analysis::StepNoise;
-use libration::control::clock::Waving;
+use libration::control::clock::Sinusoidal;
 use libration::ensemble::{All, Setup};
 use libration::integrator::SymplecticEuler;
 use libration::{Method, State};
@@ -122,7 +122,7 @@ fn growth(
     let omega = setting.model.omega2.sqrt();
     let around = (0..8).map(|i| (TAU * f64::from(i) / 16.0).sin_cos());
     let starts: Vec<_> = around.map(|(v, q)| State { q: [q], v: [v * omega] }).collect();
-    let clock = Waving { rms: RMS, rate, phase: 0.0 };
+    let clock = Sinusoidal { rms: RMS, rate, phase: 0.0 };
     let setup = Setup::new(All(setting.model), SymplecticEuler).clock(clock);
     let seen = follow(lab, setup, (setting.dt, SEED), &starts, &[half, 2 * half])?;
     let sizes: Vec<Vec<f64>> = seen.iter().map(|s| s.logarithms(|y| theory.form.at(y))).collect();

@@ -1,15 +1,15 @@
 //! Edges between stable and unstable latencies, as lines of a map.
 
-use libration::analysis::Windows;
+use libration::analysis::LatencyWindows;
 
 /// Whether theory has a loop stable at a whole latency.
-pub(super) fn is_stable(windows: &Windows, steps: f64) -> bool {
+pub(super) fn is_stable(windows: &LatencyWindows, steps: f64) -> bool {
     windows.stable.iter().any(|&(from, to)| from <= steps && to.is_none_or(|to| steps <= to))
 }
 
 /// All edges by rising latency, from the first stable interval on; one that is a whole number is drawn between it and its
 /// unstable neighbour.
-pub(super) fn edges(windows: &Windows) -> Vec<f64> {
+pub(super) fn edges(windows: &LatencyWindows) -> Vec<f64> {
     let mut edges = Vec::new();
     for &(from, to) in &windows.stable {
         if from > 0.0 || !edges.is_empty() {
@@ -21,7 +21,7 @@ pub(super) fn edges(windows: &Windows) -> Vec<f64> {
 }
 
 /// Lines through edges of neighbouring rows: the k-th of each row, as long as it lies below `longest`.
-pub(super) fn lines(rows: &[(f64, Windows)], longest: f64) -> Vec<(Vec<f64>, Vec<f64>)> {
+pub(super) fn lines(rows: &[(f64, LatencyWindows)], longest: f64) -> Vec<(Vec<f64>, Vec<f64>)> {
     let all: Vec<(f64, Vec<f64>)> = rows.iter().map(|(y, w)| (*y, edges(w))).collect();
     let most = all.iter().map(|(_, edges)| edges.len()).max().unwrap_or(0);
     let line = |k: usize| -> (Vec<f64>, Vec<f64>) {
@@ -39,10 +39,11 @@ mod tests {
 
     #[test]
     fn edges_lie_between_stable_and_unstable_latencies_and_join_from_row_to_row() {
-        let windows = Windows { stable: vec![(0.0, Some(4.5)), (10.25, Some(12.0)), (20.0, None)] };
+        let windows =
+            LatencyWindows { stable: vec![(0.0, Some(4.5)), (10.25, Some(12.0)), (20.0, None)] };
         assert_eq!(edges(&windows), [4.5, 10.25, 12.5, 19.5]);
         assert_eq!([4.0, 5.0, 99.0].map(|d| is_stable(&windows, d)), [true, false, true]);
-        let above = Windows { stable: vec![(0.0, Some(4.25))] };
+        let above = LatencyWindows { stable: vec![(0.0, Some(4.25))] };
         let lines = lines(&[(1.0, windows), (2.0, above)], 11.0);
         assert_eq!(lines, [(vec![4.5, 4.25], vec![1.0, 2.0])]);
     }

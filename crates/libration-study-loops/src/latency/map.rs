@@ -1,7 +1,7 @@
 //! Maps of stability.
 
 use libration::Method;
-use libration::analysis::Windows;
+use libration::analysis::LatencyWindows;
 use libration::control::Feedback;
 use libration_report::Record;
 use libration_report::notation::{count, number};
@@ -137,7 +137,7 @@ fn draw(lab: &Lab<'_>, record: &mut Record, kind: Kind, method: Method) -> Resul
 /// The edges by theory, at more rows than the map has.
 fn boundary(record: &mut Record, kind: Kind, method: Method) {
     let fine = kind.rows(400);
-    let rows: Vec<(f64, Windows)> =
+    let rows: Vec<(f64, LatencyWindows)> =
         fine.iter().map(|&y| (y, kind.case(method, y).windows())).collect();
     let lines = lines(&rows, f64::from(kind.longest()) + 0.5);
     let (mut line, mut x, mut y) = (Vec::new(), Vec::new(), Vec::new());

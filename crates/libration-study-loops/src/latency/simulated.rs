@@ -1,6 +1,6 @@
 //! Loops that are simulated, and how fast they grow.
 
-use libration::analysis::{Plant, Windows};
+use libration::analysis::{LatencyWindows, Plant};
 use libration::control::controller::StateFeedback;
 use libration::control::{Feedback, Latency, Schedule};
 use libration::ensemble::{All, Loops, Setup};
@@ -38,7 +38,7 @@ impl Loop {
     }
 
     /// All latencies at which it is stable, by theory.
-    pub(super) fn windows(&self) -> Windows {
+    pub(super) fn windows(&self) -> LatencyWindows {
         self.plant().latency_windows(self.gains)
     }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use libration::analysis::{Criterion, LargestStep, OrbitStart, Slip, SymbolicStep};
+use libration::analysis::{Criterion, LargestStep, OrbitError, OrbitStart, SymbolicStep};
 use libration::number::Wide;
 use libration::{Method, Scalar, State};
 
@@ -59,7 +59,7 @@ impl Demand {
                 growth.abs() <= self.tolerance
             }),
             Kind::State => self.first_failure(|z| {
-                Slip::new(&step, z).is_some_and(|slip| {
+                OrbitError::new(&step, z).is_some_and(|slip| {
                     slip.worst_error_within(steps_for(self.periods, z)) <= self.tolerance
                 })
             }),

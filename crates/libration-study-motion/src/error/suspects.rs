@@ -10,7 +10,7 @@ use super::run::Setting;
 
 /// Something that a hand-written RK4 may do wrong. Numbers of stages count from one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Slip {
+enum OrbitError {
     /// None at all.
     Correct,
     /// The position at which the force of this stage is taken moves by the acceleration of the one
@@ -22,15 +22,15 @@ enum Slip {
     FullSteps,
 }
 
-impl Slip {
-    const ALL: [(Slip, &'static str); 7] = [
-        (Slip::Correct, "none"),
-        (Slip::Dimension(2), "stage 2: position moved by ½Δt·a as well"),
-        (Slip::Dimension(3), "stage 3: position moved by ½Δt·a as well"),
-        (Slip::Dimension(4), "stage 4: position moved by Δt·a as well"),
-        (Slip::Frozen(2), "stage 2 takes the force of stage 1"),
-        (Slip::Frozen(4), "stage 4 takes the force of stage 1"),
-        (Slip::FullSteps, "half steps taken full"),
+impl OrbitError {
+    const ALL: [(OrbitError, &'static str); 7] = [
+        (OrbitError::Correct, "none"),
+        (OrbitError::Dimension(2), "stage 2: position moved by ½Δt·a as well"),
+        (OrbitError::Dimension(3), "stage 3: position moved by ½Δt·a as well"),
+        (OrbitError::Dimension(4), "stage 4: position moved by Δt·a as well"),
+        (OrbitError::Frozen(2), "stage 2 takes the force of stage 1"),
+        (OrbitError::Frozen(4), "stage 4 takes the force of stage 1"),
+        (OrbitError::FullSteps, "half steps taken full"),
     ];
 
     /// One step of RK4 with this slip.
@@ -40,16 +40,16 @@ impl Slip {
         start: State<Wide, 1>,
         dt: Wide,
     ) -> State<Wide, 1> {
-        let half = if self == Slip::FullSteps { dt } else { dt.ratio(1, 2) };
+        let half = if self == OrbitError::FullSteps { dt } else { dt.ratio(1, 2) };
         let first = system.rate(start);
         let stage = |number: usize, before: State<Wide, 1>, h: Wide| {
             let mut at = start.plus(h, before);
             let v = at.v;
-            if self == Slip::Dimension(number) {
+            if self == OrbitError::Dimension(number) {
                 at.q[0] = at.q[0] + h * before.v[0];
             }
             let force =
-                if self == Slip::Frozen(number) { first.v } else { system.acceleration(&at) };
+                if self == OrbitError::Frozen(number) { first.v } else { system.acceleration(&at) };
             State { q: v, v: force }
         };
         let k2 = stage(2, first, half);
@@ -64,7 +64,7 @@ pub(super) fn table(setting: &Setting) -> Table {
     let mut table = Table::new("suspects", &["slip in RK4", "one step late (m)", "aligned (m)"]);
     let system = Oscillator { omega2: Wide::from_f64(setting.oscillator.omega2) };
     let dt = Wide::from_f64(setting.dt);
-    for (slip, words) in Slip::ALL {
+    for (slip, words) in OrbitError::ALL {
         let step = UpdateMatrix::from_map(|e| slip.step(&system, e, dt));
         if let Some(error) =
             ErrorForecast::new(setting.oscillator, &step, setting.dt, &setting.start)

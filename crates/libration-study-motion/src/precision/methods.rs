@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use libration::analysis::{Slip, SymbolicStep, forecast_drift};
+use libration::analysis::{OrbitError, SymbolicStep, forecast_drift};
 use libration::number::TwoFloat;
 use libration::{Float, Integrator, Method, Scalar, State, with_method};
 use libration_report::Record;
@@ -136,7 +136,7 @@ impl Compared {
                 + (local.bias().abs() + ERRORS * local.mean_error) * n
         });
         let omega = double.model.omega2.sqrt();
-        let slip = SymbolicStep::new(i).and_then(|step| Slip::new(&step, omega * dt));
+        let slip = SymbolicStep::new(i).and_then(|step| OrbitError::new(&step, omega * dt));
         let slip = slip.map(|slip| n * slip.phase);
         let ahead = n * (single.angle - double.angle);
         Some(Compared {

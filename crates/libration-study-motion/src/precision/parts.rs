@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use libration::analysis::float_clock;
 use libration::integrator::VelocityVerlet;
 use libration::number::TwoFloat;
-use libration::system::ForceIn;
+use libration::system::MixedPrecision;
 use libration::{Float, Integrator, Model, State};
 use libration_report::Record;
 use libration_report::notation::count;
@@ -116,7 +116,7 @@ fn of<S: Float, G: Float, W: Float>(lab: &Lab<'_>) -> Option<Found> {
     if !one.rounds_at_random(coarser) {
         return None;
     }
-    let force = ForceIn::<_, G>::new(Model::<1>::on::<G>(&one.model));
+    let force = MixedPrecision::<_, G>::new(Model::<1>::on::<G>(&one.model));
     let step = |state| VelocityVerlet.step(&force, state, one.dt);
     let (wide, wide_dt) = (Model::<1>::on::<W>(&one.model), W::from_f64(one.dt.to_f64()));
     let unrounded = |state| VelocityVerlet.step(&wide, state, wide_dt);

@@ -6,7 +6,7 @@ use libration::analysis::Linearisation;
 use libration::ensemble::Execution;
 use libration::number::TwoFloat;
 use libration::simulation::{Sample, SimulationError, Simulator};
-use libration::system::Chosen;
+use libration::system::DynSystem;
 use libration::{Float, Method, Model, Scalar, State, System, integrator, with_method};
 use libration_study::StudyError;
 
@@ -98,7 +98,7 @@ impl<M: Model<D>, const D: usize> Problem<M, D> {
         if const { size_of::<S>() > size_of::<f64>() } {
             // What each operation takes is more than a call.
             let acceleration = |state: &State<S, D>| self.model.on::<S>().acceleration(state);
-            let mut simulator = Simulator::new(Chosen(&acceleration), method, start, dt)?;
+            let mut simulator = Simulator::new(DynSystem(&acceleration), method, start, dt)?;
             simulator.run(steps, watch)?;
             return Ok(simulator.sample().state);
         }

@@ -5,14 +5,14 @@
 mod environments;
 mod trajectories;
 
-use libration::checkpoint::{Checkpoint, agree};
+use libration::checkpoint::{Checkpoint, ensure_same_traits};
 use libration::ensemble::{Execution, InstructionSet};
 
 /// What is said of a state that is of something else.
 fn refused(state: &impl Checkpoint, wanted: &impl Checkpoint) -> String {
     let found = state.traits();
     let found: Vec<_> = found.iter().map(|(name, value)| (*name, value.as_str())).collect();
-    agree(found, &wanted.traits()).unwrap_err().to_string()
+    ensure_same_traits(found, &wanted.traits()).unwrap_err().to_string()
 }
 
 /// On every instruction set, alone and with more threads than a small machine has cores.

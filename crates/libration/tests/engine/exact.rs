@@ -1,9 +1,9 @@
 //! Exact steps of linear systems.
 
-use libration::analysis::HeldStep;
+use libration::analysis::ZohStep;
 use libration::integrator::Exact;
 use libration::number::Wide;
-use libration::system::{DampedOscillator, Held, HenonHeiles, Oscillator};
+use libration::system::{CommandedSystem, DampedOscillator, HenonHeiles, Oscillator};
 use libration::{Integrator, Model, Scalar, State};
 
 /// Radians by which a part of an exact step turns at most.
@@ -11,9 +11,9 @@ const PART: f64 = 0.5;
 
 /// Of a step under a command, against the exponential of its matrix in 1024 bits.
 fn error(model: impl Model<1>, dt: f64) -> f64 {
-    let exact = HeldStep::exact(model, &State::origin(), Wide::from_f64(dt));
+    let exact = ZohStep::exact(model, &State::origin(), Wide::from_f64(dt));
     let (start, command) = (State { q: [0.7], v: [-1.3] }, 2.5);
-    let held = Held { system: model.on::<f64>(), command: [command] };
+    let held = CommandedSystem { system: model.on::<f64>(), command: [command] };
     let found = Exact::new(model, dt).unwrap().step(&held, start, dt);
     let moved = exact.phi.apply(&start.map(Wide::from_f64));
     let wanted = moved.plus(Wide::from_f64(command), exact.gamma).map(|x| x.to_f64());

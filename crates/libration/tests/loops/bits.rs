@@ -2,8 +2,8 @@
 
 use libration::checkpoint::Checkpoint;
 use libration::control::clock::{
-    Correlated, Drifting, Dropped, Gaussian, Jittered, Late, Rates, Skewed, Uniform, Wandering,
-    Waving,
+    Correlated, Drifting, Gaussian, Jittered, LateTicks, MissedTicks, RandomWalk, Rates,
+    Sinusoidal, Skewed, Uniform,
 };
 use libration::control::controller::{Force, Pid, PidGains, Saturated, StateFeedback};
 use libration::control::delay::{Latencies, Order, Packets, Random, RecordedLatencies, Schedule};
@@ -99,14 +99,14 @@ fn oscillator<M>(method: M) -> Setup<All<Oscillator<f32>>, M> {
 /// Five clocks in one.
 fn shaken() -> impl Clock<f32> {
     let jitter = (Jittered(Uniform(0.1)), Correlated { rms: 0.1, correlation: 0.9 });
-    let waves = (Waving { rms: 0.1, rate: 0.3, phase: 1.0 }, Dropped { probability: 0.2 });
+    let waves = (Sinusoidal { rms: 0.1, rate: 0.3, phase: 1.0 }, MissedTicks { probability: 0.2 });
     ((jitter, waves), Skewed(Jitter::Gaussian(0.1)))
 }
 
 /// The others.
 fn stirred() -> impl Clock<f32> {
-    let noise = (Jittered(Gaussian(0.1)), Wandering { rms: 0.01 });
-    ((noise, Late { probability: 0.2, by: 0.5 }), Drifting(Jitter::Uniform(1e-4)))
+    let noise = (Jittered(Gaussian(0.1)), RandomWalk { rms: 0.01 });
+    ((noise, LateTicks { probability: 0.2, by: 0.5 }), Drifting(Jitter::Uniform(1e-4)))
 }
 
 #[test]
@@ -158,7 +158,7 @@ fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_whatever_the_cont
     let all = |count: usize| {
         Setup::new(PerTrajectory(&systems[..count]), Rk4)
             .controller(Saturated { controller: StateFeedback::to_origin(GAINS), most: 1.0 })
-            .clock((Rates(&rates[..count]), Dropped { probability: 0.1 }))
+            .clock((Rates(&rates[..count]), MissedTicks { probability: 0.1 }))
             .delay(Latencies::of_commands(&latencies[..count]).and_observations(&seen[..count]))
     };
     same_bits(all(333), all);

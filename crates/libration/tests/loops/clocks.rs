@@ -2,8 +2,8 @@
 
 use libration::State;
 use libration::control::clock::{
-    Correlated, Drifting, Dropped, Gaussian, Jittered, Late, Rates, Recorded, Skewed, Uniform,
-    Wandering, Waving,
+    Correlated, Drifting, Gaussian, Jittered, LateTicks, MissedTicks, RandomWalk, Rates, Recorded,
+    Sinusoidal, Skewed, Uniform,
 };
 use libration::control::{Clock, Jitter};
 use libration::ensemble::{All, Execution, Loops, Setup};
@@ -78,7 +78,7 @@ fn correlated_jitter_forgets_at_the_rate_it_says_and_is_stationary_from_the_star
 
 #[test]
 fn a_wandering_clock_is_a_random_walk_and_a_drifting_one_a_straight_line() {
-    let steps = ratios(Wandering { rms: 0.001 }, 512, 400);
+    let steps = ratios(RandomWalk { rms: 0.001 }, 512, 400);
     for after in [100, 399] {
         let squares: f64 = steps.iter().map(|one| (one[after] - 1.0).powi(2)).sum();
         let wanted = 512.0 * after as f64 * 1e-6;
@@ -106,7 +106,7 @@ fn asynchronous_clocks_keep_their_rates() {
 #[test]
 fn a_waving_clock_swings_at_its_rate_with_its_rms() {
     let rate = std::f64::consts::TAU / 8.0;
-    let steps = &ratios(Waving { rms: 0.1, rate, phase: 0.5 }, 1, 16)[0];
+    let steps = &ratios(Sinusoidal { rms: 0.1, rate, phase: 0.5 }, 1, 16)[0];
     for (n, dt) in steps.iter().enumerate() {
         let wanted = 1.0 + 0.1 * 2.0_f64.sqrt() * (rate * n as f64 + 0.5).sin();
         assert!((dt - wanted).abs() < ROUNDING, "{n}: {dt} {wanted}");
@@ -115,7 +115,7 @@ fn a_waving_clock_swings_at_its_rate_with_its_rms() {
 
 #[test]
 fn time_that_is_missed_is_made_up_for() {
-    let steps = ratios(Dropped { probability: 0.3 }, 16, 500);
+    let steps = ratios(MissedTicks { probability: 0.3 }, 16, 500);
     let missed = steps.iter().flatten().filter(|&&dt| dt == 0.0).count() as f64 / 8000.0;
     // √(0.3·0.7/8000) = 0.005; four times that.
     assert!((missed - 0.3).abs() < 0.021, "{missed}");
@@ -135,7 +135,7 @@ fn time_that_is_missed_is_made_up_for() {
 
 #[test]
 fn a_late_tick_is_not_passed_on() {
-    for one in ratios(Late { probability: 0.3, by: 0.25 }, 8, 200) {
+    for one in ratios(LateTicks { probability: 0.3, by: 0.25 }, 8, 200) {
         let mut time = 0.0;
         for (n, dt) in one.iter().enumerate() {
             assert!([0.75, 1.0, 1.25].contains(dt));

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use libration::control::{Feedback, Latency};
-use libration::system::{Held, Oscillator};
+use libration::system::{CommandedSystem, Oscillator};
 use libration::{Integrator, State};
 
 /// An oscillator under feedback of its state with a constant latency.
@@ -59,7 +59,7 @@ impl<M: Integrator> One<M> {
     }
 
     fn under_command(&mut self, dt: f64) {
-        let held = Held { system: self.system, command: [self.held] };
+        let held = CommandedSystem { system: self.system, command: [self.held] };
         self.state = self.method.step(&held, self.state, dt);
     }
 }

@@ -2,8 +2,8 @@
 
 use libration::State;
 use libration::control::clock::{
-    Correlated, Drifting, Dropped, Fixed, Gaussian, Jittered, Late, Rates, Recorded, Skewed,
-    Uniform, Wandering, Waving,
+    Correlated, Drifting, Fixed, Gaussian, Jittered, LateTicks, MissedTicks, RandomWalk, Rates,
+    Recorded, Sinusoidal, Skewed, Uniform,
 };
 use libration::control::controller::{Pid, PidGains, Saturated, StateFeedback};
 use libration::control::delay::{Latencies, Order, Packets, RecordedLatencies, Schedule};
@@ -112,26 +112,26 @@ fn numbers_that_are_no_clock_are_named() {
         assert_eq!(of_clock((Fixed, Jittered(Jitter::Uniform(bad)))), jitter);
         assert_eq!(of_clock(Skewed(Jitter::Gaussian(bad))), least("the rms of clock rates", bad));
         assert_eq!(of_clock(Drifting(Jitter::Uniform(bad))), least("the rms of clock drifts", bad));
-        assert_eq!(of_clock(Wandering { rms: bad }), least("the rms of changes of the rate", bad));
+        assert_eq!(of_clock(RandomWalk { rms: bad }), least("the rms of changes of the rate", bad));
         assert_eq!(of_clock(Rates(&[1.0, bad])), least("clock rate 1", bad));
         assert_eq!(of_clock(Recorded::once(&[bad])), least("recorded step 0", bad));
-        let waves = Waving { rms: bad, rate: 1.0, phase: 0.0 };
+        let waves = Sinusoidal { rms: bad, rate: 1.0, phase: 0.0 };
         assert_eq!(of_clock(waves), least("the rms of waving steps", bad));
         let correlated = Correlated { rms: bad, correlation: 0.5 };
         assert_eq!(of_clock(correlated), least("the rms of correlated steps", bad));
     }
-    let waves = Waving { rms: 0.1, rate: f64::NAN, phase: 0.0 };
+    let waves = Sinusoidal { rms: 0.1, rate: f64::NAN, phase: 0.0 };
     assert_eq!(of_clock(waves), "the rate of waving steps is NaN; it must be a finite number");
     assert_eq!(
-        of_clock(Dropped { probability: 1.0 }),
+        of_clock(MissedTicks { probability: 1.0 }),
         "the probability of a missed tick is 1; it must be at least 0 and below 1"
     );
     assert_eq!(
-        of_clock(Late { probability: -0.1, by: 0.5 }),
+        of_clock(LateTicks { probability: -0.1, by: 0.5 }),
         "the probability of a late tick is -0.1; it must be from 0 to 1"
     );
     assert_eq!(
-        of_clock(Late { probability: 0.5, by: 1.5 }),
+        of_clock(LateTicks { probability: 0.5, by: 1.5 }),
         "the lateness of a tick is 1.5; it must be from 0 to 1"
     );
     assert_eq!(

@@ -1,11 +1,11 @@
 //! One environment by itself, in scalars, as the documentation says it: all its past is kept, and nothing lies in a ring.
 
-use libration::control::{Begin, Clock};
+use libration::control::{Clock, StartAddress};
 use libration::random::{Address, EPOCH, Purpose, Streams};
 use libration::rl::{
     Autoreset, Episode, ErrorScale, Parts, Policy, Sensor, Start, StepIndex, Task, Variation, World,
 };
-use libration::system::Held;
+use libration::system::CommandedSystem;
 use libration::{Integrator, State};
 
 /// What an environment did in a step.
@@ -39,7 +39,7 @@ impl Words {
         let (seed, trajectory, purpose) = self.address;
         if draw.is_multiple_of(EPOCH) {
             let step = (draw / EPOCH).wrapping_add(number.wrapping_mul(11_400_714_819_323_198_485));
-            self.stream.seat(0, Address { seed, trajectory, step, purpose });
+            self.stream.begin_epoch(0, Address { seed, trajectory, step, purpose });
         }
     }
 }
@@ -70,7 +70,7 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
             states = vec![parts.start.draw(address(number))];
             actions.clear();
             age = 0;
-            clock = Some(parts.clock.start(Begin::new(seed, n as u64, number)));
+            clock = Some(parts.clock.start(StartAddress::new(seed, n as u64, number)));
         }
         let numbers = parts.variation.draw(address(number));
         let systems = libration::ensemble::Assign::of(parts.systems, n);
@@ -108,7 +108,7 @@ pub(crate) fn alone<E: World<f32, 2, 1>, P: Policy<f32, 2, 1>>(
                 if E::Clock::EVEN { ratio } else { ratio + (error_scale[0] - 1.0) * (ratio - 1.0) };
             let ratio = if ratio < 0.0 { 0.0 } else { ratio };
             let mobility = parts.mass.recip() as f32;
-            let system = Held { system, command: command.map(|u| u * mobility) };
+            let system = CommandedSystem { system, command: command.map(|u| u * mobility) };
             state = parts.method.step(&system, state, parts.dt as f32 * ratio);
             states.push(state);
         }

@@ -7,7 +7,7 @@ use libration::rl::policy::Constant;
 use libration::rl::start::FixedStart;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Environment, Environments, Plan, Rollout};
-use libration::system::{Held, Oscillator, Pendulum};
+use libration::system::{CommandedSystem, Oscillator, Pendulum};
 use libration::{Float, State};
 
 #[test]
@@ -23,7 +23,7 @@ fn each_environment_has_its_own_system_and_tasks_see_what_they_say() {
     let mut seen = vec![0.0; 70 * 3];
     all.observe(&mut seen).unwrap();
     for (n, &system) in systems.iter().enumerate() {
-        let held = Held { system, command: [0.125] };
+        let held = CommandedSystem { system, command: [0.125] };
         let start = State { q: [0.5], v: [0.0] };
         let after = |steps| (0..steps).fold(start, |s, _| Rk4.step(&held, s, 0.05));
         let state = after(20);
@@ -72,7 +72,7 @@ fn a_reference_is_seen_and_paid_for_at_the_time_of_the_episode() {
                 }
                 continue;
             }
-            let held = Held { system, command: [0.5] };
+            let held = CommandedSystem { system, command: [0.5] };
             let after = (0..2).fold(State { q: [q], v: [v] }, |s, _| Rk4.step(&held, s, 0.05));
             taken += 1;
             let [q, v] = at(taken);

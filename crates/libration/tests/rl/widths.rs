@@ -10,7 +10,7 @@ use libration::rl::task::{Regulate, Task};
 use libration::rl::{
     Environment, Environments, Episode, Layout, Plan, Rollout, Start, StepIndex, Writes,
 };
-use libration::system::{Held, HenonHeiles};
+use libration::system::{CommandedSystem, HenonHeiles};
 use libration::{Float, State};
 
 use crate::executions;
@@ -57,7 +57,7 @@ fn alone<T: Float>(n: usize) -> Vec<Told<T>> {
         .map(|_| {
             let seen = TASK.observe(T::zero(), &state);
             let action = POLICY.act(place, &seen, &mut || 0).action;
-            let held = Held { system: system::<T>(), command: action };
+            let held = CommandedSystem { system: system::<T>(), command: action };
             let after = VelocityVerlet.step(&held, state, T::from_f64(0.0625));
             taken += 1;
             let reward = Task::<T, 2, 4>::reward(&TASK, T::zero(), &state, &action, &after);

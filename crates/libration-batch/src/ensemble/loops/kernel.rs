@@ -7,11 +7,11 @@ use bytemuck::Pod;
 use libration_core::control::delay::Event;
 use libration_core::control::{Clock, Controller, Delay, Disturbance, Memory};
 use libration_core::random::{EPOCH, Purpose, Streams};
-use libration_core::system::Held;
+use libration_core::system::CommandedSystem;
 use libration_core::{Float, Integrator, State, System};
 use pulp::{Simd, WithSimd};
 
-use super::lane::{ratio, stepped};
+use super::lane::{ratio, step_with_command};
 use super::rows::Block;
 use super::setup::{Layout, Setup};
 use crate::ensemble::Assign;
@@ -124,8 +124,8 @@ where
                 if const { N::ACTS } {
                     (0..D).for_each(|i| command[i] = command[i] + pushed.0[i][$l]);
                 }
-                let system = Held { system: A::lane(&systems, $l), command };
-                stepped(method, &system, &mut q, &mut v, $l, $dt);
+                let system = CommandedSystem { system: A::lane(&systems, $l), command };
+                step_with_command(method, &system, &mut q, &mut v, $l, $dt);
             }};
         }
         macro_rules! push {
@@ -141,17 +141,17 @@ where
         let mut begin = steps.start;
         while begin < steps.end {
             let end = steps.end.min((begin / EPOCH + 1).saturating_mul(EPOCH));
-            let mut times = Streams::resumed(seed, first, begin, Purpose::StepTime, words[0]);
+            let mut times = Streams::at_step(seed, first, begin, Purpose::StepTime, words[0]);
             let mut latencies =
-                Streams::<W>::resumed(seed, first, begin, Purpose::Latency, words[1]);
+                Streams::<W>::at_step(seed, first, begin, Purpose::Latency, words[1]);
             let mut pushes =
-                Streams::<W>::resumed(seed, first, begin, Purpose::Disturbance, words[2]);
+                Streams::<W>::at_step(seed, first, begin, Purpose::Disturbance, words[2]);
             if const { !K::ACTS && !N::ACTS } {
                 for step in begin..end {
                     let beat = clock.beat(step);
                     for l in 0..W {
                         let h = dt * ratio::<T, C, W>(&clock, &mut clocks, beat, &mut times, l);
-                        stepped(method, &A::lane(&systems, l), &mut q, &mut v, l, h);
+                        step_with_command(method, &A::lane(&systems, l), &mut q, &mut v, l, h);
                     }
                 }
             } else if const { !K::ACTS } {

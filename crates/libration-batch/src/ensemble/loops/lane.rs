@@ -23,7 +23,7 @@ pub(super) fn ratio<T: Float, C: Clock<T>, const W: usize>(
 
 /// A step of lane `l`.
 #[inline(always)]
-pub(super) fn stepped<T: Float, Sys: System<T, D>, const D: usize, const W: usize>(
+pub(super) fn step_with_command<T: Float, Sys: System<T, D>, const D: usize, const W: usize>(
     method: impl Integrator,
     system: &Sys,
     q: &mut Lines<[[T; W]; D]>,

@@ -15,7 +15,9 @@ pub use setup::Setup;
 
 use kernel::Common;
 use libration_core::control::error::finite;
-use libration_core::control::{Begin, Clock, Controller, Delay, Disturbance, Memory, Undisturbed};
+use libration_core::control::{
+    Clock, Controller, Delay, Disturbance, Memory, NoDisturbance, StartAddress,
+};
 use libration_core::{Float, Integrator, State, System};
 use rows::Memories;
 use run::Run;
@@ -55,7 +57,7 @@ use super::{Assign, Ensemble, EnsembleError, Execution, GRAIN, Nobody, Observer,
 /// # }
 /// ```
 #[derive(Debug)]
-pub struct Loops<T, Sys, A, M, K, C, L, const D: usize, N = Undisturbed> {
+pub struct Loops<T, Sys, A, M, K, C, L, const D: usize, N = NoDisturbance> {
     setup: Setup<A, M, K, C, L, N>,
     layout: Layout,
     dt: T,
@@ -230,7 +232,7 @@ where
     }
 
     /// All that loops remember, as it lies in memory.
-    pub(super) fn remembered(&self) -> &[T] {
+    pub(super) fn memories(&self) -> &[T] {
         self.memories.numbers()
     }
 
@@ -258,7 +260,7 @@ where
     fn forget(&mut self, n: usize) {
         let Some(state) = self.state(n) else { return };
         let Layout { clock, delay, controller, held, rows, .. } = self.layout;
-        let (setup, begin) = (&self.setup, Begin::new(self.seed, n as u64, self.step()));
+        let (setup, begin) = (&self.setup, StartAddress::new(self.seed, n as u64, self.step()));
         // One lane.
         let clocks = setup.clock.start(begin).alone();
         let delays = setup.delay.start(begin).alone();

@@ -4,7 +4,7 @@ use core::mem::take;
 
 use bytemuck::Pod;
 
-use crate::ensemble::{Buffer, EnsembleError, GRAIN, NoRoom, Pages};
+use crate::ensemble::{Buffer, EnsembleError, GRAIN, InsufficientMemory, Pages};
 
 /// So many numbers for each trajectory: for every [`GRAIN`] neighbours a piece of memory, and in it row after row.
 #[derive(Debug)]
@@ -21,7 +21,7 @@ impl<T: Pod> Memories<T> {
     pub(super) fn new(len: usize, rows: usize) -> Result<Self, EnsembleError> {
         let all = len.div_ceil(GRAIN).checked_mul(GRAIN * rows);
         let needed = len as u128 * rows as u128 * size_of::<T>() as u128;
-        let all = all.ok_or(NoRoom { needed, available: None })?;
+        let all = all.ok_or(InsufficientMemory { needed, available: None })?;
         Ok(Memories { numbers: Buffer::new(all, Pages::Huge)?, rows })
     }
 

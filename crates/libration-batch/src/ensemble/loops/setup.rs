@@ -2,12 +2,12 @@
 
 use libration_core::Float;
 use libration_core::control::clock::Fixed;
-use libration_core::control::controller::Open;
-use libration_core::control::{Clock, Controller, Delay, Memory, Schedule, Undisturbed};
+use libration_core::control::controller::OpenLoop;
+use libration_core::control::{Clock, Controller, Delay, Memory, NoDisturbance, Schedule};
 
 /// A plant with its integrator, and what drives and disturbs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Setup<A, M, K = Open, C = Fixed, L = Schedule, N = Undisturbed> {
+pub struct Setup<A, M, K = OpenLoop, C = Fixed, L = Schedule, N = NoDisturbance> {
     /// The plant of every trajectory: [`All`](super::super::All) or [`PerTrajectory`](super::super::PerTrajectory).
     pub systems: A,
     /// The integrator.
@@ -25,8 +25,8 @@ pub struct Setup<A, M, K = Open, C = Fixed, L = Schedule, N = Undisturbed> {
 impl<A, M> Setup<A, M> {
     /// A plant that nothing drives or disturbs.
     pub fn new(systems: A, method: M) -> Self {
-        let (controller, clock, delay) = (Open, Fixed, Schedule::EVERY_STEP);
-        Setup { systems, method, controller, clock, delay, disturbance: Undisturbed }
+        let (controller, clock, delay) = (OpenLoop, Fixed, Schedule::EVERY_STEP);
+        Setup { systems, method, controller, clock, delay, disturbance: NoDisturbance }
     }
 }
 

@@ -1,27 +1,27 @@
 //! How long a step is.
 
-mod correlated;
-mod dropped;
-mod jittered;
-mod late;
+mod autoregressive;
+mod clock_rate;
+mod independent_jitter;
+mod late_ticks;
+mod missed_ticks;
 mod noise;
-mod recorded;
-mod stamps;
-mod steady;
-mod wandering;
-mod waving;
+mod random_walk;
+mod sinusoidal;
+mod time_record;
+mod time_stamps;
 
-pub use correlated::Correlated;
-pub use dropped::Dropped;
-pub use jittered::Jittered;
-pub use late::Late;
+pub use autoregressive::Correlated;
+pub use clock_rate::{Drifting, Fixed, Rates, Skewed};
+pub use independent_jitter::Jittered;
+pub use late_ticks::LateTicks;
+pub use missed_ticks::MissedTicks;
 pub use noise::{Gaussian, Noise, Uniform};
-pub use recorded::{Recorded, RecordedError};
-pub use steady::{Drifting, Fixed, Rates, Skewed};
-pub use wandering::Wandering;
-pub use waving::Waving;
+pub use random_walk::RandomWalk;
+pub use sinusoidal::Sinusoidal;
+pub use time_record::{Recorded, RecordedError};
 
-use super::{Begin, ControlError, Memory};
+use super::{ControlError, Memory, StartAddress};
 use crate::Float;
 
 /// Tells of every step of every trajectory how long it is, as a multiple of the time step `Δt`.
@@ -48,7 +48,7 @@ pub trait Clock<T: Float>: Copy + Send + Sync {
     }
 
     /// The memory before the first step.
-    fn start(&self, begin: Begin) -> Self::Memory;
+    fn start(&self, begin: StartAddress) -> Self::Memory;
 
     /// What is the same for all trajectories at `step`.
     fn beat(&self, step: u64) -> Self::Beat;
@@ -91,7 +91,7 @@ impl<T: Float, A: Clock<T>, B: Clock<T>> Clock<T> for (A, B) {
         self.1.check()
     }
 
-    fn start(&self, begin: Begin) -> Self::Memory {
+    fn start(&self, begin: StartAddress) -> Self::Memory {
         let [first, second] = begin.halves();
         (self.0.start(first), self.1.start(second))
     }

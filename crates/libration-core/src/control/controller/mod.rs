@@ -2,16 +2,16 @@
 
 mod force;
 mod luenberger;
-mod open;
+mod open_loop;
 mod pid;
-mod saturated;
+mod saturation;
 mod state_feedback;
 
 pub use force::Force;
 pub use luenberger::Luenberger;
-pub use open::Open;
+pub use open_loop::OpenLoop;
 pub use pid::{Pid, PidGains};
-pub use saturated::Saturated;
+pub use saturation::Saturated;
 pub use state_feedback::StateFeedback;
 
 use super::{ControlError, Memory};

@@ -2,7 +2,7 @@
 
 use super::{Arrival, Delay};
 use crate::Float;
-use crate::control::{Begin, ControlError, Latency};
+use crate::control::{ControlError, Latency, StartAddress};
 
 /// Latencies of the command, and of what is observed, for each trajectory, of any length: steps split where the loop looks and
 /// where commands arrive.
@@ -65,7 +65,7 @@ impl<T: Float> Delay<T> for Latencies<'_> {
         (0..self.commands.len()).map(|n| age(self.of(n)) as usize).max().unwrap_or(0)
     }
 
-    fn start(&self, begin: Begin) -> [T; 4] {
+    fn start(&self, begin: StartAddress) -> [T; 4] {
         let (command, observation) = self.of(begin.trajectory() as usize);
         // What is observed late was seen in the rest of a step before.
         let looks = if observation.part() > 0.0 { 1.0 - observation.part() } else { 0.0 };

@@ -2,17 +2,17 @@
 
 mod latencies;
 mod packets;
-mod random;
-mod recorded;
+mod random_delay;
+mod recorded_latencies;
 mod schedule;
 
 pub use latencies::Latencies;
 pub use packets::{Order, Packets, PacketsError};
-pub use random::Random;
-pub use recorded::{RecordedLatencies, RecordedLatenciesError};
+pub use random_delay::Random;
+pub use recorded_latencies::{RecordedLatencies, RecordedLatenciesError};
 pub use schedule::{Event, Schedule, ScheduleError};
 
-use super::{Begin, ControlError, Memory};
+use super::{ControlError, Memory, StartAddress};
 use crate::Float;
 
 /// Tells which command acts.
@@ -47,7 +47,7 @@ pub trait Delay<T: Float>: Copy + Send + Sync {
     fn longest(&self) -> usize;
 
     /// The memory before the first step.
-    fn start(&self, begin: Begin) -> Self::Memory;
+    fn start(&self, begin: StartAddress) -> Self::Memory;
 
     /// What is the same for all trajectories at `step`.
     fn beat(&self, step: u64) -> Self::Beat;
@@ -114,7 +114,7 @@ impl<T: Float> Delay<T> for Schedule {
         self.commands_on_their_way()
     }
 
-    fn start(&self, _: Begin) -> [T; 0] {
+    fn start(&self, _: StartAddress) -> [T; 0] {
         []
     }
 

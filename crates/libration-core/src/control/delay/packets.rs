@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::{Arrival, Delay};
 use crate::Float;
-use crate::control::Begin;
+use crate::control::StartAddress;
 use crate::random::uniform;
 
 /// Latencies that a packet can have, from 0 steps on.
@@ -102,7 +102,7 @@ impl<T: Float> Delay<T> for Packets {
         self.longest
     }
 
-    fn start(&self, _: Begin) -> Self::Memory {
+    fn start(&self, _: StartAddress) -> Self::Memory {
         // Any packet is newer than what acts before the first.
         ([T::from_f64(f64::from(u16::MAX))], [T::from_f64(-1.0); PLACES])
     }

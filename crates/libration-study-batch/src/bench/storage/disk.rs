@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use libration::State;
 use libration::ensemble::{Buffer, Ensemble, Execution, Pages};
-use libration_data::{DataError, keep, take_up, write_past};
+use libration_data::{DataError, load_state, save_state, write_direct};
 use libration_env::dataset;
 use libration_env::dataset::{DataFormat, Dataset, Job, Watch};
 use libration_study::{Lab, StudyError};
@@ -111,7 +111,7 @@ impl Disk<'_> {
         let pieces: Vec<_> = whole.chain([&memory[..len % PIECE]]).collect();
         let path = self.folder.join("bytes");
         let begun = Instant::now();
-        write_past(&path, &pieces).map_err(failed)?;
+        write_direct(&path, &pieces).map_err(failed)?;
         let seconds = begun.elapsed().as_secs_f64();
         self.remove(&path)?;
         Ok(seconds)
@@ -128,8 +128,8 @@ impl Disk<'_> {
         let (from, mut into) = (make(0.5)?, make(0.0)?);
         let path = self.folder.join("state");
         let begun = Instant::now();
-        keep(&path, &from, &Value::Null).map_err(failed)?;
-        take_up(&path, &mut into).map_err(failed)?;
+        save_state(&path, &from, &Value::Null).map_err(failed)?;
+        load_state(&path, &mut into).map_err(failed)?;
         let seconds = begun.elapsed().as_secs_f64();
         let len = fs::metadata(&path).map_or(0, |meta| meta.len());
         self.remove(&path)?;

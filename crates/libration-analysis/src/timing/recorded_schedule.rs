@@ -1,0 +1,296 @@
+//! A loop whose clock was measured, and is replayed again and again.
+
+use std::collections::HashMap;
+
+use libration_core::Scalar;
+use libration_core::control::{Jitter, LqrWeights};
+use libration_core::number::Wide;
+
+use super::dense_matrix::{Matrix, log_spectral_radius, product, scale, transpose};
+use super::imperfections::{MOST_RANDOM, MOST_RECORDED};
+use super::random_stages::solve_stein;
+use super::stage::{Stage, StageOptions, mean_square};
+use super::{CostError, Imperfections, LinearController, Plant};
+
+/// Steps are rounded to such a part of a period: those of a clock are not known better, and thousands of them are few then.
+const PART: f64 = 1.0 / 16_384.0;
+
+impl Plant<'_> {
+    /// The rate at which second moments grow in a step, on the average over `steps`, of the loop that `controller` closes where its steps
+    /// are so many periods long, in this order and again from the beginning; `imperfections` say what else is wrong with it, and
+    /// their jitter nothing.
+    ///
+    /// Without losses it follows from the product of all steps, as G. Floquet has it for what is periodic (*Sur les équations
+    /// différentielles linéaires à coefficients périodiques*, Annales scientifiques de l'École normale supérieure 12, 1883).
+    /// Steps are rounded to 2⁻¹⁴ of a period.
+    ///
+    /// # Errors
+    /// [`CostError`], as for [`Plant::cost`], and [`CostError::Step`].
+    pub fn recorded_growth(
+        &self,
+        controller: &LinearController,
+        imperfections: &Imperfections,
+        steps: &[f64],
+    ) -> Result<f64, CostError> {
+        Ok(self.recorded_schedule(controller, imperfections, steps, None)?.growth())
+    }
+
+    /// The stationary cost of that loop, as [`Plant::cost`] has it.
+    ///
+    /// # Errors
+    /// As of [`Plant::recorded_growth`].
+    pub fn recorded_cost(
+        &self,
+        controller: &LinearController,
+        imperfections: &Imperfections,
+        steps: &[f64],
+        weights: LqrWeights,
+    ) -> Result<f64, CostError> {
+        Ok(self.recorded_schedule(controller, imperfections, steps, Some(weights))?.cost())
+    }
+
+    fn recorded_schedule(
+        &self,
+        controller: &LinearController,
+        imperfections: &Imperfections,
+        steps: &[f64],
+        weights: Option<LqrWeights>,
+    ) -> Result<RecordedSchedule, CostError> {
+        if let Some(&wrong) = steps.iter().find(|step| !(**step >= 0.0 && step.is_finite())) {
+            return Err(CostError::Step(wrong));
+        }
+        if !steps.iter().any(|step| *step > 0.0) {
+            return Err(CostError::Step(0.0));
+        }
+        // What holds for all steps is checked where they are all alike.
+        let even = Imperfections { jitter: Jitter::Gaussian(0.0), ..*imperfections };
+        let waiting = self.waiting(controller, &even, weights)?;
+        let Imperfections { latency, skew, loss, .. } = even;
+        let most = if loss > 0.0 { MOST_RECORDED } else { MOST_RANDOM };
+        if waiting.size() > most {
+            return Err(CostError::Size { size: waiting.size() });
+        }
+        let options = StageOptions { waiting, controller, latency, weights };
+        let dt = self.dt * (Wide::one() + Wide::from_f64(skew));
+        let mut kinds = Vec::new();
+        let mut known = HashMap::new();
+        let kind = |step: &f64| {
+            let parts = (step / PART).round();
+            *known.entry(parts.to_bits()).or_insert_with(|| {
+                let h = dt * Wide::from_f64(parts * PART);
+                let arrives = [(1.0 - loss, false), (loss, true)].into_iter();
+                let arrives = arrives.filter(|(share, _)| *share > 0.0);
+                let stage = |(share, lost)| self.stage(options, share, h, lost);
+                kinds.push(arrives.map(stage).collect());
+                kinds.len() - 1
+            })
+        };
+        let order = steps.iter().map(kind).collect();
+        Ok(RecordedSchedule { size: waiting.size(), order, kinds, draws: loss > 0.0 })
+    }
+}
+
+/// The steps of a record: what each may be, with probabilities.
+struct RecordedSchedule {
+    size: usize,
+    order: Vec<usize>,
+    kinds: Vec<Vec<Stage>>,
+    draws: bool,
+}
+
+/// Steps after which passes through a record are no longer repeated.
+const MOST_STEPS: usize = 4_000_000;
+
+impl RecordedSchedule {
+    fn steps(&self) -> impl Iterator<Item = &Vec<Stage>> {
+        self.order.iter().map(|&kind| &self.kinds[kind])
+    }
+
+    /// The product of all steps, where nothing is drawn; else of what they make of second moments. It is divided by a factor whose
+    /// logarithm comes with it.
+    fn product(&self) -> (Matrix, f64) {
+        let of = |stages: &Vec<Stage>| match self.draws {
+            true => mean_square(stages),
+            false => stages[0].step.clone(),
+        };
+        // Most entries are zero, of steps that hand commands on.
+        let sparse = |row: &Vec<f64>| -> Vec<(usize, f64)> {
+            row.iter().copied().enumerate().filter(|(_, x)| *x != 0.0).collect()
+        };
+        let kinds: Vec<Vec<Vec<(usize, f64)>>> =
+            self.kinds.iter().map(|stages| of(stages).iter().map(sparse).collect()).collect();
+        let mut all = unit(kinds[0].len());
+        let mut next = all.clone();
+        let mut logarithm = 0.0;
+        for &kind in &self.order {
+            for (row, entries) in next.iter_mut().zip(&kinds[kind]) {
+                row.fill(0.0);
+                for (column, entry) in entries {
+                    row.iter_mut().zip(&all[*column]).for_each(|(x, y)| *x += entry * y);
+                }
+            }
+            core::mem::swap(&mut all, &mut next);
+            logarithm += normalise(&mut all);
+        }
+        (all, logarithm)
+    }
+
+    fn growth(&self) -> f64 {
+        let (product, logarithm) = self.product();
+        let power = if self.draws { 1.0 } else { 2.0 };
+        power * (log_spectral_radius(product) + logarithm) / self.order.len() as f64
+    }
+
+    fn cost(&self) -> f64 {
+        let growth = self.growth();
+        if growth.is_nan() || growth >= 0.0 {
+            return f64::INFINITY;
+        }
+        let mut moments = vec![vec![0.0; self.size]; self.size];
+        let pass = |moments: &mut Matrix| {
+            let (mut cost, mut length) = (0.0, 0.0);
+            for stages in self.steps() {
+                for stage in stages {
+                    cost += stage.weight * stage.expected(moments);
+                    length += stage.weight * stage.length;
+                }
+                *moments = moved(stages, moments);
+                for stage in stages {
+                    for (row, added) in moments.iter_mut().zip(&stage.noise) {
+                        row.iter_mut().zip(added).for_each(|(x, y)| *x += stage.weight * y);
+                    }
+                }
+            }
+            cost / length
+        };
+        pass(&mut moments);
+        if self.draws {
+            let count = self.order.len();
+            let lasts = (36.0 / (-growth * count as f64)).ceil();
+            let passes = (lasts as usize).min(MOST_STEPS / count).max(1);
+            for _ in 0..passes {
+                pass(&mut moments);
+            }
+        } else {
+            let (mut all, logarithm) = self.product();
+            all.iter_mut().flatten().for_each(|x| *x *= logarithm.exp());
+            moments = solve_stein(&all, vec![moments]).remove(0);
+        }
+        pass(&mut moments)
+    }
+}
+
+fn unit(n: usize) -> Matrix {
+    (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect()
+}
+
+/// Divides by the largest size of an entry, whose logarithm it returns.
+fn normalise(matrix: &mut Matrix) -> f64 {
+    let largest = |most: f64, x: &f64| if x.abs() > most || x.is_nan() { x.abs() } else { most };
+    let norm = matrix.iter().flatten().fold(0.0, largest);
+    if norm == 0.0 {
+        return f64::NEG_INFINITY;
+    }
+    scale(matrix, norm);
+    norm.ln()
+}
+
+/// `E[M P Mᵀ]`; of steps that mostly hand commands on, products from the left are the cheap ones.
+fn moved(stages: &[Stage], moments: &Matrix) -> Matrix {
+    let mut sum = vec![vec![0.0; moments.len()]; moments.len()];
+    for stage in stages {
+        let one = product(&stage.step, &transpose(&product(&stage.step, moments)));
+        for (row, one) in sum.iter_mut().zip(one) {
+            row.iter_mut().zip(one).for_each(|(x, y)| *x += stage.weight * y);
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use libration_core::control::{Feedback, Latency};
+    use libration_core::system::Oscillator;
+
+    use super::super::sample::{ORIGIN, textbook};
+    use super::*;
+
+    const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };
+    const WEIGHTS: LqrWeights = LqrWeights { position: 5.0, velocity: 0.5, command: 0.1 };
+
+    fn late(steps: f64, loss: f64) -> Imperfections {
+        Imperfections { latency: Latency::of_steps(steps).unwrap(), loss, ..Imperfections::NONE }
+    }
+
+    #[test]
+    fn a_record_of_even_steps_is_a_loop_of_even_steps() {
+        let gains = Feedback { position: 4.0, velocity: 1.0 }.into();
+        for (name, plant) in textbook(MODEL, 0.1) {
+            for (steps, loss) in [(0.0, 0.0), (1.5, 0.0), (1.0, 0.1), (0.7, 0.2)] {
+                let late = late(steps, loss);
+                for record in [&[1.0][..], &[1.0; 7]] {
+                    let growth = plant.mean_square_growth(&gains, &late).unwrap();
+                    let found = plant.recorded_growth(&gains, &late, record).unwrap();
+                    assert!((found - growth).abs() < 1e-11, "{name} {steps}: {found} {growth}");
+                    let cost = plant.cost(&gains, &late, WEIGHTS).unwrap();
+                    let found = plant.recorded_cost(&gains, &late, record, WEIGHTS).unwrap();
+                    let alike = found == cost || (found / cost - 1.0).abs() < 1e-10;
+                    assert!(alike, "{name} {steps}: {found} {cost}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn steps_in_blocks_grow_as_the_products_of_their_maps_say() {
+        // Of a free mass under a strong damper v' = (1 − K·h)·v: −1.1 of long steps, 0.7 of short ones.
+        let plant = Plant::exact(Oscillator { omega2: 0.0 }, ORIGIN, 0.1);
+        let gains = Feedback { position: 0.0, velocity: 12.0 }.into();
+        let velocity = LqrWeights { position: 0.0, velocity: 1.0, command: 0.0 };
+        let record: Vec<f64> = (0..40).map(|i| if i < 20 { 1.75 } else { 0.25 }).collect();
+        let none = Imperfections::NONE;
+        // Positions stay: nothing pulls them.
+        let held = Feedback { position: 1e-3, velocity: 12.0 }.into();
+        assert!(plant.recorded_growth(&gains, &none, &record).unwrap().abs() < 1e-9);
+        assert!(plant.recorded_growth(&held, &none, &record).unwrap() < -1e-9);
+        // Twenty long steps carry noise up by 1.1² each; an even clock, and one that alternates, never do.
+        let at = |record: &[f64]| plant.recorded_cost(&held, &none, record, velocity).unwrap();
+        let alternating: Vec<f64> = (0..40).map(|i| [1.75, 0.25][i % 2]).collect();
+        assert!(at(&record) > 3.0 * at(&alternating) && at(&alternating) > at(&[1.0]));
+        let longer: Vec<f64> = (0..400).map(|i| if i < 200 { 1.75 } else { 0.25 }).collect();
+        assert!(at(&longer) > 1e6 * at(&record), "{} {}", at(&longer), at(&record));
+        let all_long = plant.recorded_growth(&held, &none, &[1.75]).unwrap();
+        assert!((all_long - 2.0 * 1.1_f64.ln()).abs() < 1e-3, "{all_long}");
+        assert_eq!(plant.recorded_cost(&held, &none, &[1.75], velocity), Ok(f64::INFINITY));
+    }
+
+    #[test]
+    fn losses_in_a_record_are_those_of_a_plain_recursion() {
+        let plant = Plant::exact(MODEL, ORIGIN, 0.1);
+        let gains: LinearController = Feedback { position: 4.0, velocity: 1.0 }.into();
+        let (late, record) = (late(1.0, 0.3), [1.5, 0.5, 1.25]);
+        let found = plant.recorded_growth(&gains, &late, &record).unwrap();
+        // Three steps after each other, each as a law of its own that draws nothing but the loss.
+        let mut moments = unit(4);
+        let mut logarithms = vec![0.0];
+        for i in 0..30_000 {
+            let skew = record[i % 3] - 1.0;
+            let stages = plant.stages(&gains, &Imperfections { skew, ..late }, None).unwrap();
+            moments = moved(&stages, &moments);
+            logarithms.push(logarithms[i] + normalise(&mut moments));
+        }
+        // What turns beside the fastest motion has died out after half of them.
+        let wanted = (logarithms[30_000] - logarithms[15_000]) / 15_000.0;
+        assert!((found - wanted).abs() < 1e-9, "{found} {wanted}");
+    }
+
+    #[test]
+    fn steps_that_are_none_are_refused() {
+        let plant = Plant::exact(MODEL, ORIGIN, 0.1);
+        let gains = Feedback::default().into();
+        for record in [&[][..], &[0.0, 0.0], &[1.0, -0.5], &[f64::NAN]] {
+            let refused = plant.recorded_growth(&gains, &Imperfections::NONE, record).unwrap_err();
+            assert!(refused.to_string().contains("of the record is"), "{record:?}");
+        }
+    }
+}

@@ -1,0 +1,258 @@
+//! Rollouts into a replay buffer.
+
+use core::ops::Range;
+
+use bytemuck::Pod;
+use libration_core::Float;
+
+use super::capacity::Fields;
+use super::memory::Marks;
+use super::replay_buffer::{CUT, END, NONE, OVER};
+use super::{Replay, ReplayError};
+use crate::ensemble::Execution;
+use crate::rl::{Layout, Plan, Rollout};
+
+/// Rows that come in.
+struct Rows<'a> {
+    /// The first of their steps.
+    head: u64,
+    steps: usize,
+    layout: Layout,
+    execution: &'a Execution,
+}
+
+impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
+    /// Takes what environments did; the oldest steps make room for it. `next` is what is seen after its last step: `[n, i]`, as
+    /// [`observe`](crate::rl::Environments::observe) writes it.
+    ///
+    /// Where the rollout does not go on with what was seen last, as after a reset, the transition before keeps what was seen then.
+    /// A lost environment leaves no transition: what is no finite number is never drawn.
+    ///
+    /// # Errors
+    /// [`ReplayError::Capacity`] if it has more steps, or more ends of episodes, than there is room for;
+    /// [`ReplayError::Environment`] if it is of another number of environments. Nothing has changed then.
+    pub fn insert(
+        &mut self,
+        rollout: &Rollout<T, O, D>,
+        next: &[T],
+        execution: &Execution,
+    ) -> Result<(), ReplayError> {
+        let Plan { horizon, environments, layout, .. } = rollout.plan();
+        let n = self.capacity.environments;
+        ReplayError::shape("environments of the rollout", environments, n)?;
+        ReplayError::shape("numbers seen after the last step", next.len(), n.saturating_mul(O))?;
+        if horizon > self.capacity.steps {
+            let room = self.capacity.steps;
+            return Err(ReplayError::Capacity { name: "steps of a rollout", found: horizon, room });
+        }
+        if horizon == 0 {
+            return Ok(());
+        }
+        let (before, broken) = (self.marks, self.broken(rollout));
+        let tail = self.make_room(horizon, rollout.finals().len() + broken.len())?;
+        let broken = if tail < before.head { broken } else { Vec::new() };
+        self.retire(tail);
+        self.part(&broken);
+
+        let head = self.marks.head;
+        let Fields { observation, action, reward, .. } = self.memory.fields.clone();
+        let rows = Rows { head, steps: horizon, layout, execution };
+        self.copy::<O>(&rows, rollout.observation(), observation.clone());
+        self.copy::<D>(&rows, rollout.action(), action);
+        self.copy::<1>(&rows, rollout.reward(), reward);
+        let nones = self.mark(head, rollout);
+        let lost = self.end(head, rollout);
+        let row = self.row(head + horizon as u64);
+        let seen = &mut self.memory.field_mut::<[T; O]>(observation)[row * n..][..n];
+        seen.copy_from_slice(bytemuck::cast_slice(next));
+        let live = (horizon * n) as u64 - nones - lost;
+        self.marks.head += horizon as u64;
+        self.marks.ends.end += rollout.finals().len() as u64;
+        self.marks.live += live;
+        self.set_weights(before, nones + lost > 0);
+        self.memory.commit(self.marks);
+        Ok(())
+    }
+
+    /// Environments that do not go on with what they saw last.
+    fn broken(&self, rollout: &Rollout<T, O, D>) -> Vec<usize> {
+        let Marks { head, tail, .. } = self.marks;
+        if head == tail {
+            return Vec::new();
+        }
+        let n = self.capacity.environments;
+        let last = &self.observation()[self.row(head) * n..][..n];
+        if rollout.plan().layout == Layout::Interleaved {
+            let first: &[[T; O]] = bytemuck::cast_slice(&rollout.observation()[..n * O]);
+            if bytemuck::cast_slice::<_, u8>(first) == bytemuck::cast_slice::<_, u8>(last) {
+                return Vec::new();
+            }
+        }
+        let differs =
+            |&i: &usize| bytemuck::bytes_of(&rollout.seen(0, i)) != bytemuck::bytes_of(&last[i]);
+        // What ended before has its end already.
+        let goes_on = |&i: &usize| self.flags()[self.cell(head - 1, i)] & (END | NONE) == 0;
+        (0..n).filter(differs).filter(goes_on).collect()
+    }
+
+    /// The first step that stays when there come so many steps and ends.
+    fn make_room(&self, steps: usize, ends: usize) -> Result<u64, ReplayError> {
+        let Marks { head, tail, ends: there, .. } = self.marks;
+        let capacity = self.capacity;
+        if ends > capacity.ends {
+            return Err(ReplayError::Capacity {
+                name: "ends of episodes",
+                found: ends,
+                room: capacity.ends,
+            });
+        }
+        let end = head.checked_add(steps as u64).filter(|end| {
+            end.checked_mul(capacity.environments as u64).is_some_and(|n| n < u64::MAX / 4)
+        });
+        let end = end.ok_or(ReplayError::Capacity {
+            name: "numbers of transitions",
+            found: usize::MAX,
+            room: usize::MAX / 4,
+        })?;
+        let first = (there.end + ends as u64).saturating_sub(capacity.ends as u64);
+        let crowded = if first > there.first { self.step_of_end(first - 1) + 1 } else { 0 };
+        Ok(tail.max(end.saturating_sub(capacity.steps as u64)).max(crowded).min(head))
+    }
+
+    /// Steps before `tail` are there no more.
+    fn retire(&mut self, tail: u64) {
+        let Marks { tail: old, head, live, .. } = self.marks;
+        if tail == old {
+            return;
+        }
+        let n = self.capacity.environments;
+        let gone = (tail - old) * n as u64;
+        let all = (head - old) * n as u64;
+        let nones = if live == all { 0 } else { self.nones(old..tail) };
+        self.marks.live -= gone - nones;
+        self.marks.ends.first = self.first_end(tail);
+        self.marks.tail = tail;
+        self.memory.commit(self.marks);
+    }
+
+    /// How many of these steps are no transitions.
+    pub(super) fn nones(&self, steps: Range<u64>) -> u64 {
+        let n = self.capacity.environments;
+        let row = |step| &self.flags()[self.cell(step, 0)..][..n];
+        let nones = |step| row(step).iter().filter(|&&flags| flags & NONE != 0).count() as u64;
+        steps.map(nones).sum()
+    }
+
+    /// The last transitions of these environments keep what was seen after them.
+    fn part(&mut self, environments: &[usize]) {
+        if environments.is_empty() {
+            return;
+        }
+        let head = self.marks.head;
+        for &i in environments {
+            let seen = self.observation()[self.cell(head, i)];
+            self.write_end(self.marks.ends.end, self.place_of(head - 1, i, true), seen);
+            self.marks.ends.end += 1;
+        }
+        // An end without its mark says what the next row says as well.
+        self.memory.commit(self.marks);
+        let cells: Vec<usize> = environments.iter().map(|&i| self.cell(head - 1, i)).collect();
+        let flags = self.memory.fields.flags.clone();
+        let flags = self.memory.field_mut::<u8>(flags);
+        cells.into_iter().for_each(|cell| flags[cell] |= END);
+    }
+
+    /// Writes end `i`.
+    fn write_end(&mut self, i: u64, place: u64, seen: [T; O]) {
+        let at = (i % self.capacity.ends as u64) as usize;
+        let range = self.memory.fields.end_place.clone();
+        self.memory.field_mut::<u64>(range)[at] = place;
+        let range = self.memory.fields.end_seen.clone();
+        self.memory.field_mut::<[T; O]>(range)[at] = seen;
+    }
+
+    /// Copies rows of `N` numbers.
+    fn copy<const N: usize>(&mut self, new: &Rows<'_>, from: &[T], field: Range<usize>) {
+        let Rows { head, steps, layout, execution } = *new;
+        let (n, rows) = (self.capacity.environments, self.capacity.rows());
+        let row = self.row(head);
+        let whole = self.memory.field_mut::<[T; N]>(field);
+        if layout == Layout::Planes && N > 1 {
+            for (t, row) in (0..steps).map(|t| (t, (row + t) % rows)) {
+                for (l, to) in whole[row * n..][..n].iter_mut().enumerate() {
+                    let at = t * n + l;
+                    *to = core::array::from_fn(|i| from[i * steps * n + at]);
+                }
+            }
+            return;
+        }
+        let from: &[[T; N]] = bytemuck::cast_slice(from);
+        let first = (rows - row).min(steps) * n;
+        let (start, rest) = whole.split_at_mut(row * n);
+        let (head, tail) = from.split_at(first);
+        copy_all(&mut rest[..first], head, execution);
+        copy_all(&mut start[..tail.len()], tail, execution);
+    }
+
+    /// Marks what ended and what is no transition; gives how many of the latter there are.
+    fn mark(&mut self, head: u64, rollout: &Rollout<T, O, D>) -> u64 {
+        let n = self.capacity.environments;
+        let mut idle = vec![0; n];
+        let mut nones = 0;
+        for t in 0..rollout.plan().horizon {
+            let cell = self.cell(head + t as u64, 0);
+            let range = self.memory.fields.flags.clone();
+            let to = &mut self.memory.field_mut::<u8>(range)[cell..][..n];
+            let over = &rollout.terminated()[t * n..][..n];
+            match rollout.truncated().get(t * n..(t + 1) * n) {
+                Some(cut) => {
+                    let both = over.iter().zip(cut);
+                    let flags = |(over, cut)| over * OVER + cut * CUT + (over | cut) * END;
+                    to.iter_mut().zip(both).for_each(|(to, both)| *to = flags(both));
+                }
+                None => {
+                    to.iter_mut().zip(over).for_each(|(to, over)| *to = over * (OVER + END));
+                }
+            }
+            if rollout.pauses() {
+                rollout.write_idle(t, 0, &mut idle);
+                for (to, _) in to.iter_mut().zip(&idle).filter(|(_, idle)| **idle != 0) {
+                    *to = NONE;
+                    nones += 1;
+                }
+            }
+        }
+        nones
+    }
+
+    /// Keeps what was seen at ends; gives how many environments were lost.
+    fn end(&mut self, head: u64, rollout: &Rollout<T, O, D>) -> u64 {
+        let mut lost = 0;
+        for (i, end) in (self.marks.ends.end..).zip(rollout.finals()) {
+            let step = head + end.step as u64;
+            self.write_end(i, self.place_of(step, end.environment, false), end.observation);
+            if end.lost {
+                lost += 1;
+                let cell = self.cell(step, end.environment);
+                let range = self.memory.fields.flags.clone();
+                self.memory.field_mut::<u8>(range)[cell] |= NONE;
+            }
+        }
+        lost
+    }
+}
+
+/// Numbers that are worth a thread of their own to copy.
+const PIECE: usize = 1 << 16;
+
+/// Copies one into the other, on all threads where there is much.
+fn copy_all<X: Pod + Send + Sync>(to: &mut [X], from: &[X], execution: &Execution) {
+    let pieces = execution.thread_count().min(from.len() / PIECE);
+    if pieces < 2 {
+        to.copy_from_slice(from);
+        return;
+    }
+    let len = from.len().div_ceil(pieces);
+    let pairs: Vec<_> = to.chunks_mut(len).zip(from.chunks(len)).collect();
+    execution.each(pairs, |(to, from)| to.copy_from_slice(from));
+}

@@ -1,0 +1,158 @@
+//! Steps that were measured.
+
+use thiserror::Error;
+
+use super::Clock;
+use crate::Float;
+use crate::control::error::{ensure, none_negative};
+use crate::control::{ControlError, StartAddress};
+
+/// The steps between the time stamps of a loop that ran.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Recorded<'a> {
+    ratios: &'a [f64],
+    repeats: bool,
+}
+
+/// Why time stamps are no record of a clock.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum RecordedError {
+    /// There is no step between them.
+    #[error("the number of time stamps is {count}; it must be at least 2")]
+    TooFew {
+        /// How many there are.
+        count: usize,
+    },
+    /// A line of a file is no time stamp.
+    #[error(
+        "line {line} is `{text}`; it must begin with a number, the time in seconds or nanoseconds"
+    )]
+    Line {
+        /// Which, from 1 on.
+        line: usize,
+        /// What stands there.
+        text: String,
+    },
+    /// One is infinite or not a number.
+    #[error("time stamp {} is {value}; it must be a finite number", index + 1)]
+    NotFinite {
+        /// Which, from 0 on; the message counts from 1.
+        index: usize,
+        /// What it is.
+        value: f64,
+    },
+    /// A clock does not go back.
+    #[error("time stamp {} is {after} s; it must be at least the {before} s of the one in front of it, counted from the first", index + 1)]
+    Backwards {
+        /// Which, from 0 on; the message counts from 1.
+        index: usize,
+        /// The one in front of it, in seconds.
+        before: f64,
+        /// It, in seconds.
+        after: f64,
+    },
+    /// Something is needed that is above zero.
+    #[error("the mean step is {mean} s; it must be a finite number above 0")]
+    NoTime {
+        /// The mean step in seconds.
+        mean: f64,
+    },
+}
+
+impl<'a> Recorded<'a> {
+    /// The time stamps of a file, in seconds from the first on: one on each line, at its beginning, in seconds or in nanoseconds; of
+    /// which a first line with the name of a column tells (`time_ns`), or else their size, where they are whole numbers that lie more
+    /// than 1000 apart. Lines of `candump -L` and of `rostopic echo -p` are such lines, and so are rows of CSV. Empty lines and those
+    /// that begin with `#` are passed over.
+    ///
+    /// # Errors
+    /// The first line that is no time stamp.
+    pub fn stamps_in(text: &str) -> Result<Vec<f64>, RecordedError> {
+        super::time_stamps::read(text)
+    }
+
+    /// The steps between `stamps`, which are in seconds, as multiples of `dt` seconds.
+    ///
+    /// # Errors
+    /// As of [`Recorded::steps_between`]; and if `dt` is not above zero.
+    pub fn steps_in(stamps: &[f64], dt: f64) -> Result<Vec<f64>, RecordedError> {
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(RecordedError::NoTime { mean: dt });
+        }
+        Self::mean_step(stamps)?;
+        Ok(stamps.windows(2).map(|pair| (pair[1] - pair[0]) / dt).collect())
+    }
+
+    /// The steps between `stamps`, which are in seconds, as multiples of their mean; and that mean in seconds.
+    ///
+    /// # Errors
+    /// If there are fewer than two stamps, if one is not a number or lies before the one in front of it, or if all are
+    /// the same.
+    pub fn steps_between(stamps: &[f64]) -> Result<(Vec<f64>, f64), RecordedError> {
+        let mean = Self::mean_step(stamps)?;
+        Ok((Self::steps_in(stamps, mean)?, mean))
+    }
+
+    /// The mean step in seconds.
+    fn mean_step(stamps: &[f64]) -> Result<f64, RecordedError> {
+        if let Some(index) = stamps.iter().position(|stamp| !stamp.is_finite()) {
+            return Err(RecordedError::NotFinite { index, value: stamps[index] });
+        }
+        let back = stamps.windows(2).position(|pair| pair[1] < pair[0]);
+        if let Some(i) = back {
+            let (before, after) = (stamps[i], stamps[i + 1]);
+            return Err(RecordedError::Backwards { index: i + 1, before, after });
+        }
+        let (&[first, ..], &[.., last]) = (stamps, stamps) else {
+            return Err(RecordedError::TooFew { count: 0 });
+        };
+        if stamps.len() < 2 {
+            return Err(RecordedError::TooFew { count: stamps.len() });
+        }
+        let mean = (last - first) / (stamps.len() - 1) as f64;
+        if !(mean > 0.0 && mean.is_finite()) {
+            return Err(RecordedError::NoTime { mean });
+        }
+        Ok(mean)
+    }
+
+    /// These steps, as multiples of `Δt`, for all trajectories. A run that is longer is refused.
+    pub fn once(ratios: &'a [f64]) -> Self {
+        Recorded { ratios, repeats: false }
+    }
+
+    /// These steps, again and again; there must be at least one.
+    pub fn repeated(ratios: &'a [f64]) -> Self {
+        Recorded { ratios, repeats: true }
+    }
+}
+
+impl<T: Float> Clock<T> for Recorded<'_> {
+    type Memory = [T; 0];
+    type Beat = T;
+
+    fn check(&self) -> Result<(), ControlError> {
+        none_negative::<T>("recorded step", self.ratios)?;
+        let count = self.ratios.len() as f64;
+        ensure("the number of recorded steps", count, "at least 1", |count| count > 0.0)
+    }
+
+    fn start(&self, _: StartAddress) -> [T; 0] {
+        []
+    }
+
+    fn beat(&self, step: u64) -> T {
+        let index = step.checked_rem(self.ratios.len() as u64).unwrap_or(0);
+        let ratio = self.ratios.get(index as usize).copied().unwrap_or(0.0);
+        T::from_f64(ratio.max(0.0))
+    }
+
+    fn steps(&self) -> Option<u64> {
+        (!self.repeats || self.ratios.is_empty()).then_some(self.ratios.len() as u64)
+    }
+
+    #[inline(always)]
+    fn ratio(&self, _: &mut [T; 0], beat: T, _: &mut impl FnMut() -> u32) -> T {
+        beat
+    }
+}

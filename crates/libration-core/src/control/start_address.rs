@@ -1,0 +1,50 @@
+//! Where what a loop remembers begins.
+
+use crate::control::Jitter;
+use crate::random::{Address, Purpose};
+
+/// The beginning of a trajectory, which is the address of all that is drawn for it once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StartAddress {
+    seed: u64,
+    trajectory: u64,
+    step: u64,
+    /// Of the parts of a pair: 0 is the whole, and `2p + 1` and `2p + 2` are the halves of `p`.
+    part: u64,
+}
+
+/// Parts that can be told apart: of pairs of pairs, six deep.
+const PARTS: u64 = 128;
+
+impl StartAddress {
+    /// Of `trajectory`, in the run of this seed, at a step: 0, or that of its reset; of an environment, the number of its episode.
+    pub fn new(seed: u64, trajectory: u64, step: u64) -> Self {
+        StartAddress { seed, trajectory, step, part: 0 }
+    }
+
+    /// The number of the trajectory.
+    pub fn trajectory(self) -> u64 {
+        self.trajectory
+    }
+
+    /// Beginnings for the halves of a pair, whose draws have nothing to do with each other.
+    pub fn halves(self) -> [StartAddress; 2] {
+        [1, 2].map(|half| StartAddress { part: (2 * self.part + half) % PARTS, ..self })
+    }
+
+    /// The place of a draw.
+    pub fn address(self, purpose: Purpose) -> Address {
+        let StartAddress { seed, trajectory, step, part } = self;
+        Address { seed, trajectory, step: step.wrapping_mul(PARTS).wrapping_add(part), purpose }
+    }
+
+    /// A draw after a law.
+    pub fn draw(self, law: Jitter, purpose: Purpose) -> f64 {
+        let place = self.address(purpose);
+        match law {
+            Jitter::Gaussian(rms) => rms * place.gaussian()[0],
+            // The width of a uniform law is √12 of its deviations.
+            Jitter::Uniform(rms) => rms * 12.0_f64.sqrt() * (place.uniform()[0] - 0.5),
+        }
+    }
+}

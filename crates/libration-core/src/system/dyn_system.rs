@@ -1,0 +1,19 @@
+//! A system that is chosen when the program runs.
+
+use super::System;
+use crate::{Scalar, State};
+
+/// A system behind a function: code that takes any system is compiled once, and calls it for every acceleration. It is
+/// no part of a vector.
+#[derive(Clone, Copy)]
+pub struct DynSystem<'a, S, const D: usize>(
+    /// The acceleration.
+    pub &'a (dyn Fn(&State<S, D>) -> [S; D] + Send + Sync),
+);
+
+impl<S: Scalar, const D: usize> System<S, D> for DynSystem<'_, S, D> {
+    #[inline]
+    fn acceleration(&self, state: &State<S, D>) -> [S; D] {
+        (self.0)(state)
+    }
+}

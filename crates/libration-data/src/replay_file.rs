@@ -1,0 +1,112 @@
+//! Replay buffers in files.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Write};
+use std::ops::{Deref, DerefMut};
+use std::path::{Path, PathBuf};
+
+use bytemuck::Pod;
+use libration::Float;
+use libration::replay::{Capacity, Replay, ReplayError};
+use memmap2::MmapMut;
+
+use crate::DataError;
+use crate::durable_file::make;
+use crate::lock::lock;
+
+/// A replay buffer whose memory is a file, which this process alone uses: at whatever moment it dies, what was inserted before is
+/// found there again. A loss of power is another matter: the system writes what was changed in no order, so that only a buffer that
+/// was [flushed](Self::flush) after its last change is sure to be found again.
+#[derive(Debug)]
+pub struct ReplayFile<T, const O: usize, const D: usize> {
+    replay: Replay<T, O, D>,
+    path: PathBuf,
+    /// Locked as long as it is open.
+    _file: File,
+}
+
+impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
+    /// An empty one in a new file, all of whose room on the disk is taken at once: where memory is a file, a full disk ends the process.
+    ///
+    /// # Errors
+    /// [`DataError::Io`] if the file is there already, or there is no room for it; [`DataError::Replay`].
+    pub fn create(path: &Path, capacity: Capacity) -> Result<Self, DataError> {
+        let bytes = capacity.bytes(O, D, size_of::<T>()).map_err(refused(path))?;
+        if path.exists() {
+            let error = io::Error::from(io::ErrorKind::AlreadyExists);
+            return Err(DataError::io("create", path)(error));
+        }
+        let (file, replay) = make(path, |part| {
+            let file =
+                OpenOptions::new().read(true).write(true).create(true).truncate(true).open(part)?;
+            file.try_lock()?;
+            fill(&file, bytes)?;
+            let map = map(&file)?;
+            let replay = Replay::create(map, capacity).map_err(io::Error::other)?;
+            replay.map().flush()?;
+            Ok((file, replay))
+        })?;
+        Ok(ReplayFile { replay, path: path.to_owned(), _file: file })
+    }
+
+    /// What an earlier process left.
+    ///
+    /// # Errors
+    /// [`DataError::Io`], [`DataError::Locked`] if another process has it, [`DataError::Replay`] if it is none or damaged.
+    pub fn open(path: &Path) -> Result<Self, DataError> {
+        let file = OpenOptions::new().read(true).write(true).open(path);
+        let file = file.map_err(DataError::io("open", path))?;
+        lock(&file, path)?;
+        let map = map(&file).map_err(DataError::io("map", path))?;
+        let replay = Replay::open(map).map_err(refused(path))?;
+        Ok(ReplayFile { replay, path: path.to_owned(), _file: file })
+    }
+
+    /// Waits until all that was inserted is on the disk.
+    ///
+    /// # Errors
+    /// If the system refuses.
+    pub fn flush(&self) -> Result<(), DataError> {
+        self.replay.map().flush().map_err(DataError::io("write", &self.path))
+    }
+}
+
+impl<T, const O: usize, const D: usize> Deref for ReplayFile<T, O, D> {
+    type Target = Replay<T, O, D>;
+
+    fn deref(&self) -> &Replay<T, O, D> {
+        &self.replay
+    }
+}
+
+impl<T, const O: usize, const D: usize> DerefMut for ReplayFile<T, O, D> {
+    fn deref_mut(&mut self) -> &mut Replay<T, O, D> {
+        &mut self.replay
+    }
+}
+
+fn refused(path: &Path) -> impl FnOnce(ReplayError) -> DataError {
+    let path = path.to_owned();
+    move |source| DataError::Replay { path, source }
+}
+
+/// So many zeros, on the disk.
+fn fill(mut file: &File, bytes: usize) -> io::Result<()> {
+    let zeros = [0; 1 << 16];
+    let mut left = bytes;
+    while left > 0 {
+        let count = left.min(zeros.len());
+        file.write_all(&zeros[..count])?;
+        left -= count;
+    }
+    file.sync_all()
+}
+
+/// The file as memory.
+#[allow(unsafe_code)]
+fn map(file: &File) -> io::Result<MmapMut> {
+    // SAFETY: the memory must not change but through this map, nor the file get shorter. It is locked, and every process that comes
+    // through here asks for the lock first. One that ignores it can change numbers, of which every pattern of bits is one, or end
+    // this process by making the file shorter.
+    unsafe { MmapMut::map_mut(file) }
+}

@@ -1,0 +1,113 @@
+//! States in files.
+
+use std::convert::Infallible;
+use std::fs::File;
+use std::io::{BufWriter, IntoInnerError, Write};
+use std::path::Path;
+
+use libration::checkpoint::{Checkpoint, CheckpointError, ensure_same_traits};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use crate::DataError;
+use crate::checksum::{ChecksumWriter, checksum_at_once};
+use crate::durable_file::{make, named, sync_folder};
+
+/// The first bytes of such a file.
+const MAGIC: &[u8; 8] = b"LIBRTNCP";
+
+/// What stands before the bytes of a state, as JSON.
+#[derive(Deserialize, Serialize)]
+struct Head {
+    /// Of the format.
+    format: u64,
+    /// Of the program that wrote it: another one may go on otherwise.
+    version: String,
+    /// What the state is of.
+    traits: Map<String, Value>,
+    /// What else the caller knows.
+    note: Value,
+    bytes: u64,
+}
+
+const FORMAT: u64 = 1;
+/// Of this program: another one may go on otherwise.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Bytes of the checksum at the end, over all before it.
+const SUM: usize = 64;
+
+/// Bytes that are gathered before they are written.
+const GATHERED: usize = 1 << 20;
+
+/// Keeps a state in a file, which is there whole or not at all, with a note.
+///
+/// # Errors
+/// If the system refuses.
+pub fn save_state(path: &Path, of: &impl Checkpoint, note: &Value) -> Result<(), DataError> {
+    let mut bytes = 0;
+    let count = |piece: &[u8]| -> Result<(), Infallible> {
+        bytes += piece.len() as u64;
+        Ok(())
+    };
+    let Ok(()) = of.save(count);
+    let text = |(name, value): (&'static str, String)| (name.to_owned(), Value::String(value));
+    let head = Head {
+        format: FORMAT,
+        version: VERSION.to_owned(),
+        traits: of.traits().into_iter().map(text).collect(),
+        note: note.clone(),
+        bytes,
+    };
+    let head =
+        serde_json::to_vec(&head).map_err(|error| DataError::io("write", path)(error.into()))?;
+    // Through the system's cache: who goes on from a state often does so soon.
+    make(path, |part| {
+        let mut file = BufWriter::with_capacity(GATHERED, ChecksumWriter::new(File::create(part)?));
+        for piece in [&MAGIC[..], &(head.len() as u64).to_le_bytes(), &head] {
+            file.write_all(piece)?;
+        }
+        of.save(|piece| file.write_all(piece))?;
+        let file = file.into_inner().map_err(IntoInnerError::into_error)?;
+        let sum = file.sum();
+        let mut file = file.into_inner();
+        file.write_all(sum.as_bytes())?;
+        file.sync_data()
+    })?;
+    path.parent().map_or(Ok(()), |folder| sync_folder(named(folder)))
+}
+
+/// Takes up a state from a file; gives the note that was kept with it.
+///
+/// # Errors
+/// If the file cannot be read, is of another version or was changed, or its state is of something else. Nothing has changed then.
+pub fn load_state(path: &Path, into: &mut impl Checkpoint) -> Result<Value, DataError> {
+    let bytes = std::fs::read(path).map_err(DataError::io("read", path))?;
+    let damaged = |what: &str| DataError::Damaged { path: path.to_owned(), what: what.to_owned() };
+    if !bytes.starts_with(MAGIC) {
+        return Err(damaged("it is no state that was kept"));
+    }
+    let whole = bytes.len().checked_sub(SUM).filter(|&len| len >= MAGIC.len() + 8);
+    let (told, sum) = bytes.split_at(whole.ok_or_else(|| damaged("it is cut off"))?);
+    if checksum_at_once(told).as_bytes() != sum {
+        return Err(damaged("it does not agree with its checksum: it was cut off or changed"));
+    }
+    let (len, rest) = told[MAGIC.len()..].split_first_chunk().unwrap_or((&[0; 8], &[]));
+    let len = usize::try_from(u64::from_le_bytes(*len)).unwrap_or(usize::MAX);
+    let (head, state) = rest.split_at_checked(len).ok_or_else(|| damaged("it is cut off"))?;
+    let head: Head = serde_json::from_slice(head)
+        .map_err(|error| damaged(&format!("what it says of its state cannot be read: {error}")))?;
+    if head.format != FORMAT || head.version != VERSION {
+        let what = format!(
+            "it was kept by version {} in format {}; this is version {VERSION}, which reads format {FORMAT} of its own",
+            head.version, head.format
+        );
+        return Err(damaged(&what));
+    }
+    let refused = |source: CheckpointError| DataError::State { path: path.to_owned(), source };
+    let found = head.traits.iter();
+    let found = found.map(|(name, value)| (name.as_str(), value.as_str().unwrap_or_default()));
+    ensure_same_traits(found, &into.traits()).map_err(refused)?;
+    into.restore(state).map_err(refused)?;
+    Ok(head.note)
+}
