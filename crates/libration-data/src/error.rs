@@ -25,10 +25,10 @@ pub enum DataError {
     #[error("another process is using {}; wait for it, or choose another place", .0.display())]
     Locked(PathBuf),
     /// There is a data set, and nobody asked to go on with it.
-    #[error("{} holds a data set; --resume goes on with it", .0.display())]
+    #[error("{} holds a data set; use --resume to resume it", .0.display())]
     Exists(PathBuf),
     /// There is something else.
-    #[error("{} holds {found}, which is no part of a data set; choose an empty folder", folder.display())]
+    #[error("{} holds {found}, which is not part of a data set; choose an empty folder", folder.display())]
     ForeignFile {
         /// Where.
         folder: PathBuf,
@@ -39,7 +39,7 @@ pub enum DataError {
     #[error("{} holds no data set: it has no manifest.jsonl", .0.display())]
     Missing(PathBuf),
     /// The data set is of other settings.
-    #[error("{} holds a data set of other settings: its {name} is {found}; it must be {wanted}", folder.display())]
+    #[error("{} holds a data set with other settings: its {name} is {found}; it must be {wanted}", folder.display())]
     Other {
         /// Where.
         folder: PathBuf,

@@ -197,7 +197,7 @@ fn other(
     found: &Map<String, Value>,
     wanted: &Map<String, Value>,
 ) -> Option<(String, String, String)> {
-    let text = |value: Option<&Value>| value.map_or("not told".to_owned(), Value::to_string);
+    let text = |value: Option<&Value>| value.map_or("missing".to_owned(), Value::to_string);
     wanted.keys().chain(found.keys()).find_map(|key| {
         let name = if above.is_empty() { key.clone() } else { format!("{above}.{key}") };
         match (found.get(key), wanted.get(key)) {

@@ -72,12 +72,12 @@ impl Manifest {
             text[..len].split(|&byte| byte == b'\n').take_while(|line| !line.is_empty());
         let Some(first) = lines.next() else { return Ok((None, 0)) };
         let settings = serde_json::from_slice(first)
-            .map_err(|error| wrong(0, format!("tells no settings: {error}")))?;
+            .map_err(|error| wrong(0, format!("has no settings: {error}")))?;
         let mut manifest = Manifest { settings, chunks: Vec::new() };
         let (mut read, mut names) = (first.len() + 1, HashSet::new());
         for (i, line) in lines.enumerate() {
             let chunk: Chunk = serde_json::from_slice(line)
-                .map_err(|error| wrong(i + 1, format!("is no chunk: {error}")))?;
+                .map_err(|error| wrong(i + 1, format!("is not a chunk: {error}")))?;
             let plain = |path: &Path| path.components().all(|c| matches!(c, Component::Normal(_)));
             let mut paths = HashSet::new();
             if let Some(file) = chunk.files.iter().find(|file| !paths.insert(&file.path)) {
@@ -88,7 +88,7 @@ impl Manifest {
                 return Err(wrong(i + 1, what));
             }
             if !names.insert(chunk.chunk.clone()) {
-                return Err(wrong(i + 1, format!("tells of chunk {} again", chunk.chunk)));
+                return Err(wrong(i + 1, format!("repeats chunk {}", chunk.chunk)));
             }
             manifest.chunks.push(chunk);
             read += line.len() + 1;

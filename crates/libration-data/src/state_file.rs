@@ -85,21 +85,21 @@ pub fn load_state(path: &Path, into: &mut impl Checkpoint) -> Result<Value, Data
     let bytes = std::fs::read(path).map_err(DataError::io("read", path))?;
     let damaged = |what: &str| DataError::Damaged { path: path.to_owned(), what: what.to_owned() };
     if !bytes.starts_with(MAGIC) {
-        return Err(damaged("it is no state that was kept"));
+        return Err(damaged("it is not a state file"));
     }
     let whole = bytes.len().checked_sub(SUM).filter(|&len| len >= MAGIC.len() + 8);
-    let (told, sum) = bytes.split_at(whole.ok_or_else(|| damaged("it is cut off"))?);
+    let (told, sum) = bytes.split_at(whole.ok_or_else(|| damaged("it is truncated"))?);
     if checksum_at_once(told).as_bytes() != sum {
-        return Err(damaged("it does not agree with its checksum: it was cut off or changed"));
+        return Err(damaged("its checksum does not match: it was truncated or changed"));
     }
     let (len, rest) = told[MAGIC.len()..].split_first_chunk().unwrap_or((&[0; 8], &[]));
     let len = usize::try_from(u64::from_le_bytes(*len)).unwrap_or(usize::MAX);
-    let (head, state) = rest.split_at_checked(len).ok_or_else(|| damaged("it is cut off"))?;
+    let (head, state) = rest.split_at_checked(len).ok_or_else(|| damaged("it is truncated"))?;
     let head: Head = serde_json::from_slice(head)
-        .map_err(|error| damaged(&format!("what it says of its state cannot be read: {error}")))?;
+        .map_err(|error| damaged(&format!("its header cannot be read: {error}")))?;
     if head.format != FORMAT || head.version != VERSION {
         let what = format!(
-            "it was kept by version {} in format {}; this is version {VERSION}, which reads format {FORMAT} of its own",
+            "version {} wrote it in format {}; this is version {VERSION}, which reads format {FORMAT} of the same version",
             head.version, head.format
         );
         return Err(damaged(&what));

@@ -50,8 +50,8 @@ pub enum CostError {
     Skew(f64),
     /// The matrix would be too large.
     #[error(
-        "the latency is too many periods long: a loop that has to know {size} numbers, of which most are commands on their way, is too \
-         large; with jitter or losses there may be {MOST_RANDOM}, with a record and losses {MOST_RECORDED}, with none of them {MOST_REPEATED}"
+        "the latency is too many periods long: the state of the loop has {size} numbers, most of them commands in transit; the most is {MOST_RANDOM} \
+         with jitter or losses, {MOST_RECORDED} with a record and losses, {MOST_REPEATED} without them"
     )]
     Size {
         /// State, controller and waiting commands.

@@ -40,7 +40,7 @@ pub enum LqrError {
     OutOfReach,
     /// A motion that does not decay costs nothing.
     #[error(
-        "the feedback that costs least is not stable: the weights do not see a motion that does \
+        "the feedback that costs least is not stable: the weights miss a motion that does \
          not decay; give weights above 0 to both position and velocity"
     )]
     Unseen,

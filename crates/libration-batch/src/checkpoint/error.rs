@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum CheckpointError {
     /// It is that of something else.
-    #[error("the state is of something else: its {name} is {found}; it must be {wanted}")]
+    #[error("the state does not match: its {name} is {found}; it must be {wanted}")]
     Other {
         /// What is different.
         name: &'static str,

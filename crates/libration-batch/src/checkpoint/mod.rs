@@ -61,7 +61,7 @@ pub fn ensure_same_traits<'a>(
 ) -> Result<(), CheckpointError> {
     for (name, wanted) in wanted {
         let value = found.clone().into_iter().find(|(other, _)| other == name);
-        let value = value.map_or("not told", |(_, value)| value);
+        let value = value.map_or("missing", |(_, value)| value);
         if value != wanted {
             let (found, wanted) = (value.to_owned(), wanted.clone());
             return Err(CheckpointError::Other { name, found, wanted });

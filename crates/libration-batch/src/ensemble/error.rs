@@ -46,7 +46,7 @@ pub enum EnsembleError {
         dt: f64,
     },
     /// What was recorded is not made longer.
-    #[error("the record of a clock or a delay has {known} steps; {asked} are asked for")]
+    #[error("the record of a clock or a delay has {known} steps; the run requires {asked}")]
     Record {
         /// Steps that there are.
         known: u64,

@@ -19,7 +19,7 @@ pub enum ReplayError {
         name: &'static str,
     },
     /// More at once than there is room for.
-    #[error("{name}: {found} at once; the capacity is {room}")]
+    #[error("{name}: {found} in one insertion; the capacity is {room}")]
     Capacity {
         /// Of what.
         name: &'static str,
@@ -32,11 +32,11 @@ pub enum ReplayError {
     #[error("the replay buffer has no {0} to draw from; insert a rollout first")]
     Empty(&'static str),
     /// It was made without priorities.
-    #[error("the replay buffer has no priorities; its capacity must ask for them")]
+    #[error("the replay buffer has no priorities; create it with priorities")]
     Priorities,
     /// A transition that was never inserted.
     #[error(
-        "the number of a transition {index} is {value}; it must be one that was drawn, below {end}"
+        "the number of a transition {index} is {value}; it must be a number from a batch, below {end}"
     )]
     Index {
         /// Which of those given.
@@ -47,7 +47,7 @@ pub enum ReplayError {
         end: u64,
     },
     /// Memory that holds something else.
-    #[error("this is no replay buffer of these numbers: {what} is {found}; it must be {wanted}")]
+    #[error("the replay buffer does not match: {what} is {found}; it must be {wanted}")]
     Other {
         /// What is different.
         what: &'static str,

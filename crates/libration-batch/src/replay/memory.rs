@@ -129,7 +129,7 @@ impl Memory {
             return other("its version", &version, &VERSION);
         }
         if check(&words[..9]) != sum {
-            return Err(ReplayError::Damaged("its description does not agree with its sum".into()));
+            return Err(ReplayError::Damaged("its description does not match its checksum".into()));
         }
         let name = name.to_le_bytes();
         let name = String::from_utf8_lossy(&name);
@@ -164,7 +164,7 @@ impl Memory {
         let whole = records.iter().filter(|words| check(&words[..7]) == words[7]);
         let newest = whole.max_by_key(|words| words[0]);
         let &[sequence, head, tail, first, end, live, largest, _] = newest.ok_or_else(|| {
-            ReplayError::Damaged("neither record of how far it is agrees with its sum".into())
+            ReplayError::Damaged("neither record of its counters matches its checksum".into())
         })?;
         self.sequence = sequence;
         let largest = f64::from_bits(largest);

@@ -35,7 +35,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
             && largest.is_finite()
             && largest > 0.0;
         if !fits {
-            return damaged(format!("it cannot be so far: {:?}", self.marks));
+            return damaged(format!("its counters are inconsistent: {:?}", self.marks));
         }
         let mut before = None;
         for i in ends.first..ends.end {
@@ -43,7 +43,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
             if before.is_some_and(|before| before >= place)
                 || !(2 * tail * n..2 * head * n).contains(&place)
             {
-                return damaged(format!("end {i} cannot stand where it does"));
+                return damaged(format!("end {i} is in an invalid place"));
             }
             before = Some(place);
         }
@@ -53,7 +53,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
                 let flags = self.flags()[self.cell(step, n)];
                 count += u64::from(flags & NONE == 0);
                 if flags & END != 0 && self.end_of(step, n, flags).is_none() {
-                    let what = "ends, and nothing follows it";
+                    let what = "ends, but its last observation is missing";
                     return damaged(format!("step {step} of environment {n} {what}"));
                 }
             }

@@ -191,7 +191,7 @@ where
     /// # Errors
     /// [`EnvironmentError::Shape`] if there is not one for each.
     pub fn reset(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
-        EnvironmentError::shape("marks of the reset", which.len(), self.len)?;
+        EnvironmentError::shape("reset flags", which.len(), self.len)?;
         for n in (0..self.len).filter(|&n| which[n]) {
             let next = self.blocks[n / LANES].next(n % LANES);
             self.begin(n, next);
@@ -205,7 +205,7 @@ where
     /// # Errors
     /// [`EnvironmentError::Shape`] if there is not one for each.
     pub fn end(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
-        EnvironmentError::shape("marks of the ends", which.len(), self.len)?;
+        EnvironmentError::shape("end flags", which.len(), self.len)?;
         if self.world.parts().autoreset == Autoreset::SameStep {
             return self.reset(which);
         }

@@ -127,7 +127,8 @@ where
             let ended = block.ended.iter().any(|&ended| ended > (OVER | CUT));
             if late(0) || late(1) || ahead || ended {
                 let first = n * LANES;
-                let what = format!("environments from number {first} on cannot be so");
+                let what =
+                    format!("the state of the environments from number {first} on is inconsistent");
                 return Err(CheckpointError::Damaged(what));
             }
         }

@@ -26,7 +26,7 @@ pub enum EnvironmentError {
         wanted: usize,
     },
     /// There is no room to say something that has to be said.
-    #[error("{why}: the rollout must have room for `{field}`")]
+    #[error("{why}: the rollout requires the field `{field}`")]
     Field {
         /// Why it has to be said.
         why: &'static str,
@@ -35,7 +35,7 @@ pub enum EnvironmentError {
     },
     /// A rollout that does not fit.
     #[error(
-        "a rollout of {horizon} steps of {environments} environments takes {bytes} bytes a transition. {room}. {}",
+        "a rollout of {horizon} steps of {environments} environments takes {bytes} bytes per transition. {room}. {}",
         advice(*bytes, *horizon, *environments, room)
     )]
     Room {
@@ -50,12 +50,12 @@ pub enum EnvironmentError {
     },
     /// What is listed by number is asked for where numbers are no more.
     #[error(
-        "rates of clocks are listed by the numbers of environments, and a seed of its own makes every environment the first of a batch: \
-         draw the rates from a law, or give the batch one seed"
+        "clock rates are listed per environment, and seeds per environment make every environment the first of a batch: \
+         draw the rates from a distribution, or use one seed for the batch"
     )]
     Seeded,
     /// A time limit of nothing.
-    #[error("the time limit is 0 actions; it must be at least 1, or there must be none")]
+    #[error("the time limit is 0 actions; it must be at least 1, or absent")]
     Limit,
 }
 
@@ -96,25 +96,25 @@ impl EnvironmentError {
 }
 
 /// What is allowed of the random words of what does not draw.
-pub(super) const NOTHING_DRAWN: &str = "0, unless it says that it draws";
+pub(super) const NOTHING_DRAWN: &str = "0 unless `DRAWS` is true";
 
 /// What would fit.
 fn advice(bytes: usize, horizon: usize, environments: usize, room: &InsufficientMemory) -> String {
     let Some(available) = room.available else {
-        return "A horizon can be run in pieces, one after the other".to_owned();
+        return "Run the horizon in several parts".to_owned();
     };
     let fit = |by: usize| available / (bytes as u64).saturating_mul(by as u64).max(1);
     match [fit(environments), fit(horizon)] {
-        [0, 0] => "There is no room for a single step of so many environments, nor for a single one over so many steps".to_owned(),
+        [0, 0] => "The memory holds neither one step of these environments nor one environment over these steps".to_owned(),
         [0, fewer] => {
-            format!("There is room for {fewer} environments over so many steps")
+            format!("The memory holds {fewer} environments over these steps")
         }
         [pieces, 0] => format!(
-            "There is room for {pieces} steps of so many environments, which can be run one after the other"
+            "The memory holds {pieces} steps of these environments: run the horizon in several parts"
         ),
         [pieces, fewer] => format!(
-            "There is room for {pieces} steps of so many environments, which can be run one after the other, or for {fewer} \
-             environments over so many steps"
+            "The memory holds {pieces} steps of these environments (run the horizon in several parts), or {fewer} \
+             environments over these steps"
         ),
     }
 }

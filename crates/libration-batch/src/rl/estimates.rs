@@ -80,7 +80,7 @@ impl<T: Float + Pod> Estimates<T> {
         EnvironmentError::shape("environments of the rollout", n, self.plan.environments)?;
         EnvironmentError::shape("values after the last step", next.len(), n)?;
         let finals = rollout.finals().len();
-        EnvironmentError::shape("values of what was seen last", last.len(), finals)?;
+        EnvironmentError::shape("values of the final observations", last.len(), finals)?;
 
         // A thread reads three numbers and two flags and writes two numbers: as much as in a rollout.
         let work = (n as u64).saturating_mul(horizon as u64).saturating_mul(4);

@@ -22,7 +22,7 @@ where
     /// # Errors
     /// [`EnvironmentError::Shape`] if that is not the length of `to`.
     pub fn observe(&mut self, mut to: &mut [T]) -> Result<(), EnvironmentError> {
-        EnvironmentError::shape("numbers to be observed", to.len(), self.len.saturating_mul(O))?;
+        EnvironmentError::shape("observed numbers", to.len(), self.len.saturating_mul(O))?;
         let Environments { world, history, step, len, .. } = *self;
         let (sensor, systems) = (world.parts().sensor, world.parts().systems);
         let words = self.draws[1].prepare(&self.blocks, [step, 1], 0, sensor.words());

@@ -104,11 +104,11 @@ where
         to: StepBuffers<'_, T>,
     ) -> Result<Vec<EpisodeEnd<T, O>>, EnvironmentError> {
         let len = self.len;
-        EnvironmentError::shape("numbers to be observed", to.seen.len(), len.saturating_mul(O))?;
+        EnvironmentError::shape("observed numbers", to.seen.len(), len.saturating_mul(O))?;
         for (name, found) in [
             ("rewards", to.reward.len()),
-            ("marks of what is over", to.terminated.len()),
-            ("marks of what is cut off", to.truncated.len()),
+            ("termination flags", to.terminated.len()),
+            ("truncation flags", to.truncated.len()),
         ] {
             EnvironmentError::shape(name, found, len)?;
         }

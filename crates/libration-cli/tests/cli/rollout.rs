@@ -191,7 +191,7 @@ fn a_run_that_is_stopped_by_a_full_disk_says_so_and_goes_on_to_the_same_bytes() 
         let run = limited.args(["-c", &script]).current_dir(dir.path()).assert();
         run.code(1).stderr(contains("cannot write part/").and(contains("too large")));
         let refused = write(&dir, "part", &flags).code(2);
-        refused.stderr(contains("holds a data set; --resume goes on with it"));
+        refused.stderr(contains("holds a data set; use --resume to resume it"));
         write(&dir, "part", &format!("{flags} --resume")).success();
         assert!(contents(&dir.path().join("whole")) == contents(&dir.path().join("part")));
     }

@@ -123,10 +123,10 @@ fn every_flipped_bit_missing_file_and_lie_of_the_manifest_is_named() {
     for (from, to, said) in [
         ("one/1.bin", "../1.bin", "line 3 of"),
         ("one/1.bin", "/etc/passwd", "which is not in the folder"),
-        ("\"chunk\":\"1\"", "\"chunk\":\"0\"", "tells of chunk 0 again"),
-        ("\"chunk\":\"1\"", "\"chunk\":1", "is no chunk"),
-        ("{\"schema\"", "[\"schema\"", "tells no settings"),
-        ("\"bytes\"", "\"sizes\"", "is no chunk"),
+        ("\"chunk\":\"1\"", "\"chunk\":\"0\"", "repeats chunk 0"),
+        ("\"chunk\":\"1\"", "\"chunk\":1", "is not a chunk"),
+        ("{\"schema\"", "[\"schema\"", "has no settings"),
+        ("\"bytes\"", "\"sizes\"", "is not a chunk"),
     ] {
         fs::write(path.join("manifest.jsonl"), text.replace(from, to)).unwrap();
         let error = Manifest::read(&path).unwrap_err().to_string();
@@ -140,14 +140,14 @@ fn a_folder_with_something_else_in_it_is_refused_and_left_as_it_was() {
     let dir = filled(2);
     let path = dir.path().join("set");
     let before = contents(&path);
-    assert!(refused(&path, &settings(), false).contains("--resume goes on with it"));
+    assert!(refused(&path, &settings(), false).contains("use --resume to resume it"));
     let mut other = settings();
     other["system"]["mass"] = json!(2.0);
     let found = refused(&path, &other, true);
     assert!(found.contains("its system.mass is 1.0; it must be 2.0"), "{found}");
     let mut more = settings();
     more.insert("limit".into(), json!(3));
-    assert!(refused(&path, &more, true).contains("its limit is not told; it must be 3"));
+    assert!(refused(&path, &more, true).contains("its limit is missing; it must be 3"));
     let open = Folder::open(&path, &settings(), true).unwrap();
     assert!(refused(&path, &settings(), true).contains("another process is using"));
     drop(open);
@@ -156,7 +156,7 @@ fn a_folder_with_something_else_in_it_is_refused_and_left_as_it_was() {
     let strange = TempDir::new().unwrap();
     fs::write(strange.path().join("thesis.tex"), b"mine").unwrap();
     let found = refused(strange.path(), &settings(), true);
-    assert!(found.contains("holds thesis.tex, which is no part of a data set"), "{found}");
+    assert!(found.contains("holds thesis.tex, which is not part of a data set"), "{found}");
     assert_eq!(contents(strange.path()).len(), 1);
     // A manifest of somebody else, whose only line has no end.
     let theirs = TempDir::new().unwrap();

@@ -49,13 +49,16 @@ fn a_file_that_is_cut_off_changed_of_another_version_or_of_something_else_is_ref
     };
     for len in (0..good.len()).step_by(29) {
         let error = refused(&good[..len]);
-        assert!(["cut off", "no state"].iter().any(|said| error.contains(said)), "{len}: {error}");
+        assert!(
+            ["truncated", "not a state file"].iter().any(|said| error.contains(said)),
+            "{len}: {error}"
+        );
     }
     for at in (0..good.len()).step_by(13) {
         let mut bad = good.clone();
         bad[at] ^= 0x10;
         let error = refused(&bad);
-        assert!(error.contains("checksum") || error.contains("no state"), "{at}: {error}");
+        assert!(error.contains("checksum") || error.contains("not a state file"), "{at}: {error}");
     }
     let changed = |from: &str, to: &str| {
         let at = good.windows(from.len()).position(|bytes| bytes == from.as_bytes()).unwrap();
@@ -66,7 +69,7 @@ fn a_file_that_is_cut_off_changed_of_another_version_or_of_something_else_is_ref
     };
     let version = format!("\"version\":\"{}\"", env!("CARGO_PKG_VERSION"));
     let newer = format!("\"version\":\"9{}\"", &env!("CARGO_PKG_VERSION")[1..]);
-    assert!(refused(&changed(&version, &newer)).contains("it was kept by version 9"));
+    assert!(refused(&changed(&version, &newer)).contains("version 9 wrote it"));
     assert!(refused(&changed("\"format\":1", "\"format\":2")).contains("in format 2"));
     let error = refused(&changed("\"ensemble\"", "\"octopus!\""));
     assert!(error.contains("its kind is octopus!; it must be ensemble"), "{error}");

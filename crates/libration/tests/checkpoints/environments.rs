@@ -98,7 +98,7 @@ fn a_state_of_other_environments_or_a_damaged_one_is_refused_and_changes_nothing
     let before = other.to_bytes();
     assert_eq!(
         refused(&make(COUNT + 1, 9), &one),
-        "the state is of something else: its number of environments is 151; it must be 150"
+        "the state does not match: its number of environments is 151; it must be 150"
     );
     assert!(refused(&make(COUNT, 8), &one).contains("its seed is 8; it must be 9"));
     let state = one.to_bytes();
@@ -113,7 +113,7 @@ fn a_state_of_other_environments_or_a_damaged_one_is_refused_and_changes_nothing
         let mut damaged = state.clone();
         damaged[at] = 0x7f;
         let error = other.restore(&damaged).unwrap_err().to_string();
-        assert!(error.contains("environments from number 0 on cannot be so"), "{error}");
+        assert!(error.contains("environments from number 0 on is inconsistent"), "{error}");
         assert_eq!(other.to_bytes(), before);
     }
 }

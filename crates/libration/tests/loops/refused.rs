@@ -28,12 +28,12 @@ fn records_are_never_made_longer_and_lists_are_of_the_right_length() {
     let fixed = Fixed;
     assert_eq!(
         refused(Recorded::once(&[1.0, 1.0]), every, 0.1, 3),
-        "the record of a clock or a delay has 2 steps; 3 are asked for"
+        "the record of a clock or a delay has 2 steps; the run requires 3"
     );
     let latencies = RecordedLatencies::new(&[0.0, 2.0]).unwrap();
     assert_eq!(
         refused(fixed, latencies, 0.1, 5),
-        "the record of a clock or a delay has 2 steps; 5 are asked for"
+        "the record of a clock or a delay has 2 steps; the run requires 5"
     );
     assert_eq!(
         refused(Rates(&[1.0]), every, 0.1, 1),
@@ -65,7 +65,7 @@ fn a_clock_does_not_go_back() {
     let error = |stamps: &[f64]| Recorded::steps_between(stamps).unwrap_err().to_string();
     assert_eq!(
         error(&[0.0, 2.0, 1.0]),
-        "time stamp 3 is 1 s; it must be at least the 2 s of the one in front of it, \
+        "time stamp 3 is 1 s; it must be at least the 2 s of the preceding one, \
          counted from the first"
     );
     assert_eq!(error(&[0.0, f64::NAN]), "time stamp 2 is NaN; it must be a finite number");

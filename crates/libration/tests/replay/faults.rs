@@ -44,7 +44,10 @@ fn what_cannot_be_is_refused_with_the_name_the_value_and_what_is_allowed() {
     assert!(said(other).contains("is 5; it must be 6"));
     let mut short = Replay21::new(Capacity::new(19, 3)).unwrap();
     let found = said(short.insert(&rollout, &next, &serial));
-    assert!(found.contains("steps of a rollout: 20 at once; the capacity is 19"), "{found}");
+    assert!(
+        found.contains("steps of a rollout: 20 in one insertion; the capacity is 19"),
+        "{found}"
+    );
     let mut few = Replay21::new(Capacity::new(20, 3).ends(2)).unwrap();
     let found = said(few.insert(&rollout, &next, &serial));
     assert!(found.contains("ends of episodes") && few.is_empty(), "{found}");
@@ -84,7 +87,7 @@ fn priorities_that_cannot_be_change_none_and_those_of_what_has_gone_are_passed_o
             vec![0, 60],
             vec![2.0, 2.0],
             1.0,
-            "transition 1 is 60; it must be one that was drawn, below 60",
+            "transition 1 is 60; it must be a number from a batch, below 60",
         ),
         (vec![0, 1], vec![2.0], 1.0, "priorities is 1; it must be 2"),
         (vec![0], vec![2.0], -1.0, "exponent of priorities is -1"),

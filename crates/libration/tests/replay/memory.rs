@@ -153,9 +153,9 @@ fn memory_of_something_else_and_damaged_memory_are_refused() {
         ("neither record", refused(&|bytes| bytes[512..1536].fill(0))),
         ("bytes of", refused(&|bytes| bytes.truncate(5 * PAGE))),
         ("its length is 100 bytes", refused(&|bytes| bytes.truncate(100))),
-        ("nothing follows it", refused(&|bytes| bytes[4 * PAGE] |= 4)),
+        ("its last observation is missing", refused(&|bytes| bytes[4 * PAGE] |= 4)),
         ("counts", refused(&|bytes| bytes[4 * PAGE] |= 8)),
-        ("cannot stand where it does", refused(&|bytes| bytes[5 * PAGE..][..8].fill(0xff))),
+        ("is in an invalid place", refused(&|bytes| bytes[5 * PAGE..][..8].fill(0xff))),
     ] {
         assert!(found.contains(said), "{found}");
     }

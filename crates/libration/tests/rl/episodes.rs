@@ -158,5 +158,5 @@ fn what_stands_still_waits_for_its_reset_and_nothing_else_does() {
     }
     assert!(rollout.finals().iter().all(|end| which[end.environment]));
     let short = all.reset(&[true]).unwrap_err().to_string();
-    assert_eq!(short, "the number of marks of the reset is 1; it must be 100");
+    assert_eq!(short, "the number of reset flags is 1; it must be 100");
 }

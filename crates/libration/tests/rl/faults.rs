@@ -39,7 +39,7 @@ fn an_environment_that_cannot_be_is_refused() {
     assert_eq!(refused(ideal().substeps(0)), "there are 0 substeps; there must be at least 1");
     assert_eq!(
         refused(ideal().limit(0)),
-        "the time limit is 0 actions; it must be at least 1, or there must be none"
+        "the time limit is 0 actions; it must be at least 1, or absent"
     );
     let mut turned = ideal();
     turned.start = UniformStart(ANYWHERE.1, ANYWHERE.0);
@@ -112,17 +112,17 @@ fn a_rollout_that_does_not_fit_is_refused_and_nothing_has_moved() {
     let other = fill(Plan::new(4, 3).truncated()).unwrap_err();
     assert_eq!(other, "the number of environments of the rollout is 3; it must be 2");
     let unsaid = fill(Plan::new(4, 2)).unwrap_err();
-    assert!(unsaid.contains("room for `truncated`"), "{unsaid}");
+    assert!(unsaid.contains("requires the field `truncated`"), "{unsaid}");
     fill(Plan::new(0, 2).truncated().writes(Writes::Past)).unwrap();
     assert_eq!(two.step(), 0);
     // What would fit is said, and fits.
     let large = |horizon, count| Rollout::<f32, 2, 1>::new(Plan::new(horizon, count)).map(|_| ());
     let told = large(1 << 20, 1 << 26).unwrap_err().to_string();
     assert!(told.starts_with(
-        "a rollout of 1048576 steps of 67108864 environments takes 17 bytes a transition. 1196268.7 GB of memory are needed"
+        "a rollout of 1048576 steps of 67108864 environments takes 17 bytes per transition. 1196268.7 GB of memory are needed"
     ));
-    let (_, steps) = told.split_once("room for ").unwrap();
-    let (steps, _) = steps.split_once(" steps of so many environments").unwrap();
+    let (_, steps) = told.split_once("The memory holds ").unwrap();
+    let (steps, _) = steps.split_once(" steps of these environments").unwrap();
     // Half of it, since others may have taken some meanwhile.
     large(steps.parse::<usize>().unwrap() / 2, 1 << 26).unwrap();
     assert!(large(usize::MAX / 4, 1 << 20).unwrap_err().to_string().contains("memory"));
@@ -132,7 +132,7 @@ fn a_rollout_that_does_not_fit_is_refused_and_nothing_has_moved() {
     let mut short = Environments::new(ideal().clock(clock), 2, 0, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(5, 2).truncated()).unwrap();
     let error = short.rollout(POLICY, &mut rollout).unwrap_err().to_string();
-    assert_eq!(error, "the record of a clock or a delay has 3 steps; 5 are asked for");
+    assert_eq!(error, "the record of a clock or a delay has 3 steps; the run requires 5");
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn a_policy_that_draws_without_saying_so_is_refused() {
     assert!(all.rollout(Secretive(0), &mut rollout).is_ok());
     assert_eq!(
         all.rollout(Secretive(1), &mut rollout).unwrap_err().to_string(),
-        "random words of the policy is 1; it must be 0, unless it says that it draws"
+        "random words of the policy is 1; it must be 0 unless `DRAWS` is true"
     );
 }
 

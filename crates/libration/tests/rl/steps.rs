@@ -104,19 +104,9 @@ fn a_step_whose_room_is_for_more_or_fewer_is_refused_and_nothing_has_moved() {
         all.act(ActionSequence(actions), to).unwrap_err()
     };
     for (error, name, found, wanted) in [
-        (
-            refused(&mut [0.0; 5], &mut [0.0; 3], &mut [0; 3], &[0.0; 3]),
-            "numbers to be observed",
-            5,
-            6,
-        ),
+        (refused(&mut [0.0; 5], &mut [0.0; 3], &mut [0; 3], &[0.0; 3]), "observed numbers", 5, 6),
         (refused(&mut [0.0; 6], &mut [0.0; 4], &mut [0; 3], &[0.0; 3]), "rewards", 4, 3),
-        (
-            refused(&mut [0.0; 6], &mut [0.0; 3], &mut [0; 2], &[0.0; 3]),
-            "marks of what is over",
-            2,
-            3,
-        ),
+        (refused(&mut [0.0; 6], &mut [0.0; 3], &mut [0; 2], &[0.0; 3]), "termination flags", 2, 3),
         (refused(&mut [0.0; 6], &mut [0.0; 3], &mut [0; 3], &[0.0; 1]), "actions", 1, 3),
     ] {
         assert_eq!(error, EnvironmentError::Shape { name, found, wanted });

@@ -130,7 +130,7 @@ fn values_have_their_room_and_nobody_else_writes_there() {
     let refused = all.rollout(Constant([0.0]), &mut rollout).unwrap_err().to_string();
     assert_eq!(
         refused,
-        "the environments have a time limit: the rollout must have room for `truncated`"
+        "the environments have a time limit: the rollout requires the field `truncated`"
     );
     let mut rollout = Rollout::new(Plan::new(4, 64).truncated().values()).unwrap();
     rollout.value_mut().fill(2.5);

@@ -30,7 +30,7 @@ impl<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize> Policy<T, O, 
     const DRAWS: bool = true;
 
     fn check(&self, environments: usize, horizon: usize) -> Result<(), EnvironmentError> {
-        const { assert!(!P::DRAWS, "exploration is around actions that are sure") };
+        const { assert!(!P::DRAWS, "exploration requires a deterministic policy") };
         self.policy.check(environments, horizon)?;
         for (index, &sigma) in self.sigma.iter().enumerate() {
             EnvironmentError::above_zero::<T>("standard deviation of exploration", index, sigma)?;

@@ -44,7 +44,7 @@ where
     T: Float + Elementary,
 {
     fn check(&self, _: usize, _: usize) -> Result<(), EnvironmentError> {
-        EnvironmentError::shape("numbers that a network sees", O, O.min(Self::WIDEST))?;
+        EnvironmentError::shape("inputs of a network", O, O.min(Self::WIDEST))?;
         for &width in self.hidden {
             let allowed = width.clamp(1, Self::WIDEST);
             EnvironmentError::shape("neurons of a hidden layer", width, allowed)?;

@@ -42,7 +42,7 @@ pub enum RecordedError {
         value: f64,
     },
     /// A clock does not go back.
-    #[error("time stamp {} is {after} s; it must be at least the {before} s of the one in front of it, counted from the first", index + 1)]
+    #[error("time stamp {} is {after} s; it must be at least the {before} s of the preceding one, counted from the first", index + 1)]
     Backwards {
         /// Which, from 0 on; the message counts from 1.
         index: usize,
