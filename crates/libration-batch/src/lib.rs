@@ -1,6 +1,6 @@
-//! Many trajectories, control loops and environments at once.
+//! Batches of trajectories, control loops and environments.
 //!
-//! Kernels are compiled for each instruction set, and give the same bits on all of them, whatever the number of threads.
+//! Kernels are compiled for each instruction set. The bits depend on neither the instruction set nor the number of threads.
 //!
 //! This crate does no input or output, reads no clock and prints nothing.
 

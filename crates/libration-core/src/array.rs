@@ -1,11 +1,11 @@
-//! Arrays, number by number.
+//! Loops over the elements of arrays.
 //!
 //! `core::array::from_fn` and `map` are half a dozen functions for every closure: where there are hundreds of kernels, a tenth of
 //! all code consists of them, and a compiler may not inline them from one unit of code into another.
 
 use crate::Scalar;
 
-/// What `f` makes of each index.
+/// An array of the values of `f` at each index.
 #[inline(always)]
 #[allow(clippy::needless_range_loop, reason = "an iterator would be such functions again")]
 pub fn each<S: Scalar, const N: usize>(mut f: impl FnMut(usize) -> S) -> [S; N] {
@@ -16,7 +16,7 @@ pub fn each<S: Scalar, const N: usize>(mut f: impl FnMut(usize) -> S) -> [S; N] 
     all
 }
 
-/// What `f` makes of each element.
+/// An array of the values of `f` at each element.
 #[inline(always)]
 pub fn map<X: Copy, S: Scalar, const N: usize>(from: [X; N], mut f: impl FnMut(X) -> S) -> [S; N] {
     each(|i| f(from[i]))

@@ -115,7 +115,7 @@ impl Method {
         }
     }
 
-    /// What it is, in one line.
+    /// A description in one line.
     pub const fn summary(self) -> &'static str {
         match self {
             Method::ExplicitEuler => "order 1; unstable for every undamped oscillator",

@@ -1,4 +1,4 @@
-//! Files that are read up to a limit: a device or a pipe may have no end.
+//! Reading files up to a limit: a device or a pipe may have no end.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
@@ -15,7 +15,7 @@ pub fn read_bounded(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
 /// The text of a file that has at most `limit` bytes.
 ///
 /// # Errors
-/// Those of [`read_bounded`]; [`ErrorKind::InvalidData`] if it is not UTF-8.
+/// As for [`read_bounded`]; [`ErrorKind::InvalidData`] if the text is not UTF-8.
 pub fn read_text_bounded(path: &Path, limit: u64) -> io::Result<String> {
     let bytes = read_bounded(path, limit)?;
     let text = String::from_utf8(bytes);
@@ -25,7 +25,7 @@ pub fn read_text_bounded(path: &Path, limit: u64) -> io::Result<String> {
 /// All bytes that are left in a file, if these are at most `limit`.
 ///
 /// # Errors
-/// Those of [`read_bounded`].
+/// As for [`read_bounded`].
 pub(crate) fn read_rest(file: &File, limit: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     // Only a regular file has a length, and is refused before it is read.

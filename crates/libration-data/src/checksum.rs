@@ -1,4 +1,4 @@
-//! Checksums that others can compute too: `b3sum FILE`.
+//! BLAKE3 checksums, as `b3sum FILE` computes them.
 
 use std::io::{self, Read, Write};
 
@@ -19,7 +19,7 @@ pub fn checksum<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> String {
     sum.finalize().to_string()
 }
 
-/// The same of what is read to its end, and its length.
+/// The checksum and the length of a stream, read to its end.
 pub(crate) fn checksum_of(mut from: impl Read) -> io::Result<(String, u64)> {
     let (mut sum, mut len, mut piece) = (Hasher::new(), 0, vec![0; PIECE]);
     loop {
@@ -34,7 +34,7 @@ pub(crate) fn checksum_of(mut from: impl Read) -> io::Result<(String, u64)> {
     }
 }
 
-/// What is written to a file, and its checksum; large pieces are summed on all threads.
+/// A writer that computes the checksum of its bytes; large pieces are summed on all threads.
 #[derive(Debug)]
 pub(crate) struct ChecksumWriter<W> {
     to: W,
@@ -46,7 +46,7 @@ impl<W> ChecksumWriter<W> {
         ChecksumWriter { to, sum: Hasher::new() }
     }
 
-    /// Of all that was written.
+    /// The checksum of all bytes written.
     pub(crate) fn sum(&self) -> String {
         self.sum.finalize().to_string()
     }

@@ -1,6 +1,6 @@
-//! Writing past the system's cache of pages.
+//! Direct writes, which bypass the page cache.
 //!
-//! What is written once and read later, by others, gains nothing there: to copy it in took three fifths of the time.
+//! Data that is written once and read later gains nothing from the cache; copying into it took three fifths of the time.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -8,13 +8,13 @@ use std::path::Path;
 
 use memmap2::MmapMut;
 
-/// What offsets, lengths and memory must be multiples of.
+/// The alignment of offsets, lengths and memory.
 const BLOCK: usize = 4096;
-/// Bytes that are gathered where they do not lie so.
+/// The size of the buffer for unaligned pieces, in bytes.
 const GATHERED: usize = 1 << 20;
-/// Bytes that are given to the system at once.
+/// The largest number of bytes per system call.
 const AT_ONCE: usize = 8 << 20;
-/// Shorter files are worth no memory of their own.
+/// The smallest file, in bytes, that is written directly.
 const SHORT: usize = 1 << 18;
 
 /// Creates a file of these pieces, one after the other, and waits until they are on the disk.

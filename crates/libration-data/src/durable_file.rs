@@ -1,4 +1,4 @@
-//! Files that are there whole, or not at all, whatever happens.
+//! Durable files: complete or absent after a crash.
 
 use std::fs::{self, File};
 use std::io;
@@ -7,10 +7,10 @@ use std::thread;
 
 use crate::{DataError, checksum, direct_write};
 
-/// What names end with until a file is whole: those of nobody else.
+/// The suffix of the names of incomplete files.
 pub(crate) const PART: &str = ".libration-part";
 
-/// Bytes of a file that are summed sooner than another thread begins.
+/// The largest file, in bytes, whose checksum needs no second thread.
 const SHORT: u64 = 1 << 18;
 
 /// Makes a file under another name, which it loses when all of it is on the disk; `fill` waits for that.
@@ -62,12 +62,12 @@ pub fn write_direct(path: &Path, pieces: &[&[u8]]) -> Result<(), DataError> {
     direct_write::create(path, pieces).map_err(DataError::io("write", path))
 }
 
-/// A folder as it can be opened: that of a bare name is the one where the process is.
+/// The folder, or the working directory for a bare name.
 pub(crate) fn named(folder: &Path) -> &Path {
     if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }
 
-/// The names in a folder are on the disk.
+/// Waits until the names in a folder are on the disk.
 pub(crate) fn sync_folder(folder: &Path) -> Result<(), DataError> {
     // Only Unix opens folders.
     if cfg!(unix) {

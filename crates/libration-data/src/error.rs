@@ -1,4 +1,4 @@
-//! What can go wrong with files of numbers.
+//! Errors of data files.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -8,96 +8,96 @@ use libration::replay::ReplayError;
 use parquet::errors::ParquetError;
 use thiserror::Error;
 
-/// Why a file or a folder cannot be written, read or trusted.
+/// Error of a data file or folder.
 #[derive(Debug, Error)]
 pub enum DataError {
-    /// The system refuses.
+    /// An I/O error.
     #[error("cannot {action} {}: {source}", path.display())]
     Io {
-        /// What was to be done.
+        /// The action.
         action: &'static str,
-        /// With which file or folder.
+        /// The file or folder.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: io::Error,
     },
-    /// Another process writes there.
+    /// Another process holds the lock.
     #[error("another process is using {}; wait for it, or choose another place", .0.display())]
     Locked(PathBuf),
-    /// There is a data set, and nobody asked to go on with it.
+    /// The folder holds a data set, and `resume` is not set.
     #[error("{} holds a data set; use --resume to resume it", .0.display())]
     Exists(PathBuf),
-    /// There is something else.
+    /// The folder holds other files.
     #[error("{} holds {found}, which is not part of a data set; choose an empty folder", folder.display())]
     ForeignFile {
-        /// Where.
+        /// The folder.
         folder: PathBuf,
-        /// What lies there.
+        /// The name of a file in it.
         found: String,
     },
-    /// There is no data set.
+    /// The folder holds no data set.
     #[error("{} holds no data set: it has no manifest.jsonl", .0.display())]
     Missing(PathBuf),
-    /// The data set is of other settings.
+    /// The data set has other settings.
     #[error("{} holds a data set with other settings: its {name} is {found}; it must be {wanted}", folder.display())]
     Other {
-        /// Where.
+        /// The folder.
         folder: PathBuf,
-        /// Which setting.
+        /// The name of the setting.
         name: String,
-        /// What it is.
+        /// Its value in the data set.
         found: String,
-        /// What is asked for.
+        /// The required value.
         wanted: String,
     },
-    /// The manifest is none.
+    /// The manifest is invalid.
     #[error("line {line} of {} {what}", path.display())]
     Manifest {
         /// The manifest.
         path: PathBuf,
-        /// Which line, from 1 on.
+        /// The number of the line, from 1.
         line: usize,
-        /// What is wrong with it.
+        /// The problem.
         what: String,
     },
-    /// A file contradicts itself.
+    /// A file is damaged.
     #[error("{}: {what}", path.display())]
     Damaged {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The problem.
         what: String,
     },
-    /// A file of a replay buffer is none, or damaged.
+    /// A file of a replay buffer is invalid or damaged.
     #[error("{}: {source}", path.display())]
     Replay {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The error of the replay buffer.
         source: ReplayError,
     },
-    /// A state is of something else.
+    /// A state does not match.
     #[error("{}: {source}", path.display())]
     State {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The error of the state.
         source: CheckpointError,
     },
 }
 
 impl DataError {
-    /// What the system says of an action.
+    /// Converts an I/O error of an action.
     pub fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> DataError {
         let path = path.to_owned();
         move |source| DataError::Io { action, path, source }
     }
 }
 
-/// Why a table cannot be written.
+/// Error of writing a table.
 #[derive(Debug, Error)]
 pub enum TableError {
-    /// The file or pipe refused.
+    /// An I/O error.
     #[error(transparent)]
     Io(#[from] io::Error),
     /// Two columns of one table differ in length.
@@ -110,7 +110,7 @@ pub enum TableError {
         /// Its own length.
         found: usize,
     },
-    /// The Parquet library refused.
+    /// An error of the Parquet library.
     #[error("parquet: {0}")]
     Parquet(ParquetError),
 }

@@ -1,4 +1,4 @@
-//! A folder into which a data set is written, one chunk after the other.
+//! Folders of data sets, written chunk by chunk.
 
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
@@ -26,12 +26,12 @@ pub struct Folder {
     log: File,
 }
 
-/// A file of a chunk that is to be written: where, and its bytes.
+/// A new file of a chunk: its path and its bytes.
 #[derive(Clone, Debug)]
 pub struct NewFile<'a> {
-    /// Seen from the folder.
+    /// The path relative to the folder.
     pub path: PathBuf,
-    /// One after the other.
+    /// The contents, piece by piece.
     pub pieces: Vec<&'a [u8]>,
 }
 
@@ -92,12 +92,12 @@ impl Folder {
         Ok(folder)
     }
 
-    /// What is there so far.
+    /// The manifest.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }
 
-    /// Where it is.
+    /// The path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -116,7 +116,7 @@ impl Folder {
         self.record(chunk, holds, stored)
     }
 
-    /// A chunk whose files are [there](write_files) is in the manifest when this returns.
+    /// Records in the manifest a chunk whose files are [written](write_files).
     ///
     /// # Errors
     /// If the system refuses, as when the disk is full; what was there before is there still.
@@ -134,7 +134,7 @@ impl Folder {
         Ok(())
     }
 
-    /// A line of the manifest.
+    /// Appends a line to the manifest.
     fn append(&mut self, line: &Value) -> Result<(), DataError> {
         let name = self.path.join(NAME);
         let text = format!("{line}\n");
@@ -142,7 +142,7 @@ impl Folder {
         written.map_err(DataError::io("write", &name))
     }
 
-    /// What is longer was never whole.
+    /// Truncates the manifest to its complete lines.
     fn cut(&mut self, len: u64) -> Result<(), DataError> {
         let name = self.path.join(NAME);
         let cut = self.log.set_len(len).and_then(|()| self.log.seek(SeekFrom::End(0)));
@@ -178,10 +178,10 @@ pub fn write_files(folder: &Path, files: &[NewFile<'_>]) -> Result<Vec<Stored>, 
     Ok(stored)
 }
 
-/// Nothing, if the settings of a data set are those that are asked for.
+/// Compares the settings of a data set with the required ones.
 ///
 /// # Errors
-/// [`DataError::Other`] with the first that is not.
+/// [`DataError::Other`] with the first setting that differs.
 pub fn ensure_same_settings(
     folder: &Path,
     found: &Map<String, Value>,

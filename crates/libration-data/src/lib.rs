@@ -1,10 +1,10 @@
-//! Numbers in files: formats that others read, data sets that are larger than memory, and states from which to go on.
+//! Data files: exchange formats, data sets that are larger than memory, and state files.
 //!
-//! A [`Folder`] takes one chunk of a data set after the other. Whatever is in its manifest is on the disk, whole, with a checksum;
-//! whoever is stopped goes on after the last chunk. A state is [kept](save_state) in one file, and [taken up](load_state) only if all of it is
-//! as it was.
+//! A [`Folder`] writes a data set chunk by chunk. Every chunk in its manifest is complete on the disk, with a checksum;
+//! an interrupted run resumes after the last chunk. [`save_state`] writes a state to one file, and [`load_state`] restores it only if
+//! its checksum matches.
 //!
-//! Nothing here knows of physics.
+//! This crate knows no physics.
 
 mod bounded_read;
 mod checksum;

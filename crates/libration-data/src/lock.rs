@@ -1,4 +1,4 @@
-//! Files that one process at a time uses.
+//! Locks of files for one process at a time.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::path::Path;
@@ -20,7 +20,7 @@ pub fn open_locked(path: &Path) -> Result<File, DataError> {
 /// Locks an open file.
 ///
 /// # Errors
-/// Those of [`open_locked`].
+/// As for [`open_locked`].
 pub(crate) fn lock(file: &File, path: &Path) -> Result<(), DataError> {
     match file.try_lock() {
         Ok(()) => Ok(()),

@@ -1,4 +1,4 @@
-//! What a data set consists of.
+//! The manifest of a data set.
 
 use std::collections::HashSet;
 use std::path::{Component, Path, PathBuf};
@@ -15,10 +15,10 @@ pub(crate) const NAME: &str = "manifest.jsonl";
 /// Bytes of the longest manifest: a file takes less than 200 of them, which leaves room for five million files.
 pub(crate) const LIMIT: u64 = 1 << 30;
 
-/// What a data set consists of: its settings, and the chunks that are there. In its file each has a line of JSON.
+/// The manifest of a data set: its settings and its chunks. In the file, each has a line of JSON.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Manifest {
-    /// What the data set is.
+    /// The settings.
     pub settings: Map<String, Value>,
     /// Its chunks so far.
     pub chunks: Vec<Chunk>,
@@ -30,7 +30,7 @@ pub struct Manifest {
 pub struct Chunk {
     /// Its name.
     pub chunk: String,
-    /// What it holds.
+    /// The contents of the chunk.
     pub holds: Map<String, Value>,
     /// Its files.
     pub files: Vec<Stored>,
@@ -40,7 +40,7 @@ pub struct Chunk {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stored {
-    /// Where it is, seen from the folder.
+    /// The path relative to the folder.
     pub path: PathBuf,
     /// Its length.
     pub bytes: u64,

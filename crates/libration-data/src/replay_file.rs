@@ -49,7 +49,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
         Ok(ReplayFile { replay, path: path.to_owned(), _file: file })
     }
 
-    /// What an earlier process left.
+    /// Opens a file that an earlier process wrote.
     ///
     /// # Errors
     /// [`DataError::Io`], [`DataError::Locked`] if another process has it, [`DataError::Replay`] if it is none or damaged.
@@ -90,7 +90,7 @@ fn refused(path: &Path) -> impl FnOnce(ReplayError) -> DataError {
     move |source| DataError::Replay { path, source }
 }
 
-/// So many zeros, on the disk.
+/// Writes `bytes` zeros and waits until they are on the disk.
 fn fill(mut file: &File, bytes: usize) -> io::Result<()> {
     let zeros = [0; 1 << 16];
     let mut left = bytes;

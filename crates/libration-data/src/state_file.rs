@@ -1,4 +1,4 @@
-//! States in files.
+//! State files: checkpoints with a note and a checksum.
 
 use std::convert::Infallible;
 use std::fs::File;
@@ -13,25 +13,25 @@ use crate::DataError;
 use crate::checksum::{ChecksumWriter, checksum_at_once};
 use crate::durable_file::{make, named, sync_folder};
 
-/// The first bytes of such a file.
+/// The first bytes of a state file.
 const MAGIC: &[u8; 8] = b"LIBRTNCP";
 
-/// What stands before the bytes of a state, as JSON.
+/// The header of a state file, as JSON.
 #[derive(Deserialize, Serialize)]
 struct Head {
-    /// Of the format.
+    /// The version of the format.
     format: u64,
-    /// Of the program that wrote it: another one may go on otherwise.
+    /// The version of the program that wrote it. Another version may continue differently.
     version: String,
-    /// What the state is of.
+    /// The traits of the state.
     traits: Map<String, Value>,
-    /// What else the caller knows.
+    /// The note of the caller.
     note: Value,
     bytes: u64,
 }
 
 const FORMAT: u64 = 1;
-/// Of this program: another one may go on otherwise.
+/// The version of this program. Another version may continue differently.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Bytes of the checksum at the end, over all before it.
@@ -40,7 +40,7 @@ const SUM: usize = 64;
 /// Bytes that are gathered before they are written.
 const GATHERED: usize = 1 << 20;
 
-/// Keeps a state in a file, which is there whole or not at all, with a note.
+/// Writes a state and a note to a file, which is complete or absent after a crash.
 ///
 /// # Errors
 /// If the system refuses.
@@ -77,10 +77,10 @@ pub fn save_state(path: &Path, of: &impl Checkpoint, note: &Value) -> Result<(),
     path.parent().map_or(Ok(()), |folder| sync_folder(named(folder)))
 }
 
-/// Takes up a state from a file; gives the note that was kept with it.
+/// Restores a state from a file. Returns the note.
 ///
 /// # Errors
-/// If the file cannot be read, is of another version or was changed, or its state is of something else. Nothing has changed then.
+/// If the file cannot be read, is of another version or damaged, or its state does not match. The object is then unchanged.
 pub fn load_state(path: &Path, into: &mut impl Checkpoint) -> Result<Value, DataError> {
     let bytes = std::fs::read(path).map_err(DataError::io("read", path))?;
     let damaged = |what: &str| DataError::Damaged { path: path.to_owned(), what: what.to_owned() };

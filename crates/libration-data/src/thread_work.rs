@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// What `work` makes of each number below `count`, in their order, on at most so many threads.
+/// The results of `work` for each number below `count`, in order, on at most `threads` threads.
 pub fn run_on_threads<R: Send>(
     threads: usize,
     count: usize,

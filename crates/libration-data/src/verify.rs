@@ -1,4 +1,4 @@
-//! Whether a data set is what its manifest says.
+//! Verification of a data set against its manifest.
 
 use std::collections::HashSet;
 use std::fs::{self, File};
@@ -9,14 +9,14 @@ use crate::checksum::checksum_of;
 use crate::manifest::NAME;
 use crate::{DataError, Manifest, Stored};
 
-/// A file that is not what the manifest says.
+/// A file that differs from the manifest.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Flaw {
-    /// Of which chunk; empty where it is of none.
+    /// The name of the chunk; empty if the file is of none.
     pub chunk: String,
-    /// Which file, seen from the folder.
+    /// The path relative to the folder.
     pub path: PathBuf,
-    /// What is wrong.
+    /// The problem.
     pub what: String,
     /// Whether the file is missing or has other bytes than the manifest says, and another one can take its place.
     pub broken: bool,
@@ -66,10 +66,10 @@ pub fn find_unlisted(folder: &Path, manifest: &Manifest) -> Result<Vec<PathBuf>,
     Ok(found)
 }
 
-/// Nothing, if a file is what the manifest says.
+/// Compares a file with the manifest.
 ///
 /// # Errors
-/// What is wrong, and whether another file can take its place: a folder cannot be replaced by renaming.
+/// The problem, and whether a new file can replace it: a folder cannot be replaced by renaming.
 fn sound(folder: &Path, file: &Stored) -> Result<(), (String, bool)> {
     let path = folder.join(&file.path);
     if fs::symlink_metadata(&path).is_ok_and(|found| found.is_dir()) {
@@ -78,7 +78,7 @@ fn sound(folder: &Path, file: &Stored) -> Result<(), (String, bool)> {
     same(&path, file).map_err(|what| (what, true))
 }
 
-/// The same of a path that is no folder.
+/// Compares a path that is not a folder.
 fn same(path: &Path, file: &Stored) -> Result<(), String> {
     let unreadable = |error| format!("cannot be read: {error}");
     // To open a named pipe waits for its writer, and a device may have no end.

@@ -1,29 +1,29 @@
-//! What can be wrong with a state.
+//! Errors of a checkpoint.
 
 use thiserror::Error;
 
-/// Why a state cannot be taken up.
+/// Error of restoring a state.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum CheckpointError {
-    /// It is that of something else.
+    /// The traits differ.
     #[error("the state does not match: its {name} is {found}; it must be {wanted}")]
     Other {
-        /// What is different.
+        /// The name of the trait.
         name: &'static str,
-        /// What it is.
+        /// The value in the state.
         found: String,
-        /// What it must be.
+        /// The required value.
         wanted: String,
     },
-    /// It has more or fewer bytes.
+    /// The length is wrong.
     #[error("the state has {found} bytes; it must have {wanted}")]
     Length {
-        /// How many there are.
+        /// The number of bytes in the state.
         found: usize,
-        /// How many there must be.
+        /// The required number of bytes.
         wanted: usize,
     },
-    /// It contradicts itself.
+    /// The state is inconsistent.
     #[error("the state is damaged: {0}")]
     Damaged(String),
 }

@@ -1,4 +1,4 @@
-//! The complete state of what runs, as bytes from which it goes on bit for bit.
+//! Checkpoints: complete states as bytes, from which a run continues bit for bit.
 //!
 //! An ensemble, loops, environments and a replay buffer say what they are ([`Checkpoint::traits`]) and what their state is, to the last
 //! bit: on however many threads and whatever instructions it goes on. Where bytes go and come from is the caller's affair.
@@ -11,16 +11,16 @@ use core::convert::Infallible;
 pub use error::CheckpointError;
 pub(crate) use reader::Reader;
 
-/// What can be left and taken up again.
+/// An object whose state can be saved and restored.
 pub trait Checkpoint {
     /// What must be the same where the state is restored, by name: the kind, the float type, how many there are. What is code, as
     /// a system, a policy or a task, cannot be told.
     fn traits(&self) -> Vec<Trait>;
 
-    /// Gives all bytes of the state, one piece after the other.
+    /// Passes all bytes of the state to `sink`, piece by piece.
     ///
     /// # Errors
-    /// What `sink` fails with.
+    /// The error of `sink`.
     fn save<E>(&self, sink: impl FnMut(&[u8]) -> Result<(), E>) -> Result<(), E>
     where
         Self: Sized;
@@ -41,20 +41,20 @@ pub trait Checkpoint {
         }
     }
 
-    /// Takes up a state with the same traits.
+    /// Restores a state with the same traits.
     ///
     /// # Errors
-    /// If there are more or fewer bytes, or what they say cannot be. Nothing has changed then.
+    /// If the length is wrong or the state is inconsistent. The object is then unchanged.
     fn restore(&mut self, state: &[u8]) -> Result<(), CheckpointError>;
 }
 
-/// A name and a value.
+/// The name and the value of a property.
 pub type Trait = (&'static str, String);
 
-/// Nothing, if a state of these traits can be restored where those are wanted.
+/// Compares the traits of a state with the required ones.
 ///
 /// # Errors
-/// The first that is different.
+/// The first trait that differs.
 pub fn ensure_same_traits<'a>(
     found: impl IntoIterator<Item = (&'a str, &'a str)> + Clone,
     wanted: &[Trait],

@@ -1,14 +1,14 @@
-//! Bytes that become numbers again.
+//! A reader of numbers from bytes.
 
 use bytemuck::Pod;
 
 use super::CheckpointError;
 
-/// What is left to be read.
+/// The bytes that are left.
 pub(crate) struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
-    /// Over a state that must have so many bytes.
+    /// A reader of a state of exactly `wanted` bytes.
     pub(crate) fn new(state: &'a [u8], wanted: usize) -> Result<Self, CheckpointError> {
         let found = state.len();
         if found == wanted {
@@ -18,7 +18,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Fills these numbers; where there are no more bytes they stay.
+    /// Fills these numbers; leaves them unchanged if too few bytes are left.
     pub(crate) fn fill<X: Pod>(&mut self, to: &mut [X]) {
         let to: &mut [u8] = bytemuck::cast_slice_mut(to);
         if let Some((head, tail)) = self.0.split_at_checked(to.len()) {

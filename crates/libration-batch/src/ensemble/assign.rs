@@ -1,6 +1,6 @@
-//! Values that trajectories share or have each for themselves.
+//! Values that are shared by trajectories, or listed per trajectory.
 
-/// A value for every trajectory of an ensemble: [one for all](All) or [one each](PerTrajectory).
+/// A value for every trajectory of an ensemble: [one for all](All) or [one per trajectory](PerTrajectory).
 pub trait Assign<X>: Copy + Send + Sync {
     /// The values of a block of `W` neighbouring trajectories.
     type Lanes<const W: usize>: Copy;
@@ -25,7 +25,7 @@ pub trait Assign<X>: Copy + Send + Sync {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct All<X>(pub X);
 
-/// A value of its own for each trajectory.
+/// One value per trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerTrajectory<'a, X>(pub &'a [X]);
 

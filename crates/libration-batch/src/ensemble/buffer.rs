@@ -18,7 +18,7 @@ const ASKED: u128 = 64 << 20;
 /// The pages that memory is to be made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pages {
-    /// Those that the system hands out by itself, 4 KiB on most.
+    /// The default pages of the system, 4 KiB on most.
     Ordinary,
     /// Huge ones where the system has them and the buffer is large: a wish, since without them all is
     /// the same, but slower.

@@ -1,4 +1,4 @@
-//! The states of ensembles and loops, to be left and taken up again.
+//! Checkpoints of ensembles and loops.
 
 use bytemuck::Pod;
 use libration_core::control::{Clock, Controller, Delay, Disturbance};

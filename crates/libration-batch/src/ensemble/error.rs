@@ -1,11 +1,11 @@
-//! What can be wrong with an ensemble.
+//! Errors of an ensemble.
 
 use libration_core::CatalogError;
 use libration_core::control::ControlError;
 
 use super::{InstructionSet, InsufficientMemory};
 
-/// Why an ensemble cannot be made or run.
+/// Error of an ensemble.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EnsembleError {
     /// There is not memory enough.
@@ -14,15 +14,15 @@ pub enum EnsembleError {
     /// The processor lacks the instruction set.
     #[error("this processor has no {}, only {}", asked.name(), available())]
     Instructions {
-        /// What was asked for.
+        /// The requested instruction set.
         asked: InstructionSet,
     },
     /// The system did not give the threads.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
-        /// How many were asked for; 0 for as many as there are cores.
+        /// The requested number (0: one per core).
         threads: usize,
-        /// What the system says.
+        /// The reason that the system gives.
         reason: String,
     },
     /// There are more or fewer values than trajectories.
@@ -30,11 +30,11 @@ pub enum EnsembleError {
         "there are {values} {what} for {len} trajectories; there must be one each, or one for all"
     )]
     Length {
-        /// What the values are.
+        /// The name of the values.
         what: &'static str,
-        /// How many there are.
+        /// The number of values.
         values: usize,
-        /// How many trajectories there are.
+        /// The number of trajectories.
         len: usize,
     },
     /// A step must take time.
@@ -42,10 +42,10 @@ pub enum EnsembleError {
         "the time step is {dt:?} s; it must be a finite number above 0, in the float type as well"
     )]
     TimeStep {
-        /// What it is, in seconds.
+        /// The time step in seconds.
         dt: f64,
     },
-    /// What was recorded is not made longer.
+    /// The record is shorter than the run.
     #[error("the record of a clock or a delay has {known} steps; the run requires {asked}")]
     Record {
         /// Steps that there are.
@@ -53,7 +53,7 @@ pub enum EnsembleError {
         /// Steps that are asked for.
         asked: u64,
     },
-    /// Nothing would move.
+    /// The number of substeps is 0.
     #[error("there are 0 substeps; there must be at least 1")]
     Substeps,
     /// A clock, a delay or a controller cannot be so.

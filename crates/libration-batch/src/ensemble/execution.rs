@@ -39,7 +39,7 @@ impl Execution {
         Execution::serial().threads(0)
     }
 
-    /// This, on so many threads; 0 stands for as many as there are cores.
+    /// Sets the number of threads (0: one per core).
     ///
     /// # Errors
     /// [`EnsembleError::Threads`] if the system does not give them.
@@ -57,19 +57,19 @@ impl Execution {
         Ok(Execution { pool, ..self })
     }
 
-    /// This, with a thread for every so many steps of trajectories; for tests, which take few.
+    /// Sets the number of steps per thread. Tests with few steps lower it.
     #[doc(hidden)]
     pub fn worth(self, steps: u64) -> Self {
         Execution { worth: steps.max(1), ..self }
     }
 
-    /// How many threads so many of the shortest steps are worth.
+    /// The number of threads for so many of the shortest steps.
     pub(crate) fn threads_for(&self, steps: u64) -> usize {
         let worth = usize::try_from(steps / self.worth).unwrap_or(usize::MAX).max(1);
         worth.min(self.thread_count())
     }
 
-    /// This, on that instruction set.
+    /// Sets the instruction set.
     ///
     /// # Errors
     /// [`EnsembleError::Instructions`] if this processor lacks it.

@@ -5,7 +5,7 @@ use pulp::{Simd, WithSimd};
 /// An instruction set. The bits of a result do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum InstructionSet {
-    /// What every processor of the architecture has: SSE2 on x86-64, NEON on AArch64.
+    /// The baseline of the architecture: SSE2 on x86-64, NEON on AArch64.
     Baseline,
     /// AVX2, 256 bits wide (x86-64-v3).
     Avx2,
@@ -63,7 +63,7 @@ impl InstructionSet {
         }
     }
 
-    /// Those that this processor has, by rising width.
+    /// The instruction sets of this processor, narrowest first.
     pub fn available() -> impl Iterator<Item = InstructionSet> {
         InstructionSet::ALL.into_iter().filter(|set| set.is_available())
     }
@@ -79,7 +79,7 @@ impl InstructionSet {
 /// [`InstructionSet::vectorize`] runs it. It must be `#[inline(always)]`, and all that it calls, or
 /// the compiler may leave it outside the code that has the instructions.
 pub trait Loop {
-    /// What it yields.
+    /// The result.
     type Output;
 
     /// Does the work.
@@ -161,7 +161,7 @@ impl Target for pulp::x86::V4 {
 
 /// Work that is compiled once for every instruction set, to be run on one of them.
 pub(crate) trait Targeted {
-    /// What it yields.
+    /// The result.
     type Output;
 
     /// Runs on `target`.

@@ -79,7 +79,7 @@ pub fn available_memory() -> Option<u64> {
     known(system.available_memory()).map(|bytes| bytes.min(left.unwrap_or(bytes)))
 }
 
-/// Bytes of memory in this machine, if the system tells.
+/// Bytes of memory in this machine; none if the system does not report them.
 pub fn installed_memory() -> Option<u64> {
     known(system()?.total_memory())
 }

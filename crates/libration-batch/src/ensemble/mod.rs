@@ -1,4 +1,4 @@
-//! Many trajectories of a system, advanced together at the speed of the machine.
+//! Ensembles: many trajectories of a system, advanced together.
 //!
 //! There are no SIMD types here, and no second definition of a step. A block of trajectories is
 //! copied into local arrays; the innermost loop runs the *scalar* [`Integrator::step`] over its
@@ -117,12 +117,12 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         self.step
     }
 
-    /// Where it runs.
+    /// The execution: threads and instruction set.
     pub fn execution(&self) -> &Execution {
         &self.execution
     }
 
-    /// Goes on elsewhere, which changes no result.
+    /// Sets the execution. Results do not depend on it.
     pub fn execute(&mut self, execution: Execution) {
         self.execution = execution;
     }
@@ -228,7 +228,7 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         Ok(observers.into_iter().flatten().collect())
     }
 
-    /// How many threads so many steps of `M` on `Sys` are worth.
+    /// The number of threads for so many steps of `M` on `Sys`.
     fn threads_for<M: Integrator, Sys: System<T, D>>(&self, _: M, steps: u64) -> usize {
         // What holds more values does more with them: symplectic Euler on an oscillator counts as one,
         // RK4 on a pendulum as 32 (it takes 60 times as long).

@@ -82,7 +82,7 @@ pub(super) struct Share<'a, T, const D: usize> {
 }
 
 impl<'a, T: Copy, const D: usize> Share<'a, T, D> {
-    /// How many trajectories there are.
+    /// The number of trajectories.
     pub(super) fn len(&self) -> usize {
         self.q.first().map_or(0, |plane| plane.len())
     }
@@ -126,7 +126,7 @@ impl<'a, T: Copy, const D: usize> Share<'a, T, D> {
         }
     }
 
-    /// What an observer sees of them.
+    /// The lanes that an observer receives.
     pub(super) fn lanes(&self, step: u64) -> Lanes<'_, T, D> {
         Lanes {
             first: self.first,

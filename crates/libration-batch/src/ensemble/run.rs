@@ -11,7 +11,7 @@ use super::kernel::{Advance, Pass};
 use super::planes::Share;
 use super::{Lanes, Observer};
 
-/// What is done with the trajectories of a share.
+/// The steps of the trajectories of a share.
 pub(super) struct Run<'a, T, M, A, C, Sys, O, const D: usize> {
     pub(super) share: Share<'a, T, D>,
     pub(super) method: M,

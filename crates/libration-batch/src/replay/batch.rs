@@ -9,21 +9,21 @@ use crate::rl::first_of;
 pub struct Batch<T, const O: usize, const D: usize> {
     /// The numbers of the transitions.
     pub number: Vec<u64>,
-    /// What was seen.
+    /// The observations.
     pub observation: Vec<[T; O]>,
-    /// What was done.
+    /// The actions.
     pub action: Vec<[T; D]>,
-    /// What it paid, and the steps after it as far as one looks ahead: `Σ γᵏ·r`.
+    /// The discounted sums of rewards over the steps of the lookahead: `Σ γᵏ·r`.
     pub reward: Vec<T>,
-    /// What was seen after the last of these steps.
+    /// The observations after the last of these steps.
     pub next_observation: Vec<[T; O]>,
     /// 1 where the episode was over then, otherwise 0.
     pub terminated: Vec<u8>,
     /// 1 where it was cut off then, otherwise 0.
     pub truncated: Vec<u8>,
-    /// What the value of what was seen next counts: `γᵐ` after `m` steps, and 0 where the episode was over.
+    /// The discount of the value of the next observation: `γᵐ` after `m` steps, 0 after a terminated episode.
     pub discount: Vec<T>,
-    /// What the transition counts, so that the mean over batches is as if each had been as likely: the largest of the batch is 1.
+    /// The importance weights, which correct for the sampling probabilities; the largest of the batch is 1.
     pub weight: Vec<T>,
 }
 
@@ -84,7 +84,7 @@ pub struct Columns<'a, T, const O: usize, const D: usize> {
 }
 
 impl<'a, T, const O: usize, const D: usize> Columns<'a, T, O, D> {
-    /// How many transitions there are, if all columns are as long.
+    /// The number of transitions.
     pub(super) fn len(&self) -> Result<usize, super::ReplayError> {
         let len = self.number.len();
         for (name, found) in [

@@ -5,12 +5,12 @@ use core::ops::Range;
 use super::ReplayError;
 use crate::ensemble::InsufficientMemory;
 
-/// What a replay buffer holds, and the memory that it takes, before anything is allocated.
+/// The capacity of a replay buffer and its memory, before any allocation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capacity {
     /// The last steps that are kept of every environment.
     pub steps: usize,
-    /// How many environments there are.
+    /// The number of environments.
     pub environments: usize,
     /// Ends of episodes among them: where there are more, the oldest steps go earlier.
     pub ends: usize,
@@ -22,23 +22,23 @@ pub struct Capacity {
 pub(super) const PAGE: usize = 4096;
 
 impl Capacity {
-    /// So many steps of so many environments, of whose transitions a quarter at most end an episode.
+    /// The capacity for `steps` steps of `environments` environments, where at most a quarter of the transitions end an episode.
     pub fn new(steps: usize, environments: usize) -> Self {
         let ends = (steps.saturating_mul(environments) / 4).max(environments);
         Capacity { steps, environments, ends, priorities: false }
     }
 
-    /// This, with room for so many ends.
+    /// Sets the capacity for ends.
     pub fn ends(self, ends: usize) -> Self {
         Capacity { ends, ..self }
     }
 
-    /// This, with priorities.
+    /// Adds priorities.
     pub fn priorities(self) -> Self {
         Capacity { priorities: true, ..self }
     }
 
-    /// How many transitions it is.
+    /// The number of transitions.
     pub fn transitions(&self) -> u128 {
         self.steps as u128 * self.environments as u128
     }
@@ -61,7 +61,7 @@ impl Capacity {
         Ok(self.fields([observation, action], number)?.len)
     }
 
-    /// Where everything lies.
+    /// The byte ranges of the fields.
     pub(super) fn fields(
         &self,
         [observation, action]: [usize; 2],
@@ -115,7 +115,7 @@ pub(super) struct Fields {
     pub(super) weight: Range<usize>,
     /// Of which transition each end is, in a ring of rising numbers.
     pub(super) end_place: Range<usize>,
-    /// And what was seen there.
+    /// The observations at the ends.
     pub(super) end_seen: Range<usize>,
     /// All bytes.
     pub(super) len: usize,

@@ -1,4 +1,4 @@
-//! Division by what stays the same.
+//! Division by a constant divisor.
 
 /// A divisor, of which the reciprocal is known: a processor multiplies several times sooner than it divides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,13 +9,13 @@ pub(super) struct Divisor {
 }
 
 impl Divisor {
-    /// By a number above zero.
+    /// The divisor `by`, at least 1.
     pub(super) fn new(by: usize) -> Self {
         let by = (by as u64).max(1);
         Divisor { by, reciprocal: u64::MAX / by }
     }
 
-    /// The quotient, and what is left.
+    /// The quotient and the remainder.
     #[inline(always)]
     pub(super) fn divide(self, number: u64) -> (u64, u64) {
         let guess = ((u128::from(number) * u128::from(self.reciprocal)) >> 64) as u64;

@@ -1,13 +1,13 @@
-//! Which batch is drawn.
+//! The address of a batch.
 
 use libration_core::random::{Address, Purpose};
 
 /// The address of a batch: the same one draws the same from the same transitions, whatever was drawn before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Draw {
-    /// Of the whole run.
+    /// The seed of the run.
     pub seed: u64,
-    /// Which batch it is; each has a number of its own.
+    /// The number of the batch, different for each batch.
     pub number: u64,
 }
 

@@ -1,4 +1,4 @@
-//! What can be wrong with a replay buffer.
+//! Errors of a replay buffer.
 
 use libration_core::control::ControlError;
 use thiserror::Error;
@@ -6,32 +6,32 @@ use thiserror::Error;
 use crate::ensemble::{EnsembleError, InsufficientMemory};
 use crate::rl::EnvironmentError;
 
-/// Why a replay buffer cannot be made, filled or drawn from.
+/// Error of a replay buffer.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ReplayError {
-    /// As for environments and rollouts.
+    /// An error of environments or rollouts.
     #[error(transparent)]
     Environment(#[from] EnvironmentError),
-    /// A capacity of nothing.
+    /// A capacity is 0.
     #[error("the capacity is 0 {name}; it must be at least 1")]
     Nothing {
-        /// Of what.
+        /// The name of the capacity.
         name: &'static str,
     },
-    /// More at once than there is room for.
+    /// An insertion exceeds the capacity.
     #[error("{name}: {found} in one insertion; the capacity is {room}")]
     Capacity {
-        /// Of what.
+        /// The name of the capacity.
         name: &'static str,
-        /// How many there are.
+        /// The number in the insertion.
         found: usize,
-        /// For how many there is room.
+        /// The capacity.
         room: usize,
     },
-    /// There is nothing to draw.
+    /// The buffer has no transitions.
     #[error("the replay buffer has no {0} to draw from; insert a rollout first")]
     Empty(&'static str),
-    /// It was made without priorities.
+    /// The buffer has no priorities.
     #[error("the replay buffer has no priorities; create it with priorities")]
     Priorities,
     /// A transition that was never inserted.
@@ -39,24 +39,24 @@ pub enum ReplayError {
         "the number of a transition {index} is {value}; it must be a number from a batch, below {end}"
     )]
     Index {
-        /// Which of those given.
+        /// The index in the given numbers.
         index: usize,
-        /// What it is.
+        /// The number.
         value: u64,
-        /// All are below.
+        /// The upper bound of all numbers.
         end: u64,
     },
-    /// Memory that holds something else.
+    /// The memory does not hold a matching replay buffer.
     #[error("the replay buffer does not match: {what} is {found}; it must be {wanted}")]
     Other {
-        /// What is different.
+        /// The property that differs.
         what: &'static str,
-        /// What was found.
+        /// The value in the memory.
         found: String,
-        /// What is needed.
+        /// The required value.
         wanted: String,
     },
-    /// Memory that holds a replay buffer that is damaged.
+    /// The memory holds a damaged replay buffer.
     #[error("the replay buffer is damaged: {0}")]
     Damaged(String),
 }
@@ -80,7 +80,7 @@ impl From<ControlError> for ReplayError {
 }
 
 impl ReplayError {
-    /// Nothing, if there are as many as there must be.
+    /// Returns an error if `found` is not `wanted`.
     pub(super) fn shape(name: &'static str, found: usize, wanted: usize) -> Result<(), Self> {
         if found == wanted {
             return Ok(());

@@ -135,7 +135,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         self.memory.commit(self.marks);
     }
 
-    /// How many of these steps are no transitions.
+    /// The number of cells without a transition in these steps.
     pub(super) fn nones(&self, steps: Range<u64>) -> u64 {
         let n = self.capacity.environments;
         let row = |step| &self.flags()[self.cell(step, 0)..][..n];

@@ -18,7 +18,7 @@ const VERSION: u64 = 1;
 /// Where the two records of how far it is begin: lines of the cache of their own.
 const RECORDS: [usize; 2] = [512, 1024];
 
-/// How far a replay buffer is.
+/// The counters of a replay buffer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Marks {
     /// Steps that were ever inserted.
@@ -34,12 +34,12 @@ pub(super) struct Marks {
 }
 
 impl Marks {
-    /// Nothing was inserted.
+    /// The counters of an empty buffer.
     pub(super) const NONE: Self =
         Marks { head: 0, tail: 0, ends: Range64 { first: 0, end: 0 }, live: 0, largest: 1.0 };
 }
 
-/// From the first to before the last.
+/// The range from `first` to before `end`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Range64 {
     pub(super) first: u64,
@@ -55,7 +55,7 @@ pub(super) struct Memory {
     sequence: u64,
 }
 
-/// What is in the first words.
+/// The header.
 fn description<T: Float>(capacity: &Capacity, numbers: [usize; 2]) -> [u64; 9] {
     let mut name = [0; 8];
     name.iter_mut().zip(T::NAME.bytes()).for_each(|(to, byte)| *to = byte);
@@ -105,7 +105,7 @@ impl Memory {
         Ok(memory)
     }
 
-    /// What was inserted before, by whomever.
+    /// Opens memory with a replay buffer.
     pub(super) fn open<T: Float + Pod>(
         map: MmapMut,
         numbers: [usize; 2],

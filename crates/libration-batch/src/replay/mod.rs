@@ -1,4 +1,4 @@
-//! Memory of transitions from which a learner draws batches.
+//! Replay buffers: memory of transitions from which a learner draws batches.
 //!
 //! A [`Replay`] keeps the last steps of as many environments as a [`Rollout`](crate::rl::Rollout) has, whole rollouts at a time.
 //! What is seen next is the next row, or stands apart where an episode ended: no observation is kept twice. A [`Batch`] of

@@ -140,7 +140,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         (last - back) * n as u64 + l
     }
 
-    /// What is new has the largest weight, and what is gone since then none.
+    /// Gives new transitions the largest weight and overwritten ones none.
     pub(super) fn set_weights(&mut self, before: Marks, nones: bool) {
         if self.sums.is_none() {
             return;
@@ -177,7 +177,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         none.into_iter().for_each(|l| weights[l] = 0.0);
     }
 
-    /// What is no transition has no weight, whatever was left in its place.
+    /// Sets the weight of cells without a transition to zero.
     pub(super) fn recompute_weights(&mut self) {
         let rows = self.capacity.rows();
         let there: Vec<bool> = {

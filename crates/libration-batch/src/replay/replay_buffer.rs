@@ -11,9 +11,9 @@ use super::{Capacity, ReplayError};
 
 /// The episode was over after the transition: terminated.
 pub(super) const OVER: u8 = 1;
-/// It was cut off: truncated.
+/// Flag of a truncated episode.
 pub(super) const CUT: u8 = 2;
-/// What was seen next does not stand in the next row, but among the ends.
+/// Flag of a transition whose next observation is stored with the ends.
 pub(super) const END: u8 = 4;
 /// No transition: the environment stood still, or was lost.
 pub(super) const NONE: u8 = 8;
@@ -63,7 +63,7 @@ pub struct Replay<T, const O: usize, const D: usize> {
     height: Divisor,
     pub(super) memory: Memory,
     pub(super) marks: Marks,
-    /// Where there are priorities.
+    /// The weights; empty without priorities.
     pub(super) sums: Option<Sums>,
     number: core::marker::PhantomData<T>,
 }
@@ -121,7 +121,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         Ok(replay)
     }
 
-    /// What it can hold.
+    /// The capacity.
     pub fn capacity(&self) -> Capacity {
         self.capacity
     }
@@ -163,7 +163,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         self.memory.map()
     }
 
-    /// Where in the fields environment `n` has a step.
+    /// The cell of a step of environment `n` in the fields.
     #[inline(always)]
     pub(super) fn cell(&self, step: u64, n: usize) -> usize {
         self.row(step) * self.capacity.environments + n
@@ -203,7 +203,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         self.memory.field(&self.memory.fields.end_seen)
     }
 
-    /// Where end `i` belongs: [`place_of`](Self::place_of) its transition.
+    /// The [place](Self::place_of) of the transition of end `i`.
     pub(super) fn place(&self, i: u64) -> u64 {
         self.end_place()[(i % self.capacity.ends as u64) as usize]
     }
@@ -229,7 +229,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         low
     }
 
-    /// What was seen after a transition with these flags, if that stands among the ends.
+    /// The observation after a transition with these flags, if it is stored with the ends.
     pub(super) fn end_of(&self, step: u64, n: usize, flags: u8) -> Option<[T; O]> {
         if flags & END == 0 {
             return None;

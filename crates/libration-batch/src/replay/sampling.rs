@@ -11,7 +11,7 @@ use super::replay_buffer::{CUT, END, NONE, OVER};
 use super::{Columns, Draw, Replay, ReplayError};
 use crate::ensemble::Execution;
 
-/// How many steps a transition of a batch goes over.
+/// The number of steps of a transition of a batch.
 ///
 /// R. S. Sutton, *Learning to predict by the methods of temporal differences*, Machine Learning 3, 1988. Fewer where the episode
 /// ends, and where the last step that is known comes, before.
@@ -115,7 +115,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         })
     }
 
-    /// What was seen after a step with these flags.
+    /// The observation after a step with these flags.
     #[inline(always)]
     pub(super) fn next(&self, step: u64, l: usize, flags: u8) -> [T; O] {
         let apart = self.end_of(step, l, flags);
@@ -167,7 +167,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         }
     }
 
-    /// What a step leads to.
+    /// The outcome of one step.
     fn gather_next(
         &self,
         gamma: T,
@@ -201,7 +201,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         }
     }
 
-    /// What several steps lead to.
+    /// The outcome of several steps.
     fn gather_far(
         &self,
         lookahead: Lookahead,
@@ -247,7 +247,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
 /// Transitions that are gathered together.
 const BLOCK: usize = 256;
 
-/// Of all values those in some cells.
+/// The values of some cells.
 #[inline(always)]
 fn take<X: Copy>(to: &mut [X], from: &[X], cells: &[usize]) {
     to.iter_mut().zip(cells).for_each(|(to, &cell)| *to = from[cell]);

@@ -14,11 +14,11 @@ pub struct Sequences<T, const O: usize, const D: usize> {
     pub steps: usize,
     /// The number of the first transition of each: `[i]`.
     pub number: Vec<u64>,
-    /// What was seen.
+    /// The observations.
     pub observation: Vec<[T; O]>,
-    /// What was done.
+    /// The actions.
     pub action: Vec<[T; D]>,
-    /// What it paid.
+    /// The rewards.
     pub reward: Vec<T>,
     /// 1 where the episode was over, otherwise 0.
     pub terminated: Vec<u8>,
@@ -27,7 +27,7 @@ pub struct Sequences<T, const O: usize, const D: usize> {
     /// 1 as long as the episode goes on in which the stretch began, 0 for what comes after: another episode, or steps that were
     /// no transitions.
     pub mask: Vec<u8>,
-    /// What was seen after the last step of the mask: `[i]`.
+    /// The observation after the last step of the mask: `[i]`.
     pub next_observation: Vec<[T; O]>,
 }
 

@@ -25,7 +25,7 @@ pub struct SumTree {
 }
 
 impl SumTree {
-    /// So many weights, all of them zero.
+    /// A tree of `len` weights, all of them zero.
     pub fn new(len: usize) -> Self {
         SumTree { weights: vec![0.0; len], sums: Sums::zero(len) }
     }
@@ -68,7 +68,7 @@ pub(super) struct Sums {
 }
 
 impl Sums {
-    /// Of so many zeros.
+    /// The sums of `len` zeros.
     pub(super) fn zero(len: usize) -> Self {
         let mut levels = Vec::new();
         let mut len = len;
@@ -80,14 +80,14 @@ impl Sums {
         Sums { levels }
     }
 
-    /// Of these weights.
+    /// The sums of these weights.
     pub(super) fn over(weights: &[f64]) -> Self {
         let mut sums = Sums::zero(weights.len());
         sums.renew_all(weights, 0..weights.len());
         sums
     }
 
-    /// Of all weights.
+    /// The sum of all weights.
     pub(super) fn total(&self) -> f64 {
         self.levels.last().map_or(0.0, |top| top[0])
     }
@@ -106,7 +106,7 @@ impl Sums {
         }
     }
 
-    /// These weights have changed.
+    /// Updates the sums of changed weights.
     pub(super) fn renew(&mut self, weights: &[f64], changed: impl Iterator<Item = usize> + Clone) {
         let mut width = 1;
         for level in 0..self.levels.len() {

@@ -1,4 +1,4 @@
-//! What an earlier process left in memory.
+//! Verification of a replay buffer that an earlier process wrote.
 
 use bytemuck::Pod;
 use libration_core::Float;
@@ -22,7 +22,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         cells.into_iter().for_each(|cell| flags[cell] |= END);
     }
 
-    /// Whether what was found in memory can be.
+    /// Verifies the counters, ends and weights in memory.
     pub(super) fn verify(&self) -> Result<(), ReplayError> {
         let damaged = |what: String| Err(ReplayError::Damaged(what));
         let Marks { head, tail, ends, live, largest } = self.marks;

@@ -24,7 +24,7 @@ where
         self.mobility == T::one()
     }
 
-    /// What these commands accelerate by.
+    /// The accelerations of these commands.
     #[inline(always)]
     pub(super) fn accelerations(&self, commands: &[[T; LANES]; D]) -> [[T; LANES]; D] {
         let mut accelerations = *commands;
@@ -39,7 +39,7 @@ where
         accelerations
     }
 
-    /// What is to be had of these actions. What is no number stays none.
+    /// The commands of these actions after saturation. NaN stays NaN.
     #[inline(always)]
     pub(super) fn commands(&self, actions: &[[T; LANES]; D]) -> [[T; LANES]; D] {
         let mut commands = *actions;

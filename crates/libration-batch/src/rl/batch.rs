@@ -1,4 +1,4 @@
-//! Many environments.
+//! A batch of environments.
 
 use bytemuck::Pod;
 use libration_core::control::Clock;
@@ -17,7 +17,7 @@ use super::{
 };
 use crate::ensemble::{Assign, EnsembleError, Execution, InsufficientMemory};
 
-/// Environments that are stepped together.
+/// A batch of environments that are stepped together.
 ///
 /// ```
 /// use libration::State;
@@ -62,7 +62,7 @@ where
     pub(super) blocks: Vec<BlockOf<T, E, O, D>>,
     pub(super) history: History,
     pub(super) past: Vec<T>,
-    /// For clocks, sensors and actions.
+    /// The random streams of clocks, sensors and actions.
     pub(super) draws: [EpisodeStreams; 3],
 }
 
@@ -93,7 +93,7 @@ where
     /// clocks alone for all up to its last. Ends of episodes are counted from its first.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// As for [`new`](Self::new).
     pub fn shard(
         world: E,
         first: usize,
@@ -156,40 +156,40 @@ where
         Ok(all)
     }
 
-    /// How many there are.
+    /// The number of environments.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there are none.
+    /// Whether the batch is empty.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// Actions of each so far.
+    /// The number of actions of each environment so far.
     pub fn step(&self) -> u64 {
         self.step
     }
 
-    /// Where they are stepped from now on, which changes nothing of what they do.
+    /// Sets the execution. Results do not depend on it.
     pub fn execute(&mut self, execution: Execution) {
         self.execution = execution;
     }
 
-    /// What each is.
+    /// The definition of the environments.
     pub fn world(&self) -> &E {
         &self.world
     }
 
-    /// The state of environment `n`, if there is one.
+    /// The state of environment `n`; none if `n` is out of range.
     pub fn state(&self, n: usize) -> Option<State<T, D>> {
         (n < self.len).then(|| self.blocks[n / LANES].state(n % LANES))
     }
 
-    /// Begins another episode in every environment for which there is a `true`.
+    /// Begins a new episode in every environment whose flag is `true`.
     ///
     /// # Errors
-    /// [`EnvironmentError::Shape`] if there is not one for each.
+    /// [`EnvironmentError::Shape`] if the number of flags is not the number of environments.
     pub fn reset(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
         EnvironmentError::shape("reset flags", which.len(), self.len)?;
         for n in (0..self.len).filter(|&n| which[n]) {
@@ -203,7 +203,7 @@ where
     /// follows any.
     ///
     /// # Errors
-    /// [`EnvironmentError::Shape`] if there is not one for each.
+    /// [`EnvironmentError::Shape`] if the number of flags is not the number of environments.
     pub fn end(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
         EnvironmentError::shape("end flags", which.len(), self.len)?;
         if self.world.parts().autoreset == Autoreset::SameStep {
@@ -243,13 +243,13 @@ where
     }
 }
 
-/// The largest number of a first environment: there is room for those after it.
+/// The largest number of a first environment; later numbers then fit as well.
 const FURTHEST: f64 = (1_u64 << 53) as f64;
 
-/// So many of the same.
+/// A vector of `count` copies of `x`.
 ///
 /// # Errors
-/// If there is no memory for them.
+/// If the memory is insufficient.
 fn room<X: Clone>(count: usize, x: &X) -> Result<Vec<X>, EnsembleError> {
     let mut all = Vec::new();
     let needed = count as u128 * size_of::<X>() as u128;

@@ -1,4 +1,4 @@
-//! Neighbouring environments.
+//! Blocks of neighbouring environments.
 
 use libration_core::control::{Clock, Memory, StartAddress};
 use libration_core::random::Streams;
@@ -10,67 +10,67 @@ use super::start::Episode;
 use super::{Start, Variation, World};
 use crate::ensemble::kernel::{at, put};
 
-/// Neighbouring environments, of which each has a lane.
+/// A block of neighbouring environments, one per lane.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Block<T, C, V, const D: usize> {
     pub(super) q: [[T; LANES]; D],
     pub(super) v: [[T; LANES]; D],
-    /// What the episode has paid since the last sum was formed.
+    /// The rewards of the episode since the last partial sum.
     pub(super) paid: [T; LANES],
-    /// And before: a short float would soon hold nothing more.
+    /// The partial sums before, in `f64`: a short float loses small increments.
     pub(super) banked: [f64; LANES],
-    /// What the clock remembers.
+    /// The memory of the clock.
     pub(super) clock: C,
-    /// What was drawn for the episode.
+    /// The random parameters of the episode.
     pub(super) numbers: V,
-    /// How bad the clock and the sensor are in the episode.
+    /// The error scales of the clock and of the sensor.
     pub(super) error_scale: [[T; LANES]; 2],
-    /// The latencies of what is seen and of actions.
+    /// The latencies of observations and of actions.
     pub(super) delays: [[u32; LANES]; 2],
-    /// The step with which the episode began.
+    /// The first step of the episode.
     pub(super) began: [u64; LANES],
-    /// The first of these steps.
+    /// The smallest of these steps.
     pub(super) oldest: u64,
-    /// Its number.
+    /// The number of the episode.
     pub(super) episode: [u64; LANES],
-    /// From which all that is random is drawn.
+    /// The seed.
     pub(super) seed: [u64; LANES],
-    /// And the number of the environment there.
+    /// The number of the environment in the batch of that seed.
     pub(super) environment: [u64; LANES],
-    /// How it ended, if it did and no other has begun: [`OVER`] and [`CUT`].
+    /// Flags of an ended episode before the next begins: [`OVER`] and [`CUT`].
     pub(super) ended: [u8; LANES],
 }
 
 /// Steps whose rewards are summed in the float type.
 const BANKED: u64 = 32;
 
-/// An episode is over: terminated.
+/// Flag of a terminated episode.
 pub(super) const OVER: u8 = 1;
-/// It was cut off: truncated.
+/// Flag of a truncated episode.
 pub(super) const CUT: u8 = 2;
 
-/// In what a block yields: over, since a number of it is none.
+/// Flag of the output of a block: terminated because a number is not finite.
 pub(super) const LOST: u8 = 2;
 
 /// The block of a world.
 pub(super) type BlockOf<T, E, const O: usize, const D: usize> =
     Block<T, ClockLanes<T, E, O, D>, NumberLanes<T, E, O, D>, D>;
 
-/// What its clock remembers of an environment.
+/// The memory of the clock of an environment.
 pub(super) type ClockMemory<T, E, const O: usize, const D: usize> =
     <<E as World<T, O, D>>::Clock as Clock<T>>::Memory;
 type ClockLanes<T, E, const O: usize, const D: usize> =
     <ClockMemory<T, E, O, D> as Memory<T>>::Lanes<LANES>;
 
-/// What is drawn for an episode.
+/// The random parameters of an episode.
 pub(super) type Numbers<T, E, const O: usize, const D: usize> =
     <<E as World<T, O, D>>::Variation as Variation<
         T,
         <E as World<T, O, D>>::System,
         <E as World<T, O, D>>::Task,
     >>::Numbers;
-/// In lanes.
+/// The random parameters in lanes.
 pub(super) type NumberLanes<T, E, const O: usize, const D: usize> =
     <Numbers<T, E, O, D> as Memory<T>>::Lanes<LANES>;
 
@@ -136,7 +136,7 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
         Episode { seed, environment, number: self.episode[l] }
     }
 
-    /// The one that follows it.
+    /// The next episode of lane `l`.
     pub(super) fn next(&self, l: usize) -> Episode {
         let episode = self.episode(l);
         Episode { number: episode.number + 1, ..episode }
@@ -152,7 +152,7 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
         (self.paid[l], self.began[l]) = (T::zero(), now);
     }
 
-    /// What was paid goes to what was before, every so many steps.
+    /// Adds the rewards to the partial sums, every [`BANKED`] steps.
     #[inline(always)]
     pub(super) fn bank(&mut self, step: u64)
     where
@@ -166,7 +166,7 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
         }
     }
 
-    /// All that the episode of lane `l` has paid.
+    /// The return of the episode of lane `l`.
     pub(super) fn paid(&self, l: usize) -> f64
     where
         T: Float,
@@ -174,7 +174,7 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
         self.banked[l] + self.paid[l].to_f64()
     }
 
-    /// What stands still takes no words of these.
+    /// Restores the words of lanes without a running episode.
     pub(super) fn restore_words(
         &self,
         words: [&mut Streams<LANES>; 3],
@@ -185,7 +185,7 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
         }
     }
 
-    /// Episodes have begun.
+    /// Updates `oldest` after episodes began.
     pub(super) fn settle(&mut self) {
         self.oldest = self.began.iter().copied().fold(u64::MAX, u64::min);
     }

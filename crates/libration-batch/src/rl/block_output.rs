@@ -1,4 +1,4 @@
-//! What blocks yield.
+//! The output of a step of a block.
 
 use libration_core::Float;
 
@@ -23,14 +23,14 @@ impl<T: Float, const O: usize, const D: usize> Step<T, O, D> {
     }
 }
 
-/// What a block yields.
+/// The output of a block.
 #[repr(C, align(64))]
 pub(super) struct BlockOutput<T, const O: usize, const D: usize> {
-    /// Of a step that was taken in several parts.
+    /// The output of a step that is not fused.
     pub(super) step: Step<T, O, D>,
     pub(super) overs: [u8; LANES],
     pub(super) cuts: [u8; LANES],
-    /// The episodes that ended so far.
+    /// The ends of episodes so far.
     pub(super) finals: Vec<EpisodeEnd<T, O>>,
 }
 

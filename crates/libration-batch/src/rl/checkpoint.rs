@@ -1,4 +1,4 @@
-//! The state of environments, to be left and taken up again.
+//! Checkpoints of environments.
 
 use bytemuck::Pod;
 use libration_core::Float;
@@ -139,10 +139,10 @@ where
     }
 }
 
-/// The largest number of steps or episodes of a state.
+/// The largest number of steps or episodes in a state.
 const FURTHEST: u64 = 1 << 52;
 
-/// Lane `l` is as before any episode.
+/// Resets lane `l` to its state before the first episode.
 fn clear<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
     block: &mut BlockOf<T, E, O, D>,
     l: usize,

@@ -1,4 +1,4 @@
-//! How late observations and actions are.
+//! Latencies of observations and actions.
 
 use libration_core::control::error::ensure;
 use libration_core::control::{ControlError, Latency};
@@ -13,19 +13,19 @@ use super::start::{Episode, between};
 /// latency after the look that it follows from; until the first one does, the command is zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Delays {
-    /// Of what is seen: least and most.
+    /// The smallest and largest latency of observations.
     pub observation: [u32; 2],
-    /// Of actions.
+    /// The smallest and largest latency of actions.
     pub action: [u32; 2],
 }
 
 impl Delays {
-    /// The same for all.
+    /// Constant latencies.
     pub fn of(observation: u32, action: u32) -> Self {
         Delays { observation: [observation; 2], action: [action; 2] }
     }
 
-    /// Whether there are none.
+    /// Whether all latencies are zero.
     pub fn is_none(&self) -> bool {
         *self == Delays::default()
     }
@@ -42,7 +42,7 @@ impl Delays {
         Ok(())
     }
 
-    /// What is drawn for an episode: the latencies of what is seen and of actions.
+    /// The latencies of observations and actions of an episode.
     pub(super) fn draw(&self, episode: Episode) -> [u32; 2] {
         let shares = between::shares::<2>(episode, Purpose::Delay, 0);
         let drawn = |[least, most]: [u32; 2], share: f64| {

@@ -1,8 +1,8 @@
-//! Deviations that are scaled by the error_scale of an episode.
+//! Deviations scaled by the error scale of an episode.
 
 use libration_core::Float;
 
-/// What is, if it is so many times as far from what should be: with a factor of 1, what is to the last bit.
+/// Scales the deviation of a value from its ideal by `factor`. A factor of 1 returns `is` to the last bit.
 #[inline(always)]
 pub(super) fn scale_deviation<T: Float>(is: T, should_be: T, factor: T) -> T {
     is + (factor - T::one()) * (is - should_be)

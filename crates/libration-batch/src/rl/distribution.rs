@@ -1,4 +1,4 @@
-//! How numbers differ from episode to episode.
+//! Distributions of parameters of episodes.
 
 use libration_core::Float;
 use libration_core::control::ControlError;
@@ -9,18 +9,18 @@ use super::start::Episode;
 /// The distribution of a number that is drawn at the beginning of every episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Distribution {
-    /// Anywhere between two ends.
+    /// Uniform between two ends.
     Uniform(f64, f64),
     /// Between two ends above zero, each power of it as likely: for what may be several times too large or too small.
     LogUniform(f64, f64),
     /// Gaussian, of this mean and standard deviation: any number can be drawn, to 8.6 deviations from the mean.
     Normal(f64, f64),
-    /// Either of two values: the first with this probability.
+    /// One of two values: the first with this probability.
     Either(f64, [f64; 2]),
 }
 
 impl Distribution {
-    /// Whether its numbers are those of a distribution, in the float type as well.
+    /// Checks the parameters, in the float type as well.
     pub(super) fn check<T: Float>(&self, index: usize) -> Result<(), ControlError> {
         let ensure = |name, value, allowed, holds: bool| {
             let error = ControlError { name, index: Some(index), value, allowed };

@@ -1,4 +1,4 @@
-//! What an environment is made of.
+//! The definition of an environment.
 
 use core::marker::PhantomData;
 
@@ -11,7 +11,7 @@ use super::variation::NoVariation;
 use super::{Delays, ErrorScale, Sensor, Start, Task, Variation};
 use crate::ensemble::Assign;
 
-/// A system with its integrator, a task, a start and a time limit, and what is not ideal about it.
+/// An environment: a system, an integrator, a task, a start, a time limit and imperfections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Environment<Sys, A, M, K, S, C = Fixed, N = Exact, V = NoVariation> {
     /// The system of every environment: [`All`](crate::ensemble::All) or [`PerTrajectory`](crate::ensemble::PerTrajectory).
@@ -22,33 +22,33 @@ pub struct Environment<Sys, A, M, K, S, C = Fixed, N = Exact, V = NoVariation> {
     pub dt: f64,
     /// Steps of the integrator for which an action is held; at least 1.
     pub substeps: u32,
-    /// What is seen, paid, and over.
+    /// Observation, reward and termination.
     pub task: K,
-    /// Where episodes begin.
+    /// The distribution of initial states.
     pub start: S,
-    /// Actions after which an episode is cut off, if it is.
+    /// The time limit: the number of actions after which an episode is truncated.
     pub limit: Option<u32>,
-    /// What follows the end of an episode.
+    /// The reset after the end of an episode.
     pub autoreset: Autoreset,
-    /// How long steps of the integrator are.
+    /// The clock: lengths of the steps of the integrator.
     pub clock: C,
-    /// How late observations and actions are.
+    /// The latencies of observations and actions.
     pub delays: Delays,
     /// The largest command in each degree of freedom, of either sign: whoever asks for more gets, and pays for, that much. Infinite for
     /// none.
     pub saturation: f64,
     /// What a command moves, in kg: actions are forces, and the system gets `command/mass`. 1 where actions are accelerations.
     pub mass: f64,
-    /// How observations are measured.
+    /// The sensor.
     pub sensor: N,
-    /// What is different in every episode.
+    /// The domain randomisation: parameters drawn for every episode.
     pub variation: V,
-    /// And how bad the clock and the sensor are in it.
+    /// The error scales of the clock and of the sensor, drawn for every episode.
     pub error_scale: ErrorScale,
     pub(super) system: PhantomData<Sys>,
 }
 
-/// What follows the end of an episode.
+/// The reset after the end of an episode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Autoreset {
     /// The next episode begins in the same step: what is seen next is its start.
@@ -90,57 +90,57 @@ impl<Sys, A, M, K, S> Environment<Sys, A, M, K, S> {
 }
 
 impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
-    /// This, with actions that are held for so many steps of the integrator.
+    /// Sets the number of integrator steps per action.
     pub fn substeps(self, substeps: u32) -> Self {
         Environment { substeps, ..self }
     }
 
-    /// This, with episodes that are cut off after so many actions.
+    /// Sets the time limit in actions.
     pub fn limit(self, limit: u32) -> Self {
         Environment { limit: Some(limit), ..self }
     }
 
-    /// This, with another way to go on after an episode.
+    /// Sets the autoreset mode.
     pub fn autoreset(self, autoreset: Autoreset) -> Self {
         Environment { autoreset, ..self }
     }
 
-    /// This, with delays.
+    /// Sets the latencies.
     pub fn delays(self, delays: Delays) -> Self {
         Environment { delays, ..self }
     }
 
-    /// This, with commands of at most so much.
+    /// Sets the largest command.
     pub fn saturation(self, saturation: f64) -> Self {
         Environment { saturation, ..self }
     }
 
-    /// This, with actions that are forces on `mass`, in kg. Tasks see, and limits hold for, the force.
+    /// Sets the mass in kg, so that actions are forces. Tasks and the saturation refer to the force.
     pub fn mass(self, mass: f64) -> Self {
         Environment { mass, ..self }
     }
 
-    /// This, with clocks and sensors that are more or less wrong from episode to episode.
+    /// Sets the error scales of the clock and of the sensor.
     pub fn error_scale(self, error_scale: ErrorScale) -> Self {
         Environment { error_scale, ..self }
     }
 
-    /// This, with steps of another clock.
+    /// Sets the clock.
     pub fn clock<Other>(self, clock: Other) -> Environment<Sys, A, M, K, S, Other, N, V> {
         self.with(|_, sensor, variation| (clock, sensor, variation))
     }
 
-    /// This, with observations that are measured so.
+    /// Sets the sensor.
     pub fn sensor<Other>(self, sensor: Other) -> Environment<Sys, A, M, K, S, C, Other, V> {
         self.with(|clock, _, variation| (clock, sensor, variation))
     }
 
-    /// This, with episodes that differ in more than their start.
+    /// Sets the domain randomisation.
     pub fn variation<Other>(self, variation: Other) -> Environment<Sys, A, M, K, S, C, N, Other> {
         self.with(|clock, sensor, _| (clock, sensor, variation))
     }
 
-    /// This, with other parts of other types.
+    /// Replaces clock, sensor and variation by values of other types.
     fn with<C2, N2, V2>(
         self,
         change: impl FnOnce(C, N, V) -> (C2, N2, V2),
@@ -175,28 +175,28 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
 /// An [`Environment`] whose parts fit each other, with `O` numbers to be seen and `D` degrees of freedom: a name for all its
 /// types.
 pub trait World<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
-    /// Of the system.
+    /// The system.
     type System: System<T, D> + Copy + Send + Sync;
-    /// Of the systems of all environments.
+    /// The systems of all environments.
     type Systems: Assign<Self::System>;
-    /// Of the integrator.
+    /// The integrator.
     type Method: Integrator;
-    /// Of the task.
+    /// The task.
     type Task: Task<T, D, O>;
-    /// Of the start.
+    /// The start.
     type Start: Start<T, D>;
-    /// Of the clock.
+    /// The clock.
     type Clock: Clock<T>;
-    /// Of the sensor.
+    /// The sensor.
     type Sensor: Sensor<T, O>;
-    /// Of the variation.
+    /// The variation.
     type Variation: Variation<T, Self::System, Self::Task>;
 
     /// The environment.
     fn parts(&self) -> &Parts<T, Self, O, D>;
 }
 
-/// The environment that a world is.
+/// The environment of a [`World`].
 pub type Parts<T, E, const O: usize, const D: usize> = Environment<
     <E as World<T, O, D>>::System,
     <E as World<T, O, D>>::Systems,

@@ -1,4 +1,4 @@
-//! Ends of episodes.
+//! Resets after the end of episodes.
 
 use libration_core::Float;
 use libration_core::random::Streams;
@@ -16,7 +16,7 @@ where
     E: World<T, O, D>,
     P: Policy<T, O, D>,
 {
-    /// Whether no environment of a block stands still.
+    /// Whether all environments of a block are running.
     #[inline(always)]
     pub(super) fn all_running(&self, block: &BlockOf<T, E, O, D>) -> bool {
         self.autoreset == Autoreset::SameStep || block.ended == [0; LANES]

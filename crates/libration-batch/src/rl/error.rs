@@ -1,4 +1,4 @@
-//! What can be wrong with environments.
+//! Errors of environments and rollouts.
 
 use libration_core::Float;
 use libration_core::control::ControlError;
@@ -6,55 +6,55 @@ use thiserror::Error;
 
 use crate::ensemble::{EnsembleError, InsufficientMemory};
 
-/// Why environments or a rollout cannot be made or run.
+/// Error of environments or of a rollout.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum EnvironmentError {
-    /// As for every ensemble.
+    /// An error of an ensemble.
     #[error(transparent)]
     Ensemble(#[from] EnsembleError),
-    /// A number cannot be so.
+    /// An invalid parameter.
     #[error(transparent)]
     Number(#[from] ControlError),
-    /// There are more or fewer of something.
+    /// A length is wrong.
     #[error("the number of {name} is {found}; it must be {wanted}")]
     Shape {
-        /// Of what.
+        /// The name of the values.
         name: &'static str,
-        /// How many there are.
+        /// The number of values.
         found: usize,
-        /// How many there must be.
+        /// The required number.
         wanted: usize,
     },
-    /// There is no room to say something that has to be said.
+    /// The rollout lacks a required field.
     #[error("{why}: the rollout requires the field `{field}`")]
     Field {
-        /// Why it has to be said.
+        /// The reason.
         why: &'static str,
-        /// Which of its fields is missing.
+        /// The missing field.
         field: &'static str,
     },
-    /// A rollout that does not fit.
+    /// The memory is insufficient for the rollout.
     #[error(
         "a rollout of {horizon} steps of {environments} environments takes {bytes} bytes per transition. {room}. {}",
         advice(*bytes, *horizon, *environments, room)
     )]
     Room {
-        /// Steps that were asked for.
+        /// The number of steps.
         horizon: usize,
-        /// Environments that were asked for.
+        /// The number of environments.
         environments: usize,
         /// Bytes of a transition.
         bytes: usize,
-        /// What is missing.
+        /// The memory that is needed and available.
         room: InsufficientMemory,
     },
-    /// What is listed by number is asked for where numbers are no more.
+    /// Clock rates per environment are combined with seeds per environment.
     #[error(
         "clock rates are listed per environment, and seeds per environment make every environment the first of a batch: \
          draw the rates from a distribution, or use one seed for the batch"
     )]
     Seeded,
-    /// A time limit of nothing.
+    /// The time limit is 0.
     #[error("the time limit is 0 actions; it must be at least 1, or absent")]
     Limit,
 }
@@ -66,7 +66,7 @@ impl From<InsufficientMemory> for EnvironmentError {
 }
 
 impl EnvironmentError {
-    /// The memory that is missing, if it is that.
+    /// The memory that is needed and available, if that is the error.
     pub fn room(&self) -> Option<&InsufficientMemory> {
         match self {
             EnvironmentError::Room { room, .. } => Some(room),
@@ -75,12 +75,12 @@ impl EnvironmentError {
         }
     }
 
-    /// Nothing, if there are as many as there must be.
+    /// Returns an error if `found` is not `wanted`.
     pub(super) fn shape(name: &'static str, found: usize, wanted: usize) -> Result<(), Self> {
         if found == wanted { Ok(()) } else { Err(EnvironmentError::Shape { name, found, wanted }) }
     }
 
-    /// Nothing, if the number is one above zero, in the float type as well.
+    /// Returns an error unless the value is finite and above zero, in the float type as well.
     pub(super) fn above_zero<T: Float>(
         name: &'static str,
         index: usize,
@@ -95,10 +95,10 @@ impl EnvironmentError {
     }
 }
 
-/// What is allowed of the random words of what does not draw.
+/// The allowed number of random words of a type that does not draw.
 pub(super) const NOTHING_DRAWN: &str = "0 unless `DRAWS` is true";
 
-/// What would fit.
+/// The sizes that fit into the memory.
 fn advice(bytes: usize, horizon: usize, environments: usize, room: &InsufficientMemory) -> String {
     let Some(available) = room.available else {
         return "Run the horizon in several parts".to_owned();

@@ -1,4 +1,4 @@
-//! How bad an episode is.
+//! Error scales of the clock and of the sensor.
 
 use libration_core::Float;
 use libration_core::control::ControlError;
@@ -13,14 +13,14 @@ use super::start::{Episode, between};
 /// Steps that would be negative are of length zero, as with clocks. Where clock and sensor are exact there is nothing to be severe about.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorScale {
-    /// Of how far a step is from its length: least and most.
+    /// The range of the factor of clock errors.
     pub clock: [f64; 2],
-    /// Of the noise of what is seen.
+    /// The range of the factor of sensor noise.
     pub sensor: [f64; 2],
 }
 
 impl Default for ErrorScale {
-    /// All of it, always.
+    /// Factors of 1.
     fn default() -> Self {
         ErrorScale { clock: [1.0; 2], sensor: [1.0; 2] }
     }
@@ -38,7 +38,7 @@ impl ErrorScale {
         between::check("range of the error scale", ends)
     }
 
-    /// What is drawn for an episode: of the clock and of the sensor.
+    /// The factors of the clock and of the sensor in an episode.
     pub(super) fn draw(&self, episode: Episode) -> [f64; 2] {
         // The first two numbers are latencies.
         let shares = between::shares::<2>(episode, Purpose::Delay, 2);

@@ -1,4 +1,4 @@
-//! What actions were worth, from what was paid.
+//! Advantages and returns of a rollout.
 
 use bytemuck::Pod;
 use libration_core::Float;
@@ -22,7 +22,7 @@ pub struct Discounts {
     pub errors: f64,
 }
 
-/// Advantages and returns of a rollout: allocated once, to be filled again and again.
+/// Advantages and returns of a rollout: allocated once, filled many times.
 #[derive(Debug)]
 pub struct Estimates<T> {
     plan: Plan,
@@ -31,7 +31,7 @@ pub struct Estimates<T> {
 }
 
 impl<T: Float + Pod> Estimates<T> {
-    /// Memory for those of a rollout of this plan.
+    /// Allocates the estimates of a rollout of this plan.
     ///
     /// # Errors
     /// [`EnvironmentError::Ensemble`] if there is not so much.

@@ -1,4 +1,4 @@
-//! Steps of which there is little to say.
+//! The fused step: observation, action and integration in one loop.
 
 use bytemuck::Pod;
 use libration_core::control::Clock;
@@ -22,7 +22,7 @@ where
     E: World<T, O, D>,
     P: Policy<T, O, D>,
 {
-    /// Whether nothing but a short formula comes between what is seen and what it leads to.
+    /// Whether a step can be fused: a closed-form policy, no delays, an ideal clock and an ideal sensor.
     pub(super) fn is_fused(&self) -> bool {
         let ideal = const { P::CLOSED_FORM && !E::Sensor::DRAWS && E::Clock::EVEN };
         let timely = !self.history.delays_observations() && !self.history.delays_actions();

@@ -1,4 +1,4 @@
-//! States and actions on their way.
+//! Delay lines of states and actions.
 
 use core::ops::Range;
 
@@ -27,17 +27,17 @@ impl History {
         History { states: places(states), actions, substeps, degrees }
     }
 
-    /// Numbers that it takes for a block.
+    /// The number of values per block.
     pub(super) fn len(&self) -> usize {
         (self.states * 2 + self.actions) * self.degrees * LANES
     }
 
-    /// Whether what is seen is late.
+    /// Whether observations are delayed.
     pub(super) fn delays_observations(&self) -> bool {
         self.states > 0
     }
 
-    /// Whether actions are.
+    /// Whether actions are delayed.
     pub(super) fn delays_actions(&self) -> bool {
         self.actions > 0
     }
@@ -57,7 +57,7 @@ impl History {
         actions.iter_mut().for_each(|row| row[l] = T::zero());
     }
 
-    /// Keeps what the state is at the beginning of a step of the integrator.
+    /// Stores the state at the beginning of a step of the integrator.
     #[inline(always)]
     pub(super) fn pass<T: Copy, const D: usize>(
         &self,
@@ -87,7 +87,7 @@ impl History {
         }
     }
 
-    /// What the states were, each one latency before the beginning of a step of the integrator.
+    /// Reads the states one latency before the beginning of a step of the integrator.
     #[inline(always)]
     pub(super) fn seen<T: Copy, const D: usize>(
         &self,
@@ -114,7 +114,7 @@ impl History {
         }
     }
 
-    /// Keeps the actions of step `now`.
+    /// Stores the actions of step `now`.
     #[inline(always)]
     pub(super) fn act<T: Copy, const D: usize>(
         &self,
@@ -154,19 +154,19 @@ impl History {
     }
 }
 
-/// Where in a ring of so many places something lies.
+/// The index of a step in a ring of `places` entries.
 #[inline(always)]
 fn ring(step: u64, places: usize) -> usize {
     (step % places as u64) as usize
 }
 
-/// The place so many before another.
+/// The index `by` entries before another.
 #[inline(always)]
 fn back(place: usize, by: usize, places: usize) -> usize {
     if place >= by { place - by } else { place + places - by }
 }
 
-/// Whether all are the same.
+/// Whether all latencies are equal.
 #[inline(always)]
 fn same(latencies: &[u32; LANES]) -> bool {
     let mut other = 0;

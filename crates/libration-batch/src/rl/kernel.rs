@@ -27,16 +27,16 @@ pub(super) struct Share<'a, T, B> {
     pub(super) words: [&'a mut [Streams<LANES>]; 3],
 }
 
-/// What is done with the environments of a share.
+/// The steps of the environments of a share over a horizon.
 pub(super) struct Horizon<'a, 's, T, E, P, B, const O: usize, const D: usize> {
     pub(super) world: &'s E,
     pub(super) policy: P,
     pub(super) history: History,
-    /// All environments.
+    /// The number of all environments.
     pub(super) environments: usize,
-    /// Steps taken before.
+    /// The number of steps before.
     pub(super) step: u64,
-    /// And rows of the rollout written before.
+    /// The number of rows of the rollout written before.
     pub(super) row: usize,
     pub(super) share: Share<'a, T, B>,
     pub(super) slice: RolloutSlice<'a, T, O, D>,

@@ -10,7 +10,7 @@ use crate::ensemble::Loop;
 use crate::ensemble::instructions::Target;
 use crate::ensemble::kernel::{at, put};
 
-/// What a step needs besides system and integrator.
+/// The state, commands and lengths of a step, without system and integrator.
 pub(super) struct Lanes<'a, T, const D: usize> {
     pub(super) q: &'a mut [[T; LANES]; D],
     pub(super) v: &'a mut [[T; LANES]; D],
@@ -19,7 +19,7 @@ pub(super) struct Lanes<'a, T, const D: usize> {
     pub(super) dt: &'a [T; LANES],
 }
 
-/// Lanes that wait for their integrator, their system, or nothing more.
+/// Lanes during the dispatch of integrator and system.
 struct Dispatch<'a, T, I, Sys, M, const D: usize> {
     lanes: Lanes<'a, T, D>,
     target: I,
@@ -28,7 +28,7 @@ struct Dispatch<'a, T, I, Sys, M, const D: usize> {
 }
 
 impl<T: Float, const D: usize> Lanes<'_, T, D> {
-    /// Takes a step in each.
+    /// Advances each lane by one step.
     pub(super) fn step<I: Target, Sys: System<T, D> + Copy, M: Integrator>(
         self,
         target: I,
@@ -66,7 +66,7 @@ impl<T: Float, I: Target, M: Integrator, const D: usize> WithSystem<T, D>
     }
 }
 
-/// Lanes, of which everything is known.
+/// Lanes with their system and integrator.
 struct Known<'a, T, Sys, M, const D: usize> {
     lanes: Lanes<'a, T, D>,
     system: Sys,

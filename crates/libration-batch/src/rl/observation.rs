@@ -1,4 +1,4 @@
-//! Environments as they are seen from outside.
+//! Observations of environments outside a rollout.
 
 use bytemuck::Pod;
 use libration_core::Float;

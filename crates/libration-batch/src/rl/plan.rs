@@ -1,4 +1,4 @@
-//! How large a rollout is to be.
+//! The plan of a rollout: its size, fields and memory.
 
 use super::block_size::LANES;
 use crate::ensemble::Execution;
@@ -6,23 +6,23 @@ use crate::ensemble::Execution;
 /// The shortest steps that take as long as a transition.
 const WRITTEN: u64 = 8;
 
-/// How several numbers of a transition lie in memory.
+/// The order of several numbers of a transition in memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Layout {
-    /// Side by side: `[t, n, i]`, as most learners read them.
+    /// `[t, n, i]`, as most learners read them.
     #[default]
     Interleaved,
-    /// Apart: `[i, t, n]`, a structure of arrays.
+    /// `[i, t, n]`, a structure of arrays.
     Planes,
 }
 
-/// How the tensors are written.
+/// The kind of stores that write the tensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Writes {
-    /// Through the caches: fastest where those near the core hold all of it.
+    /// Through the caches: fastest if the caches of the core hold all tensors.
     #[default]
     Plain,
-    /// Past the caches: fastest where they do not.
+    /// Past the caches: fastest if they do not.
     Past,
 }
 
@@ -35,58 +35,58 @@ impl Writes {
     }
 }
 
-/// What a rollout holds, how it lies and how it is written; and the memory that it takes, before anything is allocated.
+/// The size, the fields, the layout and the memory of a rollout, before any allocation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Plan {
-    /// Actions of each environment.
+    /// The number of actions of each environment.
     pub horizon: usize,
     /// How many environments there are. Where a row of them fills whole lines of the cache, as that of a multiple of 64 does,
     /// all of it can be streamed.
     pub environments: usize,
-    /// Whether there is room to say that episodes were cut off.
+    /// Whether there is a field for truncations.
     pub truncated: bool,
-    /// Whether there is room for the log-probabilities of actions.
+    /// Whether there is a field for the log-probabilities of actions.
     pub log_probability: bool,
-    /// Whether there is room for values, which nobody but the caller writes.
+    /// Whether there is a field for values, which the caller writes.
     pub value: bool,
-    /// How its numbers lie.
+    /// The layout.
     pub layout: Layout,
-    /// How it is written.
+    /// The kind of stores.
     pub writes: Writes,
 }
 
 impl Plan {
-    /// A plan of what every transition has, side by side, written through the caches.
+    /// A plan with the required fields, interleaved and written through the caches.
     pub fn new(horizon: usize, environments: usize) -> Self {
         Plan { horizon, environments, ..Plan::default() }
     }
 
-    /// This, with room to say that episodes were cut off.
+    /// Adds the field of truncations.
     pub fn truncated(self) -> Self {
         Plan { truncated: true, ..self }
     }
 
-    /// This, with room for the log-probabilities of actions.
+    /// Adds the field of log-probabilities.
     pub fn log_probabilities(self) -> Self {
         Plan { log_probability: true, ..self }
     }
 
-    /// This, with room for values.
+    /// Adds the field of values.
     pub fn values(self) -> Self {
         Plan { value: true, ..self }
     }
 
-    /// This, in another layout.
+    /// Sets the layout.
     pub fn layout(self, layout: Layout) -> Self {
         Plan { layout, ..self }
     }
 
-    /// This, written so.
+    /// Sets the kind of stores.
     pub fn writes(self, writes: Writes) -> Self {
         Plan { writes, ..self }
     }
 
-    /// How many transitions there are.
+    /// The number of transitions.
     pub fn transitions(&self) -> u128 {
         self.horizon as u128 * self.environments as u128
     }
@@ -117,13 +117,13 @@ impl Plan {
         ]
     }
 
-    /// Bytes of all of them for a transition.
+    /// The number of bytes per transition.
     pub fn bytes_each(&self, observation: usize, action: usize, number: usize) -> usize {
         let fields = self.fields(observation, action, number);
         fields.iter().fold(0, |sum: usize, (_, bytes)| sum.saturating_add(*bytes))
     }
 
-    /// All bytes.
+    /// The number of bytes of the rollout.
     pub fn bytes(&self, observation: usize, action: usize, number: usize) -> u128 {
         self.transitions().saturating_mul(self.bytes_each(observation, action, number) as u128)
     }

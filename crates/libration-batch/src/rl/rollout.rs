@@ -1,4 +1,4 @@
-//! What environments do over a horizon, as tensors.
+//! Rollouts: the transitions of environments over a horizon, as tensors.
 
 use core::array::from_fn;
 use core::ops::Range;
@@ -9,7 +9,7 @@ use super::rollout_slice::{RolloutSlice, planes, rows_of, some_rows};
 use super::{EnvironmentError, EpisodeEnd, Layout, Plan};
 use crate::ensemble::{Buffer, InsufficientMemory, Pages};
 
-/// What environments did over a horizon: allocated once, to be filled again and again.
+/// The transitions of environments over a horizon: allocated once, filled many times.
 ///
 /// In step `t` of environment `n`, `observation` is what was seen before `action`; `reward`, `terminated` and `truncated` are
 /// what came of it.
@@ -32,7 +32,7 @@ pub struct Rollout<T, const O: usize, const D: usize> {
 }
 
 impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
-    /// Memory for a rollout, which nobody has touched.
+    /// Allocates a rollout.
     ///
     /// # Errors
     /// [`EnvironmentError::Room`] if there is not so much: with what would fit, and before anything is taken.
@@ -63,47 +63,47 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
         })
     }
 
-    /// What it holds.
+    /// The plan.
     pub fn plan(&self) -> Plan {
         self.plan
     }
 
-    /// What was seen: `[t, n, i]` or `[i, t, n]`, as the layout says.
+    /// The observations: `[t, n, i]` or `[i, t, n]`, depending on the layout.
     pub fn observation(&self) -> &[T] {
         &self.observation
     }
 
-    /// What was done about it, in the same order.
+    /// The actions, in the same order.
     pub fn action(&self) -> &[T] {
         &self.action
     }
 
-    /// What it paid: `[t, n]`.
+    /// The rewards: `[t, n]`.
     pub fn reward(&self) -> &[T] {
         &self.reward
     }
 
-    /// 1 where the episode was over, otherwise 0: `[t, n]`.
+    /// 1 where the episode terminated, otherwise 0: `[t, n]`.
     pub fn terminated(&self) -> &[u8] {
         &self.terminated
     }
 
-    /// 1 where it was cut off at the time limit, otherwise 0: `[t, n]`, or empty.
+    /// 1 where the time limit truncated the episode, otherwise 0: `[t, n]`, or empty.
     pub fn truncated(&self) -> &[u8] {
         &self.truncated
     }
 
-    /// The logarithms of the probability densities of what was done: `[t, n]`, or empty.
+    /// The logarithms of the probability densities of the actions: `[t, n]`, or empty.
     pub fn log_probability(&self) -> &[T] {
         &self.log_probability
     }
 
-    /// What the caller holds observations to be worth: `[t, n]`, or empty.
+    /// The values of the observations, written by the caller: `[t, n]`, or empty.
     pub fn value(&self) -> &[T] {
         &self.value
     }
 
-    /// The values, to be written.
+    /// The values, for writing.
     pub fn value_mut(&mut self) -> &mut [T] {
         &mut self.value
     }
@@ -151,7 +151,7 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
         }
     }
 
-    /// What was seen by environment `n` in step `t`.
+    /// The observation of environment `n` in step `t`.
     ///
     /// # Panics
     /// If there is no such step or environment.
@@ -159,7 +159,7 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
         self.of(&self.observation, t, n)
     }
 
-    /// What it did.
+    /// The action of environment `n` in step `t`.
     ///
     /// # Panics
     /// If there is no such step or environment.

@@ -1,4 +1,4 @@
-//! A step of neighbouring environments in a rollout.
+//! Rows of a rollout: one step of neighbouring environments.
 
 use bytemuck::Pod;
 use libration_core::Float;
@@ -9,7 +9,7 @@ use super::{Layout, Writes};
 use crate::ensemble::instructions::Target;
 use crate::ensemble::stream::Streaming;
 
-/// Where a step of neighbouring environments is written.
+/// The destination of one step of neighbouring environments.
 #[derive(Debug)]
 pub(super) struct RolloutRow<'a, T, const O: usize, const D: usize> {
     /// The planes, or all numbers in the first.
@@ -17,7 +17,7 @@ pub(super) struct RolloutRow<'a, T, const O: usize, const D: usize> {
     pub(super) action: [&'a mut [T]; D],
     pub(super) reward: &'a mut [T],
     pub(super) terminated: &'a mut [u8],
-    /// Empty where nobody asked for it, as the next.
+    /// Empty without a field of truncations.
     pub(super) truncated: &'a mut [u8],
     pub(super) log_probability: &'a mut [T],
 }
@@ -35,7 +35,7 @@ impl<T: Float, const O: usize, const D: usize> Records<T, O, D> {
     }
 }
 
-/// How rows are written.
+/// The layout and the kind of stores of rows.
 pub(super) struct Writer<I: Target> {
     pub(super) streaming: Streaming<I>,
     pub(super) layout: Layout,

@@ -1,4 +1,4 @@
-//! Environments through a horizon.
+//! Runs environments over a horizon.
 
 use core::array::from_fn;
 use core::mem::swap;
@@ -19,16 +19,16 @@ use super::{
 };
 use crate::ensemble::{EnsembleError, InsufficientMemory};
 
-/// Room for what a step leads to.
+/// Buffers for the results of one step.
 #[derive(Debug)]
 pub struct StepBuffers<'a, T> {
-    /// What is seen after it: `[n, i]`.
+    /// The observations after the step: `[n, i]`.
     pub seen: &'a mut [T],
-    /// What it paid.
+    /// The rewards.
     pub reward: &'a mut [T],
-    /// 1 where the episode was over, otherwise 0.
+    /// 1 where the episode terminated, otherwise 0.
     pub terminated: &'a mut [u8],
-    /// 1 where it was cut off at the time limit, otherwise 0.
+    /// 1 where the time limit truncated the episode, otherwise 0.
     pub truncated: &'a mut [u8],
 }
 
@@ -37,7 +37,7 @@ where
     T: Float + Pod,
     E: World<T, O, D>,
 {
-    /// Fills `rollout` with what all do under `policy`.
+    /// Fills `rollout` with the transitions of all environments under `policy`.
     ///
     /// # Errors
     /// [`EnvironmentError::Shape`] if it is for another number of environments, or the policy is;
@@ -94,7 +94,7 @@ where
         Ok(())
     }
 
-    /// One action of each: writes what came of it, and what is seen then. Gives the episodes that ended.
+    /// Takes one action of each environment and writes the results. Returns the ends of episodes.
     ///
     /// # Errors
     /// As [`rollout`](Self::rollout), and [`EnvironmentError::Shape`] if the room is for more or fewer.
@@ -127,7 +127,7 @@ where
         Ok(self.advance(policy, slice, (threads, Writes::Plain, 0)))
     }
 
-    /// Nothing, if `policy` can act for so many of the steps of a horizon.
+    /// Checks that `policy` and the clock support `steps` steps.
     fn ready<P: Policy<T, O, D>>(
         &self,
         policy: P,
@@ -212,7 +212,7 @@ where
         finals
     }
 
-    /// Those that stand still.
+    /// The environments without a running episode.
     fn stopped(&self) -> Vec<usize> {
         let stands = |n: &usize| self.blocks[n / LANES].ended[n % LANES] != 0;
         (0..self.len).filter(stands).collect()

@@ -1,4 +1,4 @@
-//! Neighbouring environments of a rollout, over all its steps.
+//! Slices of a rollout: neighbouring environments over all steps.
 
 use core::array::from_fn;
 use core::mem::{replace, take};
@@ -20,7 +20,7 @@ pub(super) struct RolloutSlice<'a, T, const O: usize, const D: usize> {
     /// Without columns where nobody asked for it, as the next.
     pub(super) truncated: ArrayViewMut2<'a, u8>,
     pub(super) log_probability: ArrayViewMut2<'a, T>,
-    /// What is seen after the last step, side by side in one row.
+    /// The observations after the last step, interleaved in one row.
     pub(super) next: ArrayViewMut2<'a, T>,
     pub(super) layout: Layout,
 }
@@ -45,17 +45,17 @@ impl<'a, T, const O: usize, const D: usize> RolloutSlice<'a, T, O, D> {
         }
     }
 
-    /// How many steps there are.
+    /// The number of steps.
     pub(super) fn steps(&self) -> usize {
         self.reward.nrows()
     }
 
-    /// What is seen after the last step; empty where nobody asked for it.
+    /// The observations after the last step; empty if they are not requested.
     pub(super) fn next(&mut self) -> &mut [T] {
         if self.next.is_empty() { &mut [] } else { row(&mut self.next, 0) }
     }
 
-    /// Whether it is asked what is seen before each step.
+    /// Whether the observations before each step are requested.
     pub(super) fn has_observations(&self) -> bool {
         self.observation.iter().any(|plane| !plane.is_empty())
     }
@@ -87,13 +87,13 @@ pub(super) fn planes<T, const N: usize>(
     from_fn(|_| rows_of(planes.next().unwrap_or_default(), rows))
 }
 
-/// So many rows, of what is as long as some.
+/// A view of `numbers` as `rows` rows.
 pub(super) fn rows_of<T>(numbers: &mut [T], rows: usize) -> ArrayViewMut2<'_, T> {
     let width = numbers.len().checked_div(rows).unwrap_or(0);
     ArrayViewMut2::from_shape((rows, width), numbers).expect("whole rows")
 }
 
-/// Some of the rows.
+/// A range of the rows.
 pub(super) fn some_rows<'a, X>(
     all: ArrayViewMut2<'a, X>,
     rows: &Range<usize>,

@@ -1,24 +1,24 @@
-//! How observations are measured.
+//! Sensors: errors of observations.
 
 use libration_core::Float;
 use libration_core::control::ControlError;
 use libration_core::control::clock::Noise;
 use libration_core::control::error::not_negative;
 
-/// What is made of the `O` numbers that a task shows.
+/// A sensor that measures the `O` numbers of an observation.
 pub trait Sensor<T: Float, const O: usize>: Copy + Send + Sync {
-    /// Whether anything is random.
+    /// Whether the sensor draws random words.
     const DRAWS: bool;
 
-    /// Whether its numbers are those of a sensor.
+    /// Checks the parameters.
     ///
     /// # Errors
-    /// The first that is not.
+    /// The first invalid parameter.
     fn check(&self) -> Result<(), ControlError> {
         Ok(())
     }
 
-    /// Random words that a look takes: always as many.
+    /// The number of random words per measurement, always the same.
     fn words(&self) -> usize;
 
     /// What is measured. It branches on nothing but what `self` holds, and is `#[inline(always)]`, or the loops over environments
@@ -26,7 +26,7 @@ pub trait Sensor<T: Float, const O: usize>: Copy + Send + Sync {
     fn measure(&self, seen: [T; O], word: &mut impl FnMut() -> u32) -> [T; O];
 }
 
-/// What is measured is what there is.
+/// A sensor without error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exact;
 

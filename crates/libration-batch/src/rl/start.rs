@@ -1,4 +1,4 @@
-//! Where episodes begin.
+//! Initial states of episodes.
 
 use core::array::from_fn;
 
@@ -10,11 +10,11 @@ use libration_core::{Float, State};
 /// The address of all that is drawn for an episode once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Episode {
-    /// Of all environments.
+    /// The seed of the batch.
     pub seed: u64,
-    /// Whose episode it is.
+    /// The number of the environment.
     pub environment: u64,
-    /// How many went before.
+    /// The number of earlier episodes.
     pub number: u64,
 }
 
@@ -40,27 +40,27 @@ impl Episode {
         Address { seed, trajectory, step, purpose }
     }
 
-    /// Nothing, if so many draws have addresses of their own.
+    /// Fails to compile if an episode has fewer than `draws` addresses.
     pub(super) const fn has(draws: usize) {
         assert!(draws as u64 <= DRAWS, "more numbers than an episode has addresses");
     }
 }
 
-/// The start of every episode of every environment.
+/// The distribution of the initial states of episodes.
 pub trait Start<T: Float, const D: usize>: Copy + Send + Sync {
-    /// Whether its numbers are those of a start.
+    /// Checks the parameters.
     ///
     /// # Errors
-    /// The first that is not.
+    /// The first invalid parameter.
     fn check(&self) -> Result<(), ControlError> {
         Ok(())
     }
 
-    /// Where an episode begins.
+    /// The initial state of an episode.
     fn draw(&self, episode: Episode) -> State<T, D>;
 }
 
-/// Always there.
+/// The same initial state for every episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedStart<const D: usize>(
     /// The start.
@@ -77,7 +77,7 @@ impl<T: Float, const D: usize> Start<T, D> for FixedStart<D> {
     }
 }
 
-/// Anywhere between two corners, each coordinate uniformly and by itself.
+/// Initial states uniform between two corners, each coordinate independently.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UniformStart<const D: usize>(
     /// The lower ends.
@@ -103,7 +103,7 @@ impl<T: Float, const D: usize> Start<T, D> for UniformStart<D> {
     }
 }
 
-/// Numbers that are uniform between two ends.
+/// Uniform random numbers.
 pub(super) mod between {
     use core::array::from_fn;
 

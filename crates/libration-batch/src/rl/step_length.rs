@@ -17,7 +17,7 @@ where
     E: World<T, O, D>,
     P: Policy<T, O, D>,
 {
-    /// How many `Δt` the step of lane `l` is long.
+    /// The length of the step of lane `l`, in units of `Δt`.
     #[inline(always)]
     pub(super) fn ratio(
         &self,
@@ -37,7 +37,7 @@ where
         ratio
     }
 
-    /// How long the step of each lane is.
+    /// The length of the step of each lane.
     #[inline(always)]
     pub(super) fn lengths(
         &self,

@@ -1,4 +1,4 @@
-//! What a step of a block consists of: scalar functions in loops over lanes.
+//! The parts of a step of a block: scalar functions in loops over lanes.
 
 use libration_core::control::{Clock, Memory};
 use libration_core::random::{Purpose, Streams};
@@ -17,14 +17,14 @@ use crate::ensemble::Assign;
 use crate::ensemble::instructions::Target;
 use crate::ensemble::kernel::{Lines, at, put};
 
-/// What all blocks and steps share.
+/// Values that all blocks and steps share.
 #[derive(Clone, Copy)]
 pub(super) struct Stepper<'s, T, E, P, const O: usize, const D: usize> {
     pub(super) world: &'s E,
     pub(super) policy: P,
     pub(super) history: History,
     pub(super) dt: T,
-    /// From action to action.
+    /// The time from action to action, in seconds.
     span: f64,
     /// The largest command.
     pub(super) saturation: T,
@@ -35,9 +35,9 @@ pub(super) struct Stepper<'s, T, E, P, const O: usize, const D: usize> {
     pub(super) autoreset: Autoreset,
 }
 
-/// A block, and the step that it takes.
+/// The indices and systems of a block in a step.
 pub(super) struct Site<T: Float, E: World<T, O, D>, const O: usize, const D: usize> {
-    /// Of its first lane.
+    /// The index of the first lane.
     pub(super) place: StepIndex,
     /// Lanes that are environments.
     pub(super) count: usize,
@@ -94,7 +94,7 @@ where
         *self.world.parts()
     }
 
-    /// What is seen at the beginning of a step.
+    /// Computes the observations at the beginning of a step.
     #[inline(always)]
     pub(super) fn observe(
         &self,
@@ -128,7 +128,7 @@ where
         }
     }
 
-    /// Keeps what is to be seen later.
+    /// Stores states for delayed observations.
     #[inline(always)]
     pub(super) fn pass(&self, now: u64, block: &BlockOf<T, E, O, D>, past: &mut [T]) {
         if self.history.delays_observations() {
@@ -136,7 +136,7 @@ where
         }
     }
 
-    /// What is done about it.
+    /// Computes the actions.
     #[inline(always)]
     pub(super) fn act(
         &self,
@@ -153,7 +153,7 @@ where
         policy.act_all(place, seen, words, actions, log_probabilities);
     }
 
-    /// What comes of it.
+    /// Advances the states and computes rewards and terminations.
     #[inline(always)]
     pub(super) fn advance<I: Target>(
         &self,
@@ -219,7 +219,7 @@ where
         ended
     }
 
-    /// Which episodes are cut off. Most often none can be yet, and nobody asks.
+    /// Flags the episodes that the time limit truncates. Returns early if none can be.
     #[inline(always)]
     pub(super) fn limit(
         &self,
@@ -275,7 +275,7 @@ pub(super) fn evaluate<T: Float, K: Task<T, D, O>, const O: usize, const D: usiz
     (if lost { T::zero() } else { reward }, over)
 }
 
-/// Whether each of these is a finite number.
+/// Whether all components are finite.
 #[inline(always)]
 fn is_number<T: Float, const D: usize>(action: &[T; D]) -> bool {
     let mut sum = T::zero();

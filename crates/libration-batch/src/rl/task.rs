@@ -1,4 +1,4 @@
-//! What an environment shows, what it pays, and when it is over.
+//! Tasks: observation, reward and termination.
 
 use libration_core::array::{each, map};
 use libration_core::control::ControlError;
@@ -10,37 +10,37 @@ use libration_core::{Elementary, Float, State};
 ///
 /// `time` is that since the episode began, in seconds, as an ideal clock counts it.
 pub trait Task<T: Float, const D: usize, const O: usize>: Copy + Send + Sync {
-    /// Whether it asks for the time; 0 is what it is told otherwise.
+    /// Whether the task depends on time. If not, `time` is 0.
     const TIMED: bool = false;
 
-    /// Whether its numbers are those of a task.
+    /// Checks the parameters.
     ///
     /// # Errors
-    /// The first that is not.
+    /// The first invalid parameter.
     fn check(&self) -> Result<(), ControlError> {
         Ok(())
     }
 
-    /// What is seen of a state.
+    /// The observation of a state.
     fn observe(&self, time: T, state: &State<T, D>) -> [T; O];
 
-    /// What a step from `before` to `after` under `action` pays, at its end.
+    /// The reward of a step from `before` to `after` under `action`.
     fn reward(&self, time: T, before: &State<T, D>, action: &[T; D], after: &State<T, D>) -> T;
 
-    /// Whether it is over with this state. What is no longer finite is over in any case.
+    /// Whether the episode terminates in this state. A state that is not finite terminates it in any case.
     fn terminated(&self, time: T, after: &State<T, D>) -> bool;
 }
 
-/// To rest at the origin: a step pays `−(p·q² + r·v² + e·u²)`, and the episode is over beyond a distance.
+/// Regulation to the origin: the reward is `−(p·q² + r·v² + e·u²)`; the episode terminates beyond a distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Regulate {
-    /// `p`, the price of a distance squared.
+    /// `p`, the weight of `q²`.
     pub position: f64,
-    /// `r`, that of a velocity squared.
+    /// `r`, the weight of `v²`.
     pub velocity: f64,
-    /// `e`, that of a command squared.
+    /// `e`, the weight of `u²`.
     pub effort: f64,
-    /// The distance from the origin, in each degree of freedom, beyond which all is lost; infinite for none.
+    /// The distance from the origin, in each degree of freedom, beyond which the episode terminates; infinite for none.
     pub bound: f64,
 }
 
@@ -101,9 +101,9 @@ regulate!(2, 4);
 /// `Pendulum` does. It is never over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwingUp {
-    /// `r`, the price of a velocity squared.
+    /// `r`, the weight of `v²`.
     pub velocity: f64,
-    /// `e`, that of a command squared.
+    /// `e`, the weight of `u²`.
     pub effort: f64,
 }
 
@@ -131,17 +131,17 @@ impl<T: Float + Elementary> Task<T, 1, 3> for SwingUp {
     }
 }
 
-/// Where something ought to be.
+/// A reference trajectory.
 pub trait Reference<T: Float>: Copy + Send + Sync {
-    /// Whether its numbers are those of a reference.
+    /// Checks the parameters.
     ///
     /// # Errors
-    /// The first that is not.
+    /// The first invalid parameter.
     fn check(&self) -> Result<(), ControlError> {
         Ok(())
     }
 
-    /// Its position and its velocity.
+    /// The position and the velocity at `time`.
     fn at(&self, time: T) -> [T; 2];
 }
 
@@ -183,7 +183,7 @@ pub struct Track<R> {
 }
 
 impl<R> Track<R> {
-    /// A state as the reference sees it.
+    /// The state relative to the reference.
     #[inline(always)]
     fn apart<T: Float>(&self, time: T, state: &State<T, 1>) -> State<T, 1>
     where

@@ -1,4 +1,4 @@
-//! What is different in every episode.
+//! Domain randomisation: parameters drawn for every episode.
 
 use libration_core::Float;
 use libration_core::array::each;
@@ -13,21 +13,21 @@ use super::start::Episode;
 /// The rate of a clock is drawn by a [`Clock`](libration_core::control::Clock), a latency by [`Delays`](super::Delays), and how bad clock and
 /// sensor are by [`ErrorScale`](super::ErrorScale).
 pub trait Variation<T: Float, Sys, K>: Copy + Send + Sync {
-    /// What is kept of an environment for the episode.
+    /// The random parameters of an environment for the episode.
     type Numbers: Memory<T>;
 
-    /// Whether every episode has the system and the task that there are.
+    /// Whether the variation changes nothing.
     const SAME: bool = false;
 
-    /// Whether its numbers are those of a variation.
+    /// Checks the parameters.
     ///
     /// # Errors
-    /// The first that is not.
+    /// The first invalid parameter.
     fn check(&self) -> Result<(), ControlError> {
         Ok(())
     }
 
-    /// What is drawn for an episode.
+    /// Draws the parameters of an episode.
     fn draw(&self, episode: Episode) -> Self::Numbers;
 
     /// The system and the task of the episode. It branches on nothing but what `self` holds, and is `#[inline(always)]`, or the
@@ -35,7 +35,7 @@ pub trait Variation<T: Float, Sys, K>: Copy + Send + Sync {
     fn apply(&self, numbers: &Self::Numbers, system: Sys, task: K) -> (Sys, K);
 }
 
-/// Nothing is.
+/// No variation: every episode has the same system and task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoVariation;
 
@@ -54,7 +54,7 @@ impl<T: Float, Sys, K> Variation<T, Sys, K> for NoVariation {
     }
 }
 
-/// `N` numbers, each with its distribution, and what they change.
+/// `N` random parameters and the function that applies them.
 ///
 /// ```
 /// use libration::rl::{Distribution, task::Regulate, variation::RandomParameters};
@@ -67,7 +67,7 @@ impl<T: Float, Sys, K> Variation<T, Sys, K> for NoVariation {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RandomParameters<F, const N: usize> {
-    /// How each is distributed.
+    /// The distribution of each parameter.
     pub numbers: [Distribution; N],
     /// The system and the task, made of the numbers and of what they would be without.
     pub apply: F,

@@ -1,4 +1,4 @@
-//! What the catalogue says about a kind of system and its parameters.
+//! Entries of the catalogue: a system and its parameters.
 
 use core::array::from_fn;
 use core::fmt;
@@ -47,7 +47,7 @@ pub struct Parameter {
     pub name: &'static str,
     /// Unit of its value.
     pub unit: &'static str,
-    /// What it is, in one line.
+    /// A description in one line.
     pub summary: &'static str,
     /// The value that it has where none is given.
     pub default: f64,
@@ -60,7 +60,7 @@ pub struct Parameter {
 pub struct Entry {
     /// Name on the command line and in configurations.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// A description in one line.
     pub summary: &'static str,
     /// The numbers of degrees of freedom in which it exists.
     pub dimensions: RangeInclusive<usize>,

@@ -1,10 +1,10 @@
-//! What can be wrong with a system that is asked for by name.
+//! Errors of a system built by name.
 
 use core::ops::RangeInclusive;
 
 use super::{Allowed, ENTRIES, Parameter};
 
-/// Why a system could not be built.
+/// Error of building a system.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CatalogError {
     /// No system has that name.

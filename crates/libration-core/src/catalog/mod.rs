@@ -127,7 +127,7 @@ impl AnySystem {
     ///
     /// # Errors
     ///
-    /// Those of [`build`].
+    /// As for [`build`].
     pub fn build(
         name: &str,
         parameters: &[(impl AsRef<str>, f64)],
@@ -135,7 +135,7 @@ impl AnySystem {
         build(name, parameters).map(|(system, _)| system)
     }
 
-    /// What the catalogue says about this kind of system.
+    /// The entry of this system in the catalogue.
     pub const fn entry(self) -> &'static Entry {
         match self {
             AnySystem::Oscillator(_) => &entries::OSCILLATOR,
@@ -186,7 +186,7 @@ impl AnySystem {
         }
     }
 
-    /// What a user of `method` must know about it on this system, in a sentence; none where it is what its name says.
+    /// A warning about `method` on this system, in a sentence; none if the method keeps its properties.
     pub fn caveat(self, method: Method) -> Option<String> {
         (method == Method::TextbookVerlet && self.is_damped()).then(|| {
             format!(

@@ -1,25 +1,25 @@
-//! What pushes a plant besides its command.
+//! Disturbances: accelerations besides the command.
 
 use super::ControlError;
 use super::error::not_negative;
 use crate::Float;
 use crate::random::normal;
 
-/// An acceleration that nobody commands: process noise.
+/// A disturbance: process noise as an acceleration.
 pub trait Disturbance: Copy + Send + Sync {
-    /// Whether there is any.
+    /// Whether the disturbance is not zero.
     #[doc(hidden)]
     const ACTS: bool = true;
 
     /// Whether its numbers are those of a disturbance; `Loops` ask before they begin.
     ///
     /// # Errors
-    /// The first that is not.
+    /// The first invalid parameter.
     fn check<T: Float>(&self) -> Result<(), ControlError> {
         Ok(())
     }
 
-    /// How many random words an acceleration takes: the same number for every step and trajectory.
+    /// The number of random words per acceleration, the same for every step and trajectory.
     fn words(&self) -> usize;
 
     /// The acceleration in a degree of freedom that is held through a step of `dt` seconds, whether a command arrives within it
@@ -27,7 +27,7 @@ pub trait Disturbance: Copy + Send + Sync {
     fn acceleration<T: Float>(&self, dt: T, word: &mut impl FnMut() -> u32) -> T;
 }
 
-/// Nothing does.
+/// No disturbance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NoDisturbance;
 

@@ -1,11 +1,11 @@
-//! Numbers that a loop cannot be made of.
+//! Errors of the parameters of a loop.
 
 use thiserror::Error;
 
 use crate::Float;
 use crate::control::Jitter;
 
-/// A number that a clock, a delay or a controller cannot have.
+/// An invalid parameter of a clock, a delay, a controller or an environment.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error(
     "{name}{} is {}; it must be {allowed}",
@@ -13,23 +13,23 @@ use crate::control::Jitter;
     shown(*value)
 )]
 pub struct ControlError {
-    /// Which of its numbers.
+    /// The name of the parameter.
     pub name: &'static str,
-    /// Which of those of that name, from 0 on, if there are several.
+    /// The index, from 0, if several have that name.
     pub index: Option<usize>,
-    /// What it is.
+    /// The value.
     pub value: f64,
-    /// What it may be.
+    /// The allowed values.
     pub allowed: &'static str,
 }
 
-/// A number without rows of zeros.
+/// The number, with an exponent instead of many zeros.
 fn shown(value: f64) -> String {
     let plain = value == 0.0 || !value.is_finite() || (1e-6..1e16).contains(&value.abs());
     if plain { value.to_string() } else { format!("{value:e}") }
 }
 
-/// `value`, if it is what is allowed.
+/// Returns an error unless `holds(value)`.
 pub fn ensure(
     name: &'static str,
     value: f64,
@@ -39,20 +39,20 @@ pub fn ensure(
     if holds(value) { Ok(()) } else { Err(ControlError { name, index: None, value, allowed }) }
 }
 
-/// Neither infinite nor no number, in `T` either.
+/// Returns an error unless `value` is finite, in `T` as well.
 pub fn finite<T: Float>(name: &'static str, value: f64) -> Result<(), ControlError> {
     ensure(name, value, "a finite number", f64::is_finite)?;
     let held = |x: f64| T::from_f64(x).is_finite();
     ensure(name, value, "small enough for the float type", held)
 }
 
-/// [`finite`], and not below zero.
+/// Returns an error unless `value` is [`finite`] and at least 0.
 pub fn not_negative<T: Float>(name: &'static str, value: f64) -> Result<(), ControlError> {
     ensure(name, value, "a finite number of at least 0", |x| x >= 0.0 && x.is_finite())?;
     finite::<T>(name, value)
 }
 
-/// What [`not_negative`] says of each of several.
+/// Applies [`not_negative`] to each value.
 pub fn none_negative<T: Float>(name: &'static str, values: &[f64]) -> Result<(), ControlError> {
     let each = values.iter().enumerate().map(|(i, &value)| {
         not_negative::<T>(name, value).map_err(|error| ControlError { index: Some(i), ..error })
@@ -60,12 +60,12 @@ pub fn none_negative<T: Float>(name: &'static str, values: &[f64]) -> Result<(),
     each.collect()
 }
 
-/// From 0 to 1.
+/// Returns an error unless `value` is from 0 to 1.
 pub fn probability(name: &'static str, value: f64) -> Result<(), ControlError> {
     ensure(name, value, "from 0 to 1", |x| (0.0..=1.0).contains(&x))
 }
 
-/// A law has a standard deviation.
+/// Returns an error unless the standard deviation of the distribution is valid.
 pub fn law<T: Float>(name: &'static str, law: Jitter) -> Result<(), ControlError> {
     not_negative::<T>(name, law.rms())
 }

@@ -1,4 +1,4 @@
-//! Gains of a loop, and what states and commands weigh.
+//! Gains of a feedback and weights of its cost.
 
 /// State feedback `u = −K_p·q − K_d·v`, where `u` is an acceleration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,14 +22,14 @@ impl Feedback {
     }
 }
 
-/// What a step costs: `position·q² + velocity·v² + command·u²`, with state and command at its beginning.
+/// The weights of the cost of a step, `position·q² + velocity·v² + command·u²`, with state and command at its beginning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LqrWeights {
-    /// Of `q²`; with `q` in m it is in m⁻².
+    /// The weight of `q²`; with `q` in m it is in m⁻².
     pub position: f64,
-    /// Of `v²`, in s²/m².
+    /// The weight of `v²`, in s²/m².
     pub velocity: f64,
-    /// Of `u²`, in s⁴/m².
+    /// The weight of `u²`, in s⁴/m².
     pub command: f64,
 }
 

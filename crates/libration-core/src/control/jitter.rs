@@ -1,4 +1,4 @@
-//! The law of step times.
+//! Distributions of step times.
 
 use crate::random::LARGEST;
 

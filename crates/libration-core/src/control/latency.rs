@@ -1,4 +1,4 @@
-//! How late a command arrives.
+//! The latency of a command.
 
 /// A latency of the command: so many whole steps, and a part of another.
 #[derive(Clone, Copy, Debug, PartialEq)]

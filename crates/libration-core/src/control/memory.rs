@@ -1,4 +1,4 @@
-//! What is remembered of a trajectory from step to step.
+//! Memory of clocks, delays and controllers per trajectory.
 
 use core::fmt::Debug;
 
@@ -9,18 +9,18 @@ use crate::array::each;
 ///
 /// An array of numbers, or a pair of such memories.
 pub trait Memory<T: Copy>: Copy + Send + Sync {
-    /// How many numbers there are.
+    /// The number of values.
     const LEN: usize;
 
     /// The memories of `W` neighbouring trajectories, a row for each number.
     #[doc(hidden)]
     type Lanes<const W: usize>: Copy + Debug + Send + Sync;
 
-    /// From the rows.
+    /// Loads the memory from its rows.
     #[doc(hidden)]
     fn load<const W: usize>(row: &impl Fn(usize) -> [T; W]) -> Self::Lanes<W>;
 
-    /// To the rows.
+    /// Stores the memory to its rows.
     #[doc(hidden)]
     fn store<const W: usize>(lanes: &Self::Lanes<W>, write: &mut impl FnMut(usize, &[T; W]));
 

@@ -1,7 +1,7 @@
-//! Loops that are not ideal: clocks that are not exact, commands that arrive late, and what commands.
+//! Parts of control loops: clocks, delays, controllers and disturbances.
 //!
-//! A [`Clock`] tells how long steps are, a [`Delay`] when commands arrive, a [`Controller`] computes them, a [`Disturbance`] is
-//! what nobody commands.
+//! A [`Clock`] gives the lengths of steps, a [`Delay`] the arrival times of commands, a [`Controller`] the commands and a
+//! [`Disturbance`] the process noise.
 //! `Loops` runs them.
 
 pub mod clock;

@@ -1,12 +1,12 @@
 //! An observer of the state.
 
-/// What a Luenberger observer is made of: the model's own step, and how the position that is seen corrects what was foretold.
+/// A Luenberger observer: the step of its model and its correction gains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StateObserver {
-    /// What a step makes of position and velocity, row by row.
+    /// The matrix of a step on position and velocity, row by row.
     pub phi: [[f64; 2]; 2],
-    /// What it adds for each unit of the command.
+    /// The effect of a unit command.
     pub gamma: [f64; 2],
-    /// What is added to position and velocity for each metre that the position is off; the velocity's is in 1/s.
+    /// The correction of position and velocity per metre of position error; that of the velocity is in 1/s.
     pub correction: [f64; 2],
 }

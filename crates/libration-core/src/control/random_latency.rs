@@ -1,4 +1,4 @@
-//! Latencies that are drawn.
+//! Random latencies: a table of latencies and probabilities.
 
 use super::Latency;
 
@@ -13,7 +13,7 @@ pub struct RandomLatency {
     hold: f64,
 }
 
-/// What is wrong with a table of latencies.
+/// Error of a table of latencies.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum LatencyTableError {
     /// There is nothing to draw from.
@@ -28,11 +28,11 @@ pub enum LatencyTableError {
          {MOST_MOMENTS}"
     )]
     Size {
-        /// How many there are in the table.
+        /// The number of entries.
         entries: usize,
         /// The longest of them.
         longest: usize,
-        /// How many moments that makes.
+        /// The number of second moments.
         moments: usize,
     },
     /// A probability is none.

@@ -1,9 +1,9 @@
-//! Where what a loop remembers begins.
+//! The address of the random numbers of a start.
 
 use crate::control::Jitter;
 use crate::random::{Address, Purpose};
 
-/// The beginning of a trajectory, which is the address of all that is drawn for it once.
+/// The address of all random numbers that a trajectory or episode draws once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StartAddress {
     seed: u64,
@@ -17,7 +17,7 @@ pub struct StartAddress {
 const PARTS: u64 = 128;
 
 impl StartAddress {
-    /// Of `trajectory`, in the run of this seed, at a step: 0, or that of its reset; of an environment, the number of its episode.
+    /// The start of `trajectory` in the run of `seed`. `step` is 0 or that of its reset; for an environment, the number of its episode.
     pub fn new(seed: u64, trajectory: u64, step: u64) -> Self {
         StartAddress { seed, trajectory, step, part: 0 }
     }
@@ -27,18 +27,18 @@ impl StartAddress {
         self.trajectory
     }
 
-    /// Beginnings for the halves of a pair, whose draws have nothing to do with each other.
+    /// The addresses of the halves of a pair, whose draws are independent.
     pub fn halves(self) -> [StartAddress; 2] {
         [1, 2].map(|half| StartAddress { part: (2 * self.part + half) % PARTS, ..self })
     }
 
-    /// The place of a draw.
+    /// The address of a draw for a purpose.
     pub fn address(self, purpose: Purpose) -> Address {
         let StartAddress { seed, trajectory, step, part } = self;
         Address { seed, trajectory, step: step.wrapping_mul(PARTS).wrapping_add(part), purpose }
     }
 
-    /// A draw after a law.
+    /// A draw from a distribution.
     pub fn draw(self, law: Jitter, purpose: Purpose) -> f64 {
         let place = self.address(purpose);
         match law {

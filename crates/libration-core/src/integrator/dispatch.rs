@@ -1,4 +1,4 @@
-//! A method that is chosen when the program runs.
+//! Dispatch of a method that is known at run time.
 
 use super::{Integrator, WithIntegrator};
 use crate::{Method, Scalar, State, System, with_method};

@@ -34,7 +34,7 @@ impl Exact {
     /// Name on the command line.
     pub const NAME: &'static str = "exact";
 
-    /// What it is, in a line.
+    /// A description in one line.
     pub const SUMMARY: &'static str =
         "Steps of a linear system without error, also under a held command";
 

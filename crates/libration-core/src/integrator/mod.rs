@@ -39,10 +39,10 @@ pub trait Integrator: Copy + Send + Sync {
     /// `Ensemble` makes its blocks narrower by them, and gives the same results.
     const REGISTERS: usize = 4;
 
-    /// Whether it is one of several integrators, which is known only when the program runs.
+    /// Whether the integrator dispatches over several methods at run time.
     const DISPATCHES: bool = false;
 
-    /// Hands over the integrator that it is, so that a loop can be made for that alone.
+    /// Calls `with` with the concrete integrator, so that a loop is compiled for it alone.
     #[inline(always)]
     fn dispatch<W: WithIntegrator>(self, with: W) -> W::Output {
         with.integrator(self)
@@ -75,11 +75,11 @@ pub trait Integrator: Copy + Send + Sync {
     }
 }
 
-/// What is to be done with an integrator, whichever it is.
+/// A function of an integrator of any type.
 pub trait WithIntegrator {
-    /// What comes of it.
+    /// The result.
     type Output;
 
-    /// Does it.
+    /// Calls the function.
     fn integrator<M: Integrator>(self, integrator: M) -> Self::Output;
 }

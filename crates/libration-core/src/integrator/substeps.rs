@@ -1,14 +1,14 @@
-//! Short steps as one.
+//! Several substeps as one step.
 
 use super::Integrator;
 use crate::{Scalar, State, System};
 
-/// So many steps of a method, each as long, as one step.
+/// A step that consists of `count` equal steps of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Substeps<I> {
     /// The method.
     pub method: I,
-    /// How many of its steps there are.
+    /// The number of substeps.
     pub count: i32,
 }
 

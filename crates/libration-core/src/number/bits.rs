@@ -1,4 +1,4 @@
-//! From and to the bits of an `f64`.
+//! Conversions from and to the bits of an `f64`.
 
 /// `|c| = magnitude · 2^exponent` of a finite `c`.
 pub(super) fn decode(c: f64) -> (u64, i32) {

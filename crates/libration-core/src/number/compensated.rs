@@ -1,4 +1,4 @@
-//! Single precision that keeps what its sums round off.
+//! Single precision with compensated sums.
 
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -17,7 +17,7 @@ use crate::{Elementary, Float, Scalar};
 pub struct Compensated {
     /// The value rounded to `f32`.
     value: f32,
-    /// What is known of it beyond that: at most half a unit in the last place.
+    /// The compensation: at most half a unit in the last place.
     lost: f32,
 }
 

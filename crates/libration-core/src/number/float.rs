@@ -1,4 +1,4 @@
-//! The machine's own floats.
+//! The floats of the machine.
 
 use crate::elementary::{sine32, sine64};
 use crate::{Elementary, Float, Scalar};

@@ -1,4 +1,4 @@
-//! Number types: swap the number, and a step becomes another instrument.
+//! Number types: floats, dual numbers, polynomials, exact fractions and wide floats.
 
 mod bits;
 mod compensated;

@@ -27,7 +27,7 @@ use crate::{Elementary, Float, Scalar};
 pub struct TwoFloat {
     /// The value rounded to `f64`.
     hi: f64,
-    /// What that rounding lost: `|lo| ≤ ulp(hi)/2`.
+    /// The error of that rounding: `|lo| ≤ ulp(hi)/2`.
     lo: f64,
 }
 

@@ -45,7 +45,7 @@ impl Wide {
     /// Zero.
     pub const ZERO: Self = Wide { negative: false, exponent: 0, significand: U1024::MIN };
 
-    /// What has no value.
+    /// Not a number.
     pub const NAN: Self = Wide { negative: false, exponent: 1, significand: U1024::MIN };
 
     /// `±magnitude · 2^exponent`, rounded to nearest.

@@ -1,20 +1,20 @@
-//! Where a random number is needed.
+//! Addresses of random numbers.
 
 use core::f64::consts::TAU;
 
 use super::philox4x32;
 use crate::Elementary;
 
-/// What a random number is for. Draws for different purposes have nothing to do with each other.
+/// The purpose of a random number. Draws for different purposes are independent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Purpose {
     /// The time of a step.
     StepTime,
     /// The rate of a clock.
     ClockRate,
-    /// How the rate of a clock changes.
+    /// The drift of a clock.
     ClockDrift,
-    /// What a clock remembers before its first step.
+    /// The memory of a clock before its first step.
     ClockStart,
     /// The latency of a command.
     Latency,
@@ -22,7 +22,7 @@ pub enum Purpose {
     LatencyStart,
     /// The start of a trajectory.
     Start,
-    /// What else is different in an episode of an environment.
+    /// The random parameters of an episode of an environment.
     Variation,
     /// The latencies of an episode.
     Delay,
@@ -30,22 +30,22 @@ pub enum Purpose {
     Observation,
     /// An action.
     Action,
-    /// What is drawn from a replay buffer.
+    /// A batch of a replay buffer.
     Replay,
-    /// What pushes a plant besides its command.
+    /// A disturbance of a plant.
     Disturbance,
 }
 
 /// The place of a draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Address {
-    /// Of the whole run.
+    /// The seed of the run.
     pub seed: u64,
     /// Below 2⁵⁶.
     pub trajectory: u64,
     /// Counted from the start.
     pub step: u64,
-    /// What it is for.
+    /// The purpose.
     pub purpose: Purpose,
 }
 

@@ -1,4 +1,4 @@
-//! Numbers made of random words, the same for every float type.
+//! Random numbers from random words, the same for every float type.
 
 /// A number uniform on (−1, 1), made of 24 bits: its mean is zero, and an `f32` holds it exactly.
 #[inline(always)]

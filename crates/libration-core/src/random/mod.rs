@@ -1,4 +1,4 @@
-//! Random numbers by address: what is drawn depends on where it is needed, and on nothing else.
+//! Counter-based random numbers: a draw is a function of its address alone.
 //!
 //! A draw is a function of a seed, a trajectory, a step and a purpose. So the noise of a trajectory depends on neither
 //! the number of threads nor the size of the ensemble nor the order in which anything is asked, and a run

@@ -1,8 +1,8 @@
-//! Random words for trajectories that are stepped together.
+//! Streams of random words for neighbouring trajectories.
 
 use super::{Address, Purpose};
 
-/// Steps for which one draw by address serves.
+/// The number of steps per draw by address.
 ///
 /// A draw costs as much as a hundred operations, a word that follows from the one before costs seven.
 pub const EPOCH: u64 = 256;
@@ -31,7 +31,7 @@ impl<const W: usize> Streams<W> {
         streams
     }
 
-    /// The `l`-th of them begins an epoch that has an address of its own.
+    /// Begins an epoch of generator `l` at the address `epoch`.
     #[inline(always)]
     pub fn begin_epoch(&mut self, l: usize, epoch: Address) {
         let [low, high, ..] = epoch.bits();
@@ -39,13 +39,13 @@ impl<const W: usize> Streams<W> {
         (self.low[l], self.high[l]) = (low, high | 1);
     }
 
-    /// The `l`-th of them goes on as it does there.
+    /// Copies generator `l` of `from`.
     #[inline(always)]
     pub fn copy_lane(&mut self, l: usize, from: &Self) {
         (self.low[l], self.high[l]) = (from.low[l], from.high[l]);
     }
 
-    /// Generators of which nothing is asked.
+    /// Unused generators.
     pub fn none() -> Self {
         Streams { low: [0; W], high: [0; W] }
     }
@@ -66,7 +66,7 @@ impl<const W: usize> Streams<W> {
         streams
     }
 
-    /// The next word of the `l`-th of them.
+    /// The next word of generator `l`.
     #[inline(always)]
     pub fn next(&mut self, l: usize) -> u32 {
         let (low, high) = (self.low[l], self.high[l] ^ self.low[l]);

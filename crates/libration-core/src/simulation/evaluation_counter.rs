@@ -1,4 +1,4 @@
-//! Counts force evaluations instead of assuming them.
+//! Counts of force evaluations.
 
 use core::cell::Cell;
 

@@ -1,4 +1,4 @@
-//! What is seen of a trajectory while it runs.
+//! Observers of a trajectory.
 
 use crate::{Float, Hamiltonian, State};
 
@@ -46,7 +46,7 @@ impl<S, const D: usize, A: Observer<S, D>, B: Observer<S, D>> Observer<S, D> for
 pub struct Every<O> {
     /// The stride, in steps; at least 1.
     pub n: u64,
-    /// Who sees those samples.
+    /// The observer of those samples.
     pub observer: O,
 }
 

@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::{CountedSystem, Observer, Sample};
 use crate::{Float, Integrator, State, System};
 
-/// Why a simulation cannot start or go on.
+/// Error of a simulation.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum SimulationError {
     /// The time step is not a positive finite number of its float type.

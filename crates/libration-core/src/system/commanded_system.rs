@@ -7,7 +7,7 @@ use crate::{Scalar, State};
 /// `q̈ = a(q, v) + u`: a system with a command `u` that is held while a step lasts, as a zero-order hold does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommandedSystem<Sys, S, const D: usize> {
-    /// What moves by itself.
+    /// The system without command.
     pub system: Sys,
     /// The command: an acceleration in each degree of freedom.
     pub command: [S; D],

@@ -1,4 +1,4 @@
-//! A system that is chosen when the program runs.
+//! Dynamic dispatch of a system.
 
 use super::System;
 use crate::{Scalar, State};

@@ -40,10 +40,10 @@ pub trait System<S: Scalar, const D: usize> {
     /// about right; its results do not depend on it.
     const REGISTERS: usize = 16;
 
-    /// Whether it is one of several systems, which is known only when the program runs.
+    /// Whether the system dispatches over several systems at run time.
     const DISPATCHES: bool = false;
 
-    /// Hands over the system that it is, so that a loop can be made for that alone.
+    /// Calls `with` with the concrete system, so that a loop is compiled for it alone.
     #[inline(always)]
     fn dispatch<W: WithSystem<S, D>>(&self, with: W) -> W::Output
     where
@@ -62,12 +62,12 @@ pub trait System<S: Scalar, const D: usize> {
     }
 }
 
-/// What is to be done with a system, whichever it is.
+/// A function of a system of any type.
 pub trait WithSystem<S: Scalar, const D: usize> {
-    /// What comes of it.
+    /// The result.
     type Output;
 
-    /// Does it.
+    /// Calls the function.
     fn system<Sys: System<S, D> + Copy>(self, system: Sys) -> Self::Output;
 }
 

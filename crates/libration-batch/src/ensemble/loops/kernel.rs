@@ -18,7 +18,7 @@ use crate::ensemble::Assign;
 use crate::ensemble::kernel::{Lines, at, put};
 use crate::ensemble::planes::Share;
 
-/// What is the same for all blocks.
+/// Values that all blocks share.
 pub(super) struct Common<'s, T, A, M, K, C, L, N> {
     pub(super) setup: &'s Setup<A, M, K, C, L, N>,
     pub(super) layout: Layout,

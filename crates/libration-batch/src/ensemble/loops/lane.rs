@@ -6,7 +6,7 @@ use libration_core::{Float, Integrator, State, System};
 
 use crate::ensemble::kernel::{Lines, at, put};
 
-/// How many `dt` a step is long in lane `l`.
+/// The length of a step of lane `l`, in units of `dt`.
 #[inline(always)]
 pub(super) fn ratio<T: Float, C: Clock<T>, const W: usize>(
     clock: &C,

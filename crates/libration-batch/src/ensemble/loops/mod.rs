@@ -241,7 +241,7 @@ where
         (&mut self.trajectories, self.memories.numbers_mut())
     }
 
-    /// Where all that is random is drawn from.
+    /// The seed of all random numbers.
     pub(super) fn seed(&self) -> u64 {
         self.seed
     }

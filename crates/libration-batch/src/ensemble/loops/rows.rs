@@ -30,12 +30,12 @@ impl<T: Pod> Memories<T> {
         Rows { numbers: &mut self.numbers, rows: self.rows }
     }
 
-    /// As they lie in memory.
+    /// All numbers, in the order of the memory.
     pub(super) fn numbers(&self) -> &[T] {
         &self.numbers
     }
 
-    /// As they lie in memory.
+    /// All numbers, in the order of the memory, for writing.
     pub(super) fn numbers_mut(&mut self) -> &mut [T] {
         &mut self.numbers
     }

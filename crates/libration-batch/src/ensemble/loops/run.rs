@@ -14,7 +14,7 @@ use crate::ensemble::planes::Share;
 use crate::ensemble::run::{Observe, widest};
 use crate::ensemble::{Assign, Observer};
 
-/// What is done with the loops of a share.
+/// The steps of the loops of a share.
 pub(super) struct Run<'a, 's, T, A, M, K, C, L, N, Sys, O, const D: usize> {
     pub(super) common: &'s Common<'s, T, A, M, K, C, L, N>,
     pub(super) share: Share<'a, T, D>,

@@ -12,13 +12,13 @@ pub struct Setup<A, M, K = OpenLoop, C = Fixed, L = Schedule, N = NoDisturbance>
     pub systems: A,
     /// The integrator.
     pub method: M,
-    /// What commands.
+    /// The controller.
     pub controller: K,
-    /// How long steps are.
+    /// The clock.
     pub clock: C,
     /// When commands arrive.
     pub delay: L,
-    /// What pushes the plant besides.
+    /// The disturbance.
     pub disturbance: N,
 }
 
@@ -31,32 +31,32 @@ impl<A, M> Setup<A, M> {
 }
 
 impl<A, M, K, C, L, N> Setup<A, M, K, C, L, N> {
-    /// This, under a controller.
+    /// Sets the controller.
     pub fn controller<Other>(self, controller: Other) -> Setup<A, M, Other, C, L, N> {
         let Setup { systems, method, clock, delay, disturbance, .. } = self;
         Setup { systems, method, controller, clock, delay, disturbance }
     }
 
-    /// This, with steps of another clock.
+    /// Sets the clock.
     pub fn clock<Other>(self, clock: Other) -> Setup<A, M, K, Other, L, N> {
         let Setup { systems, method, controller, delay, disturbance, .. } = self;
         Setup { systems, method, controller, clock, delay, disturbance }
     }
 
-    /// This, with commands that arrive so.
+    /// Sets the delay.
     pub fn delay<Other>(self, delay: Other) -> Setup<A, M, K, C, Other, N> {
         let Setup { systems, method, controller, clock, disturbance, .. } = self;
         Setup { systems, method, controller, clock, delay, disturbance }
     }
 
-    /// This, pushed by something else besides.
+    /// Sets the disturbance.
     pub fn disturbance<Other>(self, disturbance: Other) -> Setup<A, M, K, C, L, Other> {
         let Setup { systems, method, controller, clock, delay, .. } = self;
         Setup { systems, method, controller, clock, delay, disturbance }
     }
 }
 
-/// Where the rows of the memory of loops begin.
+/// The first row of each part of the memory of loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Layout {
     pub(super) clock: usize,

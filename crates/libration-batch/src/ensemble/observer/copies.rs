@@ -18,7 +18,7 @@ pub struct Copies<T, const D: usize> {
 }
 
 impl<T, const D: usize> Copies<T, D> {
-    /// For these trajectories.
+    /// An observer for `trajectories`.
     pub fn new(trajectories: Range<usize>) -> Self {
         let states = trajectories.clone().map(|_| Vec::new()).collect();
         Copies { trajectories, steps: Vec::new(), states }

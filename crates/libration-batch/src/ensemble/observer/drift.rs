@@ -20,7 +20,7 @@ pub struct Drift<T, Sys, A> {
 }
 
 impl<T: Float, Sys, A> Drift<T, Sys, A> {
-    /// For these trajectories of `systems`.
+    /// An observer for `trajectories` of `systems`.
     pub fn new(trajectories: Range<usize>, systems: A) -> Self {
         let count = trajectories.len();
         Drift {

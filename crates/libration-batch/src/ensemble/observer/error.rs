@@ -17,7 +17,7 @@ pub struct MeanSquareError<F> {
 }
 
 impl<F> MeanSquareError<F> {
-    /// For these trajectories; `solution(n, step)` is where trajectory `n` of the ensemble should be.
+    /// An observer for `trajectories`; `solution(n, step)` is the exact state of trajectory `n`.
     pub fn new(trajectories: Range<usize>, solution: F) -> Self {
         let count = trajectories.len();
         MeanSquareError {

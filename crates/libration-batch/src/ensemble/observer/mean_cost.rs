@@ -12,7 +12,7 @@ use super::{Lanes, Observer};
 pub struct MeanCost<const D: usize> {
     weights: [f64; 2],
     first: usize,
-    /// For each trajectory the sum, and of how many steps.
+    /// The sum of each trajectory and its number of steps.
     sums: Vec<(f64, u64)>,
 }
 

@@ -44,7 +44,7 @@ pub trait Observer<T, const D: usize>: Send {
 }
 
 impl<T: Copy, const D: usize> Lanes<'_, T, D> {
-    /// How many there are.
+    /// The number of trajectories.
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.q.first().map_or(0, |plane| plane.len())

@@ -55,7 +55,7 @@ impl Running {
     }
 }
 
-/// What [`Moments`] tell of a step.
+/// The statistics of one step in [`Moments`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary<const D: usize> {
     /// Number of steps taken.
@@ -69,12 +69,12 @@ pub struct Summary<const D: usize> {
 }
 
 impl<const D: usize> Moments<D> {
-    /// Nothing seen yet.
+    /// Moments without samples.
     pub fn new() -> Self {
         Moments { steps: Vec::new(), next: 0, block: None }
     }
 
-    /// What all of `parts` saw, in their order.
+    /// Merges `parts`, in their order.
     pub fn merged(parts: impl IntoIterator<Item = Moments<D>>) -> Moments<D> {
         let mut parts = parts.into_iter();
         let mut all = parts.next().unwrap_or_default();

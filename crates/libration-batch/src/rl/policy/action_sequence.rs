@@ -1,4 +1,4 @@
-//! Actions from outside.
+//! Precomputed actions.
 
 use libration_core::Float;
 use libration_core::array::each;
@@ -8,7 +8,7 @@ use crate::rl::EnvironmentError;
 
 /// Actions for a whole horizon: `[t, n, i]`.
 ///
-/// What is no finite number is taken as it is: the environment it is given to is lost, and no other.
+/// An action that is not finite loses its environment and no other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActionSequence<'a, T>(
     /// The actions.

@@ -1,4 +1,4 @@
-//! Exploration.
+//! Exploration by Gaussian noise.
 
 use libration_core::Float;
 use libration_core::random::{Streams, normal};

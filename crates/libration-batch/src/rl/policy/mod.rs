@@ -1,4 +1,4 @@
-//! Who acts.
+//! Policies.
 
 mod action_sequence;
 mod exploration;
@@ -22,28 +22,28 @@ use libration_core::random::Streams;
 use super::EnvironmentError;
 use crate::ensemble::kernel::{at, put};
 
-/// Chooses an action: an acceleration in each of `D` degrees of freedom, from `O` numbers that are seen.
+/// A policy: computes an action, an acceleration in each of `D` degrees of freedom, from `O` observed numbers.
 pub trait Policy<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
-    /// Whether an environment's action is best asked for by itself: where that is one short formula.
+    /// Whether the action is a short closed-form expression, best computed per environment.
     const CLOSED_FORM: bool = false;
-    /// Whether anything is random.
+    /// Whether the policy draws random words.
     const DRAWS: bool = false;
 
-    /// Whether it can act for so many environments over so many steps.
+    /// Checks the parameters for a number of environments and steps.
     ///
     /// # Errors
-    /// What is wrong.
+    /// The first invalid parameter.
     fn check(&self, environments: usize, horizon: usize) -> Result<(), EnvironmentError> {
         let _ = (environments, horizon);
         Ok(())
     }
 
-    /// Whether its actions depend on what is seen: otherwise nobody looks where nobody else wants to know.
+    /// Whether actions depend on observations. If not, observations may be skipped.
     fn uses_observations(&self) -> bool {
         true
     }
 
-    /// Random words that an action takes: always as many.
+    /// The number of random words per action, always the same.
     fn words(&self) -> usize {
         0
     }
@@ -75,29 +75,29 @@ pub trait Policy<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
     }
 }
 
-/// An action, and how likely it was.
+/// An action and its log-probability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActionSample<T, const D: usize> {
-    /// What is done.
+    /// The action.
     pub action: [T; D],
     /// The logarithm of its probability density; 0 where nothing is drawn.
     pub log_probability: T,
 }
 
 impl<T: Float, const D: usize> ActionSample<T, D> {
-    /// What is done for sure.
+    /// An action without randomness, of log-probability 0.
     #[inline(always)]
     pub fn deterministic(action: [T; D]) -> Self {
         ActionSample { action, log_probability: T::zero() }
     }
 }
 
-/// Which action is asked for.
+/// The indices of a step: environment, step and row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepIndex {
     /// The number of the environment.
     pub environment: usize,
-    /// How many environments there are.
+    /// The number of environments.
     pub environments: usize,
     /// Steps since the batch was made.
     pub step: u64,
@@ -106,14 +106,14 @@ pub struct StepIndex {
 }
 
 impl StepIndex {
-    /// That of a neighbour, so many environments further.
+    /// The index of the environment `l` numbers further.
     #[inline(always)]
     pub fn lane(self, l: usize) -> Self {
         StepIndex { environment: self.environment + l, ..self }
     }
 }
 
-/// Always the same.
+/// A policy with one constant action.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constant<const D: usize>(
     /// The action.

@@ -16,9 +16,9 @@ pub struct Network<'a, T> {
     pub parameters: &'a [T],
     /// Widths of the hidden layers, from 1 to [`Network::WIDEST`]; none for a linear policy.
     pub hidden: &'a [usize],
-    /// Of the hidden layers.
+    /// The activation of the hidden layers.
     pub activation: Activation,
-    /// What it is computed with, which changes none of its bits.
+    /// The instruction set, which does not change the bits.
     pub instructions: InstructionSet,
 }
 
@@ -29,7 +29,7 @@ impl<T> Network<'_, T> {
     /// The most neurons of a hidden layer.
     pub const WIDEST: usize = 256;
 
-    /// How many parameters there are with such hidden layers.
+    /// The number of parameters with these hidden layers.
     pub fn parameters(observation: usize, hidden: &[usize], action: usize) -> usize {
         let widths = hidden.iter().copied().chain([action]);
         let count = |(inputs, all): (usize, usize), outputs: usize| {
@@ -65,7 +65,7 @@ where
         perceptron::alone(self, place, seen)
     }
 
-    /// A function of its own, compiled once for whoever acts.
+    /// A separate function, compiled once for all callers.
     fn act_all<const W: usize>(
         &self,
         _: StepIndex,
@@ -79,7 +79,7 @@ where
     }
 }
 
-/// What a network answers to those of a block.
+/// The forward pass of a network for a block.
 struct Forward<'a, 'n, T, const O: usize, const D: usize, const W: usize> {
     network: &'a Network<'n, T>,
     seen: &'a [[T; W]; O],

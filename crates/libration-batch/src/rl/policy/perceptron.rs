@@ -6,7 +6,7 @@ use libration_core::{Elementary, Float};
 use super::{ActionSample, Policy, StepIndex, all_finite, lanes};
 use crate::rl::EnvironmentError;
 
-/// What the hidden layers of a [`Perceptron`] apply to each of their sums.
+/// The activation function of the hidden layers of a [`Perceptron`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Activation {
     /// The hyperbolic tangent.
@@ -21,7 +21,7 @@ pub struct Perceptron<'a, T, const H: usize> {
     /// Layer by layer its matrix, row by row, and then its biases: first `H × O`, then any number of `H × H`, at last
     /// `D × H`.
     pub parameters: &'a [T],
-    /// Of the hidden layers.
+    /// The activation of the hidden layers.
     pub activation: Activation,
 }
 
@@ -30,7 +30,7 @@ pub struct Perceptron<'a, T, const H: usize> {
 pub struct PerceptronPerEnvironment<'a, T, const H: usize> {
     /// `[k, n]`, where number `k` of environment `n` is that of a [`Perceptron`].
     pub parameters: &'a [T],
-    /// Of the hidden layers.
+    /// The activation of the hidden layers.
     pub activation: Activation,
 }
 
@@ -50,7 +50,7 @@ fn between<const O: usize, const H: usize, const D: usize>(count: usize) -> usiz
 }
 
 impl<T, const H: usize> Perceptron<'_, T, H> {
-    /// How many parameters there are with so many hidden layers, of which there is at least one.
+    /// The number of parameters with `hidden_layers` hidden layers, at least 1.
     pub const fn parameters(observation: usize, hidden_layers: usize, action: usize) -> usize {
         let between = hidden_layers.saturating_sub(1) * parameters(H, H);
         parameters(observation, H) + between + parameters(H, action)

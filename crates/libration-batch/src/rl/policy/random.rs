@@ -1,4 +1,4 @@
-//! Actions that follow from nothing.
+//! Random actions.
 
 use libration_core::Float;
 use libration_core::array::each;
@@ -13,12 +13,12 @@ use crate::rl::EnvironmentError;
 pub struct Random<const D: usize> {
     low: [f64; D],
     high: [f64; D],
-    /// Of any action: a logarithm that no step should wait for.
+    /// The log-probability of every action, computed once.
     log_probability: f64,
 }
 
 impl<const D: usize> Random<D> {
-    /// Between the lower ends and the upper ends.
+    /// A policy that draws uniformly between `low` and `high`.
     pub fn between(low: [f64; D], high: [f64; D]) -> Self {
         let widths = low.iter().zip(&high).map(|(low, high)| high - low);
         Random { low, high, log_probability: -widths.map(libm::log).sum::<f64>() }

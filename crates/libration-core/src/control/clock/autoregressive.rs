@@ -1,4 +1,4 @@
-//! Jitter that remembers.
+//! Autoregressive jitter.
 
 use super::{Clock, Gaussian, Noise, forward};
 use crate::Float;

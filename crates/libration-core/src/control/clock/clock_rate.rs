@@ -1,4 +1,4 @@
-//! Clocks of which every step is known from the start of a trajectory.
+//! Clocks with a constant or drifting rate.
 
 use super::{Clock, forward};
 use crate::Float;
@@ -6,7 +6,7 @@ use crate::control::error::{law, none_negative};
 use crate::control::{ControlError, Jitter, StartAddress};
 use crate::random::Purpose;
 
-/// Every step is as long as the others.
+/// A clock whose steps all have the length `Δt`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fixed;
 
@@ -58,7 +58,7 @@ impl<T: Float> Clock<T> for Skewed {
 /// Asynchronous clocks whose steps are listed, one for each trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rates<'a>(
-    /// How many `Δt` a step of each trajectory is long; at least 0.
+    /// The length of the steps of each trajectory in units of `Δt`; at least 0.
     pub &'a [f64],
 );
 

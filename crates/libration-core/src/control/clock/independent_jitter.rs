@@ -1,4 +1,4 @@
-//! Steps of random length.
+//! Clocks with independent jitter.
 
 use super::{Clock, Noise, forward};
 use crate::Float;

@@ -1,4 +1,4 @@
-//! Ticks that come late.
+//! Clocks with late ticks.
 
 use super::{Clock, forward};
 use crate::Float;
@@ -12,12 +12,12 @@ use crate::random::{Purpose, uniform};
 pub struct LateTicks {
     /// The probability that a tick is late.
     pub probability: f64,
-    /// By how many `Δt` it then is: from 0 to 1, beyond which a tick would come before the one in front of it.
+    /// The lateness in units of `Δt`, from 0 to 1; a later tick would pass the next one.
     pub by: f64,
 }
 
 impl LateTicks {
-    /// How late a tick is.
+    /// The lateness of a tick.
     #[inline(always)]
     fn lateness<T: Float>(&self, number: f32) -> T {
         let late = number < (2.0 * self.probability - 1.0) as f32;

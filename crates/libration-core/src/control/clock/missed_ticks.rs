@@ -1,4 +1,4 @@
-//! Steps that are missed.
+//! Clocks with missed ticks.
 
 use super::Clock;
 use crate::Float;

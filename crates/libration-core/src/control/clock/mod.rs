@@ -1,4 +1,4 @@
-//! How long a step is.
+//! Clocks: lengths of steps.
 
 mod autoregressive;
 mod clock_rate;
@@ -24,14 +24,14 @@ pub use time_record::{Recorded, RecordedError};
 use super::{ControlError, Memory, StartAddress};
 use crate::Float;
 
-/// Tells of every step of every trajectory how long it is, as a multiple of the time step `Δt`.
+/// A clock: the length of every step of every trajectory, in units of the time step `Δt`.
 ///
 /// No step is negative: where noise would make it so, it is of length zero, since a clock does not go back. Two clocks
 /// in a pair are one, whose steps are the products of theirs.
 pub trait Clock<T: Float>: Copy + Send + Sync {
-    /// What it keeps of a trajectory.
+    /// The memory per trajectory.
     type Memory: Memory<T>;
-    /// What is the same for all trajectories at a step.
+    /// The values that all trajectories share at a step.
     type Beat: Copy;
 
     /// Whether every step is `Δt` long.
@@ -42,7 +42,7 @@ pub trait Clock<T: Float>: Copy + Send + Sync {
     /// Whether its numbers are those of a clock; `Loops` ask before they begin.
     ///
     /// # Errors
-    /// The first that is not.
+    /// The first invalid parameter.
     fn check(&self) -> Result<(), ControlError> {
         Ok(())
     }
@@ -50,7 +50,7 @@ pub trait Clock<T: Float>: Copy + Send + Sync {
     /// The memory before the first step.
     fn start(&self, begin: StartAddress) -> Self::Memory;
 
-    /// What is the same for all trajectories at `step`.
+    /// The values that all trajectories share at `step`.
     fn beat(&self, step: u64) -> Self::Beat;
 
     /// How many random words a step takes: the same number for every step and trajectory, and none where nothing is
@@ -59,12 +59,12 @@ pub trait Clock<T: Float>: Copy + Send + Sync {
         0
     }
 
-    /// The number of steps of which it knows, if it does not know of all.
+    /// The number of steps of the record; none if there is no limit.
     fn steps(&self) -> Option<u64> {
         None
     }
 
-    /// The number of trajectories of which it knows, if it does not know of all.
+    /// The number of listed trajectories; none if there is no limit.
     fn trajectories(&self) -> Option<usize> {
         None
     }

@@ -1,4 +1,4 @@
-//! Laws of random numbers, each a type of its own: a loop over lanes has no room for a choice.
+//! Distributions of noise, each a separate type: a loop over lanes cannot branch.
 
 use crate::Float;
 use crate::control::Jitter;
@@ -6,7 +6,7 @@ use crate::random::{UNIT, normal, odd};
 
 /// A law with mean zero.
 pub trait Noise: Copy + Send + Sync {
-    /// The same law for the theory.
+    /// The distribution as a value, for the theory.
     fn law(&self) -> Jitter;
 
     /// Random words that a draw takes.

@@ -1,4 +1,4 @@
-//! Clocks whose rate takes a random walk.
+//! Clocks whose rate is a random walk.
 
 use super::{Clock, Gaussian, Noise, forward};
 use crate::Float;

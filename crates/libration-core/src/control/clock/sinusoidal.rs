@@ -1,4 +1,4 @@
-//! Jitter that swings.
+//! Sinusoidal jitter.
 
 use core::f64::consts::{SQRT_2, TAU};
 

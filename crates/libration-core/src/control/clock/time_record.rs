@@ -1,4 +1,4 @@
-//! Steps that were measured.
+//! Recorded clocks.
 
 use thiserror::Error;
 
@@ -14,13 +14,13 @@ pub struct Recorded<'a> {
     repeats: bool,
 }
 
-/// Why time stamps are no record of a clock.
+/// Error of a record of time stamps.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum RecordedError {
     /// There is no step between them.
     #[error("the number of time stamps is {count}; it must be at least 2")]
     TooFew {
-        /// How many there are.
+        /// The number of time stamps.
         count: usize,
     },
     /// A line of a file is no time stamp.
@@ -28,27 +28,27 @@ pub enum RecordedError {
         "line {line} is `{text}`; it must begin with a number, the time in seconds or nanoseconds"
     )]
     Line {
-        /// Which, from 1 on.
+        /// The number of the line, from 1.
         line: usize,
-        /// What stands there.
+        /// The text of the line.
         text: String,
     },
     /// One is infinite or not a number.
     #[error("time stamp {} is {value}; it must be a finite number", index + 1)]
     NotFinite {
-        /// Which, from 0 on; the message counts from 1.
+        /// The index, from 0; the message counts from 1.
         index: usize,
-        /// What it is.
+        /// The value.
         value: f64,
     },
     /// A clock does not go back.
     #[error("time stamp {} is {after} s; it must be at least the {before} s of the preceding one, counted from the first", index + 1)]
     Backwards {
-        /// Which, from 0 on; the message counts from 1.
+        /// The index, from 0; the message counts from 1.
         index: usize,
-        /// The one in front of it, in seconds.
+        /// The preceding time stamp, in seconds.
         before: f64,
-        /// It, in seconds.
+        /// The time stamp, in seconds.
         after: f64,
     },
     /// Something is needed that is above zero.
@@ -74,7 +74,7 @@ impl<'a> Recorded<'a> {
     /// The steps between `stamps`, which are in seconds, as multiples of `dt` seconds.
     ///
     /// # Errors
-    /// As of [`Recorded::steps_between`]; and if `dt` is not above zero.
+    /// As for [`Recorded::steps_between`]; and if `dt` is not above zero.
     pub fn steps_in(stamps: &[f64], dt: f64) -> Result<Vec<f64>, RecordedError> {
         if !(dt > 0.0 && dt.is_finite()) {
             return Err(RecordedError::NoTime { mean: dt });
@@ -116,12 +116,12 @@ impl<'a> Recorded<'a> {
         Ok(mean)
     }
 
-    /// These steps, as multiples of `Δt`, for all trajectories. A run that is longer is refused.
+    /// A record of steps in units of `Δt`, for all trajectories. A longer run fails.
     pub fn once(ratios: &'a [f64]) -> Self {
         Recorded { ratios, repeats: false }
     }
 
-    /// These steps, again and again; there must be at least one.
+    /// A record that repeats; it must have at least one step.
     pub fn repeated(ratios: &'a [f64]) -> Self {
         Recorded { ratios, repeats: true }
     }

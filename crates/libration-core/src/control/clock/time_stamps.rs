@@ -1,4 +1,4 @@
-//! Time stamps as programs write them.
+//! Parser of time stamps.
 
 use super::RecordedError;
 
@@ -45,7 +45,7 @@ pub(super) fn read(text: &str) -> Result<Vec<f64>, RecordedError> {
     Ok(plain.into_iter().map(|x| x / unit).collect())
 }
 
-/// How many of a unit there are in a second, after the name of a column.
+/// The number of units per second, from the name of a column.
 fn named(name: &str) -> Option<f64> {
     let name = name.trim_end_matches([')', ']', '"', '\'']).to_ascii_lowercase();
     let units = [("ns", 1e9), ("nsec", 1e9), ("us", 1e6), ("µs", 1e6), ("ms", 1e3), ("s", 1.0)];
@@ -56,7 +56,7 @@ fn named(name: &str) -> Option<f64> {
     units.into_iter().find_map(|(unit, many)| of(unit).map(|()| many))
 }
 
-/// The same where nobody names it.
+/// The number of units per second, guessed from the numbers.
 fn guessed(numbers: &[Number], since: &[f64]) -> f64 {
     let whole = numbers.iter().all(|number| matches!(number, Number::Decimal { whole: true, .. }));
     let steps = numbers.len().saturating_sub(1).max(1) as f64;

@@ -1,4 +1,4 @@
-//! Feedback of what is estimated.
+//! Feedback of an estimated state.
 
 use super::Controller;
 use crate::array::{each, map};
@@ -23,14 +23,14 @@ pub struct Luenberger<const D: usize> {
 }
 
 impl<const D: usize> Luenberger<D> {
-    /// To the origin.
+    /// A controller with the target 0.
     pub fn to_origin(gains: Feedback, observer: StateObserver) -> Self {
         Luenberger { gains, observer, target: [0.0; D] }
     }
 }
 
 impl<T: Float, const D: usize> Controller<T, D> for Luenberger<D> {
-    /// What is foretold of the distance from the target, and of the velocity.
+    /// The predicted distance from the target and velocity.
     type Memory = ([T; D], [T; D]);
 
     fn check(&self, _: f64) -> Result<(), ControlError> {

@@ -1,4 +1,4 @@
-//! What a loop decides.
+//! Controllers.
 
 mod force;
 mod luenberger;
@@ -23,7 +23,7 @@ pub trait Controller<T: Float, const D: usize>: Copy + Send + Sync {
     #[doc(hidden)]
     const ACTS: bool = true;
 
-    /// What it keeps of a trajectory from sample to sample.
+    /// The memory per trajectory from sample to sample.
     type Memory: Memory<T>;
 
     /// Whether its numbers are those of a controller that samples every `period` seconds; `Loops`

@@ -1,9 +1,9 @@
-//! No controller.
+//! The open loop: no controller.
 
 use super::Controller;
 use crate::{Float, State};
 
-/// Nobody commands.
+/// No controller: all commands are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OpenLoop;
 

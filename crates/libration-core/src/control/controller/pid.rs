@@ -1,4 +1,4 @@
-//! Three terms.
+//! PID control.
 
 use super::{Controller, within};
 use crate::array::{each, map};
@@ -17,7 +17,7 @@ pub struct Pid<const D: usize> {
     gains: PidGains<D>,
 }
 
-/// What a [`Pid`] is made of.
+/// The parameters of a [`Pid`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PidGains<const D: usize> {
     /// `K_p`, in s⁻².
@@ -32,7 +32,7 @@ pub struct PidGains<const D: usize> {
     pub most: f64,
     /// In how many seconds the integral follows what the limit takes.
     pub tracking: f64,
-    /// Where it is to be.
+    /// The target position.
     pub target: [f64; D],
 }
 

@@ -1,4 +1,4 @@
-//! Actuators that can only do so much.
+//! Saturation of commands.
 
 use super::{Controller, within};
 use crate::array::map;
@@ -9,7 +9,7 @@ use crate::{Float, State};
 /// A controller whose command goes no further than `±most` in each degree of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Saturated<C> {
-    /// Who commands.
+    /// The controller.
     pub controller: C,
     /// The largest command, in units of the acceleration.
     pub most: f64,

@@ -1,4 +1,4 @@
-//! Feedback of the state.
+//! State feedback.
 
 use super::Controller;
 use crate::array::{each, map};
@@ -17,7 +17,7 @@ pub struct StateFeedback<const D: usize> {
 }
 
 impl<const D: usize> StateFeedback<D> {
-    /// To the origin.
+    /// A controller with the target 0.
     pub fn to_origin(gains: Feedback) -> Self {
         StateFeedback { gains, target: [0.0; D] }
     }

@@ -1,4 +1,4 @@
-//! Latencies for each trajectory.
+//! Latencies per trajectory.
 
 use super::{Arrival, Delay};
 use crate::Float;
@@ -15,7 +15,7 @@ pub struct Latencies<'a> {
 }
 
 impl<'a> Latencies<'a> {
-    /// Of the commands of every trajectory.
+    /// The latencies of the commands, one per trajectory.
     pub fn of_commands(commands: &'a [Latency]) -> Self {
         Latencies { commands, observations: &[] }
     }

@@ -1,4 +1,4 @@
-//! When a command arrives.
+//! Delays: arrival times of commands.
 
 mod latencies;
 mod packets;
@@ -24,9 +24,9 @@ pub trait Delay<T: Float>: Copy + Send + Sync {
     /// In how many places a step can split: where a command arrives, and where the loop looks.
     const SPLITS: usize;
 
-    /// What it keeps of a trajectory.
+    /// The memory per trajectory.
     type Memory: Memory<T>;
-    /// What is the same for all trajectories at a step.
+    /// The values that all trajectories share at a step.
     type Beat: Copy;
 
     /// Whether its numbers are those of a delay; `Loops` ask before they begin.
@@ -43,16 +43,16 @@ pub trait Delay<T: Float>: Copy + Send + Sync {
         Schedule::EVERY_STEP
     }
 
-    /// How many commands back the oldest is that may yet arrive.
+    /// The age, in commands, of the oldest that may still arrive.
     fn longest(&self) -> usize;
 
     /// The memory before the first step.
     fn start(&self, begin: StartAddress) -> Self::Memory;
 
-    /// What is the same for all trajectories at `step`.
+    /// The values that all trajectories share at `step`.
     fn beat(&self, step: u64) -> Self::Beat;
 
-    /// How many random words a step takes: the same number for every step and trajectory.
+    /// The number of random words per step, the same for every step and trajectory.
     fn words(&self) -> usize {
         0
     }
@@ -67,7 +67,7 @@ pub trait Delay<T: Float>: Copy + Send + Sync {
         None
     }
 
-    /// What arrives in a step, where there is no schedule for all.
+    /// The command that arrives in a step, without a common schedule.
     fn arrival(
         &self,
         memory: &mut Self::Memory,
@@ -76,12 +76,12 @@ pub trait Delay<T: Float>: Copy + Send + Sync {
     ) -> Arrival<T>;
 }
 
-/// What arrives in a step.
+/// The arrival of a command in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival<T> {
     /// Whether anything does; if not, the command that acted goes on.
     pub fresh: bool,
-    /// How many steps ago it was computed; what is older than the longest latency never arrives.
+    /// The age in steps; a command older than the longest latency never arrives.
     pub age: u32,
     /// After which part of the step it arrives; at least 0 and below 1. It is 0 unless steps split.
     pub part: T,

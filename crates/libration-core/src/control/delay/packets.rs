@@ -1,4 +1,4 @@
-//! Commands that travel as packets, each for itself.
+//! Commands as packets of independent random latencies.
 
 use thiserror::Error;
 
@@ -18,21 +18,21 @@ pub struct Packets {
     /// Above which uniform number on (−1, 1) a packet takes longer than `i` steps.
     limits: [f32; PLACES],
     longest: usize,
-    /// What a packet takes besides whole steps.
+    /// The fraction of a step that a packet takes besides whole steps.
     part: f64,
     order: Order,
 }
 
-/// What becomes of a packet that a newer one has overtaken.
+/// The treatment of a packet that a newer one has overtaken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Order {
-    /// It is thrown away, as a receiver does that looks at numbers or times.
+    /// The packet is discarded, as by a receiver that compares sequence numbers or time stamps.
     NewestActs,
-    /// It acts, being the last to arrive.
+    /// The packet acts, because it arrives last.
     LastActs,
 }
 
-/// What is wrong with the latencies of packets.
+/// Error of the latencies of packets.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum PacketsError {
     /// There are none, or too many.
@@ -41,9 +41,9 @@ pub enum PacketsError {
     /// A probability is none.
     #[error("the probability of a latency of {steps} steps is {value}; it must be from 0 to 1")]
     Probability {
-        /// Of which latency.
+        /// The latency in steps.
         steps: usize,
-        /// What it is.
+        /// The probability.
         value: f64,
     },
     /// It is none, or there are whole steps in it.
@@ -81,7 +81,7 @@ impl Packets {
         Ok(Packets { limits, longest: probabilities.len() - 1, part: 0.0, order })
     }
 
-    /// These, each of which takes this part of a step longer.
+    /// These packets, each later by this fraction of a step.
     ///
     /// # Errors
     /// If it is negative, or 1 or more.

@@ -1,4 +1,4 @@
-//! Latencies drawn from a table.
+//! Random latencies from a table.
 
 use super::{Arrival, Delay};
 use crate::Float;

@@ -1,4 +1,4 @@
-//! Latencies that were measured.
+//! Recorded latencies.
 
 use thiserror::Error;
 
@@ -11,21 +11,21 @@ use crate::control::{Latency, StartAddress};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordedLatencies<'a>(&'a [f64]);
 
-/// Why numbers are no record of latencies.
+/// Error of a record of latencies.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error(
     "latency {index} is {value} steps; it must be at least 0 and at most {}",
     Latency::MOST_STEPS
 )]
 pub struct RecordedLatenciesError {
-    /// Which, from 0 on.
+    /// The index, from 0.
     pub index: usize,
     /// In steps.
     pub value: f64,
 }
 
 impl<'a> RecordedLatencies<'a> {
-    /// These latencies, in steps.
+    /// A record of latencies in steps.
     ///
     /// # Errors
     /// If one is not a number, negative or too large.

@@ -1,4 +1,4 @@
-//! When a loop looks, and when what it decides takes effect.
+//! Schedules: times of samples and of commands.
 
 use thiserror::Error;
 
@@ -22,7 +22,7 @@ pub struct Schedule {
     action: Time,
 }
 
-/// What is wrong with a schedule.
+/// Error of a schedule.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum ScheduleError {
     /// A latency is none.
@@ -31,7 +31,7 @@ pub enum ScheduleError {
         Latency::MOST_STEPS
     )]
     Latency {
-        /// Which of them.
+        /// The name of the value.
         name: &'static str,
         /// In steps.
         value: f64,
@@ -47,12 +47,12 @@ pub enum ScheduleError {
     },
 }
 
-/// What happens within a step, after a fraction of it.
+/// An event within a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// Command number so and so is computed from the state there.
     Look(i128),
-    /// It begins to act; a negative one is what acts before the first.
+    /// The command with this number begins to act; a negative one is the initial command.
     Act(i128),
 }
 
@@ -88,7 +88,7 @@ impl Schedule {
         self.period as f64 / (1_u128 << FRACTION) as f64
     }
 
-    /// How many commands are computed before the first of them acts, at most.
+    /// The largest number of commands in transit.
     pub fn commands_on_their_way(&self) -> usize {
         (self.observation + self.action).div_ceil(self.period) as usize
     }
