@@ -1,4 +1,4 @@
-//! The arithmetic of a step as a graph: what a processor must do, and what it must wait for.
+//! The data-flow graph of a step: its operations and their dependencies.
 
 use libration_core::elementary::sine32;
 use libration_core::{Integrator, Model, State, System};
@@ -36,7 +36,7 @@ pub struct DataFlow {
 pub(super) enum Node {
     /// A coordinate of the state.
     Input,
-    /// What an operation makes of other values.
+    /// The result of an operation on other values.
     Result(Operation, Vec<usize>),
 }
 
@@ -81,7 +81,7 @@ impl DataFlow {
         DataFlow { nodes: trace.into_nodes(), outputs }
     }
 
-    /// How many times a step does `operation`.
+    /// The number of operations of this kind in a step.
     pub fn count(&self, operation: Operation) -> usize {
         let mut needed = vec![false; self.nodes.len()];
         self.outputs.iter().flatten().for_each(|&output| needed[output] = true);

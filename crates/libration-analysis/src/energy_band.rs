@@ -1,4 +1,4 @@
-//! Between which energies an orbit of a linear step moves.
+//! The range of energies of an orbit of a linear step.
 
 use libration_core::number::Wide;
 use libration_core::{Elementary, Hamiltonian, Model, Scalar, State};

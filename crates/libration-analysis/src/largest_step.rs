@@ -8,7 +8,7 @@ use super::roots::IntegerPoly;
 use super::stability_window::Cells;
 use super::{SymbolicStep, UnknownStep};
 
-/// What a time step must keep to.
+/// The criterion for a time step.
 #[derive(Clone, Copy, Debug)]
 pub enum Criterion {
     /// Every orbit stays bounded for ever.
@@ -19,7 +19,7 @@ pub enum Criterion {
         limit: f64,
         /// Number of steps.
         steps: u64,
-        /// Where the orbit starts.
+        /// The start of the orbit.
         start: OrbitStart,
     },
     /// The relative energy drift stays below `tolerance`.
@@ -28,7 +28,7 @@ pub enum Criterion {
         tolerance: f64,
         /// Number of steps.
         steps: u64,
-        /// Where the orbit starts; none for the worst start.
+        /// The start of the orbit; none for the worst start.
         start: Option<OrbitStart>,
     },
 }
@@ -84,7 +84,7 @@ impl SymbolicStep {
         m.entry(0, 0) == m.entry(1, 1) && m.entry(0, 1) == -m.entry(1, 0)
     }
 
-    /// What must not be negative where the form `Q` is conserved.
+    /// The polynomials that must not be negative if the form `Q` is conserved.
     ///
     /// In coordinates in which the step is a rotation, a form is a mean plus a part that turns at
     /// twice the angle; over the degrees of freedom the means add up, and of the turning parts what
@@ -135,7 +135,7 @@ impl SymbolicStep {
         })
     }
 
-    /// What must not be negative where each step scales the energy by `det M`.
+    /// The polynomials that must not be negative if each step scales the energy by `det M`.
     fn scaling(&self, criterion: &Criterion) -> Option<Vec<UnknownStep>> {
         let determinant = self.determinant();
         let at_most = |factor: Wide, steps| Some(constant(root(factor, steps))? - determinant);
@@ -185,7 +185,7 @@ impl LargestStep {
     }
 }
 
-/// Where one of the polynomials first turns negative.
+/// The first time step at which one of the polynomials is negative.
 fn first_violation(conditions: &[IntegerPoly]) -> LargestStep {
     let ends = conditions.iter().map(first_negative);
     ends.fold(LargestStep::Unlimited, LargestStep::min)

@@ -1,7 +1,7 @@
-//! What an integrator does to a system, derived from the shipped step itself.
+//! Analysis of integrators, derived from the shipped step.
 //!
-//! Nothing here is typed in from a textbook: the step is run on numbers that carry a derivative,
-//! on polynomials in the time step, or with 1024 bits, and the answer is read off.
+//! No formula is copied from a textbook: the step runs on dual numbers, on polynomials in the
+//! time step, or with 1024 bits, and the results follow from its output.
 
 mod complex;
 mod data_flow;

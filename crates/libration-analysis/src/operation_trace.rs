@@ -1,4 +1,4 @@
-//! A number that takes note of what is done to it.
+//! A scalar that records the operations on it.
 
 use core::cell::RefCell;
 use core::ops::{Add, Mul, Neg, Sub};
@@ -7,13 +7,13 @@ use libration_core::{Elementary, Scalar};
 
 use super::data_flow::{Node, Operation};
 
-/// What was done to numbers, each operation once.
+/// The recorded operations, each once.
 #[derive(Debug, Default)]
 pub(super) struct OperationTrace {
     values: RefCell<Vec<Origin>>,
 }
 
-/// Where a value comes from: nowhere, or from operands.
+/// The origin of a value: an input, or an operation on operands.
 type Origin = Option<(Kind, Vec<Operand>)>;
 
 /// An operation, told apart from all that give other values.

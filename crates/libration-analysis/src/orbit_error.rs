@@ -1,4 +1,4 @@
-//! How far the orbits of a step stray from those of the exact oscillator.
+//! The error of orbits of a step relative to the exact oscillator.
 
 use core::f64::consts::{PI, TAU};
 
@@ -64,7 +64,7 @@ impl OrbitError {
         at(n).max(at(largest_near(at, near - part, (near + part).min(until))))
     }
 
-    /// For a slip in rad and the relative growth `ρⁿ − 1`.
+    /// The error for a slip in rad and the relative growth `ρⁿ − 1`.
     fn largest_over_phases(&self, slip: f64, grown: f64) -> f64 {
         // Beyond this the exact orbit is nothing beside the other, and squares overflow.
         if grown > 1e150 {

@@ -1,4 +1,4 @@
-//! Where an orbit starts, as far as criteria on it ask.
+//! The start of an orbit, as criteria require it.
 
 use libration_core::number::Wide;
 use libration_core::{Elementary, Scalar, State};

@@ -5,7 +5,7 @@ use libration_core::{Integrator, Scalar};
 
 use super::{Letter, Tableau};
 
-/// How far a splitting method is from the flow that it approximates, degree by degree.
+/// The error of a splitting method, degree by degree.
 ///
 /// The step is a product of exponentials, `e^{b₁K} e^{c₁D} …`, in the free algebra on the kick `K`
 /// and the drift `D`, and the flow is `e^{K + D}`, in which every word of `n` letters has the

@@ -9,7 +9,7 @@ use super::{SymbolicStep, UpdateMatrix};
 /// operation to `2⁻¹⁰²⁰`, and a step takes far fewer than `2¹²⁰` of them.
 const ROUNDING_BITS: i64 = 900;
 
-/// What a `2 × 2` matrix does when it is applied over and over.
+/// The long-term behaviour of a `2 × 2` matrix: its eigenvalues.
 #[derive(Clone, Copy, Debug)]
 pub struct Spectrum {
     /// Sum of the eigenvalues.

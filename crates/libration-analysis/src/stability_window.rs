@@ -9,9 +9,9 @@ use super::roots::{Dyadic, IntegerPoly, Root, WholePoly, positive_roots};
 /// A largest open interval of time steps at which every orbit stays bounded.
 #[derive(Clone, Copy, Debug)]
 pub struct StabilityWindow {
-    /// Where it begins, to 96 digits.
+    /// The lower end, to 96 digits.
     pub from: Wide,
-    /// Where it ends; none if it does not.
+    /// The upper end; none if the window is unbounded.
     pub to: Option<Wide>,
 }
 

@@ -1,4 +1,4 @@
-//! What a step does with the forces that it evaluates.
+//! The tableau of a step: the weights of its force evaluations.
 
 use core::cell::RefCell;
 

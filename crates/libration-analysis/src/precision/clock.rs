@@ -1,4 +1,4 @@
-//! A clock that adds up its steps in floats.
+//! A clock that sums its steps in floats.
 
 use libration_core::Float;
 

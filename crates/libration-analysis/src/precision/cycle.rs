@@ -1,4 +1,4 @@
-//! When an orbit of floats repeats itself.
+//! Cycles of orbits in floats.
 
 use libration_core::{Float, State};
 

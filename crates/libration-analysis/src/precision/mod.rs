@@ -1,5 +1,5 @@
-//! What rounding does to an orbit: how much a step rounds, when an orbit repeats itself, where a clock of floats is,
-//! and when all that outweighs the error of the method.
+//! Effects of rounding on an orbit: the rounding error of a step, cycles, a clock in floats,
+//! and the point at which they exceed the error of the method.
 
 mod clock;
 mod cycle;

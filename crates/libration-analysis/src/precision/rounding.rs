@@ -1,4 +1,4 @@
-//! The rounding of single steps, and what it must leave after many.
+//! The rounding error of single steps and its prediction for many.
 
 use libration_core::{Float, State};
 
@@ -131,7 +131,7 @@ mod tests {
             band.curve(&START, count).into_iter().skip(1).enumerate().map(scaled).collect()
         }
 
-        /// What is predicted, from about as many steps as are asked for.
+        /// The prediction from about `samples` steps.
         fn local<F: Float, W: Float>(self, steps: u64) -> LocalRounding {
             let turn = (TAU / (MODEL.omega2.sqrt() * self.dt)).round() as u64;
             let form = QuadraticForm::carried_by(&self.linear::<F>().step);

@@ -1,4 +1,4 @@
-//! Whole numbers times powers of two.
+//! Dyadic rationals: integers times powers of two.
 
 use core::cmp::Ordering;
 

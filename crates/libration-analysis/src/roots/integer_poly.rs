@@ -1,4 +1,4 @@
-//! Polynomials with whole coefficients of any size.
+//! Primitive polynomials with integer coefficients.
 
 use libration_core::number::Poly;
 use num_bigint::{BigInt, Sign};

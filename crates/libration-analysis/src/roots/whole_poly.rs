@@ -1,4 +1,4 @@
-//! Polynomials with whole coefficients of any size, and their values.
+//! Polynomials with integer coefficients of any size, and their values.
 
 use core::ops::{Add, Mul, Sub};
 

@@ -1,11 +1,11 @@
-//! A step of a loop with all that it has to know, and how its second moments grow.
+//! The augmented state of a loop: plant, controller and commands in transit.
 
 use super::LinearController;
 use super::dense_matrix::Matrix;
 use super::float_step::FloatSplitStep;
 
-/// What a step has to know, `(q, v, m, u₋₁, u₋₂, …, u)`: the state, what the controller remembers, the commands that wait and, where
-/// steps split or commands may be lost, the one that acts.
+/// The augmented state `(q, v, m, u₋₁, u₋₂, …, u)`: the state, the memory of the controller, the commands in transit and, if
+/// steps split or commands may be lost, the command that acts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AugmentedState {
     pub(super) memory: usize,
@@ -14,13 +14,12 @@ pub(super) struct AugmentedState {
 }
 
 impl AugmentedState {
-    /// The number of its coordinates.
+    /// The dimension of the augmented state.
     pub(super) fn size(self) -> usize {
         2 + self.memory + self.commands + usize::from(self.acting)
     }
 
-    /// The command that takes over, as what it is made of: that of `d` steps ago, or none, where it was lost and the one that acts
-    /// goes on.
+    /// The row of the command that takes over: that of `d` steps ago, or the acting one if the command is lost.
     pub(super) fn arriving(self, controller: &LinearController, d: Option<usize>) -> Vec<f64> {
         let mut row = vec![0.0; self.size()];
         match d {
@@ -31,7 +30,7 @@ impl AugmentedState {
         row
     }
 
-    /// The command that acts before, as what it is made of.
+    /// The row of the command that acts before.
     pub(super) fn held(self) -> Vec<f64> {
         let mut row = vec![0.0; self.size()];
         if let Some(last) = row.last_mut().filter(|_| self.acting) {
@@ -40,7 +39,7 @@ impl AugmentedState {
         row
     }
 
-    /// A step in which that command takes over.
+    /// The matrix of a step in which that command takes over.
     pub(super) fn step(
         self,
         step: &FloatSplitStep,

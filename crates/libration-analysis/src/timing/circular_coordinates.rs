@@ -13,7 +13,7 @@ pub(super) struct CircularCoordinates {
 }
 
 impl CircularCoordinates {
-    /// In which `form`, which is definite, is a circle.
+    /// The coordinates in which the definite `form` is a circle.
     pub(super) fn of(form: &QuadraticForm<f64>) -> Self {
         let [qq, shear] = [form.qq, form.qv].map(|x| x / form.vv);
         // q²·qq + 2·q·v·shear + v² = (scale·q)² + (v + shear·q)².
@@ -65,7 +65,7 @@ pub(super) fn largest_norm(steps: &[Matrix]) -> f64 {
 /// The logarithm of the largest and smallest scale that are tried, in units of `1/Δt`.
 const WIDEST: f64 = 12.0;
 
-/// Where a function with one minimum is smallest, by golden section.
+/// The minimum of a unimodal function, by golden-section search.
 fn golden(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     const SHARE: f64 = 0.618_033_988_749_894_9;
     let inner = |low: f64, high: f64| [high - SHARE * (high - low), low + SHARE * (high - low)];

@@ -1,4 +1,4 @@
-//! What timing costs: the stationary cost of a loop under noise.
+//! The stationary cost of a loop under noise.
 
 use libration_core::Scalar;
 use libration_core::control::LqrWeights;
@@ -104,7 +104,7 @@ impl Plant<'_> {
         Ok(stages)
     }
 
-    /// What the loop has to know, once all numbers are checked.
+    /// The augmented state of the loop, after all numbers are checked.
     pub(super) fn waiting(
         &self,
         controller: &LinearController,

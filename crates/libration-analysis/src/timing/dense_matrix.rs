@@ -3,7 +3,7 @@
 /// A square matrix, row by row.
 pub(super) type Matrix = Vec<Vec<f64>>;
 
-/// Rows for columns.
+/// The transpose.
 pub(super) fn transpose(m: &Matrix) -> Matrix {
     (0..m.len()).map(|i| m.iter().map(|row| row[i]).collect()).collect()
 }
@@ -65,7 +65,7 @@ pub(super) fn scale(power: &mut Matrix, norm: f64) {
     }
 }
 
-/// What a matrix makes of the products `xᵢxⱼ`, `i ≤ j`.
+/// The map of the products `xᵢxⱼ`, `i ≤ j`, under a matrix.
 pub(super) fn symmetric_square(m: &Matrix) -> Matrix {
     let n = m.len();
     let pairs: Vec<(usize, usize)> = (0..n).flat_map(|i| (i..n).map(move |j| (i, j))).collect();
@@ -76,7 +76,7 @@ pub(super) fn symmetric_square(m: &Matrix) -> Matrix {
     pairs.iter().map(|&row| pairs.iter().map(|&column| entry(row, column)).collect()).collect()
 }
 
-/// Their product.
+/// The product of two matrices.
 pub(super) fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let row = |a: &Vec<f64>| {
         let mut row = vec![0.0; b.len()];

@@ -1,4 +1,4 @@
-//! A step within which a command takes over from another, in `f64`.
+//! Steps of a plant in `f64`, with one command or with a change of commands.
 
 use libration_core::number::Wide;
 use libration_core::{Scalar, State};

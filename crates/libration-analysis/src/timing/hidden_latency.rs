@@ -10,9 +10,9 @@ use crate::Complex;
 /// it is given.
 #[derive(Clone, Copy, Debug)]
 pub struct HiddenLatency {
-    /// Of the part of the command that is fed back from the position, `K_p·q`.
+    /// The latency of the position feedback, `K_p·q`.
     pub position: Wide,
-    /// Of the part that is fed back from the velocity, `K_d·v`.
+    /// The latency of the velocity feedback, `K_d·v`.
     pub velocity: Wide,
 }
 
@@ -34,7 +34,7 @@ impl Plant<'_> {
         self.shift(Wide::one().scaled(LOW))
     }
 
-    /// The same at the frequency at which a step has this angle.
+    /// The hidden latency at the frequency of this angle per step.
     fn shift(&self, angle: Wide) -> Option<HiddenLatency> {
         let ZohStep { phi, gamma } = (self.step)(self.dt);
         // adj(λ − Φ)Γ = λΓ + (Φ − trace)Γ.

@@ -1,4 +1,4 @@
-//! What may be wrong with the timing of a loop.
+//! Imperfections of the timing of a loop.
 
 use libration_core::control::{Jitter, Latency};
 use thiserror::Error;
@@ -6,7 +6,7 @@ use thiserror::Error;
 /// All that may be wrong with the timing of a loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Imperfections {
-    /// How late each command arrives.
+    /// The latency of the commands.
     pub latency: Latency,
     /// The law of step times, each drawn for itself.
     pub jitter: Jitter,
@@ -17,7 +17,7 @@ pub struct Imperfections {
 }
 
 impl Imperfections {
-    /// Nothing is wrong.
+    /// No imperfections.
     pub const NONE: Imperfections = Imperfections {
         latency: Latency::NONE,
         jitter: Jitter::Gaussian(0.0),
@@ -31,18 +31,18 @@ impl Imperfections {
     }
 }
 
-/// Why there is no answer.
+/// Error of the cost of a loop.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum CostError {
-    /// A weight is none.
+    /// A weight is invalid.
     #[error("the weight of the {of} is {weight}; it must be a number that is at least 0")]
     Weight {
-        /// Of what.
+        /// The weighted quantity.
         of: &'static str,
-        /// What was given.
+        /// The weight.
         weight: f64,
     },
-    /// The probability of a loss is none.
+    /// The probability of a loss is invalid.
     #[error("the probability that a command is lost is {0}; it must be at least 0 and below 1")]
     Loss(f64),
     /// Steps would not be above zero.
@@ -57,7 +57,7 @@ pub enum CostError {
         /// State, controller and waiting commands.
         size: usize,
     },
-    /// A step of a record is none.
+    /// A step of a record is invalid.
     #[error(
         "a step of the record is {0} periods long; it must be finite and at least 0, and one of them above 0"
     )]

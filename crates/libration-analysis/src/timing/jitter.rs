@@ -1,4 +1,4 @@
-//! Means over the law of step times.
+//! Expectations over the distribution of step times.
 
 use libration_core::control::Jitter;
 use libration_core::number::Wide;

@@ -1,16 +1,16 @@
-//! How much jitter a loop bears.
+//! The jitter margin of a loop.
 
 use libration_core::control::{Feedback, Jitter};
 
 use super::Plant;
 use crate::Spectrum;
 
-/// Up to which jitter second moments stay bounded.
+/// The largest jitter for which second moments stay bounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JitterMargin {
-    /// Up to none: without jitter the loop is unstable already, or on the edge.
+    /// No margin: the loop is unstable or marginal without jitter.
     Unstable,
-    /// Up to this standard deviation of `ε`.
+    /// The largest standard deviation of `ε`.
     Rms(f64),
     /// Beyond this one, the largest that is tried: there steps begin to be negative.
     Beyond(f64),

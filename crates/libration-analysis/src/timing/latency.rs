@@ -1,4 +1,4 @@
-//! A loop whose command arrives late.
+//! Loops with latency.
 
 use libration_core::control::{Feedback, Latency};
 use libration_core::number::Wide;

@@ -1,4 +1,4 @@
-//! All latencies at which a loop is stable.
+//! The latency windows within which a loop is stable.
 
 use libration_core::control::{Feedback, Latency};
 use libration_core::number::Wide;
@@ -14,7 +14,7 @@ use super::Plant;
 /// whole latencies, and those up to 64 are tried.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LatencyWindows {
-    /// From and to; no end where the loop is stable at every larger latency.
+    /// The lower and upper end of each window; no upper end if every larger latency is stable.
     pub stable: Vec<(f64, Option<f64>)>,
 }
 
@@ -23,7 +23,7 @@ pub struct LatencyWindows {
 struct Crossing {
     /// The first latency, in steps.
     first: f64,
-    /// From one to the next.
+    /// The period of the series.
     apart: f64,
     /// Whether it leaves the circle as the latency grows.
     outward: bool,
@@ -50,7 +50,7 @@ const TRIED: u32 = 64;
 /// Latencies beyond this are no numbers of steps, but the rounding of a loop that no delay makes unstable.
 const FARTHEST: f64 = 1e15;
 
-/// Up to this many whole steps of latency it is found where a loop becomes unstable within a step.
+/// The largest latency, in whole steps, for which the end within a step is computed.
 const SPLIT: f64 = 256.0;
 
 /// Halvings of a step.
@@ -59,7 +59,7 @@ const HALVINGS: u32 = 44;
 /// Golden sections of a step: to a part of 10⁻⁸.
 const SECTIONS: u32 = 40;
 
-/// So many crossings are followed at most.
+/// The largest number of crossings.
 const MOST: usize = 100_000;
 
 impl LatencyWindows {

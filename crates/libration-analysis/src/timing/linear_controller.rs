@@ -1,4 +1,4 @@
-//! A controller as the linear map that it is.
+//! Controllers as linear maps.
 
 use libration_core::State;
 use libration_core::control::{Controller, Feedback, Memory};
@@ -17,7 +17,7 @@ pub struct LinearController {
 /// A controller is no linear map about the origin.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum NotLinear {
-    /// It commands something where all is zero.
+    /// The command is not zero at the origin.
     #[error(
         "the controller commands {0} m/s² at the origin, at rest; its target must be the origin"
     )]
@@ -31,7 +31,7 @@ pub enum NotLinear {
 const SMALL: f64 = 1.0 / (1_u64 << 60) as f64;
 
 impl LinearController {
-    /// What `controller` does, sampled every `period` seconds: it is run on small memories and states.
+    /// The linear map of `controller`, sampled every `period` seconds, from its commands for small memories and states.
     ///
     /// # Errors
     /// [`NotLinear`].
@@ -95,7 +95,7 @@ impl LinearController {
         }
     }
 
-    /// How many numbers it remembers.
+    /// The number of values in its memory.
     pub fn remembers(&self) -> usize {
         self.memory.len()
     }
@@ -116,7 +116,7 @@ impl LinearController {
         row[..self.command.len()].copy_from_slice(&self.command);
     }
 
-    /// The same of the memory after the command.
+    /// The rows of the memory after the command.
     pub(super) fn memory_rows(&self, rows: &mut [Vec<f64>]) {
         for (to, row) in rows.iter_mut().zip(&self.memory) {
             to[..row.len()].copy_from_slice(row);

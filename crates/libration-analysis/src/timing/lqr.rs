@@ -1,4 +1,4 @@
-//! The feedback that costs least.
+//! Design of a linear-quadratic regulator.
 
 use libration_core::control::{Feedback, LqrWeights};
 use libration_core::number::Wide;
@@ -14,22 +14,22 @@ use crate::{QuadraticForm, Spectrum};
 pub struct Regulator {
     /// The feedback, rounded to floats.
     pub feedback: Feedback,
-    /// What all steps from a state cost together: the solution of the Riccati equation.
+    /// The cost-to-go matrix: the solution of the Riccati equation.
     pub cost: QuadraticForm<Wide>,
 }
 
-/// Why there is no feedback that costs least.
+/// Error of an LQR design.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum LqrError {
-    /// The weight of position or velocity is none.
+    /// A weight of position or velocity is invalid.
     #[error("the weight of the {of} is {weight}; it must be a number that is at least 0")]
     StateWeight {
-        /// Of what.
+        /// The weighted quantity.
         of: &'static str,
-        /// What was given.
+        /// The weight.
         weight: f64,
     },
-    /// The weight of the command is none.
+    /// The weight of the command is invalid.
     #[error("the weight of the command is {0}; it must be a number above 0")]
     CommandWeight(f64),
     /// A motion that does not decay is out of reach of the command.
@@ -63,7 +63,7 @@ impl Plant<'_> {
         self.regulator(weights).map(|regulator| regulator.feedback)
     }
 
-    /// The same, with what it costs.
+    /// The regulator with its cost.
     ///
     /// Of the discrete Riccati equation `X = Q + ΦᵀXΦ − ΦᵀXΓ(r + ΓᵀXΓ)⁻¹ΓᵀXΦ` this is the solution that is approached
     /// from a finite horizon, which is doubled again and again.

@@ -1,4 +1,4 @@
-//! How fast a typical run grows where steps are of random length.
+//! The Lyapunov exponent of a loop with random step times.
 
 use core::f64::consts::{PI, TAU};
 

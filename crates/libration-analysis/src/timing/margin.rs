@@ -1,4 +1,4 @@
-//! The loop in continuous time.
+//! Stability margins in continuous time.
 
 use libration_core::control::Feedback;
 use libration_core::number::Wide;

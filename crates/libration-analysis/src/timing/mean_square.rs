@@ -1,4 +1,4 @@
-//! What random step times do to second moments.
+//! Mean-square stability under random step times.
 
 use libration_core::control::{Feedback, Jitter};
 use libration_core::number::Wide;
@@ -8,7 +8,7 @@ use super::Plant;
 use super::jitter::{Averages, MOST_TURN};
 use crate::eigenvalues::largest_root;
 
-/// What random step times do to second moments.
+/// The growth of second moments under random step times.
 #[derive(Clone, Copy, Debug)]
 pub struct MeanSquare {
     /// `ρ(E[M ⊗ M])`: the factor by which second moments grow in a step.
@@ -42,7 +42,7 @@ const SPACING: i64 = 4;
 pub(super) struct Squares<'p> {
     plant: &'p Plant<'p>,
     feedback: Feedback,
-    /// What stands before `1, ε, ε², …`, row by row.
+    /// The coefficients of `1, ε, ε², …`, row by row.
     powers: Vec<[Wide; 9]>,
     /// Whether these powers are all that there is to it.
     follows: bool,
@@ -68,7 +68,7 @@ impl Plant<'_> {
         square([0, 1].map(|i| [0, 1].map(|j| step.entry(i, j))))
     }
 
-    /// Of the loop that `feedback` closes.
+    /// The map of second moments of the loop that `feedback` closes.
     pub(super) fn squares(&self, feedback: Feedback) -> Squares<'_> {
         let half = (POWERS / 2) as i64;
         let node = |i: usize| Wide::from_f64((i as i64 - half) as f64).scaled(-SPACING);
@@ -148,7 +148,7 @@ fn characteristic([a, b, c, d, e, f, g, h, i]: [Wide; 9]) -> [Wide; 3] {
     [-determinant, sum, -(a + e + i)]
 }
 
-/// What a step makes of `q²`, `qv` and `v²`, row by row: `M ⊗ M` on what is symmetric.
+/// The matrix of a step on `q²`, `qv` and `v²`, row by row: `M ⊗ M` on symmetric matrices.
 fn square([[a, b], [c, d]]: [[Wide; 2]; 2]) -> [Wide; 9] {
     [a * a, (a * b).scaled(1), b * b, a * c, a * d + b * c, b * d, c * c, (c * d).scaled(1), d * d]
 }

@@ -1,4 +1,4 @@
-//! What timing does to a control loop: latency and jitter of its steps, derived from the shipped step.
+//! Timing of a control loop: the effects of latency and jitter, derived from the shipped step.
 //!
 //! The plant has one degree of freedom. A command `u = −K_p q − K_d v` is computed from the state at the
 //! beginning of a step, arrives later, and is held until the next one arrives.

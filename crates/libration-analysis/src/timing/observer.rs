@@ -1,4 +1,4 @@
-//! An observer that is designed from the model.
+//! Design of a steady-state Kalman observer.
 
 use libration_core::control::{LqrWeights, StateObserver};
 use libration_core::number::Wide;
@@ -7,7 +7,7 @@ use libration_core::{Scalar, State};
 use super::riccati::riccati;
 use super::{LqrError, Plant, ZohStep};
 
-/// What an observer has to weigh against each other.
+/// The noise intensities of an observer design.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObserverNoise {
     /// The intensity of the white noise that accelerates the plant, in (m/s²)²·s.

@@ -1,4 +1,4 @@
-//! Steps whose lengths repeat.
+//! Periodic step times.
 
 use libration_core::Scalar;
 use libration_core::control::Feedback;

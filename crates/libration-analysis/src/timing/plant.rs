@@ -1,4 +1,4 @@
-//! A plant, how its steps are taken, and the feedback that closes the loop.
+//! A linear plant with one degree of freedom and its discretisation.
 
 use std::rc::Rc;
 
@@ -16,7 +16,7 @@ type Steps<'a> = Rc<dyn Fn(Wide) -> ZohStep + 'a>;
 pub struct Plant<'a> {
     /// A step of any size.
     pub(super) step: Steps<'a>,
-    /// What that consists of: so many steps of this kind, each as long.
+    /// The number of equal substeps and their kind.
     pub(super) grid: Option<(u64, Steps<'a>)>,
     /// The Jacobian of the rate of change.
     pub(super) generator: UpdateMatrix<Wide, 1>,
@@ -41,7 +41,7 @@ impl<'a> Plant<'a> {
         Plant { step, generator, dt: Wide::from_f64(dt), exact: false, flows: false, grid: None }
     }
 
-    /// The same without an integrator: each step is exact.
+    /// A plant with exact steps, without an integrator.
     pub fn exact(model: impl Model<1> + 'a, at: State<f64, 1>, dt: f64) -> Self {
         let generator = Linearisation::generator_of(model, &at);
         let step = Rc::new(move |h| ZohStep::exact(model, &at, h));
@@ -56,7 +56,7 @@ impl<'a> Plant<'a> {
         Plant { step: Rc::new(many), grid: Some((count, fine)), ..self }
     }
 
-    /// How fast the plant moves by itself, or runs away, in rad/s.
+    /// The natural frequency or growth rate of the plant, in rad/s.
     pub fn rate(&self) -> f64 {
         let [aq, av] = [0, 1].map(|j| self.generator.entry(1, j).to_f64().abs());
         aq.sqrt().max(av)
@@ -74,7 +74,7 @@ impl<'a> Plant<'a> {
     }
 }
 
-/// So many of a step.
+/// The repeated step.
 pub(super) fn repeated(step: &ZohStep, count: u64) -> ZohStep {
     let none = ZohStep { phi: UpdateMatrix::identity(), gamma: State::origin() };
     (0..count).fold(none, |all, _| all.then(step))

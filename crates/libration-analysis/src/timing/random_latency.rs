@@ -1,4 +1,4 @@
-//! Commands whose latency is random.
+//! Loops with random latency.
 
 use libration_core::State;
 use libration_core::control::{Feedback, Latency, RandomLatency};
@@ -70,7 +70,7 @@ impl Plant<'_> {
     }
 }
 
-/// What a step has to know.
+/// The augmented state.
 fn waiting(latency: &RandomLatency) -> AugmentedState {
     AugmentedState { memory: 0, commands: latency.longest(), acting: latency.splits_steps() }
 }

@@ -1,4 +1,4 @@
-//! Second moments of a loop whose steps are drawn.
+//! Second moments of a loop with random stages.
 
 use super::dense_matrix::{
     Matrix, is_schur_stable, log_spectral_radius, product, scale, transpose,
@@ -17,12 +17,12 @@ pub(super) struct RandomStages {
     mean: Matrix,
     /// Rows in which steps differ.
     rows: Vec<usize>,
-    /// How far they are off the mean, with probabilities.
+    /// The deviations of these rows from the mean, with probabilities.
     off: Vec<(f64, Matrix)>,
 }
 
 impl RandomStages {
-    /// Of all steps that there may be.
+    /// The mean and deviations of all possible steps.
     pub(super) fn new(stages: &[Stage]) -> Self {
         let n = stages.first().map_or(0, |stage| stage.step.len());
         // What all have in common, and to that the mean of what they have not: rows that do not differ are kept bit for bit.
@@ -104,7 +104,7 @@ impl RandomStages {
         (0..count).flat_map(move |a| (a..count).map(move |b| (a, b)))
     }
 
-    /// What comes of a unit of each number of `S`.
+    /// The second moments of a unit of each number of `S`.
     fn added(&self, mean: &Matrix) -> Vec<Matrix> {
         let n = mean.len();
         let unit = |(a, b): (usize, usize)| {
@@ -116,7 +116,7 @@ impl RandomStages {
         solve_stein(mean, self.pairs().map(unit).collect())
     }
 
-    /// What becomes of each number of `S`, row by row.
+    /// The map of the numbers of `S`, row by row.
     fn feedback(&self, mean: &Matrix) -> Matrix {
         let columns: Vec<Vec<f64>> = self.added(mean).iter().map(|p| self.seen(p)).collect();
         transpose(&columns)

@@ -1,4 +1,4 @@
-//! A loop whose clock was measured, and is replayed again and again.
+//! Loops whose step times repeat a record.
 
 use std::collections::HashMap;
 
@@ -16,9 +16,8 @@ use super::{CostError, Imperfections, LinearController, Plant};
 const PART: f64 = 1.0 / 16_384.0;
 
 impl Plant<'_> {
-    /// The rate at which second moments grow in a step, on the average over `steps`, of the loop that `controller` closes where its steps
-    /// are so many periods long, in this order and again from the beginning; `imperfections` say what else is wrong with it, and
-    /// their jitter nothing.
+    /// The mean growth rate of second moments per step, over `steps`, of the loop that `controller` closes. The lengths of its steps,
+    /// in periods, repeat `steps` in this order. `imperfections` are the other imperfections; their jitter is ignored.
     ///
     /// Without losses it follows from the product of all steps, as G. Floquet has it for what is periodic (*Sur les équations
     /// différentielles linéaires à coefficients périodiques*, Annales scientifiques de l'École normale supérieure 12, 1883).
@@ -38,7 +37,7 @@ impl Plant<'_> {
     /// The stationary cost of that loop, as [`Plant::cost`] has it.
     ///
     /// # Errors
-    /// As of [`Plant::recorded_growth`].
+    /// As for [`Plant::recorded_growth`].
     pub fn recorded_cost(
         &self,
         controller: &LinearController,

@@ -1,4 +1,4 @@
-//! Step times with memory, and the resonance that they excite.
+//! Correlated step times and parametric resonance.
 
 use core::f64::consts::SQRT_2;
 
@@ -35,7 +35,7 @@ impl StepNoise {
     }
 }
 
-/// How a step that turns the state takes to a change of its length.
+/// The response of a rotating step to a change of its length.
 #[derive(Clone, Copy, Debug)]
 pub struct Resonance {
     /// The angle `θ` of the mean step, in `(0, π)` rad.
@@ -45,7 +45,7 @@ pub struct Resonance {
     pub coupling: Wide,
     /// The growth of `ln |y|` in a step of mean length.
     pub rate: Wide,
-    /// How `½·ln det M` bends with `ε`: its second derivative.
+    /// The second derivative of `½·ln det M` with respect to `ε`.
     pub bend: Wide,
 }
 

@@ -1,4 +1,4 @@
-//! Plants that tests are tried on.
+//! Plants for tests.
 
 use libration_core::integrator::{ExplicitEuler, Rk4, SymplecticEuler, VelocityVerlet};
 use libration_core::{Method, Model, State, with_method};

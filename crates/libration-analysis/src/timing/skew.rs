@@ -1,4 +1,4 @@
-//! Clocks of different rates: how an ensemble falls out of step.
+//! Clock skew: loss of phase coherence of an ensemble.
 
 use libration_core::control::Jitter;
 use libration_core::number::Wide;

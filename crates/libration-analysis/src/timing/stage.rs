@@ -1,4 +1,4 @@
-//! A step of a loop under noise, with what it costs.
+//! A step of a loop under noise, and its cost.
 
 use libration_core::Scalar;
 use libration_core::control::{Latency, LqrWeights};
@@ -8,23 +8,23 @@ use super::augmented_state::AugmentedState;
 use super::dense_matrix::{Matrix, symmetric_square};
 use super::{LinearController, Plant};
 
-/// One of the steps that a loop may take, with its probability.
+/// One possible step of a loop, with its probability.
 pub(super) struct Stage {
     pub(super) weight: f64,
-    /// What it makes of all that the loop knows.
+    /// The matrix on the augmented state.
     pub(super) step: Matrix,
     /// The covariance of what noise adds to position and velocity.
     pub(super) noise: [[f64; 2]; 2],
-    /// What it costs, as a form of all that the loop knows at its beginning.
+    /// The cost as a quadratic form of the augmented state at the beginning of the step.
     pub(super) cost: Matrix,
-    /// What it costs besides.
+    /// The constant part of the cost.
     pub(super) constant: f64,
-    /// Of the cost: seconds, or one where a step counts once.
+    /// The length by which the cost is divided: seconds, or 1 per step.
     pub(super) length: f64,
 }
 
 impl Stage {
-    /// What it costs in the mean, of such second moments at its beginning.
+    /// The expected cost for these second moments at the beginning of the step.
     pub(super) fn expected(&self, moments: &Matrix) -> f64 {
         let rows = self.cost.iter().zip(moments);
         let form: f64 = rows.flat_map(|(a, b)| a.iter().zip(b)).map(|(a, b)| a * b).sum();
@@ -32,13 +32,13 @@ impl Stage {
     }
 }
 
-/// What a step is to be made of.
+/// The options of a stage.
 #[derive(Clone, Copy)]
 pub(super) struct StageOptions<'a> {
     pub(super) waiting: AugmentedState,
     pub(super) controller: &'a LinearController,
     pub(super) latency: Latency,
-    /// Of what it costs, if that is asked.
+    /// The weights of the cost, if it is computed.
     pub(super) weights: Option<LqrWeights>,
 }
 

@@ -1,4 +1,4 @@
-//! What happens between the ends of an exact step: noise that comes in, and what it costs.
+//! Integrals over an exact step: process noise and cost.
 
 use libration_core::control::LqrWeights;
 
@@ -10,7 +10,7 @@ use super::dense_matrix::exponential;
 pub(super) struct StepIntegrals {
     /// `∫₀ʰ e^{As} B Bᵀ e^{Aᵀs} ds`: the covariance of what the noise adds to the state.
     pub(super) noise: [[f64; 2]; 2],
-    /// What that costs within the step, whatever the state at its beginning.
+    /// The cost of that noise within the step, independent of the state.
     pub(super) constant: f64,
     /// The integral of the cost over the step as a form in `q`, `v` and the command at its beginning.
     pub(super) cost: [[f64; 3]; 3],

@@ -1,4 +1,4 @@
-//! The worst order of steps of different lengths.
+//! Bounds of the joint spectral radius: the worst order of steps of different lengths.
 
 use libration_core::Scalar;
 use libration_core::control::Feedback;
@@ -19,7 +19,7 @@ pub struct Switching {
     pub word: Vec<usize>,
 }
 
-/// Why there are no bounds.
+/// Error of the bounds.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SwitchingError {
     /// There is nothing to switch between.
@@ -37,9 +37,9 @@ pub enum SwitchingError {
          steps"
     )]
     Products {
-        /// How many lengths there are.
+        /// The number of step lengths.
         ratios: usize,
-        /// Of the longest order.
+        /// The number of steps of the longest order.
         length: u32,
     },
     /// The steps are beyond the range of floats.

@@ -1,4 +1,4 @@
-//! A step under a command that is held.
+//! A step under a zero-order hold.
 
 use libration_core::number::{Dual, Wide};
 use libration_core::system::CommandedSystem;
@@ -10,9 +10,9 @@ use crate::{Linearisation, UpdateMatrix};
 /// One step of a plant with one degree of freedom, `y' = Φy + Γu`, linearised, in 1024 bits.
 #[derive(Clone, Copy, Debug)]
 pub struct ZohStep {
-    /// What a step makes of the state.
+    /// The matrix `Φ` on the state.
     pub phi: UpdateMatrix<Wide, 1>,
-    /// What it adds for each unit of the command.
+    /// The effect `Γ` of a unit command.
     pub gamma: State<Wide, 1>,
 }
 

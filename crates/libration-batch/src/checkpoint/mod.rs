@@ -1,7 +1,7 @@
 //! Checkpoints: complete states as bytes, from which a run continues bit for bit.
 //!
-//! An ensemble, loops, environments and a replay buffer say what they are ([`Checkpoint::traits`]) and what their state is, to the last
-//! bit: on however many threads and whatever instructions it goes on. Where bytes go and come from is the caller's affair.
+//! Ensembles, loops, environments and replay buffers provide their properties ([`Checkpoint::traits`]) and their state, to the last
+//! bit. A run may continue with other threads and instructions. The caller stores the bytes.
 
 mod error;
 mod reader;
@@ -13,8 +13,8 @@ pub(crate) use reader::Reader;
 
 /// An object whose state can be saved and restored.
 pub trait Checkpoint {
-    /// What must be the same where the state is restored, by name: the kind, the float type, how many there are. What is code, as
-    /// a system, a policy or a task, cannot be told.
+    /// The properties that must agree when the state is restored, by name: the kind, the float type, the numbers of things. Code
+    /// (a system, a policy, a task) is not compared.
     fn traits(&self) -> Vec<Trait>;
 
     /// Passes all bytes of the state to `sink`, piece by piece.

@@ -101,7 +101,7 @@ impl Capacity {
     }
 }
 
-/// Where the fields lie, in bytes; each begins with a page.
+/// The byte ranges of the fields; each begins on a page.
 #[derive(Clone, Debug)]
 pub(super) struct Fields {
     /// `[row, n, i]`.
@@ -113,7 +113,7 @@ pub(super) struct Fields {
     pub(super) flags: Range<usize>,
     /// Powers of priorities, as `f64`.
     pub(super) weight: Range<usize>,
-    /// Of which transition each end is, in a ring of rising numbers.
+    /// The places of the transitions of the ends, in a ring of increasing numbers.
     pub(super) end_place: Range<usize>,
     /// The observations at the ends.
     pub(super) end_seen: Range<usize>,

@@ -1,10 +1,10 @@
 //! Replay buffers: memory of transitions from which a learner draws batches.
 //!
-//! A [`Replay`] keeps the last steps of as many environments as a [`Rollout`](crate::rl::Rollout) has, whole rollouts at a time.
-//! What is seen next is the next row, or stands apart where an episode ended: no observation is kept twice. A [`Batch`] of
-//! transitions, of sums of several rewards, or of [`Sequences`] of steps is drawn uniformly, or in proportion to priorities, by
-//! address: from a seed and a number. All of it lies in one piece of memory, which may be a file: at whatever moment a process
-//! dies, what was inserted before is found there again.
+//! A [`Replay`] stores the last steps of the environments of a [`Rollout`](crate::rl::Rollout), one rollout per insertion. The next
+//! observation is in the next row, or stored separately at the end of an episode: each observation is stored once. A [`Batch`] of
+//! transitions, of n-step returns, or [`Sequences`] of steps is sampled uniformly or in proportion to priorities. Seed and number of
+//! a batch determine the sample. All data lie in one piece of memory, which may be a file. If the process dies, completed
+//! insertions are kept.
 
 mod batch;
 mod capacity;

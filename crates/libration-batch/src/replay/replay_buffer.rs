@@ -104,8 +104,8 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         }
     }
 
-    /// What an earlier one left in its memory, as that of a file or a copy of its [`bytes`](Self::bytes): all that was inserted
-    /// before, even if its process died while it inserted more.
+    /// Opens the memory of an earlier buffer: a file or a copy of its [`bytes`](Self::bytes). All completed insertions are kept,
+    /// even if the process died during the next one.
     ///
     /// # Errors
     /// [`ReplayError::Other`] if that was none, or one of other numbers; [`ReplayError::Damaged`] if it contradicts itself.

@@ -71,12 +71,12 @@ where
     T: Float + Pod,
     E: World<T, O, D>,
 {
-    /// `len` environments, each at the start of its first episode; all that is random is drawn from `seed`.
+    /// `len` environments, each at the start of its first episode. `seed` determines all random numbers.
     ///
     /// # Errors
-    /// [`EnvironmentError::Ensemble`] if the time step is not above zero, there are no substeps, there are more or fewer systems or
-    /// rates of clocks than environments, or there is not so much memory; [`EnvironmentError::Number`] if a number of the
-    /// environment cannot be; [`EnvironmentError::Limit`].
+    /// [`EnvironmentError::Ensemble`] if the time step is not above zero, the number of substeps is 0, the number of systems or
+    /// rates of clocks is not that of the environments, or the memory is insufficient; [`EnvironmentError::Number`] if a parameter is
+    /// invalid; [`EnvironmentError::Limit`].
     pub fn new(
         world: E,
         len: usize,
@@ -86,11 +86,11 @@ where
         Environments::shard(world, 0, len, seed, execution)
     }
 
-    /// A part of more environments, as another process or machine may have the rest: those from number `first` on. Each does
-    /// what it does among all of them.
+    /// A shard of a larger batch: the environments from number `first` on. Other processes or machines may run the rest. Each
+    /// environment behaves as in the whole batch.
     ///
-    /// What is listed for each environment, systems, actions or weights, is listed for those of the shard; rates of
-    /// clocks alone for all up to its last. Ends of episodes are counted from its first.
+    /// Systems, actions and weights are listed for the environments of the shard; rates of clocks for all environments up to
+    /// its last. Numbers of environments in ends of episodes are relative to `first`.
     ///
     /// # Errors
     /// As for [`new`](Self::new).
@@ -199,8 +199,7 @@ where
         Ok(())
     }
 
-    /// Ends the episode of every environment for which there is a `true`, as its task might have in the step before: what follows it is what
-    /// follows any.
+    /// Terminates the episode of every environment whose flag is `true`, as if its task had in the step before.
     ///
     /// # Errors
     /// [`EnvironmentError::Shape`] if the number of flags is not the number of environments.
@@ -215,11 +214,12 @@ where
         Ok(())
     }
 
-    /// Begins a first episode in every environment for which there is a seed: it is then what the only environment of a batch of that
-    /// seed is, at the start of its first episode.
+    /// Begins a first episode in every environment with a seed. The environment then equals the only environment of a batch with
+    /// that seed.
     ///
     /// # Errors
-    /// [`EnvironmentError::Shape`] if there is not one or none for each; [`EnvironmentError::Seeded`] if rates of clocks are listed.
+    /// [`EnvironmentError::Shape`] if the number of seeds is not the number of environments; [`EnvironmentError::Seeded`] if rates of
+    /// clocks are listed.
     pub fn seed(&mut self, seeds: &[Option<u64>]) -> Result<(), EnvironmentError> {
         EnvironmentError::shape("seeds", seeds.len(), self.len)?;
         if self.world.parts().clock.trajectories().is_some() {

@@ -6,11 +6,10 @@ use libration_core::random::Purpose;
 
 use super::start::{Episode, between};
 
-/// Latencies in steps of the integrator, drawn for every environment at the beginning of every episode: from a least to a
-/// most, each as likely.
+/// Latencies in steps of the integrator, drawn uniformly for every environment at the beginning of every episode.
 ///
-/// What is seen is the state as it was one latency ago, and before an episode began as it was then. An action takes effect one
-/// latency after the look that it follows from; until the first one does, the command is zero.
+/// An observation is the state one latency ago, or the initial state of the episode. An action takes effect one latency after
+/// its observation; until the first action does, the command is zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Delays {
     /// The smallest and largest latency of observations.

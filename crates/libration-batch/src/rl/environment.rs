@@ -34,10 +34,10 @@ pub struct Environment<Sys, A, M, K, S, C = Fixed, N = Exact, V = NoVariation> {
     pub clock: C,
     /// The latencies of observations and actions.
     pub delays: Delays,
-    /// The largest command in each degree of freedom, of either sign: whoever asks for more gets, and pays for, that much. Infinite for
-    /// none.
+    /// The largest command in each degree of freedom, of either sign; the reward uses the saturated command. Infinite for no
+    /// limit.
     pub saturation: f64,
-    /// What a command moves, in kg: actions are forces, and the system gets `command/mass`. 1 where actions are accelerations.
+    /// The mass in kg if actions are forces: the acceleration is `command/mass`. 1 if actions are accelerations.
     pub mass: f64,
     /// The sensor.
     pub sensor: N,
@@ -51,14 +51,14 @@ pub struct Environment<Sys, A, M, K, S, C = Fixed, N = Exact, V = NoVariation> {
 /// The reset after the end of an episode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Autoreset {
-    /// The next episode begins in the same step: what is seen next is its start.
+    /// The next episode begins in the same step: the next observation is that of its start.
     #[default]
     SameStep,
-    /// What is seen next is what was seen last, and the action upon it is ignored: that step pays nothing, ends nothing, and
-    /// leads to the start of the next episode.
+    /// The next step ignores its action, repeats the final observation, has reward 0 and leads to the start of the next
+    /// episode.
     NextStep,
-    /// Nothing: the environment stands still (what is seen late still arrives), pays nothing and tells how it ended, until it is
-    /// [reset](super::Environments::reset).
+    /// No reset: the environment stands still with reward 0 and the flags of its end until a
+    /// [reset](super::Environments::reset). Delayed observations still arrive.
     Disabled,
 }
 
@@ -172,7 +172,7 @@ impl<Sys, A, M, K, S, C, N, V> Environment<Sys, A, M, K, S, C, N, V> {
     }
 }
 
-/// An [`Environment`] whose parts fit each other, with `O` numbers to be seen and `D` degrees of freedom: a name for all its
+/// An [`Environment`] of compatible types, with `O` observed numbers and `D` degrees of freedom: a short name for all its
 /// types.
 pub trait World<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
     /// The system.

@@ -22,7 +22,7 @@ where
         self.autoreset == Autoreset::SameStep || block.ended == [0; LANES]
     }
 
-    /// What follows where an episode ended, in this step or before: in scalars, since it is rare.
+    /// Handles the ends of episodes: records them and begins the next ones. Scalar code, because it is rare.
     #[inline(never)]
     pub(super) fn end(
         &self,

@@ -1,7 +1,7 @@
-//! Random words on their way.
+//! Streams of random words per episode.
 //!
-//! What is drawn in a step follows from the episode and from how many steps of it went before: so it is the same whatever follows an
-//! episode, and whenever the others of a block began theirs.
+//! The draws of a step depend on the episode and on its number of steps before. They do not depend on the reset mode or on the
+//! episodes of other environments of the block.
 
 use libration_core::Scalar;
 use libration_core::random::{EPOCH, Purpose, Streams};

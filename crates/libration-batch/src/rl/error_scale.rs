@@ -7,10 +7,10 @@ use libration_core::random::Purpose;
 
 use super::start::{Episode, between};
 
-/// How much of what the clock and the sensor do wrong there is in an episode: a factor for each, drawn for every environment
-/// at the beginning of every episode, uniformly from a least to a most. 1 is all of it, 0 nothing.
+/// Factors of the errors of the clock and of the sensor, drawn uniformly for every environment at the beginning of every episode.
+/// 1 leaves the errors unchanged, 0 removes them.
 ///
-/// Steps that would be negative are of length zero, as with clocks. Where clock and sensor are exact there is nothing to be severe about.
+/// Negative steps become steps of length zero, as with clocks. An exact clock or sensor has no errors to scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorScale {
     /// The range of the factor of clock errors.

@@ -29,8 +29,8 @@ where
         ideal && timely && self.substeps == 1 && self.is_unlimited_acceleration()
     }
 
-    /// All of an ideal step of a whole block, and its numbers where they belong: what one loop computes stays in registers until
-    /// it is written.
+    /// Takes an ideal step of a whole block and writes its numbers. One loop computes all of it, so that values stay in registers
+    /// until they are written.
     #[inline(always)]
     // Gathered in a struct, arguments would stay in memory.
     #[allow(clippy::too_many_arguments, clippy::needless_range_loop)]

@@ -7,8 +7,8 @@ use libration_core::{Float, State};
 use super::Delays;
 use super::block_size::LANES;
 
-/// Where the past of a block lies: states at the beginning of the last steps of the integrator, `2·D` rows each, and the last
-/// actions, `D` rows each, both in a ring.
+/// The layout of the past of a block: states at the beginning of the last steps of the integrator, `2·D` rows each, and the last
+/// actions, `D` rows each, both in rings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct History {
     states: usize,
@@ -42,7 +42,7 @@ impl History {
         self.actions > 0
     }
 
-    /// Lane `l` begins with this state: it was always there, and nobody has acted.
+    /// Fills the past of lane `l` with this state and zero actions.
     pub(super) fn begin<T: Float, const D: usize>(
         &self,
         past: &mut [T],

@@ -1,5 +1,5 @@
-//! Steps of all lanes of a block whose system and integrator are chosen when the program runs: the choice stands outside the loop, and the
-//! loop is compiled once for whatever has it in common.
+//! Steps of all lanes of a block with run-time dispatch: the dispatch is outside the loop, and each loop is compiled once for each
+//! system and integrator.
 
 use libration_core::integrator::WithIntegrator;
 use libration_core::system::{CommandedSystem, WithSystem};

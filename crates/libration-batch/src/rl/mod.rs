@@ -1,15 +1,14 @@
-//! Environments for reinforcement learning, many at once, and the tensors that they yield.
+//! Batches of environments for reinforcement learning, and their rollouts.
 //!
-//! An [`Environment`] is a system with its integrator, a [`Task`] that sees, rewards and ends, a [`Start`] and a time
-//! limit, and what is not ideal about it: a [`Clock`](libration_core::control::Clock), [`Delays`], a [`Sensor`], a [`Variation`] and a
-//! [`ErrorScale`] from episode to episode. [`Environments`] are many of them. A [`Rollout`] holds what they do under a [`Policy`] over a horizon.
+//! An [`Environment`] is a system with its integrator, a [`Task`], a [`Start`], a time limit and imperfections: a
+//! [`Clock`](libration_core::control::Clock), [`Delays`], a [`Sensor`], a [`Variation`] and an [`ErrorScale`].
+//! [`Environments`] is a batch of them. A [`Rollout`] holds their transitions under a [`Policy`] over a horizon.
 //!
-//! What environment `i` does follows from its number, the seed, the policy and the steps taken: not from the number of
-//! environments or threads, the instruction set, the layout of the rollout or how many steps are taken at a time.
-
+//! The transitions of environment `i` depend on its number, the seed, the policy and the steps taken. They do not depend on the
+//! number of environments or threads, the instruction set, the layout of the rollout or the number of steps per call.
 //!
-//! All is computed in the float type of the rollout. An `f16` is for looking at what that does to an environment: of increments
-//! that are smaller than its spacing nothing is left, and advantages round like all else.
+//! All numbers have the float type of the rollout. An `f16` shows the effect of that type on an environment: increments below its
+//! spacing are lost, and advantages are rounded as well.
 
 mod actuation;
 mod batch;

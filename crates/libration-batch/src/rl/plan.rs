@@ -40,8 +40,7 @@ impl Writes {
 pub struct Plan {
     /// The number of actions of each environment.
     pub horizon: usize,
-    /// How many environments there are. Where a row of them fills whole lines of the cache, as that of a multiple of 64 does,
-    /// all of it can be streamed.
+    /// The number of environments. Rows of a multiple of 64 fill whole cache lines, so that all of them can be streamed.
     pub environments: usize,
     /// Whether there is a field for truncations.
     pub truncated: bool,

@@ -11,8 +11,7 @@ use crate::ensemble::{Buffer, InsufficientMemory, Pages};
 
 /// The transitions of environments over a horizon: allocated once, filled many times.
 ///
-/// In step `t` of environment `n`, `observation` is what was seen before `action`; `reward`, `terminated` and `truncated` are
-/// what came of it.
+/// In step `t` of environment `n`, `observation` is the one before `action`; `reward`, `terminated` and `truncated` are its results.
 #[derive(Debug)]
 pub struct Rollout<T, const O: usize, const D: usize> {
     plan: Plan,

@@ -40,9 +40,9 @@ where
     /// Fills `rollout` with the transitions of all environments under `policy`.
     ///
     /// # Errors
-    /// [`EnvironmentError::Shape`] if it is for another number of environments, or the policy is;
-    /// [`EnvironmentError::Field`] if it has no room for something that has to be said; [`EnvironmentError::Ensemble`] if a record of the
-    /// clock ends before, or if there is no memory for the ends of episodes that the time limit alone makes.
+    /// [`EnvironmentError::Shape`] if the rollout or the policy is for another number of environments;
+    /// [`EnvironmentError::Field`] if the rollout lacks a required field; [`EnvironmentError::Ensemble`] if the record of a clock is too
+    /// short, or the memory is insufficient for the ends of episodes at the time limit.
     pub fn rollout<P: Policy<T, O, D>>(
         &mut self,
         policy: P,
@@ -52,7 +52,7 @@ where
         self.fill(policy, rollout, 0..horizon)
     }
 
-    /// Fills some rows of `rollout`, those before which are full: to do so row by row is to do it at once.
+    /// Fills a range of rows of `rollout`; the rows before must be full. Filling row by row gives the same bits.
     ///
     /// # Errors
     /// As [`rollout`](Self::rollout), and [`EnvironmentError::Shape`] if there are not so many rows.

@@ -9,8 +9,8 @@ use ndarray::{ArrayViewMut2, Axis};
 use super::Layout;
 use super::rollout_row::RolloutRow;
 
-/// Where all steps of neighbouring environments are written. To divide and to read it allocates nothing: for a short rollout
-/// a list of its rows took as long as the steps.
+/// The destination of all steps of neighbouring environments. Splitting and reading it allocates nothing: for a short rollout a
+/// list of its rows took as long as the steps.
 pub(super) struct RolloutSlice<'a, T, const O: usize, const D: usize> {
     /// The planes, or all numbers in the first.
     pub(super) observation: [ArrayViewMut2<'a, T>; O],

@@ -21,8 +21,8 @@ pub trait Sensor<T: Float, const O: usize>: Copy + Send + Sync {
     /// The number of random words per measurement, always the same.
     fn words(&self) -> usize;
 
-    /// What is measured. It branches on nothing but what `self` holds, and is `#[inline(always)]`, or the loops over environments
-    /// are no vectors.
+    /// The measured numbers. An implementation branches on values of `self` only and is `#[inline(always)]`; otherwise the loops
+    /// over environments are not vectorised.
     fn measure(&self, seen: [T; O], word: &mut impl FnMut() -> u32) -> [T; O];
 }
 

@@ -113,7 +113,7 @@ pub(super) mod between {
 
     use super::Episode;
 
-    /// Every lower end is below its upper one, or both are the same.
+    /// Returns an error unless every lower end is at most its upper one.
     pub(in crate::rl) fn check(
         name: &'static str,
         ends: impl IntoIterator<Item = (f64, f64)>,
@@ -127,7 +127,7 @@ pub(super) mod between {
         Ok(())
     }
 
-    /// Where between its ends each of `N` numbers is, from 0 to 1: those from number `first` on.
+    /// `N` uniform numbers from 0 to 1, from draw number `first` on.
     pub(in crate::rl) fn shares<const N: usize>(
         episode: Episode,
         purpose: Purpose,
@@ -137,7 +137,7 @@ pub(super) mod between {
         from_fn(|i| episode.address(purpose, first + i).uniform()[0])
     }
 
-    /// The number there.
+    /// The number at this share of the range.
     pub(in crate::rl) fn at<T: Float>((low, high): (f64, f64), share: f64) -> T {
         T::from_f64(low + share * (high - low))
     }

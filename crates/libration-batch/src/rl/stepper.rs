@@ -54,7 +54,7 @@ where
     E: World<T, O, D>,
     P: Policy<T, O, D>,
 {
-    /// Whether a loop over lanes is made when the system and the integrator are known.
+    /// Whether the loop over lanes dispatches over systems or integrators at run time.
     const DISPATCHES: bool = {
         let chosen = <E::System as System<T, D>>::DISPATCHES || E::Method::DISPATCHES;
         chosen && E::Systems::UNIFORM && E::Variation::SAME
@@ -76,7 +76,7 @@ where
         }
     }
 
-    /// Seconds since an episode began, if anybody asks: steps are as long as they should be.
+    /// The time since the episode began, in seconds of an ideal clock; 0 if the task does not depend on time.
     #[inline(always)]
     pub(super) fn time(&self, now: u64, began: u64) -> T {
         if const { E::Task::TIMED } {
@@ -88,7 +88,7 @@ where
         }
     }
 
-    /// The environment, as a value of its own: behind a reference the compiler would look for changes after every store.
+    /// A copy of the environment: behind a reference the compiler would reload it after every store.
     #[inline(always)]
     pub(super) fn parts(&self) -> Parts<T, E, O, D> {
         *self.world.parts()
@@ -253,9 +253,8 @@ pub(super) fn lane<T: Float, E: World<T, O, D>, const O: usize, const D: usize>(
     parts.variation.apply(&numbers, E::Systems::lane(systems, l), parts.task)
 }
 
-/// What a step pays, and whether all is over with it, or it is [`LOST`]: what is lost pays nothing. What is not finite times zero is
-/// not zero. `acted` is whether the action
-/// was a number.
+/// The reward of a step and its termination flags. A step that is not finite is [`LOST`] and has reward 0: a number that is not
+/// finite times zero is not zero. `acted` is whether the action was finite.
 #[inline(always)]
 pub(super) fn evaluate<T: Float, K: Task<T, D, O>, const O: usize, const D: usize>(
     task: &K,

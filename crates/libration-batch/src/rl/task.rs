@@ -5,8 +5,8 @@ use libration_core::control::ControlError;
 use libration_core::control::error::{ensure, finite};
 use libration_core::{Elementary, Float, State};
 
-/// A task on a system with `D` degrees of freedom, of which `O` numbers are seen. Nothing in it branches on data, and each
-/// function is `#[inline(always)]`, or the loops over environments are no vectors.
+/// A task on a system with `D` degrees of freedom and `O` observed numbers. Its functions do not branch on data and are
+/// `#[inline(always)]`; otherwise the loops over environments are not vectorised.
 ///
 /// `time` is that since the episode began, in seconds, as an ideal clock counts it.
 pub trait Task<T: Float, const D: usize, const O: usize>: Copy + Send + Sync {

@@ -30,8 +30,8 @@ pub trait Variation<T: Float, Sys, K>: Copy + Send + Sync {
     /// Draws the parameters of an episode.
     fn draw(&self, episode: Episode) -> Self::Numbers;
 
-    /// The system and the task of the episode. It branches on nothing but what `self` holds, and is `#[inline(always)]`, or the
-    /// loops over environments are no vectors.
+    /// The system and the task of the episode. An implementation branches on values of `self` only and is `#[inline(always)]`;
+    /// otherwise the loops over environments are not vectorised.
     fn apply(&self, numbers: &Self::Numbers, system: Sys, task: K) -> (Sys, K);
 }
 

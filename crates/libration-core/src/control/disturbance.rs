@@ -11,7 +11,7 @@ pub trait Disturbance: Copy + Send + Sync {
     #[doc(hidden)]
     const ACTS: bool = true;
 
-    /// Whether its numbers are those of a disturbance; `Loops` ask before they begin.
+    /// Checks the parameters; `Loops` call it before they begin.
     ///
     /// # Errors
     /// The first invalid parameter.

@@ -3,8 +3,8 @@
 use super::{Integrator, WithIntegrator};
 use crate::{Method, Scalar, State, System, with_method};
 
-/// The same bits as the method itself. Each step begins with a choice, so that code which takes any method is
-/// compiled once: for loops that are to be fast there is [`with_method!`].
+/// Dispatches each step to the method, with the same bits. Code that takes any method is then compiled once; fast loops use
+/// [`with_method!`].
 impl Integrator for Method {
     const DISPATCHES: bool = true;
 
@@ -27,8 +27,8 @@ impl Integrator for Method {
     }
 }
 
-/// A step that is a function of its own: nine of them in every caller would take long to compile, and a stack that holds
-/// the exact numbers of all.
+/// A step in a separate function: nine inlined methods per caller would be slow to compile and need a large stack for exact
+/// numbers.
 #[inline(never)]
 fn step_out_of_line<S: Scalar, const D: usize>(
     method: impl Integrator,

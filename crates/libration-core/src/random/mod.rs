@@ -1,8 +1,8 @@
 //! Counter-based random numbers: a draw is a function of its address alone.
 //!
-//! A draw is a function of a seed, a trajectory, a step and a purpose. So the noise of a trajectory depends on neither
-//! the number of threads nor the size of the ensemble nor the order in which anything is asked, and a run
-//! can begin anywhere.
+//! The address of a draw is a seed, a trajectory, a step and a purpose. So the noise of a trajectory depends on neither
+//! the number of threads nor the size of the ensemble nor the order of draws, and a run can begin at any
+//! step.
 
 mod address;
 mod deviate;

@@ -7,8 +7,8 @@ use super::{Address, Purpose};
 /// A draw costs as much as a hundred operations, a word that follows from the one before costs seven.
 pub const EPOCH: u64 = 256;
 
-/// A generator for each of `W` neighbouring trajectories: what it yields in a step depends on the seed, the
-/// trajectory, the step and the purpose, and on nothing else.
+/// A generator for each of `W` neighbouring trajectories. Its words in a step depend only on the seed, the
+/// trajectory, the step and the purpose.
 ///
 /// Every [`EPOCH`] steps its state is drawn by address; in between it is xoroshiro64*: D. Blackman, S. Vigna,
 /// *Scrambled linear pseudorandom number generators*, ACM Transactions on Mathematical Software 47, 2021,
@@ -50,8 +50,8 @@ impl<const W: usize> Streams<W> {
         Streams { low: [0; W], high: [0; W] }
     }
 
-    /// The generators of the trajectories from `first` on, at `step`, if each step takes so many words: none were
-    /// taken where no step does.
+    /// The generators of the trajectories from `first` on, at `step`, if each step takes `words` words. They are
+    /// unused if `words` is 0.
     #[inline(always)]
     pub fn at_step(seed: u64, first: u64, step: u64, purpose: Purpose, words: usize) -> Self {
         if words == 0 {

@@ -3,8 +3,8 @@
 use super::System;
 use crate::{Scalar, State};
 
-/// A system behind a function: code that takes any system is compiled once, and calls it for every acceleration. It is
-/// no part of a vector.
+/// A system behind a function pointer: code that takes any system is compiled once and calls it for every acceleration. Its
+/// loops are not vectorised.
 #[derive(Clone, Copy)]
 pub struct DynSystem<'a, S, const D: usize>(
     /// The acceleration.

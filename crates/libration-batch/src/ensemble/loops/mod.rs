@@ -251,7 +251,7 @@ where
         self.dt
     }
 
-    /// Where number `row` of trajectory `n` lies.
+    /// The index of number `row` of trajectory `n`.
     fn place(&self, n: usize, row: usize) -> usize {
         (n / GRAIN * self.layout.rows + row) * GRAIN + n % GRAIN
     }

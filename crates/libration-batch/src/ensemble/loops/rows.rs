@@ -6,7 +6,7 @@ use bytemuck::Pod;
 
 use crate::ensemble::{Buffer, EnsembleError, GRAIN, InsufficientMemory, Pages};
 
-/// So many numbers for each trajectory: for every [`GRAIN`] neighbours a piece of memory, and in it row after row.
+/// The memories of all trajectories: one piece per [`GRAIN`] neighbours, row after row.
 #[derive(Debug)]
 pub(super) struct Memories<T> {
     numbers: Buffer<T>,

@@ -17,7 +17,7 @@ pub struct MeanCost<const D: usize> {
 }
 
 impl<const D: usize> MeanCost<D> {
-    /// Of the trajectories in `range`, with the weights of position and velocity; commands are not seen.
+    /// An observer of the trajectories in `range` with the weights of position and velocity; it ignores commands.
     pub fn new(range: Range<usize>, weights: LqrWeights) -> Self {
         let LqrWeights { position, velocity, .. } = weights;
         MeanCost {

@@ -34,7 +34,7 @@ impl Running {
         self.squares += apart * (x - self.mean);
     }
 
-    /// Those of both together (T. F. Chan, G. H. Golub, R. J. LeVeque, Compstat 1982).
+    /// Merges two sets of moments (T. F. Chan, G. H. Golub, R. J. LeVeque, Compstat 1982).
     fn merge(self, other: Running) -> Running {
         if self.count == 0 {
             return other;

@@ -48,8 +48,8 @@ pub trait Policy<T: Float, const O: usize, const D: usize>: Copy + Send + Sync {
         0
     }
 
-    /// The action. It branches on nothing but what `self` holds, and is `#[inline(always)]`, or the loops over environments
-    /// are no vectors.
+    /// The action. An implementation branches on values of `self` only and is `#[inline(always)]`; otherwise the loops over
+    /// environments are not vectorised.
     fn act(
         &self,
         place: StepIndex,
@@ -137,7 +137,7 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Constant<D> {
     }
 }
 
-/// Nothing, if each of these numbers is finite, in the float type as well: a policy with another loses every environment.
+/// Returns an error unless all numbers are finite, in the float type as well.
 fn all_finite<T: Float>(
     name: &'static str,
     numbers: impl IntoIterator<Item = f64>,

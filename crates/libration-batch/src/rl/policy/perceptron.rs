@@ -148,7 +148,7 @@ pub(super) fn alone<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize
     ActionSample::deterministic(actions.map(|[x]| x))
 }
 
-/// What networks answer, whose `k`-th parameters are known.
+/// The forward pass of networks with the given parameters.
 #[inline(always)]
 fn forward<T, const O: usize, const H: usize, const D: usize, const W: usize>(
     activation: Activation,

@@ -39,7 +39,7 @@ pub trait Clock<T: Float>: Copy + Send + Sync {
     /// Whether steps are random.
     const DRAWS: bool = false;
 
-    /// Whether its numbers are those of a clock; `Loops` ask before they begin.
+    /// Checks the parameters; `Loops` call it before they begin.
     ///
     /// # Errors
     /// The first invalid parameter.
@@ -53,8 +53,7 @@ pub trait Clock<T: Float>: Copy + Send + Sync {
     /// The values that all trajectories share at `step`.
     fn beat(&self, step: u64) -> Self::Beat;
 
-    /// How many random words a step takes: the same number for every step and trajectory, and none where nothing is
-    /// drawn.
+    /// The number of random words per step, the same for every step and trajectory; 0 for a clock that does not draw.
     fn words(&self) -> usize {
         0
     }
@@ -69,8 +68,8 @@ pub trait Clock<T: Float>: Copy + Send + Sync {
         None
     }
 
-    /// How many `Δt` the step is long. It branches on nothing but what `self` holds, and is
-    /// `#[inline(always)]`, or its loops are no vectors.
+    /// The length of the step in units of `Δt`. An implementation branches on values of `self` only and is
+    /// `#[inline(always)]`; otherwise its loops are not vectorised.
     fn ratio(
         &self,
         memory: &mut Self::Memory,

@@ -60,9 +60,9 @@ pub enum RecordedError {
 }
 
 impl<'a> Recorded<'a> {
-    /// The time stamps of a file, in seconds from the first on: one on each line, at its beginning, in seconds or in nanoseconds; of
-    /// which a first line with the name of a column tells (`time_ns`), or else their size, where they are whole numbers that lie more
-    /// than 1000 apart. Lines of `candump -L` and of `rostopic echo -p` are such lines, and so are rows of CSV. Empty lines and those
+    /// The time stamps of a file, in seconds from the first: one at the beginning of each line, in seconds or in nanoseconds. The
+    /// unit follows from the name of a column in the first line (`time_ns`); without it, whole numbers more than 1000 apart are
+    /// nanoseconds. Lines of `candump -L` and of `rostopic echo -p` are such lines, and so are rows of CSV. Empty lines and those
     /// that begin with `#` are passed over.
     ///
     /// # Errors

@@ -93,16 +93,16 @@ impl Schedule {
         (self.observation + self.action).div_ceil(self.period) as usize
     }
 
-    /// How many steps lie between a look and its effect, where looks and effects are at the beginning of
-    /// every step.
+    /// The number of steps between a sample and its command, if both are at the beginning of every
+    /// step.
     pub fn whole_steps(&self) -> Option<usize> {
         let whole = |time: Time| time.trailing_zeros() >= FRACTION;
         let all = self.period == 1 << FRACTION && whole(self.observation) && whole(self.action);
         all.then(|| ((self.observation + self.action) >> FRACTION) as usize)
     }
 
-    /// What happens within a step, in order, each with the fraction of the step at which it does. What would have been computed
-    /// before the start arrives as well: it is what acts before the first command.
+    /// The events within a step, in order, each with its fraction of the step. Commands from before the start arrive as well: they
+    /// stand for the initial command.
     pub fn events(&self, step: u64) -> impl Iterator<Item = (f64, Event)> {
         let [begin, period, observation, action] =
             [Time::from(step) << FRACTION, self.period, self.observation, self.action]
