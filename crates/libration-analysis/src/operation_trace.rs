@@ -16,7 +16,7 @@ pub(super) struct OperationTrace {
 /// The origin of a value: an input, or an operation on operands.
 type Origin = Option<(Kind, Vec<Operand>)>;
 
-/// An operation, told apart from all that give other values.
+/// The kind of an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Sum,

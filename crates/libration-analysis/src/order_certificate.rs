@@ -22,7 +22,7 @@ pub struct OrderCertificate {
 const ROUNDING: f64 = 1e-13;
 
 impl OrderCertificate {
-    /// Compares all words of up to `degree` letters; none if the method is no splitting method.
+    /// Compares all words of up to `degree` letters; none if the method is not a splitting method.
     pub fn new(integrator: impl Integrator, degree: usize) -> Option<Self> {
         let word = Tableau::new(integrator)?.word()?;
         let series = word.iter().fold(Series::one(degree), |product, letter| product.then(*letter));

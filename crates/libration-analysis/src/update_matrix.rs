@@ -100,7 +100,7 @@ impl<S: Scalar, const D: usize> UpdateMatrix<S, D> {
         (0..2 * D).fold(S::zero(), |sum, i| sum + self.entry(i, i))
     }
 
-    /// The `2 × 2` matrices of the degrees of freedom, if each evolves by itself.
+    /// The `2 × 2` matrices of the degrees of freedom, if they are decoupled.
     pub fn decoupled(&self) -> Option<[UpdateMatrix<S, 1>; D]>
     where
         S: PartialEq,

@@ -61,14 +61,14 @@ pub fn write_parquet(
     Ok(())
 }
 
-/// Bytes of memory at most that [`write_parquet`] takes besides a table of so many rows and bytes.
+/// The largest memory of [`write_parquet`], in bytes, besides the table.
 pub fn parquet_bytes(rows: u64, bytes: u128, threads: usize) -> u128 {
     // The columns of a row group are kept until it ends, and may be moved as they grow.
     let group = bytes * u128::from(rows.min(ROW_GROUP as u64)) / u128::from(rows.max(1));
     2 * group + threads as u128 * ENCODER
 }
 
-/// A column of a row group by itself.
+/// One column of a row group.
 fn encoded(
     column: ColumnDescPtr,
     properties: WriterPropertiesPtr,

@@ -29,7 +29,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
     /// An empty one in a new file, all of whose room on the disk is taken at once: where memory is a file, a full disk ends the process.
     ///
     /// # Errors
-    /// [`DataError::Io`] if the file is there already, or there is no room for it; [`DataError::Replay`].
+    /// [`DataError::Io`] if the file exists or the disk is full; [`DataError::Replay`].
     pub fn create(path: &Path, capacity: Capacity) -> Result<Self, DataError> {
         let bytes = capacity.bytes(O, D, size_of::<T>()).map_err(refused(path))?;
         if path.exists() {

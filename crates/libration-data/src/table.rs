@@ -1,4 +1,4 @@
-//! A table: named columns with units, each of its own number type.
+//! Tables: named columns with units and number types.
 
 use std::borrow::Cow;
 
@@ -40,7 +40,7 @@ pub enum Values<'a> {
     F16(Cow<'a, [f16]>),
     /// The upper half of an `f32`. Files hold it as `f32`, which is exact.
     Bf16(Cow<'a, [bf16]>),
-    /// Lists of so many values each, none of them lists.
+    /// Lists of equal length, not nested.
     Lists(usize, Box<Values<'a>>),
 }
 

@@ -41,7 +41,7 @@ pub fn verify(folder: &Path, manifest: &Manifest, mut go_on: impl FnMut(u64) -> 
     flaws
 }
 
-/// Files of a folder, seen from there, that its manifest does not name.
+/// Returns the files of a folder that its manifest does not list, relative to the folder.
 ///
 /// # Errors
 /// If a folder cannot be read.

@@ -1,4 +1,4 @@
-//! A system of one's own: a bead on a rotating hoop, written once and studied by every instrument.
+//! A custom system: a bead on a rotating hoop, used with every instrument.
 
 use libration::analysis::Linearisation;
 use libration::integrator::{Rk4, VelocityVerlet};

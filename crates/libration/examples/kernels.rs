@@ -1,4 +1,4 @@
-//! Many trajectories at once, of a system, method and float type that are chosen by name, on one thread.
+//! An ensemble on one thread, whose system, method and float type are chosen by name.
 //!
 //! `kernels [system] [method] [float] [instructions] [trajectories] [steps]`, as in
 //! `kernels kepler yoshida4 f32 avx2 1000 500`. It reads no clock: `cargo xtask instructions` counts

@@ -1,4 +1,4 @@
-//! What latency does to a policy, foretold by the eigenvalues of the loop and seen in rollouts.
+//! Effect of latency on a policy: eigenvalues of the loop against rollouts.
 //!
 //! A thousand oscillators under the same linear feedback, whose commands arrive later and later: which of them leave the
 //! bound, and what they lose before they do.

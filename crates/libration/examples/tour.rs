@@ -1,4 +1,4 @@
-//! The code of the README, with its imports: one trajectory, theory, many trajectories, and many robots.
+//! The code of the README with its imports: a trajectory, its theory, an ensemble and a batch of robots.
 
 use libration::State;
 use libration::analysis::SymbolicStep;

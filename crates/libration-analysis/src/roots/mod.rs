@@ -143,7 +143,7 @@ impl SturmChain {
         }
     }
 
-    /// Narrows an interval with one root to so many bits by bisection on the sign, which changes there.
+    /// Narrows an interval with one root to `bits` bits by bisection on the sign.
     fn narrow(&self, mut low: Dyadic, mut high: Dyadic, precision: i64) -> Root {
         let p = &self.members[0];
         let above = p.sign_at(&high);

@@ -12,7 +12,7 @@ pub struct Imperfections {
     pub jitter: Jitter,
     /// The part by which all steps are longer than they should be.
     pub skew: f64,
-    /// The probability that a command is lost on its way, each for itself; what acts goes on then.
+    /// The probability that a command is lost, independently; the acting command then stays.
     pub loss: f64,
 }
 

@@ -14,7 +14,7 @@ pub struct LinearController {
     command: Vec<f64>,
 }
 
-/// A controller is no linear map about the origin.
+/// Error of a controller that is not linear near the origin.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum NotLinear {
     /// The command is not zero at the origin.
@@ -105,7 +105,7 @@ impl LinearController {
         Feedback { position: -self.command[0], velocity: -self.command[1] }
     }
 
-    /// This, with a command that is so many times as large; what it remembers stays.
+    /// The controller with its command scaled by `factor`.
     pub fn amplified(&self, factor: f64) -> Self {
         let command = self.command.iter().map(|x| factor * x).collect();
         LinearController { command, ..self.clone() }

@@ -106,7 +106,7 @@ fn checked(weights: LqrWeights) -> Result<(Matrix, Wide), LqrError> {
     Ok((Matrix::from_map(|e| State { q: [q * e.q[0]], v: [v * e.v[0]] }), u))
 }
 
-/// Whether there is a motion that the command does not reach and that does not decay by itself.
+/// Whether there is an uncontrollable mode that does not decay.
 fn out_of_reach(phi: &Matrix, gamma: &State<Wide, 1>) -> bool {
     let next = phi.apply(gamma);
     let (one, other) = (gamma.q[0] * next.v[0], gamma.v[0] * next.q[0]);

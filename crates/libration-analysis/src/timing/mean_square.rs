@@ -18,7 +18,7 @@ pub struct MeanSquare {
 }
 
 impl MeanSquare {
-    /// `E[q²]`, `E[qv]` and `E[v²]` after so many steps from `state`.
+    /// `E[q²]`, `E[qv]` and `E[v²]` after `steps` steps from `state`.
     pub fn moments(&self, state: &State<f64, 1>, steps: u64) -> [f64; 3] {
         let [q, v] = [state.q[0], state.v[0]].map(Wide::from_f64);
         let mut moments = [q * q, q * v, v * v];

@@ -12,7 +12,7 @@ use super::{LqrError, Plant, ZohStep};
 pub struct ObserverNoise {
     /// The intensity of the white noise that accelerates the plant, in (m/s²)²·s.
     pub acceleration: f64,
-    /// The variance of what is seen of the position at a sample, in m².
+    /// The variance of the measured position at a sample, in m².
     pub position: f64,
 }
 
@@ -49,7 +49,7 @@ impl Plant<'_> {
         Ok(self.observer_with(correction))
     }
 
-    /// The observer that corrects what was foretold by so much of what the position is off.
+    /// The observer with these gains on the prediction error of the position.
     pub fn observer_with(&self, correction: [f64; 2]) -> StateObserver {
         let ZohStep { phi, gamma } = (self.step)(self.dt);
         let gamma = [gamma.q[0], gamma.v[0]].map(Wide::to_f64);

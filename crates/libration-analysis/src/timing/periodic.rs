@@ -24,7 +24,7 @@ impl Plant<'_> {
     }
 }
 
-/// The root of order `n` of what is not negative; 1 for `n = 0`.
+/// The `n`-th root of a non-negative number; 1 for `n = 0`.
 fn root(x: Wide, n: u64) -> Wide {
     if n == 0 {
         return Wide::one();

@@ -48,7 +48,7 @@ impl<'a> Plant<'a> {
         Plant { step, generator, dt: Wide::from_f64(dt), exact: true, flows: true, grid: None }
     }
 
-    /// This, with steps that are so many of its own, each as long: what a simulation does within the period of a loop.
+    /// The plant with `count` equal integrator steps per period of the loop.
     pub fn substeps(self, count: u64) -> Self {
         let fine = Rc::clone(&self.step);
         let one = Rc::clone(&fine);

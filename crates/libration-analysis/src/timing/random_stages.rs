@@ -76,7 +76,7 @@ impl RandomStages {
         log_spectral_radius(self.feedback(&mean)) - lambda
     }
 
-    /// The stationary second moments under `noise`; of what is not stable they are none.
+    /// The stationary second moments under `noise`. They are meaningless for an unstable loop.
     pub(super) fn moments(&self, noise: Matrix) -> Matrix {
         let mut moments = solve_stein(&self.mean, vec![noise]).remove(0);
         if self.rows.is_empty() {

@@ -28,7 +28,7 @@ impl StepNoise {
         (memory.abs() < 1.0 && rms >= 0.0 && rms.is_finite()).then_some(StepNoise { rms, memory })
     }
 
-    /// The power spectrum `Σₖ E[εₙεₙ₊ₖ]·cos kψ` at so many radians a step; its mean over all angles is the variance.
+    /// The power spectrum `Σₖ E[εₙεₙ₊ₖ]·cos kψ` at `ψ` radians per step; its mean over all angles is the variance.
     pub fn spectrum(self, angle: f64) -> f64 {
         let StepNoise { rms, memory } = self;
         rms * rms * (1.0 - memory * memory) / (1.0 - 2.0 * memory * angle.cos() + memory * memory)

@@ -96,7 +96,7 @@ impl Plant<'_> {
     }
 }
 
-/// `E[M ⊗ M]` on what is symmetric.
+/// `E[M ⊗ M]` on symmetric matrices.
 pub(super) fn mean_square(stages: &[Stage]) -> Matrix {
     let mut mean: Matrix = Vec::new();
     for stage in stages {

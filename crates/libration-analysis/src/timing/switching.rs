@@ -118,7 +118,7 @@ fn checked(ratios: &[f64], length: u32) -> Result<(), SwitchingError> {
     few.then_some(()).ok_or(SwitchingError::Products { ratios: ratios.len(), length })
 }
 
-/// A walk through all products of up to so many steps.
+/// A depth-first search over all products of up to `length` steps.
 struct Search<'a> {
     steps: &'a [Matrix],
     /// The numbers of the steps that the walk has taken.

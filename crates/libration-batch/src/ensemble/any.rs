@@ -75,8 +75,8 @@ struct Typed<T, Sys, const D: usize> {
     trajectories: Ensemble<T, D>,
 }
 
-/// An isotropic oscillator in several dimensions: in each of them one that knows nothing of the
-/// others, and steps as it would alone. Coordinate `i` of trajectory `n` of `N` is number `iN + n`.
+/// An isotropic oscillator in several dimensions, integrated as independent one-dimensional
+/// oscillators. Coordinate `i` of trajectory `n` of `N` is number `iN + n`.
 #[derive(Debug)]
 struct Isotropic<T> {
     system: Oscillator<T>,

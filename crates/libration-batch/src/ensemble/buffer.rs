@@ -26,7 +26,7 @@ pub enum Pages {
     Huge,
 }
 
-/// Numbers in memory of their own, which begins with a page.
+/// Numbers in separate memory that begins on a page.
 ///
 /// They are zero at first, and nobody has touched them: a page comes to be where it is first
 /// written, by the thread that writes it. An allocation that is aligned *and* zeroed would be written

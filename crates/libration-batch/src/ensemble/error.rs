@@ -48,21 +48,21 @@ pub enum EnsembleError {
     /// The record is shorter than the run.
     #[error("the record of a clock or a delay has {known} steps; the run requires {asked}")]
     Record {
-        /// Steps that there are.
+        /// The steps of the record.
         known: u64,
-        /// Steps that are asked for.
+        /// The steps of the run.
         asked: u64,
     },
     /// The number of substeps is 0.
     #[error("there are 0 substeps; there must be at least 1")]
     Substeps,
-    /// A clock, a delay or a controller cannot be so.
+    /// A parameter of a clock, a delay or a controller is invalid.
     #[error(transparent)]
     Control(#[from] ControlError),
     /// The system does not exist so.
     #[error(transparent)]
     System(CatalogError),
-    /// An observer is to look every 0 steps.
+    /// `every` is 0.
     #[error("`every` is 0; it must be at least 1 step")]
     Every,
 }

@@ -106,7 +106,7 @@ impl<L: Loop> Targeted for Vectorized<L> {
     }
 }
 
-/// An instruction set as a type, so that what is compiled for it can depend on it.
+/// An instruction set as a type, so that code compiled for it can depend on it.
 pub(crate) trait Target: Copy + Send + Sync {
     /// Vector registers that the architecture names.
     const REGISTERS: usize;

@@ -98,7 +98,7 @@ where
 /// The planes of positions and velocities of a block.
 type Block<T, const D: usize, const W: usize> = ([[T; W]; D], [[T; W]; D]);
 
-/// A block after so many steps: the one loop over lanes that there is.
+/// Advances a block by a number of steps: the only loop over lanes.
 #[inline(always)]
 fn advanced<T, M, A, C, Sys, const D: usize, const W: usize>(
     method: M,

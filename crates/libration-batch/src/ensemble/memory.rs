@@ -9,7 +9,7 @@ use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 pub struct InsufficientMemory {
     /// Bytes that are needed.
     pub needed: u128,
-    /// Bytes that can be had without swapping, if the system tells.
+    /// Bytes available without swapping, if the system reports them.
     pub available: Option<u64>,
 }
 
@@ -41,7 +41,7 @@ impl InsufficientMemory {
     }
 }
 
-/// With as many digits as it takes to see what is little.
+/// Gigabytes, with more digits for small numbers.
 fn gigabytes(bytes: u128) -> String {
     let gigabytes = bytes as f64 / 1e9;
     if gigabytes < 1.0 { format!("{gigabytes:.3}") } else { format!("{gigabytes:.1}") }

@@ -19,7 +19,7 @@ pub(super) struct Run<'a, T, M, A, C, Sys, O, const D: usize> {
     pub(super) dt: C,
     /// Steps taken before and after.
     pub(super) steps: Range<u64>,
-    /// Sees every so many steps, if anybody.
+    /// The observer and its interval in steps, if there is one.
     pub(super) watch: Option<(u64, &'a mut O)>,
     pub(super) system: core::marker::PhantomData<(T, Sys)>,
 }
@@ -52,7 +52,7 @@ const fn width<I: Target, T, const D: usize>(carries: bool, taken: usize) -> usi
     widest::<I, T>(if vectors > least { vectors } else { least }, &WIDTHS)
 }
 
-/// The widest of some blocks that has at most so many vectors.
+/// The widest block of at most `vectors` vectors.
 pub(super) const fn widest<I: Target, T>(vectors: usize, widths: &[usize]) -> usize {
     let lanes = vectors * I::BYTES / size_of::<T>();
     let mut i = widths.len() - 1;
@@ -169,7 +169,7 @@ where
     }
 }
 
-/// A look at a block, compiled for the instruction set.
+/// A call of the observer for a block, compiled for the instruction set.
 pub(super) struct Observe<'o, 'l, T, O, const D: usize> {
     pub(super) observer: &'o mut O,
     pub(super) lanes: Lanes<'l, T, D>,

@@ -28,7 +28,7 @@ pub struct Batch<T, const O: usize, const D: usize> {
 }
 
 impl<T: Float, const O: usize, const D: usize> Batch<T, O, D> {
-    /// Memory for so many.
+    /// Allocates a batch of `len` transitions.
     pub fn new(len: usize) -> Self {
         let zeros = || vec![T::zero(); len];
         Batch {

@@ -18,7 +18,7 @@ pub struct Capacity {
     pub priorities: bool,
 }
 
-/// Bytes before the fields, which begin at a page of their own.
+/// The number of bytes before the fields.
 pub(super) const PAGE: usize = 4096;
 
 impl Capacity {
@@ -43,12 +43,12 @@ impl Capacity {
         self.steps as u128 * self.environments as u128
     }
 
-    /// Rows: one more than there are steps, for what is seen after the last.
+    /// The number of rows: one more than steps, for the observation after the last.
     pub(super) fn rows(&self) -> usize {
         self.steps + 1
     }
 
-    /// All bytes, with `observation` and `action` numbers in a transition, of so many bytes each.
+    /// The number of bytes for `observation` and `action` values per transition, of `number` bytes each.
     ///
     /// # Errors
     /// [`ReplayError::Nothing`] if it holds nothing; [`ReplayError::Environment`] if no machine has so much memory.

@@ -30,7 +30,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
     ///
     /// # Errors
     /// [`ReplayError::Capacity`] if it has more steps, or more ends of episodes, than there is room for;
-    /// [`ReplayError::Environment`] if it is of another number of environments. Nothing has changed then.
+    /// [`ReplayError::Environment`] if it has another number of environments. The buffer is then unchanged.
     pub fn insert(
         &mut self,
         rollout: &Rollout<T, O, D>,
@@ -74,7 +74,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         Ok(())
     }
 
-    /// Environments that do not go on with what they saw last.
+    /// The environments whose next observation differs from the stored one.
     fn broken(&self, rollout: &Rollout<T, O, D>) -> Vec<usize> {
         let Marks { head, tail, .. } = self.marks;
         if head == tail {
@@ -95,7 +95,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         (0..n).filter(differs).filter(goes_on).collect()
     }
 
-    /// The first step that stays when there come so many steps and ends.
+    /// The first step that stays after an insertion of so many steps and ends.
     fn make_room(&self, steps: usize, ends: usize) -> Result<u64, ReplayError> {
         let Marks { head, tail, ends: there, .. } = self.marks;
         let capacity = self.capacity;
@@ -143,7 +143,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         steps.map(nones).sum()
     }
 
-    /// The last transitions of these environments keep what was seen after them.
+    /// Stores the final observations of the last transitions of these environments.
     fn part(&mut self, environments: &[usize]) {
         if environments.is_empty() {
             return;
@@ -242,7 +242,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
     }
 }
 
-/// Numbers that are worth a thread of their own to copy.
+/// The number of values per copying thread.
 const PIECE: usize = 1 << 16;
 
 /// Copies one into the other, on all threads where there is much.

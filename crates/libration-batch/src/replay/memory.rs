@@ -13,7 +13,7 @@ use crate::ensemble::{Buffer, Pages};
 
 /// The first eight bytes.
 const MAGIC: u64 = u64::from_le_bytes(*b"LIBRTNRB");
-/// Of what follows them.
+/// The version of the format.
 const VERSION: u64 = 1;
 /// Where the two records of how far it is begin: lines of the cache of their own.
 const RECORDS: [usize; 2] = [512, 1024];
@@ -75,7 +75,7 @@ fn check(words: &[u64]) -> u64 {
 }
 
 impl Memory {
-    /// Memory of this process, which nobody has touched.
+    /// Untouched anonymous memory.
     pub(super) fn anonymous<T: Float + Pod>(
         capacity: &Capacity,
         numbers: [usize; 2],
@@ -197,7 +197,7 @@ impl Memory {
         self.sequence = other.sequence;
     }
 
-    /// The map, for who keeps it in a file.
+    /// The memory map, for a caller that keeps it in a file.
     pub(super) fn map(&self) -> &MmapMut {
         &self.map
     }

@@ -69,7 +69,7 @@ pub struct Replay<T, const O: usize, const D: usize> {
 }
 
 impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
-    /// An empty one, in memory that nobody has touched.
+    /// An empty buffer in new memory.
     ///
     /// # Errors
     /// [`ReplayError::Nothing`] if the capacity is of nothing; [`ReplayError::Environment`] if there is not so much memory.
@@ -158,7 +158,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         self.memory.bytes()
     }
 
-    /// The memory, for who keeps it in a file.
+    /// The memory map, for a caller that keeps it in a file.
     pub fn map(&self) -> &MmapMut {
         self.memory.map()
     }

@@ -32,7 +32,7 @@ pub struct Sequences<T, const O: usize, const D: usize> {
 }
 
 impl<T: Float, const O: usize, const D: usize> Sequences<T, O, D> {
-    /// Memory for `len` of so many steps.
+    /// Allocates `len` sequences of `steps` steps.
     pub fn new(len: usize, steps: usize) -> Self {
         let all = len * steps;
         Sequences {

@@ -43,7 +43,7 @@ impl SumTree {
     /// Changes weights: which, and what they are from now on.
     ///
     /// # Panics
-    /// If there is no such weight, or one is below zero or not finite.
+    /// If an index is out of range, or a weight is negative or not finite.
     pub fn set(&mut self, changes: &[(usize, f64)]) {
         for &(at, weight) in changes {
             assert!(weight >= 0.0 && weight.is_finite(), "weight {at} is {weight}");

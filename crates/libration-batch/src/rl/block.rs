@@ -142,7 +142,7 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
         Episode { number: episode.number + 1, ..episode }
     }
 
-    /// Lane `l`, which is no environment, is at rest from the step `now` on.
+    /// Puts lane `l`, which is not an environment, at rest from step `now` on.
     pub(super) fn rest(&mut self, l: usize, now: u64)
     where
         T: Float,
@@ -190,7 +190,7 @@ impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {
         self.oldest = self.began.iter().copied().fold(u64::MAX, u64::min);
     }
 
-    /// Lane `l` is as it was. What the clocks of all remember goes on; it is begun anew with the next episode.
+    /// Restores the state of lane `l`. The memory of its clock advances; the next episode resets it.
     pub(super) fn hold(&mut self, as_it_was: &Self, l: usize) {
         let State { q, v } = as_it_was.state(l);
         put(&mut self.q, l, q);

@@ -17,7 +17,7 @@ where
     T: Float + Pod,
     E: World<T, O, D>,
 {
-    /// Writes what is seen now, before the next action: `[n, i]`.
+    /// Writes the observations before the next action: `[n, i]`.
     ///
     /// # Errors
     /// [`EnvironmentError::Shape`] if that is not the length of `to`.
@@ -61,7 +61,7 @@ where
     E: World<T, O, D>,
     P: Policy<T, O, D>,
 {
-    /// Writes what is seen of a block before an action, side by side; the words of its sensors are still to be taken.
+    /// Writes the observations of a block before an action, interleaved, without advancing the words of its sensors.
     #[inline(always)]
     pub(super) fn write_observations(
         &self,

@@ -115,7 +115,7 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
     /// Whether step `t` of environment `n` is a transition: not where it stood still, or began anew upon an end.
     ///
     /// # Panics
-    /// If there is no such step or environment.
+    /// If `t` or `n` is out of range.
     pub fn is_transition(&self, t: usize, n: usize) -> bool {
         let Plan { horizon, environments, .. } = self.plan;
         assert!(t < horizon && n < environments, "step {t} of environment {n}");
@@ -153,7 +153,7 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
     /// The observation of environment `n` in step `t`.
     ///
     /// # Panics
-    /// If there is no such step or environment.
+    /// If `t` or `n` is out of range.
     pub fn seen(&self, t: usize, n: usize) -> [T; O] {
         self.of(&self.observation, t, n)
     }
@@ -161,7 +161,7 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
     /// The action of environment `n` in step `t`.
     ///
     /// # Panics
-    /// If there is no such step or environment.
+    /// If `t` or `n` is out of range.
     pub fn done(&self, t: usize, n: usize) -> [T; D] {
         self.of(&self.action, t, n)
     }

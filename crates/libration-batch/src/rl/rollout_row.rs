@@ -22,7 +22,7 @@ pub(super) struct RolloutRow<'a, T, const O: usize, const D: usize> {
     pub(super) log_probability: &'a mut [T],
 }
 
-/// Room for what is interleaved. A value of the step's own would be taken apart, and its vectors with it.
+/// Buffers for interleaved numbers. A local variable would be split into scalars, and its vectors lost.
 #[repr(C, align(64))]
 pub(super) struct Records<T, const O: usize, const D: usize> {
     seen: [[T; O]; LANES],

@@ -55,7 +55,7 @@ where
     /// Fills a range of rows of `rollout`; the rows before must be full. Filling row by row gives the same bits.
     ///
     /// # Errors
-    /// As [`rollout`](Self::rollout), and [`EnvironmentError::Shape`] if there are not so many rows.
+    /// As for [`rollout`](Self::rollout), and [`EnvironmentError::Shape`] if the range exceeds the rows.
     pub fn fill<P: Policy<T, O, D>>(
         &mut self,
         policy: P,
@@ -97,7 +97,7 @@ where
     /// Takes one action of each environment and writes the results. Returns the ends of episodes.
     ///
     /// # Errors
-    /// As [`rollout`](Self::rollout), and [`EnvironmentError::Shape`] if the room is for more or fewer.
+    /// As for [`rollout`](Self::rollout), and [`EnvironmentError::Shape`] if a buffer has another length.
     pub fn act<P: Policy<T, O, D>>(
         &mut self,
         policy: P,
@@ -146,7 +146,7 @@ where
         Ok(())
     }
 
-    /// Goes through all steps of a slice, on so many threads, and so many rows after the first of the rollout.
+    /// Runs all steps of a slice on `threads` threads, from row `row` of the rollout on.
     fn advance<'a, P: Policy<T, O, D>>(
         &'a mut self,
         policy: P,

@@ -17,7 +17,7 @@ pub(super) struct RolloutSlice<'a, T, const O: usize, const D: usize> {
     pub(super) action: [ArrayViewMut2<'a, T>; D],
     pub(super) reward: ArrayViewMut2<'a, T>,
     pub(super) terminated: ArrayViewMut2<'a, u8>,
-    /// Without columns where nobody asked for it, as the next.
+    /// Without columns if the field is absent.
     pub(super) truncated: ArrayViewMut2<'a, u8>,
     pub(super) log_probability: ArrayViewMut2<'a, T>,
     /// The observations after the last step, interleaved in one row.

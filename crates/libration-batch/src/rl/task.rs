@@ -44,7 +44,7 @@ pub struct Regulate {
     pub bound: f64,
 }
 
-/// The sum of so many terms, of which there is at least one.
+/// The sum of `D` terms, at least one.
 #[inline(always)]
 fn sum<T: Float, const D: usize>(term: impl Fn(usize) -> T) -> T {
     let mut all = term(0);
@@ -176,7 +176,7 @@ impl<T: Float + Elementary> Reference<T> for Sine {
 /// `−(p·(q − q₀)² + r·(v − v₀)² + e·u²)`, and the episode is over beyond a distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Track<R> {
-    /// The reference, known without delay; a [`Sensor`](super::Sensor) measures it like what else is seen.
+    /// The reference, observed without delay; a [`Sensor`](super::Sensor) measures it like all observations.
     pub reference: R,
     /// Prices of distances from it, and the distance from it beyond which all is lost.
     pub regulate: Regulate,

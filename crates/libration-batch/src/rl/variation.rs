@@ -8,10 +8,10 @@ use libration_core::random::Purpose;
 use super::Distribution;
 use super::start::Episode;
 
-/// EpisodeStreams numbers at the beginning of every episode and makes the system and the task of them: domain randomisation.
+/// Domain randomisation: draws numbers at the beginning of every episode and applies them to the system and the task.
 ///
-/// The rate of a clock is drawn by a [`Clock`](libration_core::control::Clock), a latency by [`Delays`](super::Delays), and how bad clock and
-/// sensor are by [`ErrorScale`](super::ErrorScale).
+/// A [`Clock`](libration_core::control::Clock) draws the rate of a clock, [`Delays`](super::Delays) the latencies, and
+/// [`ErrorScale`](super::ErrorScale) the factors of clock and sensor errors.
 pub trait Variation<T: Float, Sys, K>: Copy + Send + Sync {
     /// The random parameters of an environment for the episode.
     type Numbers: Memory<T>;

@@ -88,7 +88,7 @@ impl Entry {
         CatalogError::Dimension { system: self.name, dimension, allowed: self.dimensions.clone() }
     }
 
-    /// Checks each value that is given, by itself.
+    /// Checks each given value separately.
     pub(super) fn resolve<'a>(
         &'static self,
         given: &'a [(impl AsRef<str>, f64)],

@@ -82,7 +82,7 @@ pub enum CatalogError {
     Dimension {
         /// The system.
         system: &'static str,
-        /// The dimension that was asked for.
+        /// The requested dimension.
         dimension: usize,
         /// The dimensions in which it exists.
         allowed: RangeInclusive<usize>,

@@ -1,6 +1,6 @@
 //! The latency of a command.
 
-/// A latency of the command: so many whole steps, and a part of another.
+/// A latency of the command: whole steps and a fraction of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Latency {
     steps: u64,

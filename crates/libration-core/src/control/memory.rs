@@ -24,7 +24,7 @@ pub trait Memory<T: Copy>: Copy + Send + Sync {
     #[doc(hidden)]
     fn store<const W: usize>(lanes: &Self::Lanes<W>, write: &mut impl FnMut(usize, &[T; W]));
 
-    /// A lane by itself.
+    /// The memory as a single lane.
     #[doc(hidden)]
     fn alone(self) -> Self::Lanes<1>;
 

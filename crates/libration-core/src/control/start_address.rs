@@ -13,7 +13,7 @@ pub struct StartAddress {
     part: u64,
 }
 
-/// Parts that can be told apart: of pairs of pairs, six deep.
+/// The number of distinct parts: pairs of pairs, six levels deep.
 const PARTS: u64 = 128;
 
 impl StartAddress {

@@ -10,7 +10,7 @@ use crate::{Model, Scalar, State, System};
 /// move without error over whole steps and over parts of them. What is left is rounding, of some units in the last place
 /// for each part; steps of other lengths, as jitter makes them, may be five times as long as those it was made for.
 ///
-/// Of a system that is not linear this is no method of any order.
+/// For a system that is not linear it has no order.
 ///
 /// C. Moler, C. Van Loan: Nineteen Dubious Ways to Compute the Exponential of a Matrix, Twenty-Five Years Later, SIAM
 /// Review 45, 2003, methods 1 and 3.

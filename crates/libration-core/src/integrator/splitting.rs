@@ -6,7 +6,7 @@ use crate::{Scalar, State, System};
 
 /// A splitting method: in each of `N` stages a kick, then a drift, each for its fraction of `dt`.
 ///
-/// `OrderCertificate` tells the order of any weights.
+/// `OrderCertificate` computes the order for any weights.
 #[derive(Clone, Copy, Debug)]
 pub struct Splitting<const N: usize> {
     /// Fractions of `dt` for which the force acts; they sum to one.

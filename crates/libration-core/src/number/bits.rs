@@ -8,7 +8,7 @@ pub(super) fn decode(c: f64) -> (u64, i32) {
 }
 
 /// `±top · 2^exponent` rounded to nearest, ties to even, where `top` has its highest bit set, and
-/// `sticky` tells that the value lies a little further from zero.
+/// `sticky`: the value is slightly further from zero.
 pub(super) fn nearest_f64(negative: bool, top: u64, sticky: bool, exponent: i64) -> f64 {
     let leading = exponent.saturating_add(63);
     // Bits that an f64 of this size has: 53, fewer among the subnormals.

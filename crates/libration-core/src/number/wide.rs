@@ -94,7 +94,7 @@ impl Wide {
         self.significand.is_zero() && !self.is_nan()
     }
 
-    /// Whether there is no value here.
+    /// Whether this is NaN.
     pub fn is_nan(self) -> bool {
         self.significand.is_zero() && self.exponent != 0
     }

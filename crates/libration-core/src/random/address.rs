@@ -26,7 +26,7 @@ pub enum Purpose {
     Variation,
     /// The latencies of an episode.
     Delay,
-    /// The noise of what is observed.
+    /// The noise of observations.
     Observation,
     /// An action.
     Action,

@@ -47,7 +47,7 @@ const LOG: [f32; 8] = [
 /// `sin(2πx)/x` as a polynomial in `x²` for `|x| ≤ ¼`, in the same way; its error is below 7·10⁻⁹.
 const SINE: [f32; 5] = [6.283_185_5, -41.341_682, 81.602_48, -76.581_28, 39.760_723];
 
-/// The logarithm of what is above zero, and not subnormal.
+/// The logarithm of a positive number that is not subnormal.
 #[inline(always)]
 fn log(x: f32) -> f32 {
     const ROOT_HALF: u32 = 0x3F35_04F3;

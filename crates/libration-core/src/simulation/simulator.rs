@@ -13,7 +13,7 @@ pub enum SimulationError {
     /// The time step is not a positive finite number of its float type.
     #[error("dt = {dt} s: expected a positive finite time step in {float}")]
     TimeStep {
-        /// The step that was asked for, in seconds.
+        /// The requested time step, in seconds.
         dt: f64,
         /// The float type it was rounded to.
         float: &'static str,

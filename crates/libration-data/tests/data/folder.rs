@@ -1,4 +1,4 @@
-//! Data sets in folders, and what can happen to them.
+//! Folders of data sets: interruptions, damage and foreign files.
 
 use std::fs;
 use std::path::Path;

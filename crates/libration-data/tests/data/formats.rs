@@ -1,4 +1,4 @@
-//! Files that others read.
+//! Exchange formats.
 
 use half::f16;
 use libration_data::{Column, Table, Values, write_npy, write_parquet};

@@ -1,6 +1,6 @@
-//! Processes that are killed while they insert into a replay buffer in a file.
+//! Replay files of processes that are killed during an insertion.
 //!
-//! `LIBRATION_KILLS` says how often; `cargo xtask torture` asks for 50.
+//! `LIBRATION_KILLS` is the number of kills; `cargo xtask torture` sets 50.
 
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Write};

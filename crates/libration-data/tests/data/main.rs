@@ -1,4 +1,4 @@
-//! Numbers in files, and what can happen to them.
+//! Data files.
 
 #![allow(clippy::unwrap_used)]
 

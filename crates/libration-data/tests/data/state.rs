@@ -1,4 +1,4 @@
-//! States in files.
+//! State files.
 
 use std::fs;
 

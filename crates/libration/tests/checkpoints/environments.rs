@@ -1,4 +1,4 @@
-//! Environments and replay buffers.
+//! Checkpoints of environments and replay buffers.
 
 use libration::State;
 use libration::checkpoint::{Checkpoint, CheckpointError};

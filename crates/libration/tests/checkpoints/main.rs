@@ -1,4 +1,4 @@
-//! What is left and taken up again goes on as if nothing had been.
+//! A restored state continues with the same bits.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,4 +1,4 @@
-//! Ensembles and loops.
+//! Checkpoints of ensembles and loops.
 
 use libration::State;
 use libration::checkpoint::{Checkpoint, CheckpointError};

@@ -1,4 +1,4 @@
-//! What is derived from the shipped step, against a 60-digit oracle.
+//! The analysis of the shipped steps, against a 60-digit oracle.
 //!
 //! `../reference/oracle.json` was computed with mpmath from textbook matrices; its time steps are the
 //! decimals written, ours the nearest doubles, which differ by at most a part in 10¹⁶.

@@ -1,4 +1,4 @@
-//! Degrees of freedom that do not interact are computed as if each were alone.
+//! Uncoupled degrees of freedom have the bits of separate systems.
 
 use half::{bf16, f16};
 use libration::system::Oscillator;

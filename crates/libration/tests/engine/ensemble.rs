@@ -1,4 +1,4 @@
-//! Every lane of an ensemble is the lone scalar trajectory, bit for bit.
+//! Every lane of an ensemble equals the scalar trajectory, bit for bit.
 
 use libration::ensemble::{
     All, BatchFloat, Ensemble, EnsembleError, Execution, InstructionSet, Lanes, Observer,

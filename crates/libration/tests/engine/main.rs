@@ -1,5 +1,5 @@
-//! Numbers, steps, systems, ensembles and what theory says of them, in one program: each by itself would be compiled against all
-//! of the engine again.
+//! Numbers, steps, systems, ensembles and their theory in one program: separate programs would each be linked against all
+//! of the engine.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,4 +1,4 @@
-//! What the observers of an ensemble tell is what lone trajectories tell, wherever it runs.
+//! Observers of an ensemble agree with those of single trajectories, for every execution.
 
 use libration::ensemble::{
     All, Copies, Drift, Execution, InstructionSet, MeanSquareError, Moments, PerTrajectory,

@@ -1,4 +1,4 @@
-//! The loop: its clock, its count, its observers, and what it does where floats end.
+//! The simulator: its clock, its count, its observers and overflow.
 
 use libration::integrator::{ExplicitEuler, Leapfrog, Rk4, VelocityVerlet};
 use libration::simulation::{EnergyDrift, Every, Sample, SimulationError, Simulator};

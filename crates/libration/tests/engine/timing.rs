@@ -1,4 +1,4 @@
-//! What timing does to a loop, beside values computed elsewhere with 30 digits.
+//! Timing of a loop, against independent values of 30 digits.
 
 use libration::State;
 use libration::analysis::Plant;

@@ -1,4 +1,4 @@
-//! What timing does to loops on the edge, with huge gains, and over long times.
+//! Timing of marginal loops, with huge gains, and over long times.
 
 use libration::State;
 use libration::analysis::{Imperfections, Plant};

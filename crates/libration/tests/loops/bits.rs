@@ -1,4 +1,4 @@
-//! What the bits of a trajectory depend on, and what not.
+//! The bits of a trajectory do not depend on the execution.
 
 use libration::checkpoint::Checkpoint;
 use libration::control::clock::{

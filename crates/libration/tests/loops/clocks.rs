@@ -1,4 +1,4 @@
-//! What clocks do.
+//! Statistics of clocks.
 
 use libration::State;
 use libration::control::clock::{

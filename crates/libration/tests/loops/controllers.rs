@@ -1,4 +1,4 @@
-//! What controllers command.
+//! Commands of controllers.
 
 use libration::State;
 use libration::control::controller::{Pid, PidGains, Saturated, StateFeedback};

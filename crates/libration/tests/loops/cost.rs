@@ -1,4 +1,4 @@
-//! What simulated loops cost under noise, beside the Lyapunov equation.
+//! The cost of simulated loops under noise agrees with the Lyapunov equation.
 
 use libration::analysis::{Imperfections, LinearController, ObserverNoise, Plant};
 use libration::control::clock::{Jittered, Rates};

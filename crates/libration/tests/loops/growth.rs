@@ -1,4 +1,4 @@
-//! How simulated loops grow, beside their spectral radii.
+//! The growth of simulated loops agrees with their spectral radii.
 
 use libration::analysis::{Imperfections, Plant};
 use libration::control::controller::StateFeedback;

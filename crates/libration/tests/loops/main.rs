@@ -1,4 +1,4 @@
-//! Loops that are simulated, beside what theory says of them, and beside a plain loop of one trajectory.
+//! Simulated loops against theory and against a plain loop of one trajectory.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,4 +1,4 @@
-//! Means over many loops, beside theory: each within three standard errors.
+//! Means over many loops agree with theory within three standard errors.
 
 use libration::analysis::Plant;
 use libration::control::clock::{Jittered, Skewed};

@@ -1,4 +1,4 @@
-//! Noise that accelerates what moves.
+//! Process noise.
 
 use libration::State;
 use libration::control::WhiteNoise;

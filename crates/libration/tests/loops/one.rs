@@ -1,4 +1,4 @@
-//! A loop of one trajectory, written as plainly as can be: what the kernels are compared with.
+//! The reference for the kernels: a plain loop of one trajectory.
 
 use std::collections::VecDeque;
 

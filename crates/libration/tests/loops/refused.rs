@@ -1,4 +1,4 @@
-//! What is refused, in words that name it.
+//! Invalid values are rejected with the parameter's name.
 
 use libration::State;
 use libration::control::clock::{

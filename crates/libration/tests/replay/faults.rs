@@ -1,4 +1,4 @@
-//! What a replay buffer refuses, and what it does not keep.
+//! Errors of a replay buffer, and transitions that it does not store.
 
 use libration::ensemble::Execution;
 use libration::replay::{Batch, Capacity, Draw, Lookahead, Replay, Sequences};

@@ -1,4 +1,4 @@
-//! What is left in memory when a process ends.
+//! The memory of a replay buffer after its process ended.
 
 use libration::ensemble::Execution;
 use libration::random::philox4x32;

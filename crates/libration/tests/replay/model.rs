@@ -1,4 +1,4 @@
-//! A replay buffer beside a naive one, over random operations.
+//! A replay buffer against a naive one, over random operations.
 
 use libration::ensemble::Execution;
 use libration::random::philox4x32;

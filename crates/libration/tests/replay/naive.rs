@@ -1,4 +1,4 @@
-//! A replay buffer as one would write it first: a list of steps with everything in each.
+//! A naive replay buffer: a list of complete transitions.
 
 use std::collections::VecDeque;
 

@@ -1,4 +1,4 @@
-//! How often what is drawn.
+//! Sampling frequencies.
 
 use libration::ensemble::Execution;
 use libration::replay::{Batch, Capacity, Draw, Lookahead, Sequences};

@@ -1,4 +1,4 @@
-//! Trees of sums.
+//! Sum trees.
 
 use libration::random::philox4x32;
 use libration::replay::SumTree;

@@ -1,4 +1,4 @@
-//! One environment by itself, in scalars, as the documentation says it: all its past is kept, and nothing lies in a ring.
+//! The reference for environments: one environment in scalars that stores all its past.
 
 use libration::control::{Clock, StartAddress};
 use libration::random::{Address, EPOCH, Purpose, Streams};

@@ -1,4 +1,4 @@
-//! What an environment does, it does wherever it runs.
+//! The bits of an environment do not depend on the execution.
 
 use std::collections::HashMap;
 use std::ops::Range;

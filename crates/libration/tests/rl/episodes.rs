@@ -1,4 +1,4 @@
-//! Episodes begin, end, and leave something behind.
+//! Beginnings and ends of episodes.
 
 use libration::State;
 use libration::ensemble::{All, Execution};

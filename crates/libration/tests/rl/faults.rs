@@ -1,4 +1,4 @@
-//! What cannot be is refused in words, before anything happens.
+//! Invalid values are rejected with the parameter's name, before any step.
 
 use libration::State;
 use libration::control::clock::{Gaussian, Jittered, Recorded, Uniform};

@@ -1,4 +1,4 @@
-//! The bits of a run, which the tests of the Python package find as well.
+//! Golden bits of a run, shared with the tests of the Python package.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Who acts, and with which words.
+//! Policies and their random words.
 
 use libration::ensemble::Execution;
 use libration::rl::policy::{

@@ -1,4 +1,4 @@
-//! What an environment draws belongs to its episode.
+//! Random numbers of an environment depend on its episode.
 
 use libration::control::clock::Rates;
 use libration::ensemble::Execution;

@@ -1,4 +1,4 @@
-//! One step at a time is the same as many.
+//! Single steps have the bits of a rollout.
 
 use libration::ensemble::Execution;
 use libration::rl::policy::ActionSequence;

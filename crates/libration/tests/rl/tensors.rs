@@ -1,4 +1,4 @@
-//! Rollouts as memory.
+//! The memory of rollouts.
 
 use bytemuck::Pod;
 use libration::ensemble::{All, Execution, PerTrajectory};

@@ -1,4 +1,4 @@
-//! Every float type, two degrees of freedom, and every way to lie and to be written.
+//! Every float type, two degrees of freedom, every layout and every kind of stores.
 
 use bytemuck::Pod;
 use half::f16;

@@ -1,4 +1,4 @@
-//! The energy functions, and what the exact motion does to the energy.
+//! The energy functions, and the energy of the exact motion.
 
 use std::iter::zip;
 

@@ -20,7 +20,7 @@ pub(super) struct Run<'a, 's, T, A, M, K, C, L, N, Sys, O, const D: usize> {
     pub(super) share: Share<'a, T, D>,
     pub(super) rows: Rows<'a, T>,
     pub(super) steps: Range<u64>,
-    /// Sees every so many steps, if anybody.
+    /// The observer and its interval in steps, if there is one.
     pub(super) watch: Option<(u64, &'a mut O)>,
     pub(super) system: PhantomData<Sys>,
 }

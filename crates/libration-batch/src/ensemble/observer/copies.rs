@@ -6,9 +6,9 @@ use libration_core::State;
 
 use super::{Lanes, Observer};
 
-/// Keeps the states of trajectories at every step that it sees.
+/// Keeps the states of trajectories at every observed step.
 ///
-/// As many states as steps times trajectories are held: to look at a long run, look seldom.
+/// It stores as many states as observed steps times trajectories: observe long runs rarely.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Copies<T, const D: usize> {
     trajectories: Range<usize>,
@@ -29,7 +29,7 @@ impl<T, const D: usize> Copies<T, D> {
         self.trajectories.clone()
     }
 
-    /// The numbers of the steps that were seen, rising.
+    /// The numbers of the observed steps, in increasing order.
     pub fn steps(&self) -> &[u64] {
         &self.steps
     }

@@ -8,8 +8,8 @@ use libration_core::{Float, Hamiltonian};
 use super::super::Assign;
 use super::{Lanes, Observer};
 
-/// Keeps, for every trajectory, the largest change `|E − E₀|` of its energy at the steps that it sees,
-/// where `E₀` is its energy when it is first seen.
+/// Keeps, for every trajectory, the largest change `|E − E₀|` of its energy at the observed steps,
+/// where `E₀` is its energy at the first observation.
 #[derive(Clone, Debug)]
 pub struct Drift<T, Sys, A> {
     first: usize,

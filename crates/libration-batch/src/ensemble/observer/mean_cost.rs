@@ -7,7 +7,7 @@ use libration_core::control::LqrWeights;
 
 use super::{Lanes, Observer};
 
-/// Keeps the mean of `position·q² + velocity·v²` over the steps that it sees, of each trajectory by itself.
+/// Keeps the mean of `position·q² + velocity·v²` over the observed steps, per trajectory.
 #[derive(Clone, Debug)]
 pub struct MeanCost<const D: usize> {
     weights: [f64; 2],
@@ -27,7 +27,7 @@ impl<const D: usize> MeanCost<D> {
         }
     }
 
-    /// The mean of each trajectory, in their order; NaN where no step was seen.
+    /// The mean of each trajectory, in their order; NaN without observed steps.
     pub fn means(&self) -> impl Iterator<Item = f64> + '_ {
         self.sums.iter().map(|&(sum, count)| sum / count as f64)
     }

@@ -1,4 +1,4 @@
-//! What is seen of an ensemble while it runs.
+//! Observers of an ensemble.
 //!
 //! [`Copies`] of states, the largest [`Drift`] of the energy, the [`MeanSquareError`] against a known
 //! solution, the [`MeanCost`] and [`Moments`] over the trajectories come with the engine; any [`Observer`] may be a
@@ -33,7 +33,7 @@ pub struct Lanes<'a, T, const D: usize> {
 
 /// Sees trajectories of an ensemble at chosen steps, while they are in the cache.
 pub trait Observer<T, const D: usize>: Send {
-    /// Whether it looks at all: kernels for those that do not are made for speed alone.
+    /// Whether it observes anything. Kernels without observation are compiled for speed.
     #[doc(hidden)]
     const WATCHES: bool = true;
 

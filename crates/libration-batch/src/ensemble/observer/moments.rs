@@ -89,7 +89,7 @@ impl<const D: usize> Moments<D> {
         all
     }
 
-    /// Step by step what was seen.
+    /// The summary of each observed step.
     pub fn summaries(&self) -> impl Iterator<Item = Summary<D>> + '_ {
         self.steps.iter().map(|(step, q, v)| Summary {
             step: *step,

@@ -17,13 +17,13 @@ pub struct Recorded<'a> {
 /// Error of a record of time stamps.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum RecordedError {
-    /// There is no step between them.
+    /// There are fewer than two time stamps.
     #[error("the number of time stamps is {count}; it must be at least 2")]
     TooFew {
         /// The number of time stamps.
         count: usize,
     },
-    /// A line of a file is no time stamp.
+    /// A line of a file is not a time stamp.
     #[error(
         "line {line} is `{text}`; it must begin with a number, the time in seconds or nanoseconds"
     )]
@@ -33,7 +33,7 @@ pub enum RecordedError {
         /// The text of the line.
         text: String,
     },
-    /// One is infinite or not a number.
+    /// A time stamp is not finite.
     #[error("time stamp {} is {value}; it must be a finite number", index + 1)]
     NotFinite {
         /// The index, from 0; the message counts from 1.
@@ -41,7 +41,7 @@ pub enum RecordedError {
         /// The value.
         value: f64,
     },
-    /// A clock does not go back.
+    /// A time stamp is before the preceding one.
     #[error("time stamp {} is {after} s; it must be at least the {before} s of the preceding one, counted from the first", index + 1)]
     Backwards {
         /// The index, from 0; the message counts from 1.
@@ -51,7 +51,7 @@ pub enum RecordedError {
         /// The time stamp, in seconds.
         after: f64,
     },
-    /// Something is needed that is above zero.
+    /// The mean step is not above zero.
     #[error("the mean step is {mean} s; it must be a finite number above 0")]
     NoTime {
         /// The mean step in seconds.
@@ -66,7 +66,7 @@ impl<'a> Recorded<'a> {
     /// that begin with `#` are passed over.
     ///
     /// # Errors
-    /// The first line that is no time stamp.
+    /// The first line that is not a time stamp.
     pub fn stamps_in(text: &str) -> Result<Vec<f64>, RecordedError> {
         super::time_stamps::read(text)
     }

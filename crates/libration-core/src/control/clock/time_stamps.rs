@@ -67,7 +67,7 @@ fn guessed(numbers: &[Number], since: &[f64]) -> f64 {
 /// A number as it is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Number {
-    /// Of digits and a point: so many times 10⁻¹⁸.
+    /// Digits and a point, in units of 10⁻¹⁸.
     Decimal { parts: i128, whole: bool },
     /// Any other.
     Float(f64),

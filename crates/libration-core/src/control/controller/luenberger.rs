@@ -43,7 +43,7 @@ impl<T: Float, const D: usize> Controller<T, D> for Luenberger<D> {
         self.target.into_iter().try_for_each(|x| finite::<T>("the target", x))
     }
 
-    /// The position is seen, and the velocity is not.
+    /// The controller measures the position only.
     fn start(&self, state: &State<T, D>) -> Self::Memory {
         let target = self.target.map(T::from_f64);
         (core::array::from_fn(|i| state.q[i] - target[i]), [T::zero(); D])

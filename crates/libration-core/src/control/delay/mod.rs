@@ -57,12 +57,12 @@ pub trait Delay<T: Float>: Copy + Send + Sync {
         0
     }
 
-    /// The number of steps of which it knows, if it does not know of all.
+    /// The number of steps of the record; none if there is no limit.
     fn steps(&self) -> Option<u64> {
         None
     }
 
-    /// The number of trajectories of which it knows, if it does not know of all.
+    /// The number of listed trajectories; none if there is no limit.
     fn trajectories(&self) -> Option<usize> {
         None
     }
@@ -79,7 +79,7 @@ pub trait Delay<T: Float>: Copy + Send + Sync {
 /// The arrival of a command in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival<T> {
-    /// Whether anything does; if not, the command that acted goes on.
+    /// Whether a command arrives; if not, the acting one stays.
     pub fresh: bool,
     /// The age in steps; a command older than the longest latency never arrives.
     pub age: u32,

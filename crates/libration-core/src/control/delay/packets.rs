@@ -38,7 +38,7 @@ pub enum PacketsError {
     /// There are none, or too many.
     #[error("{0} probabilities; there must be 1 to {PLACES}, for latencies of 0 steps and on")]
     Count(usize),
-    /// A probability is none.
+    /// A probability is invalid.
     #[error("the probability of a latency of {steps} steps is {value}; it must be from 0 to 1")]
     Probability {
         /// The latency in steps.
@@ -46,16 +46,16 @@ pub enum PacketsError {
         /// The probability.
         value: f64,
     },
-    /// It is none, or there are whole steps in it.
+    /// The fraction of a step is not at least 0 and below 1.
     #[error("the part of a step is {0}; it must be at least 0 and below 1")]
     Part(f64),
-    /// More than all.
+    /// The sum exceeds 1.
     #[error("the probabilities sum to {0}; it must be at most 1, and the rest is lost")]
     Sum(f64),
 }
 
 impl Packets {
-    /// Packets that travel for `i` steps with probability `probabilities[i]`; what is missing to 1 is lost.
+    /// Packets with a latency of `i` steps with probability `probabilities[i]`; the rest to 1 is lost.
     ///
     /// # Errors
     /// A [`PacketsError`].

@@ -10,7 +10,7 @@ type Time = u128;
 /// The fraction of a [`Time`].
 const FRACTION: u32 = 64;
 
-/// Samples at equal distances, the latency of what is observed, and the latency of the command.
+/// A schedule: the sample time, the latency of observations and the latency of commands.
 ///
 /// Command `k` is computed at the time `k·period`, from the state that was `observation` earlier, and acts from `action`
 /// later on until the next one does. Steps split where something happens within them. A command whose observation
@@ -57,13 +57,13 @@ pub enum Event {
 }
 
 impl Schedule {
-    /// A look at the beginning of every step, and a command that acts at once.
+    /// A sample at the beginning of every step, whose command acts at once.
     pub const EVERY_STEP: Schedule = Schedule { period: 1 << FRACTION, observation: 0, action: 0 };
 
     /// A sample every `period` steps, with both latencies in steps.
     ///
     /// # Errors
-    /// [`ScheduleError`] if one of them is no number, negative or too large.
+    /// [`ScheduleError`] if a value is not a number, negative or too large.
     pub fn new(period: f64, observation: f64, action: f64) -> Result<Self, ScheduleError> {
         let most = Latency::MOST_STEPS as f64;
         if !(1.0 / 64.0..=most).contains(&period) {
@@ -78,7 +78,7 @@ impl Schedule {
         Ok(Schedule { period, observation, action })
     }
 
-    /// A look at the beginning of every step, with a command that is late.
+    /// A sample at the beginning of every step, whose command has a latency.
     pub fn late(latency: Latency) -> Self {
         Schedule { action: time(latency.steps()), ..Schedule::EVERY_STEP }
     }

@@ -1,4 +1,4 @@
-//! The functions of a 1024-bit number, by series of its own arithmetic.
+//! Elementary functions of 1024-bit numbers, by series.
 
 use std::sync::OnceLock;
 
