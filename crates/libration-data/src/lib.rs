@@ -20,7 +20,7 @@ mod replay_file;
 mod state_file;
 mod table;
 mod thread_work;
-mod verify;
+mod verification;
 
 pub use bounded_read::{read_bounded, read_text_bounded};
 pub use checksum::checksum;
@@ -35,4 +35,4 @@ pub use replay_file::ReplayFile;
 pub use state_file::{load_state, save_state};
 pub use table::{Column, Table, Values};
 pub use thread_work::run_on_threads;
-pub use verify::{Flaw, find_unlisted, verify};
+pub use verification::{Flaw, find_unlisted, verify};

@@ -181,7 +181,7 @@ impl Memory {
                 room(&array).copy_from_slice(numbers);
                 Ok(array.into_any())
             };
-            Ok([array(found.advantage())?, array(found.returned())?])
+            Ok([array(found.advantage())?, array(found.returns())?])
         }
         let discounts = Discounts { rewards: gamma, errors: lambda_ };
         with_tensors!(&*self.kept(py)?, tensors => estimates(py, &**tensors, discounts, [next, last]))

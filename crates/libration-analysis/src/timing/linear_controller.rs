@@ -43,7 +43,9 @@ impl LinearController {
             let seen = State { q: [numbers[0]], v: [numbers[1]] };
             let [command] = controller.command(&mut memory, &seen, period);
             let mut after = vec![command];
-            K::Memory::store(&memory.alone(), &mut |_, &[value]: &[f64; 1]| after.push(value));
+            K::Memory::store(&memory.single_lane(), &mut |_, &[value]: &[f64; 1]| {
+                after.push(value)
+            });
             after
         };
         let rest = run(&vec![0.0; size]);

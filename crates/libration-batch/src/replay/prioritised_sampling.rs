@@ -4,7 +4,7 @@
 
 use bytemuck::Pod;
 use libration_core::Float;
-use libration_core::control::error::{ensure, probability};
+use libration_core::control::error::{ensure, ensure_probability};
 
 use super::memory::Marks;
 use super::power::power;
@@ -31,7 +31,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         execution: &Execution,
     ) -> Result<(), ReplayError> {
         lookahead.check()?;
-        probability("correction of priorities", correction)?;
+        ensure_probability("correction of priorities", correction)?;
         let len = batch.len()?;
         let sums = self.sums.as_ref().ok_or(ReplayError::Priorities)?;
         let total = sums.total();

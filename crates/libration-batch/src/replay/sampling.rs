@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use bytemuck::Pod;
 use libration_core::Float;
-use libration_core::control::error::probability;
+use libration_core::control::error::ensure_probability;
 
 use super::memory::Marks;
 use super::replay_buffer::{CUT, END, NONE, OVER};
@@ -32,7 +32,7 @@ impl Default for Lookahead {
 
 impl Lookahead {
     pub(super) fn check(&self) -> Result<(), ReplayError> {
-        probability("discount", self.discount)?;
+        ensure_probability("discount", self.discount)?;
         if self.steps == 0 {
             Err(ReplayError::Nothing { name: "steps to look ahead" })
         } else {

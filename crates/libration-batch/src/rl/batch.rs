@@ -6,7 +6,7 @@ use libration_core::control::error::ensure;
 use libration_core::random::Purpose;
 use libration_core::{Float, State};
 
-use super::block::{BlockOf, OVER};
+use super::block::{BlockOf, TERMINATED};
 use super::block_size::LANES;
 use super::episode_streams::EpisodeStreams;
 use super::error::NOTHING_DRAWN;
@@ -209,7 +209,7 @@ where
             return self.reset(which);
         }
         for n in (0..self.len).filter(|&n| which[n]) {
-            self.blocks[n / LANES].ended[n % LANES] |= OVER;
+            self.blocks[n / LANES].ended[n % LANES] |= TERMINATED;
         }
         Ok(())
     }

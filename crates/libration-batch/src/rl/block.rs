@@ -38,7 +38,7 @@ pub(super) struct Block<T, C, V, const D: usize> {
     pub(super) seed: [u64; LANES],
     /// The number of the environment in the batch of that seed.
     pub(super) environment: [u64; LANES],
-    /// Flags of an ended episode before the next begins: [`OVER`] and [`CUT`].
+    /// Flags of an ended episode before the next begins: [`TERMINATED`] and [`TRUNCATED`].
     pub(super) ended: [u8; LANES],
 }
 
@@ -46,9 +46,9 @@ pub(super) struct Block<T, C, V, const D: usize> {
 const BANKED: u64 = 32;
 
 /// Flag of a terminated episode.
-pub(super) const OVER: u8 = 1;
+pub(super) const TERMINATED: u8 = 1;
 /// Flag of a truncated episode.
-pub(super) const CUT: u8 = 2;
+pub(super) const TRUNCATED: u8 = 2;
 
 /// Flag of the output of a block: terminated because a number is not finite.
 pub(super) const LOST: u8 = 2;

@@ -4,7 +4,7 @@ use bytemuck::Pod;
 use libration_core::Float;
 use libration_core::control::Memory;
 
-use super::block::{BlockOf, CUT, ClockMemory, Numbers, OVER};
+use super::block::{BlockOf, ClockMemory, Numbers, TERMINATED, TRUNCATED};
 use super::block_size::LANES;
 use super::episode_streams::EpisodeStreams;
 use super::{Environments, World, block};
@@ -15,7 +15,7 @@ where
     T: Float + Pod,
     E: World<T, O, D>,
 {
-    /// Numbers of a block: coordinates, payment, error_scale, what its clock remembers and what was drawn for the episode.
+    /// Numbers of a block: coordinates, reward sum, error scales, memory of the clock and parameters of the episode.
     const NUMBERS: usize = 2 * D + 3 + ClockMemory::<T, E, O, D>::LEN + Numbers::<T, E, O, D>::LEN;
 
     /// Bytes of a block.
@@ -124,7 +124,7 @@ where
             let late = |i: usize| block.delays[i].iter().any(|&delay| delay > most[i]);
             let ahead = block.began.iter().any(|&began| began > step);
             let ahead = ahead || block.episode.iter().any(|&episode| episode > FURTHEST);
-            let ended = block.ended.iter().any(|&ended| ended > (OVER | CUT));
+            let ended = block.ended.iter().any(|&ended| ended > (TERMINATED | TRUNCATED));
             if late(0) || late(1) || ahead || ended {
                 let first = n * LANES;
                 let what =

@@ -4,7 +4,7 @@ use libration_core::control::error::ensure;
 use libration_core::control::{ControlError, Latency};
 use libration_core::random::Purpose;
 
-use super::start::{Episode, between};
+use super::start::{Episode, uniform};
 
 /// Latencies in steps of the integrator, drawn uniformly for every environment at the beginning of every episode.
 ///
@@ -43,7 +43,7 @@ impl Delays {
 
     /// The latencies of observations and actions of an episode.
     pub(super) fn draw(&self, episode: Episode) -> [u32; 2] {
-        let shares = between::shares::<2>(episode, Purpose::Delay, 0);
+        let shares = uniform::shares::<2>(episode, Purpose::Delay, 0);
         let drawn = |[least, most]: [u32; 2], share: f64| {
             least + (share * (f64::from(most - least) + 1.0)) as u32
         };

@@ -3,7 +3,7 @@
 use libration_core::Float;
 use libration_core::random::Streams;
 
-use super::block::{BlockOf, CUT, LOST, OVER};
+use super::block::{BlockOf, LOST, TERMINATED, TRUNCATED};
 use super::block_output::BlockOutput;
 use super::block_size::LANES;
 use super::stepper::{Site, Stepper};
@@ -49,7 +49,7 @@ where
             if let Some(stood) = stood.filter(|stood| stood.ended[l] != 0) {
                 out.step.rewards[l] = T::zero();
                 let flags = if self.autoreset == Autoreset::Disabled { stood.ended[l] } else { 0 };
-                (out.overs[l], out.cuts[l]) = (flags & OVER, (flags & CUT) / CUT);
+                (out.overs[l], out.cuts[l]) = (flags & TERMINATED, (flags & TRUNCATED) / TRUNCATED);
                 if self.autoreset == Autoreset::Disabled {
                     block.hold(stood, l);
                     let steps = place.step * self.substeps..step * self.substeps;
@@ -61,7 +61,7 @@ where
             }
             let lost = out.overs[l] & LOST != 0;
             out.overs[l] = u8::from(out.overs[l] != 0);
-            let flags = out.overs[l] * OVER + out.cuts[l] * CUT;
+            let flags = out.overs[l] * TERMINATED + out.cuts[l] * TRUNCATED;
             if flags == 0 {
                 continue;
             }

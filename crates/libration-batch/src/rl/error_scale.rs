@@ -2,10 +2,10 @@
 
 use libration_core::Float;
 use libration_core::control::ControlError;
-use libration_core::control::error::not_negative;
+use libration_core::control::error::ensure_not_negative;
 use libration_core::random::Purpose;
 
-use super::start::{Episode, between};
+use super::start::{Episode, uniform};
 
 /// Factors of the errors of the clock and of the sensor, drawn uniformly for every environment at the beginning of every episode.
 /// 1 leaves the errors unchanged, 0 removes them.
@@ -31,18 +31,18 @@ impl ErrorScale {
         for (name, [least, most]) in
             [("error scale of the clock", self.clock), ("error scale of the sensor", self.sensor)]
         {
-            not_negative::<T>(name, least)?;
-            not_negative::<T>(name, most)?;
+            ensure_not_negative::<T>(name, least)?;
+            ensure_not_negative::<T>(name, most)?;
         }
         let ends = [self.clock, self.sensor].map(|[least, most]| (least, most));
-        between::check("range of the error scale", ends)
+        uniform::check("range of the error scale", ends)
     }
 
     /// The factors of the clock and of the sensor in an episode.
     pub(super) fn draw(&self, episode: Episode) -> [f64; 2] {
         // The first two numbers are latencies.
-        let shares = between::shares::<2>(episode, Purpose::Delay, 2);
-        let drawn = |[least, most]: [f64; 2], share| between::at((least, most), share);
+        let shares = uniform::shares::<2>(episode, Purpose::Delay, 2);
+        let drawn = |[least, most]: [f64; 2], share| uniform::at((least, most), share);
         [drawn(self.clock, shares[0]), drawn(self.sensor, shares[1])]
     }
 }

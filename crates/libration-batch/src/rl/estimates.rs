@@ -2,7 +2,7 @@
 
 use bytemuck::Pod;
 use libration_core::Float;
-use libration_core::control::error::probability;
+use libration_core::control::error::ensure_probability;
 use ndarray::ArrayViewMut2;
 
 use super::rollout_slice::{first_columns, row, rows_of};
@@ -51,7 +51,7 @@ impl<T: Float + Pod> Estimates<T> {
     }
 
     /// The returns, which are the advantages and the values: `[t, n]`; 0 where there was no transition.
-    pub fn returned(&self) -> &[T] {
+    pub fn returns(&self) -> &[T] {
         &self.returned
     }
 
@@ -70,8 +70,8 @@ impl<T: Float + Pod> Estimates<T> {
         execution: &Execution,
     ) -> Result<(), EnvironmentError> {
         let Plan { horizon, environments: n, .. } = rollout.plan();
-        probability("discount of rewards", discounts.rewards)?;
-        probability("discount of errors", discounts.errors)?;
+        ensure_probability("discount of rewards", discounts.rewards)?;
+        ensure_probability("discount of errors", discounts.errors)?;
         if !rollout.plan().value {
             let (why, field) = ("advantages need values", "value");
             return Err(EnvironmentError::Field { why, field });

@@ -3,7 +3,7 @@
 use libration_core::Float;
 use libration_core::control::ControlError;
 use libration_core::control::clock::Noise;
-use libration_core::control::error::not_negative;
+use libration_core::control::error::ensure_not_negative;
 
 /// A sensor that measures the `O` numbers of an observation.
 pub trait Sensor<T: Float, const O: usize>: Copy + Send + Sync {
@@ -55,7 +55,8 @@ impl<T: Float, N: Noise, const O: usize> Sensor<T, O> for Noisy<N, O> {
 
     fn check(&self) -> Result<(), ControlError> {
         let each = self.0.iter().enumerate().map(|(index, noise)| {
-            let found = not_negative::<T>("the rms of the noise of observation", noise.law().rms());
+            let found =
+                ensure_not_negative::<T>("the rms of the noise of observation", noise.law().rms());
             found.map_err(|error| ControlError { index: Some(index), ..error })
         });
         each.collect()

@@ -3,7 +3,7 @@
 use core::array::from_fn;
 
 use libration_core::control::ControlError;
-use libration_core::control::error::finite;
+use libration_core::control::error::ensure_finite;
 use libration_core::random::{Address, Purpose};
 use libration_core::{Float, State};
 
@@ -18,12 +18,12 @@ pub struct Episode {
     pub number: u64,
 }
 
-/// EpisodeStreams of an episode for the same purpose.
+/// The number of draws of an episode per purpose.
 const DRAWS: u64 = 64;
 
 /// Between the epochs of an episode and those of the next: an odd number, so that all of them differ, and as far from any simple share of
 /// 2⁶⁴ as can be, so that they hardly ever come near each other.
-const EPISODES_APART: u64 = 0x9E37_79B9_7F4A_7C15;
+const EPISODE_STRIDE: u64 = 0x9E37_79B9_7F4A_7C15;
 
 impl Episode {
     /// The address of its `i`-th draw for a purpose.
@@ -36,12 +36,12 @@ impl Episode {
     /// The address of the words that follow each other in one of its epochs. Those of the first episode are those of a trajectory.
     pub(super) fn epoch(self, purpose: Purpose, epoch: u64) -> Address {
         let Episode { seed, environment: trajectory, number } = self;
-        let step = number.wrapping_mul(EPISODES_APART).wrapping_add(epoch);
+        let step = number.wrapping_mul(EPISODE_STRIDE).wrapping_add(epoch);
         Address { seed, trajectory, step, purpose }
     }
 
     /// Fails to compile if an episode has fewer than `draws` addresses.
-    pub(super) const fn has(draws: usize) {
+    pub(super) const fn assert_draws(draws: usize) {
         assert!(draws as u64 <= DRAWS, "more numbers than an episode has addresses");
     }
 }
@@ -69,7 +69,7 @@ pub struct FixedStart<const D: usize>(
 
 impl<T: Float, const D: usize> Start<T, D> for FixedStart<D> {
     fn check(&self) -> Result<(), ControlError> {
-        self.0.coordinates().try_for_each(|x| finite::<T>("coordinate of the start", x))
+        self.0.coordinates().try_for_each(|x| ensure_finite::<T>("coordinate of the start", x))
     }
 
     fn draw(&self, _: Episode) -> State<T, D> {
@@ -88,23 +88,23 @@ pub struct UniformStart<const D: usize>(
 
 impl<T: Float, const D: usize> Start<T, D> for UniformStart<D> {
     fn check(&self) -> Result<(), ControlError> {
-        between::check("width of the start", self.0.coordinates().zip(self.1.coordinates()))?;
-        self.0.coordinates().try_for_each(|x| finite::<T>("lower end of the start", x))?;
-        self.1.coordinates().try_for_each(|x| finite::<T>("upper end of the start", x))
+        uniform::check("width of the start", self.0.coordinates().zip(self.1.coordinates()))?;
+        self.0.coordinates().try_for_each(|x| ensure_finite::<T>("lower end of the start", x))?;
+        self.1.coordinates().try_for_each(|x| ensure_finite::<T>("upper end of the start", x))
     }
 
     fn draw(&self, episode: Episode) -> State<T, D> {
-        let positions = between::shares::<D>(episode, Purpose::Start, 0);
-        let velocities = between::shares::<D>(episode, Purpose::Start, D);
+        let positions = uniform::shares::<D>(episode, Purpose::Start, 0);
+        let velocities = uniform::shares::<D>(episode, Purpose::Start, D);
         State {
-            q: from_fn(|i| between::at((self.0.q[i], self.1.q[i]), positions[i])),
-            v: from_fn(|i| between::at((self.0.v[i], self.1.v[i]), velocities[i])),
+            q: from_fn(|i| uniform::at((self.0.q[i], self.1.q[i]), positions[i])),
+            v: from_fn(|i| uniform::at((self.0.v[i], self.1.v[i]), velocities[i])),
         }
     }
 }
 
 /// Uniform random numbers.
-pub(super) mod between {
+pub(super) mod uniform {
     use core::array::from_fn;
 
     use libration_core::Float;
@@ -133,7 +133,7 @@ pub(super) mod between {
         purpose: Purpose,
         first: usize,
     ) -> [f64; N] {
-        const { Episode::has(N) };
+        const { Episode::assert_draws(N) };
         from_fn(|i| episode.address(purpose, first + i).uniform()[0])
     }
 

@@ -2,7 +2,7 @@
 
 use libration_core::array::{each, map};
 use libration_core::control::ControlError;
-use libration_core::control::error::{ensure, finite};
+use libration_core::control::error::{ensure, ensure_finite};
 use libration_core::{Elementary, Float, State};
 
 /// A task on a system with `D` degrees of freedom and `O` observed numbers. Its functions do not branch on data and are
@@ -58,9 +58,9 @@ macro_rules! regulate {
     ($d:literal, $o:literal) => {
         impl<T: Float> Task<T, $d, $o> for Regulate {
             fn check(&self) -> Result<(), ControlError> {
-                finite::<T>("price of a distance", self.position)?;
-                finite::<T>("price of a velocity", self.velocity)?;
-                finite::<T>("price of an effort", self.effort)?;
+                ensure_finite::<T>("price of a distance", self.position)?;
+                ensure_finite::<T>("price of a velocity", self.velocity)?;
+                ensure_finite::<T>("price of an effort", self.effort)?;
                 ensure("bound", self.bound, "above 0", |bound| T::from_f64(bound) > T::zero())
             }
 
@@ -109,8 +109,8 @@ pub struct SwingUp {
 
 impl<T: Float + Elementary> Task<T, 1, 3> for SwingUp {
     fn check(&self) -> Result<(), ControlError> {
-        finite::<T>("price of a velocity", self.velocity)?;
-        finite::<T>("price of an effort", self.effort)
+        ensure_finite::<T>("price of a velocity", self.velocity)?;
+        ensure_finite::<T>("price of an effort", self.effort)
     }
 
     #[inline(always)]
@@ -158,9 +158,9 @@ pub struct Sine {
 
 impl<T: Float + Elementary> Reference<T> for Sine {
     fn check(&self) -> Result<(), ControlError> {
-        finite::<T>("amplitude of the reference", self.amplitude)?;
-        finite::<T>("angular frequency of the reference", self.angular_frequency)?;
-        finite::<T>("phase of the reference", self.phase)
+        ensure_finite::<T>("amplitude of the reference", self.amplitude)?;
+        ensure_finite::<T>("angular frequency of the reference", self.angular_frequency)?;
+        ensure_finite::<T>("phase of the reference", self.phase)
     }
 
     #[inline(always)]
@@ -185,7 +185,7 @@ pub struct Track<R> {
 impl<R> Track<R> {
     /// The state relative to the reference.
     #[inline(always)]
-    fn apart<T: Float>(&self, time: T, state: &State<T, 1>) -> State<T, 1>
+    fn relative_state<T: Float>(&self, time: T, state: &State<T, 1>) -> State<T, 1>
     where
         R: Reference<T>,
     {
@@ -211,11 +211,11 @@ impl<T: Float, R: Reference<T>> Task<T, 1, 4> for Track<R> {
     #[inline(always)]
     fn reward(&self, time: T, before: &State<T, 1>, action: &[T; 1], after: &State<T, 1>) -> T {
         // Only where it came to is paid for.
-        self.regulate.reward(time, before, action, &self.apart(time, after))
+        self.regulate.reward(time, before, action, &self.relative_state(time, after))
     }
 
     #[inline(always)]
     fn terminated(&self, time: T, after: &State<T, 1>) -> bool {
-        self.regulate.terminated(time, &self.apart(time, after))
+        self.regulate.terminated(time, &self.relative_state(time, after))
     }
 }

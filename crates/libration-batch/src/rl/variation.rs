@@ -85,7 +85,7 @@ where
     }
 
     fn draw(&self, episode: Episode) -> [T; N] {
-        const { Episode::has(N) };
+        const { Episode::assert_draws(N) };
         each(|i| T::from_f64(self.numbers[i].draw(episode, Purpose::Variation, i)))
     }
 

@@ -1,7 +1,7 @@
 //! Disturbances: accelerations besides the command.
 
 use super::ControlError;
-use super::error::not_negative;
+use super::error::ensure_not_negative;
 use crate::Float;
 use crate::random::normal;
 
@@ -51,7 +51,7 @@ pub struct WhiteNoise(pub f64);
 
 impl Disturbance for WhiteNoise {
     fn check<T: Float>(&self) -> Result<(), ControlError> {
-        not_negative::<T>("the intensity of the noise", self.0)
+        ensure_not_negative::<T>("the intensity of the noise", self.0)
     }
 
     fn words(&self) -> usize {

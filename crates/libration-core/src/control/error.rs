@@ -40,32 +40,36 @@ pub fn ensure(
 }
 
 /// Returns an error unless `value` is finite, in `T` as well.
-pub fn finite<T: Float>(name: &'static str, value: f64) -> Result<(), ControlError> {
+pub fn ensure_finite<T: Float>(name: &'static str, value: f64) -> Result<(), ControlError> {
     ensure(name, value, "a finite number", f64::is_finite)?;
     let held = |x: f64| T::from_f64(x).is_finite();
     ensure(name, value, "small enough for the float type", held)
 }
 
-/// Returns an error unless `value` is [`finite`] and at least 0.
-pub fn not_negative<T: Float>(name: &'static str, value: f64) -> Result<(), ControlError> {
+/// Returns an error unless `value` is [`ensure_finite`] and at least 0.
+pub fn ensure_not_negative<T: Float>(name: &'static str, value: f64) -> Result<(), ControlError> {
     ensure(name, value, "a finite number of at least 0", |x| x >= 0.0 && x.is_finite())?;
-    finite::<T>(name, value)
+    ensure_finite::<T>(name, value)
 }
 
-/// Applies [`not_negative`] to each value.
-pub fn none_negative<T: Float>(name: &'static str, values: &[f64]) -> Result<(), ControlError> {
+/// Applies [`ensure_not_negative`] to each value.
+pub fn ensure_none_negative<T: Float>(
+    name: &'static str,
+    values: &[f64],
+) -> Result<(), ControlError> {
     let each = values.iter().enumerate().map(|(i, &value)| {
-        not_negative::<T>(name, value).map_err(|error| ControlError { index: Some(i), ..error })
+        ensure_not_negative::<T>(name, value)
+            .map_err(|error| ControlError { index: Some(i), ..error })
     });
     each.collect()
 }
 
 /// Returns an error unless `value` is from 0 to 1.
-pub fn probability(name: &'static str, value: f64) -> Result<(), ControlError> {
+pub fn ensure_probability(name: &'static str, value: f64) -> Result<(), ControlError> {
     ensure(name, value, "from 0 to 1", |x| (0.0..=1.0).contains(&x))
 }
 
 /// Returns an error unless the standard deviation of the distribution is valid.
-pub fn law<T: Float>(name: &'static str, law: Jitter) -> Result<(), ControlError> {
-    not_negative::<T>(name, law.rms())
+pub fn ensure_law<T: Float>(name: &'static str, law: Jitter) -> Result<(), ControlError> {
+    ensure_not_negative::<T>(name, law.rms())
 }

@@ -26,7 +26,7 @@ pub trait Memory<T: Copy>: Copy + Send + Sync {
 
     /// The memory as a single lane.
     #[doc(hidden)]
-    fn alone(self) -> Self::Lanes<1>;
+    fn single_lane(self) -> Self::Lanes<1>;
 
     /// The memory of lane `l`.
     #[doc(hidden)]
@@ -53,7 +53,7 @@ impl<T: Scalar + Send + Sync, const N: usize> Memory<T> for [T; N] {
         }
     }
 
-    fn alone(self) -> [[T; 1]; N] {
+    fn single_lane(self) -> [[T; 1]; N] {
         self.map(|value| [value])
     }
 
@@ -85,8 +85,8 @@ impl<T: Copy, A: Memory<T>, B: Memory<T>> Memory<T> for (A, B) {
         B::store(&lanes.1, &mut |i, row| write(A::LEN + i, row));
     }
 
-    fn alone(self) -> Self::Lanes<1> {
-        (self.0.alone(), self.1.alone())
+    fn single_lane(self) -> Self::Lanes<1> {
+        (self.0.single_lane(), self.1.single_lane())
     }
 
     #[inline(always)]

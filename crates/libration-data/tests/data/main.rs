@@ -6,5 +6,5 @@ mod folder;
 mod formats;
 #[cfg(unix)]
 mod kills;
-mod mapped;
-mod state;
+mod replay_file;
+mod state_file;

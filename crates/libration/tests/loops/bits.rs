@@ -14,7 +14,7 @@ use libration::system::{Oscillator, Pendulum};
 use libration::{Integrator, State, System};
 use proptest::prelude::*;
 
-use super::one::One;
+use super::single_loop::One;
 
 const GAINS: Feedback = Feedback { position: 3.0, velocity: 0.5 };
 
@@ -159,7 +159,7 @@ fn bits_do_not_depend_on_threads_numbers_instructions_or_parts_whatever_the_cont
         Setup::new(PerTrajectory(&systems[..count]), Rk4)
             .controller(Saturated { controller: StateFeedback::to_origin(GAINS), most: 1.0 })
             .clock((Rates(&rates[..count]), MissedTicks { probability: 0.1 }))
-            .delay(Latencies::of_commands(&latencies[..count]).and_observations(&seen[..count]))
+            .delay(Latencies::of_commands(&latencies[..count]).with_observations(&seen[..count]))
     };
     same_bits(all(333), all);
 }
@@ -259,7 +259,7 @@ fn latencies_of_its_own_make_of_a_trajectory_what_a_schedule_for_all_does() {
         .controller(StateFeedback { gains: GAINS, target: [0.5] })
         .clock(shaken());
     let starts = [State { q: [1.0_f32], v: [0.25] }; 40];
-    let own = setup.delay(Latencies::of_commands(&commands).and_observations(&seen));
+    let own = setup.delay(Latencies::of_commands(&commands).with_observations(&seen));
     let mut own = Loops::new(own, 0.1, 3, [0.125], &starts, Execution::serial()).unwrap();
     own.advance(30).unwrap();
     for (n, [observation, command]) in pairs.into_iter().enumerate() {

@@ -124,7 +124,7 @@ fn each_trajectory_has_its_own_latency_of_what_it_observes() {
     let steps = |x: f64| Latency::of_steps(x).unwrap();
     let seen = [0.0, 0.25, 1.0, 1.75, 3.5].map(steps);
     let commands = [0.5, 0.0, 2.5, 0.5, 1.0].map(steps);
-    let times = computed_at(Latencies::of_commands(&commands).and_observations(&seen), 5, 12);
+    let times = computed_at(Latencies::of_commands(&commands).with_observations(&seen), 5, 12);
     for ((seen, command), times) in seen.iter().zip(&commands).zip(&times) {
         for (n, &time) in times.iter().enumerate() {
             // Computed at a whole step, of the state as it was before.

@@ -10,7 +10,7 @@ use libration::system::Oscillator;
 use libration::{Integrator, Method, State};
 use proptest::prelude::*;
 
-use super::one::One;
+use super::single_loop::One;
 
 const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
 

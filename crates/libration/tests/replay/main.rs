@@ -5,9 +5,9 @@
 mod faults;
 mod memory;
 mod model;
-mod naive;
-mod odds;
-mod tree;
+mod naive_buffer;
+mod sampling_frequencies;
+mod sum_tree;
 
 use libration::State;
 use libration::ensemble::{All, Execution};

@@ -5,7 +5,7 @@ use libration::random::philox4x32;
 use libration::replay::{Batch, Capacity, Draw, Lookahead, Sequences};
 use libration::rl::{Autoreset, Layout};
 
-use super::naive::Naive;
+use super::naive_buffer::Naive;
 use super::{Replay21, environments, run};
 
 const ENVIRONMENTS: usize = 3;

@@ -7,7 +7,7 @@ use libration::ensemble::Execution;
 use libration::rl::policy::{GaussianExploration, Linear, Random};
 use libration::rl::{Autoreset, Environments, Layout, Plan, Policy, Rollout, Task, World, Writes};
 
-use crate::alone::{Told, alone};
+use crate::scalar_reference::{Told, alone};
 use crate::{chosen, executions, ideal, perturbed};
 
 pub(crate) const POLICY: Linear<2, 1> = Linear { weights: [[-3.0, 0.5]], bias: [0.25] };

@@ -2,17 +2,17 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod alone;
 mod bits;
 mod clocks;
 mod episodes;
 mod faults;
+mod float_types;
 mod golden;
 mod policies;
+mod scalar_reference;
 mod seeds;
 mod steps;
 mod tensors;
-mod widths;
 
 use libration::control::clock::{Fixed, Gaussian, Jittered, Skewed, Uniform};
 use libration::ensemble::{All, Execution, InstructionSet};

@@ -8,8 +8,8 @@ use libration::rl::{
     Autoreset, EnvironmentError, Environments, Layout, Plan, Rollout, World, Writes,
 };
 
-use crate::alone::Told;
 use crate::bits::{EXPLORING, told};
+use crate::scalar_reference::Told;
 use crate::{executions, ideal, perturbed};
 
 /// The transitions of every environment, one after the other.

@@ -197,7 +197,7 @@ fn advantages_are_those_of_the_definition_under_every_autoreset() {
                 assert!((found - wanted).abs() < 1e-4, "{t} {n} {found} {wanted} {autoreset:?}");
                 let whole =
                     if rollout.is_transition(t, n) { found + f64::from(value) } else { 0.0 };
-                assert!((f64::from(estimates.returned()[at]) - whole).abs() < 1e-5);
+                assert!((f64::from(estimates.returns()[at]) - whole).abs() < 1e-5);
             }
         }
         let mut estimates = Estimates::new(plan).unwrap();

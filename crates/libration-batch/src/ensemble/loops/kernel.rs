@@ -198,8 +198,8 @@ where
                             }
                         }
                         match event {
-                            Event::Look(k) => look!(k.rem_euclid(layout.places as i128) as usize),
-                            Event::Act(k) => act!(k.rem_euclid(layout.places as i128) as usize),
+                            Event::Sample(k) => look!(k.rem_euclid(layout.places as i128) as usize),
+                            Event::Actuate(k) => act!(k.rem_euclid(layout.places as i128) as usize),
                         }
                     }
                     for l in 0..W {

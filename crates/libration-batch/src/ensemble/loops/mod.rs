@@ -14,7 +14,7 @@ use bytemuck::Pod;
 pub use setup::Setup;
 
 use kernel::Common;
-use libration_core::control::error::finite;
+use libration_core::control::error::ensure_finite;
 use libration_core::control::{
     Clock, Controller, Delay, Disturbance, Memory, NoDisturbance, StartAddress,
 };
@@ -102,7 +102,9 @@ where
         setup.disturbance.check::<T>()?;
         let period = dt.to_f64() * setup.delay.schedule().period();
         setup.controller.check(period)?;
-        before.iter().try_for_each(|x| finite::<T>("the command before the first", x.to_f64()))?;
+        before
+            .iter()
+            .try_for_each(|x| ensure_finite::<T>("the command before the first", x.to_f64()))?;
         let len = states.len();
         for (what, values) in [
             ("systems", setup.systems.count()),
@@ -262,9 +264,9 @@ where
         let Layout { clock, delay, controller, held, rows, .. } = self.layout;
         let (setup, begin) = (&self.setup, StartAddress::new(self.seed, n as u64, self.step()));
         // One lane.
-        let clocks = setup.clock.start(begin).alone();
-        let delays = setup.delay.start(begin).alone();
-        let controllers = setup.controller.start(&state).alone();
+        let clocks = setup.clock.start(begin).single_lane();
+        let delays = setup.delay.start(begin).single_lane();
+        let controllers = setup.controller.start(&state).single_lane();
         let mut values = Vec::with_capacity(rows);
         let mut push = |_: usize, &[value]: &[T; 1]| values.push(value);
         C::Memory::store(&clocks, &mut push);

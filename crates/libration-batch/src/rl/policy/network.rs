@@ -62,7 +62,7 @@ where
         seen: &[T; O],
         _: &mut impl FnMut() -> u32,
     ) -> ActionSample<T, D> {
-        perceptron::alone(self, place, seen)
+        perceptron::forward_one(self, place, seen)
     }
 
     /// A separate function, compiled once for all callers.

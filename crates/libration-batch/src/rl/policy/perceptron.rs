@@ -76,7 +76,7 @@ where
         seen: &[T; O],
         _: &mut impl FnMut() -> u32,
     ) -> ActionSample<T, D> {
-        alone(self, place, seen)
+        forward_one(self, place, seen)
     }
 
     #[inline(always)]
@@ -116,7 +116,7 @@ where
         seen: &[T; O],
         _: &mut impl FnMut() -> u32,
     ) -> ActionSample<T, D> {
-        alone(self, place, seen)
+        forward_one(self, place, seen)
     }
 
     #[inline(always)]
@@ -137,7 +137,7 @@ where
 
 /// One action of a policy that has many at once.
 #[inline(always)]
-pub(super) fn alone<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize>(
+pub(super) fn forward_one<T: Float, P: Policy<T, O, D>, const O: usize, const D: usize>(
     policy: &P,
     place: StepIndex,
     seen: &[T; O],

@@ -2,7 +2,7 @@
 
 use libration_core::Float;
 use libration_core::array::each;
-use libration_core::control::error::finite;
+use libration_core::control::error::ensure_finite;
 use libration_core::random::{UNIT, odd};
 
 use super::{ActionSample, Policy, StepIndex};
@@ -32,8 +32,8 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Random<D> {
     fn check(&self, _: usize, _: usize) -> Result<(), EnvironmentError> {
         for (index, (low, high)) in self.low.into_iter().zip(self.high).enumerate() {
             EnvironmentError::above_zero::<T>("width of the random action", index, high - low)?;
-            finite::<T>("lower end of the random action", low)?;
-            finite::<T>("upper end of the random action", high)?;
+            ensure_finite::<T>("lower end of the random action", low)?;
+            ensure_finite::<T>("upper end of the random action", high)?;
         }
         Ok(())
     }

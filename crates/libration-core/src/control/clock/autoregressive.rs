@@ -2,7 +2,7 @@
 
 use super::{Clock, Gaussian, Noise, forward};
 use crate::Float;
-use crate::control::error::{ensure, not_negative};
+use crate::control::error::{ensure, ensure_not_negative};
 use crate::control::{ControlError, Jitter, StartAddress};
 use crate::random::Purpose;
 
@@ -23,7 +23,7 @@ impl<T: Float> Clock<T> for Correlated {
     const DRAWS: bool = true;
 
     fn check(&self) -> Result<(), ControlError> {
-        not_negative::<T>("the rms of correlated steps", self.rms)?;
+        ensure_not_negative::<T>("the rms of correlated steps", self.rms)?;
         let within = |x: f64| (-1.0..=1.0).contains(&x);
         ensure("the correlation of steps", self.correlation, "from -1 to 1", within)
     }

@@ -2,7 +2,7 @@
 
 use super::{Clock, forward};
 use crate::Float;
-use crate::control::error::{law, none_negative};
+use crate::control::error::{ensure_law, ensure_none_negative};
 use crate::control::{ControlError, Jitter, StartAddress};
 use crate::random::Purpose;
 
@@ -40,7 +40,7 @@ impl<T: Float> Clock<T> for Skewed {
     type Beat = ();
 
     fn check(&self) -> Result<(), ControlError> {
-        law::<T>("the rms of clock rates", self.0)
+        ensure_law::<T>("the rms of clock rates", self.0)
     }
 
     fn start(&self, begin: StartAddress) -> [T; 1] {
@@ -67,7 +67,7 @@ impl<T: Float> Clock<T> for Rates<'_> {
     type Beat = ();
 
     fn check(&self) -> Result<(), ControlError> {
-        none_negative::<T>("clock rate", self.0)
+        ensure_none_negative::<T>("clock rate", self.0)
     }
 
     fn start(&self, begin: StartAddress) -> [T; 1] {
@@ -105,7 +105,7 @@ impl<T: Float> Clock<T> for Drifting {
     type Beat = ();
 
     fn check(&self) -> Result<(), ControlError> {
-        law::<T>("the rms of clock drifts", self.0)
+        ensure_law::<T>("the rms of clock drifts", self.0)
     }
 
     fn start(&self, begin: StartAddress) -> [T; 3] {

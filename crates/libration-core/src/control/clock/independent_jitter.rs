@@ -2,7 +2,7 @@
 
 use super::{Clock, Noise, forward};
 use crate::Float;
-use crate::control::error::law;
+use crate::control::error::ensure_law;
 use crate::control::{ControlError, StartAddress};
 
 /// Steps of `1 + ε`, with another `ε` for every step, independent of all others.
@@ -19,7 +19,7 @@ impl<T: Float, N: Noise> Clock<T> for Jittered<N> {
     const DRAWS: bool = true;
 
     fn check(&self) -> Result<(), ControlError> {
-        law::<T>("the rms of step times", self.0.law())
+        ensure_law::<T>("the rms of step times", self.0.law())
     }
 
     fn start(&self, _: StartAddress) -> [T; 0] {

@@ -2,7 +2,7 @@
 
 use super::{Clock, forward};
 use crate::Float;
-use crate::control::error::{ensure, probability};
+use crate::control::error::{ensure, ensure_probability};
 use crate::control::{ControlError, StartAddress};
 use crate::random::{Purpose, uniform};
 
@@ -32,7 +32,7 @@ impl<T: Float> Clock<T> for LateTicks {
     const DRAWS: bool = true;
 
     fn check(&self) -> Result<(), ControlError> {
-        probability("the probability of a late tick", self.probability)?;
+        ensure_probability("the probability of a late tick", self.probability)?;
         ensure("the lateness of a tick", self.by, "from 0 to 1", |by| (0.0..=1.0).contains(&by))
     }
 

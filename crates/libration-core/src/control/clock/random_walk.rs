@@ -2,7 +2,7 @@
 
 use super::{Clock, Gaussian, Noise, forward};
 use crate::Float;
-use crate::control::error::not_negative;
+use crate::control::error::ensure_not_negative;
 use crate::control::{ControlError, StartAddress};
 
 /// Steps of `1 + ε`, where `ε` begins at zero and changes by an independent Gaussian number in every step.
@@ -22,7 +22,7 @@ impl<T: Float> Clock<T> for RandomWalk {
     const DRAWS: bool = true;
 
     fn check(&self) -> Result<(), ControlError> {
-        not_negative::<T>("the rms of changes of the rate", self.rms)
+        ensure_not_negative::<T>("the rms of changes of the rate", self.rms)
     }
 
     fn start(&self, _: StartAddress) -> [T; 1] {

@@ -3,7 +3,7 @@
 use core::f64::consts::{SQRT_2, TAU};
 
 use super::{Clock, forward};
-use crate::control::error::{finite, not_negative};
+use crate::control::error::{ensure_finite, ensure_not_negative};
 use crate::control::{ControlError, StartAddress};
 use crate::{Elementary, Float};
 
@@ -23,9 +23,9 @@ impl<T: Float> Clock<T> for Sinusoidal {
     type Beat = T;
 
     fn check(&self) -> Result<(), ControlError> {
-        not_negative::<T>("the rms of waving steps", self.rms)?;
-        finite::<T>("the rate of waving steps", self.rate)?;
-        finite::<T>("the phase of waving steps", self.phase)
+        ensure_not_negative::<T>("the rms of waving steps", self.rms)?;
+        ensure_finite::<T>("the rate of waving steps", self.rate)?;
+        ensure_finite::<T>("the phase of waving steps", self.phase)
     }
 
     fn start(&self, _: StartAddress) -> [T; 0] {

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::Clock;
 use crate::Float;
-use crate::control::error::{ensure, none_negative};
+use crate::control::error::{ensure, ensure_none_negative};
 use crate::control::{ControlError, StartAddress};
 
 /// The steps between the time stamps of a loop that ran.
@@ -132,7 +132,7 @@ impl<T: Float> Clock<T> for Recorded<'_> {
     type Beat = T;
 
     fn check(&self) -> Result<(), ControlError> {
-        none_negative::<T>("recorded step", self.ratios)?;
+        ensure_none_negative::<T>("recorded step", self.ratios)?;
         let count = self.ratios.len() as f64;
         ensure("the number of recorded steps", count, "at least 1", |count| count > 0.0)
     }

@@ -2,7 +2,7 @@
 
 use super::Controller;
 use crate::array::{each, map};
-use crate::control::error::finite;
+use crate::control::error::ensure_finite;
 use crate::control::{ControlError, Feedback, StateObserver};
 use crate::{Float, State};
 
@@ -34,13 +34,15 @@ impl<T: Float, const D: usize> Controller<T, D> for Luenberger<D> {
     type Memory = ([T; D], [T; D]);
 
     fn check(&self, _: f64) -> Result<(), ControlError> {
-        finite::<T>("the gain of the position", self.gains.position)?;
-        finite::<T>("the gain of the velocity", self.gains.velocity)?;
+        ensure_finite::<T>("the gain of the position", self.gains.position)?;
+        ensure_finite::<T>("the gain of the velocity", self.gains.velocity)?;
         let StateObserver { phi, gamma, correction } = self.observer;
         let model = phi.into_iter().flatten().chain(gamma);
-        model.into_iter().try_for_each(|x| finite::<T>("the observer's model", x))?;
-        correction.into_iter().try_for_each(|x| finite::<T>("the observer's correction", x))?;
-        self.target.into_iter().try_for_each(|x| finite::<T>("the target", x))
+        model.into_iter().try_for_each(|x| ensure_finite::<T>("the observer's model", x))?;
+        correction
+            .into_iter()
+            .try_for_each(|x| ensure_finite::<T>("the observer's correction", x))?;
+        self.target.into_iter().try_for_each(|x| ensure_finite::<T>("the target", x))
     }
 
     /// The controller measures the position only.

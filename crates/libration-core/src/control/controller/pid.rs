@@ -3,7 +3,7 @@
 use super::{Controller, within};
 use crate::array::{each, map};
 use crate::control::ControlError;
-use crate::control::error::{ensure, finite, not_negative};
+use crate::control::error::{ensure, ensure_finite, ensure_not_negative};
 use crate::{Float, State};
 
 /// A discrete PID controller of the position, which is all that it observes: with a filter for its derivative, a
@@ -39,11 +39,11 @@ pub struct PidGains<const D: usize> {
 impl<const D: usize> PidGains<D> {
     /// Whether `T` holds them.
     fn check<T: Float>(&self) -> Result<(), ControlError> {
-        finite::<T>("the proportional gain", self.proportional)?;
-        finite::<T>("the integral gain", self.integral)?;
-        finite::<T>("the derivative gain", self.derivative)?;
-        self.target.into_iter().try_for_each(|x| finite::<T>("the target", x))?;
-        not_negative::<T>("the time of the filter", self.filter)
+        ensure_finite::<T>("the proportional gain", self.proportional)?;
+        ensure_finite::<T>("the integral gain", self.integral)?;
+        ensure_finite::<T>("the derivative gain", self.derivative)?;
+        self.target.into_iter().try_for_each(|x| ensure_finite::<T>("the target", x))?;
+        ensure_not_negative::<T>("the time of the filter", self.filter)
     }
 }
 

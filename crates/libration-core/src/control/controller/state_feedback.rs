@@ -2,7 +2,7 @@
 
 use super::Controller;
 use crate::array::{each, map};
-use crate::control::error::finite;
+use crate::control::error::ensure_finite;
 use crate::control::{ControlError, Feedback};
 use crate::{Float, State};
 
@@ -27,9 +27,9 @@ impl<T: Float, const D: usize> Controller<T, D> for StateFeedback<D> {
     type Memory = [T; 0];
 
     fn check(&self, _: f64) -> Result<(), ControlError> {
-        finite::<T>("the gain of the position", self.gains.position)?;
-        finite::<T>("the gain of the velocity", self.gains.velocity)?;
-        self.target.into_iter().try_for_each(|x| finite::<T>("the target", x))
+        ensure_finite::<T>("the gain of the position", self.gains.position)?;
+        ensure_finite::<T>("the gain of the velocity", self.gains.velocity)?;
+        self.target.into_iter().try_for_each(|x| ensure_finite::<T>("the target", x))
     }
 
     fn start(&self, _: &State<T, D>) -> [T; 0] {

@@ -21,7 +21,7 @@ impl<'a> Latencies<'a> {
     }
 
     /// With latencies of what each observes besides: one for every command's.
-    pub fn and_observations(self, observations: &'a [Latency]) -> Self {
+    pub fn with_observations(self, observations: &'a [Latency]) -> Self {
         Latencies { observations, ..self }
     }
 

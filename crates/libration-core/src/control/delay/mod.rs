@@ -111,7 +111,7 @@ impl<T: Float> Delay<T> for Schedule {
     }
 
     fn longest(&self) -> usize {
-        self.commands_on_their_way()
+        self.commands_in_transit()
     }
 
     fn start(&self, _: StartAddress) -> [T; 0] {

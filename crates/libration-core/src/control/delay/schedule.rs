@@ -51,9 +51,9 @@ pub enum ScheduleError {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// Command number so and so is computed from the state there.
-    Look(i128),
+    Sample(i128),
     /// The command with this number begins to act; a negative one is the initial command.
-    Act(i128),
+    Actuate(i128),
 }
 
 impl Schedule {
@@ -89,7 +89,7 @@ impl Schedule {
     }
 
     /// The largest number of commands in transit.
-    pub fn commands_on_their_way(&self) -> usize {
+    pub fn commands_in_transit(&self) -> usize {
         (self.observation + self.action).div_ceil(self.period) as usize
     }
 
@@ -117,10 +117,10 @@ impl Schedule {
             // A command that takes no time is computed first.
             if seen < end && seen <= done {
                 look += 1;
-                Some((part(seen), Event::Look(look - 1)))
+                Some((part(seen), Event::Sample(look - 1)))
             } else if done < end {
                 act += 1;
-                Some((part(done), Event::Act(act - 1)))
+                Some((part(done), Event::Actuate(act - 1)))
             } else {
                 None
             }
@@ -136,7 +136,7 @@ fn time(steps: f64) -> Time {
 
 #[cfg(test)]
 mod tests {
-    use super::Event::{Act, Look};
+    use super::Event::{Actuate, Sample};
     use super::*;
 
     fn events(schedule: Schedule, step: u64) -> Vec<(f64, Event)> {
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn without_latency_each_step_begins_with_a_look_and_its_effect() {
-        assert_eq!(events(Schedule::EVERY_STEP, 7), [(0.0, Look(7)), (0.0, Act(7))]);
+        assert_eq!(events(Schedule::EVERY_STEP, 7), [(0.0, Sample(7)), (0.0, Actuate(7))]);
         assert_eq!(Schedule::EVERY_STEP.whole_steps(), Some(0));
     }
 
@@ -153,30 +153,30 @@ mod tests {
     fn a_command_acts_when_its_latency_is_over_and_not_before() {
         let late = Schedule::new(1.0, 0.0, 2.25).unwrap();
         // Steps split there before the first command as after it.
-        assert_eq!(events(late, 0), [(0.0, Look(0)), (0.25, Act(-2))]);
-        assert_eq!(events(late, 1), [(0.0, Look(1)), (0.25, Act(-1))]);
-        assert_eq!(events(late, 2), [(0.0, Look(2)), (0.25, Act(0))]);
-        assert_eq!(events(late, 5), [(0.0, Look(5)), (0.25, Act(3))]);
-        assert_eq!((late.whole_steps(), late.commands_on_their_way()), (None, 3));
+        assert_eq!(events(late, 0), [(0.0, Sample(0)), (0.25, Actuate(-2))]);
+        assert_eq!(events(late, 1), [(0.0, Sample(1)), (0.25, Actuate(-1))]);
+        assert_eq!(events(late, 2), [(0.0, Sample(2)), (0.25, Actuate(0))]);
+        assert_eq!(events(late, 5), [(0.0, Sample(5)), (0.25, Actuate(3))]);
+        assert_eq!((late.whole_steps(), late.commands_in_transit()), (None, 3));
     }
 
     #[test]
     fn an_observation_that_is_late_was_made_earlier() {
         let late = Schedule::new(1.0, 1.5, 0.5).unwrap();
         // Command 2 is computed at time 2, from the state at time 0.5; 1 would look at −0.5.
-        assert_eq!(events(late, 0), [(0.5, Look(2)), (0.5, Act(0))]);
-        assert_eq!(events(late, 2), [(0.5, Look(4)), (0.5, Act(2))]);
+        assert_eq!(events(late, 0), [(0.5, Sample(2)), (0.5, Actuate(0))]);
+        assert_eq!(events(late, 2), [(0.5, Sample(4)), (0.5, Actuate(2))]);
     }
 
     #[test]
     fn samples_need_not_fall_on_steps_and_never_slip() {
         let third = Schedule::new(2.5, 0.0, 1.0).unwrap();
-        assert_eq!(events(third, 2), [(0.5, Look(1))]);
-        assert_eq!(events(third, 3), [(0.5, Act(1))]);
+        assert_eq!(events(third, 2), [(0.5, Sample(1))]);
+        assert_eq!(events(third, 3), [(0.5, Actuate(1))]);
         // A billion samples later.
-        assert_eq!(events(third, 2_500_000_002), [(0.5, Look(1_000_000_001))]);
+        assert_eq!(events(third, 2_500_000_002), [(0.5, Sample(1_000_000_001))]);
         let fast = Schedule::new(0.5, 0.0, 0.0).unwrap();
-        let twice = [(0.0, Look(6)), (0.0, Act(6)), (0.5, Look(7)), (0.5, Act(7))];
+        let twice = [(0.0, Sample(6)), (0.0, Actuate(6)), (0.5, Sample(7)), (0.5, Actuate(7))];
         assert_eq!(events(fast, 3), twice);
     }
 

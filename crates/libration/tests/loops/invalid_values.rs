@@ -46,7 +46,7 @@ fn records_are_never_made_longer_and_lists_are_of_the_right_length() {
     );
     let two = [one[0]; 2];
     assert_eq!(
-        refused(fixed, Latencies::of_commands(&two).and_observations(&one), 0.1, 1),
+        refused(fixed, Latencies::of_commands(&two).with_observations(&one), 0.1, 1),
         "the number of latencies of observations is 1; it must be that of the latencies of commands, or 0"
     );
     for dt in [0.0, -0.1, f64::NAN, f64::INFINITY] {
