@@ -7,7 +7,7 @@ use std::path::Path;
 /// All bytes of a file that has at most `limit` of them.
 ///
 /// # Errors
-/// If the system refuses; [`ErrorKind::FileTooLarge`] if the file is longer.
+/// If the system reports an error; [`ErrorKind::FileTooLarge`] if the file is longer.
 pub fn read_bounded(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     read_rest(&File::open(path)?, limit)
 }

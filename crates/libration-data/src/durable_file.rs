@@ -16,7 +16,7 @@ const SHORT: u64 = 1 << 18;
 /// Makes a file under another name, which it loses when all of it is on the disk; `fill` waits for that.
 ///
 /// # Errors
-/// If the system refuses; what stood there before stands there still.
+/// If the system reports an error; the file there before is unchanged.
 pub(crate) fn make<R>(
     path: &Path,
     fill: impl FnOnce(&Path) -> io::Result<R>,
@@ -35,7 +35,7 @@ pub(crate) fn make<R>(
 /// Writes a file: under another name until all of it is on the disk. Gives the checksum of what was written, and its length.
 ///
 /// # Errors
-/// If the system refuses; what stood there before stands there still.
+/// If the system reports an error; the file there before is unchanged.
 pub fn write_file(path: &Path, pieces: &[&[u8]]) -> Result<(String, u64), DataError> {
     let bytes = pieces.iter().map(|piece| piece.len() as u64).sum();
     let sum = || checksum(pieces.iter().copied());
@@ -53,11 +53,10 @@ pub fn write_file(path: &Path, pieces: &[&[u8]]) -> Result<(String, u64), DataEr
     })
 }
 
-/// Writes a file past the system's cache of pages, where that can be, and nothing more: what is in its way when it is written
-/// [safely](write_file) shows by comparison.
+/// Writes a file past the page cache, if possible, without the checksum and renaming of [`write_file`]. Benchmarks compare both.
 ///
 /// # Errors
-/// If the system refuses.
+/// If the system reports an error.
 pub fn write_direct(path: &Path, pieces: &[&[u8]]) -> Result<(), DataError> {
     direct_write::create(path, pieces).map_err(DataError::io("write", path))
 }

@@ -17,7 +17,7 @@ use crate::{Chunk, DataError, Manifest, Stored, run_on_threads, write_file};
 /// Files that are written at once: to wait for the disk takes as long for one as for all of them.
 const AT_ONCE: usize = 16;
 
-/// A folder that this process alone writes to.
+/// A folder of a data set, locked for this process.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -36,12 +36,12 @@ pub struct NewFile<'a> {
 }
 
 impl Folder {
-    /// Opens a folder for a data set of these settings; with `resume` one that was begun before, of which everything that is in its
-    /// manifest stays. Whether its files are sound, [`verify`](crate::verify) finds out.
+    /// Opens a folder for a data set of these settings. With `resume` it may hold an interrupted data set, whose chunks in the
+    /// manifest stay; [`verify()`](crate::verify()) checks their files.
     ///
     /// # Errors
-    /// If another process has it open, or it holds something else, another data set, or one that nobody asked to go on with. Nothing
-    /// has changed then.
+    /// If another process has it open, or it holds other files, another data set, or a data set without `resume`. The folder is then
+    /// unchanged.
     pub fn open(
         path: &Path,
         settings: &Map<String, Value>,
@@ -105,7 +105,7 @@ impl Folder {
     /// Writes a chunk. When this returns, it is on the disk, and in the manifest.
     ///
     /// # Errors
-    /// If the system refuses, as when the disk is full; what was there before is there still.
+    /// If the system reports an error, such as a full disk; earlier chunks are unchanged.
     pub fn commit(
         &mut self,
         chunk: &str,
@@ -119,7 +119,7 @@ impl Folder {
     /// Records in the manifest a chunk whose files are [written](write_files).
     ///
     /// # Errors
-    /// If the system refuses, as when the disk is full; what was there before is there still.
+    /// If the system reports an error, such as a full disk; earlier chunks are unchanged.
     pub fn record(
         &mut self,
         chunk: &str,
@@ -153,7 +153,7 @@ impl Folder {
 /// Writes the files of a chunk into a folder. When this returns, they are on the disk.
 ///
 /// # Errors
-/// If the system refuses, as when the disk is full.
+/// If the system reports an error, such as a full disk.
 pub fn write_files(folder: &Path, files: &[NewFile<'_>]) -> Result<Vec<Stored>, DataError> {
     // Every folder that has something new in it, the innermost first.
     let mut folders = BTreeSet::new();

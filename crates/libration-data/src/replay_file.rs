@@ -14,9 +14,9 @@ use crate::DataError;
 use crate::durable_file::make;
 use crate::lock::lock;
 
-/// A replay buffer whose memory is a file, which this process alone uses: at whatever moment it dies, what was inserted before is
-/// found there again. A loss of power is another matter: the system writes what was changed in no order, so that only a buffer that
-/// was [flushed](Self::flush) after its last change is sure to be found again.
+/// A replay buffer in a memory-mapped file, locked for this process. If the process dies, completed insertions are kept. After a
+/// loss of power, only a buffer that was [flushed](Self::flush) after its last change is intact, because the system writes pages
+/// in any order.
 #[derive(Debug)]
 pub struct ReplayFile<T, const O: usize, const D: usize> {
     replay: Replay<T, O, D>,
@@ -26,7 +26,7 @@ pub struct ReplayFile<T, const O: usize, const D: usize> {
 }
 
 impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
-    /// An empty one in a new file, all of whose room on the disk is taken at once: where memory is a file, a full disk ends the process.
+    /// Creates an empty buffer in a new file and allocates all its disk space: a full disk would end the process later.
     ///
     /// # Errors
     /// [`DataError::Io`] if the file exists or the disk is full; [`DataError::Replay`].
@@ -62,10 +62,10 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
         Ok(ReplayFile { replay, path: path.to_owned(), _file: file })
     }
 
-    /// Waits until all that was inserted is on the disk.
+    /// Waits until all insertions are on the disk.
     ///
     /// # Errors
-    /// If the system refuses.
+    /// If the system reports an error.
     pub fn flush(&self) -> Result<(), DataError> {
         self.replay.map().flush().map_err(DataError::io("write", &self.path))
     }

@@ -43,7 +43,7 @@ const GATHERED: usize = 1 << 20;
 /// Writes a state and a note to a file, which is complete or absent after a crash.
 ///
 /// # Errors
-/// If the system refuses.
+/// If the system reports an error.
 pub fn save_state(path: &Path, of: &impl Checkpoint, note: &Value) -> Result<(), DataError> {
     let mut bytes = 0;
     let count = |piece: &[u8]| -> Result<(), Infallible> {

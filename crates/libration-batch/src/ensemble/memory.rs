@@ -1,9 +1,9 @@
-//! How much memory there is.
+//! Available memory.
 
 use memmap2::MmapMut;
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
-/// There is not memory enough.
+/// Error of insufficient memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{} GB of memory are needed, {}: take fewer at a time, or a shorter float", gigabytes(*needed), self.there_is())]
 pub struct InsufficientMemory {
@@ -14,11 +14,11 @@ pub struct InsufficientMemory {
 }
 
 impl InsufficientMemory {
-    /// Whether so many bytes can be had without swapping, and within the limits of this process (`ulimit -v`); also where the system
-    /// does not tell.
+    /// Checks that `needed` bytes are available without swapping and within the limits of this process (`ulimit -v`). It succeeds
+    /// if the system does not report its memory.
     ///
     /// # Errors
-    /// If not.
+    /// If they are not.
     pub fn check(needed: u128) -> Result<(), InsufficientMemory> {
         let available = available_memory().filter(|&available| needed > u128::from(available));
         let least = if is_mappable(needed) { None } else { Some(largest_mapping(needed)) };
@@ -70,8 +70,8 @@ fn largest_mapping(bytes: u128) -> u64 {
     given
 }
 
-/// Bytes that this process can have without swapping, if the system tells: what the machine has, and no more than
-/// the limit of the container that the process runs in.
+/// Bytes available to this process without swapping, within the limit of its container; none if the system does not report
+/// them.
 pub fn available_memory() -> Option<u64> {
     let system = system()?;
     // Files that the container keeps in memory can be dropped.

@@ -177,7 +177,7 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         self.execution.each(shares, |share| {
             let steps = range.clone();
             let system = PhantomData::<(T, Sys)>;
-            let watch = None::<(u64, &mut Nobody)>;
+            let watch = None::<(u64, &mut NoObserver)>;
             instructions.run(Run { share, method, systems, dt, steps, watch, system });
         });
         self.step = range.end;
@@ -259,9 +259,9 @@ fn chunk(len: usize) -> usize {
 }
 
 /// The observer where there is none.
-struct Nobody;
+struct NoObserver;
 
-impl<T, const D: usize> Observer<T, D> for Nobody {
+impl<T, const D: usize> Observer<T, D> for NoObserver {
     const WATCHES: bool = false;
 
     fn observe(&mut self, _: &Lanes<'_, T, D>) {}

@@ -1,4 +1,4 @@
-//! Rollouts into a replay buffer.
+//! Insertion of rollouts into a replay buffer.
 
 use core::ops::Range;
 
@@ -22,14 +22,14 @@ struct Rows<'a> {
 }
 
 impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
-    /// Takes what environments did; the oldest steps make room for it. `next` is what is seen after its last step: `[n, i]`, as
-    /// [`observe`](crate::rl::Environments::observe) writes it.
+    /// Inserts a rollout and overwrites the oldest steps. `next` are the observations after its last step: `[n, i]`, as
+    /// [`observe`](crate::rl::Environments::observe) writes them.
     ///
-    /// Where the rollout does not go on with what was seen last, as after a reset, the transition before keeps what was seen then.
-    /// A lost environment leaves no transition: what is no finite number is never drawn.
+    /// If the first observation differs from `next` of the insertion before, as after a reset, the transition before keeps its own.
+    /// The last step of a lost environment is not stored: samples are always finite.
     ///
     /// # Errors
-    /// [`ReplayError::Capacity`] if it has more steps, or more ends of episodes, than there is room for;
+    /// [`ReplayError::Capacity`] if it has more steps or more ends of episodes than the capacity;
     /// [`ReplayError::Environment`] if it has another number of environments. The buffer is then unchanged.
     pub fn insert(
         &mut self,

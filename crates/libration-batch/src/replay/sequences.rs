@@ -1,4 +1,4 @@
-//! Stretches of steps that are drawn, for learners that remember.
+//! Sampling of sequences of steps, for recurrent learners.
 
 use bytemuck::Pod;
 use libration_core::Float;
@@ -7,7 +7,7 @@ use super::replay_buffer::{CUT, END, NONE, OVER};
 use super::{Draw, Replay, ReplayError};
 use crate::ensemble::Execution;
 
-/// Stretches of equally many steps, allocated once, to be filled again and again: each field is `[i, t]`.
+/// Sequences of equal length, allocated once and filled many times: each field is `[i, t]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sequences<T, const O: usize, const D: usize> {
     /// Steps of each.
@@ -20,12 +20,11 @@ pub struct Sequences<T, const O: usize, const D: usize> {
     pub action: Vec<[T; D]>,
     /// The rewards.
     pub reward: Vec<T>,
-    /// 1 where the episode was over, otherwise 0.
+    /// 1 where the episode terminated, otherwise 0.
     pub terminated: Vec<u8>,
-    /// 1 where it was cut off, otherwise 0.
+    /// 1 where it was truncated, otherwise 0.
     pub truncated: Vec<u8>,
-    /// 1 as long as the episode goes on in which the stretch began, 0 for what comes after: another episode, or steps that were
-    /// no transitions.
+    /// 1 within the first episode of the sequence, 0 afterwards: for the next episode and for steps that are not transitions.
     pub mask: Vec<u8>,
     /// The observation after the last step of the mask: `[i]`.
     pub next_observation: Vec<[T; O]>,
@@ -49,8 +48,8 @@ impl<T: Float, const O: usize, const D: usize> Sequences<T, O, D> {
     }
 }
 
-/// A stretch and where it is written.
-struct Stretch<'a, T, const O: usize, const D: usize> {
+/// The destination of one sequence.
+struct SequenceSlot<'a, T, const O: usize, const D: usize> {
     number: u64,
     observation: &'a mut [[T; O]],
     action: &'a mut [[T; D]],
@@ -65,7 +64,7 @@ struct Stretch<'a, T, const O: usize, const D: usize> {
 const PIECE: usize = 1 << 14;
 
 impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
-    /// Fills stretches that are drawn with replacement: each that lies wholly in the buffer and begins with a transition is as likely.
+    /// Samples sequences uniformly with replacement, among those within the buffer that begin with a transition.
     ///
     /// # Errors
     /// [`ReplayError::Empty`] if there is none; [`ReplayError::Nothing`] if they are of no steps;
@@ -78,17 +77,17 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
     ) -> Result<(), ReplayError> {
         let (len, steps) = (to.number.len(), to.steps);
         if steps == 0 {
-            return Err(ReplayError::Nothing { name: "steps of a stretch" });
+            return Err(ReplayError::Nothing { name: "steps of a sequence" });
         }
         let all = len.saturating_mul(steps);
         for (name, found, wanted) in [
-            ("observations of the stretches", to.observation.len(), all),
-            ("actions of the stretches", to.action.len(), all),
-            ("rewards of the stretches", to.reward.len(), all),
-            ("terminations of the stretches", to.terminated.len(), all),
-            ("truncations of the stretches", to.truncated.len(), all),
-            ("masks of the stretches", to.mask.len(), all),
-            ("next observations of the stretches", to.next_observation.len(), len),
+            ("observations of the sequences", to.observation.len(), all),
+            ("actions of the sequences", to.action.len(), all),
+            ("rewards of the sequences", to.reward.len(), all),
+            ("terminations of the sequences", to.terminated.len(), all),
+            ("truncations of the sequences", to.truncated.len(), all),
+            ("masks of the sequences", to.mask.len(), all),
+            ("next observations of the sequences", to.next_observation.len(), len),
         ] {
             ReplayError::shape(name, found, wanted)?;
         }
@@ -96,7 +95,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         let starts =
             last.filter(|&last| last >= self.marks.tail).map(|last| self.marks.tail..last + 1);
         let starts = starts.and_then(|steps| self.drawable(steps));
-        let starts = starts.ok_or(ReplayError::Empty("stretches of so many steps"))?;
+        let starts = starts.ok_or(ReplayError::Empty("sequences of so many steps"))?;
         for (i, number) in to.number.iter_mut().enumerate() {
             *number = self.any(&starts, draw, i);
         }
@@ -105,26 +104,28 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         let fields =
             fields.zip(to.terminated.chunks_mut(steps)).zip(to.truncated.chunks_mut(steps));
         let fields = fields.zip(to.mask.chunks_mut(steps)).zip(&mut to.next_observation);
-        let stretches =
-            fields.map(|(((((((&number, seen), done), paid), over), cut), mask), next)| Stretch {
-                number,
-                observation: seen,
-                action: done,
-                reward: paid,
-                terminated: over,
-                truncated: cut,
-                mask,
-                next_observation: next,
+        let sequences =
+            fields.map(|(((((((&number, seen), done), paid), over), cut), mask), next)| {
+                SequenceSlot {
+                    number,
+                    observation: seen,
+                    action: done,
+                    reward: paid,
+                    terminated: over,
+                    truncated: cut,
+                    mask,
+                    next_observation: next,
+                }
             });
         if execution.thread_count() == 1 || all < 2 * PIECE {
-            stretches.for_each(|stretch| self.fill(stretch));
+            sequences.for_each(|sequence| self.fill(sequence));
         } else {
-            execution.each(stretches.collect(), |stretch| self.fill(stretch));
+            execution.each(sequences.collect(), |sequence| self.fill(sequence));
         }
         Ok(())
     }
 
-    fn fill(&self, to: Stretch<'_, T, O, D>) {
+    fn fill(&self, to: SequenceSlot<'_, T, O, D>) {
         let (step, l) = self.width.divide(to.number);
         let l = l as usize;
         let mut goes_on = true;

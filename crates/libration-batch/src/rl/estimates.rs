@@ -12,8 +12,8 @@ use crate::ensemble::{Buffer, EnsembleError, Execution, Loop, Pages};
 /// Generalised advantage estimation: J. Schulman, P. Moritz, S. Levine, M. Jordan, P. Abbeel, *High-dimensional continuous
 /// control using generalized advantage estimation*, ICLR 2016, equation 16.
 ///
-/// `A = δ + γλ·A'` with `δ = r + γ·V' − V`, where the primes are the next step's. An episode that is over is worth nothing
-/// more; one that was cut off is worth the value of what was seen last; neither has a next step.
+/// `A = δ + γλ·A'` with `δ = r + γ·V' − V`, where primes denote the next step. After a terminated episode `V'` is 0, after a
+/// truncated one it is the value of the final observation; in both `A'` is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Discounts {
     /// `γ`, from 0 to 1.
@@ -55,12 +55,12 @@ impl<T: Float + Pod> Estimates<T> {
         &self.returned
     }
 
-    /// Fills both from the rewards and values of a rollout: `next` are the values of what is seen after its last step, `last` those
-    /// of what was seen last in each of its [finals](Rollout::finals).
+    /// Computes advantages and returns from the rewards and values of a rollout: `next` are the values of the observations after its
+    /// last step, `last` those of the final observations of its [finals](Rollout::finals).
     ///
     /// # Errors
     /// [`EnvironmentError::Number`] if a discount is not from 0 to 1; [`EnvironmentError::Field`] if the rollout has no values;
-    /// [`EnvironmentError::Shape`] if there are more or fewer of anything.
+    /// [`EnvironmentError::Shape`] if a length is wrong.
     pub fn fill<const O: usize, const D: usize>(
         &mut self,
         discounts: Discounts,

@@ -96,9 +96,9 @@ macro_rules! regulate {
 regulate!(1, 2);
 regulate!(2, 4);
 
-/// To stand a pendulum on its head, which hangs at `q = 0`: seen are the cosine and the sine of its angle and its velocity, and
-/// an action pays `cos q − 1 − r·v² − e·u²` of the angle from the top and the velocity that it finds, as that of Gymnasium's
-/// `Pendulum` does. It is never over.
+/// Swing-up of a pendulum that hangs at `q = 0`. The observation is the cosine and the sine of its angle and its velocity; the
+/// reward is `cos q − 1 − r·v² − e·u²` with the angle from the top and the velocity before the step, as in Gymnasium's `Pendulum`.
+/// Episodes do not terminate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwingUp {
     /// `r`, the weight of `v²`.
@@ -172,13 +172,13 @@ impl<T: Float + Elementary> Reference<T> for Sine {
     }
 }
 
-/// To follow a reference: seen are position and velocity, and those of the reference; a step pays
-/// `−(p·(q − q₀)² + r·(v − v₀)² + e·u²)`, and the episode is over beyond a distance.
+/// Tracking of a reference: the observation is position and velocity, and those of the reference; the reward is
+/// `−(p·(q − q₀)² + r·(v − v₀)² + e·u²)`, and the episode terminates beyond a distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Track<R> {
     /// The reference, observed without delay; a [`Sensor`](super::Sensor) measures it like all observations.
     pub reference: R,
-    /// Prices of distances from it, and the distance from it beyond which all is lost.
+    /// The weights of the deviations, and the distance beyond which the episode terminates.
     pub regulate: Regulate,
 }
 

@@ -44,7 +44,7 @@ impl Disturbance for NoDisturbance {
     }
 }
 
-/// White Gaussian noise of this intensity `W`, in (m/s²)²·s, in each degree of freedom by itself: an acceleration with the variance
+/// White Gaussian noise of intensity `W`, in (m/s²)²·s, independent in each degree of freedom: an acceleration with the variance
 /// `W/Δt` that is held through each step, so that the velocity takes up the variance `W` in a second, whatever the steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WhiteNoise(pub f64);

@@ -53,10 +53,10 @@ fn what_cannot_be_is_refused_with_the_name_the_value_and_what_is_allowed() {
     assert!(found.contains("ends of episodes") && few.is_empty(), "{found}");
 
     replay.insert(&rollout, &next, &serial).unwrap();
-    let stretches = replay.sample_sequences(draw, &mut Sequences::new(2, 21), &serial);
-    assert!(said(stretches).contains("no stretches of so many steps"));
-    let stretches = replay.sample_sequences(draw, &mut Sequences::new(2, 0), &serial);
-    assert!(said(stretches).contains("0 steps of a stretch"));
+    let sequences = replay.sample_sequences(draw, &mut Sequences::new(2, 21), &serial);
+    assert!(said(sequences).contains("no sequences of so many steps"));
+    let sequences = replay.sample_sequences(draw, &mut Sequences::new(2, 0), &serial);
+    assert!(said(sequences).contains("0 steps of a sequence"));
     let mut columns = batch.columns();
     columns.reward = &mut [];
     let ragged = replay.sample(draw, ahead, &mut columns, &serial);

@@ -58,7 +58,7 @@ fn compare(autoreset: Autoreset, operations: u64) {
             4..8 => {
                 let mut to = Sequences::new(2, 1 + dice.below(5) as usize);
                 match replay.sample_sequences(draw, &mut to, &serial) {
-                    Ok(()) => same_stretches(&naive, &to),
+                    Ok(()) => same_sequences(&naive, &to),
                     Err(_) => assert!(!begins(&naive, to.steps)),
                 }
             }
@@ -117,13 +117,13 @@ fn same_batch(naive: &Naive, batch: &Batch<f32, 2, 1>, ahead: Lookahead) {
     }
 }
 
-/// Whether a stretch of so many steps begins with a transition.
+/// Whether a sequence of so many steps begins with a transition.
 fn begins(naive: &Naive, steps: usize) -> bool {
     let end = (naive.first + naive.steps() + 1).saturating_sub(steps as u64) * ENVIRONMENTS as u64;
     naive.all().any(|(number, _)| number < end)
 }
 
-fn same_stretches(naive: &Naive, found: &Sequences<f32, 2, 1>) {
+fn same_sequences(naive: &Naive, found: &Sequences<f32, 2, 1>) {
     for (i, &number) in found.number.iter().enumerate() {
         let (mut goes_on, mut next) = (true, None);
         for t in 0..found.steps {

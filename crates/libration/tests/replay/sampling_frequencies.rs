@@ -54,7 +54,7 @@ fn every_transition_is_as_likely_also_among_steps_that_are_none() {
 }
 
 #[test]
-fn every_stretch_is_as_likely() {
+fn every_sequence_is_as_likely() {
     let replay = filled(Capacity::new(40, 10), 40);
     let mut to = Sequences::<f32, 2, 1>::new(BATCH, 9);
     let counts = counts(&replay, |draw| {
@@ -113,9 +113,9 @@ fn a_batch_follows_from_its_address_whatever_was_drawn_before_and_on_how_many_th
     let alone = sample(5, &Execution::serial());
     assert_ne!(sample(4, &three), alone);
     assert_eq!(sample(5, &three), alone);
-    let mut stretches = [Sequences::<f32, 2, 1>::new(9000, 5), Sequences::new(9000, 5)];
-    for (to, execution) in stretches.iter_mut().zip([&Execution::serial(), &three]) {
+    let mut sequences = [Sequences::<f32, 2, 1>::new(9000, 5), Sequences::new(9000, 5)];
+    for (to, execution) in sequences.iter_mut().zip([&Execution::serial(), &three]) {
         replay.sample_sequences(Draw { seed: 1, number: 9 }, to, execution).unwrap();
     }
-    assert_eq!(stretches[0], stretches[1]);
+    assert_eq!(sequences[0], sequences[1]);
 }

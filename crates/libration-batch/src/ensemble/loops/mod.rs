@@ -23,17 +23,18 @@ use rows::Memories;
 use run::Run;
 use setup::Layout;
 
-use super::{Assign, Ensemble, EnsembleError, Execution, GRAIN, Nobody, Observer, chunk, shares};
+use super::{
+    Assign, Ensemble, EnsembleError, Execution, GRAIN, NoObserver, Observer, chunk, shares,
+};
 
 /// Trajectories of a plant with `D` degrees of freedom under control.
 ///
-/// The bits of a trajectory follow from its own number, its start, the setup and the seed: not from the number of
-/// trajectories or threads, nor from how many steps are taken at a time.
+/// The bits of a trajectory depend on its number, its start, the setup and the seed. They do not depend on the number of
+/// trajectories or threads, or on the number of steps per call.
 ///
 /// ```
 /// use libration::State;
-/// use libration::analysis::{Feedback, Latency};
-/// use libration::control::Schedule;
+/// use libration::control::{Feedback, Latency, Schedule};
 /// use libration::control::clock::{Gaussian, Jittered};
 /// use libration::control::controller::StateFeedback;
 /// use libration::ensemble::{All, Execution, Loops, Setup};
@@ -160,7 +161,7 @@ where
     /// # Errors
     /// [`EnsembleError::Record`] if a recorded clock or delay ends before.
     pub fn advance(&mut self, steps: u64) -> Result<(), EnsembleError> {
-        self.run(steps, GRAIN, |_| None::<(u64, Nobody)>).map(|_| ())
+        self.run(steps, GRAIN, |_| None::<(u64, NoObserver)>).map(|_| ())
     }
 
     /// [`Loops::advance`] under the eyes of observers, as [`Ensemble::observe`] has them.

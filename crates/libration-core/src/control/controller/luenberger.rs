@@ -6,19 +6,19 @@ use crate::control::error::ensure_finite;
 use crate::control::{ControlError, Feedback, StateObserver};
 use crate::{Float, State};
 
-/// `u = −K_p·(q̂ − r) − K_d·v̂`, of a state that a Luenberger observer estimates from the position, which is all that is seen: the
-/// same in each degree of freedom.
+/// `u = −K_p·(q̂ − r) − K_d·v̂`, where a Luenberger observer estimates the state from the measured position; the same in each
+/// degree of freedom.
 ///
 /// It is the current observer of G. F. Franklin, J. D. Powell, M. L. Workman, *Digital Control of Dynamic Systems*, 3rd ed., section
-/// 8.2.4: what was foretold is corrected by what is seen before the command is computed, and what the command will do is foretold
-/// with the model's own step. It does not know of latencies.
+/// 8.2.4: the measurement corrects the prediction before the command is computed, and the step of the model predicts the next state.
+/// It does not model latencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Luenberger<const D: usize> {
     /// The gains of the feedback.
     pub gains: Feedback,
-    /// The model and how it is corrected.
+    /// The model and its correction gains.
     pub observer: StateObserver,
-    /// `r`, where it is to be, and where the model is linear about.
+    /// `r`, the target position, about which the model is linearised.
     pub target: [f64; D],
 }
 

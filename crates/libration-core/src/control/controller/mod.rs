@@ -19,18 +19,18 @@ use crate::{Float, State};
 
 /// Computes commands: an acceleration in each degree of freedom.
 pub trait Controller<T: Float, const D: usize>: Copy + Send + Sync {
-    /// Whether it commands at all.
+    /// Whether it computes commands.
     #[doc(hidden)]
     const ACTS: bool = true;
 
     /// The memory per trajectory from sample to sample.
     type Memory: Memory<T>;
 
-    /// Whether its numbers are those of a controller that samples every `period` seconds; `Loops`
-    /// ask before they begin.
+    /// Checks the parameters for samples every `period` seconds; `Loops` call it before they
+    /// begin.
     ///
     /// # Errors
-    /// The first that is not.
+    /// The first invalid parameter.
     fn check(&self, period: f64) -> Result<(), ControlError> {
         let _ = period;
         Ok(())
@@ -39,8 +39,8 @@ pub trait Controller<T: Float, const D: usize>: Copy + Send + Sync {
     /// The memory before the first sample of a trajectory that begins at `state`.
     fn start(&self, state: &State<T, D>) -> Self::Memory;
 
-    /// The command that follows from what is observed, `period` seconds after the last sample. It branches on
-    /// nothing but what `self` holds, and is `#[inline(always)]`, or its loops are no vectors.
+    /// The command for an observation `period` seconds after the last sample. An implementation branches on values
+    /// of `self` only and is `#[inline(always)]`; otherwise its loops are not vectorised.
     fn command(&self, memory: &mut Self::Memory, observed: &State<T, D>, period: T) -> [T; D];
 }
 

@@ -4,10 +4,10 @@ use super::{Arrival, Delay};
 use crate::Float;
 use crate::control::{ControlError, Latency, StartAddress};
 
-/// Latencies of the command, and of what is observed, for each trajectory, of any length: steps split where the loop looks and
-/// where commands arrive.
+/// Latencies of commands and of observations per trajectory, of any length: steps split at samples and at arrivals of
+/// commands.
 ///
-/// The command that is computed at the beginning of a step follows from the state as it was one latency earlier.
+/// The command computed at the beginning of a step follows from the state one latency earlier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Latencies<'a> {
     commands: &'a [Latency],
@@ -20,7 +20,7 @@ impl<'a> Latencies<'a> {
         Latencies { commands, observations: &[] }
     }
 
-    /// With latencies of what each observes besides: one for every command's.
+    /// Adds latencies of the observations, as many as of commands.
     pub fn with_observations(self, observations: &'a [Latency]) -> Self {
         Latencies { observations, ..self }
     }
