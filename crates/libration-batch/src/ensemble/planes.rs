@@ -26,7 +26,7 @@ pub(super) struct Planes<T, const D: usize> {
 }
 
 impl<T: Pod, const D: usize> Planes<T, D> {
-    /// Zeros, in memory that nobody has touched: pages come to be where they are first written.
+    /// Zeros in untouched memory: the system allocates a page when it is first written.
     ///
     /// # Errors
     /// If there is not so much memory.

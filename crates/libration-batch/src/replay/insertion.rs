@@ -194,7 +194,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         copy_all(&mut start[..tail.len()], tail, execution);
     }
 
-    /// Marks what ended and what is no transition; gives how many of the latter there are.
+    /// Marks ends of episodes and cells without a transition. Returns the number of the latter.
     fn mark(&mut self, head: u64, rollout: &Rollout<T, O, D>) -> u64 {
         let n = self.capacity.environments;
         let mut idle = vec![0; n];
@@ -225,7 +225,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         nones
     }
 
-    /// Keeps what was seen at ends; gives how many environments were lost.
+    /// Stores the final observations. Returns the number of lost environments.
     fn end(&mut self, head: u64, rollout: &Rollout<T, O, D>) -> u64 {
         let mut lost = 0;
         for (i, end) in (self.marks.ends.end..).zip(rollout.finals()) {

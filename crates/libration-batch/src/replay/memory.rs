@@ -15,7 +15,7 @@ use crate::ensemble::{Buffer, Pages};
 const MAGIC: u64 = u64::from_le_bytes(*b"LIBRTNRB");
 /// The version of the format.
 const VERSION: u64 = 1;
-/// Where the two records of how far it is begin: lines of the cache of their own.
+/// The offsets of the two records of the counters, in separate cache lines.
 const RECORDS: [usize; 2] = [512, 1024];
 
 /// The counters of a replay buffer.

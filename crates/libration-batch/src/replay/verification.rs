@@ -8,7 +8,7 @@ use super::replay_buffer::{END, NONE};
 use super::{Replay, ReplayError};
 
 impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
-    /// Marks what a reset parted: whoever died between the end and its mark would part it again.
+    /// Marks transitions before a reset: the process may have died between the end and its mark.
     pub(super) fn mark_parted(&mut self) {
         let parted = |i: u64| {
             let (place, n) = self.width.divide(self.place(i));

@@ -91,7 +91,7 @@ impl Distribution {
 mod tests {
     use super::*;
 
-    /// The mean and the variance of what is drawn, and its smallest and largest.
+    /// The mean, the variance, the smallest and the largest of the draws.
     fn drawn(distribution: Distribution) -> [f64; 4] {
         const COUNT: u64 = 1 << 16;
         let episode = |number| Episode { seed: 11, environment: 3, number };

@@ -16,10 +16,10 @@ pub struct RandomLatency {
 /// Error of a table of latencies.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum LatencyTableError {
-    /// There is nothing to draw from.
+    /// The table is empty.
     #[error("the table has no latencies")]
     Empty,
-    /// A latency is none.
+    /// A latency is invalid.
     #[error("a latency is {0} steps; it must be at least 0 and at most {most}", most = Latency::MOST_STEPS)]
     Latency(f64),
     /// The matrix of second moments would be too large.
@@ -35,10 +35,10 @@ pub enum LatencyTableError {
         /// The number of second moments.
         moments: usize,
     },
-    /// A probability is none.
+    /// A probability is invalid.
     #[error("a probability is {0}; it must be a number from 0 to 1")]
     Probability(f64),
-    /// The probabilities are not those of a table.
+    /// The probabilities do not sum to 1.
     #[error("the probabilities sum to {0}; they must sum to 1, within 10⁻¹²")]
     Sum(f64),
 }
@@ -47,7 +47,7 @@ pub enum LatencyTableError {
 const MOST_MOMENTS: usize = 600;
 
 impl RandomLatency {
-    /// Latencies in steps with their probabilities, drawn anew for every step but with probability `hold`.
+    /// Latencies in steps with their probabilities. A latency is redrawn for every step, except with probability `hold`.
     ///
     /// # Errors
     /// A [`LatencyTableError`].
@@ -93,7 +93,7 @@ impl RandomLatency {
         self.table.iter().map(|(latency, _)| latency.whole() as usize).max().unwrap_or(0)
     }
 
-    /// The numbers that a step has to know: the state, the commands that wait and, where steps split, the one that acts.
+    /// The size of the augmented state: the state, the commands in transit and, if steps split, the acting one.
     pub fn step_size(&self) -> usize {
         2 + self.longest() + usize::from(self.splits_steps())
     }

@@ -1,9 +1,9 @@
-//! Steps of a linear system without error.
+//! Exact steps of a linear system.
 
 use super::Integrator;
 use crate::{Model, Scalar, State, System};
 
-/// The flow of a linear system, also under a command that is held: the exact sampled-data step.
+/// The flow of a linear system, also under a held command: the exact sampled-data step.
 ///
 /// Its Taylor series, with as many terms as `f64` can tell, over as many equal parts of the step as it converges well
 /// in. A constant in the acceleration, such as a command, is in the series too, so that loops under zero-order hold

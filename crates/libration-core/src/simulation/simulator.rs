@@ -96,7 +96,7 @@ where
         Ok(())
     }
 
-    /// The trajectory as it stands.
+    /// The current sample of the trajectory.
     #[inline(always)]
     pub fn sample(&self) -> Sample<S, D> {
         Sample { step: self.step, time: self.time_of(self.step), state: self.state }

@@ -1,4 +1,4 @@
-//! A system under a command.
+//! Systems under a held command.
 
 use super::System;
 use crate::array::each;

@@ -7,7 +7,7 @@ use libration_core::{Float, State};
 use super::{Lanes, Observer};
 
 /// Keeps, for every trajectory, the mean square of its distance from a solution that is known, over the
-/// steps that it sees: the squared ℓ² error of positions, and of velocities.
+/// observed steps: the squared ℓ² error of positions, and of velocities.
 #[derive(Clone, Debug)]
 pub struct MeanSquareError<F> {
     first: usize,
@@ -29,7 +29,7 @@ impl<F> MeanSquareError<F> {
     }
 
     /// The mean squares of each trajectory, in order: of positions, and of velocities; not numbers where
-    /// nothing was seen.
+    /// nothing was observed.
     pub fn means(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         let pairs = self.squares.iter().zip(&self.seen);
         pairs.map(|(squares, &seen)| squares.map(|sum| sum / seen as f64))

@@ -150,7 +150,7 @@ fn all_finite<T: Float>(
     Err(ControlError { name, index: Some(index), value, allowed }.into())
 }
 
-/// Number `k` of neighbouring environments, from `[k, n]`. Beyond the last environment it does not matter what is done.
+/// Number `k` of neighbouring environments, from `[k, n]`. Values beyond the last environment are arbitrary.
 #[inline(always)]
 fn lanes<T: Float, const W: usize>(numbers: &[T], place: StepIndex, k: usize) -> [T; W] {
     let row = &numbers[k * place.environments..][place.environment..place.environments];

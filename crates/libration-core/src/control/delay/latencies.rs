@@ -35,7 +35,7 @@ impl<'a> Latencies<'a> {
 /// In which an age has two digits: every float type holds whole numbers up to it.
 const DIGIT: u64 = 128;
 
-/// The steps between a look and its command's arrival, each at the part of the step at which it happens.
+/// The steps between a sample and the arrival of its command, with the fractions of these steps.
 fn age((command, observation): (Latency, Latency)) -> u64 {
     command.whole() + observation.whole() + u64::from(observation.part() > 0.0)
 }

@@ -15,13 +15,13 @@ pub use schedule::{Event, Schedule, ScheduleError};
 use super::{ControlError, Memory, StartAddress};
 use crate::Float;
 
-/// Tells which command acts.
+/// A delay: determines which command acts.
 ///
-/// Either all trajectories share a [`Schedule`], or in each step at most one command arrives, in each trajectory its own.
+/// Either all trajectories share a [`Schedule`], or at most one command arrives per step and trajectory.
 pub trait Delay<T: Float>: Copy + Send + Sync {
     /// Whether there is one schedule for all.
     const SHARED: bool = false;
-    /// In how many places a step can split: where a command arrives, and where the loop looks.
+    /// The number of places at which a step can split: arrivals of commands, and samples.
     const SPLITS: usize;
 
     /// The memory per trajectory.
@@ -29,10 +29,10 @@ pub trait Delay<T: Float>: Copy + Send + Sync {
     /// The values that all trajectories share at a step.
     type Beat: Copy;
 
-    /// Whether its numbers are those of a delay; `Loops` ask before they begin.
+    /// Checks the parameters; `Loops` call it before they begin.
     ///
     /// # Errors
-    /// The first that is not.
+    /// The first invalid parameter.
     fn check(&self) -> Result<(), ControlError> {
         Ok(())
     }
@@ -83,10 +83,10 @@ pub struct Arrival<T> {
     pub fresh: bool,
     /// The age in steps; a command older than the longest latency never arrives.
     pub age: u32,
-    /// After which part of the step it arrives; at least 0 and below 1. It is 0 unless steps split.
+    /// The fraction of the step after which it arrives, at least 0 and below 1. It is 0 unless steps split.
     pub part: T,
-    /// After which part of the step the loop looks, and a command is computed that is of age 0 in this step; at least 0 and below 1.
-    /// It is 0 unless steps split in two places, and what arrives in the same step is older.
+    /// The fraction of the step after which the loop samples and computes the command of age 0; at least 0 and below 1.
+    /// It is 0 unless steps split in two places; a command that arrives in the same step is older.
     pub looks: T,
 }
 
