@@ -7,7 +7,7 @@ use libration_core::Float;
 
 use super::capacity::Fields;
 use super::memory::Marks;
-use super::replay_buffer::{CUT, END, NONE, OVER};
+use super::replay_buffer::{END, NONE, TERMINATED, TRUNCATED};
 use super::{Replay, ReplayError};
 use crate::ensemble::Execution;
 use crate::rl::{Layout, Plan, Rollout};
@@ -207,11 +207,12 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
             match rollout.truncated().get(t * n..(t + 1) * n) {
                 Some(cut) => {
                     let both = over.iter().zip(cut);
-                    let flags = |(over, cut)| over * OVER + cut * CUT + (over | cut) * END;
+                    let flags =
+                        |(over, cut)| over * TERMINATED + cut * TRUNCATED + (over | cut) * END;
                     to.iter_mut().zip(both).for_each(|(to, both)| *to = flags(both));
                 }
                 None => {
-                    to.iter_mut().zip(over).for_each(|(to, over)| *to = over * (OVER + END));
+                    to.iter_mut().zip(over).for_each(|(to, over)| *to = over * (TERMINATED + END));
                 }
             }
             if rollout.pauses() {

@@ -10,9 +10,9 @@ use super::sum_tree::Sums;
 use super::{Capacity, ReplayError};
 
 /// The episode was over after the transition: terminated.
-pub(super) const OVER: u8 = 1;
+pub(super) const TERMINATED: u8 = 1;
 /// Flag of a truncated episode.
-pub(super) const CUT: u8 = 2;
+pub(super) const TRUNCATED: u8 = 2;
 /// Flag of a transition whose next observation is stored with the ends.
 pub(super) const END: u8 = 4;
 /// No transition: the environment stood still, or was lost.
@@ -234,7 +234,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
         if flags & END == 0 {
             return None;
         }
-        let place = self.place_of(step, n, flags & (OVER | CUT) == 0);
+        let place = self.place_of(step, n, flags & (TERMINATED | TRUNCATED) == 0);
         let i = self.first_from(place);
         (i < self.marks.ends.end && self.place(i) == place)
             .then(|| self.end_seen()[(i % self.capacity.ends as u64) as usize])

@@ -7,7 +7,7 @@ use libration_core::Float;
 use libration_core::control::error::ensure_probability;
 
 use super::memory::Marks;
-use super::replay_buffer::{CUT, END, NONE, OVER};
+use super::replay_buffer::{END, NONE, TERMINATED, TRUNCATED};
 use super::{Columns, Draw, Replay, ReplayError};
 use crate::ensemble::Execution;
 
@@ -195,9 +195,9 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
             if let Some(apart) = self.end_of(steps[i], places[i], mark) {
                 batch.next_observation[i] = apart;
             }
-            batch.terminated[i] = mark & OVER;
-            batch.truncated[i] = (mark & CUT) / CUT;
-            batch.discount[i] = if mark & OVER != 0 { T::zero() } else { gamma };
+            batch.terminated[i] = mark & TERMINATED;
+            batch.truncated[i] = (mark & TRUNCATED) / TRUNCATED;
+            batch.discount[i] = if mark & TERMINATED != 0 { T::zero() } else { gamma };
         }
     }
 
@@ -237,9 +237,9 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
             let apart = self.end_of(step + taken - 1, l, mark);
             batch.next_observation[i] = apart.unwrap_or_else(|| seen[row * width + l]);
             batch.reward[i] = reward;
-            batch.terminated[i] = mark & OVER;
-            batch.truncated[i] = (mark & CUT) / CUT;
-            batch.discount[i] = if mark & OVER != 0 { T::zero() } else { factor };
+            batch.terminated[i] = mark & TERMINATED;
+            batch.truncated[i] = (mark & TRUNCATED) / TRUNCATED;
+            batch.discount[i] = if mark & TERMINATED != 0 { T::zero() } else { factor };
         }
     }
 }

@@ -3,7 +3,7 @@
 use bytemuck::Pod;
 use libration_core::Float;
 
-use super::replay_buffer::{CUT, END, NONE, OVER};
+use super::replay_buffer::{END, NONE, TERMINATED, TRUNCATED};
 use super::{Draw, Replay, ReplayError};
 use crate::ensemble::Execution;
 
@@ -135,7 +135,8 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
             goes_on &= flags & NONE == 0;
             (to.observation[t], to.action[t]) = (self.observation()[cell], self.action()[cell]);
             to.reward[t] = self.reward()[cell];
-            (to.terminated[t], to.truncated[t]) = (flags & OVER, (flags & CUT) / CUT);
+            (to.terminated[t], to.truncated[t]) =
+                (flags & TERMINATED, (flags & TRUNCATED) / TRUNCATED);
             to.mask[t] = u8::from(goes_on);
             if goes_on {
                 *to.next_observation = self.next(step + t as u64, l, flags);
