@@ -1,4 +1,4 @@
-//! Takes down which compiler builds this, for the page that describes the machine.
+//! Records the version of the compiler, for the description of the machine.
 
 use std::process::Command;
 

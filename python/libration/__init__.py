@@ -1,7 +1,7 @@
-"""Libration: what integrators, time steps, floats, latency, jitter and clocks do to a simulated system.
+"""Libration: effects of integrator, time step, float type, latency, jitter and clocks on a simulated system.
 
-:func:`simulate`, :class:`Ensemble`, :func:`analyze`, :func:`advise` and :func:`run_lab` are what the program does on the command line. The
-engine's environments are :class:`Environments`; with Gymnasium installed they are registered as ``libration/Oscillator-v0``,
+:func:`simulate`, :func:`analyze`, :func:`advise` and :func:`run_lab` correspond to the commands of the program; :class:`Ensemble` steps many
+trajectories. :class:`Environments` are the environments of the engine. With Gymnasium installed they are registered as ``libration/Oscillator-v0``,
 ``libration/Pendulum-v0`` and ``libration/Duffing-v0``, for ``gymnasium.make`` and ``gymnasium.make_vec``.
 """
 

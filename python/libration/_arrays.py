@@ -1,4 +1,4 @@
-"""What the engine asks Python to do with arrays where that is rare."""
+"""Conversions of arrays for the engine, outside the fast path."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ import numpy as np
 
 
 def actions(given: Any, num_envs: int, dtype: str) -> np.ndarray:
-    """Make actions an array that the engine can read. What it can read as it is does not come here.
+    """Return actions as an array for the engine. Arrays that the engine reads directly bypass this function.
 
     Raises
     ------
     TypeError
-        If they are no real numbers.
+        If they are not real numbers.
     ValueError
-        If there are more or fewer than one for each environment.
+        If there is not exactly one per environment.
     """
     if not isinstance(given, np.ndarray) and hasattr(given, "__dlpack__"):
         try:
             array = np.from_dlpack(given)
         except RuntimeError as error:
-            # As NumPy says of numbers that it has not.
+            # NumPy lacks this type.
             raise TypeError(f"actions are of a type that NumPy has not: {error}") from error
     else:
         array = np.asarray(given)
     if isinstance(given, np.ma.MaskedArray):
-        raise TypeError("actions are a masked array, but all of them must be there: use filled()")
+        raise TypeError("actions are a masked array, but all values must be present; help: use filled()")
     if array.dtype.kind not in "fiu":
         raise TypeError(
             f"actions have dtype {array.dtype}, but they must be real numbers: "
@@ -36,7 +36,7 @@ def actions(given: Any, num_envs: int, dtype: str) -> np.ndarray:
         raise ValueError(
             f"actions have shape {array.shape}, but it must be ({num_envs}, 1) or ({num_envs},)"
         )
-    # What is too large for the dtype becomes infinite, and is refused as such.
+    # Values too large for the dtype become infinite; the engine rejects them.
     with np.errstate(over="ignore"):
         return array.astype(dtype, order="C")
 
@@ -48,23 +48,23 @@ def infos(
     seen: np.ndarray,
     lost: list[bool],
 ) -> dict[str, Any]:
-    """Tell of episodes that ended, as Gymnasium's vector environments do."""
-    told: dict[str, Any] = {}
+    """Return the infos of ended episodes, as in Gymnasium's vector environments."""
+    info: dict[str, Any] = {}
     ended = np.zeros(num_envs, dtype=np.bool_)
     ended[environments] = True
     if any(lost):
         marks = np.zeros(num_envs, dtype=np.bool_)
         marks[environments] = lost
-        told = {"lost": marks, "_lost": marks.copy()}
+        info = {"lost": marks, "_lost": marks.copy()}
     if not same_step:
-        return told
+        return info
     final_obs = np.full(num_envs, None, dtype=object)
     for n, row in zip(environments, seen):
         final_obs[n] = row
-    # What would be told of the end in the other modes is told of it here.
+    # In the other modes these infos belong to the end of the episode, too.
     return {
         "final_obs": final_obs,
         "_final_obs": ended,
-        "final_info": told,
+        "final_info": info,
         "_final_info": ended.copy(),
     }

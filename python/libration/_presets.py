@@ -1,4 +1,4 @@
-"""The environments that there are, and what each is unless somebody wants it otherwise."""
+"""Default settings of the environments."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ class Preset:
     """An environment: a system of the catalogue, a task, and numbers."""
 
     name: str
-    """As in ``libration/NAME-v0``."""
+    """Name in ``libration/NAME-v0``."""
     system: str
     task: str
     dt: float
-    """Seconds from action to action."""
+    """Time between two actions in s."""
     max_action: float
     """Largest acceleration."""
     max_episode_steps: int
     start_position: tuple[float, float]
     start_velocity: tuple[float, float]
     seen: tuple[str, ...]
-    """Names of what is observed."""
+    """Names of the observed numbers."""
     parameters: Mapping[str, float] = field(default_factory=dict)
-    """Parameters of the system that are not those of the catalogue, and all that it has."""
+    """Parameters of the system, in place of those of the catalogue."""
     costs: Mapping[str, float] = field(default_factory=dict)
     """Numbers of the task, in the order of the engine."""
 

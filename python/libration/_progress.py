@@ -1,4 +1,4 @@
-"""How far long work is, in a terminal or a notebook."""
+"""Progress of long work, in a terminal or a notebook."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import sys
 from typing import Any, Callable, Union
 
 Progress = Union[bool, None, Callable[[float, str], Any]]
-"""``True`` shows how far it is, ``False`` does not, ``None`` does where somebody can see it; a function is called with the part that is done,
-from 0 to 1, and what is being done."""
+"""``True`` shows progress, ``False`` does not, ``None`` does in a terminal or notebook. A function receives the fraction done, from 0 to 1,
+and a description."""
 
 
-class Shown:
-    """Shows how far work is, and takes that away again."""
+class ProgressDisplay:
+    """Display of progress, removed at the end."""
 
     def __init__(self, progress: Progress) -> None:
         if not (progress is None or isinstance(progress, bool) or callable(progress)):
@@ -30,7 +30,7 @@ class Shown:
             elif progress or sys.stderr.isatty():
                 self._show = self._in_terminal
 
-    def __enter__(self) -> Shown:
+    def __enter__(self) -> ProgressDisplay:
         return self
 
     def __exit__(self, *_: Any) -> None:
@@ -42,12 +42,12 @@ class Shown:
 
             self._display.update(HTML(""))
 
-    def tell(self, part: float, what: str) -> None:
+    def update(self, part: float, what: str) -> None:
         if self._show is not None:
             self._show(min(max(part, 0.0), 1.0), what)
 
     @property
-    def wanted(self) -> bool:
+    def enabled(self) -> bool:
         return self._show is not None
 
     def _in_terminal(self, part: float, what: str) -> None:

@@ -1,4 +1,4 @@
-"""Pictures of the systems, drawn with NumPy."""
+"""Pictures of the systems, rendered with NumPy."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ BODY = (31, 119, 180)
 
 
 class Canvas:
-    """A square picture of a piece of the plane, with soft edges."""
+    """A square picture of part of the plane, with antialiased edges."""
 
     def __init__(self, half_width: float) -> None:
         self.scale = SIZE / (2 * half_width)
@@ -24,7 +24,7 @@ class Canvas:
         self.pixels[:] = PAPER
 
     def _lay(self, distance: np.ndarray, colour: tuple[int, int, int]) -> None:
-        """Colour what lies within: where the distance from the edge, in the plane, is below zero."""
+        """Fill the region whose signed distance from its edge is negative."""
         cover = np.clip(0.5 - distance * self.scale, 0.0, 1.0)[..., None]
         self.pixels += cover * (np.array(colour, dtype=float) - self.pixels)
 
@@ -36,7 +36,7 @@ class Canvas:
         self._lay(np.maximum(across, up), colour)
 
     def line(self, points: np.ndarray, width: float, colour: tuple[int, int, int]) -> None:
-        """Lines from point to point, ``(n, 2)``."""
+        """Draw a polyline through points, ``(n, 2)``."""
         nearest = np.full(self.x.shape, np.inf)
         for (ax, ay), (bx, by) in zip(points[:-1], points[1:]):
             dx, dy = bx - ax, by - ay
@@ -50,7 +50,7 @@ class Canvas:
 
 
 def picture(preset: Preset, position: float, velocity: float) -> np.ndarray:
-    """The system in a state: ``(300, 300, 3)``, of ``uint8``."""
+    """Return a picture of the system in a state, ``(300, 300, 3)`` of ``uint8``."""
     if not np.isfinite(position):
         return Canvas(1.0).array()
     return {"pendulum": _pendulum, "oscillator": _spring, "duffing": _well}[preset.system](position)

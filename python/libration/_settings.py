@@ -1,4 +1,4 @@
-"""From keywords to what the engine is told."""
+"""Conversion of keywords to settings of the engine."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from ._presets import Preset
 AUTORESET = ("NextStep", "SameStep", "Disabled")
 
 MOST_SUBSTEPS = 1000
-"""As many are tried where latencies are to be whole numbers of them."""
+"""Largest number of substeps in the search for whole latencies."""
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """What to say about a name that is none of the known ones."""
+    """Return a hint for an unknown name."""
     known = sorted(known)
     near = difflib.get_close_matches(name, known, n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
@@ -25,14 +25,14 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 def number(name: str, value: Any, allowed: str, holds=math.isfinite) -> float:
-    """``value`` as a float.
+    """Return ``value`` as a float.
 
     Raises
     ------
     TypeError
-        If it is no real number.
+        If it is not a real number.
     ValueError
-        If it is not what is allowed.
+        If it is not allowed.
     """
     if getattr(value, "shape", None) == () and hasattr(value, "item"):
         # An array of no dimensions is a number.
@@ -54,7 +54,7 @@ def positive(name: str, value: Any) -> float:
 
 
 def count(name: str, value: Any, least: int, most: int) -> int:
-    """``value`` as an int between two ends."""
+    """Return ``value`` as an int in a range."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
         raise TypeError(f"{name} must be an integer, not {type(value).__name__}")
     number = int(value)
@@ -64,30 +64,30 @@ def count(name: str, value: Any, least: int, most: int) -> int:
 
 
 def is_several(value: Any) -> bool:
-    """Whether it is several things and none of them a letter."""
+    """Whether ``value`` is a sequence, but not a string or bytes."""
     return isinstance(value, Sequence) and not isinstance(value, (str, bytes, bytearray))
 
 
 def ends(name: str, value: Any, least: float = -math.inf) -> tuple[float, float]:
-    """A number, or the two ends between which it is drawn for every episode."""
+    """Return the ends of a range; a number has two equal ends."""
     if getattr(value, "shape", ()) != ():
         value = value.tolist()
     pair = value if is_several(value) else (value, value)
     if len(pair) != 2:
-        raise ValueError(f"{name} has {len(pair)} numbers, but it must be one, or two ends")
+        raise ValueError(f"{name} has {len(pair)} numbers, but it must have one or two")
     allowed = "finite" if least == -math.inf else f"finite and at least {least:g}"
     low, high = (number(name, x, allowed, lambda x: least <= x < math.inf and x > -math.inf) for x in pair)
     if low > high:
-        raise ValueError(f"{name} is from {low!r} to {high!r}, but it must rise")
+        raise ValueError(f"{name} is from {low!r} to {high!r}, but low must be at most high")
     return low, high
 
 
 def law(name: str, value: Any) -> tuple[str, float]:
-    """A standard deviation, or a law and its standard deviation."""
+    """Return a distribution and its standard deviation."""
     if value is None:
         return "gaussian", 0.0
     if hasattr(value, "rms"):
-        # A law of libration.
+        # A distribution of :mod:`libration.perturbations`.
         value = (type(value).__name__.lower(), value.rms)
     if is_several(value):
         if len(value) != 2 or not isinstance(value[0], str):
@@ -102,13 +102,13 @@ def law(name: str, value: Any) -> tuple[str, float]:
 
 
 def _steps(seconds: tuple[float, float], dt: float) -> list[int] | None:
-    """Latencies in steps of ``dt``, if they are whole numbers of them."""
-    # A part of the shortest of steps is none, and there may be more steps than the largest float.
+    """Return latencies in steps of ``dt``, if they are whole numbers."""
+    # ``dt`` may underflow, and the number of steps may overflow.
     exact = [x / dt if dt > 0 else math.inf for x in seconds]
     if math.inf in exact:
         return None
     whole = [round(x) for x in exact]
-    # Decimals are doubles to 1e-16, and so is their quotient to a few of it; nobody types a latency of steps and a billionth.
+    # The quotient of two doubles is accurate to some 1e-16; 1e-9 of a step is no intended fraction.
     near = all(abs(x - n) <= 1e-9 * max(1.0, abs(x)) for x, n in zip(exact, whole))
     return whole if near else None
 
@@ -116,7 +116,7 @@ def _steps(seconds: tuple[float, float], dt: float) -> list[int] | None:
 def delays(
     dt: float, substeps: int | None, named: dict[str, tuple[float, float]]
 ) -> tuple[int, dict[str, list[int]]]:
-    """The number of substeps, and latencies as numbers of them."""
+    """Return the number of substeps, and latencies in substeps."""
     tried = range(1, MOST_SUBSTEPS + 1) if substeps is None else (substeps,)
     for parts in tried:
         found = {name: _steps(seconds, dt / parts) for name, seconds in named.items()}
@@ -168,16 +168,16 @@ OPTIONS = (
 )
 
 CATALOGUE = {name: tuple(entry[0] for entry in all) for name, _, _, _, all in _systems()}
-"""The parameters of each system."""
+"""Parameters of each system."""
 
 
 def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
-    """What the engine is told of an environment.
+    """Return the settings of environments in the format of the engine.
 
     Raises
     ------
     TypeError, ValueError
-        Of the first keyword that cannot be, with its name, its value and what is allowed.
+        For the first invalid keyword; the message has its name, its value and the allowed values.
     """
     given = dict(given)
     parameters = given.pop("parameters")
@@ -185,7 +185,7 @@ def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
     taken = set(of_system) | set(preset.costs)
     known = set(OPTIONS) | taken
     for name in parameters:
-        # An option that comes here is one of other classes: here it would do nothing.
+        # An option in ``parameters`` belongs to another class and has no effect here.
         if name not in taken:
             raise TypeError(f"unexpected keyword argument {name!r}: {nearest(name, known)}")
     system = {name: parameters[name] for name in of_system if name in parameters}

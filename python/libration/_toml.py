@@ -1,4 +1,4 @@
-"""Settings as the text that the program reads from files."""
+"""Conversion of settings to TOML."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from . import _native
 
 
 def text_of(name: str, settings: Any) -> str:
-    """The text of settings: of a dictionary, or of the file of that path; nothing if there are none."""
+    """Return settings as TOML: those of a dictionary or of a file; an empty string for None."""
     if settings is None:
         return ""
     if isinstance(settings, (str, os.PathLike)):
@@ -64,5 +64,5 @@ def _value(key: str, value: Any) -> str:
 
 
 def _string(text: str) -> str:
-    # Strings of TOML are those of JSON, but for characters that JSON writes as pairs.
+    # TOML strings equal JSON strings, except for characters that JSON writes as surrogate pairs.
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

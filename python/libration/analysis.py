@@ -1,4 +1,4 @@
-"""What theory says of a step, and what a loop or a simulation can afford."""
+"""Analysis of a step, and limits of a loop or a simulation."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any, Mapping, Sequence
 
 from . import _native
-from ._asked import coordinates, told_loop, told_step, whole
-from ._named import named
-from ._progress import Progress, Shown
+from ._requests import coordinates, loop_request, step_request, whole
+from ._keywords import check_keywords
+from ._progress import Progress, ProgressDisplay
 from ._settings import number
 from ._toml import text_of
 from .perturbations import LQR, PD, PID, Controller, Observer, law, numbers
@@ -21,7 +21,7 @@ __all__ = ["Advice", "Analysis", "advise", "analyze"]
 
 
 class Answer(Mapping[str, Any]):
-    """An answer of many parts, each had by its name: ``answer["trace"]`` or ``answer.trace``."""
+    """A mapping of named results: ``answer["trace"]`` or ``answer.trace``."""
 
     def __init__(self, parts: dict[str, Any]) -> None:
         self._parts = parts
@@ -37,10 +37,10 @@ class Answer(Mapping[str, Any]):
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
-            # What copies and pickles ask for before there are any parts.
+            # Copies and pickles read such attributes before ``_parts`` exists.
             raise AttributeError(name)
         if name not in self._parts:
-            raise AttributeError(f"{type(self).__name__} has no part {name!r}: there are {', '.join(self)}")
+            raise AttributeError(f"{type(self).__name__} has no part {name!r}; expected one of {', '.join(self)}")
         return self._parts[name]
 
     def __dir__(self) -> list[str]:
@@ -67,44 +67,44 @@ def _shown(value: Any) -> str:
 
 
 class Analysis(Answer):
-    """What theory says of one step: the parts are the keys of ``libration analyze --json``.
+    """Analysis of one step, with the keys of ``libration analyze --json``.
 
-    ``spectral_radius`` and all that is named without a loop is of one step of the plant without feedback; the loop has
-    ``closed_loop_spectral_radius``, and with jitter or losses ``mean_square_growth``. ``note``, where there is one, says what
-    must be known of the numbers.
+    ``spectral_radius`` and all keys without ``closed_loop`` belong to one step of the plant without feedback. The loop has
+    ``closed_loop_spectral_radius``, and with jitter or losses ``mean_square_growth``. ``note`` is a restriction of the numbers,
+    if there is one.
     """
 
 
 class Advice(Answer):
-    """What can be afforded: the parts are the keys of ``libration advise --json``, ``loop`` among them."""
+    """Limits of a loop or a simulation, with the keys of ``libration advise --json``, ``loop`` among them."""
 
     holds: bool
-    """Whether the loop stands and tolerates all that is stated, and an integrator is accurate enough."""
+    """Whether the loop is stable and within the tolerance with all stated values, and an integrator is accurate enough."""
     asked: str
-    """What was asked, as the file that ``libration advise --config`` reads."""
+    """The request, as a file for ``libration advise --config``."""
     page: str | None
-    """A page with all of it and a map of stability, as HTML, if one was asked for."""
+    """An HTML page with a stability map, with ``page=True``."""
 
     def __init__(self, parts: dict[str, Any], holds: bool, asked: str, page: str | None) -> None:
         super().__init__(parts)
         self.holds, self.asked, self.page = holds, asked, page
 
     def save(self, path: str | Path) -> None:
-        """Write the page.
+        """Write the page to a file.
 
         Raises
         ------
         ValueError
-            If there is none.
+            If there is no page.
         OSError
-            If it cannot be written.
+            If the file cannot be written.
         """
         if self.page is None:
-            raise ValueError("there is no page: ask for it with page=True")
+            raise ValueError("there is no page; help: call advise with page=True")
         Path(path).write_text(self.page, encoding="utf-8")
 
 
-@named
+@check_keywords
 def analyze(
     system: str | System,
     *,
@@ -123,32 +123,32 @@ def analyze(
     loss: float | None = None,
     cost_weights: Sequence[float] | None = None,
 ) -> Analysis:
-    """Say what theory says of one step: what ``libration analyze`` does.
+    """Return the analysis of one step, as ``libration analyze`` prints it.
 
     Parameters
     ----------
     system, integrator, dt, q, v, feedback, latency, jitter, skew:
         As in :func:`~libration.simulate`.
     steps:
-        Over how many the largest energy drift is taken; of a linear system up to 10¹⁵.
+        Number of steps for the largest energy drift (linear systems: up to 10¹⁵).
     max_drift, max_amplitude, max_error:
-        Also say the largest ``dt`` that keeps to these (oscillator): a relative energy drift, a length in m, an error relative to the
+        Limits for which the largest ``dt`` is added (oscillator): a relative energy drift, a length in m, an error relative to the
         amplitude.
     loss:
-        The probability that a command is lost, at least 0 and below 1; the last command stays.
+        Probability that a command is lost, at least 0 and below 1; the previous command then stays active.
     cost_weights:
-        Weights of position², velocity² and command² of what the loop costs; by default of its energy.
+        Weights of position², velocity² and command² in the cost of the loop (default: those of its energy).
 
     Raises
     ------
     TypeError, ValueError
-        Before any work, with the name of what is wrong and what is allowed.
+        For an invalid value, before any work; the message has the name of the parameter and the allowed values.
     """
     system = _of_catalogue(system)
     criteria = {"max_drift": max_drift, "max_amplitude": max_amplitude, "max_error": max_error}
     answer = _native._analyze(
-        told_step(system, integrator, dt, q, v),
-        told_loop(feedback, latency, jitter, skew, loss, cost_weights),
+        step_request(system, integrator, dt, q, v),
+        loop_request(feedback, latency, jitter, skew, loss, cost_weights),
         {
             "steps": whole("steps", steps),
             **{
@@ -163,11 +163,11 @@ def analyze(
 def _of_catalogue(system: Any) -> System:
     system = known(system)
     if isinstance(system, CustomSystem):
-        raise ValueError("system is a custom one, but theory is derived for systems of the catalogue only")
+        raise ValueError("system is a CustomSystem; expected a system of the catalogue")
     return system
 
 
-@named
+@check_keywords
 def advise(
     system: str | System | None = None,
     controller: Controller | Sequence[float] | None = None,
@@ -187,35 +187,35 @@ def advise(
     page: bool = False,
     progress: Progress = None,
 ) -> Advice:
-    """Say what a loop or a simulation can afford: what ``libration advise`` does.
+    """Return the limits of a loop or a simulation, as ``libration advise`` prints them.
 
     Parameters
     ----------
     system:
         A name or a :class:`~libration.System`.
     controller:
-        The controller: gains of position and velocity, in s⁻² and s⁻¹ (in N/m and N·s/m where the system is given by ``m`` and ``k``),
+        Gains of position and velocity, in s⁻² and s⁻¹ (in N/m and N·s/m for a system with ``m`` and ``k``),
         :class:`~libration.PD`, :class:`~libration.PID`, :class:`~libration.LQR` or
-        :class:`~libration.Observer`; nobody if there is none.
+        :class:`~libration.Observer` (default: no loop).
     q, v:
-        Where it starts, or where a loop is held; by default the origin.
+        Start of a simulation, or operating point of a loop (default: the origin).
     period:
-        Between two samples, in s; by default 0.01.
+        Sample period in s (default: 0.01).
     latency, jitter, skew, loss:
-        What is stated to be wrong: a latency in s or :class:`~libration.Steps`, a law of sample times, the part by which the clock is slow,
-        the probability that a command is lost.
+        Imperfections of the loop: latency in s or :class:`~libration.Steps`, distribution of the sample period, relative clock error
+        (positive: slow), probability that a command is lost.
     cost_weights, deviation, tolerance, horizon:
-        Weights of position², velocity² and command² of what the loop costs; how far off, in m or rad, it must return from; what is
-        tolerated, as ``("energy", 1e-6)``, of ``energy``, ``phase``, ``trajectory`` or ``cost``; for how long, in s.
+        Weights of position², velocity² and command² in the cost; largest deviation from which the loop must return, in m or rad;
+        tolerance of ``energy``, ``phase``, ``trajectory`` or ``cost``, as ``("energy", 1e-6)``; duration in s.
     config:
-        A dictionary or the path of a file with all of that, in place of it.
+        A dictionary or the path of a request file, in place of all parameters above.
     page:
-        Whether a page with a map of stability is wanted, which takes longer.
+        Whether to add an HTML page with a stability map, which takes longer.
 
     Raises
     ------
     TypeError, ValueError
-        Before any work, with the name of what is wrong and what is allowed.
+        For an invalid value, before any work; the message has the name of the parameter and the allowed values.
     """
     keywords = {
         "system": system,
@@ -235,15 +235,15 @@ def advise(
     given = [name for name, value in keywords.items() if value is not None]
     if config is not None:
         if given:
-            raise TypeError(f"{given[0]} is given beside config, which takes its place")
+            raise TypeError(f"{given[0]} cannot be combined with config")
         asked = text_of("config", config)
     elif system is None:
-        raise TypeError("nothing is asked: it must be a system, or a config")
+        raise TypeError("system and config are missing; expected one of them")
     else:
         asked = text_of("config", _request(**keywords))
-    with Shown(progress) as shown:
-        tell = (lambda _, __, ___, what, done, total: shown.tell(done / max(total, 1), what)) if shown.wanted else None
-        answer, holds, html_page = _native._advise(asked, bool(page), tell)
+    with ProgressDisplay(progress) as display:
+        report = (lambda _, __, ___, what, done, total: display.update(done / max(total, 1), what)) if display.enabled else None
+        answer, holds, html_page = _native._advise(asked, bool(page), report)
     return Advice(json.loads(answer), holds, asked, html_page)
 
 
@@ -262,7 +262,7 @@ def _request(
     tolerance: Any,
     horizon: Any,
 ) -> dict[str, Any]:
-    """What is asked, as the file says it."""
+    """Return the request as the content of a request file."""
     system = _of_catalogue(system)
     at, speed = coordinates("q", q), coordinates("v", v)
     origin = [0.0] * len(at or speed or [0.0] * system.dimensions.start)
@@ -272,7 +272,7 @@ def _request(
         asked["asked"] = {"horizon": number("horizon", horizon, "a number")}
     if tolerance is not None:
         if isinstance(tolerance, str) or not isinstance(tolerance, Sequence) or len(tolerance) != 2:
-            raise TypeError(f"tolerance is {tolerance!r}, but it must be like ('energy', 1e-6)")
+            raise TypeError(f"tolerance is {tolerance!r}, but it must be a pair like ('energy', 1e-6)")
         asked["tolerance"] = {tolerance[0]: number("tolerance", tolerance[1], "a number")}
     loop: dict[str, Any] = {
         name: number(name, value, "a number", lambda _: True)

@@ -1,4 +1,4 @@
-"""Tasks of one's own: what the engine's environments pay, said by Python."""
+"""Environments whose rewards a Python function computes."""
 
 from __future__ import annotations
 
@@ -19,28 +19,27 @@ __all__ = ["CustomTaskVectorEnv"]
 
 
 class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
-    """Environments of the engine that pay what a function says.
+    """Gymnasium vector environment with rewards and terminations from a Python function.
 
-    System, integrator, latencies, clocks and noise are the engine's, bit for bit; rewards and ends of episodes are those of ``task``, which is
-    called once a step with arrays of all environments. A step costs what that takes and several calls of NumPy besides, where the engine
-    alone takes one call; rollouts inside the engine are not to be had.
+    The engine computes system, integrator, latencies, clocks and noise, bit for bit. It calls ``task`` once per step with arrays of all
+    environments. A step takes the time of ``task`` and of several NumPy calls. Rollouts inside the engine are not available.
 
     Parameters
     ----------
     name:
         ``"Oscillator"``, ``"Pendulum"`` or ``"Duffing"``.
     num_envs:
-        How many.
+        Number of environments.
     task:
-        ``task(before, actions, after)`` of positions and velocities ``(N, 2)``, as they are and not as they are observed, and of actions
-        ``(N, 1)`` within ``max_action``, gives rewards ``(N,)``, or a pair of them and whether each episode is over, ``(N,)``.
+        Function ``task(before, actions, after)``. ``before`` and ``after`` are true positions and velocities, ``(N, 2)``; ``actions``
+        are limited to ``max_action``, ``(N, 1)``. It returns rewards ``(N,)``, or a pair of rewards and terminations ``(N,)``.
     **given:
-        As for :class:`libration.Environments`; prices of tasks are not among them.
+        Keywords of :class:`libration.Environments`, except the costs of tasks.
 
     Raises
     ------
     TypeError, ValueError
-        As there; in a step, where the task gives something else.
+        As for :class:`libration.Environments`; in a step, if the result of ``task`` has a wrong shape or type.
     """
 
     def __init__(
@@ -56,14 +55,14 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
             raise TypeError(f"task must be a function, not {type(task).__name__}")
         for price in ("position_cost", "velocity_cost", "effort_cost", "bound"):
             if price in given:
-                raise TypeError(f"unexpected keyword argument {price!r}: the task says what is paid")
+                raise TypeError(f"unexpected keyword argument {price!r}: the task determines rewards")
         endless: dict[str, Any] = {} if name == "Pendulum" else {"bound": np.inf}
         mode = getattr(autoreset_mode, "value", autoreset_mode)
-        # Who is reset in the step that ends an episode is reset here: the task has yet to say that it has ended.
+        # Under SAME_STEP this class resets: the task decides after the inner step whether an episode has ended.
         inner = "Disabled" if mode == "SameStep" else mode
         kept = given.pop("copy", True)
         if kept is not True:
-            raise ValueError(f"copy is {kept!r}, but it must be True: what the task makes is new in any case")
+            raise ValueError(f"copy is {kept!r}, but it must be True; the arrays of a task are always new")
         self.inner = VectorEnv(name, num_envs, autoreset_mode=inner, **endless, **given)
         self.task = task
         self.num_envs = self.inner.num_envs
@@ -98,13 +97,13 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
             return self._step(actions)
 
     def _step(self, actions: Any) -> Any:
-        # Under NEXT_STEP these begin anew in this step.
+        # Under NEXT_STEP these environments are reset in this step.
         began = self._ended.copy()
         if self._mode is AutoresetMode.DISABLED and began.any():
-            raise ResetNeeded(f"episodes of {np.flatnonzero(began).tolist()} are over: reset them first")
+            raise ResetNeeded(f"episodes of {np.flatnonzero(began).tolist()} are over; help: reset them first")
         before = self.states
         observations, rewards, lost, truncated, infos = self.inner.step(actions)
-        # Whatever the task does: what the engine says of the end holds.
+        # Terminations of the engine hold even if the task fails.
         self._ended = lost | truncated
         taken = read(actions, self.num_envs, rewards.dtype.name).reshape(self.num_envs, 1)
         try:
@@ -113,7 +112,7 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
             rewards = self._row("rewards", given, "fiu").astype(observations.dtype)
             terminated = (self._row("ends of episodes", over, "b") & ~began) | lost
         except BaseException:
-            # Whoever is reset in the step that ends an episode does not wait for the task.
+            # Under SAME_STEP a failed task must not delay the reset.
             if self._mode is AutoresetMode.SAME_STEP and self._ended.any():
                 self.inner.reset(options={"reset_mask": self._ended})
                 self._ended = np.zeros(self.num_envs, bool)
@@ -148,7 +147,7 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         return row
 
     def __getstate__(self) -> dict[str, Any]:
-        # Whose turn it is belongs to this process.
+        # Locks cannot be pickled.
         return {name: value for name, value in self.__dict__.items() if name != "_turn"}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -167,6 +166,6 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         return self.inner.render()
 
     def close_extras(self, **kwargs: Any) -> None:
-        # Gymnasium closes what could not be made, too.
+        # Gymnasium also closes environments whose constructor failed.
         if "inner" in self.__dict__:
             self.inner.close()

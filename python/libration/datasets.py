@@ -1,4 +1,4 @@
-"""Data sets of rollouts on the disk: streamed, resumed, verified."""
+"""Data sets of rollouts on the disk."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from pathlib import Path
 from typing import Any, Mapping
 
 from . import _native
-from ._named import named
-from ._progress import Progress, Shown
+from ._keywords import check_keywords
+from ._progress import Progress, ProgressDisplay
 from ._settings import count
 from ._toml import text_of
 
 __all__ = ["Flaw", "SETTINGS", "Written", "verify", "write"]
 
 SETTINGS: str = _native._dataset_settings()
-"""The settings of the default data set, as a file with comments."""
+"""Default settings file, with comments."""
 
 
 @dataclass(frozen=True)
 class Written:
-    """What is in a data set."""
+    """Size of a data set that was written."""
 
     folder: Path
     transitions: int
@@ -31,18 +31,19 @@ class Written:
 
 @dataclass(frozen=True)
 class Flaw:
-    """What is wrong with a data set."""
+    """A defect of a data set."""
 
     chunk: str
-    """Which part of it; empty if it is all of it."""
+    """Name of the chunk; empty for the whole data set."""
     path: Path
-    """Which file, in its folder."""
+    """Path of the file, relative to the folder."""
     what: str
+    """Description of the defect."""
     repaired: bool = False
-    """Whether the file has been computed again and replaced."""
+    """Whether the file was recomputed and replaced."""
 
 
-@named
+@check_keywords
 def write(
     out: str | os.PathLike[str],
     settings: Mapping[str, Any] | str | os.PathLike[str] | None = None,
@@ -54,37 +55,37 @@ def write(
     threads: int = 0,
     progress: Progress = None,
 ) -> Written:
-    """Write a data set chunk by chunk: what ``libration rollout`` does. Ctrl-C loses no chunk that is finished.
+    """Write a data set of rollouts, as ``libration rollout`` does. Ctrl-C keeps all finished chunks.
 
     Parameters
     ----------
     out:
-        A folder, which is made.
+        Output folder, created if it is missing.
     settings:
-        A dictionary with the keys of :data:`SETTINGS`, or the path of a file.
+        A dictionary with the keys of :data:`SETTINGS`, or the path of a settings file (default: the settings of the report).
     transitions:
-        How many in place of what the settings say, rounded up to whole steps of all environments.
+        Number of transitions, rounded up to whole steps of all environments (default: that of the settings).
     format:
         ``"parquet"``, ``"npy"`` or ``"minari"``.
     shard:
-        Which part, from 1 on, and of how many.
+        Shard ``(index, number)`` of the environments, with an index from 1 to number.
     resume:
-        Resume an interrupted run: the bytes are those of an uninterrupted one. What is there is read first, and broken files are
-        computed again.
+        Resume an interrupted run, with the same bytes as without interruption. All chunks are checked first, and broken ones are
+        recomputed.
     threads:
-        How many; 0 for as many as there are cores.
+        Number of threads (0: one per core).
 
     Raises
     ------
     ValueError
-        For settings that cannot be, or a folder that holds something else, before anything is written.
+        For invalid settings or a folder with other content, before anything is written.
     OSError
         If a file cannot be written.
     """
     if not isinstance(format, str):
         raise TypeError(f"format must be a string, not {type(format).__name__}")
     if not isinstance(shard, (tuple, list)) or len(shard) != 2:
-        raise TypeError(f"shard is {shard!r}, but it must be which and of how many, as (1, 4)")
+        raise TypeError(f"shard is {shard!r}, but it must be (index, number), as (1, 4)")
     index, of = shard
     writing = {
         "out": Path(out),
@@ -94,16 +95,16 @@ def write(
         "resume": bool(resume),
         "threads": count("threads", threads, 0, 1024),
     }
-    with Shown(progress) as shown:
+    with ProgressDisplay(progress) as display:
 
-        def tell(done: int, total: int, size: int) -> None:
-            shown.tell(done / max(total, 1), f"{done:,} transitions, {size / 1e9:.2f} GB")
+        def report(done: int, total: int, size: int) -> None:
+            display.update(done / max(total, 1), f"{done:,} transitions, {size / 1e9:.2f} GB")
 
-        told = _native._write_dataset(text_of("settings", settings), writing, tell if shown.wanted else None)
-    return Written(Path(out), *told)
+        counts = _native._write_dataset(text_of("settings", settings), writing, report if display.enabled else None)
+    return Written(Path(out), *counts)
 
 
-@named
+@check_keywords
 def verify(
     folder: str | os.PathLike[str],
     *,
@@ -112,24 +113,24 @@ def verify(
     threads: int = 0,
     progress: Progress = None,
 ) -> list[Flaw]:
-    """Read a data set and say what is wrong with it, if anything: what ``libration verify`` does.
+    """Return the defects of a data set, as ``libration verify`` prints them.
 
-    With ``replay`` it is computed again from its settings, and compared. With ``repair`` broken files (missing, truncated or altered
-    ones) are computed again and replaced: they are in the list with ``repaired`` true, and have the bytes that they had.
+    With ``replay`` the data set is recomputed from its settings and compared. With ``repair`` missing, truncated or altered files are
+    recomputed and replaced; they are in the list with ``repaired`` true, and have their original bytes.
 
     Raises
     ------
     ValueError
-        If there is no data set; with ``replay`` or ``repair`` also if another version of the package wrote it.
+        If the folder has no data set; with ``replay`` or ``repair`` also if another version of the package wrote it.
     OSError
         If its manifest cannot be read, or a file cannot be replaced.
     """
-    with Shown(progress) as shown:
+    with ProgressDisplay(progress) as display:
 
-        def tell(_: int, __: int, size: int) -> None:
-            shown.tell(0.0, f"{size / 1e9:.2f} GB")
+        def report(_: int, __: int, size: int) -> None:
+            display.update(0.0, f"{size / 1e9:.2f} GB")
 
         threads = count("threads", threads, 0, 1024)
-        told = tell if shown.wanted else None
-        flaws = _native._verify_dataset(Path(folder), bool(replay), bool(repair), threads, told)
+        callback = report if display.enabled else None
+        flaws = _native._verify_dataset(Path(folder), bool(replay), bool(repair), threads, callback)
     return [Flaw(chunk, Path(path), what, repaired) for chunk, path, what, repaired in flaws]

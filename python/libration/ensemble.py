@@ -1,4 +1,4 @@
-"""Many trajectories at once, held between calls."""
+"""Ensembles of trajectories."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._asked import rows, text
-from ._named import named
+from ._requests import rows, text
+from ._keywords import check_keywords
 from ._settings import count, positive
 from .systems import Program, System, known, seen
 
@@ -18,32 +18,32 @@ __all__ = ["Ensemble"]
 
 
 class Ensemble:
-    """Many trajectories of a system, stepped together and held between calls.
+    """Many trajectories of a system, which the engine steps together.
 
     Parameters
     ----------
     system:
         As in :func:`~libration.simulate`.
     integrator:
-        One of :data:`~libration.INTEGRATORS` but ``"exact"``.
+        Name from :data:`~libration.INTEGRATORS`, except ``"exact"``.
     dt:
-        The time step in s.
+        Time step in s.
     q, v:
-        Where trajectories start, ``(N, dimension)``, or ``(N,)`` where there is one degree of freedom; by default at rest.
+        Initial positions and velocities, ``(N, dimension)``, or ``(N,)`` for one degree of freedom (default of ``v``: zeros).
     dtype:
-        ``"float64"`` or ``"float32"``: of every operation.
+        Float type of every operation: ``"float64"`` or ``"float32"``.
     threads:
-        How many; 0 for as many as there are cores. What comes out does not depend on it, nor on ``N``.
+        Number of threads (0: one per core). The bits of a trajectory are independent of ``threads`` and ``N``.
 
     Raises
     ------
     TypeError, ValueError
-        For what cannot be, with its name and what is allowed.
+        For an invalid value; the message has the name of the parameter and the allowed values.
     MemoryError
-        If there is no room.
+        If there is not enough memory.
     """
 
-    @named
+    @check_keywords
     def __init__(
         self,
         system: Any,
@@ -64,9 +64,9 @@ class Ensemble:
         at = rows("q", q)
         speed = np.zeros_like(at) if v is None else rows("v", v)
         if at.shape != speed.shape:
-            raise ValueError(f"q has shape {at.shape} and v {speed.shape}, but they must be the same")
+            raise ValueError(f"q has shape {at.shape} and v {speed.shape}, but they must be equal")
         if 0 in at.shape:
-            raise ValueError(f"q has shape {at.shape}, but there must be a trajectory at least")
+            raise ValueError(f"q has shape {at.shape}, but there must be at least one trajectory")
         for name, start in (("q", at), ("v", speed)):
             with np.errstate(over="ignore"):
                 if not np.isfinite(start.astype(self.dtype)).all():
@@ -75,41 +75,41 @@ class Ensemble:
         self._step, self._len = 0, len(at)
         if isinstance(self.system, System):
             single = bool(self.dtype == np.float32)
-            told = self.system._told()
-            self._held: Any = _native.Trajectories(
-                told, self.integrator, self.dt, at, speed, single, threads
+            request = self.system._request()
+            self._trajectories: Any = _native.Trajectories(
+                request, self.integrator, self.dt, at, speed, single, threads
             )
         else:
-            self._held = Program(self.integrator, self.system)
-            # Threads take turns with what is Python's.
+            self._trajectories = Program(self.integrator, self.system)
+            # The engine has its own lock; this one is for NumPy arrays.
             self._turn = threading.RLock()
             self._state = (at.astype(self.dtype), speed.astype(self.dtype))
 
     @property
     def step(self) -> int:
-        """Steps taken."""
-        return self._held._step() if isinstance(self.system, System) else self._step
+        """Number of steps taken."""
+        return self._trajectories._step() if isinstance(self.system, System) else self._step
 
     @property
     def time(self) -> float:
-        """The time in s."""
+        """Time in s."""
         return self.step * self.dt
 
     @property
     def q(self) -> NDArray[Any]:
-        """Positions, ``(N, dimension)``: a copy."""
-        return self._held._states()[0] if isinstance(self.system, System) else self._state[0].copy()
+        """Copy of the positions, ``(N, dimension)``."""
+        return self._trajectories._states()[0] if isinstance(self.system, System) else self._state[0].copy()
 
     @property
     def v(self) -> NDArray[Any]:
-        """Velocities, ``(N, dimension)``: a copy."""
-        return self._held._states()[1] if isinstance(self.system, System) else self._state[1].copy()
+        """Copy of the velocities, ``(N, dimension)``."""
+        return self._trajectories._states()[1] if isinstance(self.system, System) else self._state[1].copy()
 
     @property
     def energy(self) -> NDArray[Any]:
-        """Energies per unit mass, ``(N,)``, in the unit of a velocity squared, such as J/kg."""
+        """Energies per unit mass, ``(N,)``, in J/kg."""
         if isinstance(self.system, System):
-            return self._held._energies()
+            return self._trajectories._energies()
         if self.system.energy is None:
             raise ValueError("the custom system has no energy")
         with self._turn:
@@ -122,31 +122,31 @@ class Ensemble:
         return found.astype(self.dtype)
 
     def advance(self, steps: int) -> None:
-        """Take so many steps of ``dt`` seconds.
+        """Take ``steps`` steps of ``dt`` seconds.
 
         Raises
         ------
         ValueError
-            For what is no number of steps, or an acceleration of another shape.
+            For an invalid number of steps, or an acceleration with a wrong shape.
         KeyboardInterrupt
             Between two steps, after Ctrl-C.
         """
         steps = count("steps", steps, 0, 2**62)
         if isinstance(self.system, System):
-            self._held._advance(steps)
+            self._trajectories._advance(steps)
             return
         dt = self.dtype.type(self.dt)
-        # What overflows is infinite, as in the engine.
+        # An overflow is infinite, as in the engine.
         with self._turn, np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             for _ in range(steps):
-                self._state = self._held.step(*self._state, dt)
+                self._state = self._trajectories.step(*self._state, dt)
                 self._step += 1
 
     def __len__(self) -> int:
         return self._len
 
     def __copy__(self) -> Ensemble:
-        raise TypeError("an Ensemble cannot be copied: make another of its q and v")
+        raise TypeError("an Ensemble cannot be copied; help: make another from its q and v")
 
     def __reduce__(self) -> Any:
-        raise TypeError("an Ensemble cannot be pickled: make another of its q and v")
+        raise TypeError("an Ensemble cannot be pickled; help: make another from its q and v")

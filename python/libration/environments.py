@@ -1,4 +1,4 @@
-"""Many environments at once, with NumPy and nothing else."""
+"""Vector environments that require NumPy only."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, Mapping
 import numpy as np
 
 from . import _native
-from ._named import named
+from ._keywords import check_keywords
 from ._presets import PRESETS, Preset
 from ._settings import AUTORESET, count, native, nearest
 from .policies import Policy
@@ -18,52 +18,50 @@ __all__ = ["Environments"]
 
 
 class Environments(_native.Batch):
-    """Environments that are stepped together by the engine.
+    """Environments that the engine steps together.
 
-    ``reset`` and ``step`` are those of Gymnasium's vector environments, but nothing of Gymnasium is needed:
-    :class:`libration.envs.VectorEnv` adds spaces, specs and rendering.
+    ``reset`` and ``step`` follow Gymnasium's vector environments, without Gymnasium. :class:`libration.envs.VectorEnv` adds spaces,
+    specs and rendering.
 
     Parameters
     ----------
     name:
         ``"Oscillator"``, ``"Pendulum"`` or ``"Duffing"``.
     num_envs:
-        How many.
+        Number of environments.
     max_episode_steps:
-        Actions after which an episode is truncated; ``math.inf`` for never. By default that of the environment.
+        Number of actions after which an episode is truncated; ``math.inf`` for no limit (default: that of the environment).
     autoreset_mode:
-        What follows an episode: ``"NextStep"``, ``"SameStep"`` or ``"Disabled"``, as Gymnasium defines them.
+        Reset after an episode: ``"NextStep"``, ``"SameStep"`` or ``"Disabled"``, as in Gymnasium.
     integrator:
         ``"explicit-euler"``, ``"symplectic-euler"``, ``"symplectic-euler-drift-first"``, ``"velocity-verlet"``, ``"textbook-verlet"``,
         ``"leapfrog"``, ``"rk4"``, ``"yoshida4"`` or ``"suzuki4"``.
     dt:
-        Seconds from action to action.
+        Time between two actions in s.
     substeps:
-        Steps of the integrator from action to action. By default 1, or as few as make all latencies whole numbers of them.
+        Steps of the integrator between two actions (default: the smallest number for which all latencies are whole steps).
     action_delay, observation_delay:
-        Seconds by which actions take effect late and observations are old; a number, or two ends between which it is drawn for every
-        episode.
+        Latencies of actions and observations in s: a number, or a pair ``(low, high)``, from which each episode draws one.
     jitter:
-        Noise of the length of every step of the integrator, ``dt·(1 + ε)``: the standard deviation of a Gaussian ``ε``, or
-        ``("uniform", std)``, ``("gaussian", std)``. No step is negative.
+        Jitter ``ε`` of each step of the integrator, ``dt·(1 + ε)``: the standard deviation of a Gaussian, or ``("uniform", std)``,
+        ``("gaussian", std)``. Negative steps become zero.
     skew:
-        The same for the rate of the clock of a whole episode.
+        Skew of the clock of an episode; as ``jitter``.
     observation_noise:
-        The same for every number that is observed, in its unit.
+        Noise of each observed number, in its unit; as ``jitter``.
     max_action:
-        The largest action of either sign: an acceleration in m/s² (rad/s² of a pendulum), or a force in N where the system is given
-        by ``m`` and ``k``. Larger actions are cut off at it, and are paid for as such.
+        Largest absolute action: an acceleration in m/s² (pendulum: rad/s²), or a force in N for a system with ``m`` and ``k``. Larger
+        actions are clipped, and their cost is that of the clipped action.
     start_position, start_velocity:
-        Where an episode begins, in m and m/s (rad and rad/s of a pendulum): a number, or two ends.
+        Start of an episode in m and m/s (pendulum: rad and rad/s): a number, or a pair ``(low, high)``.
     dtype:
-        ``"float32"`` or ``"float64"``: of all that is computed.
+        Float type of all operations: ``"float32"`` or ``"float64"``.
     threads:
-        How many; 0 for as many as there are cores. What comes out does not depend on it.
+        Number of threads (0: one per core). The results are independent of it.
     copy:
-        Whether the arrays of a step stay as they are for as long as somebody has them. Otherwise every step fills the same ``buffers``
-        again and again, one after the other.
+        Whether each step returns arrays that later steps do not overwrite. Otherwise the steps fill ``buffers`` arrays in turn.
     **parameters:
-        Of the system (``omega2``, or ``m`` and ``k``; ``alpha``, ``beta``) and of the task (``position_cost``, ``velocity_cost``,
+        Parameters of the system (``omega2``, or ``m`` and ``k``; ``alpha``, ``beta``) and of the task (``position_cost``, ``velocity_cost``,
         ``effort_cost``, ``bound``).
 
     Raises
@@ -71,7 +69,7 @@ class Environments(_native.Batch):
     TypeError
         For an unknown keyword, or a value of the wrong type.
     ValueError
-        For a value that cannot be, with its name and what is allowed.
+        For an invalid value; the message has the name of the parameter and the allowed values.
     """
 
     preset: Preset
@@ -132,7 +130,7 @@ class Environments(_native.Batch):
             "buffers": buffers,
         }
         self.preset = PRESETS[name]
-        self._made_of = (name, {**given, **parameters})
+        self._arguments = (name, {**given, **parameters})
         self._settings: Mapping[str, Any] = native(self.preset, {**given, "parameters": parameters})
         self._seeder: np.random.Generator | None = None
         self.num_envs = self._settings["num_envs"]
@@ -145,30 +143,30 @@ class Environments(_native.Batch):
         seed: int | list[int | None] | None = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begin episodes.
+        """Begin new episodes.
 
         Parameters
         ----------
         seed:
-            An ``int`` for ``[seed, seed + 1, …]``, or one or ``None`` for each environment. An environment with a seed begins its first
-            episode under it, which is the same whatever surrounds it; without, its next one, or a first one under a seed from the
-            system.
+            An ``int`` for ``[seed, seed + 1, …]``, or a list with an ``int`` or ``None`` for each environment. An environment with a
+            seed begins its first episode under that seed, independently of all others. Without a seed it begins its next
+            episode, or its first one under a seed of the operating system.
         options:
-            ``{"reset_mask": array}``, of ``bool`` and shape ``(num_envs,)``: which are reset, at least one.
+            ``{"reset_mask": array}``: a ``bool`` array ``(num_envs,)`` that selects the environments to reset, at least one.
 
         Returns
         -------
         observations:
-            Of all environments, ``(num_envs, n)``.
+            Observations of all environments, ``(num_envs, n)``.
         infos:
-            Empty.
+            An empty dictionary.
 
         Raises
         ------
         TypeError
-            For seeds that are no integers, or a mask that is no array of ``bool``.
+            For seeds that are not integers, or a mask that is not a ``bool`` array.
         ValueError
-            For seeds or a mask of another length, a negative seed, or a mask without a ``True``.
+            For seeds or a mask with a wrong length, a negative seed, or a mask without ``True``.
         """
         return self._begin(self._seeds(seed), options)
 
@@ -181,7 +179,7 @@ class Environments(_native.Batch):
         if self._seeder is None:
             self._seeder = np.random.default_rng()
             fresh = self._seeder.integers(2**63, size=self.num_envs, dtype=np.uint64).tolist()
-            # Who is not reset has not begun either, and begins with the others.
+            # Environments outside the mask have no episode yet, and begin one with the others.
             seeds = [
                 new if old is None or (mask is not None and not mask[n]) else old
                 for n, (old, new) in enumerate(zip(seeds, fresh))
@@ -223,11 +221,11 @@ class Environments(_native.Batch):
         if mask.dtype != np.bool_:
             raise TypeError(f"options['reset_mask'] has dtype {mask.dtype}, but it must be bool")
         if not mask.any():
-            raise ValueError("options['reset_mask'] has no True, but it must have one at least")
+            raise ValueError("options['reset_mask'] has no True, but it must have at least one")
         # A byte of an array of ``bool`` need not be 0 or 1.
         return np.ascontiguousarray(mask).view(np.uint8) != 0
 
-    @named
+    @check_keywords
     def rollout(
         self,
         policy: Policy,
@@ -237,32 +235,32 @@ class Environments(_native.Batch):
         values: bool = False,
         out: Rollout | None = None,
     ) -> Rollout:
-        """Act ``horizon`` times in every environment, under a policy of :mod:`libration.policies`.
+        """Return a rollout of ``horizon`` steps of every environment under a policy of :mod:`libration.policies`.
 
         Parameters
         ----------
         log_probabilities, values:
-            Whether there is to be room for the logarithms of the densities of actions, and for values, ``(horizon, num_envs)`` each.
+            Whether the rollout has arrays of log-probabilities of actions and of values, ``(horizon, num_envs)`` each.
         out:
-            A rollout that is filled again, and then says what is asked for.
+            A rollout to overwrite; it also determines which arrays there are.
 
         Raises
         ------
         TypeError
-            For a policy that is none of the engine's: to act from Python, use ``step``.
+            For a policy that is not one of the engine; a Python function can act through ``step``.
         ValueError
-            For a policy or an ``out`` of another shape or dtype; in Gymnasium's words where there was no ``reset``.
+            For a policy or an ``out`` with a wrong shape or dtype. Without a ``reset``, Gymnasium's ``ResetNeeded``.
         MemoryError
-            If there is no room.
+            If there is not enough memory.
         KeyboardInterrupt
-            Between two steps, after Ctrl-C: ``out`` holds a part of it then.
+            Between two steps, after Ctrl-C; ``out`` then has part of the rollout.
         """
         observations = len(self.preset.seen)
         if not isinstance(policy, Policy):
             raise TypeError(
-                f"policy must be one of libration.policies, not {type(policy).__name__}: to act from Python, use step"
+                f"policy must be one of libration.policies, not {type(policy).__name__}; help: a Python function can act through step"
             )
-        told = policy._told(observations)
+        request = policy._request(observations)
         if out is None:
             horizon = count("horizon", horizon, 1, 2**40)
             out = Rollout(self._memory(horizon, bool(log_probabilities), bool(values)))
@@ -272,25 +270,25 @@ class Environments(_native.Batch):
             raise ValueError(
                 f"out has shape {out.rewards.shape}, but it must be ({horizon}, {self.num_envs})"
             )
-        # Of a rollout that is interrupted they are not those that follow.
+        # An interrupted rollout has no last observations.
         out.last_observations = np.empty(0)
-        out.last_observations = self._rollout(told, out._memory)
+        out.last_observations = self._rollout(request, out._memory)
         return out
 
     @property
     def states(self) -> np.ndarray:
-        """Positions and velocities, ``(num_envs, 2)``, as they are and not as they are observed."""
+        """True positions and velocities, ``(num_envs, 2)``, without noise and latency."""
         return self._states()
 
     def __reduce__(self) -> Any:
-        return _again, (type(self), self._made_of, self._state(), self._seeder, self._extras())
+        return _again, (type(self), self._arguments, self._state(), self._seeder, self._extras())
 
     def _extras(self) -> dict[str, Any]:
-        """What a class adds that a copy is to have."""
+        """Return the attributes of a subclass that copies need."""
         return {}
 
     @classmethod
-    def _made(cls, name: str, given: dict[str, Any]) -> Environments:
+    def _construct(cls, name: str, given: dict[str, Any]) -> Environments:
         return cls(name, **given)
 
     def __copy__(self) -> Environments:
@@ -298,7 +296,7 @@ class Environments(_native.Batch):
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Environments:
         function, arguments = self.__reduce__()
-        # Generators of random numbers are among them.
+        # The arguments contain random number generators.
         return function(*copy.deepcopy(arguments, memo))
 
 
@@ -310,8 +308,8 @@ def _name_of(dtype: Any) -> str:
 
 
 def _again(cls: Any, made_of: Any, state: Any, seeder: Any, extras: dict[str, Any]) -> Any:
-    """Environments as they were when they were pickled."""
-    copy = cls._made(*made_of)
+    """Restore pickled environments."""
+    copy = cls._construct(*made_of)
     copy._restore(state)
     copy._seeder = seeder
     copy.__dict__.update(extras)

@@ -1,4 +1,4 @@
-"""Environments of Gymnasium: vector environments of the engine, and single ones."""
+"""Gymnasium environments of the engine: vector environments and single ones."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ METADATA = {"render_modes": ["rgb_array"], "render_fps": 30}
 
 
 def _spaces(preset: Preset, settings: dict[str, Any]) -> tuple[Box, Box]:
-    """The spaces of what one environment shows and takes."""
+    """Return the observation space and the action space of one environment."""
     dtype = np.dtype(settings["dtype"])
     noisy = settings["noise"][1] > 0
     high = np.array([np.inf if noisy else limit for limit in preset.limits], dtype=dtype)
@@ -45,7 +45,7 @@ def _render_mode(render_mode: str | None) -> str | None:
 
 
 class VectorEnv(Environments, gymnasium.vector.VectorEnv):
-    """Environments of the engine behind the interface of Gymnasium's vector environments.
+    """Gymnasium vector environment of the engine.
 
     See :class:`libration.Environments` for all keywords; ``render_mode`` may be ``"rgb_array"``.
     """
@@ -79,7 +79,7 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
         return self._begin(seeds, options)
 
     def render(self) -> tuple[np.ndarray, ...] | None:
-        """Pictures of all environments, if ``render_mode`` is ``"rgb_array"``."""
+        """Return one picture per environment, ``(300, 300, 3)`` of ``uint8``, if ``render_mode`` is ``"rgb_array"``."""
         if self.render_mode is None:
             gymnasium.logger.warn("render was called, but render_mode is None: nothing is drawn")
             return None
@@ -95,7 +95,7 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
         return {name: self.__dict__[name] for name in names if name in self.__dict__}
 
     @classmethod
-    def _made(cls, name: str, given: dict[str, Any]) -> Environments:
+    def _construct(cls, name: str, given: dict[str, Any]) -> Environments:
         return cls(name, **given) if cls is VectorEnv else cls(**given)
 
     def __repr__(self) -> str:
@@ -103,9 +103,9 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
 
 
 class Env(gymnasium.Env):
-    """One environment of the engine.
+    """Single Gymnasium environment of the engine.
 
-    A time limit is Gymnasium's: ``gymnasium.make`` adds it.
+    ``gymnasium.make`` adds the time limit.
     """
 
     metadata = METADATA
@@ -113,7 +113,7 @@ class Env(gymnasium.Env):
     def __init__(self, name: str, *, render_mode: str | None = None, **given: Any) -> None:
         for unknown in ("num_envs", "autoreset_mode", "copy", "buffers", "max_episode_steps"):
             if unknown in given:
-                raise TypeError(f"unexpected keyword argument {unknown!r}: it is of many environments")
+                raise TypeError(f"unexpected keyword argument {unknown!r}: it belongs to vector environments")
         self.render_mode = _render_mode(render_mode)
         self._all = Environments(
             name, max_episode_steps=np.inf, autoreset_mode="Disabled", **given
@@ -131,8 +131,8 @@ class Env(gymnasium.Env):
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         observations, rewards, terminated, truncated, infos = self._all.step(action)
-        told = {"lost": True} if infos else {}
-        return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), told
+        info = {"lost": True} if infos else {}
+        return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
 
     def render(self) -> np.ndarray | None:
         if self.render_mode is None:
@@ -147,16 +147,16 @@ class Env(gymnasium.Env):
 
 
 def _classes(preset: Preset) -> tuple[type[Env], type[VectorEnv]]:
-    """The single and the vector environment of a preset."""
+    """Return the single and the vector environment class of a preset."""
 
     class Single(Env):
-        __doc__ = f"One ``{NAMESPACE}/{preset.name}-v0``."
+        __doc__ = f"Single environment ``{NAMESPACE}/{preset.name}-v0``."
 
         def __init__(self, **given: Any) -> None:
             super().__init__(preset.name, **given)
 
     class Vector(VectorEnv):
-        __doc__ = f"Many ``{NAMESPACE}/{preset.name}-v0``."
+        __doc__ = f"Vector environment ``{NAMESPACE}/{preset.name}-v0``."
 
         def __init__(self, num_envs: int = 1, **given: Any) -> None:
             super().__init__(preset.name, num_envs, **given)
@@ -172,7 +172,7 @@ DuffingEnv, DuffingVectorEnv = _classes(PRESETS["Duffing"])
 
 
 def register() -> None:
-    """Make the environments known to Gymnasium, as happens by itself on import."""
+    """Register the environments with Gymnasium; the import of the package does this."""
     for preset in PRESETS.values():
         known = f"{NAMESPACE}/{preset.name}-v0"
         if known not in gymnasium.registry:

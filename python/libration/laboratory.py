@@ -1,4 +1,4 @@
-"""The laboratory: studies in which every measurement stands beside its prediction."""
+"""The laboratory: studies with predictions and measurements."""
 
 from __future__ import annotations
 
@@ -16,40 +16,40 @@ from typing import Any, Iterable, Mapping
 import numpy as np
 
 from . import _native
-from ._named import named
-from ._progress import Progress, Shown
+from ._keywords import check_keywords
+from ._progress import Progress, ProgressDisplay
 from ._toml import text_of
 
 __all__ = ["Finding", "Results", "STUDIES", "run_lab"]
 
 STUDIES: Mapping[str, str] = MappingProxyType(dict(_native._studies()))
-"""The question that each study answers, by its name."""
+"""The question of each study, by name."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A measurement beside its prediction."""
+    """A measurement and its prediction."""
 
     id: str
-    """``study.subject.quantity``."""
+    """Identifier ``study.subject.quantity``."""
     study: str
     text: str
-    """What was measured, in words."""
+    """Description of the measured quantity."""
     unit: str
-    """Of both numbers; ``1`` if there is none."""
+    """Unit of both numbers; ``1`` for a number without unit."""
     predicted: float | None
-    """What theory says, if it says anything."""
+    """Prediction of theory, if there is one."""
     measured: float | None
-    """What came out."""
+    """Measured value."""
     relation: str
-    """How the measurement should stand to the prediction: ``equal``, ``at-most`` or ``at-least``."""
+    """Predicted relation of the measurement to the prediction: ``equal``, ``at-most`` or ``at-least``."""
     tolerance: float | None
-    """How far the two may lie apart, in the unit."""
+    """Allowed difference, in the unit."""
     tolerance_reason: str
     verdict: str
     """``agrees``, ``disagrees`` or ``measured``."""
     undecided: str | None
-    """Why a measurement that was to be judged is not."""
+    """Reason for a missing verdict, if a verdict was expected."""
 
     @property
     def agrees(self) -> bool:
@@ -57,43 +57,43 @@ class Finding:
 
 
 class Results:
-    """What a run of the laboratory found."""
+    """Results of a run of the laboratory."""
 
     def __init__(self, found: dict[str, Any], series: Any, folder: Path) -> None:
         self.json: dict[str, Any] = found
-        """All of ``results.json``: the machine, the configuration, and a record of each study with its findings, claims and tables."""
+        """Content of ``results.json``: machine, configuration, and the record of each study with its findings, claims and tables."""
         self.folder = folder
-        """Where all files are: ``report.html``, ``results.json``, ``data`` and ``figures``."""
+        """Folder of ``report.html``, ``results.json``, ``data`` and ``figures``."""
         self.series: Mapping[str, Mapping[str, np.ndarray]] = {
             f"{study}-{name}": columns for study, name, columns, _ in series
         }
-        """The numbers behind the figures: columns of each series, which is called ``study-series`` as its file is."""
+        """Data of the figures: the columns of each series, by the name of its file, ``study-series``."""
         self.units: Mapping[str, Mapping[str, str]] = {
             f"{study}-{name}": units for study, name, _, units in series
         }
-        """The units of these columns."""
+        """Units of these columns."""
         self.findings: list[Finding] = [
             Finding(study=study["name"], **{k: v for k, v in finding.items()})
             for study in found["studies"]
             for finding in study["findings"]
         ]
-        """All findings, study by study."""
+        """Findings of all studies, in the order of the report."""
         self.claims: list[dict[str, Any]] = [claim for study in found["studies"] for claim in study["claims"]]
-        """Sentences of the source report with their verdicts."""
+        """Claims of the source report with their verdicts."""
 
     @property
     def report(self) -> Path:
-        """The page with all of it."""
+        """Path of the report page."""
         return self.folder / "report.html"
 
     @property
     def disagreements(self) -> list[Finding]:
-        """The findings that are not what theory says."""
+        """Findings that disagree with theory."""
         return [finding for finding in self.findings if finding.verdict == "disagrees"]
 
     @property
     def seconds(self) -> dict[str, float]:
-        """How long each study took."""
+        """Run time of each study in s."""
         return {study["name"]: study["seconds"] for study in self.json["studies"]}
 
     def __getitem__(self, id: str) -> Finding:
@@ -103,7 +103,7 @@ class Results:
         raise KeyError(id)
 
     def to_pandas(self) -> Any:
-        """A ``pandas.DataFrame`` of all findings, by their identifiers."""
+        """Return a ``pandas.DataFrame`` of all findings, with their identifiers as index."""
         import pandas  # type: ignore[import-untyped]
 
         return pandas.DataFrame([vars(finding) for finding in self.findings]).set_index("id")
@@ -135,7 +135,7 @@ def _number(x: float | None) -> str:
     return "" if x is None else f"{x:.6g}"
 
 
-@named
+@check_keywords
 def run_lab(
     config: Mapping[str, Any] | str | os.PathLike[str] | None = None,
     *,
@@ -144,27 +144,27 @@ def run_lab(
     out: str | os.PathLike[str] | None = None,
     progress: Progress = None,
 ) -> Results:
-    """Run studies of the laboratory: what ``libration lab`` does.
+    """Run studies and return their results, as ``libration lab`` does.
 
     Parameters
     ----------
     config:
-        A dictionary with the keys of a configuration file, or the path of one; what is left out is the setting of the source report.
+        A dictionary with the keys of a configuration file, or the path of one. Missing keys have the values of the source report.
     studies:
-        Names out of :data:`STUDIES`; all of them by default.
+        Names from :data:`STUDIES` (default: all).
     effort:
         ``"quick"``, ``"standard"`` or ``"thorough"``.
     out:
-        The folder for report, results, data and figures. Without one they lie in a temporary folder, which goes with the results.
+        Output folder of report, results, data and figures (default: a temporary folder, which is removed together with the results).
     progress:
-        ``True``, ``False``, ``None`` for where it can be seen, or a function of the part that is done and what is being done.
+        ``True``, ``False``, ``None`` (in a terminal or notebook), or a function ``(fraction, description)``.
 
     Raises
     ------
     TypeError, ValueError
-        For a configuration that cannot be, before any work.
+        For an invalid configuration, before any work.
     OSError
-        If the folder cannot be written, or another run writes there.
+        If the folder cannot be written, or another run uses it.
     """
     asked = text_of("config", config)
     names = None
@@ -176,10 +176,10 @@ def run_lab(
             raise TypeError(f"studies are {names!r}, but they must be names")
     if effort is not None and not isinstance(effort, str):
         raise TypeError(f"effort must be a string, not {type(effort).__name__}")
-    shown = Shown(progress)
+    display = ProgressDisplay(progress)
     folder = Path(tempfile.mkdtemp(prefix="libration-") if out is None else out)
     try:
-        found = _run(asked, names, effort, folder, shown)
+        found = _run(asked, names, effort, folder, display)
     except BaseException:
         if out is None:
             shutil.rmtree(folder, ignore_errors=True)
@@ -191,13 +191,13 @@ def run_lab(
 
 
 def _run(
-    asked: str, names: list[str] | None, effort: str | None, folder: Path, shown: Shown
+    asked: str, names: list[str] | None, effort: str | None, folder: Path, display: ProgressDisplay
 ) -> tuple[dict[str, Any], Any]:
-    with shown:
+    with display:
 
-        def tell(study: str, number: int, of: int, what: str, done: int, total: int) -> None:
+        def report(study: str, number: int, of: int, what: str, done: int, total: int) -> None:
             part = (max(number - 1, 0) + done / max(total, 1)) / max(of, 1)
-            shown.tell(part, f"{study} ({number} of {of}): {what}" if what else study)
+            display.update(part, f"{study} ({number} of {of}): {what}" if what else study)
 
-        found, series = _native._run_lab(asked, names, effort, folder, tell if shown.wanted else None)
+        found, series = _native._run_lab(asked, names, effort, folder, report if display.enabled else None)
     return json.loads(found), series

@@ -1,4 +1,4 @@
-"""What is wrong with clocks and commands, and who commands."""
+"""Latencies, distributions of clocks, and controllers."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ __all__ = ["Gaussian", "LQR", "Observer", "PD", "PID", "Steps", "Uniform"]
 
 @dataclass(frozen=True)
 class Steps:
-    """A latency in steps, which need not be whole; a plain number is one in seconds."""
+    """A latency in steps, whole or fractional; a plain number is a latency in seconds."""
 
     number: float
 
 
 @dataclass(frozen=True)
 class Gaussian:
-    """A law of step times or clock rates: normal, with a relative standard deviation. A plain number is the same."""
+    """Normal distribution of steps or clock rates, with a relative standard deviation. A plain number is equivalent."""
 
     rms: float
 
 
 @dataclass(frozen=True)
 class Uniform:
-    """A law of step times or clock rates: uniform, with a relative standard deviation."""
+    """Uniform distribution of steps or clock rates, with a relative standard deviation."""
 
     rms: float
 
 
 @dataclass(frozen=True)
 class PD:
-    """The command ``-position·q - velocity·v``.
+    """PD controller with the command ``-position·q - velocity·v``.
 
-    An acceleration, with gains in s⁻² and s⁻¹; a force, with gains in N/m and N·s/m, where the system is given by ``m`` and ``k``.
+    The command is an acceleration with gains in s⁻² and s⁻¹, or a force with gains in N/m and N·s/m for a system with ``m`` and ``k``.
     """
 
     position: float
@@ -46,25 +46,25 @@ class PD:
 
 @dataclass(frozen=True)
 class PID:
-    """Three terms of the position, with a filter of the derivative and anti-windup by back-calculation."""
+    """PID controller of the position, with a filter of the derivative and anti-windup by back-calculation."""
 
     proportional: float
     integral: float
     derivative: float
     filter: float = 0.0
-    """Of the derivative, in s."""
+    """Time constant of the filter of the derivative, in s."""
     most: float = math.inf
-    """Largest command, in m/s², or in N where the system is given by ``m`` and ``k``."""
+    """Largest command, in m/s², or in N for a system with ``m`` and ``k``."""
     tracking: float = 1.0
-    """In how many seconds the integral follows the limit."""
+    """Time constant of the anti-windup, in s."""
 
 
 @dataclass(frozen=True)
 class LQR:
-    """The feedback that costs least, designed from the model: weights of position², velocity² and command².
+    """LQR controller, from weights of position², velocity² and command².
 
-    It minimises the weighted sum over the samples. The cost that :func:`advise` reports is the mean over continuous time; the two
-    have the same minimum in the limit of short periods only.
+    The design minimises the weighted sum over the samples. The cost of :func:`advise` is the mean over continuous time. Both have the
+    same minimum only in the limit of short periods.
     """
 
     weights: Sequence[float]
@@ -72,30 +72,30 @@ class LQR:
 
 @dataclass(frozen=True)
 class Observer:
-    """Feedback of a state that is estimated from the position: give ``weights`` or ``gains``, and ``noise`` or ``correction``."""
+    """State feedback with an observer of the position, from ``weights`` or ``gains``, and ``noise`` or ``correction``."""
 
     weights: Sequence[float] | None = None
-    """Of the feedback that costs least."""
+    """LQR weights of position², velocity² and command²."""
     gains: Sequence[float] | None = None
-    """Of position and velocity."""
+    """Gains of position and velocity."""
     noise: Sequence[float] | None = None
-    """Intensity of the noise on the plant, in (m/s²)²·s, and variance of what is seen, in m²: the estimate is that of a Kalman filter."""
+    """Noise of a Kalman filter: intensity of the process noise in (m/s²)²·s, and variance of the measurement in m²."""
     correction: Sequence[float] | None = None
-    """Of the position, and of the velocity in 1/s."""
+    """Observer gains of the position, and of the velocity in 1/s."""
 
 
 Controller = PD | PID | LQR | Observer
 
 
 def law(name: str, value: Any) -> tuple[str, float] | None:
-    """A law as the engine is told of it."""
+    """Return a distribution in the format of the engine."""
     if value is None:
         return None
     return _law(name, value)
 
 
 def latency(value: Any) -> tuple[str, float] | None:
-    """A latency as the engine is told of it."""
+    """Return a latency in the format of the engine."""
     if value is None:
         return None
     if isinstance(value, Steps):
@@ -104,7 +104,7 @@ def latency(value: Any) -> tuple[str, float] | None:
 
 
 def gains(name: str, value: Any) -> list[float] | None:
-    """The gains of a feedback of position and velocity."""
+    """Return the gains of position and velocity."""
     if value is None:
         return None
     if isinstance(value, PD):
@@ -113,7 +113,7 @@ def gains(name: str, value: Any) -> list[float] | None:
 
 
 def numbers(name: str, value: Any, count: int) -> list[float]:
-    """So many numbers."""
+    """Return ``value`` as ``count`` floats."""
     if hasattr(value, "tolist"):
         value = value.tolist()
     if not is_several(value) or len(value) != count:

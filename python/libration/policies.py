@@ -1,4 +1,4 @@
-"""Policies that act inside the engine, without a word of Python between steps."""
+"""Policies that the engine evaluates without Python between steps."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ def _finite(name: str, values: ArrayLike) -> np.ndarray:
 
 
 class Policy:
-    """What chooses actions from observations."""
+    """Base class of the policies."""
 
-    def _told(self, observations: int) -> dict[str, Any]:
-        """What the engine is told, for environments that show so many numbers."""
+    def _request(self, observations: int) -> dict[str, Any]:
+        """Return the policy in the format of the engine, for a number of observed values."""
         known = ", ".join(name for name in __all__ if name != "Policy")
-        raise TypeError(f"{type(self).__name__} says nothing of what it does: policies are {known}")
+        raise TypeError(f"{type(self).__name__} is not a policy of the engine; expected one of {known}")
 
     @staticmethod
     def _numbers(name: str, numbers: Any, hidden: Sequence[int] = (), activation: str = "tanh") -> dict[str, Any]:
@@ -44,43 +44,43 @@ class Policy:
 
 @dataclass(frozen=True)
 class Linear(Policy):
-    """``weights @ observation + bias``, in the unit of all actions: m/s² (rad/s² of a pendulum), or N where ``m`` and ``k`` are given."""
+    """Linear policy ``weights @ observation + bias``, in m/s² (pendulum: rad/s²), or in N for a system with ``m`` and ``k``."""
 
     weights: ArrayLike
-    """One for each number that is observed."""
+    """One weight per observed number."""
     bias: float = 0.0
 
-    def _told(self, observations: int) -> dict[str, Any]:
+    def _request(self, observations: int) -> dict[str, Any]:
         weights = _finite("weights", self.weights).ravel()
         if weights.shape != (observations,):
             raise ValueError(
-                f"there are {weights.size} weights, but there must be {observations}: "
-                "one for each number that is observed"
+                f"there are {weights.size} weights, but there must be {observations}, "
+                "one per observed number"
             )
         return self._numbers("linear", [*weights, number("bias", self.bias, "finite")])
 
 
 @dataclass(frozen=True)
 class Random(Policy):
-    """Uniform between two accelerations, drawn from the seed of the environment."""
+    """Random policy: uniform between two actions, drawn from the seed of the environment."""
 
     low: float
     high: float
 
-    def _told(self, observations: int) -> dict[str, Any]:
+    def _request(self, observations: int) -> dict[str, Any]:
         low, high = (number(name, getattr(self, name), "finite") for name in ("low", "high"))
         if low >= high:
-            raise ValueError(f"actions are from {low!r} to {high!r}, but that must rise")
+            raise ValueError(f"actions are from {low!r} to {high!r}, but low must be below high")
         return self._numbers("random", [low, high])
 
 
 @dataclass(frozen=True)
 class Constant(Policy):
-    """Always the same acceleration."""
+    """Constant policy: the same action in every step."""
 
     action: float = 0.0
 
-    def _told(self, observations: int) -> dict[str, Any]:
+    def _request(self, observations: int) -> dict[str, Any]:
         return self._numbers("constant", [number("action", self.action, "finite")])
 
 
@@ -88,22 +88,22 @@ class Constant(Policy):
 class MLP(Policy):
     """A multilayer perceptron whose last layer is linear and has one output.
 
-    ``layers`` are pairs of a matrix ``(outputs, inputs)`` and biases ``(outputs,)``, as PyTorch's ``Linear`` has them; ``activation``,
-    ``"tanh"`` or ``"relu"``, is what all but the last apply.
+    ``layers`` are pairs of a matrix ``(outputs, inputs)`` and biases ``(outputs,)``, as in PyTorch's ``Linear``. ``activation``,
+    ``"tanh"`` or ``"relu"``, applies to all layers except the last.
     """
 
     layers: Sequence[tuple[ArrayLike, ArrayLike]]
     activation: str = field(default="tanh")
 
-    def _told(self, observations: int) -> dict[str, Any]:
+    def _request(self, observations: int) -> dict[str, Any]:
         if self.activation not in ("tanh", "relu"):
             raise ValueError(f"activation is {self.activation!r}, but it must be 'tanh' or 'relu'")
         if not self.layers:
-            raise ValueError("there are no layers, but there must be one at least")
+            raise ValueError("there are no layers, but there must be at least one")
         parts, widths, inputs = [], [], observations
         for i, layer in enumerate(self.layers):
             if not isinstance(layer, (tuple, list)) or len(layer) != 2:
-                raise TypeError(f"layer {i} is no pair of a matrix and its biases")
+                raise TypeError(f"layer {i} is no pair of a matrix and biases")
             matrix, biases = layer
             matrix, biases = _finite(f"matrix {i}", matrix), _finite(f"biases {i}", biases)
             outputs = len(biases) if biases.ndim == 1 else -1

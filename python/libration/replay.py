@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._named import named
+from ._keywords import check_keywords
 from ._settings import count, number
 from .environments import Environments
 from .rollout import Rollout
@@ -19,71 +19,71 @@ __all__ = ["ReplayBuffer", "Sequences", "Transitions"]
 
 @dataclass(frozen=True)
 class Transitions:
-    """Transitions that were drawn: ``B`` of them."""
+    """Batch of ``B`` transitions."""
 
     numbers: NDArray[np.uint64]
-    """By which priorities are changed, ``(B,)``."""
+    """Numbers for :meth:`ReplayBuffer.update_priorities`, ``(B,)``."""
     observations: NDArray[Any]
-    """``(B, n)``."""
+    """Observations before the actions, ``(B, n)``."""
     actions: NDArray[Any]
-    """``(B, 1)``."""
+    """Actions, ``(B, 1)``."""
     rewards: NDArray[Any]
-    """What was paid, with the discounted steps after it as far as one looks ahead, ``(B,)``."""
+    """Discounted sums of rewards over ``steps`` steps, ``(B,)``."""
     next_observations: NDArray[Any]
-    """What was seen after the last of these steps, ``(B, n)``; the last observation of the episode where it ended."""
+    """Observations after the last of these steps, ``(B, n)``; the final observation if the episode ended."""
     terminated: NDArray[np.bool_]
     truncated: NDArray[np.bool_]
     discounts: NDArray[Any]
-    """What the value of the next observations counts, ``(B,)``: 0 where the episode was over."""
+    """Discounts of the values of ``next_observations``, ``(B,)``; 0 if the episode terminated."""
     weights: NDArray[Any]
-    """What each counts for the mean to be that of uniform draws, ``(B,)``; 1 at most."""
+    """Importance weights relative to uniform sampling, ``(B,)``; at most 1."""
 
 
 @dataclass(frozen=True)
 class Sequences:
-    """Stretches of ``T`` steps that were drawn: ``B`` of them."""
+    """Batch of ``B`` sequences of ``T`` steps."""
 
     numbers: NDArray[np.uint64]
-    """Of the first transition of each, ``(B,)``."""
+    """Numbers of the first transitions, ``(B,)``."""
     observations: NDArray[Any]
-    """``(B, T, n)``."""
+    """Observations before the actions, ``(B, T, n)``."""
     actions: NDArray[Any]
-    """``(B, T, 1)``."""
+    """Actions, ``(B, T, 1)``."""
     rewards: NDArray[Any]
-    """``(B, T)``."""
+    """Rewards, ``(B, T)``."""
     terminated: NDArray[np.bool_]
     truncated: NDArray[np.bool_]
     mask: NDArray[np.bool_]
-    """Whether the episode goes on in which the stretch began, ``(B, T)``."""
+    """Whether a step belongs to the episode of the first step, ``(B, T)``."""
     next_observations: NDArray[Any]
-    """What was seen after the last step of the mask, ``(B, n)``."""
+    """Observations after the last step of the mask, ``(B, n)``."""
 
 
 class ReplayBuffer:
-    """The last transitions of environments, of which batches are drawn.
+    """Replay buffer of the last transitions of environments.
 
     Parameters
     ----------
     environments:
-        Whose rollouts come in.
+        Environments of the rollouts to insert.
     steps:
-        How many of each environment are kept.
+        Capacity in steps per environment.
     priorities:
         Whether transitions have priorities.
     ends:
-        Room for ends of episodes, by default a quarter of all transitions: where there are more, the oldest steps go earlier.
+        Capacity for ends of episodes (default: a quarter of all transitions). If it is full, the oldest steps are dropped earlier.
     seed:
-        Of all draws. Draw ``number`` is the same whatever was drawn before.
+        Seed of all draws. Draw ``number`` is independent of earlier draws.
 
     Raises
     ------
     ValueError
-        For a capacity of nothing.
+        For a capacity of zero.
     MemoryError
-        If there is no room.
+        If there is not enough memory.
     """
 
-    @named
+    @check_keywords
     def __init__(
         self,
         environments: Environments,
@@ -97,7 +97,7 @@ class ReplayBuffer:
             raise TypeError(f"environments must be Environments, not {type(environments).__name__}")
         settings = environments._settings
         self.seed = count("seed", seed, 0, 2**64 - 1)
-        #: The number of the next draw.
+        #: Number of the next draw.
         self.number = 0
         self._buffer = _native.Buffer(
             count("steps", steps, 1, 2**40),
@@ -118,12 +118,12 @@ class ReplayBuffer:
         raise TypeError("a ReplayBuffer cannot be pickled")
 
     def insert(self, rollout: Rollout) -> None:
-        """Take what a rollout holds; the oldest steps make room for it.
+        """Insert a rollout; it replaces the oldest steps.
 
         Raises
         ------
         ValueError
-            For a rollout of other environments, or of more steps than are kept.
+            For a rollout of other environments, or with more steps than the capacity.
         """
         if not isinstance(rollout, Rollout):
             raise TypeError(f"rollout must be a Rollout, not {type(rollout).__name__}")
@@ -137,71 +137,71 @@ class ReplayBuffer:
         gamma: float = 0.99,
         correction: float | None = None,
     ) -> Transitions:
-        """Draw transitions with replacement, each as likely.
+        """Return ``batch_size`` transitions, drawn uniformly with replacement.
 
         Parameters
         ----------
         steps:
-            How far each looks ahead: its reward is the discounted sum of so many.
+            Number of steps of the discounted sum of rewards.
         gamma:
-            The discount, from 0 to 1.
+            Discount factor, from 0 to 1.
         correction:
-            Draw in proportion to priorities, and correct for that with this exponent, from 0 to 1 (Schaul et al. 2016, section 3.4).
+            Sample in proportion to priorities, with importance weights of this exponent, 0 to 1 (Schaul et al. 2016, section 3.4).
 
         Raises
         ------
         ValueError
-            If there is nothing to draw, or a ``correction`` without priorities.
+            If the buffer is empty, or for a ``correction`` without priorities.
         MemoryError
-            If there is no room for the batch.
+            If there is not enough memory for the batch.
         """
-        asked = self._asked(batch_size, steps, gamma)
+        request = self._sample_request(batch_size, steps, gamma)
         if correction is not None:
-            asked["correction"] = number("correction", correction, "0 to 1")
-        drawn = Transitions(**self._buffer._sample(asked))
+            request["correction"] = number("correction", correction, "0 to 1")
+        drawn = Transitions(**self._buffer._sample(request))
         self.number += 1
         return drawn
 
     def sample_sequences(self, batch_size: int, steps: int) -> Sequences:
-        """Draw stretches of so many steps with replacement, each as likely.
+        """Return ``batch_size`` sequences of ``steps`` steps, drawn uniformly with replacement.
 
         Raises
         ------
         ValueError
-            If no environment has as many steps in the buffer.
+            If no environment has enough steps in the buffer.
         MemoryError
-            If there is no room for the batch.
+            If there is not enough memory for the batch.
         """
-        drawn = Sequences(**self._buffer._sequences(self._asked(batch_size, steps, 1.0)))
+        drawn = Sequences(**self._buffer._sequences(self._sample_request(batch_size, steps, 1.0)))
         self.number += 1
         return drawn
 
     def update_priorities(
         self, numbers: NDArray[np.uint64], priorities: ArrayLike, exponent: float = 0.6
     ) -> int:
-        """Give transitions other priorities: they are drawn in proportion to ``priority ** exponent``.
+        """Set priorities; transitions are drawn in proportion to ``priority ** exponent``.
 
         Parameters
         ----------
         numbers:
-            Of transitions that were drawn, ``(B,)``.
+            Numbers of drawn transitions, ``(B,)``.
         priorities:
-            ``(B,)``, none of them negative: sizes of errors, as a rule.
+            Non-negative priorities, such as absolute errors, ``(B,)``.
 
         Returns
         -------
         int
-            How many of them are still there.
+            Number of these transitions that are still in the buffer.
 
         Raises
         ------
         ValueError
-            For other shapes, a priority that is negative or not finite, or a buffer without priorities.
+            For a wrong shape, a priority that is negative or not finite, or a buffer without priorities.
         """
         which, errors = np.asarray(numbers), np.asarray(priorities)
         if which.dtype.kind not in "iu" or errors.dtype.kind not in "fiu":
             raise TypeError(
-                f"numbers have dtype {which.dtype} and priorities {errors.dtype}, but they must be whole and real numbers"
+                f"numbers have dtype {which.dtype} and priorities {errors.dtype}, but they must be whole numbers and real numbers"
             )
         if which.ndim != 1 or which.shape != errors.shape or (which < 0).any():
             raise ValueError(
@@ -212,8 +212,8 @@ class ReplayBuffer:
         which, errors = which.astype(np.uint64), errors.astype(np.float64)
         return self._buffer._update(np.ascontiguousarray(which), np.ascontiguousarray(errors), exponent)
 
-    def _asked(self, batch_size: int, steps: int, gamma: float) -> dict[str, Any]:
-        asked = {
+    def _sample_request(self, batch_size: int, steps: int, gamma: float) -> dict[str, Any]:
+        request = {
             "len": count("batch_size", batch_size, 1, 2**32),
             "seed": count("seed", self.seed, 0, 2**64 - 1),
             "number": count("number", self.number, 0, 2**64 - 1),
@@ -221,4 +221,4 @@ class ReplayBuffer:
             "gamma": number("gamma", gamma, "0 to 1"),
             "correction": None,
         }
-        return asked
+        return request

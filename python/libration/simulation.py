@@ -1,4 +1,4 @@
-"""Trajectories: of one system, or of several copies of it."""
+"""Simulation of one or several trajectories."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._asked import coordinates, text, told_loop, told_step, whole
-from ._named import named
+from ._requests import coordinates, text, loop_request, step_request, whole
+from ._keywords import check_keywords
 from ._settings import count as _whole_between, nearest, number
 from .ensemble import Ensemble
 from .systems import CustomSystem, known
@@ -24,10 +24,9 @@ _FLOATS = {"f64": np.float64, "f32": np.float32}
 
 
 class Trajectory(Mapping[str, np.ndarray]):
-    """Rows of a trajectory, or of several, as columns: ``step``, ``t``, ``q0`` …, ``v0`` … and ``energy``, with ``trajectory`` where there
-    are several.
+    """Columns of one or several trajectories: ``step``, ``t``, ``q0`` …, ``v0`` … and ``energy``; ``trajectory`` for several.
 
-    A column is had by its name. Columns of ``bf16`` are arrays of ``float32``, which hold them exactly.
+    ``trajectory["q0"]`` is a column. Columns of ``bf16`` are arrays of ``float32``, with the exact values.
     """
 
     def __init__(
@@ -35,13 +34,13 @@ class Trajectory(Mapping[str, np.ndarray]):
     ) -> None:
         self._columns = columns
         self.units: Mapping[str, str] = units
-        """The unit of each column, where it is known; ``1`` if there is none."""
+        """Unit of each column, if known; ``1`` for a column without unit."""
         self.stopped: dict[str, Any] | None = ended if "step" in ended else None
-        """Of a lone trajectory that ceased to be finite: the first ``step`` that is not, its ``t`` in seconds, and the ``reason``: also why and
-        what to do, where the stability of the step tells."""
+        """First ``step`` of a single trajectory that is not finite, its ``t`` in s, and the ``reason``, with a remedy if the step is
+        unstable."""
         self.not_finite: dict[str, Any] | None = ended if "count" in ended else None
-        """Of several trajectories: the ``count`` of those that are not finite in the end, the ``first`` ten of them, and the ``reason`` where
-        it is known."""
+        """For several trajectories: ``count`` of those that are not finite in the end, the ``first`` ten of them, and the ``reason``,
+        if known."""
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         return self._columns[name]
@@ -59,24 +58,24 @@ class Trajectory(Mapping[str, np.ndarray]):
 
     @property
     def q(self) -> NDArray[Any]:
-        """Positions, ``(rows, dimension)``: a copy."""
+        """Copy of the positions, ``(rows, dimension)``."""
         return self._stacked("q")
 
     @property
     def v(self) -> NDArray[Any]:
-        """Velocities, ``(rows, dimension)``: a copy."""
+        """Copy of the velocities, ``(rows, dimension)``."""
         return self._stacked("v")
 
     @property
     def energy(self) -> NDArray[Any]:
-        """Energies per unit mass, ``(rows,)``, in the unit of a velocity squared: ``units["energy"]``."""
+        """Energies per unit mass, ``(rows,)``, in ``units["energy"]``."""
         return self["energy"]
 
     def _stacked(self, letter: str) -> NDArray[Any]:
         return np.stack([self[name] for name in self if name[0] == letter and name[1:].isdigit()], axis=1)
 
     def to_pandas(self) -> Any:
-        """A ``pandas.DataFrame`` of all columns."""
+        """Return a ``pandas.DataFrame`` of all columns."""
         import pandas  # type: ignore[import-untyped]
 
         return pandas.DataFrame(dict(self))
@@ -85,7 +84,7 @@ class Trajectory(Mapping[str, np.ndarray]):
         return f"<Trajectory of {len(self['t'])} rows: {', '.join(self)}>"
 
 
-@named
+@check_keywords
 def simulate(
     system: Any,
     *,
@@ -106,46 +105,46 @@ def simulate(
     time_stamps: ArrayLike | None = None,
     seed: int = 0,
 ) -> Trajectory:
-    """Simulate a trajectory, or several from starts around one: what ``libration simulate`` does.
+    """Return one or several simulated trajectories, as ``libration simulate`` writes them.
 
     Parameters
     ----------
     system:
-        A name, a :class:`~libration.System`, or a :class:`~libration.CustomSystem` or function ``a(q, v)``, which nothing but
-        ``integrator``, ``dt``, ``steps``, ``q``, ``v``, ``float`` and ``every`` are for.
+        A name, a :class:`~libration.System`, a :class:`~libration.CustomSystem` or a function ``a(q, v)``. The last two accept
+        ``integrator``, ``dt``, ``steps``, ``q``, ``v``, ``float`` and ``every`` only.
     integrator:
-        One of :data:`~libration.INTEGRATORS`.
+        Name from :data:`~libration.INTEGRATORS`.
     dt:
-        The time step in s.
+        Time step in s.
     steps:
-        How many, 1 to 2⁵³; ``every`` bounds the rows.
+        Number of steps, 1 to 2⁵³; ``every`` limits the number of rows.
     q, v:
-        Positions and velocities at the start, a number or ``(dimension,)``; by default those of the catalogue.
+        Initial positions and velocities, a number or ``(dimension,)`` (default: those of the catalogue).
     float:
-        ``"f64"``, ``"f32"``, ``"f16"`` or ``"bf16"``: of every operation.
+        Float type of every operation: ``"f64"``, ``"f32"``, ``"f16"`` or ``"bf16"``.
     every:
-        Rows that are kept: every so many steps, besides the first and the last.
+        Distance of rows in steps; the first and the last step are always rows.
     count, spread, threads:
-        Simulate ``count`` trajectories from ``1 - spread`` to ``1 + spread`` times the start, in so many threads; 0 for all cores.
+        Number of trajectories, with starts from ``1 - spread`` to ``1 + spread`` times the start; number of threads (0: one per core).
     feedback:
-        Close the loop: gains of position and velocity, or a :class:`~libration.PD`. The command is an acceleration (gains in s⁻² and
-        s⁻¹), or a force (N/m and N·s/m) where the system is given by ``m`` and ``k``.
+        Gains of position and velocity, or a :class:`~libration.PD` (default: no loop). The command is an acceleration (gains in s⁻²
+        and s⁻¹), or a force (N/m and N·s/m) for a system with ``m`` and ``k``.
     latency:
-        How late commands arrive, in s or as :class:`~libration.Steps`.
+        Latency of commands, in s or as :class:`~libration.Steps`.
     jitter, skew:
-        The laws of step times and of clock rates: a relative standard deviation, a pair like ``("uniform", 0.1)``, or a
+        Distributions of steps and of clock rates: a relative standard deviation, a pair like ``("uniform", 0.1)``, or a
         :class:`~libration.Gaussian` or :class:`~libration.Uniform`.
     time_stamps:
-        Those of a recorded clock, in s, in place of even steps.
+        Time stamps of a recorded clock in s, in place of even steps.
     seed:
-        Of all that is random.
+        Seed of all random numbers.
 
     Raises
     ------
     TypeError, ValueError
-        Before any work, with the name of what is wrong and what is allowed.
+        For an invalid value, before any work; the message has the name of the parameter and the allowed values.
     MemoryError
-        If all rows do not fit.
+        If there is not enough memory for all rows.
     """
     system = known(system)
     if isinstance(system, CustomSystem):
@@ -159,18 +158,18 @@ def simulate(
         }
         for name, value in wrong.items():
             if value is not None:
-                raise ValueError(f"{name} is given, but it is for systems of the catalogue only")
+                raise ValueError(f"{name} is given, but it requires a system of the catalogue")
         for name, value in {"spread": spread, "threads": threads, "seed": seed}.items():
             if value != 0:
-                raise ValueError(f"{name} is {value!r}, but it is for systems of the catalogue only")
+                raise ValueError(f"{name} is {value!r}, but it requires a system of the catalogue")
         return _custom(system, integrator, dt, steps, q, v, float, every)
     if count is None:
         for name, value in {"spread": spread, "threads": threads}.items():
             if value != 0:
-                raise ValueError(f"{name} is {value!r}, but there is no count of trajectories that it is for")
+                raise ValueError(f"{name} is {value!r}, but there is no count of trajectories; it requires count")
     columns, units, ended = _native._simulate(
-        told_step(system, integrator, dt, q, v),
-        told_loop(feedback, latency, jitter, skew),
+        step_request(system, integrator, dt, q, v),
+        loop_request(feedback, latency, jitter, skew),
         {
             "steps": whole("steps", steps),
             "float": text("float", float),
@@ -192,12 +191,12 @@ def _finite(all: Ensemble) -> bool:
 def _custom(
     system: CustomSystem, integrator: str, dt: Any, steps: Any, q: Any, v: Any, float: str, every: Any
 ) -> Trajectory:
-    # Python takes minutes for as many.
+    # Python takes minutes for this many steps.
     steps, every = _whole_between("steps", steps, 1, 10**9), whole("every", every)
     if float not in _FLOATS:
         raise ValueError(f"float is {float!r}: {nearest(float, _FLOATS)}")
     if q is None:
-        raise ValueError("q is missing: a custom system has no start of its own")
+        raise ValueError("q is missing; a custom system has no default start")
     start = np.array([coordinates("q", q)])
     speed = None if v is None else np.array([coordinates("v", v)])
     one = Ensemble(system, integrator=integrator, dt=dt, q=start, v=speed, dtype=_FLOATS[float])
@@ -211,13 +210,13 @@ def _custom(
     for step in kept:
         one.advance(step - one.step)
         if not _finite(one):
-            # Which of the steps since the last row it was.
+            # Repeats the steps since the last row one by one.
             again = Ensemble(
                 system, integrator=integrator, dt=dt, q=positions[-1:], v=velocities[-1:], dtype=one.dtype
             )
             while _finite(again) and again.step < step - steps_kept[-1]:
                 again.advance(1)
-            # A force that is another each time need not do so again.
+            # A force that is not deterministic may stay finite in the repetition.
             step = steps_kept[-1] + again.step
             ended = {"step": step, "t": step * one.dt, "reason": "the state is not finite"}
             break

@@ -1,4 +1,4 @@
-"""Systems and integrators by name, and systems of one's own."""
+"""Systems and integrators of the catalogue, and custom systems."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ._settings import nearest, number
 __all__ = ["CustomSystem", "INTEGRATORS", "SYSTEMS", "System"]
 
 INTEGRATORS: Mapping[str, str] = MappingProxyType(dict(_native._integrators()))
-"""What each integrator is, by name. ``"exact"`` steps exist of linear systems, and not in ensembles or environments."""
+"""Description of each integrator, by name. ``"exact"`` is for linear systems only, not for ensembles or environments."""
 
 SYSTEMS: Mapping[str, str] = MappingProxyType({entry[0]: entry[1] for entry in _native._systems()})
-"""What each system is, by name."""
+"""Description of each system, by name."""
 
 _DIMENSIONS = {name: range(least, most + 1) for name, _, least, most, _ in _native._systems()}
 
@@ -28,14 +28,14 @@ class System:
     Parameters
     ----------
     name:
-        One of :data:`SYSTEMS`.
+        Name from :data:`SYSTEMS`.
     **parameters:
-        In SI units; those that are not given take their defaults.
+        Parameters in SI units (default: those of the catalogue).
 
     Raises
     ------
     ValueError
-        For an unknown name or parameter, or a value that is not allowed.
+        For an unknown name or parameter, or an invalid value.
 
     Examples
     --------
@@ -45,7 +45,7 @@ class System:
 
     def __init__(self, name: str, **parameters: float) -> None:
         if not isinstance(name, str):
-            raise TypeError(f"a system is known by its name, not by {type(name).__name__}")
+            raise TypeError(f"name must be a string, not {type(name).__name__}")
         given = [(key, number(key, value, "finite")) for key, value in parameters.items()]
         self.name = name
         self.parameters: Mapping[str, float] = MappingProxyType(
@@ -54,23 +54,23 @@ class System:
 
     @property
     def dimensions(self) -> range:
-        """The numbers of degrees of freedom in which it exists."""
+        """Allowed numbers of degrees of freedom."""
         return _DIMENSIONS[self.name]
 
     def __repr__(self) -> str:
         return f"System({', '.join([repr(self.name), *(f'{k}={v!r}' for k, v in self.parameters.items())])})"
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, System) and self._told() == other._told()
+        return isinstance(other, System) and self._request() == other._request()
 
     def __hash__(self) -> int:
         return hash((self.name, tuple(self.parameters.items())))
 
-    def _told(self) -> tuple[str, list[tuple[str, float]]]:
+    def _request(self) -> tuple[str, list[tuple[str, float]]]:
         return self.name, list(self.parameters.items())
 
     def __reduce__(self) -> Any:
-        return _again, self._told()
+        return _again, self._request()
 
 
 def _again(name: str, parameters: list[tuple[str, float]]) -> System:
@@ -79,20 +79,19 @@ def _again(name: str, parameters: list[tuple[str, float]]) -> System:
 
 @dataclass(frozen=True)
 class CustomSystem:
-    """A system of one's own, of which Python computes the force.
+    """A system whose acceleration is a Python function.
 
-    It is stepped by the engine's integrators, operation by operation on whole arrays, and in ``float64`` and ``float32`` to the bits that the
-    engine would give. Every step costs a few calls of ``acceleration`` and some NumPy operations: with thousands of trajectories some tens of
-    times as long as a system of the catalogue takes, and with few of them ten (velocity Verlet) to fifty (Suzuki) microseconds, most of which is
-    spent between calls.
+    The integrators of the engine step it, operation by operation on whole arrays, with the bits of the engine in ``float64`` and
+    ``float32``. A step takes a few calls of ``acceleration`` and some NumPy operations: 10 µs (velocity Verlet) to 50 µs (Suzuki) for few
+    trajectories, and some tens of times the time of a catalogue system for thousands.
     """
 
     acceleration: Callable[[np.ndarray, np.ndarray], Any]
-    """The acceleration ``a(q, v)`` of arrays ``(N, D)``, as an array ``(N, D)``. What it is given cannot be written."""
+    """Function ``a(q, v)`` of arrays ``(N, D)`` that returns an array ``(N, D)``. Its arguments are read-only."""
     energy: Callable[[np.ndarray, np.ndarray], Any] | None = None
-    """The energy per unit mass, ``(N,)``, if there is one."""
+    """Function that returns the energy per unit mass, ``(N,)``."""
     positional: bool = False
-    """Whether the acceleration depends on positions alone: then it is not computed twice from the same ones."""
+    """Whether the acceleration depends on positions only; it is then computed once per position."""
 
     def __post_init__(self) -> None:
         for name in ("acceleration", "energy"):
@@ -102,7 +101,7 @@ class CustomSystem:
 
 
 def known(system: Any) -> System | CustomSystem:
-    """A system, whatever it was called."""
+    """Return the system of a name, a function or a system."""
     if isinstance(system, (System, CustomSystem)):
         return system
     if isinstance(system, str):
@@ -117,23 +116,23 @@ def known(system: Any) -> System | CustomSystem:
 
 
 def seen(array: np.ndarray) -> np.ndarray:
-    """The array for who must not write it."""
+    """Return a read-only view of an array."""
     view = array.view()
     view.flags.writeable = False
     return view
 
 
 class Program:
-    """A step of an integrator as the list of its operations, to be done with arrays."""
+    """A step of an integrator as a list of array operations."""
 
     def __init__(self, integrator: str, system: CustomSystem) -> None:
         self.operations, self.constants, self.next = _native._program(integrator)
         self.system = system
-        # Positions of which the acceleration is known.
+        # The last positions and their acceleration.
         self.known: tuple[np.ndarray, np.ndarray] | None = None
 
     def step(self, q: np.ndarray, v: np.ndarray, dt: Any) -> tuple[np.ndarray, np.ndarray]:
-        """Positions and velocities after a step of ``dt`` seconds."""
+        """Return positions and velocities after a step of ``dt`` seconds."""
         values: list[Any] = []
         # Constants are rounded as the engine rounds them.
         number = q.dtype.type
@@ -165,7 +164,7 @@ class Program:
             raise ValueError(f"the acceleration has shape {found.shape}, but it must be {q.shape}")
         if found.dtype.kind not in "fiu":
             raise TypeError(f"the acceleration has dtype {found.dtype}, but it must be real numbers")
-        # Whoever computes it may use that memory again.
+        # The function may reuse the memory of its result.
         found = found.astype(q.dtype)
         self.known = q, found
         return found

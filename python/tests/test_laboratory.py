@@ -256,7 +256,7 @@ def test_a_data_set_is_resumed_to_the_same_bytes_and_verified(tmp_path):
     with pytest.raises(Stop):
         libration.datasets.write(part, {**DATA, "steps": 6400}, format="npy", progress=stop)
     (flaw,) = libration.datasets.verify(part)
-    assert "is unfinished" in flaw.what and "resume=True goes on" in flaw.what
+    assert "is unfinished" in flaw.what and "resume=True continues it" in flaw.what
     full = libration.datasets.write(part, {**DATA, "steps": 6400}, format="npy", resume=True)
     assert full.transitions == 8 * 6400
     assert libration.datasets.verify(part, replay=True) == []

@@ -160,7 +160,7 @@ def test_a_long_rollout_can_be_interrupted(mode):
     [
         (Linear([1.0, 2.0]), ValueError, "there are 2 weights, but there must be 3"),
         (MLP([1, 2]), TypeError, "layer 0 is no pair"),
-        (Policy(), TypeError, "Policy says nothing of what it does"),
+        (Policy(), TypeError, "Policy is not a policy of the engine"),
         (Linear([1.0, np.nan, 2.0]), ValueError, "weights is not finite"),
         (Linear(["a", "b", "c"]), TypeError, "weights has dtype"),
         (Random(1.0, 1.0), ValueError, "from 1.0 to 1.0"),

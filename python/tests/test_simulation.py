@@ -171,7 +171,7 @@ def test_a_state_that_overflows_ends_a_trajectory_and_says_where(every):
 def test_a_step_beyond_the_limit_of_its_method_is_named_with_the_step_that_it_allows():
     given = {"integrator": "velocity-verlet", "dt": 0.7, "steps": 1000}
     # ω = √10: the limit 2 of ωΔt is at Δt = 0.63245.
-    why = "ωΔt = 2.21 is beyond velocity-verlet's limit 2; choose dt below 0.632"
+    why = "ωΔt = 2.21 exceeds velocity-verlet's limit 2; choose dt below 0.632"
     assert simulate(SPRING, **given).stopped["reason"] == f"the state stopped being finite: {why}"
     assert simulate(SPRING, count=2, **given).not_finite["reason"] == why
     assert simulate(SPRING, **{**given, "dt": 0.632}).stopped is None

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use crate::{Outcome, codegen, command, dependencies, examples, report, test, tidy};
 
-/// A headline and what stands under it.
+/// Name and function of a step.
 type Step = (&'static str, fn() -> Outcome);
 
 const STEPS: [Step; 9] = [

@@ -50,7 +50,7 @@ pub(crate) fn kept(command: &mut Command) -> (Outcome, String) {
     }
 }
 
-/// What `command` prints to its standard output.
+/// Returns the standard output of `command`.
 pub(crate) fn output(command: &mut Command) -> Result<String, String> {
     let output = command.output().map_err(|error| not_started(command, &error))?;
     if !output.status.success() {

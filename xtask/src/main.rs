@@ -18,7 +18,7 @@ mod workspace;
 
 use std::process::ExitCode;
 
-/// What a task returns: nothing, or the sentence that says why it failed.
+/// Result of a task: nothing, or an error message.
 type Outcome = Result<(), String>;
 
 struct Task {
@@ -27,7 +27,7 @@ struct Task {
     action: Action,
 }
 
-/// How a task is called.
+/// A task.
 enum Action {
     /// Without arguments.
     Plain(fn() -> Outcome),

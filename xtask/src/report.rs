@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::scratch::Scratch;
 use crate::{Outcome, command, workspace};
 
-/// Where the report lies.
+/// Returns the folder of the report.
 pub(crate) fn folder() -> PathBuf {
     workspace::target().join("report")
 }

@@ -15,7 +15,7 @@ impl Scratch {
         Ok(Scratch(path))
     }
 
-    /// Where it lies.
+    /// Returns the path.
     pub(crate) fn path(&self) -> &Path {
         &self.0
     }

@@ -62,7 +62,7 @@ pub(crate) fn run(suites: Vec<Suite>) -> Outcome {
     }
 }
 
-/// A test program as cargo tells of it.
+/// A test program in the output of cargo.
 #[derive(Debug, PartialEq)]
 struct Program {
     name: String,
@@ -81,14 +81,14 @@ impl Program {
 
 /// The test program that a line of cargo's is about, if it is about one.
 fn program_in(line: &str) -> Option<Program> {
-    let told: Value = serde_json::from_str(line).ok()?;
-    if told["profile"]["test"] != true {
+    let message: Value = serde_json::from_str(line).ok()?;
+    if message["profile"]["test"] != true {
         return None;
     }
     Some(Program {
-        name: told["target"]["name"].as_str()?.to_owned(),
-        path: PathBuf::from(told["executable"].as_str()?),
-        folder: PathBuf::from(told["manifest_path"].as_str()?).parent()?.to_owned(),
+        name: message["target"]["name"].as_str()?.to_owned(),
+        path: PathBuf::from(message["executable"].as_str()?),
+        folder: PathBuf::from(message["manifest_path"].as_str()?).parent()?.to_owned(),
     })
 }
 
@@ -98,16 +98,16 @@ mod tests {
 
     #[test]
     fn only_programs_of_tests_are_run_each_in_the_folder_of_its_package() {
-        let told = |executable: &str, test: bool| {
+        let message = |executable: &str, test: bool| {
             format!(
                 r#"{{"reason":"compiler-artifact","manifest_path":"/a/b/Cargo.toml","target":{{"name":"lab"}},"profile":{{"test":{test}}},"executable":{executable}}}"#
             )
         };
-        let found = program_in(&told("\"/t/lab-1\"", true));
+        let found = program_in(&message("\"/t/lab-1\"", true));
         let wanted = Program { name: "lab".into(), path: "/t/lab-1".into(), folder: "/a/b".into() };
         assert_eq!(found, Some(wanted));
-        assert_eq!(program_in(&told("\"/t/libration\"", false)), None);
-        assert_eq!(program_in(&told("null", true)), None);
+        assert_eq!(program_in(&message("\"/t/libration\"", false)), None);
+        assert_eq!(program_in(&message("null", true)), None);
         assert_eq!(program_in("   Compiling libration"), None);
     }
 

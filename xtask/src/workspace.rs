@@ -1,4 +1,4 @@
-//! Where the project and its build products lie.
+//! Paths of the workspace and of build products.
 
 use std::env;
 use std::path::{Path, PathBuf};

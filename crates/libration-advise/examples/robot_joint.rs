@@ -1,4 +1,4 @@
-//! A robot's joint at 500 Hz whose commands are 3 ms late: does it hold, and what fails first?
+//! Advice for a robot joint at 500 Hz with a latency of 3 ms: stability, and the imperfection that fails first.
 //!
 //! ```text
 //! cargo run --release -p libration-advise --example robot_joint [PAGE.html]
@@ -17,7 +17,7 @@ use libration::integrator::Rk4;
 use libration::system::Pendulum;
 use libration::{State, System};
 use libration_advise as advise;
-use libration_advise::{Correction, Kind, Law, Regulator};
+use libration_advise::{Correction, Imperfection, Law, Regulator};
 use libration_work::{Silent, Work};
 
 /// The arm about the angle at which it is held: what is left of its weight there.
@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("a designed observer".into());
     };
     let controller = Luenberger::to_origin(plant.lqr(weights)?, plant.observer(noise)?);
-    let limit = looped.budgets.iter().find(|budget| budget.kind == Kind::Latency);
+    let limit = looped.budgets.iter().find(|budget| budget.kind == Imperfection::Latency);
     let limit = limit.and_then(|budget| budget.stable_up_to).ok_or("a limit of latency")?;
     let frequency = looped.fails_first.as_ref().and_then(|failing| failing.frequency);
     for (latency, holds) in [(control.latency, true), (0.98 * limit, true), (1.02 * limit, false)] {

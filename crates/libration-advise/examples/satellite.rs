@@ -1,4 +1,4 @@
-//! A satellite's orbit over a year: which integrator, with which step?
+//! Integrator and time step for the orbit of a satellite over a year.
 //!
 //! ```text
 //! cargo run --release -p libration-advise --example satellite [DAYS]

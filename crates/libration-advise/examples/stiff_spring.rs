@@ -1,4 +1,4 @@
-//! A stiff spring in single precision: is that enough, and with which step?
+//! Time step and float type for a stiff spring.
 //!
 //! ```text
 //! cargo run --release -p libration-advise --example stiff_spring

@@ -1,77 +1,76 @@
-//! A control loop: its law, its timing, and what it costs.
+//! Control loops: law, timing and cost.
 
 use libration::analysis::ObserverNoise;
 use libration::control::clock::{Recorded, RecordedError};
 use libration::control::controller::PidGains;
 use libration::control::{Feedback, Jitter, LqrWeights};
 
-/// A loop and what is wrong with it.
+/// A control loop with its timing imperfections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Control {
-    /// Who commands.
+    /// The control law.
     pub law: Law,
-    /// Between two samples, in s.
+    /// The sampling period, in s.
     pub period: f64,
-    /// How late a command arrives, in s.
+    /// The latency of the command, in s.
     pub latency: f64,
     /// The law of sample times, with its relative rms.
     pub jitter: Jitter,
-    /// The part by which the clock of the loop is slow; negative where it is fast.
+    /// The relative error of the period: positive for a slow clock, negative for a fast one.
     pub skew: f64,
     /// The probability that a command is lost.
     pub loss: f64,
-    /// Steps that were measured, as multiples of their mean; they are replayed in place of `jitter`, whose rms is theirs.
+    /// Recorded steps, as multiples of their mean. They replace the law of `jitter`, which has their rms.
     pub record: Option<Vec<f64>>,
-    /// What the loop costs.
+    /// The weights of the cost; none for those of the energy.
     pub weights: Option<LqrWeights>,
-    /// How far from the operating point it must return from, in m or rad.
+    /// The distance from the operating point from which the loop must return, in m or rad.
     pub deviation: f64,
 }
 
-/// A clock that is off by less does nothing to a loop.
+/// Skew below which a clock counts as exact.
 const ON_TIME: f64 = 1e-6;
 
-/// The relative rms of steps that only rounding tells apart.
+/// Relative rms below which steps differ by rounding only.
 const EVEN: f64 = 1e-9;
 
 impl Control {
-    /// This with a clock that was measured, whose time stamps are in seconds: where their mean is not the period, the clock is slow or
-    /// fast by that.
+    /// The same loop with a recorded clock. `stamps` are its time stamps in s; their mean interval determines the skew.
     ///
     /// # Errors
-    /// If they are no record of a clock.
-    pub fn replaying(self, stamps: &[f64]) -> Result<Self, RecordedError> {
+    /// If the time stamps are invalid.
+    pub fn with_time_stamps(self, stamps: &[f64]) -> Result<Self, RecordedError> {
         let (steps, mean) = Recorded::steps_between(stamps)?;
         let square = steps.iter().map(|step| (step - 1.0).powi(2)).sum::<f64>();
         let rms = (square / steps.len() as f64).sqrt();
         let skew = mean / self.period - 1.0;
         let skew = if skew.abs() < ON_TIME { 0.0 } else { skew };
-        // Steps that differ by their last digits alone are even.
+        // Steps that differ by rounding only are even.
         let (rms, record) = if rms < EVEN { (0.0, None) } else { (rms, Some(steps)) };
         Ok(Control { jitter: self.jitter.with_rms(rms), record, skew, ..self })
     }
 }
 
-/// Who commands.
+/// A control law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
     /// Feedback of position and velocity.
     Pd(Feedback),
-    /// Three terms, of the position.
+    /// Three terms of the position.
     Pid(PidGains<1>),
-    /// The feedback that costs least, designed from the model.
+    /// The feedback of least cost, designed from the model.
     Lqr(LqrWeights),
-    /// Feedback of a state that is estimated from the position.
+    /// Feedback of a state estimated from the position.
     Observer {
-        /// What is fed back.
+        /// The feedback of the estimate.
         feedback: Regulator,
-        /// How the estimate is corrected.
+        /// The correction of the estimate.
         correction: Correction,
     },
 }
 
 impl Law {
-    /// The law of accelerations that does what this one does as a force on `mass`, in kg.
+    /// The law of accelerations equivalent to this law of forces on `mass`, in kg.
     pub(super) fn per_mass(self, mass: f64) -> Self {
         let regulator = |regulator| match regulator {
             Regulator::Gains(gains) => Regulator::Gains(gains.per_mass(mass)),
@@ -94,20 +93,20 @@ impl Law {
     }
 }
 
-/// Gains, or what they are designed for.
+/// Gains, or the weights of their design.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Regulator {
-    /// These.
+    /// Given gains.
     Gains(Feedback),
-    /// The feedback that costs least.
+    /// The feedback of least cost.
     Lqr(LqrWeights),
 }
 
-/// How an estimate is corrected by what is seen, or what that is designed for.
+/// The correction of an estimate by the observed position, or the noise of its design.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Correction {
-    /// By so much of what the position is off: the position, and the velocity in 1/s.
+    /// Gains of the position and, in 1/s, of the velocity.
     Gains([f64; 2]),
-    /// As varies least: a stationary Kalman filter.
+    /// The stationary Kalman filter.
     Kalman(ObserverNoise),
 }

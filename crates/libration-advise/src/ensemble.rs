@@ -1,4 +1,4 @@
-//! Many loops with all that is stated.
+//! Ensembles of loops with all stated imperfections.
 
 use libration::control::clock::{Jittered, Rates, Recorded};
 use libration::control::delay::{Order, Packets};
@@ -12,12 +12,22 @@ use libration_work::Work;
 use super::AdviseError;
 use super::loops::Loop;
 
-/// The seed of all that is random.
+/// Seed of all random numbers.
 const SEED: u64 = 8;
 
+/// Largest number of simulated periods.
+pub(super) const MOST_PERIODS: f64 = 100_000.0;
+
+/// Number of time constants of the decay after which the start is forgotten.
+pub(super) const MEMORIES: f64 = 20.0;
+
 impl<M: Model<1>> Loop<M> {
-    /// Runs loops with all that is stated.
-    pub(super) fn run(&self, work: &Work<'_>, run: Run<'_>) -> Result<Option<Ran>, AdviseError> {
+    /// Runs loops with all stated imperfections; none if the latency is too long for losses.
+    pub(super) fn run(
+        &self,
+        work: &Work<'_>,
+        run: EnsembleRun<'_>,
+    ) -> Result<Option<EnsembleResult>, AdviseError> {
         let stated = self.stated()?;
         let latency = stated.latency;
         if stated.loss == 0.0 {
@@ -34,9 +44,9 @@ impl<M: Model<1>> Loop<M> {
     fn run_with(
         &self,
         work: &Work<'_>,
-        run: Run<'_>,
+        run: EnsembleRun<'_>,
         delay: impl Delay<f64>,
-    ) -> Result<Ran, AdviseError> {
+    ) -> Result<EnsembleResult, AdviseError> {
         let varied = match &self.control.record {
             Some(record) => record.iter().copied().fold(1.0, f64::max),
             None => 1.0 + self.control.jitter.largest(),
@@ -44,7 +54,7 @@ impl<M: Model<1>> Loop<M> {
         let longest = varied * (1.0 + self.control.skew.abs());
         match Exact::new(self.model, self.control.period * longest) {
             Some(exact) => self.run_by(work, run, delay, exact),
-            // Parts of a radian, of which the error of order four is a part in 10⁶.
+            // Substeps of 0.05 rad with an error of order four of 10⁻⁶.
             None => {
                 let turn = self.plant().rate() * self.control.period * longest;
                 let count = (turn / 0.05).ceil().clamp(4.0, 256.0) as i32;
@@ -56,10 +66,10 @@ impl<M: Model<1>> Loop<M> {
     fn run_by(
         &self,
         work: &Work<'_>,
-        run: Run<'_>,
+        run: EnsembleRun<'_>,
         delay: impl Delay<f64>,
         method: impl Integrator,
-    ) -> Result<Ran, AdviseError> {
+    ) -> Result<EnsembleResult, AdviseError> {
         let acceleration = |state: &State<f64, 1>| self.model.on::<f64>().acceleration(state);
         let even = [1.0];
         let recorded = self.control.record.as_deref().unwrap_or(&even);
@@ -67,9 +77,9 @@ impl<M: Model<1>> Loop<M> {
             Some(_) => Jitter::Gaussian(0.0),
             None => self.control.jitter,
         };
-        // Loops under one record begin at different places of it: else all would have the same clock.
+        // Loops begin at different places of a record: otherwise all would have the same clock.
         let groups = if recorded.len() > 1 { GROUPS } else { 1 };
-        let mut all = Ran { costs: Vec::new(), last: Vec::new() };
+        let mut all = EnsembleResult { costs: Vec::new(), last: Vec::new() };
         for (group, starts) in run.starts.chunks(run.starts.len().div_ceil(groups)).enumerate() {
             let rates = vec![1.0 + self.control.skew; starts.len()];
             let mut own = recorded.to_vec();
@@ -99,10 +109,10 @@ impl<M: Model<1>> Loop<M> {
     }
 }
 
-/// Places in a record at which loops begin.
+/// Number of places in a record at which loops begin.
 pub(super) const GROUPS: usize = 8;
 
-/// Steps between two looks at whether to stop.
+/// Steps between two checks of the stop flag.
 const LEG: u64 = 4096;
 
 fn advance(
@@ -120,23 +130,23 @@ fn advance(
     Ok(())
 }
 
-/// What is run.
+/// A run of an ensemble of loops.
 #[derive(Clone, Copy)]
-pub(super) struct Run<'a> {
-    /// Periods that do not count.
+pub(super) struct EnsembleRun<'a> {
+    /// Periods before the measurement.
     pub(super) before: u64,
-    /// Periods that do.
+    /// Measured periods.
     pub(super) periods: u64,
-    /// Where the loops start.
+    /// The initial states.
     pub(super) starts: &'a [State<f64, 1>],
-    /// Of the noise.
+    /// The intensity of the noise.
     pub(super) intensity: f64,
 }
 
-/// What came of it.
-pub(super) struct Ran {
+/// The result of a run.
+pub(super) struct EnsembleResult {
     /// The mean cost of each loop.
     pub(super) costs: Vec<f64>,
-    /// The states in the end.
+    /// The final states.
     pub(super) last: Vec<State<f64, 1>>,
 }

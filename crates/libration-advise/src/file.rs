@@ -1,4 +1,4 @@
-//! Requests as files.
+//! Request files.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,39 +8,38 @@ use libration::catalog::Actuation;
 use libration::control::controller::PidGains;
 use libration::control::{Feedback, Jitter, LqrWeights};
 use libration::{AnySystem, catalog};
-use libration_settings::{Count, Document, Fault, Number, SettingsError, names};
+use libration_settings::{Count, Document, Fault, Number, SettingsError, suggestions};
 
 use super::AdviseError;
 use super::control::{Control, Correction, Law, Regulator};
+use super::file_tables::{ControllerTable, LoopTable, ObserverTable, RequestFile};
 use super::request::{Measure, Request, Tolerance};
-use super::tables::{ControllerTable, File, LoopTable, ObserverTable};
-use crate::wakeups;
+use crate::jitter_measurement;
 
 /// The default request, as a file with comments.
 pub const DEFAULT: &str = include_str!("default.toml");
 
-/// Reads a request; `file_name` is only for messages.
+/// Parses a request; `file_name` is the name in messages.
 ///
 /// # Errors
-/// [`SettingsError`] at the characters that are wrong.
+/// [`SettingsError`] with the position of the error.
 pub fn parse(text: &str, file_name: &str) -> Result<Request, SettingsError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let document = Document::parse(text, file_name)?;
-    let file: File = toml::from_str(text).map_err(|error| document.explain(&error))?;
+    let file: RequestFile = toml::from_str(text).map_err(|error| document.explain(&error))?;
     let request = Request::try_from(file).map_err(|fault| document.locate(fault))?;
-    Ok(Request { asked_by: format!("libration advise --config {file_name}"), ..request })
+    Ok(Request { invocation: format!("libration advise --config {file_name}"), ..request })
 }
 
-impl TryFrom<File> for Request {
+impl TryFrom<RequestFile> for Request {
     type Error = Fault;
 
-    fn try_from(file: File) -> Result<Self, Fault> {
+    fn try_from(file: RequestFile) -> Result<Self, Fault> {
         let numbers = |list: Vec<Number>| -> Vec<f64> { list.into_iter().map(|x| x.0).collect() };
         let (system, actuation) = system(file.system)?;
         let control = match file.controller {
             None if file.looped.is_some() => {
-                let message =
-                    "`[loop]` is given, but no controller that closes it, as [controller.pd]";
+                let message = "`[loop]` requires a controller, as [controller.pd]";
                 return Err(Fault::new("loop", message));
             }
             None => None,
@@ -56,7 +55,7 @@ impl TryFrom<File> for Request {
             horizon: file.asked.horizon.0,
             rollout: file.asked.rollout.map(|Count(n)| usize::try_from(n).unwrap_or(0)),
             map: false,
-            asked_by: "libration advise --config FILE".into(),
+            invocation: "libration advise --config FILE".into(),
         };
         if !system.entry().dimensions.contains(&request.q.len()) {
             let message = system.entry().wrong_dimension(request.q.len()).to_string();
@@ -93,13 +92,13 @@ fn tolerance(table: BTreeMap<String, Number>) -> Result<Tolerance, Fault> {
     let (Some((name, Number(most))), None) = (all.next(), all.next()) else {
         return Err(Fault::new(
             "tolerance",
-            "`tolerance` must be of one thing, as trajectory = 1e-3",
+            "`tolerance` must have exactly one key, as trajectory = 1e-3",
         ));
     };
     let of = Measure::ALL.into_iter().find(|measure| measure.name() == name);
     let of = of.ok_or_else(|| {
         let fault = Fault::new("tolerance", format!("unknown tolerance `{name}`"));
-        fault.help(names::suggest("tolerances", &name, Measure::ALL.map(Measure::name)))
+        fault.help(suggestions::suggest("tolerances", &name, Measure::ALL.map(Measure::name)))
     })?;
     Ok(Tolerance { of, most })
 }
@@ -156,7 +155,7 @@ fn control(law: Law, table: LoopTable) -> Result<Control, Fault> {
         "uniform" => Jitter::Uniform(0.0),
         other => {
             let fault = Fault::new("loop.law", format!("unknown law `{other}`"));
-            return Err(fault.help(names::suggest("laws", other, ["gaussian", "uniform"])));
+            return Err(fault.help(suggestions::suggest("laws", other, ["gaussian", "uniform"])));
         }
     };
     let weights = match &table.cost[..] {
@@ -181,47 +180,47 @@ fn control(law: Law, table: LoopTable) -> Result<Control, Fault> {
     };
     if !table.time_stamps.is_empty() {
         if control.skew != 0.0 {
-            let message = "`skew` is given, but `time_stamps` say how far the clock is off";
+            let message = "`skew` is given, but `time_stamps` determine the skew";
             return Err(Fault::new("loop.skew", message));
         }
         let path = &table.time_stamps;
         let wrong =
             |why: String| Fault::new("loop.time_stamps", format!("cannot use `{path}`: {why}"));
-        let stamps = wakeups::time_stamps(Path::new(path)).map_err(wrong)?;
-        control = control.replaying(&stamps).map_err(|error| wrong(error.to_string()))?;
+        let stamps = jitter_measurement::read_time_stamps(Path::new(path)).map_err(wrong)?;
+        control = control.with_time_stamps(&stamps).map_err(|error| wrong(error.to_string()))?;
     }
     Ok(control)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::tables::PdTable;
+    use super::super::file_tables::PdTable;
     use super::*;
 
     #[test]
     fn the_default_file_is_the_default_request_with_a_loop() {
         let request = parse(DEFAULT, "default").unwrap();
-        let file = File {
+        let file = RequestFile {
             controller: Some(ControllerTable::Pd(PdTable {
                 position: Number(10.0),
                 velocity: Number(2.0),
             })),
-            ..File::default()
+            ..RequestFile::default()
         };
         let wanted = Request::try_from(file).unwrap();
-        assert_eq!(Request { asked_by: wanted.asked_by.clone(), ..request }, wanted);
+        assert_eq!(Request { invocation: wanted.invocation.clone(), ..request }, wanted);
     }
 
     #[test]
-    fn what_is_wrong_is_told_where_it_stands() {
-        let told = |text: &str| parse(text, "mine.toml").unwrap_err().to_string();
+    fn errors_name_the_file_and_the_value() {
+        let error_of = |text: &str| parse(text, "mine.toml").unwrap_err().to_string();
         for (text, wanted) in [
             ("[tolerance]\nenrgy = 1e-3\n", "unknown tolerance `enrgy`"),
             (
                 "[tolerance]\nenergy = -1\n",
                 "`tolerance` is -1.0, but it must be a finite number above 0",
             ),
-            ("[tolerance]\nenergy = 1e-3\nphase = 1\n", "must be of one thing"),
+            ("[tolerance]\nenergy = 1e-3\nphase = 1\n", "must have exactly one key"),
             ("[asked]\nhorizon = nan\n", "`asked.horizon` is NaN"),
             ("[controller.pd]\nposition = 1\n", "missing field `velocity`"),
             ("[controller.observer]\ngains = [1, 1]\nposition = 1\n", "either `correction`"),
@@ -247,8 +246,8 @@ mod tests {
             ("[start]\nq = [1.0, 2.0]\n", "`q` has 2 numbers and `v` 1"),
             ("[loop]\nlatenzy = 1\n", "unknown key `latenzy`"),
         ] {
-            let told = told(text);
-            assert!(told.contains(wanted) && told.contains("mine.toml"), "{wanted}: {told}");
+            let error = error_of(text);
+            assert!(error.contains(wanted) && error.contains("mine.toml"), "{wanted}: {error}");
         }
     }
 }

@@ -1,31 +1,32 @@
-//! What can be afforded: the budget of a simulation or a loop.
+//! Advice for simulations and control loops: the largest step of each integrator, and the budget of each timing imperfection.
 
-mod about;
+mod advice;
+mod advisor;
 #[cfg(test)]
-mod agreement;
-mod answer;
+mod analyze_agreement;
 mod budget;
-mod choice;
+mod combined_effect;
 mod control;
 mod ensemble;
 mod file;
-mod free;
+mod file_tables;
+mod free_motion;
+mod integrator_choice;
+pub mod jitter_measurement;
 mod limits;
+mod loop_simulation;
 mod loops;
-mod making;
-mod map;
-mod pace;
+mod motion;
+mod motion_rates;
+mod operating_point;
 mod page;
-mod regained;
-mod remedies;
+mod region_of_attraction;
 mod request;
-mod returns;
-mod stepped;
-mod tables;
+mod stabilising_changes;
+mod stability_map;
+mod stability_window;
+mod summary;
 mod throughput;
-mod together;
-pub mod wakeups;
-mod words;
 
 use std::ops::RangeInclusive;
 
@@ -33,43 +34,43 @@ use libration::ensemble::EnsembleError;
 use libration::{AnySystem, with_system};
 use thiserror::Error;
 
-pub use answer::{Advice, FloatChoice, LoopAdvice, ToleranceAnswer};
-pub use budget::{Budget, Failing};
-pub use choice::Choice;
+pub use advice::{Advice, FloatChoice, LoopAdvice, ToleranceAnswer};
+pub use budget::{Budget, FirstFailure};
+pub use combined_effect::{CombinedEffect, SimulatedCost};
 pub use control::{Control, Correction, Law, Regulator};
 pub use file::{DEFAULT, parse};
-pub use limits::Kind;
+pub use integrator_choice::IntegratorChoice;
+pub use limits::Imperfection;
 pub use loops::LoopError;
-pub use map::Map;
 pub use page::page;
-pub use regained::Regained;
-pub use remedies::Remedies;
+pub use region_of_attraction::RegionOfAttraction;
 pub use request::{Measure, Request, Tolerance};
-pub use returns::Returns;
+pub use stabilising_changes::StabilisingChanges;
+pub use stability_map::StabilityMap;
+pub use stability_window::StabilityWindow;
 pub use throughput::Throughput;
-pub use together::{Simulated, Together};
 
 use libration_settings::limits::SIZE;
 use libration_work::{Interrupted, Work};
 
-/// The angles by which the fastest motion of a loop may turn in a period, in rad. Below, a float knows no growth in a period;
-/// above, jitter turns a step by more than second moments can be derived for.
+/// Allowed angles of the fastest motion of a loop per period, in rad. Below, growth per period is lost to rounding; above, second
+/// moments under jitter cannot be derived.
 const TURN: RangeInclusive<f64> = 1e-9..=1e3;
 
-/// The same for a reader.
+/// [`TURN`] in words.
 const TURNS: &str = "1e-9 to 1e3";
 
-/// Why there is no advice.
+/// Error of [`advise`].
 #[derive(Debug, Error)]
 pub enum AdviseError {
-    /// A number cannot be.
+    /// A number is invalid.
     #[error("{name} is {value:?}; it must be {allowed}")]
     Value {
-        /// Which.
+        /// The name of the number.
         name: &'static str,
-        /// What it is.
+        /// The value.
         value: f64,
-        /// What it may be.
+        /// The allowed values.
         allowed: &'static str,
     },
     /// A parameter of the system is too large or too small.
@@ -92,44 +93,44 @@ pub enum AdviseError {
         /// The periods that are allowed, in words.
         allowed: String,
     },
-    /// The tolerance does not fit what is asked.
-    #[error("{} cannot be tolerated here: {why}", of.name())]
+    /// The tolerance is not defined for the request.
+    #[error("a tolerance of {} is not possible: {why}", of.name())]
     Tolerance {
-        /// Of what.
+        /// The measure of the tolerance.
         of: Measure,
-        /// Why not.
+        /// The reason.
         why: String,
     },
     /// The system has too many degrees of freedom.
     #[error("{system} in {dimension} degrees of freedom: {allowed}")]
     Dimension {
-        /// Which.
+        /// The system.
         system: &'static str,
-        /// How many.
+        /// The degrees of freedom.
         dimension: usize,
-        /// How many there may be.
+        /// The allowed degrees of freedom, in words.
         allowed: &'static str,
     },
-    /// The loop is unstable without anything wrong with it.
+    /// The ideal loop is unstable.
     #[error(
         "the loop is unstable without latency, jitter, skew and loss: {}; help: {help}",
         modes.join("; ")
     )]
     Unstable {
-        /// The motions that do not decay, in words, the fastest first.
+        /// The motions that do not decay, in words, fastest first.
         modes: Vec<String>,
-        /// What stabilises it, in words.
+        /// Changes that stabilise the loop, in words.
         help: String,
     },
-    /// The loop does not stand its latency, and with what else is stated it is too large to be told of.
+    /// The loop is unstable with its latency alone, and too large to be analysed with jitter or losses.
     #[error(
-        "the loop does not stand its latency of {0} s alone; with jitter or losses it is too long to be told of"
+        "the loop is unstable with its latency of {0} s alone; with jitter or losses the latency is too long to analyse"
     )]
-    Late(f64),
-    /// The loop cannot be made.
+    LatencyTooLong(f64),
+    /// The loop is invalid.
     #[error(transparent)]
     Loop(#[from] LoopError),
-    /// Loops could not be simulated.
+    /// The simulation of loops failed.
     #[error(transparent)]
     Ensemble(#[from] EnsembleError),
     /// The user stopped the work.
@@ -140,7 +141,7 @@ pub enum AdviseError {
 /// Advises on `request`.
 ///
 /// # Errors
-/// [`AdviseError`], and those that are about the request before any work.
+/// [`AdviseError`]; errors of the request are returned before any work.
 pub fn advise(work: &Work<'_>, request: &Request) -> Result<Advice, AdviseError> {
     request.check()?;
     match (&request.control, request.system) {
@@ -149,28 +150,30 @@ pub fn advise(work: &Work<'_>, request: &Request) -> Result<Advice, AdviseError>
             request.q.len(),
             |model, D| {
                 if const { D <= 2 } {
-                    making::free::<_, D>(work, model, request)
+                    advisor::advise_simulation::<_, D>(work, model, request)
                 } else {
-                    too_many(request, "there may be two")
+                    dimension_error(request, "at most two are supported")
                 }
             },
-            too_many(request, "the system has another number of them")
+            dimension_error(request, "the system has a different number")
         ),
         (Some(control), AnySystem::Oscillator(model)) if request.q.len() == 1 => {
-            making::looped(work, model, control, request)
+            advisor::advise_loop(work, model, control, request)
         }
         (Some(control), AnySystem::DampedOscillator(model)) => {
-            making::looped(work, model, control, request)
+            advisor::advise_loop(work, model, control, request)
         }
         (Some(control), AnySystem::Pendulum(model)) => {
-            making::looped(work, model, control, request)
+            advisor::advise_loop(work, model, control, request)
         }
-        (Some(control), AnySystem::Duffing(model)) => making::looped(work, model, control, request),
-        _ => too_many(request, "a loop is advised on in one"),
+        (Some(control), AnySystem::Duffing(model)) => {
+            advisor::advise_loop(work, model, control, request)
+        }
+        _ => dimension_error(request, "a loop requires one"),
     }
 }
 
-/// What the loop of `request` stands of each imperfection alone: the part of [`advise`] that simulates nothing.
+/// The budget of each imperfection of the loop of `request`: the part of [`advise`] without simulations.
 ///
 /// # Errors
 /// As of [`advise`].
@@ -178,22 +181,22 @@ pub fn budgets(work: &Work<'_>, request: &Request) -> Result<Vec<Budget>, Advise
     request.check()?;
     match (&request.control, request.system) {
         (Some(control), AnySystem::Oscillator(model)) if request.q.len() == 1 => {
-            making::budgets(work, model, control, request)
+            advisor::loop_budgets(work, model, control, request)
         }
         (Some(control), AnySystem::DampedOscillator(model)) => {
-            making::budgets(work, model, control, request)
+            advisor::loop_budgets(work, model, control, request)
         }
         (Some(control), AnySystem::Pendulum(model)) => {
-            making::budgets(work, model, control, request)
+            advisor::loop_budgets(work, model, control, request)
         }
         (Some(control), AnySystem::Duffing(model)) => {
-            making::budgets(work, model, control, request)
+            advisor::loop_budgets(work, model, control, request)
         }
-        _ => too_many(request, "a loop is advised on in one"),
+        _ => dimension_error(request, "a loop requires one"),
     }
 }
 
-fn too_many<T>(request: &Request, allowed: &'static str) -> Result<T, AdviseError> {
+fn dimension_error<T>(request: &Request, allowed: &'static str) -> Result<T, AdviseError> {
     let (system, dimension) = (request.system.name(), request.q.len());
     Err(AdviseError::Dimension { system, dimension, allowed })
 }

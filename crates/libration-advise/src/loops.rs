@@ -1,4 +1,4 @@
-//! The loop that is advised on: its controller, designed and as the linear map that it is.
+//! The loop of a request, with its controller as a linear map.
 
 use libration::analysis::{CostError, Imperfections, LinearController, LqrError, NotLinear, Plant};
 use libration::control::controller::{Luenberger, Pid, PidGains, StateFeedback};
@@ -7,11 +7,11 @@ use libration::{Float, Model, State, System};
 use libration_settings::units;
 use libration_settings::units::Units;
 
-use super::about::About;
 use super::control::{Control, Correction, Law, Regulator};
+use super::operating_point::ModelAtOperatingPoint;
 use super::request::Request;
 
-/// A controller, chosen when the program runs.
+/// A controller chosen at run time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum AnyController {
     Feedback(StateFeedback<1>),
@@ -20,7 +20,7 @@ pub(super) enum AnyController {
 }
 
 impl<T: Float> Controller<T, 1> for AnyController {
-    /// That of the one that remembers most.
+    /// The memory of the controller with the largest memory.
     type Memory = ([T; 1], ([T; 1], [T; 1]));
 
     fn check(&self, period: f64) -> Result<(), ControlError> {
@@ -58,7 +58,7 @@ impl<T: Float> Controller<T, 1> for AnyController {
 }
 
 impl AnyController {
-    /// The linear map that it is at samples `period` seconds apart.
+    /// The linear map of the controller at a period of `period` seconds.
     pub(super) fn linear(&self, period: f64) -> Result<LinearController, NotLinear> {
         match self {
             AnyController::Feedback(own) => LinearController::of(own, period),
@@ -70,33 +70,35 @@ impl AnyController {
 
 /// A loop about its operating point.
 pub(super) struct Loop<M> {
-    pub(super) model: About<M, 1>,
+    pub(super) model: ModelAtOperatingPoint<M, 1>,
     pub(super) controller: AnyController,
     pub(super) linear: LinearController,
     pub(super) control: Control,
     pub(super) weights: LqrWeights,
-    /// What a command of the request moves, in kg; all other numbers here are per unit of it.
+    /// The mass that a command of the request moves, in kg; the other numbers are per unit mass.
     mass: f64,
     pub(super) units: Units,
 }
 
-/// Why a loop cannot be made.
+/// Error of the design of a loop.
 #[derive(Debug, thiserror::Error)]
 pub enum LoopError {
-    /// There is no regulator.
+    /// The LQR design failed.
     #[error(transparent)]
     Lqr(#[from] LqrError),
-    /// A controller has a number that cannot be.
+    /// A number of the controller is invalid.
     #[error(transparent)]
     Control(#[from] ControlError),
-    /// It is not linear where it is to be.
+    /// The controller is not linear.
     #[error(transparent)]
     NotLinear(#[from] NotLinear),
-    /// The loop is too large, or a number of its timing cannot be.
+    /// The loop is too large, or a number of its timing is invalid.
     #[error(transparent)]
     Cost(#[from] CostError),
     /// The limit of the command is too low.
-    #[error("a command of {held} {unit} holds the operating point, and the limit is {most} {unit}")]
+    #[error(
+        "the operating point requires a command of {held} {unit}, but the limit is {most} {unit}"
+    )]
     Weak {
         /// The limit.
         most: f64,
@@ -105,7 +107,7 @@ pub enum LoopError {
         /// The unit of both.
         unit: &'static str,
     },
-    /// The latency cannot be.
+    /// The latency is invalid.
     #[error(
         "the latency is {steps} periods of the loop; it must be at least 0 and at most {} periods",
         Latency::MOST_STEPS
@@ -119,19 +121,19 @@ pub enum LoopError {
 pub(super) const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
 
 impl<M: Model<1>> Loop<M> {
-    /// Designs what is to be designed.
+    /// The loop of `request` with its designed gains.
     pub(super) fn new(model: M, request: &Request, control: &Control) -> Result<Self, LoopError> {
         let at = request.q[0];
         let (mass, units) =
             (request.actuation.mass(), units::of(request.system, request.actuation));
-        let model = About { model, at: [at] };
+        let model = ModelAtOperatingPoint { model, at: [at] };
         let plant = Plant::exact(model, ORIGIN, control.period);
         let [held] = model.model.on::<f64>().acceleration(&State { q: [at], v: [0.0] });
         let feedback = |gains: Feedback| AnyController::Feedback(StateFeedback::to_origin(gains));
         let controller = match control.law.per_mass(mass) {
             Law::Pd(gains) => feedback(gains),
             Law::Pid(gains) => {
-                // The command that holds the operating point takes its part of what the motor can do.
+                // The constant command at the operating point reduces the available command.
                 let most = gains.most - held.abs();
                 if most <= 0.0 {
                     let (most, held, unit) = (gains.most * mass, -held * mass, units.command);
@@ -159,13 +161,13 @@ impl<M: Model<1>> Loop<M> {
         Ok(Loop { model, controller, linear, control: control.clone(), weights, mass, units })
     }
 
-    /// This with all gains of its linear map times `factor`.
+    /// The same loop with all gains of its linear map times `factor`.
     pub(super) fn amplified(&self, factor: f64) -> Self {
         Loop { linear: self.linear.amplified(factor), control: self.control.clone(), ..*self }
     }
 
-    /// This with another period and the same controller.
-    pub(super) fn sampled_every(&self, period: f64) -> Result<Self, NotLinear> {
+    /// The same loop with another period.
+    pub(super) fn with_period(&self, period: f64) -> Result<Self, NotLinear> {
         let control = Control { period, ..self.control.clone() };
         Ok(Loop { linear: self.controller.linear(period)?, control, ..*self })
     }
@@ -175,15 +177,15 @@ impl<M: Model<1>> Loop<M> {
         Plant::exact(self.model, ORIGIN, self.control.period)
     }
 
-    /// What is wrong with it, as it is stated.
+    /// The stated imperfections.
     pub(super) fn stated(&self) -> Result<Imperfections, LoopError> {
         self.scaled(1.0)
     }
 
-    /// All of that, so many times as large.
+    /// The stated imperfections times `share`.
     pub(super) fn scaled(&self, share: f64) -> Result<Imperfections, LoopError> {
         let Control { latency, period, jitter, skew, loss, .. } = self.control;
-        // Seconds are fewer periods of a slow clock, and more of a fast one.
+        // A slow clock has fewer periods per second.
         let periods = share * latency / (period * (1.0 + share * skew));
         Ok(Imperfections {
             latency: self.latency(periods)?,
@@ -193,15 +195,15 @@ impl<M: Model<1>> Loop<M> {
         })
     }
 
-    /// The steps of the record, their deviations stretched to another rms; none without a record, or without jitter. Those that
-    /// would be negative are of length zero, as those of a law are.
+    /// The steps of the record with deviations scaled to `rms`; none without a record or without jitter. Negative steps are set
+    /// to zero, as for a law.
     fn replayed(&self, rms: f64) -> Option<Vec<f64>> {
         let record = self.control.record.as_ref().filter(|_| rms > 0.0)?;
         let share = rms / self.control.jitter.rms();
         Some(record.iter().map(|step| (1.0 + share * (step - 1.0)).max(0.0)).collect())
     }
 
-    /// The rate at which second moments grow in a period: by the law of steps, or through the record.
+    /// The growth rate of second moments per period, under the law of steps or the record.
     pub(super) fn growth(&self, plant: &Plant<'_>, with: &Imperfections) -> Result<f64, CostError> {
         match self.replayed(with.jitter.rms()) {
             Some(steps) => plant.recorded_growth(&self.linear, with, &steps),
@@ -209,7 +211,7 @@ impl<M: Model<1>> Loop<M> {
         }
     }
 
-    /// Whether they decay.
+    /// Whether second moments decay.
     pub(super) fn decays(
         &self,
         plant: &Plant<'_>,
@@ -221,7 +223,7 @@ impl<M: Model<1>> Loop<M> {
         }
     }
 
-    /// What the loop costs.
+    /// The stationary cost of the loop.
     pub(super) fn cost(
         &self,
         plant: &Plant<'_>,
@@ -234,21 +236,21 @@ impl<M: Model<1>> Loop<M> {
         }
     }
 
-    /// The latency that is stated, of an even clock.
-    pub(super) fn late(&self) -> Result<Latency, LoopError> {
+    /// The stated latency for an even clock.
+    pub(super) fn stated_latency(&self) -> Result<Latency, LoopError> {
         self.latency(self.control.latency / self.control.period)
     }
 
-    /// A latency in periods.
+    /// The latency of `periods` periods.
     pub(super) fn latency(&self, periods: f64) -> Result<Latency, LoopError> {
-        // As seconds are turned into steps everywhere.
+        // The same conversion from seconds as elsewhere.
         let period = self.control.period;
         Latency::of_seconds(periods * period, period).ok_or(LoopError::Latency { steps: periods })
     }
 }
 
 impl<M> Loop<M> {
-    /// The gains of position and velocity, of a command that is an acceleration.
+    /// The gains of position and velocity for commands as accelerations.
     pub(super) fn gains(&self) -> Feedback {
         match &self.controller {
             AnyController::Feedback(own) => own.gains,
@@ -265,8 +267,8 @@ impl<M> Loop<M> {
         }
     }
 
-    /// Who commands, in words.
-    pub(super) fn told(&self) -> String {
+    /// The controller in words.
+    pub(super) fn describe_controller(&self) -> String {
         let Feedback { position, velocity } = self.given_gains();
         let Units { command, gains: [of_position, of_velocity, of_integral], .. } = self.units;
         let gains = format!("K_p = {position:.6} {of_position}, K_d = {velocity:.6} {of_velocity}");

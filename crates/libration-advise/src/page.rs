@@ -1,4 +1,4 @@
-//! The answer as a page.
+//! Advice as an HTML page.
 
 use libration_report::figure::{Axis, ColorMap, Colors, Dash, Figure, Ink, Mark, Marker, Panel};
 use libration_report::notation::number;
@@ -6,16 +6,17 @@ use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
 
-use super::answer::{Advice, LoopAdvice};
+use super::advice::{Advice, LoopAdvice};
 use super::budget::Budget;
-use super::map::Map;
+use super::stability_map::StabilityMap;
 
-/// All of it as HTML.
+/// The advice as an HTML page.
 pub fn page(advice: &Advice) -> String {
-    let mut page = Page { title: "What can be afforded".into(), ..Page::default() };
+    let mut page =
+        Page { title: "Budget of a simulation or a control loop".into(), ..Page::default() };
     page.answer.clone_from(&advice.answer);
     for warning in &advice.warnings {
-        page.note(format!("Mind: {warning}."));
+        page.note(format!("Warning: {warning}."));
     }
     if let Some(looped) = &advice.looped {
         of_loop(&mut page, looped, advice.map.as_ref());
@@ -34,14 +35,14 @@ pub fn page(advice: &Advice) -> String {
         number(advice.tolerance.most, 3),
         number(advice.horizon, 4),
     );
-    report::sheet(&page, &sub)
+    report::render_page(&page, &sub)
 }
 
-fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&Map>) {
-    page.heading("What the loop stands of each alone");
+fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
+    page.heading("Budget of each imperfection");
     page.paragraph(format!(
-        "{}; a sample every {} s; a {} of {} {} holds the operating point. A limit is where the loop, in exact steps of a \
-         period, begins to grow (in the mean square where something is drawn), or where its cost is no longer tolerated.",
+        "{}; sampled every {} s; a constant {} of {} {} holds the operating point. At a limit the loop, in exact steps of a \
+         period, becomes unstable (in the mean square for random imperfections), or its cost exceeds the tolerance.",
         looped.controller,
         number(looped.period, 4),
         looped.command,
@@ -49,14 +50,14 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&Map>) {
         looped.command_unit
     ));
     let columns =
-        ["imperfection", "stated", "stable up to", "tolerated up to", "used (%)", "unit", "how"];
+        ["imperfection", "stated", "stable up to", "tolerated up to", "used (%)", "unit", "method"];
     let mut table = Table::new("budget", &columns);
     for budget in &looped.budgets {
         table.push(row(budget));
     }
     page.table(&table, 4);
     page.paragraph(
-        "To see it again: the commands print the growth at the limit, which is zero there, or at the largest size that was tried.",
+        "Each command prints the growth at a limit, where it is zero, or at the largest tried size:",
     );
     for budget in &looped.budgets {
         page.paragraph(format!("`{}`", budget.command));
@@ -64,20 +65,20 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&Map>) {
     if let Some(map) = map {
         page.figure(figure(map));
     }
-    page.heading("All of it together");
+    page.heading("All imperfections together");
     let together = &looped.together;
-    let mut table = Table::new("together", &["what", "value", "how"]);
+    let mut table = Table::new("together", &["quantity", "value", "method"]);
     let mut line = |what: &str, value: Cell, how: &str| {
         table.push([what.into(), value, how.into()]);
     };
     line(
-        "growth of second moments in a period",
+        "growth of second moments per period",
         Cell::rounded(together.growth.exp_m1(), 4),
         "exact: E[M ⊗ M]",
     );
     let room =
         together.room.map_or_else(|| Cell::absent("none found"), |room| Cell::rounded(room, 4));
-    line("all of it may become so many times as large", room, "exact, in proportion");
+    line("largest common factor of all imperfections", room, "exact, in proportion");
     line(
         "cost of the ideal loop",
         Cell::rounded(together.ideal_cost, 6),
@@ -85,18 +86,18 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&Map>) {
     );
     let infinite = || Cell::absent("infinite");
     line(
-        "cost with all of it",
+        "cost with all imperfections",
         together.cost.map_or_else(infinite, |cost| Cell::rounded(cost, 6)),
         "exact: Lyapunov equation of the jump system",
     );
     line(
         "ΔJ/J₀",
         together.cost_increase.map_or_else(infinite, |rise| Cell::rounded(rise, 4)),
-        "from these two",
+        "from the two costs",
     );
     if let Some(simulated) = &together.simulated {
         line(
-            "cost of the simulation, noise held for a period, without commands",
+            "simulated cost without commands, noise constant over a period",
             Cell::rounded(simulated.cost, 6),
             &format!(
                 "± {}, simulated: {} loops, {} periods",
@@ -105,14 +106,14 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&Map>) {
                 simulated.periods
             ),
         );
-        line("what theory says of just that", Cell::rounded(simulated.predicted, 6), "exact");
+        line("predicted cost of this simulation", Cell::rounded(simulated.predicted, 6), "exact");
     }
     if let Some(returns) = &together.returns {
         line(
-            "returns from up to",
+            "largest distance of return",
             Cell::rounded(returns.up_to, 4),
             &format!(
-                "simulated, up to {}: of {} starts {} off, {} return",
+                "simulated up to {}: of {} starts at a distance of {}, {} return",
                 number(returns.tried_up_to, 3),
                 returns.of_asked[1],
                 number(returns.asked, 3),
@@ -141,18 +142,19 @@ fn row(budget: &Budget) -> [Cell; 7] {
     ]
 }
 
-fn figure(map: &Map) -> Figure {
+fn figure(map: &StabilityMap) -> Figure {
     let grid = map.growth.clone();
-    // Strong colours for what is three times as strong as most.
+    // The colours saturate at three times the mean growth.
     let sizes = grid.z.iter().filter(|z| z.is_finite()).map(|z| z.abs());
     let reach = (3.0 * sizes.sum::<f64>() / grid.z.len() as f64).clamp(1e-6, 1.0);
     let mut shown = grid.clone();
     shown.z.iter_mut().for_each(|z| *z = z.clamp(-reach, reach));
-    let colors = Colors::new("growth a period, ln ρ").map(ColorMap::Diverging).range(-reach, reach);
+    let colors =
+        Colors::new("growth per period, ln ρ").map(ColorMap::Diverging).range(-reach, reach);
     let last = grid.x.last().copied().unwrap_or(1.0);
     let panel = Panel::new(
         Axis::linear("latency of the command").unit("s").range(0.0, last),
-        Axis::log("gain of the command, times").range(0.25, 4.0),
+        Axis::log("factor of all gains").range(0.25, 4.0),
     )
     .mark(Mark::raster(shown, colors))
     .mark(Mark::contour(grid, [0.0]).ink(Ink::Theory).dash(Dash::Solid).label("edge of stability"))
@@ -163,8 +165,8 @@ fn figure(map: &Map) -> Figure {
             .radius(5.0)
             .label("as stated"),
     );
-    Figure::new("stability-map", "Where the loop is stable, and where it stands")
-        .caption("Blue decays, red grows; in exact steps of a period, without jitter and losses.")
+    Figure::new("stability-map", "Stability of the loop over latency and gain")
+        .caption("Blue: decay; red: growth; in exact steps of a period, without jitter and losses.")
         .description(
             "A map of the growth of the loop over latency and gain, with the operating point.",
         )
@@ -180,17 +182,20 @@ fn integrators(page: &mut Page, advice: &Advice) {
         page.paragraph(format!("Runner-up: {why}."));
     }
     if let Some(command) = &advice.command {
-        let what =
-            if advice.looped.is_some() { "To see all of it again" } else { "To take these steps" };
+        let what = if advice.looped.is_some() {
+            "Command that repeats this advice"
+        } else {
+            "Command that takes these steps"
+        };
         page.paragraph(format!("{what}: `{command}`"));
     }
     let columns = [
         "integrator",
         "largest step (s)",
-        "steps a period",
-        "lost",
-        "lost with the next longer",
-        "force evaluations a second",
+        "steps per period",
+        "error",
+        "error with the next longer step",
+        "force evaluations per second",
     ];
     let mut table = Table::new("integrators", &columns);
     let known = |x: Option<f64>, words: &str| x.map_or_else(|| Cell::absent(words), Cell::from);
@@ -206,7 +211,7 @@ fn integrators(page: &mut Page, advice: &Advice) {
     }
     page.table(&table, 4);
     if !advice.floats.is_empty() {
-        let mut table = Table::new("float types", &["float type", "lost", "tolerated"]);
+        let mut table = Table::new("float types", &["float type", "error", "tolerated"]);
         for float in &advice.floats {
             let meets = if float.meets { "yes" } else { "no" };
             table.push([float.float.into(), float.lost.into(), meets.into()]);
@@ -215,8 +220,8 @@ fn integrators(page: &mut Page, advice: &Advice) {
     }
     if let Some(throughput) = &advice.throughput {
         page.paragraph(format!(
-            "On this machine one core takes {} such steps of the plant alone a second with {} trajectories at a time, measured now; a rollout of {} \
-             steps of each takes {} MB in `f32`.",
+            "On this machine one core takes {} such steps of the plant per second with {} trajectories at a time (measured now); a rollout \
+             of {} steps of each takes {} MB in `f32`.",
             number(throughput.steps_a_second, 3),
             throughput.trajectories,
             throughput.steps,

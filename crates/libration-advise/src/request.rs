@@ -1,4 +1,4 @@
-//! What is asked.
+//! Requests for advice.
 
 use libration::AnySystem;
 use libration::catalog::Actuation;
@@ -8,46 +8,46 @@ use libration_settings::limits;
 use super::AdviseError;
 use super::control::Control;
 
-/// A plant, who controls it, what it may lose and what its surroundings are.
+/// A plant with its controller, a tolerance and a horizon.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
     /// The system.
     pub system: AnySystem,
     /// The quantity of its commands, and so the units of gains and limits of commands.
     pub actuation: Actuation,
-    /// Positions at the start; of a loop those of the operating point.
+    /// Initial positions; for a loop those of the operating point.
     pub q: Vec<f64>,
-    /// Velocities at the start.
+    /// Initial velocities.
     pub v: Vec<f64>,
     /// The loop, if there is one.
     pub control: Option<Control>,
-    /// What is tolerated.
+    /// The tolerance.
     pub tolerance: Tolerance,
-    /// For how long, in s.
+    /// The horizon, in s.
     pub horizon: f64,
-    /// What is to be rolled out: environments, and steps of each.
+    /// The size of rollouts: environments, and steps of each.
     pub rollout: [usize; 2],
-    /// Whether a map of stability is wanted.
+    /// Whether to compute a stability map.
     pub map: bool,
-    /// The command that asks this again, without where it writes and how.
-    pub asked_by: String,
+    /// The command line that repeats the request, without options of output.
+    pub invocation: String,
 }
 
-/// What may be lost.
+/// A tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Of what.
+    /// The measure of the error.
     pub of: Measure,
-    /// How much of it.
+    /// The largest allowed value.
     pub most: f64,
 }
 
-/// What is measured of a simulation.
+/// A measure of the error of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// The largest relative error of the energy.
     Energy,
-    /// The error of the phase in the end, in rad.
+    /// The final error of the phase, in rad.
     Phase,
     /// The largest distance from the true trajectory, over its size.
     Trajectory,
@@ -56,11 +56,11 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// All of them.
+    /// All measures.
     pub const ALL: [Measure; 4] =
         [Measure::Energy, Measure::Phase, Measure::Trajectory, Measure::Cost];
 
-    /// Its name in files and flags.
+    /// The name in files and flags.
     pub fn name(self) -> &'static str {
         match self {
             Measure::Energy => "energy",
@@ -70,11 +70,11 @@ impl Measure {
         }
     }
 
-    /// What it is.
+    /// The description in one line.
     pub fn title(self) -> &'static str {
         match self {
             Measure::Energy => "largest relative error of the energy",
-            Measure::Phase => "error of the phase in the end (rad)",
+            Measure::Phase => "final error of the phase (rad)",
             Measure::Trajectory => "largest distance from the true trajectory, over its size",
             Measure::Cost => "rise of the cost, ΔJ/J₀",
         }
@@ -88,7 +88,7 @@ impl Request {
         each.map(|(name, value)| format!(" --set {name}={value}")).collect()
     }
 
-    /// The command that takes the steps that are advised, and says what they lose where that can be said.
+    /// The command that takes the advised steps and, if possible, prints their error.
     pub(super) fn command(&self, integrator: &str, dt: f64, float: &str) -> String {
         match (&self.control, self.tolerance.of) {
             (None, Measure::Energy) => {
@@ -98,10 +98,10 @@ impl Request {
         }
     }
 
-    /// The command that takes steps in a float type; of a loop the one that asks again.
+    /// The command that takes steps in a float type; for a loop the invocation.
     pub(super) fn simulation(&self, integrator: &str, dt: f64, float: &str) -> String {
         match &self.control {
-            Some(_) => format!("{} --json", self.asked_by),
+            Some(_) => format!("{} --json", self.invocation),
             None => {
                 let every = (self.horizon / dt).round().max(1.0);
                 let steps = self.steps(integrator, dt);
@@ -125,7 +125,7 @@ impl Request {
     /// Checks all numbers.
     ///
     /// # Errors
-    /// [`AdviseError::Value`](super::AdviseError::Value): the first that cannot be.
+    /// [`AdviseError::Value`](super::AdviseError::Value): the first invalid number.
     pub fn check(&self) -> Result<(), AdviseError> {
         let ensure = |name, value: f64, allowed, holds: bool| match holds {
             true => Ok(()),
@@ -135,7 +135,7 @@ impl Request {
         let above = "a finite number above 0";
         ensure("tolerance", self.tolerance.most, above, positive(self.tolerance.most))?;
         let parameters = self.actuation.parameters(self.system);
-        if let Some((name, value)) = limits::beyond_theory(parameters) {
+        if let Some((name, value)) = limits::find_out_of_range(parameters) {
             return Err(AdviseError::Parameter { system: self.system.name(), name, value });
         }
         let time = |x: f64| limits::SIZE.contains(&x);
@@ -181,7 +181,7 @@ impl Request {
             control.record.is_some() || (0.0..=1.0).contains(&jitter.rms()),
         )?;
         let near = control.record.is_none() || (-0.5..=1.0).contains(&skew);
-        let wanted = "time stamps a period apart, or at most twice and at least half of that";
+        let wanted = "a mean interval of the time stamps of half to twice the period";
         ensure("loop.time_stamps", period * (1.0 + skew), wanted, near)?;
         ensure("loop.skew", skew, "above -1 and below 8", skew > -1.0 && skew < 8.0)?;
         ensure(

@@ -1,4 +1,4 @@
-//! What rollouts of the system may be expected to take.
+//! Memory and speed of rollouts.
 
 use std::time::Instant;
 
@@ -10,32 +10,31 @@ use libration_work::Work;
 use super::AdviseError;
 use super::request::Request;
 
-/// What rollouts take on this machine.
+/// Memory and speed of rollouts on this machine.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Throughput {
-    /// Environments.
+    /// Number of environments.
     pub environments: usize,
-    /// Trajectories of which the speed was measured.
+    /// Number of measured trajectories.
     pub trajectories: usize,
-    /// Steps of each.
+    /// Steps of each environment.
     pub steps: usize,
     /// Bytes of the tensors of a rollout in `f32`.
     pub bytes: u128,
-    /// Steps of the chosen integrator that this machine takes in a second with so many trajectories in the chosen float type, on one core:
-    /// measured now.
+    /// Measured steps per second of the chosen integrator and float type with that many trajectories on one core.
     pub steps_a_second: f64,
-    /// Seconds of simulated time that it goes through in a second, of all trajectories together.
+    /// Simulated time per second, over all trajectories.
     pub simulated_a_second: f64,
 }
 
-/// Trajectories that are measured.
+/// Largest number of measured trajectories.
 const MOST: usize = 1 << 16;
 
-/// How long it is measured, in s.
+/// Duration of the measurement, in s.
 const LONG: f64 = 0.05;
 
 impl Throughput {
-    /// Measured with the integrator and the step that were chosen.
+    /// Measures the chosen integrator and step.
     pub(super) fn measure(
         work: &Work<'_>,
         request: &Request,

@@ -1,5 +1,13 @@
-//! Analyses and trajectories of a system that is chosen at run time: what the commands `analyze` and `simulate` give.
+//! Analyses and trajectories of a system that is chosen at run time: the results of the commands `analyze` and `simulate`.
+//!
+//! [`analyze`] derives stability, errors and costs of one step and of a control loop; [`trajectory`] simulates.
 
-pub mod analyze;
 pub mod export;
+mod step;
 pub mod trajectory;
+
+pub use step::{
+    Analysis, AnalyzeError, Criteria, Drift, LargestDt, LatencyOption, LoopAnalysis, LoopCost,
+    LoopGrowth, ModifiedHamiltonian, OrderOfWord, Request, RequestSummary, StableLatencies,
+    Stepping, Timing, analyze, analyze_until, loop_growth,
+};

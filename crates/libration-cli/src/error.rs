@@ -1,4 +1,4 @@
-//! What can end a run, and the exit code of each.
+//! Failures of a command and their exit codes.
 
 use std::fmt::Display;
 use std::io;
@@ -18,10 +18,10 @@ const USAGE: u8 = 2;
 /// Exit code of a run that the user stopped: 128 and the number of SIGINT.
 pub(crate) const INTERRUPTED: u8 = 130;
 
-/// Why the command ends before its natural end, or after it with a bad result.
+/// Failure of a command, or a result that disagrees.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// The command line is wrong, or asks for help; clap words it.
+    /// The command line is wrong, or requests help; clap has the text.
     Arguments(clap::Error),
     /// The input is wrong. Rendered text, perhaps in colour, without a heading.
     Usage(String),
@@ -31,44 +31,44 @@ pub(crate) enum Failure {
     Run(String),
     /// The user stopped the run.
     Interrupted(String),
-    /// Findings disagree; they have been named already.
+    /// Findings disagree; their messages are already printed.
     Disagreement,
 }
 
 impl Failure {
-    /// Wrong input.
+    /// Returns a failure of wrong input.
     pub(crate) fn usage(message: impl Display) -> Self {
         Failure::Usage(message.to_string())
     }
 
-    /// A failed run.
+    /// Returns a failed run.
     pub(crate) fn run(message: impl Display) -> Self {
         Failure::Run(message.to_string())
     }
 
-    /// Not enough memory: wrong input if this machine could never have it, a failed run otherwise.
+    /// Returns a failure of too little memory: wrong input if this machine can never have it, else a failed run.
     pub(crate) fn room(room: &InsufficientMemory, message: impl Display) -> Self {
         if room.is_beyond_machine() { Failure::usage(message) } else { Failure::run(message) }
     }
 
-    /// An ensemble cannot be made: the system refuses, or the input is wrong.
+    /// Converts an error of an ensemble.
     pub(crate) fn ensemble(error: &EnsembleError) -> Self {
         match error {
             EnsembleError::Memory(room) => Failure::room(room, error),
             EnsembleError::Threads { threads, .. } if *threads <= MOST_THREADS => {
-                Failure::run(format!("{error}; lower --threads"))
+                Failure::run(format!("{error}; help: lower --threads"))
             }
             error => Failure::usage(error),
         }
     }
 
-    /// Says on stderr what happened; gives the exit code.
+    /// Prints the failure on stderr and returns the exit code.
     pub(crate) fn report(self) -> ExitCode {
         match self {
             Failure::Arguments(error) => {
                 let printed = error.print();
                 match printed {
-                    // If this cannot be written, nobody is left to tell.
+                    // A failed write to stderr has no other place for a message.
                     _ if error.use_stderr() => ExitCode::from(USAGE),
                     Err(error) if error.kind() != ErrorKind::BrokenPipe => {
                         Failure::from(error).report()
@@ -110,7 +110,7 @@ impl From<io::Error> for Failure {
     }
 }
 
-/// Whether an error says that the folder that was given, or its manifest, cannot be used: wrong input, unlike a disk that is full.
+/// Whether the folder of a data set or its manifest is unusable. That is wrong input, unlike a full disk.
 pub(crate) fn is_unusable(error: &DatasetError, folder: &Path) -> bool {
     let DatasetError::Data(DataError::Io { path, source, .. }) = error else { return false };
     let named = path == folder || *path == folder.join("manifest.jsonl");

@@ -15,15 +15,15 @@ use std::thread::Builder;
 
 use error::Failure;
 
-/// Bytes of the stack. It is taken as a whole: that of the main thread grows, and dies where it may not (`ulimit -v`).
+/// Bytes of the stack. A thread reserves it as a whole; the stack of the main thread grows, and crashes at a limit (`ulimit -v`).
 const STACK: usize = 8 << 20;
 
 fn main() -> ExitCode {
-    interrupt::outlive_full_files();
-    interrupt::fail_where_memory_ends();
+    interrupt::ignore_file_size_signal();
+    interrupt::exit_on_failed_allocation();
     panic::set_hook(Box::new(report_panic));
     match Builder::new().stack_size(STACK).spawn(run) {
-        // A panic has been told of.
+        // The hook has reported a panic.
         Ok(running) => running.join().unwrap_or(ExitCode::from(error::FAILED)),
         Err(error) => Failure::run(format!("cannot start a thread: {error}")).report(),
     }
@@ -36,23 +36,22 @@ fn run() -> ExitCode {
     }
 }
 
-/// Reports a panic as the bug that it is. The standard library panics, too, where the system has no memory for a thread's stacks:
-/// that ends the run, with a message for which no memory is needed.
+/// Reports a panic as a bug. A panic of the standard library for lack of memory ends the run instead, with a message that needs
+/// no memory.
 fn report_panic(panic: &PanicHookInfo<'_>) {
     if !panic.payload_as_str().is_some_and(is_out_of_memory) {
         return terminal::error(&format!("this is a bug: {panic}"));
     }
-    // If it cannot be written, nobody is left to tell.
+    // A failed write to stderr has no other place for a message.
     let _ = std::io::stderr().write_all(OUT_OF_MEMORY);
     process::exit(i32::from(error::FAILED));
 }
 
-/// What is said where there is no memory to say more.
+/// The message for lack of memory.
 const OUT_OF_MEMORY: &[u8] =
-    b"error: out of memory: the system has none for a thread; help: lower --threads, or raise the limit (ulimit -v)\n";
+    b"error: out of memory: cannot start a thread; help: lower --threads, or raise the limit (ulimit -v)\n";
 
-/// Whether a panic of the standard library says that a thread could not be made, or has the operating system's error number 12,
-/// `ENOMEM`, in one of the two ways in which Rust prints it.
+/// Whether the message of a panic reports a failed thread, or the operating system's error 12, `ENOMEM`, in either format of Rust.
 fn is_out_of_memory(message: &str) -> bool {
     let parts = ["failed to spawn thread", "(os error 12)", "code: 12,"];
     parts.iter().any(|part| message.contains(part))
@@ -65,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panic_for_want_of_memory_is_told_from_a_bug() {
+    fn a_panic_for_lack_of_memory_is_no_bug() {
         let refused = io::Error::from_raw_os_error(12);
         assert!(is_out_of_memory(&format!("failed to allocate an alternative stack: {refused}")));
         assert!(is_out_of_memory(&format!("failed to spawn thread: {refused:?}")));

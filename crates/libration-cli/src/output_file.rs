@@ -1,4 +1,4 @@
-//! A file that is written whole or not at all.
+//! An output file that appears when it is complete.
 
 use std::ffi::OsString;
 use std::fs::{self, File, Metadata, OpenOptions};
@@ -6,19 +6,18 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::process;
 
-/// Links that lead from one to the next at most, as on Linux.
+/// Largest number of links in a chain, as on Linux.
 const MOST_LINKS: usize = 40;
 
-/// A file under a temporary name beside its own, until it is complete.
+/// A file with a temporary name in the same folder until it is complete.
 ///
-/// What exists and is no regular file (a pipe, `/dev/null`) is written to directly. A file that is
-/// replaced keeps its permissions, its owner and its links: one with several hard links, or of an owner
-/// whose files this user cannot make, is filled in place with the complete result instead of replaced. Its
-/// space is reserved first: a full disk leaves the old contents as they were.
+/// A pipe or device is written directly. A replaced file keeps its permissions, owner and links: if it has several
+/// hard links, or an owner whose files this user cannot create, the complete result is written into it instead. Its
+/// space is reserved first, so that a full disk leaves the old contents unchanged.
 #[derive(Debug)]
 pub(crate) struct OutputFile {
     file: File,
-    /// Where the result is until it is complete, and how it gets its name.
+    /// The temporary file and its final name.
     pending: Option<Pending>,
 }
 
@@ -26,7 +25,7 @@ pub(crate) struct OutputFile {
 struct Pending {
     temporary: PathBuf,
     target: PathBuf,
-    /// The file to fill in the end, if another one under its name would lose a hard link or the owner.
+    /// The old file to fill, if a rename would lose a hard link or the owner.
     fill: Option<File>,
 }
 
@@ -59,11 +58,11 @@ impl OutputFile {
         options.write(true).create_new(true);
         #[cfg(unix)]
         if old.is_some() {
-            // Nobody reads meanwhile what nobody may read later.
+            // The final permissions may be stricter than the default.
             std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
         }
         let file = options.open(&temporary)?;
-        let fill = old.filter(|(_, old)| !becomes(&file, old)).map(|(old, _)| old);
+        let fill = old.filter(|(_, old)| !copy_permissions(&file, old)).map(|(old, _)| old);
         Ok(OutputFile { file, pending: Some(Pending { temporary, target, fill }) })
     }
 
@@ -77,11 +76,12 @@ impl OutputFile {
             Some(Pending { temporary, fill: Some(file), .. }) => {
                 reserve(file, fs::metadata(temporary)?.len())?;
                 if let Err(error) = fill_with(file, temporary) {
-                    let whole = format!("{error}; `{}` holds all of it", temporary.display());
+                    let whole =
+                        format!("{error}; `{}` holds the complete result", temporary.display());
                     self.pending = None;
                     return Err(io::Error::new(error.kind(), whole));
                 }
-                // It is rubbish now.
+                // A leftover temporary file is harmless.
                 let _ = fs::remove_file(temporary);
             }
             Some(Pending { temporary, target, fill: None }) => fs::rename(temporary, target)?,
@@ -105,14 +105,14 @@ impl Write for OutputFile {
 impl Drop for OutputFile {
     fn drop(&mut self) {
         if let Some(Pending { temporary, .. }) = &self.pending {
-            // It is rubbish; there is nobody to tell that it stays.
+            // A leftover temporary file is harmless.
             let _ = fs::remove_file(temporary);
         }
     }
 }
 
-/// Standard output or standard error, if `path` is one of their names. Where it is a regular file, others write to it before and after:
-/// it may not be replaced, nor be opened again at its beginning.
+/// Returns standard output or standard error, if `path` is one of their names. Other programs may write to the same file
+/// before and after, so it must not be replaced or truncated.
 #[cfg(unix)]
 fn standard_stream(path: &Path) -> io::Result<Option<File>> {
     use std::os::fd::AsFd;
@@ -132,7 +132,7 @@ fn standard_stream(_: &Path) -> io::Result<Option<File>> {
     Ok(None)
 }
 
-/// The file that a path leads to, whether it exists or not: links stay, and what they lead to is written.
+/// Resolves the links of a path, also if the target does not exist.
 fn resolve(path: &Path) -> io::Result<PathBuf> {
     if let Ok(target) = fs::canonicalize(path) {
         return Ok(target);
@@ -149,9 +149,9 @@ fn resolve(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("too many symbolic links"))
 }
 
-/// Gives a file the owner and the permissions of an old one. Whether it can take its place then.
+/// Copies owner and permissions of an old file. Returns whether the new file can replace it.
 #[cfg(unix)]
-fn becomes(file: &File, old: &Metadata) -> bool {
+fn copy_permissions(file: &File, old: &Metadata) -> bool {
     use std::os::unix::fs::{MetadataExt, fchown};
     let same = file.metadata().is_ok_and(|new| (new.uid(), new.gid()) == (old.uid(), old.gid()));
     old.nlink() == 1
@@ -159,9 +159,9 @@ fn becomes(file: &File, old: &Metadata) -> bool {
         && file.set_permissions(old.permissions()).is_ok()
 }
 
-/// Gives a file the permissions of an old one. Whether it can take its place then.
+/// Copies the permissions of an old file. Returns whether the new file can replace it.
 #[cfg(not(unix))]
-fn becomes(file: &File, old: &Metadata) -> bool {
+fn copy_permissions(file: &File, old: &Metadata) -> bool {
     file.set_permissions(old.permissions()).is_ok()
 }
 

@@ -1,4 +1,4 @@
-//! How far the work is, told on stderr.
+//! Progress of a run, on stderr.
 
 use std::fmt::Write;
 use std::io::{IsTerminal, stderr};
@@ -10,7 +10,7 @@ use libration_study::Progress;
 
 use crate::terminal;
 
-/// What is told, and where to.
+/// Output of progress.
 #[derive(Debug)]
 pub(crate) enum Reporter {
     /// Bars on a terminal.
@@ -21,7 +21,7 @@ pub(crate) enum Reporter {
     Quiet,
 }
 
-/// The bars of what has begun and not ended; the last one moves.
+/// The bars of unfinished work; the last one moves.
 #[derive(Debug, Default)]
 pub(crate) struct Bars {
     state: Mutex<State>,
@@ -91,7 +91,7 @@ impl Progress for Reporter {
 
 impl Bars {
     fn lock(&self) -> MutexGuard<'_, State> {
-        // A study that panicked leaves bars behind that are still whole.
+        // The bars of a study that panicked are still valid.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -102,7 +102,7 @@ pub(crate) fn has_bars() -> bool {
     stderr().is_terminal() && !dumb
 }
 
-/// A bar over so many steps, with the time left.
+/// Returns a bar of `total` steps with the time left.
 pub(crate) fn steps(total: u64) -> ProgressBar {
     let template = "{bar:20} {percent} %  {human_pos} of {human_len} steps  {left}";
     let style = ProgressStyle::with_template(template);
@@ -113,7 +113,7 @@ pub(crate) fn steps(total: u64) -> ProgressBar {
     bar
 }
 
-/// The study, a bar, the time left, and what is being done, cut where the terminal ends.
+/// Returns the style: study, bar, time left and current work, cut at the width of the terminal.
 fn style() -> ProgressStyle {
     let template = "{prefix}  {bar:20} {pos}/{len}  {left}  {wide_msg}";
     let style = ProgressStyle::with_template(template);
@@ -123,7 +123,7 @@ fn style() -> ProgressStyle {
         .progress_chars("━╸─")
 }
 
-/// An estimate, once there is something to estimate from.
+/// Writes an estimate of the time left, once there is progress.
 fn time_left(state: &ProgressState, out: &mut dyn Write) {
     // An error here would only leave the estimate out.
     let _ = match state.pos() {

@@ -1,4 +1,4 @@
-//! Words to the two streams: results on stdout, everything else on stderr.
+//! Output: results on stdout, messages on stderr.
 
 use std::io::{self, ErrorKind, Write};
 
@@ -10,7 +10,7 @@ const ERROR: Style = AnsiColor::Red.on_default().bold();
 /// The heading of a warning.
 const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 
-/// Settles the colour of both streams. `Auto` looks at the stream and at `NO_COLOR`.
+/// Sets the colour of both streams. `Auto` depends on the stream and on `NO_COLOR`.
 pub(crate) fn set_color(choice: clap::ColorChoice) {
     match choice {
         clap::ColorChoice::Auto => ColorChoice::Auto,
@@ -20,7 +20,7 @@ pub(crate) fn set_color(choice: clap::ColorChoice) {
     .write_global();
 }
 
-/// Writes results. A reader that has seen enough is not an error.
+/// Writes results to stdout. A closed pipe is not an error.
 pub(crate) fn print(text: &str) -> io::Result<()> {
     let mut stdout = anstream::stdout().lock();
     let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
@@ -30,12 +30,12 @@ pub(crate) fn print(text: &str) -> io::Result<()> {
     }
 }
 
-/// Writes a line for people to stderr; if that fails, nobody is left to tell.
+/// Writes a line to stderr, and ignores a failure.
 pub(crate) fn say(text: &str) {
     let _ = writeln!(anstream::stderr().lock(), "{}", text.trim_end());
 }
 
-/// Writes to stderr what went wrong and changes no result.
+/// Writes a warning to stderr.
 pub(crate) fn warn(message: &str) {
     say(&format!("{WARNING}warning{WARNING:#}: {message}"));
 }

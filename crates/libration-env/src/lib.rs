@@ -1,4 +1,4 @@
-//! Environments that are chosen at run time, and the data sets that they fill.
+//! Environments chosen at run time, and data sets of their rollouts.
 
 pub mod dataset;
 pub mod environments;

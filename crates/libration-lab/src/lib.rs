@@ -1,13 +1,13 @@
-//! The laboratory: all studies, run in turn, and their report.
+//! The laboratory: runs all studies and writes their report.
 
-mod ledger;
+mod claims_table;
 pub mod output;
 pub mod results;
+mod run_manifest;
 mod series;
 pub mod session;
 mod studies;
-mod unjudged;
-pub mod untried;
-mod written;
+mod unjudged_claims;
+pub mod untried_claims;
 
 pub use studies::STUDIES;

@@ -1,4 +1,4 @@
-//! The folder into which a run writes.
+//! The output folder of a run.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
@@ -7,21 +7,21 @@ use std::path::{Path, PathBuf};
 use libration_data::{DataError, open_locked};
 use thiserror::Error;
 
-use crate::written::Written;
+use crate::run_manifest::RunManifest;
 
-/// The folder in the output folder that holds an unfinished run, and nothing else.
+/// The subfolder of an unfinished run.
 pub const UNFINISHED: &str = "libration-unfinished";
 
-/// The file in the output folder that a run locks. It stays, since another run may wait for it.
+/// The lock file of the output folder. It is not removed, since another run may wait for it.
 const LOCK: &str = ".libration-lock";
 
-/// A folder that is known to take files, and that no other run uses.
+/// A writable output folder that no other run uses.
 ///
-/// A run writes aside, into [`UNFINISHED`]: what an earlier run left is replaced when a later one ends.
+/// A run writes into [`UNFINISHED`] and replaces the files of an earlier run at its end.
 #[derive(Debug)]
 pub struct Output {
     folder: PathBuf,
-    /// Locked as long as it is open.
+    /// Locked while it is open.
     _lock: File,
 }
 
@@ -29,15 +29,15 @@ pub struct Output {
 #[derive(Debug, Error)]
 #[error("cannot write {}: {source}", path.display())]
 pub struct OutputError {
-    /// What could not be written.
+    /// Path of the folder or file.
     pub path: PathBuf,
-    /// Why.
+    /// Cause.
     pub source: io::Error,
 }
 
 impl Output {
-    /// Opens `folder`, creating it if need be, and tries whether it can be written: a wrong path
-    /// should fail before the work and not after it. Ends what an earlier run was killed in.
+    /// Opens or creates `folder` and checks that it is writable, so that a wrong path fails before the run. Completes an earlier
+    /// run that was killed while it replaced files.
     ///
     /// # Errors
     /// If the folder cannot be created or written, or another run uses it.
@@ -61,80 +61,80 @@ impl Output {
         }
         let aside = output.aside();
         if aside.exists() && !aside.is_dir() {
-            let reason = "it is a file, but it must be a folder";
+            let reason = "it is a file; expected a folder";
             return Err(failed(&aside)(io::Error::new(ErrorKind::NotADirectory, reason)));
         }
-        // Its run had ended, and was killed while it replaced files.
-        if Written::read(&aside).is_some_and(|written| written.complete) {
+        // The run was complete, and was killed while it replaced files.
+        if RunManifest::read(&aside).is_some_and(|written| written.complete) {
             output.put_in_place()?;
         }
         Ok(output)
     }
 
-    /// The folder itself.
+    /// Returns the path of the folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// The path of the file `name` in the folder, where it lies when the run has ended.
+    /// Returns the final path of the file `name`.
     pub fn path(&self, name: &str) -> PathBuf {
         self.folder.join(name)
     }
 
-    /// The folder of the unfinished run.
+    /// Returns the folder of the unfinished run.
     pub(crate) fn aside(&self) -> PathBuf {
         self.folder.join(UNFINISHED)
     }
 
-    /// Writes the file `name` of the unfinished run, whole or not at all, creating the folders on its way.
+    /// Writes the file `name` of the unfinished run atomically, and creates its folder.
     ///
     /// # Errors
-    /// If the file system refuses.
+    /// If a file operation fails.
     pub(crate) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
         write(&self.aside().join(name), bytes)
     }
 
-    /// Removes the unfinished run, of whichever run it is.
+    /// Removes the unfinished run.
     ///
     /// # Errors
-    /// If the file system refuses.
+    /// If a file operation fails.
     pub(crate) fn clear(&self) -> Result<(), OutputError> {
         let aside = self.aside();
         absent_is_fine(fs::remove_dir_all(&aside)).map_err(failed(&aside))
     }
 
-    /// Replaces what an earlier run wrote by the unfinished run. No other file is touched.
+    /// Replaces the files of an earlier run by those of the unfinished run. Other files stay unchanged.
     ///
     /// # Errors
-    /// If the file system refuses; what is not yet in place then still lies aside.
+    /// If the file system refuses; the remaining files stay in the folder of the unfinished run.
     pub(crate) fn put_in_place(&self) -> Result<(), OutputError> {
         let results = self.aside().join("results.json");
-        let new = Written::read(&self.aside())
+        let new = RunManifest::read(&self.aside())
             .ok_or_else(|| failed(&results)(ErrorKind::InvalidData.into()))?
             .files();
         for file in &new {
             self.put(file)?;
         }
-        let old = Written::read(&self.folder).unwrap_or_default().files();
+        let old = RunManifest::read(&self.folder).unwrap_or_default().files();
         for file in old.difference(&new) {
             remove(&self.folder.join(file))?;
         }
-        // The last to go: while it lies aside, a run that is killed is ended by the next one.
+        // These are last: while they are not in place, the next run completes this one.
         for file in ["report.html", "results.json"] {
             self.put(Path::new(file))?;
         }
         self.clear()
     }
 
-    /// Puts the unfinished run in place if no study of an earlier run is lost by that. Gives the folder that holds it then,
-    /// if there is any of it.
+    /// Puts the unfinished run in place unless studies of an earlier run would be lost. Returns the folder with the
+    /// unfinished run, if it has results.
     pub(crate) fn keep(&self) -> Option<PathBuf> {
-        let new = Written::read(&self.aside())?;
-        let loses_nothing = match Written::read(&self.folder) {
+        let new = RunManifest::read(&self.aside())?;
+        let loses_nothing = match RunManifest::read(&self.folder) {
             Some(old) => !old.complete && old.names().is_subset(&new.names()),
             None => !["report.html", "results.json"].iter().any(|name| self.path(name).exists()),
         };
-        // Where that fails, its report and its results are still aside.
+        // After a failure, report and results are still in the folder of the unfinished run.
         let in_place = loses_nothing && self.put_in_place().is_ok();
         Some(if in_place { self.folder.clone() } else { self.aside() })
     }

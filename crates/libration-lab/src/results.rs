@@ -1,31 +1,31 @@
-//! What a run found, as `results.json` holds it.
+//! Results of a run, as in `results.json`.
 
 use libration_report::Record;
-use libration_study::{Config, Machine, Unjudged};
+use libration_study::{Config, Machine, UnjudgedClaim};
 use serde::Serialize;
 
-use crate::untried::Untried;
+use crate::untried_claims::UntriedClaim;
 
-/// Version of the contract that `results.json` keeps.
+/// Version of the format of `results.json`.
 pub const SCHEMA: &str = "libration.results/1";
 
-/// Everything that a run found; `results.json` holds just this.
+/// Results of a run, the content of `results.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Results {
-    /// Version of this contract.
+    /// Version of the format.
     pub schema: &'static str,
-    /// Where it was run.
+    /// The machine of the run.
     pub machine: Machine,
-    /// What was asked.
+    /// The configuration of the run.
     pub config: Config,
-    /// Wall-clock time so far, in seconds.
+    /// Wall-clock time so far in s.
     pub seconds: f64,
-    /// Whether all studies that were asked for are in it.
+    /// Whether all requested studies are included.
     pub complete: bool,
-    /// Claims of the source report that no study tries, and why.
-    pub untried: &'static [Untried],
+    /// Claims of the source report that no study judges, with reasons.
+    pub untried: &'static [UntriedClaim],
     /// Claims that studies try, but that none has judged in this run, and why.
-    pub unjudged: Vec<Unjudged>,
+    pub unjudged: Vec<UnjudgedClaim>,
     /// The records of the studies that have ended.
     pub studies: Vec<Record>,
 }

@@ -11,29 +11,29 @@ use libration_report::page::{Chapter, Page};
 use libration_report::record::{DataFile, FigureFile, RecordError, Series};
 use libration_study::StudyError;
 
-use crate::ledger;
+use crate::claims_table;
 use crate::output::{Output, OutputError};
 use crate::results::{Results, SCHEMA};
-pub use crate::unjudged::unjudged;
+pub use crate::unjudged_claims::unjudged;
 use libration_report::notation::{number, plural, seconds};
 use libration_report::report::Cover;
 use libration_report::{Record, figure, report};
 use libration_study::{Lab, Machine, Study};
 
-use crate::untried::UNTRIED;
+use crate::untried_claims::UNTRIED;
 
-/// A run that ended early.
+/// Error of a run that ended early.
 #[derive(Debug, Error)]
 #[error("{cause}; {}", kept_in(kept.as_deref()))]
 pub struct SessionError {
-    /// Why.
+    /// Cause.
     #[source]
     pub cause: Box<Cause>,
-    /// The folder that holds the studies that had ended, if there are any.
+    /// Folder with the completed studies, if any.
     pub kept: Option<PathBuf>,
 }
 
-/// Why a run ended early.
+/// Cause of an early end.
 #[derive(Debug, Error)]
 pub enum Cause {
     /// The user stopped it.
@@ -42,20 +42,20 @@ pub enum Cause {
     /// A study failed.
     #[error("study `{study}` failed: {source}")]
     Study {
-        /// The study.
+        /// Name of the study.
         study: &'static str,
-        /// Why.
+        /// Cause.
         source: StudyError,
     },
     /// A chapter could not be rendered.
     #[error("study `{study}` could not be shown: {source}")]
     Render {
-        /// The study.
+        /// Name of the study.
         study: &'static str,
-        /// Why.
+        /// Cause.
         source: RecordError,
     },
-    /// A series could not be put into a file.
+    /// A series could not be converted to a file.
     #[error(transparent)]
     Series(#[from] TableError),
     /// A file could not be written.
@@ -70,11 +70,11 @@ fn kept_in(folder: Option<&Path>) -> String {
     }
 }
 
-/// Runs `studies` in turn and writes records, data, figures and report aside; when all have ended, they replace what an earlier run
-/// left in the folder of `output`.
+/// Runs `studies` and writes records, data, figures and report into the folder of the unfinished run. At the end they replace
+/// the files of an earlier run in the folder of `output`.
 ///
 /// # Errors
-/// See [`SessionError`]. Whatever the cause, the studies that had ended by then are on disk.
+/// See [`SessionError`]. The completed studies are on disk in any case.
 pub fn run(
     lab: &Lab<'_>,
     studies: &[&dyn Study],
@@ -93,7 +93,7 @@ pub fn run(
     match run_all(lab, studies, output, &mut results) {
         Ok(()) => Ok(results),
         Err(cause) => {
-            // Without one, what lies aside is of an earlier run.
+            // Without a completed study, the unfinished files belong to an earlier run.
             let kept = if results.studies.is_empty() { None } else { output.keep() };
             Err(SessionError { cause: Box::new(cause), kept })
         }
@@ -122,7 +122,7 @@ fn run_all(
             .render(&record, &mut page)
             .map_err(|source| Cause::Render { study: study.name(), source })?;
         if results.studies.is_empty() {
-            // What an earlier run left unfinished stays until there is something in its place.
+            // The unfinished files of an earlier run stay until the first study is complete.
             output.clear()?;
         }
         record.figures = write_figures(&page, output)?;
@@ -137,13 +137,13 @@ fn run_all(
             "report.html",
             report::render(&cover(results, &chapters), &chapters).as_bytes(),
         )?;
-        // After all files that it names.
+        // Last, since it names the other files.
         write_results(results, output)?;
     }
     Ok(output.put_in_place()?)
 }
 
-/// What stands around the chapters of the report.
+/// Returns the head and the end of the report.
 fn cover(results: &Results, chapters: &[Chapter]) -> Cover {
     let Results { config, machine, .. } = results;
     let (spring, start) = (config.oscillator, config.start);
@@ -171,8 +171,8 @@ fn cover(results: &Results, chapters: &[Chapter]) -> Cover {
         setting,
         machine: host,
         complete: results.complete,
-        score: ledger::score(results, chapters),
-        ledger: ledger::render(results, chapters),
+        score: claims_table::score(results, chapters),
+        ledger: claims_table::render(results, chapters),
     }
 }
 

@@ -7,7 +7,7 @@ use libration_study_motion::{
     Convergence, Drift, Efficiency, Error, Nonlinear, Precision, Spectrum, Stability,
 };
 
-/// All studies.
+/// All studies, in the order of the report.
 pub const STUDIES: Registry = Registry {
     studies: &[
         &Spectrum,

@@ -1,4 +1,4 @@
-//! NumPy arrays, and the memory that they are.
+//! NumPy arrays and their memory.
 #![allow(unsafe_code)]
 
 use std::ffi::c_int;
@@ -15,11 +15,11 @@ use pyo3::ffi::Py_REFCNT;
 use pyo3::prelude::*;
 use pyo3::types::PyCapsule;
 
-use crate::error::refused;
+use crate::error::value_error;
 
-/// A float type that NumPy has.
+/// A float type of NumPy.
 pub(crate) trait Number: Float + Elementary + bytemuck::Pod + Element {
-    /// Its name in NumPy.
+    /// Name in NumPy.
     const NUMPY: &str;
 }
 
@@ -31,14 +31,14 @@ impl Number for f64 {
     const NUMPY: &str = "float64";
 }
 
-/// An array of so many dimensions.
+/// A NumPy array of `N` dimensions.
 pub(crate) type Array<T, const N: usize> = PyArray<T, Dim<[usize; N]>>;
 
-/// A new array, of which everything is to be written.
+/// Returns a new array, which the caller must fill.
 ///
 /// # Errors
-/// A `MemoryError` of NumPy's.
-pub(crate) fn fresh<'py, T: Element + Zeroable, const N: usize>(
+/// A `MemoryError` of NumPy.
+pub(crate) fn allocate<'py, T: Element + Zeroable, const N: usize>(
     py: Python<'py>,
     shape: [usize; N],
 ) -> PyResult<Bound<'py, Array<T, N>>> {
@@ -62,20 +62,20 @@ pub(crate) fn fresh<'py, T: Element + Zeroable, const N: usize>(
     }
 }
 
-/// An array that may be written again, and where its numbers were when it was made.
-pub(crate) struct Kept {
+/// A reusable array, and the address of its data at its creation.
+pub(crate) struct ReusedArray {
     array: Py<PyAny>,
     at: usize,
 }
 
-/// The array that is kept for it, to be written once more, or a new one, which is kept from now on: where somebody still has the old one, unless
-/// `shared` says that it is to be written all the same, and where it is not what it was when it was made.
+/// Returns the kept array, or a new one, which is kept from now on. A new one is needed if another reference to the old one exists
+/// (unless `shared`), or if the old one was changed since its creation.
 ///
 /// # Errors
 /// A `MemoryError`.
-pub(crate) fn again<'py, T: Element + Zeroable, const N: usize>(
+pub(crate) fn reuse_or_allocate<'py, T: Element + Zeroable, const N: usize>(
     py: Python<'py>,
-    kept: &mut Option<Kept>,
+    kept: &mut Option<ReusedArray>,
     shape: [usize; N],
     shared: bool,
 ) -> PyResult<Bound<'py, Array<T, N>>>
@@ -83,7 +83,7 @@ where
     [usize; N]: IntoDimension<Dim = Dim<[usize; N]>>,
     Dim<[usize; N]>: Dimension,
 {
-    if let Some(Kept { array, at }) = kept
+    if let Some(ReusedArray { array, at }) = kept
         // SAFETY: this is a reference to an object that is alive. Whatever shows its numbers has one too, so nobody has if this is the only one.
         && (shared || unsafe { Py_REFCNT(array.as_ptr()) } == 1)
         && let Ok(old) = array.bind(py).cast_exact::<Array<T, N>>()
@@ -94,22 +94,22 @@ where
         return Ok(old.clone());
     }
     let new = if shape.iter().product::<usize>().saturating_mul(size_of::<T>()) < LARGE {
-        fresh(py, shape)?
+        allocate(py, shape)?
     } else {
-        in_lines(py, shape)?
+        allocate_aligned(py, shape)?
     };
-    *kept = Some(Kept { array: new.clone().into_any().unbind(), at: new.data() as usize });
+    *kept = Some(ReusedArray { array: new.clone().into_any().unbind(), at: new.data() as usize });
     Ok(new)
 }
 
-/// Whether the numbers of an array lie one after the other, and may be written.
+/// Whether an array is contiguous and writable.
 fn may_be_written<T: Element, D: Dimension>(array: &Bound<'_, PyArray<T, D>>) -> bool {
     // SAFETY: a reference to an array that is alive.
     let flags = unsafe { (*array.as_array_ptr()).fields.flags };
     flags & NPY_ARRAY_CARRAY == NPY_ARRAY_CARRAY
 }
 
-/// Bytes from which it matters that no vector lies in two cache lines: a step of thousands takes a tenth less.
+/// Size in bytes above which arrays are aligned to cache lines; a step of thousands takes a tenth less time.
 const LARGE: usize = 1024;
 
 /// A cache line.
@@ -117,8 +117,8 @@ const LARGE: usize = 1024;
 #[repr(C, align(64))]
 struct Line([u8; 64]);
 
-/// A new array that begins where a cache line does, of zeros.
-fn in_lines<'py, T: Element + Zeroable, const N: usize>(
+/// Returns a new array of zeros, aligned to a cache line.
+fn allocate_aligned<'py, T: Element + Zeroable, const N: usize>(
     py: Python<'py>,
     shape: [usize; N],
 ) -> PyResult<Bound<'py, Array<T, N>>>
@@ -142,26 +142,26 @@ where
     })
 }
 
-/// The memory of an array, to be written by the engine.
+/// Returns the memory of an array, for writes of the engine.
 #[allow(clippy::mut_from_ref, reason = "a reference to an array is no claim to its numbers")]
 pub(crate) fn room<'a, T: Element + AnyBitPattern + NoUninit, D: Dimension>(
     array: &'a Bound<'_, PyArray<T, D>>,
 ) -> &'a mut [T] {
-    // SAFETY: every array that comes here is one from `fresh` or `again`, so its numbers lie one after the other, in memory that is its own. Whoever
+    // SAFETY: every array that comes here is one from `allocate` or `reuse_or_allocate`, so its numbers lie one after the other, in memory that is its own. Whoever
     // reads it in Python while the engine writes has asked for buffers that are used again, and finds numbers of one step or the
     // next, as with any array that NumPy writes without the interpreter's lock.
     unsafe { from_raw_parts_mut(array.data(), array.len()) }
 }
 
-/// The memory of an array of flags, to be filled with 0 and 1.
+/// Returns the memory of an array of flags, for values 0 and 1.
 #[allow(clippy::mut_from_ref, reason = "as above")]
 pub(crate) fn bytes_of<'a>(array: &'a Bound<'_, Array<bool, 1>>) -> &'a mut [u8] {
     // SAFETY: as in `room`; a flag is a byte, of which the engine makes nothing but 0 and 1.
     unsafe { from_raw_parts_mut(array.data().cast(), array.len()) }
 }
 
-/// The numbers of an array of actions, `[n]` or `[n, 1]`, if they lie as the engine reads them.
-pub(crate) fn borrowed<'a, T: Number>(
+/// Returns the data of an array of actions, `[n]` or `[n, 1]`, if it is contiguous and aligned.
+pub(crate) fn contiguous_actions<'a, T: Number>(
     actions: &'a Bound<'_, PyAny>,
     len: usize,
 ) -> Option<&'a [T]> {
@@ -174,7 +174,7 @@ pub(crate) fn borrowed<'a, T: Number>(
         .then(|| unsafe { from_raw_parts(array.data(), len) })
 }
 
-/// Whether all of these numbers are finite: nothing times a finite number is nothing, which vectors add faster than they compare.
+/// Whether all numbers are finite: zero times a finite number is zero, and vectors add faster than they compare.
 pub(crate) fn are_finite<T: Number>(numbers: &[T]) -> bool {
     let (rows, rest) = numbers.as_chunks::<16>();
     let mut sums = [T::zero(); 16];
@@ -186,7 +186,7 @@ pub(crate) fn are_finite<T: Number>(numbers: &[T]) -> bool {
     sums.iter().chain(rest).all(|x| x.is_finite())
 }
 
-/// Whether some of these numbers lie in the memory of an array.
+/// Whether a slice overlaps the memory of an array.
 pub(crate) fn lies_in<T, U: Element, D: Dimension>(
     numbers: &[T],
     array: &Bound<'_, PyArray<U, D>>,
@@ -197,7 +197,7 @@ pub(crate) fn lies_in<T, U: Element, D: Dimension>(
     (numbers.start as usize) < end && begin < numbers.end as usize
 }
 
-/// Memory of the engine as an array that keeps its owner.
+/// Returns memory of the engine as an array that owns a reference to its owner.
 pub(crate) fn view<'py, T: Number, const N: usize>(
     owner: &Bound<'py, PyAny>,
     numbers: &[T],
@@ -208,12 +208,12 @@ where
     Dim<[usize; N]>: Dimension,
 {
     let array = ArrayView::from_shape(shape, numbers);
-    let array = array.map_err(|error| refused(error.to_string()))?;
+    let array = array.map_err(|error| value_error(error.to_string()))?;
     // SAFETY: whoever calls lends memory that its owner has until it is gone, at the same place; the array keeps the owner.
     Ok(unsafe { PyArray::borrow_from_array(&array, owner.clone()) }.into_any())
 }
 
-/// Flags of the engine as an array of `bool` that keeps its owner.
+/// Returns flags of the engine as an array of `bool` that owns a reference to its owner.
 pub(crate) fn view_of_flags<'py>(
     owner: &Bound<'py, PyAny>,
     flags: &[u8],
@@ -222,7 +222,7 @@ pub(crate) fn view_of_flags<'py>(
     // SAFETY: a flag of the engine is a byte of 0 or 1.
     let flags: &[bool] = unsafe { from_raw_parts(flags.as_ptr().cast(), flags.len()) };
     let array = ArrayView::from_shape(shape, flags);
-    let array = array.map_err(|error| refused(error.to_string()))?;
+    let array = array.map_err(|error| value_error(error.to_string()))?;
     // SAFETY: as in `view`.
     Ok(unsafe { PyArray::borrow_from_array(&array, owner.clone()) }.into_any())
 }

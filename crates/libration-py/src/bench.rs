@@ -1,14 +1,14 @@
-//! What benchmarks set beside the package: the same work without Python.
+//! Work without Python, as a reference for benchmarks of the package.
 
 use std::time::Instant;
 
 use libration::rl::{EnvironmentError, Plan, StepBuffers};
 use pyo3::prelude::*;
 
-use crate::acts::{Acts, Told};
+use crate::any_batch::{AnyBatch, DynBatch, with_batch};
 use crate::array::Number;
 use crate::error::Raised;
-use crate::held::{Held, Table, with_table};
+use crate::policy::{Policy, PolicyRequest};
 use crate::settings::Settings;
 
 /// Seconds that so many steps take under actions of zero, in memory that is used again.
@@ -17,8 +17,8 @@ pub(crate) fn _seconds_of_steps(py: Python<'_>, settings: Settings, steps: usize
     let (recipe, execution) = (settings.recipe()?, settings.execution()?);
     let (len, single) = (settings.num_envs, settings.single()?);
     py.detach(|| {
-        let mut held = Held::new(&recipe, single, len, &execution).map_err(Raised::raised)?;
-        with_table!(&mut held, table => timed(&mut **table, len, steps))
+        let mut batch = AnyBatch::new(&recipe, single, len, &execution).map_err(Raised::raised)?;
+        with_batch!(&mut batch, table => timed(&mut **table, len, steps))
     })
 }
 
@@ -27,13 +27,13 @@ pub(crate) fn _seconds_of_steps(py: Python<'_>, settings: Settings, steps: usize
 pub(crate) fn _seconds_of_rollouts(
     py: Python<'_>,
     settings: Settings,
-    policy: Told<'_>,
+    policy: PolicyRequest<'_>,
     horizon: usize,
     rollouts: usize,
 ) -> PyResult<Vec<f64>> {
     fn each<T: Number>(
-        table: &mut dyn Table<T>,
-        acts: &Acts<T>,
+        table: &mut dyn DynBatch<T>,
+        acts: &Policy<T>,
         plan: Plan,
         rollouts: usize,
     ) -> Result<Vec<f64>, EnvironmentError> {
@@ -49,22 +49,22 @@ pub(crate) fn _seconds_of_rollouts(
     }
     let (recipe, execution) = (settings.recipe()?, settings.execution()?);
     let len = settings.num_envs;
-    let held = Held::new(&recipe, settings.single()?, len, &execution);
+    let batch = AnyBatch::new(&recipe, settings.single()?, len, &execution);
     let plan = Plan::new(horizon, len).truncated();
-    let done = match held.map_err(Raised::raised)? {
-        Held::F32(mut table) => {
-            let acts = Acts::new(&policy)?;
+    let done = match batch.map_err(Raised::raised)? {
+        AnyBatch::F32(mut table) => {
+            let acts = Policy::new(&policy)?;
             py.detach(|| each(&mut *table, &acts, plan, rollouts))
         }
-        Held::F64(mut table) => {
-            let acts = Acts::new(&policy)?;
+        AnyBatch::F64(mut table) => {
+            let acts = Policy::new(&policy)?;
             py.detach(|| each(&mut *table, &acts, plan, rollouts))
         }
     };
     done.map_err(Raised::raised)
 }
 
-fn timed<T: Number>(table: &mut dyn Table<T>, len: usize, steps: usize) -> PyResult<f64> {
+fn timed<T: Number>(table: &mut dyn DynBatch<T>, len: usize, steps: usize) -> PyResult<f64> {
     let seeds: Vec<Option<u64>> = (0..len as u64).map(Some).collect();
     table.seed(&seeds).map_err(Raised::raised)?;
     let actions = vec![T::zero(); len];

@@ -1,12 +1,12 @@
-//! What there is to choose from.
+//! Systems, integrators and studies for Python.
 
 use libration::Method;
 use libration::catalog::ENTRIES;
-use libration_analyze::analyze::Stepping;
+use libration_analyze::Stepping;
 use libration_lab::STUDIES;
 use pyo3::prelude::*;
 
-use crate::asked::{SystemTold, system};
+use crate::request::{self, SystemRequest};
 
 /// A parameter: its name, unit, meaning and default.
 type Parameter = (&'static str, &'static str, &'static str, f64);
@@ -14,7 +14,7 @@ type Parameter = (&'static str, &'static str, &'static str, f64);
 /// A system: its name, what it is, its least and largest number of dimensions, and its parameters.
 type Entry = (&'static str, &'static str, usize, usize, Vec<Parameter>);
 
-/// All systems.
+/// Returns all systems.
 #[pyfunction]
 pub(crate) fn _systems() -> Vec<Entry> {
     let each = ENTRIES.into_iter().map(|entry| {
@@ -26,7 +26,7 @@ pub(crate) fn _systems() -> Vec<Entry> {
     each.collect()
 }
 
-/// All integrators, with what they are; the last are exact steps of linear systems.
+/// Returns all integrators with descriptions; the last one is exact steps of linear systems.
 #[pyfunction]
 pub(crate) fn _integrators() -> Vec<(&'static str, &'static str)> {
     let methods = Method::ALL.map(|method| (method.name(), method.summary()));
@@ -34,15 +34,15 @@ pub(crate) fn _integrators() -> Vec<(&'static str, &'static str)> {
     methods.into_iter().chain([exact]).collect()
 }
 
-/// All studies of the laboratory, with the questions that they answer.
+/// Returns all studies with their questions.
 #[pyfunction]
 pub(crate) fn _studies() -> Vec<(&'static str, &'static str)> {
     STUDIES.studies.iter().map(|study| (study.name(), study.question())).collect()
 }
 
-/// All parameters of a system, those that were not given as well.
+/// Returns all parameters of a system, with defaults.
 #[pyfunction]
-pub(crate) fn _parameters(told: SystemTold) -> PyResult<Vec<(&'static str, f64)>> {
-    let (system, actuation) = system(&told)?;
+pub(crate) fn _parameters(system: SystemRequest) -> PyResult<Vec<(&'static str, f64)>> {
+    let (system, actuation) = request::system(&system)?;
     Ok(actuation.parameters(system))
 }

@@ -1,4 +1,4 @@
-//! Data sets, as Python has them written and checked.
+//! Writing and checking data sets for Python.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -6,35 +6,35 @@ use std::sync::{Mutex, PoisonError};
 
 use libration::ensemble::Execution;
 use libration_env::dataset;
-use libration_env::dataset::{Check, DataFormat, Dataset, Flaw, Job, Watch};
+use libration_env::dataset::{DataFormat, Dataset, Flaw, Monitor, VerifyOptions, WriteJob};
 use pyo3::prelude::*;
 
-use crate::error::{Raised, keywords, refused, unknown};
-use crate::work::work;
+use crate::background::run_in_background;
+use crate::error::{Raised, keywords, unknown, value_error};
 
-/// What is done so far.
-struct Done<'a> {
+/// Progress of a data set.
+struct ProgressWatch<'a> {
     transitions: &'a AtomicU64,
     bytes: &'a AtomicU64,
     repaired: &'a Mutex<Vec<Flaw>>,
     stop: &'a AtomicBool,
 }
 
-impl Watch for Done<'_> {
-    fn done(&self, transitions: u64, bytes: u64) {
+impl Monitor for ProgressWatch<'_> {
+    fn on_written(&self, transitions: u64, bytes: u64) {
         self.transitions.fetch_add(transitions, Ordering::Relaxed);
         self.bytes.fetch_add(bytes, Ordering::Relaxed);
     }
 
-    fn checked(&self, bytes: u64, _: u64) {
+    fn on_verified(&self, bytes: u64, _: u64) {
         self.bytes.fetch_max(bytes, Ordering::Relaxed);
     }
 
-    fn repaired(&self, flaw: &Flaw) {
+    fn on_repaired(&self, flaw: &Flaw) {
         self.repaired.lock().unwrap_or_else(PoisonError::into_inner).push(flaw.clone());
     }
 
-    fn stops(&self) -> bool {
+    fn should_stop(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 }
@@ -45,7 +45,7 @@ pub(crate) fn _dataset_settings() -> &'static str {
     dataset::DEFAULT
 }
 
-/// How a data set is to be written.
+/// Options of a data set.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Writing {
@@ -68,12 +68,12 @@ pub(crate) fn _write_dataset(
 ) -> PyResult<(u64, u64, usize)> {
     let mut dataset: Dataset = dataset::parse(settings, "settings.toml").map_err(Raised::raised)?;
     if let Some(transitions) = writing.transitions {
-        let told = |error| refused(format!("transitions is {transitions}: {error}"));
-        dataset = dataset.transitions(transitions).map_err(told)?;
+        let with_name = |error| value_error(format!("transitions is {transitions}: {error}"));
+        dataset = dataset.transitions(transitions).map_err(with_name)?;
     }
     let format = DataFormat::from_name(&writing.format)
         .ok_or_else(|| unknown("format", &writing.format, DataFormat::ALL.map(DataFormat::name)))?;
-    let job = Job {
+    let job = WriteJob {
         dataset: &dataset,
         format,
         shard: writing.shard,
@@ -84,23 +84,27 @@ pub(crate) fn _write_dataset(
     let all = if writing.shard[1] == 0 { 0 } else { dataset.share(writing.shard) };
     let (transitions, bytes, repaired) =
         (AtomicU64::new(0), AtomicU64::new(0), Mutex::new(Vec::new()));
-    let manifest = work(
+    let manifest = run_in_background(
         py,
         |stop| {
-            let watch =
-                Done { transitions: &transitions, bytes: &bytes, repaired: &repaired, stop };
+            let watch = ProgressWatch {
+                transitions: &transitions,
+                bytes: &bytes,
+                repaired: &repaired,
+                stop,
+            };
             dataset::write(&job, &watch)
         },
-        teller(&transitions, &bytes, all, progress.as_ref()),
+        progress_callback(&transitions, &bytes, all, progress.as_ref()),
     )?;
     let chunks = manifest.map_err(Raised::raised)?.chunks.len();
     Ok((transitions.into_inner(), bytes.into_inner(), chunks))
 }
 
 /// A flaw: in which chunk, of which file, what it is, and whether it has been repaired.
-type Told = (String, PathBuf, String, bool);
+type FlawEntry = (String, PathBuf, String, bool);
 
-fn told(flaw: Flaw, repaired: bool) -> Told {
+fn flaw_entry(flaw: Flaw, repaired: bool) -> FlawEntry {
     (flaw.chunk, flaw.path, keywords(&flaw.what), repaired)
 }
 
@@ -113,28 +117,32 @@ pub(crate) fn _verify_dataset(
     repair: bool,
     threads: usize,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Vec<Told>> {
+) -> PyResult<Vec<FlawEntry>> {
     let again = Execution::serial().threads(threads).map_err(Raised::raised)?;
-    let how = Check { replay: replay.then_some(&again), repair: repair.then_some(&again) };
+    let how = VerifyOptions { replay: replay.then_some(&again), repair: repair.then_some(&again) };
     let (transitions, bytes, repaired) =
         (AtomicU64::new(0), AtomicU64::new(0), Mutex::new(Vec::new()));
-    let checked = work(
+    let checked = run_in_background(
         py,
         |stop| {
-            let watch =
-                Done { transitions: &transitions, bytes: &bytes, repaired: &repaired, stop };
-            dataset::check(&folder, how, &watch)
+            let watch = ProgressWatch {
+                transitions: &transitions,
+                bytes: &bytes,
+                repaired: &repaired,
+                stop,
+            };
+            dataset::verify(&folder, how, &watch)
         },
-        teller(&transitions, &bytes, 0, progress.as_ref()),
+        progress_callback(&transitions, &bytes, 0, progress.as_ref()),
     )?;
     let (_, flaws) = checked.map_err(Raised::raised)?;
     let repaired = repaired.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let repaired = repaired.into_iter().map(|flaw| told(flaw, true));
-    Ok(repaired.chain(flaws.into_iter().map(|flaw| told(flaw, false))).collect())
+    let repaired = repaired.into_iter().map(|flaw| flaw_entry(flaw, true));
+    Ok(repaired.chain(flaws.into_iter().map(|flaw| flaw_entry(flaw, false))).collect())
 }
 
 /// Tells how far it is, whenever that has changed.
-fn teller<'a>(
+fn progress_callback<'a>(
     transitions: &'a AtomicU64,
     bytes: &'a AtomicU64,
     all: u64,

@@ -1,25 +1,25 @@
-//! What goes wrong, as Python has it.
+//! Conversion of errors to Python exceptions.
 
 use libration::checkpoint::CheckpointError;
 use libration::ensemble::{EnsembleError, InsufficientMemory};
 use libration::replay::ReplayError;
 use libration::rl::EnvironmentError;
 use libration_advise::AdviseError;
-use libration_analyze::analyze::AnalyzeError;
+use libration_analyze::AnalyzeError;
 use libration_analyze::trajectory::TrajectoryError;
 use libration_data::DataError;
 use libration_env::dataset::DatasetError;
 use libration_lab::output::OutputError;
 use libration_lab::session::{Cause, SessionError};
-use libration_settings::setting::SettingError;
-use libration_settings::{SettingsError, names};
+use libration_settings::initial_value_problem::InitialValueError;
+use libration_settings::{SettingsError, suggestions};
 use libration_study::StudyError;
 use pyo3::exceptions::{
     PyKeyboardInterrupt, PyMemoryError, PyOSError, PyRuntimeError, PyValueError,
 };
 use pyo3::{PyErr, PyResult};
 
-/// Every error of the engine is turned into an exception here, and nowhere else.
+/// Conversion of an error of the engine to an exception.
 pub(crate) trait Raised {
     /// The exception.
     fn raised(self) -> PyErr;
@@ -60,9 +60,9 @@ impl Raised for ReplayError {
     }
 }
 
-impl Raised for SettingError {
+impl Raised for InitialValueError {
     fn raised(self) -> PyErr {
-        refused(keywords(&self.to_string()))
+        value_error(keywords(&self.to_string()))
     }
 }
 
@@ -71,7 +71,7 @@ impl Raised for AnalyzeError {
         if matches!(self, AnalyzeError::Interrupted) {
             return interrupted();
         }
-        refused(keywords(&self.to_string()))
+        value_error(keywords(&self.to_string()))
     }
 }
 
@@ -81,7 +81,7 @@ impl Raised for TrajectoryError {
             TrajectoryError::Ensemble(error) => error.raised(),
             TrajectoryError::Memory(_) => PyMemoryError::new_err(keywords(&self.to_string())),
             TrajectoryError::Interrupted => interrupted(),
-            error => refused(keywords(&error.to_string())),
+            error => value_error(keywords(&error.to_string())),
         }
     }
 }
@@ -89,7 +89,7 @@ impl Raised for TrajectoryError {
 impl Raised for SettingsError {
     fn raised(self) -> PyErr {
         let help = self.help().map(|help| format!(" ({help})")).unwrap_or_default();
-        refused(format!("{}{help}", self.message()))
+        value_error(format!("{}{help}", self.message()))
     }
 }
 
@@ -98,7 +98,7 @@ impl Raised for AdviseError {
         match self {
             AdviseError::Interrupted(_) => interrupted(),
             AdviseError::Ensemble(error) => error.raised(),
-            error => refused(error.to_string()),
+            error => value_error(error.to_string()),
         }
     }
 }
@@ -136,33 +136,33 @@ impl Raised for DatasetError {
             DatasetError::Data(error @ DataError::Io { .. }) => {
                 PyOSError::new_err(error.to_string())
             }
-            error => refused(keywords(&error.to_string())),
+            error => value_error(keywords(&error.to_string())),
         }
     }
 }
 
-/// Work that somebody stopped; the exception of a handler of signals comes before it.
+/// Returns the exception of interrupted work.
 fn interrupted() -> PyErr {
     PyKeyboardInterrupt::new_err("interrupted")
 }
 
-/// What cannot be asked for.
-pub(crate) fn refused(text: String) -> PyErr {
+/// Returns a `ValueError`.
+pub(crate) fn value_error(text: String) -> PyErr {
     PyValueError::new_err(text)
 }
 
-/// What is said of a name that is none of these.
+/// Returns a `ValueError` for an unknown name, with the nearest known one.
 pub(crate) fn unknown<'a>(
     what: &str,
     name: &str,
     known: impl IntoIterator<Item = &'a str> + Clone,
 ) -> PyErr {
-    let hint = names::suggest(&format!("{what}s"), name, known);
-    refused(format!("unknown {what} `{name}`: {hint}"))
+    let hint = suggestions::suggest(&format!("{what}s"), name, known);
+    value_error(format!("unknown {what} `{name}`: {hint}"))
 }
 
-/// Nothing, if there is room for so many bytes.
-pub(crate) fn room_for(bytes: u128) -> PyResult<()> {
+/// Fails with a `MemoryError` if `bytes` are not available.
+pub(crate) fn check_memory(bytes: u128) -> PyResult<()> {
     InsufficientMemory::check(bytes).map_err(|error| PyMemoryError::new_err(error.to_string()))
 }
 
@@ -171,11 +171,11 @@ pub(crate) fn room_for(bytes: u128) -> PyResult<()> {
 pub(crate) fn keywords(text: &str) -> String {
     let text = &*text.replace("--resume", "resume=True");
     let mut words = text.split("--");
-    let mut told = words.next().unwrap_or_default().to_owned();
+    let mut converted = words.next().unwrap_or_default().to_owned();
     for word in words {
         let end = word.find(|c: char| !(c.is_ascii_lowercase() || c == '-')).unwrap_or(word.len());
-        told += &word[..end].replace('-', "_");
-        told += &word[end..];
+        converted += &word[..end].replace('-', "_");
+        converted += &word[end..];
     }
-    told
+    converted
 }

@@ -1,4 +1,4 @@
-//! The laboratory and its advice, as Python runs them.
+//! The functions `run_lab` and `advise` for Python.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -12,28 +12,28 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::{Raised, refused, unknown};
-use crate::work::work;
+use crate::background::run_in_background;
+use crate::error::{Raised, unknown, value_error};
 
-/// How far work is: what is being done, its number and of how many, the part of it that is being done, and how many parts of how many are.
-type Far = (String, usize, usize, String, usize, usize);
+/// Progress: study, its number, number of studies, current work, items done and number of items.
+type Position = (String, usize, usize, String, usize, usize);
 
-/// What was told last, for whoever looks at it now and then.
+/// Latest progress, and whether it is new.
 #[derive(Default)]
-struct Told(Mutex<(Far, bool)>);
+struct ProgressState(Mutex<(Position, bool)>);
 
-impl Told {
-    fn set(&self, set: impl FnOnce(&mut Far)) {
-        let mut told = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        set(&mut told.0);
-        told.1 = true;
+impl ProgressState {
+    fn set(&self, set: impl FnOnce(&mut Position)) {
+        let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        set(&mut state.0);
+        state.1 = true;
     }
 
-    /// Calls `callback` if there is news.
-    fn tell(&self, py: Python<'_>, callback: Option<&Py<PyAny>>) -> PyResult<()> {
+    /// Calls `callback` with new progress.
+    fn report(&self, py: Python<'_>, callback: Option<&Py<PyAny>>) -> PyResult<()> {
         let news = {
-            let mut told = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            std::mem::take(&mut told.1).then(|| told.0.clone())
+            let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            std::mem::take(&mut state.1).then(|| state.0.clone())
         };
         match (news, callback) {
             (Some(far), Some(callback)) => callback.call1(py, far).map(|_| ()),
@@ -42,7 +42,7 @@ impl Told {
     }
 }
 
-impl Progress for Told {
+impl Progress for ProgressState {
     fn study(&self, name: &str, number: usize, of: usize) {
         self.set(|far| *far = (name.to_owned(), number, of, String::new(), 0, 0));
     }
@@ -64,20 +64,20 @@ impl Progress for Told {
 #[pyfunction]
 pub(crate) fn _advise(
     py: Python<'_>,
-    asked: &str,
+    config: &str,
     page: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, bool, Option<String>)> {
-    let mut request = advise::parse(asked, "asked.toml").map_err(Raised::raised)?;
+    let mut request = advise::parse(config, "config.toml").map_err(Raised::raised)?;
     request.map = page;
-    let told = Told::default();
-    let advice = work(
+    let state = ProgressState::default();
+    let advice = run_in_background(
         py,
-        |stop| advise::advise(&Work::new(&told, stop), &request),
-        |py| told.tell(py, progress.as_ref()),
+        |stop| advise::advise(&Work::new(&state, stop), &request),
+        |py| state.report(py, progress.as_ref()),
     )?;
     let advice = advice.map_err(Raised::raised)?;
-    let json = serde_json::to_string(&advice).map_err(|error| refused(error.to_string()))?;
+    let json = serde_json::to_string(&advice).map_err(|error| value_error(error.to_string()))?;
     Ok((json, advice.holds(), page.then(|| advise::page(&advice))))
 }
 
@@ -88,33 +88,33 @@ type Series<'py> = (String, String, Bound<'py, PyDict>, Bound<'py, PyDict>);
 #[pyfunction]
 pub(crate) fn _run_lab<'py>(
     py: Python<'py>,
-    asked: &str,
+    config: &str,
     names: Option<Vec<String>>,
     effort: Option<String>,
     out: PathBuf,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, Vec<Series<'py>>)> {
-    let mut config = STUDIES.parse(asked, "config.toml").map_err(Raised::raised)?;
+    let mut config = STUDIES.parse(config, "config.toml").map_err(Raised::raised)?;
     config.studies = names.unwrap_or(config.studies);
     config.effort = match effort {
         Some(name) => Effort::from_name(&name)
             .ok_or_else(|| unknown("effort", &name, Effort::ALL.map(Effort::name)))?,
         None => config.effort,
     };
-    STUDIES.check(&config).map_err(|error| refused(error.to_string()))?;
+    STUDIES.check(&config).map_err(|error| value_error(error.to_string()))?;
     let chosen: Vec<&'static dyn Study> = match config.studies.as_slice() {
         [] => STUDIES.studies.to_vec(),
         names => names.iter().filter_map(|name| STUDIES.by_name(name)).collect(),
     };
     let output = Output::open(out).map_err(Raised::raised)?;
-    let told = Told::default();
-    let results = work(
+    let state = ProgressState::default();
+    let results = run_in_background(
         py,
-        |stop| session::run(&Lab::new(&config, config.effort, &told, stop), &chosen, &output),
-        |py| told.tell(py, progress.as_ref()),
+        |stop| session::run(&Lab::new(&config, config.effort, &state, stop), &chosen, &output),
+        |py| state.report(py, progress.as_ref()),
     )?;
     let results = results.map_err(Raised::raised)?;
-    let json = serde_json::to_string(&results).map_err(|error| refused(error.to_string()))?;
+    let json = serde_json::to_string(&results).map_err(|error| value_error(error.to_string()))?;
     let mut all = Vec::new();
     for record in &results.studies {
         for series in &record.series {

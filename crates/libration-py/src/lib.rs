@@ -1,44 +1,44 @@
-//! The engine as a Python package: the module `libration._native`, which `python/libration` makes pleasant.
+//! The extension module `libration._native` of the Python package `libration`.
 //!
-//! Nothing is computed here. What Python hands over becomes a request, and what comes of it NumPy arrays.
+//! It converts Python arguments to requests of the engine, and results to NumPy arrays.
 
-mod acts;
+mod any_batch;
 mod array;
-mod asked;
+mod background;
+mod batch;
 mod bench;
 mod catalogue;
+mod checked_mutex;
 mod datasets;
 mod error;
-mod guarded;
-mod held;
 mod laboratory;
-mod layer;
-mod pace;
+mod policy;
 mod program;
 mod replay;
+mod request;
 mod rollout;
 mod settings;
 mod simulate;
 mod step;
 mod tensors;
+mod time_slices;
 mod trajectories;
-mod work;
 
-/// What `libration` is made of.
+/// The extension module.
 #[pyo3::pymodule]
 mod _native {
+    #[pymodule_export]
+    use crate::batch::Batch;
     #[pymodule_export]
     use crate::bench::{_seconds_of_rollouts, _seconds_of_steps};
     #[pymodule_export]
     use crate::catalogue::{_integrators, _parameters, _studies, _systems};
     #[pymodule_export]
+    use crate::checked_mutex::_forked;
+    #[pymodule_export]
     use crate::datasets::{_dataset_settings, _verify_dataset, _write_dataset};
     #[pymodule_export]
-    use crate::guarded::_forked;
-    #[pymodule_export]
     use crate::laboratory::{_advise, _run_lab};
-    #[pymodule_export]
-    use crate::layer::Batch;
     #[pymodule_export]
     use crate::program::_program;
     #[pymodule_export]

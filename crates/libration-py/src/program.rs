@@ -1,4 +1,4 @@
-//! A step of an integrator as a list of operations, to be done with whole arrays: for forces that Python computes.
+//! A step of an integrator as a list of array operations, for accelerations from Python.
 
 use std::cell::RefCell;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -6,7 +6,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 use libration::{Integrator, Scalar, State, System, with_method};
 use pyo3::prelude::*;
 
-use crate::asked::method;
+use crate::request::method;
 
 /// An operation: its name, and the places of what it is done with. `ratio` has two whole numbers after its operand, and `constant`
 /// stands in the list of constants.

@@ -8,30 +8,30 @@ use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::array::{Array, Number, bytes_of, fresh, room};
-use crate::error::{Raised, refused, room_for};
-use crate::guarded::Guarded;
-use crate::rollout::{Kept as Tensed, Memory};
+use crate::array::{Array, Number, allocate, bytes_of, room};
+use crate::checked_mutex::CheckedMutex;
+use crate::error::{Raised, check_memory, value_error};
+use crate::rollout::{AnyTensors, Memory};
 use crate::tensors::Tensors;
 
 /// The last transitions of many environments, of which batches are drawn.
 #[pyclass(frozen, module = "libration._native")]
 pub(crate) struct Buffer {
-    kept: Guarded<Kept>,
+    store: CheckedMutex<AnyStore>,
 }
 
 /// A buffer of either float type.
-enum Kept {
+enum AnyStore {
     F32(Box<dyn Store<f32>>),
     F64(Box<dyn Store<f64>>),
 }
 
 /// Does something with the buffer, whichever it is.
 macro_rules! with_store {
-    ($kept:expr, $store:ident => $work:expr) => {
-        match $kept {
-            Kept::F32($store) => $work,
-            Kept::F64($store) => $work,
+    ($any:expr, $store:ident => $work:expr) => {
+        match $any {
+            AnyStore::F32($store) => $work,
+            AnyStore::F64($store) => $work,
         }
     };
 }
@@ -39,7 +39,7 @@ macro_rules! with_store {
 /// Which transitions are drawn, and how far each looks ahead.
 #[derive(Clone, Copy, FromPyObject)]
 #[pyo3(from_item_all)]
-struct Asked {
+struct SampleRequest {
     len: usize,
     seed: u64,
     number: u64,
@@ -54,9 +54,13 @@ trait Store<T>: Send {
 
     fn insert(&mut self, tensors: &mut dyn Tensors<T>, next: &[T]) -> Result<(), ReplayError>;
 
-    fn sample<'py>(&self, py: Python<'py>, asked: Asked) -> PyResult<Bound<'py, PyDict>>;
+    fn sample<'py>(&self, py: Python<'py>, request: SampleRequest) -> PyResult<Bound<'py, PyDict>>;
 
-    fn sequences<'py>(&self, py: Python<'py>, asked: Asked) -> PyResult<Bound<'py, PyDict>>;
+    fn sequences<'py>(
+        &self,
+        py: Python<'py>,
+        request: SampleRequest,
+    ) -> PyResult<Bound<'py, PyDict>>;
 
     fn update(
         &mut self,
@@ -80,15 +84,15 @@ impl<T: Number, const O: usize> Store<T> for Replay<T, O, 1> {
         Replay::insert(self, rollout, next, &Execution::serial())
     }
 
-    fn sample<'py>(&self, py: Python<'py>, asked: Asked) -> PyResult<Bound<'py, PyDict>> {
-        let Asked { len, seed, number, steps, gamma, correction } = asked;
-        room_for(len as u128 * (8 + 2 + (2 * O + 4) as u128 * size_of::<T>() as u128))?;
-        let numbers: Bound<'py, Array<u64, 1>> = fresh(py, [len])?;
-        let rows = |each| fresh::<T, 2>(py, [len, each]);
+    fn sample<'py>(&self, py: Python<'py>, request: SampleRequest) -> PyResult<Bound<'py, PyDict>> {
+        let SampleRequest { len, seed, number, steps, gamma, correction } = request;
+        check_memory(len as u128 * (8 + 2 + (2 * O + 4) as u128 * size_of::<T>() as u128))?;
+        let numbers: Bound<'py, Array<u64, 1>> = allocate(py, [len])?;
+        let rows = |each| allocate::<T, 2>(py, [len, each]);
         let (seen, actions, next) = (rows(O)?, rows(1)?, rows(O)?);
-        let column = || fresh::<T, 1>(py, [len]);
+        let column = || allocate::<T, 1>(py, [len]);
         let (rewards, discounts, weights) = (column()?, column()?, column()?);
-        let flags = || fresh::<bool, 1>(py, [len]);
+        let flags = || allocate::<bool, 1>(py, [len]);
         let (over, cut) = (flags()?, flags()?);
         let mut columns: Columns<'_, T, O, 1> = Columns {
             number: room(&numbers),
@@ -121,11 +125,15 @@ impl<T: Number, const O: usize> Store<T> for Replay<T, O, 1> {
         Ok(all)
     }
 
-    fn sequences<'py>(&self, py: Python<'py>, asked: Asked) -> PyResult<Bound<'py, PyDict>> {
-        let Asked { len, seed, number, steps, .. } = asked;
+    fn sequences<'py>(
+        &self,
+        py: Python<'py>,
+        request: SampleRequest,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let SampleRequest { len, seed, number, steps, .. } = request;
         // Each of the numbers is moved once more on its way.
         let each = 2 * (3 + (O + 2) * size_of::<T>()) as u128;
-        room_for((len as u128 * steps as u128).saturating_mul(each))?;
+        check_memory((len as u128 * steps as u128).saturating_mul(each))?;
         let mut drawn = Sequences::<T, O, 1>::new(len, steps);
         let found = py.detach(|| {
             self.sample_sequences(Draw { seed, number }, &mut drawn, &Execution::serial())
@@ -173,7 +181,7 @@ fn made<T: Number>(observations: usize, capacity: Capacity) -> PyResult<Box<dyn 
         2 => of::<T, 2>(capacity),
         3 => of::<T, 3>(capacity),
         4 => of::<T, 4>(capacity),
-        n => Err(refused(format!("no environment shows {n} numbers"))),
+        n => Err(value_error(format!("no environment shows {n} numbers"))),
     }
 }
 
@@ -193,18 +201,18 @@ impl Buffer {
         let mut capacity = Capacity::new(steps, environments);
         capacity.priorities = priorities;
         capacity.ends = ends.unwrap_or(capacity.ends);
-        let kept = if single {
-            Kept::F32(made(observations, capacity)?)
+        let store = if single {
+            AnyStore::F32(made(observations, capacity)?)
         } else {
-            Kept::F64(made(observations, capacity)?)
+            AnyStore::F64(made(observations, capacity)?)
         };
-        Ok(Buffer { kept: Guarded::new(kept) })
+        Ok(Buffer { store: CheckedMutex::new(store) })
     }
 
     fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
-        let kept = self.kept.enter(py)?;
-        let len = with_store!(&*kept, store => store.len());
-        usize::try_from(len).map_err(|error| refused(error.to_string()))
+        let store = self.store.lock(py)?;
+        let len = with_store!(&*store, store => store.len());
+        usize::try_from(len).map_err(|error| value_error(error.to_string()))
     }
 
     /// Takes what a rollout holds, and what is seen after its last step.
@@ -216,28 +224,40 @@ impl Buffer {
         ) -> PyResult<()> {
             let next = next.call_method0("ravel")?;
             let next = next.cast::<PyArray1<T>>().map_err(|_| {
-                refused(format!("what is seen next must be an array of {}", T::NUMPY))
+                value_error(format!("what is seen next must be an array of {}", T::NUMPY))
             })?;
             store.insert(tensors, &next.to_vec()?).map_err(Raised::raised)
         }
-        let mut kept = self.kept.enter(py)?;
-        match (&mut *kept, &mut *memory.kept(py)?) {
-            (Kept::F32(store), Tensed::F32(tensors)) => taken(&mut **store, &mut **tensors, next),
-            (Kept::F64(store), Tensed::F64(tensors)) => taken(&mut **store, &mut **tensors, next),
-            _ => Err(refused("the rollout is of another dtype than the buffer".to_owned())),
+        let mut store = self.store.lock(py)?;
+        match (&mut *store, &mut *memory.tensors(py)?) {
+            (AnyStore::F32(store), AnyTensors::F32(tensors)) => {
+                taken(&mut **store, &mut **tensors, next)
+            }
+            (AnyStore::F64(store), AnyTensors::F64(tensors)) => {
+                taken(&mut **store, &mut **tensors, next)
+            }
+            _ => Err(value_error("the rollout is of another dtype than the buffer".to_owned())),
         }
     }
 
     /// Draws transitions.
-    fn _sample<'py>(&self, py: Python<'py>, asked: Asked) -> PyResult<Bound<'py, PyDict>> {
-        let kept = self.kept.enter(py)?;
-        with_store!(&*kept, store => store.sample(py, asked))
+    fn _sample<'py>(
+        &self,
+        py: Python<'py>,
+        request: SampleRequest,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let store = self.store.lock(py)?;
+        with_store!(&*store, store => store.sample(py, request))
     }
 
     /// Draws stretches of steps.
-    fn _sequences<'py>(&self, py: Python<'py>, asked: Asked) -> PyResult<Bound<'py, PyDict>> {
-        let kept = self.kept.enter(py)?;
-        with_store!(&*kept, store => store.sequences(py, asked))
+    fn _sequences<'py>(
+        &self,
+        py: Python<'py>,
+        request: SampleRequest,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let store = self.store.lock(py)?;
+        with_store!(&*store, store => store.sequences(py, request))
     }
 
     /// Changes priorities. Gives how many.
@@ -249,9 +269,9 @@ impl Buffer {
         exponent: f64,
     ) -> PyResult<usize> {
         let (numbers, priorities) = (numbers.to_vec()?, priorities.to_vec()?);
-        let mut kept = self.kept.enter(py)?;
+        let mut store = self.store.lock(py)?;
         let changed =
-            with_store!(&mut *kept, store => store.update(&numbers, &priorities, exponent));
+            with_store!(&mut *store, store => store.update(&numbers, &priorities, exponent));
         changed.map_err(Raised::raised)
     }
 }

@@ -1,36 +1,36 @@
-//! Rollouts as Python holds them: memory of the engine, seen as NumPy arrays.
+//! Rollouts in Python: memory of the engine as NumPy arrays.
 
 use libration::rl::{Discounts, Estimates, Plan};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::acts::{Acts, Told};
-use crate::array::{Array, Number, fresh, room, view, view_of_flags};
-use crate::error::{Raised, refused};
-use crate::guarded::{Entered, Guarded};
-use crate::held::{Held, Table};
-use crate::pace::paced;
+use crate::any_batch::{AnyBatch, DynBatch};
+use crate::array::{Array, Number, allocate, room, view, view_of_flags};
+use crate::checked_mutex::{CheckedGuard, CheckedMutex};
+use crate::error::{Raised, value_error};
+use crate::policy::{Policy, PolicyRequest};
 use crate::tensors::Tensors;
+use crate::time_slices::run_in_slices;
 
-/// What environments did over a horizon: memory that is taken once and filled again and again.
+/// Memory of a rollout, allocated once and reused.
 #[pyclass(frozen, module = "libration._native")]
 pub(crate) struct Memory {
-    kept: Guarded<Kept>,
+    tensors: CheckedMutex<AnyTensors>,
 }
 
 /// Tensors of either float type.
-pub(crate) enum Kept {
+pub(crate) enum AnyTensors {
     F32(Box<dyn Tensors<f32>>),
     F64(Box<dyn Tensors<f64>>),
 }
 
-/// Does something with the tensors, whichever they are.
+/// Evaluates an expression for the tensors of either float type.
 macro_rules! with_tensors {
-    ($kept:expr, $tensors:ident => $work:expr) => {
-        match $kept {
-            Kept::F32($tensors) => $work,
-            Kept::F64($tensors) => $work,
+    ($any:expr, $tensors:ident => $work:expr) => {
+        match $any {
+            AnyTensors::F32($tensors) => $work,
+            AnyTensors::F64($tensors) => $work,
         }
     };
 }
@@ -39,36 +39,38 @@ macro_rules! with_tensors {
 const FIRST: usize = 1 << 16;
 
 impl Memory {
-    /// Room for what these environments do over a horizon.
-    pub(crate) fn new(held: &Held, plan: Plan) -> PyResult<Self> {
-        let kept = match held {
-            Held::F32(table) => Kept::F32(table.tensors(plan).map_err(Raised::raised)?),
-            Held::F64(table) => Kept::F64(table.tensors(plan).map_err(Raised::raised)?),
+    /// Allocates a rollout of a batch.
+    pub(crate) fn new(batch: &AnyBatch, plan: Plan) -> PyResult<Self> {
+        let tensors = match batch {
+            AnyBatch::F32(table) => AnyTensors::F32(table.tensors(plan).map_err(Raised::raised)?),
+            AnyBatch::F64(table) => AnyTensors::F64(table.tensors(plan).map_err(Raised::raised)?),
         };
-        Ok(Memory { kept: Guarded::new(kept) })
+        Ok(Memory { tensors: CheckedMutex::new(tensors) })
     }
 
-    /// Its tensors.
-    pub(crate) fn kept(&self, py: Python<'_>) -> PyResult<Entered<'_, Kept>> {
-        self.kept.enter(py)
+    /// Returns the tensors.
+    pub(crate) fn tensors(&self, py: Python<'_>) -> PyResult<CheckedGuard<'_, AnyTensors>> {
+        self.tensors.lock(py)
     }
 
     /// Fills all of it. Gives which environments ended with the last step that was taken, and why it was the last.
     pub(crate) fn fill(
         &self,
         py: Python<'_>,
-        held: &mut Held,
-        policy: &Told<'_>,
+        batch: &mut AnyBatch,
+        policy: &PolicyRequest<'_>,
         substeps: usize,
     ) -> PyResult<(Vec<u8>, PyResult<()>)> {
-        match (held, &mut *self.kept(py)?) {
-            (Held::F32(table), Kept::F32(tensors)) => {
-                Ok(filled(py, &mut **table, &Acts::new(policy)?, &mut **tensors, substeps))
+        match (batch, &mut *self.tensors(py)?) {
+            (AnyBatch::F32(table), AnyTensors::F32(tensors)) => {
+                Ok(filled(py, &mut **table, &Policy::new(policy)?, &mut **tensors, substeps))
             }
-            (Held::F64(table), Kept::F64(tensors)) => {
-                Ok(filled(py, &mut **table, &Acts::new(policy)?, &mut **tensors, substeps))
+            (AnyBatch::F64(table), AnyTensors::F64(tensors)) => {
+                Ok(filled(py, &mut **table, &Policy::new(policy)?, &mut **tensors, substeps))
             }
-            _ => Err(refused("the rollout is of another dtype than the environments".to_owned())),
+            _ => {
+                Err(value_error("the rollout is of another dtype than the environments".to_owned()))
+            }
         }
     }
 }
@@ -76,15 +78,15 @@ impl Memory {
 /// Fills tensors piece by piece. Gives which environments ended with the last step that was taken, and why it was the last.
 fn filled<T: Number>(
     py: Python<'_>,
-    table: &mut dyn Table<T>,
-    policy: &Acts<T>,
+    table: &mut dyn DynBatch<T>,
+    policy: &Policy<T>,
     tensors: &mut dyn Tensors<T>,
     substeps: usize,
 ) -> (Vec<u8>, PyResult<()>) {
     let Plan { horizon, environments, .. } = tensors.plan();
     let first = FIRST / environments.saturating_mul(substeps).max(1);
     let mut taken = 0;
-    let outcome = paced(py, horizon as u64, first as u64, |piece| {
+    let outcome = run_in_slices(py, horizon as u64, first as u64, |piece| {
         let rows = piece.start as usize..piece.end as usize;
         py.detach(|| table.fill(policy, tensors, rows)).map_err(Raised::raised)?;
         taken = piece.end as usize;
@@ -98,7 +100,7 @@ fn filled<T: Number>(
 
 #[pymethods]
 impl Memory {
-    /// All tensors that there are, by name, without a copy.
+    /// Returns all tensors by name, without a copy.
     fn _arrays<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         fn arrays<'py, T: Number>(
             owner: &Bound<'py, Memory>,
@@ -122,10 +124,10 @@ impl Memory {
             }
             Ok(all)
         }
-        with_tensors!(&*slf.get().kept(slf.py())?, tensors => arrays(slf, &**tensors))
+        with_tensors!(&*slf.get().tensors(slf.py())?, tensors => arrays(slf, &**tensors))
     }
 
-    /// Columns of episodes that ended, by step and environment.
+    /// Returns the columns of ended episodes, by step and environment.
     fn _ends<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         fn ends<'py, T: Number>(
             py: Python<'py>,
@@ -133,7 +135,7 @@ impl Memory {
         ) -> PyResult<Bound<'py, PyDict>> {
             let ended = tensors.ends();
             let seen: Bound<'py, Array<T, 2>> =
-                fresh(py, [ended.steps.len(), tensors.observations()])?;
+                allocate(py, [ended.steps.len(), tensors.observations()])?;
             room(&seen).copy_from_slice(&ended.seen);
             let all = PyDict::new(py);
             all.set_item("steps", PyArray1::from_vec(py, ended.steps))?;
@@ -144,18 +146,18 @@ impl Memory {
             all.set_item("final_observations", seen)?;
             Ok(all)
         }
-        with_tensors!(&*self.kept(py)?, tensors => ends(py, &**tensors))
+        with_tensors!(&*self.tensors(py)?, tensors => ends(py, &**tensors))
     }
 
-    /// Whether each step is a transition, `(horizon, num_envs)`: not where an environment stood still or began anew.
+    /// Returns whether each step is a transition, `(horizon, num_envs)`; false for a reset or an environment that waits for one.
     fn _transitions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (plan, all) =
-            with_tensors!(&*self.kept(py)?, tensors => (tensors.plan(), tensors.transitions()));
+            with_tensors!(&*self.tensors(py)?, tensors => (tensors.plan(), tensors.transitions()));
         let all = PyArray1::from_vec(py, all).reshape([plan.horizon, plan.environments])?;
         Ok(all.into_any())
     }
 
-    /// Advantages and returns, `(horizon, num_envs)` each, from the values that were written into the tensor `values`.
+    /// Returns advantages and returns, `(horizon, num_envs)` each, from the tensor `values`.
     fn _estimates<'py>(
         &self,
         py: Python<'py>,
@@ -177,13 +179,14 @@ impl Memory {
             py.detach(|| tensors.estimate(&mut found, discounts, &next, &last))
                 .map_err(Raised::raised)?;
             let array = |numbers: &[T]| -> PyResult<_> {
-                let array: Bound<'py, Array<T, 2>> = fresh(py, [plan.horizon, plan.environments])?;
+                let array: Bound<'py, Array<T, 2>> =
+                    allocate(py, [plan.horizon, plan.environments])?;
                 room(&array).copy_from_slice(numbers);
                 Ok(array.into_any())
             };
             Ok([array(found.advantage())?, array(found.returns())?])
         }
         let discounts = Discounts { rewards: gamma, errors: lambda_ };
-        with_tensors!(&*self.kept(py)?, tensors => estimates(py, &**tensors, discounts, [next, last]))
+        with_tensors!(&*self.tensors(py)?, tensors => estimates(py, &**tensors, discounts, [next, last]))
     }
 }

@@ -1,13 +1,13 @@
-//! What environments are to be, as `libration` hands it over.
+//! Settings of environments from Python.
 
 use libration::ensemble::Execution;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Delays};
-use libration_env::environments::{Lone, Noise, Recipe, Task};
+use libration_env::environments::{EnvironmentSettings, Noise, SingleDofSystem, Task};
 use pyo3::prelude::*;
 
-use crate::asked::{SystemTold, law, method, system};
-use crate::error::{Raised, refused, unknown};
+use crate::error::{Raised, unknown, value_error};
+use crate::request::{SystemRequest, law, method, system};
 
 /// All keys of the dictionary that Python makes of what it was given, in units of the engine.
 #[derive(FromPyObject)]
@@ -22,7 +22,7 @@ pub(crate) struct Settings {
     substeps: u32,
     limit: Option<u32>,
     saturation: f64,
-    system: SystemTold,
+    system: SystemRequest,
     task: (String, Vec<f64>),
     start: [[f64; 2]; 2],
     observation_delay: [u32; 2],
@@ -33,7 +33,7 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
-    /// Whether numbers are short.
+    /// Whether the float type is `f32`.
     pub(crate) fn single(&self) -> PyResult<bool> {
         match self.dtype.as_str() {
             "float32" => Ok(true),
@@ -56,14 +56,14 @@ impl Settings {
         execution.map_err(|error| libration::rl::EnvironmentError::from(error).raised())
     }
 
-    pub(crate) fn recipe(&self) -> PyResult<Recipe> {
+    pub(crate) fn recipe(&self) -> PyResult<EnvironmentSettings> {
         let method = method(&self.integrator)?;
         let (system, actuation) = system(&self.system)?;
-        let system = Lone::new(system).ok_or_else(|| {
+        let system = SingleDofSystem::new(system).ok_or_else(|| {
             let name = &self.system.0;
-            refused(format!("system is {name}, but it must have a single degree of freedom"))
+            value_error(format!("system is {name}, but it must have a single degree of freedom"))
         })?;
-        Ok(Recipe {
+        Ok(EnvironmentSettings {
             system,
             actuation,
             method,

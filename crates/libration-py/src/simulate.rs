@@ -1,21 +1,21 @@
-//! Trajectories and analyses, as Python asks for them.
+//! The functions `simulate` and `analyze` for Python.
 
 use half::{bf16, f16};
 use libration::control::clock::Recorded;
-use libration_analyze::analyze::Criteria;
-use libration_analyze::trajectory::{Copies, Ending, FloatType, Request, Stopped};
-use libration_analyze::{analyze, trajectory};
+use libration_analyze::Criteria;
+use libration_analyze::trajectory;
+use libration_analyze::trajectory::{Divergence, EnsembleOptions, FloatType, Outcome, Request};
 use libration_data::Values;
 use libration_settings::limits;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::asked::{Loop, Step, warn_of};
-use crate::error::{Raised, keywords, refused, unknown};
-use crate::work::work;
+use crate::background::run_in_background;
+use crate::error::{Raised, keywords, unknown, value_error};
+use crate::request::{Loop, Step, warn_of};
 
-/// What is asked of a trajectory besides its step and its loop.
+/// Options of the rows of a trajectory.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Rows {
@@ -29,10 +29,10 @@ pub(crate) struct Rows {
     time_stamps: Option<Vec<f64>>,
 }
 
-/// What is asked of an analysis.
+/// Options of an analysis.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Questions {
+pub(crate) struct AnalysisOptions {
     steps: i64,
     max_drift: Option<f64>,
     max_amplitude: Option<f64>,
@@ -52,9 +52,10 @@ pub(crate) fn _simulate<'py>(
     let float = FloatType::from_name(&rows.float)
         .ok_or_else(|| unknown("float", &rows.float, FloatType::ALL.map(FloatType::name)))?;
     let record = rows.time_stamps.map(|stamps| {
-        Recorded::steps_in(&stamps, dt).map_err(|error| refused(format!("time_stamps: {error}")))
+        Recorded::steps_in(&stamps, dt)
+            .map_err(|error| value_error(format!("time_stamps: {error}")))
     });
-    let copies = rows.count.map(|count| Copies {
+    let ensemble = rows.count.map(|count| EnsembleOptions {
         count,
         spread: rows.spread,
         threads: rows.threads,
@@ -66,11 +67,11 @@ pub(crate) fn _simulate<'py>(
         stepping: step.stepping()?,
         float,
         dt,
-        steps: limits::trajectory_steps("steps", rows.steps.into()).map_err(refused)?,
+        steps: limits::trajectory_steps("steps", rows.steps.into()).map_err(value_error)?,
         q: setting.q,
         v: setting.v,
         every: rows.every,
-        copies,
+        ensemble,
         timing: looped.timing()?,
         record: record.transpose()?,
         seed: rows.seed,
@@ -78,14 +79,15 @@ pub(crate) fn _simulate<'py>(
     if let Some(method) = request.stepping.method() {
         warn_of(py, request.system, method)?;
     }
-    let done = work(py, |stop| trajectory::simulate_until(&request, stop), |_| Ok(()))?;
-    let trajectory::Trajectory { table, ending } = done.map_err(Raised::raised)?;
+    let done =
+        run_in_background(py, |stop| trajectory::simulate_until(&request, stop), |_| Ok(()))?;
+    let trajectory::Trajectory { table, outcome } = done.map_err(Raised::raised)?;
     let (columns, units) = (PyDict::new(py), PyDict::new(py));
     for column in table.into_columns() {
         units.set_item(&*column.name, &*column.unit)?;
         columns.set_item(&*column.name, array(py, column.values)?)?;
     }
-    Ok((columns, units, ended(py, &ending)?))
+    Ok((columns, units, ended(py, &outcome)?))
 }
 
 /// Numbers as an array, which is the memory that they are in where NumPy has the type.
@@ -111,24 +113,24 @@ pub(crate) fn array<'py>(py: Python<'py>, values: Values<'static>) -> PyResult<B
     })
 }
 
-fn ended<'py>(py: Python<'py>, ending: &Ending) -> PyResult<Bound<'py, PyDict>> {
-    let told = PyDict::new(py);
-    match ending {
-        Ending::Whole => {}
-        Ending::Stopped(Stopped { step, t, reason }) => {
-            told.set_item("step", step)?;
-            told.set_item("t", t)?;
-            told.set_item("reason", keywords(reason))?;
+fn ended<'py>(py: Python<'py>, outcome: &Outcome) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    match outcome {
+        Outcome::Complete => {}
+        Outcome::Diverged(Divergence { step, t, reason }) => {
+            dict.set_item("step", step)?;
+            dict.set_item("t", t)?;
+            dict.set_item("reason", keywords(reason))?;
         }
-        Ending::NotFinite { count, first, reason } => {
-            told.set_item("count", count)?;
-            told.set_item("first", first)?;
+        Outcome::NotFinite { count, first, reason } => {
+            dict.set_item("count", count)?;
+            dict.set_item("first", first)?;
             if let Some(reason) = reason {
-                told.set_item("reason", keywords(reason))?;
+                dict.set_item("reason", keywords(reason))?;
             }
         }
     }
-    Ok(told)
+    Ok(dict)
 }
 
 /// Analyses one step. Gives JSON.
@@ -137,15 +139,15 @@ pub(crate) fn _analyze(
     py: Python<'_>,
     step: Step,
     looped: Loop,
-    questions: Questions,
+    options: AnalysisOptions,
 ) -> PyResult<String> {
     let setting = step.setting()?;
-    let Questions { steps, max_drift, max_amplitude, max_error } = questions;
+    let AnalysisOptions { steps, max_drift, max_amplitude, max_error } = options;
     let criteria =
         [("max_drift", max_drift), ("max_amplitude", max_amplitude), ("max_error", max_error)];
     for (name, value) in criteria {
         if let Some(value) = value {
-            crate::asked::within(name, &[value], &limits::CRITERION)?;
+            crate::request::within(name, &[value], &limits::CRITERION)?;
         }
     }
     let steps = match setting.system.is_linear() {
@@ -153,18 +155,19 @@ pub(crate) fn _analyze(
         // What cannot be forecast is simulated.
         false => limits::steps("steps", steps.into()),
     };
-    let request = analyze::Request {
+    let request = libration_analyze::Request {
         system: setting.system,
         actuation: setting.actuation,
         stepping: step.stepping()?,
         dt: step.dt()?,
         q: setting.q,
         v: setting.v,
-        steps: steps.map_err(refused)?,
+        steps: steps.map_err(value_error)?,
         criteria: Criteria { max_drift, max_amplitude, max_error },
         timing: looped.timing()?,
     };
-    let done = work(py, |stop| analyze::analyze_until(&request, stop), |_| Ok(()))?;
+    let done =
+        run_in_background(py, |stop| libration_analyze::analyze_until(&request, stop), |_| Ok(()))?;
     let analysis = done.map_err(Raised::raised)?;
-    serde_json::to_string(&analysis).map_err(|error| refused(error.to_string()))
+    serde_json::to_string(&analysis).map_err(|error| value_error(error.to_string()))
 }

@@ -1,23 +1,24 @@
-//! A step: arrays in, arrays out.
+//! A step of environments with NumPy arrays.
 
 use std::iter::repeat_with;
 
 use libration::rl::{Autoreset, StepBuffers};
-use libration_env::environments::Recipe;
+use libration_env::environments::EnvironmentSettings;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 
+use crate::any_batch::{DynBatch, Ends};
 use crate::array::{
-    Array, Kept, Number, again, are_finite, borrowed, bytes_of, fresh, lies_in, room,
+    Array, Number, ReusedArray, allocate, are_finite, bytes_of, contiguous_actions, lies_in,
+    reuse_or_allocate, room,
 };
-use crate::error::{Raised, refused};
-use crate::held::{Ends, Table};
-use crate::layer::{Batch, raise};
+use crate::batch::{Batch, raise};
+use crate::error::{Raised, value_error};
 
-/// What there is to know about environments besides themselves.
-pub(crate) struct Books {
+/// Episode state and arrays of environments.
+pub(crate) struct EpisodeStates {
     pub(crate) len: usize,
     autoreset: Autoreset,
     /// Whether nothing has begun yet.
@@ -25,7 +26,7 @@ pub(crate) struct Books {
     /// Of environments that wait for their reset, not 0.
     pub(crate) standing: Vec<u8>,
     /// Rows of arrays, whose turn it is, and whether they are written again whoever has them.
-    rows: Vec<[Option<Kept>; 4]>,
+    rows: Vec<[Option<ReusedArray>; 4]>,
     turn: usize,
     shared: bool,
     /// Steps of the integrator for an action.
@@ -50,10 +51,10 @@ const IN_HAND: usize = 2;
 /// More steps than this are worth giving up the interpreter's lock, which takes as long as some hundred of them.
 const WORTH_A_LOCK: usize = 512;
 
-impl Books {
-    pub(crate) fn new(recipe: &Recipe, len: usize, buffers: usize) -> Self {
+impl EpisodeStates {
+    pub(crate) fn new(recipe: &EnvironmentSettings, len: usize, buffers: usize) -> Self {
         let rows = if buffers > 0 { buffers } else { IN_HAND };
-        Books {
+        EpisodeStates {
             len,
             autoreset: recipe.autoreset,
             untouched: true,
@@ -108,10 +109,10 @@ impl Books {
         let (len, shared) = (self.len, self.shared);
         let [seen, reward, terminated, truncated] = &mut self.rows[self.turn];
         let row = Row {
-            seen: again(py, seen, [len, observations], shared)?,
-            reward: again(py, reward, [len], shared)?,
-            terminated: again(py, terminated, [len], shared)?,
-            truncated: again(py, truncated, [len], shared)?,
+            seen: reuse_or_allocate(py, seen, [len, observations], shared)?,
+            reward: reuse_or_allocate(py, reward, [len], shared)?,
+            terminated: reuse_or_allocate(py, terminated, [len], shared)?,
+            truncated: reuse_or_allocate(py, truncated, [len], shared)?,
         };
         self.turn = (self.turn + 1) % self.rows.len();
         Ok(row)
@@ -119,28 +120,28 @@ impl Books {
 }
 
 /// What is seen now, in the array of a step.
-pub(crate) fn look<'py, T: Number>(
+pub(crate) fn observe<'py, T: Number>(
     py: Python<'py>,
-    table: &mut dyn Table<T>,
-    books: &mut Books,
+    table: &mut dyn DynBatch<T>,
+    episodes: &mut EpisodeStates,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let Row { seen, .. } = books.row::<T>(py, table.observations())?;
+    let Row { seen, .. } = episodes.row::<T>(py, table.observations())?;
     shown(py, table, seen)
 }
 
 /// What is seen now, in an array that no step is written into.
-pub(crate) fn look_apart<'py, T: Number>(
+pub(crate) fn observe_copy<'py, T: Number>(
     py: Python<'py>,
-    table: &mut dyn Table<T>,
-    books: &Books,
+    table: &mut dyn DynBatch<T>,
+    episodes: &EpisodeStates,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let seen = fresh(py, [books.len, table.observations()])?;
+    let seen = allocate(py, [episodes.len, table.observations()])?;
     shown(py, table, seen)
 }
 
 fn shown<'py, T: Number>(
     py: Python<'py>,
-    table: &mut dyn Table<T>,
+    table: &mut dyn DynBatch<T>,
     seen: Bound<'py, Array<T, 2>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let to = room(&seen);
@@ -151,28 +152,31 @@ fn shown<'py, T: Number>(
 /// Takes a step, and says what ended with it.
 pub(crate) fn take<'py, T: Number>(
     py: Python<'py>,
-    table: &mut dyn Table<T>,
-    books: &mut Books,
+    table: &mut dyn DynBatch<T>,
+    episodes: &mut EpisodeStates,
     given: &Bound<'py, PyAny>,
 ) -> PyResult<Step<'py>> {
     let made;
-    let actions: &[T] = match borrowed(given, books.len) {
+    let actions: &[T] = match contiguous_actions(given, episodes.len) {
         Some(actions) => actions,
         None => {
-            made = helper(py, &ACTIONS, "actions")?.call1((given, books.len, T::NUMPY))?;
+            made = helper(py, &ACTIONS, "actions")?.call1((given, episodes.len, T::NUMPY))?;
             let error = || PyTypeError::new_err("actions are no array");
-            borrowed(&made, books.len).ok_or_else(error)?
+            contiguous_actions(&made, episodes.len).ok_or_else(error)?
         }
     };
     if !are_finite(actions) {
         let n = actions.iter().position(|action| !action.is_finite()).unwrap_or(0);
-        return Err(refused(format!("actions[{n}] is {:?}, but it must be finite", actions[n])));
+        return Err(value_error(format!(
+            "actions[{n}] is {:?}, but it must be finite",
+            actions[n]
+        )));
     }
-    let row = books.row::<T>(py, table.observations())?;
+    let row = episodes.row::<T>(py, table.observations())?;
     let Row { seen, reward, terminated, truncated } = &row;
     // Who uses arrays again may ask for what an array of earlier steps says, and that is written now.
     let copied;
-    let actions = if books.shared
+    let actions = if episodes.shared
         && (lies_in(actions, seen)
             || lies_in(actions, reward)
             || lies_in(actions, terminated)
@@ -187,36 +191,36 @@ pub(crate) fn take<'py, T: Number>(
     let (terminated, truncated) = (bytes_of(terminated), bytes_of(truncated));
     let to = StepBuffers { seen, reward, terminated: &mut *terminated, truncated: &mut *truncated };
     let act = || table.act(actions, to);
-    let ends = if books.len.saturating_mul(books.substeps) > WORTH_A_LOCK {
+    let ends = if episodes.len.saturating_mul(episodes.substeps) > WORTH_A_LOCK {
         py.detach(act)
     } else {
         act()
     };
     let ends = ends.map_err(Raised::raised)?;
-    if books.autoreset == Autoreset::Disabled && !ends.environments.is_empty() {
+    if episodes.autoreset == Autoreset::Disabled && !ends.environments.is_empty() {
         let ended: Vec<u8> =
             terminated.iter().zip(&*truncated).map(|(over, cut)| over | cut).collect();
-        books.stood(&ended);
+        episodes.stood(&ended);
     }
-    let infos = told(py, &ends, books, table.observations())?;
+    let infos = step_infos(py, &ends, episodes, table.observations())?;
     let Row { seen, reward, terminated, truncated } = row;
     Ok((seen.into_any(), reward.into_any(), terminated.into_any(), truncated.into_any(), infos))
 }
 
 /// What the dictionary of a step says.
-fn told<'py, T: Number>(
+fn step_infos<'py, T: Number>(
     py: Python<'py>,
     ends: &Ends<T>,
-    books: &Books,
+    episodes: &EpisodeStates,
     observations: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let same_step = books.autoreset == Autoreset::SameStep;
+    let same_step = episodes.autoreset == Autoreset::SameStep;
     if ends.environments.is_empty() || !(same_step || ends.lost.contains(&true)) {
         return Ok(PyDict::new(py));
     }
-    let seen: Bound<'py, Array<T, 2>> = fresh(py, [ends.environments.len(), observations])?;
+    let seen: Bound<'py, Array<T, 2>> = allocate(py, [ends.environments.len(), observations])?;
     room(&seen).copy_from_slice(&ends.seen);
-    let arguments = (books.len, same_step, &ends.environments, seen, &ends.lost);
+    let arguments = (episodes.len, same_step, &ends.environments, seen, &ends.lost);
     Ok(helper(py, &INFOS, "infos")?.call1(arguments)?.cast_into()?)
 }
 

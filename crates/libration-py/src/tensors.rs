@@ -1,4 +1,4 @@
-//! Rollouts of which nothing is known but how many numbers they hold.
+//! Type-erased rollouts.
 
 use std::any::Any;
 
@@ -43,7 +43,7 @@ pub(crate) struct Ended<T> {
     pub(crate) lengths: Vec<u64>,
     pub(crate) returns: Vec<f64>,
     pub(crate) lost: Vec<bool>,
-    /// What was seen last: `[k, i]`.
+    /// Final observations, `[k, i]`.
     pub(crate) seen: Vec<T>,
 }
 

@@ -1,4 +1,4 @@
-//! Many trajectories, held between calls.
+//! The Python class `Trajectories`: an ensemble of a catalogue system.
 
 use libration::ensemble::{AnyEnsemble, BatchFloat, EnsembleError, Execution};
 use libration::rl::EnvironmentError;
@@ -6,37 +6,37 @@ use libration::{AnySystem, Method};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::array::{Array, Number, fresh, room};
-use crate::asked::{SystemTold, method, system, warn_of};
-use crate::error::{Raised, refused};
-use crate::guarded::Guarded;
-use crate::pace::paced;
+use crate::array::{Array, Number, allocate, room};
+use crate::checked_mutex::CheckedMutex;
+use crate::error::{Raised, value_error};
+use crate::request::{self, SystemRequest, method, warn_of};
+use crate::time_slices::run_in_slices;
 
-/// Trajectories of a system of the catalogue, stepped together.
+/// Trajectories of a catalogue system, which the engine steps together.
 #[pyclass(frozen, module = "libration._native")]
 pub(crate) struct Trajectories {
-    held: Guarded<(Held, Threads)>,
+    ensemble: CheckedMutex<(AnyTrajectories, Threads)>,
     method: Method,
     dt: f64,
 }
 
-/// How many there are, and the process that has them.
+/// Number of threads, and the process that owns them.
 struct Threads {
     count: usize,
     process: u32,
 }
 
-enum Held {
+enum AnyTrajectories {
     F32(Box<dyn AnyEnsemble<f32>>),
     F64(Box<dyn AnyEnsemble<f64>>),
 }
 
-/// Does something with the trajectories, whichever they are.
+/// Evaluates an expression for trajectories of either float type.
 macro_rules! with_all {
-    ($held:expr, $all:ident => $work:expr) => {
-        match $held {
-            Held::F32($all) => $work,
-            Held::F64($all) => $work,
+    ($trajectories:expr, $all:ident => $work:expr) => {
+        match $trajectories {
+            AnyTrajectories::F32($all) => $work,
+            AnyTrajectories::F64($all) => $work,
         }
     };
 }
@@ -46,10 +46,10 @@ const FIRST: u64 = 1 << 18;
 
 #[pymethods]
 impl Trajectories {
-    /// Trajectories from `q` and `v`, `(len, dimension)` each.
+    /// Creates trajectories from `q` and `v`, `(len, dimension)` each.
     #[new]
     fn new(
-        told: SystemTold,
+        system: SystemRequest,
         integrator: &str,
         dt: f64,
         q: PyReadonlyArray2<'_, f64>,
@@ -57,7 +57,7 @@ impl Trajectories {
         single: bool,
         threads: usize,
     ) -> PyResult<Self> {
-        let (system, _) = system(&told)?;
+        let (system, _) = request::system(&system)?;
         let method = method(integrator)?;
         warn_of(q.py(), system, method)?;
         let (q, v) = (q.as_array(), v.as_array());
@@ -65,42 +65,44 @@ impl Trajectories {
         let of = |n: usize, i: usize| if i < dimension { q[[n, i]] } else { v[[n, i - dimension]] };
         let execution = Execution::serial().threads(threads).map_err(Raised::raised)?;
         let threads = Threads { count: execution.thread_count(), process: std::process::id() };
-        let held = if single {
-            Held::F32(made(system, [len, dimension], execution, &|n, i| of(n, i) as f32)?)
+        let ensemble = if single {
+            AnyTrajectories::F32(made(system, [len, dimension], execution, &|n, i| {
+                of(n, i) as f32
+            })?)
         } else {
-            Held::F64(made(system, [len, dimension], execution, &of)?)
+            AnyTrajectories::F64(made(system, [len, dimension], execution, &of)?)
         };
-        let held = Guarded::new((held, threads));
-        Ok(Trajectories { held, method, dt })
+        let ensemble = CheckedMutex::new((ensemble, threads));
+        Ok(Trajectories { ensemble, method, dt })
     }
 
-    /// Takes so many steps with all of them.
+    /// Takes `steps` steps.
     fn _advance(&self, py: Python<'_>, steps: u64) -> PyResult<()> {
-        let mut inside = self.held.enter(py)?;
-        let (held, threads) = &mut *inside;
+        let mut inside = self.ensemble.lock(py)?;
+        let (ensemble, threads) = &mut *inside;
         // A process that was forked has none of them.
         if threads.count > 1 && threads.process != std::process::id() {
             let execution = Execution::serial().threads(threads.count).map_err(Raised::raised)?;
-            with_all!(held, all => all.execute(execution));
+            with_all!(ensemble, all => all.execute(execution));
             threads.process = std::process::id();
         }
-        let many = with_all!(held, all => (all.len() * all.dimension()).max(1) as u64);
-        paced(py, steps, FIRST / many, |piece| {
+        let many = with_all!(ensemble, all => (all.len() * all.dimension()).max(1) as u64);
+        run_in_slices(py, steps, FIRST / many, |piece| {
             let steps = piece.end - piece.start;
-            py.detach(|| match held {
-                Held::F32(all) => all.advance(self.method, self.dt as f32, steps),
-                Held::F64(all) => all.advance(self.method, self.dt, steps),
+            py.detach(|| match ensemble {
+                AnyTrajectories::F32(all) => all.advance(self.method, self.dt as f32, steps),
+                AnyTrajectories::F64(all) => all.advance(self.method, self.dt, steps),
             });
             Ok(())
         })
     }
 
-    /// Steps taken.
+    /// Returns the number of steps taken.
     fn _step(&self, py: Python<'_>) -> PyResult<u64> {
-        Ok(with_all!(&self.held.enter(py)?.0, all => all.step()))
+        Ok(with_all!(&self.ensemble.lock(py)?.0, all => all.step()))
     }
 
-    /// Positions and velocities, `(len, dimension)` each.
+    /// Returns positions and velocities, `(len, dimension)` each.
     fn _states<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyAny>; 2]> {
         fn states<'a, 'py, T: Number>(
             py: Python<'py>,
@@ -108,7 +110,7 @@ impl Trajectories {
         ) -> PyResult<[Bound<'py, PyAny>; 2]> {
             let [len, dimension] = [all.len(), all.dimension()];
             let array = |plane: &dyn Fn(usize) -> Option<&'a [T]>| -> PyResult<_> {
-                let array: Bound<'py, Array<T, 2>> = fresh(py, [len, dimension])?;
+                let array: Bound<'py, Array<T, 2>> = allocate(py, [len, dimension])?;
                 let to = room(&array);
                 for i in 0..dimension {
                     for (n, x) in plane(i).unwrap_or_default().iter().enumerate() {
@@ -119,19 +121,19 @@ impl Trajectories {
             };
             Ok([array(&|i| all.q(i))?, array(&|i| all.v(i))?])
         }
-        let inside = self.held.enter(py)?;
+        let inside = self.ensemble.lock(py)?;
         with_all!(&inside.0, all => states(py, &**all))
     }
 
-    /// The energy of each per unit mass, `(len,)`, in the unit of a velocity squared.
+    /// Returns the energies per unit mass, `(len,)`, in the unit of a velocity squared.
     fn _energies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         fn energies<T: Number>(all: &dyn AnyEnsemble<T>) -> Vec<T> {
             let none = || T::from_f64(f64::NAN);
             (0..all.len()).map(|n| all.energy(n).unwrap_or_else(none)).collect()
         }
-        Ok(match &self.held.enter(py)?.0 {
-            Held::F32(all) => PyArray1::from_vec(py, energies(&**all)).into_any(),
-            Held::F64(all) => PyArray1::from_vec(py, energies(&**all)).into_any(),
+        Ok(match &self.ensemble.lock(py)?.0 {
+            AnyTrajectories::F32(all) => PyArray1::from_vec(py, energies(&**all)).into_any(),
+            AnyTrajectories::F64(all) => PyArray1::from_vec(py, energies(&**all)).into_any(),
         })
     }
 }
@@ -143,7 +145,9 @@ fn made<T: BatchFloat>(
     start: &(dyn Fn(usize, usize) -> T + Sync),
 ) -> PyResult<Box<dyn AnyEnsemble<T>>> {
     if len == 0 {
-        return Err(refused("q has no rows, but there must be a trajectory at least".to_owned()));
+        return Err(value_error(
+            "q has no rows, but there must be a trajectory at least".to_owned(),
+        ));
     }
     let made: Result<_, EnsembleError> = T::ensemble(system, dimension, len, execution, start);
     made.map_err(|error| EnvironmentError::from(error).raised())

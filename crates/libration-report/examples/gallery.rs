@@ -1,4 +1,4 @@
-//! One page with every kind of mark: `cargo run -p libration-lab --example gallery -- gallery.html`.
+//! A page with every kind of mark: `cargo run -p libration-report --example gallery -- gallery.html`.
 //! With a second argument, each figure also becomes a file in that folder.
 
 use std::error::Error;

@@ -1,4 +1,4 @@
-//! Records of findings, figures, pages, and the HTML report. Nothing here knows physics.
+//! Records of findings, figures, pages and the HTML report, without any physics.
 
 pub mod figure;
 pub mod notation;

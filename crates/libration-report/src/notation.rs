@@ -1,6 +1,6 @@
-//! Numbers as a reader wants them: `1.39·10⁻¹¹`, `0.0158`, `707 107`.
+//! Notation of numbers for readers: `1.39·10⁻¹¹`, `0.0158`, `707 107`.
 
-/// `x` with `digits` significant digits; very large and very small numbers as powers of ten.
+/// Formats `x` with `digits` significant digits, and very large or small numbers with powers of ten.
 pub fn number(x: f64, digits: usize) -> String {
     if !x.is_finite() {
         return match x {
@@ -27,7 +27,7 @@ pub fn number(x: f64, digits: usize) -> String {
     }
 }
 
-/// A count, with thin spaces between groups of three digits.
+/// Formats a count with thin spaces between groups of three digits.
 pub fn count(n: u64) -> String {
     group(&n.to_string())
 }
@@ -38,7 +38,7 @@ pub fn plural(n: usize, thing: &str) -> String {
     format!("{} {thing}{ending}", count(n as u64))
 }
 
-/// Words in a row: `a`, `a and b`, `a, b and c`.
+/// Joins words: `a`, `a and b`, `a, b and c`.
 pub fn list(words: &[&str]) -> String {
     match words {
         [] => String::new(),
@@ -47,14 +47,14 @@ pub fn list(words: &[&str]) -> String {
     }
 }
 
-/// A power of ten given by its logarithm: `4.84·10⁴¹³⁹²`.
+/// Formats a power of ten from its logarithm: `4.84·10⁴¹³⁹²`.
 pub fn power_of_ten(logarithm: f64, digits: usize) -> String {
     let exponent = logarithm.floor();
     let mantissa = trimmed(&format!("{:.*}", digits.max(1) - 1, 10_f64.powf(logarithm - exponent)));
     format!("{mantissa}·10{}", superscript(exponent as i32))
 }
 
-/// A time in the unit that suits it.
+/// Formats a time in ns, µs, ms or s.
 pub fn seconds(t: f64, digits: usize) -> String {
     match t.abs() {
         t_abs if t_abs < 1e-6 && t_abs > 0.0 => format!("{} ns", number(t * 1e9, digits)),
@@ -64,7 +64,7 @@ pub fn seconds(t: f64, digits: usize) -> String {
     }
 }
 
-/// `n` in raised digits.
+/// Formats `n` in superscript digits.
 pub fn superscript(n: i32) -> String {
     let raised = |c| match c {
         '-' => '⁻',
@@ -76,7 +76,7 @@ pub fn superscript(n: i32) -> String {
     n.to_string().chars().map(raised).collect()
 }
 
-/// Without trailing zeros behind the point, and with a true minus sign.
+/// Removes trailing zeros after the point and sets a minus sign.
 fn trimmed(digits: &str) -> String {
     let plain = match digits.contains('.') {
         true => digits.trim_end_matches('0').trim_end_matches('.'),
@@ -85,7 +85,7 @@ fn trimmed(digits: &str) -> String {
     plain.replace('-', "−")
 }
 
-/// Thin spaces between groups of three digits of a whole part of five digits or more.
+/// Inserts thin spaces between groups of three digits if the integer part has five or more.
 fn group(number: &str) -> String {
     let (sign, rest) = number.strip_prefix('-').map_or(("", number), |rest| ("-", rest));
     let (whole, fraction) = rest.split_once('.').map_or((rest, None), |(w, f)| (w, Some(f)));

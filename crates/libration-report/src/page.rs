@@ -1,44 +1,44 @@
-//! A chapter of the report, as a description that holds no layout.
+//! Descriptions of chapters of the report, without layout.
 
 use crate::figure::Figure;
 use crate::record::{Record, Table};
 
-/// What a study shows of its record, from top to bottom.
+/// The content of a chapter, from top to bottom.
 #[derive(Clone, Debug, Default)]
 pub struct Page {
     /// The chapter's heading.
     pub title: String,
-    /// One sentence for the head of the report; empty if the chapter has none.
+    /// A sentence for the head of the report; empty for none.
     pub headline: String,
-    /// The answer in one or two sentences; it stands first.
+    /// The answer in one or two sentences, shown first.
     pub answer: String,
-    /// The figures and numbers at the head of the report, most telling first.
+    /// The key numbers for the head of the report, most important first.
     pub highlights: Vec<Highlight>,
     /// The evidence.
     pub blocks: Vec<Block>,
 }
 
-/// One number that a reader should take away.
+/// A key number.
 #[derive(Clone, Debug)]
 pub struct Highlight {
     /// The number with its unit.
     pub value: String,
-    /// What it is.
+    /// The description of the number.
     pub text: String,
 }
 
-/// One piece of a chapter.
+/// A block of a chapter.
 #[derive(Clone, Debug)]
 pub enum Block {
     /// A smaller heading.
     Heading(String),
-    /// A paragraph. `code` stands between backticks.
+    /// A paragraph, with `code` between backticks.
     Paragraph(String),
-    /// A remark at the margin of the argument.
+    /// A remark.
     Note(String),
     /// A figure.
     Figure(Box<Figure>),
-    /// A table, with as many significant digits as mean something.
+    /// A table with a number of significant digits.
     Table {
         /// The numbers.
         table: Table,
@@ -63,10 +63,9 @@ impl Page {
         self.blocks.push(Block::Note(text.into()));
     }
 
-    /// Adds a figure, if there is anything to be seen in it: a configuration may leave out all that
-    /// a figure is about, and a caption under nothing misleads.
+    /// Adds a figure if it shows data. A configuration may exclude all data of a figure.
     pub fn figure(&mut self, figure: Figure) {
-        if figure.shows_anything() {
+        if figure.has_data() {
             self.blocks.push(Block::Figure(Box::new(figure)));
         }
     }
@@ -85,12 +84,12 @@ impl Page {
     }
 }
 
-/// A finished chapter: what was found, and how it is shown.
+/// A finished chapter: a record and its page.
 #[derive(Clone, Debug)]
 pub struct Chapter {
     /// The numbers.
     pub record: Record,
-    /// How they are shown.
+    /// The page that shows them.
     pub page: Page,
 }
 

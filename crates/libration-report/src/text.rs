@@ -1,8 +1,8 @@
-//! Words with superscripts and subscripts, for pages and figures.
+//! Text with superscripts and subscripts, for pages and figures.
 
 use std::fmt::Write;
 
-/// Where a run of characters stands.
+/// The vertical position of a run of characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Lift {
     Base,
@@ -14,7 +14,7 @@ const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺ⁿ";
 const RAISED_PLAIN: &str = "0123456789−+n";
 const LOWERED: &str = "₀₁₂₃₄₅₆₇₈₉₋₊ₙ";
 
-/// Splits text into runs: `10^{-3}`, `10^-3`, `10⁻³`, `E_{max}`, `E_0` and `E₀` all work.
+/// Splits text into runs. It supports `10^{-3}`, `10^-3`, `10⁻³`, `E_{max}`, `E_0` and `E₀`.
 pub(crate) fn runs(text: &str) -> Vec<(Lift, String)> {
     let mut runs: Vec<(Lift, String)> = Vec::new();
     let mut push = |lift: Lift, c: char| match runs.last_mut() {
@@ -49,14 +49,14 @@ pub(crate) fn runs(text: &str) -> Vec<(Lift, String)> {
     runs
 }
 
-/// Whether an underscore between these belongs to a name, such as `x86_64`: only a single letter
-/// has an index without braces.
+/// Whether an underscore between these characters belongs to a name, such as `x86_64`: only a single
+/// letter has an index without braces.
 fn inside_a_word(before: &[char], after: Option<&char>) -> bool {
     let word = before.iter().rev().take_while(|c| c.is_alphanumeric()).count();
     word > 1 && after != Some(&'{')
 }
 
-/// The script after `^` or `_`, and where the text goes on.
+/// The script after `^` or `_`, and the index of the text after it.
 fn script(chars: &[char], at: usize) -> (&[char], usize) {
     if chars.get(at) == Some(&'{')
         && let Some(length) = chars[at..].iter().position(|&c| c == '}')
@@ -74,7 +74,7 @@ fn script(chars: &[char], at: usize) -> (&[char], usize) {
     (&chars[at..end], end)
 }
 
-/// Escapes text for XML and HTML, in content and in attributes. Characters that XML forbids go.
+/// Escapes text for XML and HTML, in content and in attributes, and removes characters that XML forbids.
 pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -91,7 +91,7 @@ pub fn escape(text: &str) -> String {
     out
 }
 
-/// The content of an SVG text element of a font size.
+/// Renders text as the content of an SVG text element with a font size.
 pub(crate) fn svg(text: &str, size: f64) -> String {
     let (mut out, mut height) = (String::new(), 0.0);
     for (lift, run) in runs(text) {
@@ -112,7 +112,7 @@ pub(crate) fn svg(text: &str, size: f64) -> String {
     out
 }
 
-/// The same text as HTML.
+/// Renders text as HTML.
 pub(crate) fn html(text: &str) -> String {
     let wrap = |(lift, run): (Lift, String)| {
         let run = escape(&run);
@@ -125,8 +125,8 @@ pub(crate) fn html(text: &str) -> String {
     runs(text).into_iter().map(wrap).collect()
 }
 
-/// The same text as HTML, with what stands between backticks as code.
-pub fn prose(text: &str) -> String {
+/// Renders text as HTML, with code between backticks.
+pub fn render_html(text: &str) -> String {
     let pieces = text.split('`').enumerate();
     pieces
         .map(|(i, piece)| match i % 2 {
@@ -136,7 +136,7 @@ pub fn prose(text: &str) -> String {
         .collect()
 }
 
-/// The same text without any markup, as for the title of a window: `10⁻³`, `E₀`.
+/// Renders text without markup, as for the title of a window: `10⁻³`, `E₀`.
 pub(crate) fn plain(text: &str) -> String {
     let lift = |table: &str, c: char| {
         let place = RAISED_PLAIN.chars().position(|p| p == c);
@@ -206,7 +206,7 @@ mod tests {
     #[test]
     fn no_prose_becomes_markup() {
         assert_eq!(
-            prose("a < b & 10⁻¹² in `<i>^2`"),
+            render_html("a < b & 10⁻¹² in `<i>^2`"),
             "a &lt; b &amp; 10<sup>−12</sup> in <code>&lt;i&gt;^2</code>"
         );
     }

@@ -1,13 +1,13 @@
-//! From what is wrong to the characters that say it.
+//! TOML documents that locate errors in their text.
 
 use std::ops::Range;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
-use super::{Fault, SettingsError, names};
+use super::{Fault, SettingsError, suggestions};
 
-/// A TOML file whose syntax is right, and which knows where everything stands.
+/// A parsed TOML file with the position of each value.
 pub struct Document<'a> {
     file: &'a str,
     text: &'a str,
@@ -15,7 +15,7 @@ pub struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// Reads `text`.
+    /// Parses `text`; `file` is the name in messages.
     pub fn parse(text: &'a str, file: &'a str) -> Result<Self, SettingsError> {
         match DeTable::parse(text) {
             Ok(table) => Ok(Document { file, text, table }),
@@ -29,13 +29,13 @@ impl<'a> Document<'a> {
     /// Checks that each key at the root is one of `known`.
     ///
     /// # Errors
-    /// The first that is not.
+    /// The first unknown key.
     pub fn check_keys(&self, known: &[&str]) -> Result<(), SettingsError> {
         let unknown = |key: &&Spanned<_>| !known.contains(&AsRef::<str>::as_ref(key.get_ref()));
         match self.table.get_ref().keys().filter(unknown).min_by_key(|key| key.span().start) {
             None => Ok(()),
             Some(key) => {
-                let help = names::suggest("keys", key.get_ref(), known.iter().copied());
+                let help = suggestions::suggest("keys", key.get_ref(), known.iter().copied());
                 let message = format!("unknown key `{}`", key.get_ref());
                 Err(SettingsError::new(self.file, self.text, key.span(), message, Some(help)))
             }
@@ -55,7 +55,7 @@ impl<'a> Document<'a> {
         let (message, help) = match unknown_key(message) {
             Some((key, known)) => {
                 let known = known.iter().copied();
-                (format!("unknown key `{key}`"), Some(names::suggest("keys", key, known)))
+                (format!("unknown key `{key}`"), Some(suggestions::suggest("keys", key, known)))
             }
             None => match key_around(self.table.get_ref(), &span) {
                 Some(key) => (format!("`{key}`: {message}"), None),
@@ -65,8 +65,8 @@ impl<'a> Document<'a> {
         SettingsError::new(self.file, self.text, span, message, help)
     }
 
-    /// Where the value of `key` stands; if it is a default, then the first value that stands in
-    /// its table, or else the table.
+    /// The position of the value of `key`. For a default it is the position of the first value of its
+    /// table, or of the table.
     fn find(&self, key: &str, index: Option<usize>) -> Range<usize> {
         let mut table = self.table.get_ref();
         let mut span = 0..0;
@@ -90,15 +90,15 @@ impl<'a> Document<'a> {
     }
 }
 
-/// The unknown key, and those that there are, in the words of serde.
+/// The unknown key and the known keys in an error message of serde.
 fn unknown_key(message: &str) -> Option<(&str, Vec<&str>)> {
     let words = message.strip_prefix("unknown field `")?;
     let (key, rest) = words.split_once("`, expected ")?;
-    // Every second piece stands between backquotes.
+    // Every second piece is between backquotes.
     Some((key, rest.split('`').skip(1).step_by(2).collect()))
 }
 
-/// The dotted key of the innermost value that `span` lies in.
+/// The dotted key of the innermost value around `span`.
 fn key_around(table: &DeTable<'_>, span: &Range<usize>) -> Option<String> {
     let around = |value: &Spanned<DeValue<'_>>| {
         value.span().start <= span.start && span.end <= value.span().end

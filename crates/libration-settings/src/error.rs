@@ -1,4 +1,4 @@
-//! What is wrong with a settings file, and where.
+//! Errors of settings files.
 
 use std::fmt;
 use std::ops::Range;
@@ -27,7 +27,7 @@ impl SettingsError {
         message: impl Into<String>,
         help: Option<String>,
     ) -> Self {
-        // Whatever a parser says, the span must be one that can be shown.
+        // A parser may report a span that splits a character.
         let start = source.floor_char_boundary(span.start);
         let end = source.ceil_char_boundary(span.end.max(start));
         SettingsError {
@@ -47,7 +47,7 @@ impl SettingsError {
         let skipped = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
         let span = start - skipped..start - skipped + char::REPLACEMENT_CHARACTER.len_utf8();
         let byte = bytes.get(start).copied().unwrap_or_default();
-        let message = format!("the file is not UTF-8: byte 0x{byte:02X} cannot stand here");
+        let message = format!("the file is not UTF-8: byte 0x{byte:02X} is invalid");
         let help = match bytes {
             [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] => "this looks like UTF-16; save the file as UTF-8",
             _ => "save the file as UTF-8",
@@ -55,12 +55,12 @@ impl SettingsError {
         SettingsError::new(file, &text[skipped..], span, message, Some(help.into()))
     }
 
-    /// What is wrong.
+    /// The error in words.
     pub fn message(&self) -> &str {
         &self.message
     }
 
-    /// What could be done about it.
+    /// A suggestion, if there is one.
     pub fn help(&self) -> Option<&str> {
         self.help.as_deref()
     }
@@ -70,7 +70,7 @@ impl SettingsError {
         &self.source
     }
 
-    /// Where in [`source_text`](Self::source_text) the error is, in bytes.
+    /// The bytes of [`source_text`](Self::source_text) with the error.
     pub fn span(&self) -> Range<usize> {
         self.span.clone()
     }

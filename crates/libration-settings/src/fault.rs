@@ -1,17 +1,17 @@
-//! A value that is not allowed.
+//! Invalid values.
 
 use std::fmt;
 
-/// A value of a settings file that is not allowed.
+/// An invalid value of a settings file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// Where it stands, as in `drift.dt`.
+    /// The dotted key, as in `drift.dt`.
     pub key: &'static str,
-    /// Which element of the array, counted from zero.
+    /// The index of the element, if the value is an array.
     pub index: Option<usize>,
-    /// What is wrong, and what is allowed.
+    /// The error and the allowed values.
     pub message: String,
-    /// What could be done about it.
+    /// A suggestion.
     pub help: Option<String>,
 }
 
@@ -25,17 +25,17 @@ impl fmt::Display for Fault {
 impl std::error::Error for Fault {}
 
 impl Fault {
-    /// The value of `key` is not allowed.
+    /// The fault `message` of the value of `key`.
     pub fn new(key: &'static str, message: impl Into<String>) -> Self {
         Fault { key, index: None, message: message.into(), help: None }
     }
 
-    /// Element `index` of the array `key` is not allowed.
+    /// The fault `message` of element `index` of the array `key`.
     pub fn at(key: &'static str, index: usize, message: impl Into<String>) -> Self {
         Fault { key, index: Some(index), message: message.into(), help: None }
     }
 
-    /// The same with what could be done about it.
+    /// The same fault with a suggestion.
     #[must_use]
     pub fn help(mut self, help: String) -> Self {
         self.help = Some(help);

@@ -1,21 +1,23 @@
 //! Settings in files and flags.
 //!
-//! Each limit is defined once, for files and flags alike, and an error points at the characters of the file that are wrong.
+//! Each limit is defined once, for files and flags. An error names the position in the file.
 
-pub mod check;
 mod document;
 mod error;
 mod fault;
 mod file;
+pub mod initial_value_problem;
+mod instruction_set;
 pub mod limits;
-pub mod names;
-pub mod path;
-pub mod setting;
+pub mod optional_path;
+pub mod suggestions;
 pub mod units;
+pub mod validation;
 mod value;
 
 pub use document::Document;
 pub use error::SettingsError;
 pub use fault::Fault;
 pub use file::{read, read_text};
+pub use instruction_set::instruction_set_name;
 pub use value::{Count, Number, numbers};

@@ -1,4 +1,4 @@
-//! What the numbers of a configuration may be; the command line's flags obey the same limits.
+//! Allowed values of numbers in settings files and flags.
 
 use std::ops::RangeInclusive;
 
@@ -8,46 +8,45 @@ use libration::catalog::Allowed;
 pub const TIME_STEP: Allowed = Allowed::Positive;
 /// Masses in kg and stiffnesses in N/m.
 pub const SPRING: Allowed = Allowed::Positive;
-/// Coordinates of a start.
+/// Initial coordinates.
 pub const COORDINATE: Allowed = Allowed::Finite;
-/// Errors that are tolerated.
+/// Error tolerances.
 pub const TOLERANCE: Allowed = Allowed::Positive;
 /// Numbers of steps.
 pub const STEPS: RangeInclusive<u64> = 1..=1_000_000_000;
 
-/// Numbers of steps of a trajectory: up to 2⁵³ an `f64` tells each from the next, and time is a step times `dt`.
+/// Numbers of steps of a trajectory. Up to 2⁵³ an `f64` represents each step, so that time is a step times `dt`.
 pub const TRAJECTORY_STEPS: RangeInclusive<u64> = 1..=1 << 53;
 
-/// Numbers of steps over which a linear system is forecast, in closed form.
+/// Numbers of steps of the closed-form forecast of a linear system.
 pub const FORECAST_STEPS: RangeInclusive<u64> = 1..=1_000_000_000_000_000;
 
-/// Sizes of a system's parameters that are not 0, and of times in s, of which `advise` is asked: what is derived from them must
-/// stay far within the range of floats.
+/// Sizes of nonzero parameters and of times in s that theory accepts: derived numbers must stay within the range of floats.
 pub const SIZE: RangeInclusive<f64> = 1e-60..=1e60;
-/// The angle, in rad, by which a motion may turn in an exact step that is analysed: of a larger one 1024 bits lose too many digits.
+/// Largest angle of a motion in an analysed exact step, in rad. Beyond it 1024 bits lose too many digits.
 pub const MOST_TURN: f64 = 1e9;
 
-/// The first of `parameters` whose size theory cannot be asked about.
-pub fn beyond_theory(
+/// The first of `parameters` whose size is outside [`SIZE`].
+pub fn find_out_of_range(
     parameters: impl IntoIterator<Item = (&'static str, f64)>,
 ) -> Option<(&'static str, f64)> {
     parameters.into_iter().find(|(_, value)| *value != 0.0 && !SIZE.contains(&value.abs()))
 }
 
-/// Bytes of the longest file of settings: a hundred times the longest default, for lists of time steps.
+/// Largest size of a settings file in bytes: a hundred times the longest default.
 pub const SETTINGS_BYTES: u64 = 1 << 20;
 
-/// Gains and weights of a loop: their products must stay far within the range of floats.
+/// Largest gain or weight of a loop: products must stay within the range of floats.
 pub const MOST_GAIN: f64 = 1e50;
-/// Relative rms of step times and clock rates: nobody's clock is worse.
+/// Largest relative rms of step times and clock rates.
 pub const MOST_RMS: f64 = 100.0;
-/// What a criterion for the largest time step tolerates. Roots are known to 96 digits, which is why it ends somewhere.
+/// Tolerances of the criteria for the largest time step. Roots are known to 96 digits.
 pub const CRITERION: RangeInclusive<f64> = 1e-60..=1e60;
 
-/// `value`, if `allowed` admits it as `what`.
+/// Checks that `allowed` admits `value`; `what` is its name.
 ///
 /// # Errors
-/// A sentence that names the value and what is allowed.
+/// The value and the allowed values, in words.
 pub fn within(allowed: Allowed, what: &str, value: f64) -> Result<f64, String> {
     if allowed.admits(value) {
         Ok(value)
@@ -56,10 +55,10 @@ pub fn within(allowed: Allowed, what: &str, value: f64) -> Result<f64, String> {
     }
 }
 
-/// `steps`, if it is an allowed number of steps for `what`.
+/// Checks a number of steps; `what` is its name.
 ///
 /// # Errors
-/// A sentence that names the value and what is allowed.
+/// The value and the allowed values, in words.
 pub fn steps(what: &str, steps: i128) -> Result<u64, String> {
     match u64::try_from(steps) {
         Ok(allowed) if STEPS.contains(&allowed) => Ok(allowed),
@@ -67,10 +66,10 @@ pub fn steps(what: &str, steps: i128) -> Result<u64, String> {
     }
 }
 
-/// `steps`, if a linear system can be forecast over as many for `what`.
+/// Checks a number of steps of a forecast; `what` is its name.
 ///
 /// # Errors
-/// A sentence that names the value and what is allowed.
+/// The value and the allowed values, in words.
 pub fn forecast_steps(what: &str, steps: i128) -> Result<u64, String> {
     match u64::try_from(steps) {
         Ok(allowed) if FORECAST_STEPS.contains(&allowed) => Ok(allowed),
@@ -78,10 +77,10 @@ pub fn forecast_steps(what: &str, steps: i128) -> Result<u64, String> {
     }
 }
 
-/// `steps`, if it is an allowed number of steps of a trajectory for `what`.
+/// Checks a number of steps of a trajectory; `what` is its name.
 ///
 /// # Errors
-/// A sentence that names the value and what is allowed.
+/// The value and the allowed values, in words.
 pub fn trajectory_steps(what: &str, steps: i128) -> Result<u64, String> {
     match u64::try_from(steps) {
         Ok(allowed) if TRAJECTORY_STEPS.contains(&allowed) => Ok(allowed),
@@ -101,5 +100,5 @@ pub fn forecast_steps_allowed() -> String {
 
 /// The allowed numbers of steps, in words.
 pub fn steps_allowed() -> String {
-    format!("{} to {}, which takes minutes already", STEPS.start(), STEPS.end())
+    format!("{} to {}", STEPS.start(), STEPS.end())
 }

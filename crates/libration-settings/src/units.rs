@@ -6,21 +6,21 @@ use libration::catalog::Actuation;
 /// Units of a system's coordinates, of its commands, and of the gains of controllers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Units {
-    /// Of time.
+    /// Unit of time.
     pub time: &'static str,
-    /// Of positions.
+    /// Unit of positions.
     pub position: &'static str,
-    /// Of velocities.
+    /// Unit of velocities.
     pub velocity: &'static str,
-    /// Of the energy per unit mass.
+    /// Unit of the energy per unit mass.
     pub energy: &'static str,
-    /// Of commands.
+    /// Unit of commands.
     pub command: &'static str,
-    /// Of the gains of position, velocity and the integral of the position.
+    /// Units of the gains of position, velocity and the integral of the position.
     pub gains: [&'static str; 3],
 }
 
-/// The units of `system` where commands are `actuation`.
+/// The units of `system` with commands of the kind `actuation`.
 pub fn of(system: AnySystem, actuation: Actuation) -> Units {
     let (position, velocity, energy, acceleration) = match system {
         AnySystem::Oscillator(_)
@@ -40,7 +40,7 @@ pub fn of(system: AnySystem, actuation: Actuation) -> Units {
     Units { time, position, velocity, energy, command, gains }
 }
 
-/// Units of `step`, `t`, the positions, the velocities and the energy per mass.
+/// The units of the columns `step`, `t`, positions, velocities and energy per mass.
 pub fn of_columns(system: AnySystem, dimension: usize) -> Vec<&'static str> {
     let Units { time, position, velocity, energy, .. } = of(system, Actuation::Acceleration);
     let mut units = vec!["1", time];

@@ -1,16 +1,16 @@
-//! The numbers of a configuration file, as people write them.
+//! Numbers in settings files.
 
 use std::fmt;
 
 use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// A number; `10` does for `10.0`.
+/// A number; `10` is read as `10.0`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct Number(pub f64);
 
-/// A whole number; `1e6` does for `1_000_000`.
+/// A whole number; `1e6` is read as `1_000_000`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct Count(pub i128);

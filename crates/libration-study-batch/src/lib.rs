@@ -1,14 +1,14 @@
-//! Studies of batches: speed, memory, rollouts, storage, and the same bits everywhere.
+//! Studies of batches: speed, memory, rollouts, storage and reproducibility.
 
 pub mod bench;
-mod changed;
-mod desk;
+mod bit_comparison;
+mod dataset_error;
 mod determinism;
-mod failure;
+mod measurement;
 mod memory;
-mod regime;
-mod reported;
 mod rollout;
+mod scaling_regime;
+mod source_rollouts;
 mod storage;
 mod throughput;
 

@@ -4,8 +4,8 @@ mod asynchrony;
 mod hierarchy;
 mod jitter;
 mod latency;
+mod loop_ensemble;
 mod sample;
-mod swarm;
 
 pub use asynchrony::Asynchrony;
 pub use hierarchy::Hierarchy;

@@ -1,9 +1,9 @@
-//! Means over many trajectories, and how well they are known.
+//! Means over many trajectories, with standard errors.
 
 /// Standard errors within which a number among many must lie.
 pub(super) const ERRORS: f64 = 4.0;
 
-/// Why there are so many.
+/// Reason for this number of standard errors.
 pub(super) const WHY_ERRORS: &str =
     "four standard errors, since there are many such numbers: one of 16 000 lies beyond by chance";
 

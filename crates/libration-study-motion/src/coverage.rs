@@ -1,4 +1,4 @@
-//! How well a discrete orbit covers the curve on which it lies.
+//! Coverage of an invariant curve by a discrete orbit.
 
 use libration::analysis::{EnergyBand, Linearisation, forecast_drift};
 use libration::system::Oscillator;

@@ -1,4 +1,4 @@
-//! Whether orbits grow, by simulation.
+//! Growth of orbits, by simulation.
 
 use libration::simulation::{Sample, SimulationError, Simulator};
 use libration::system::Oscillator;

@@ -6,12 +6,13 @@ mod drift;
 mod efficiency;
 mod error;
 mod growth;
-mod ink;
+mod method_color;
 mod nonlinear;
 mod precision;
 mod rounding;
 mod spectrum;
 mod stability;
+mod stable_step;
 mod subject;
 
 pub use convergence::{Convergence, ConvergenceSettings};

@@ -1,4 +1,4 @@
-//! What the bounds on rounding have in common.
+//! Shared parts of the bounds on rounding.
 
 use libration::analysis::{Linearisation, UpdateMatrix};
 use libration::integrator::{SUZUKI4, YOSHIDA4};

@@ -1,33 +1,33 @@
-//! The configuration: every number that studies take from outside.
+//! The configuration of the laboratory.
 
 use libration::Method;
 use libration::ensemble::{EnsembleError, InstructionSet};
-use libration_settings::{Fault, names};
+use libration_settings::{Fault, suggestions};
 use serde::ser::{Error, SerializeMap};
 use serde::{Serialize, Serializer};
 
 use crate::{AllSettings, Effort, Settings, Spring, Start};
 
-/// A configuration: what all studies share, and the [`Settings`] of each.
+/// A configuration: shared settings, and the [`Settings`] of each study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// The studies to run, by name; all of them if empty.
+    /// Names of the studies to run; all studies if empty.
     pub studies: Vec<String>,
-    /// How much work a run may take.
+    /// Effort of a run.
     pub effort: Effort,
-    /// The instruction set of ensembles; the widest that there is if none.
+    /// Instruction set of the kernels; the widest of the processor if none.
     pub simd: Option<InstructionSet>,
-    /// The integrators under study, each once.
+    /// Integrators, each once.
     pub integrators: Vec<Method>,
-    /// The oscillator that is simulated.
+    /// The simulated oscillator.
     pub oscillator: Spring,
-    /// Where trajectories start.
+    /// Initial state of trajectories.
     pub start: Start,
     /// The settings of each study; [`get`](Config::get) and [`with`](Config::with) read and replace them.
     pub settings: AllSettings,
 }
 
-/// The setting of the source report (§4.3, §9.1), with no settings of studies but their defaults.
+/// The settings of the source report (§4.3, §9.1), with default settings of the studies.
 impl Default for Config {
     fn default() -> Self {
         Config {
@@ -48,24 +48,24 @@ impl Default for Config {
 }
 
 impl Config {
-    /// The default configuration with another effort and instruction set.
+    /// Returns the default configuration with an effort and an instruction set.
     pub fn new(effort: Effort, simd: Option<InstructionSet>) -> Self {
         Config { effort, simd, ..Config::default() }
     }
 
-    /// The settings of a study; their defaults if this configuration has none.
+    /// Returns the settings of a study, or their defaults.
     pub fn get<S: Settings>(&self) -> S {
         self.settings.get()
     }
 
-    /// The same configuration with other settings of a study.
+    /// Returns the configuration with other settings of a study.
     #[must_use]
     pub fn with<S: Settings>(mut self, settings: S) -> Self {
         self.settings.put(Box::new(settings));
         self
     }
 
-    /// Checks every value, with the names of the studies that there are; the order of lists is free.
+    /// Checks every value against the names of all studies. Lists may have any order.
     pub(crate) fn check(&self, known: &[&str]) -> Result<(), Fault> {
         self.check_names(known)?;
         self.oscillator.check()?;
@@ -81,7 +81,11 @@ impl Config {
         for (i, name) in self.studies.iter().enumerate() {
             if !known.contains(&name.as_str()) {
                 let fault = Fault::at("studies", i, format!("unknown study `{name}`"));
-                return Err(fault.help(names::suggest("studies", name, known.iter().copied())));
+                return Err(fault.help(suggestions::suggest(
+                    "studies",
+                    name,
+                    known.iter().copied(),
+                )));
             }
             if self.studies[..i].contains(name) {
                 return Err(Fault::at("studies", i, format!("the study `{name}` is named twice")));
@@ -99,7 +103,7 @@ impl Config {
         Ok(())
     }
 
-    /// The same configuration with its lists rising.
+    /// Returns the configuration with its lists sorted.
     pub(crate) fn sorted(mut self) -> Self {
         self.settings.sort();
         self
@@ -111,7 +115,7 @@ impl Serialize for Config {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("studies", &self.studies)?;
         map.serialize_entry("effort", &self.effort)?;
-        map.serialize_entry("simd", names::instruction_set(self.simd))?;
+        map.serialize_entry("simd", libration_settings::instruction_set_name(self.simd))?;
         let integrators: Vec<_> = self.integrators.iter().map(|method| method.name()).collect();
         map.serialize_entry("integrators", &integrators)?;
         map.serialize_entry("oscillator", &self.oscillator)?;

@@ -1,8 +1,8 @@
-//! How much work a run may take.
+//! The effort of a run.
 
 use serde::{Deserialize, Serialize};
 
-/// How much work a run may take.
+/// The effort of a run.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub enum Effort {
     /// A few seconds: coarse sweeps, the same findings.
     Quick,
-    /// The report as it is meant to be.
+    /// The effort of the published report.
     #[default]
     Standard,
     /// Finer sweeps and longer horizons.
@@ -18,10 +18,10 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// All of them.
+    /// All efforts.
     pub const ALL: [Effort; 3] = [Effort::Quick, Effort::Standard, Effort::Thorough];
 
-    /// Name on the command line.
+    /// Returns the name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Effort::Quick => "quick",
@@ -30,12 +30,12 @@ impl Effort {
         }
     }
 
-    /// The effort of that name, if there is one.
+    /// Returns the effort with a name, if it exists.
     pub fn from_name(name: &str) -> Option<Effort> {
         Effort::ALL.into_iter().find(|effort| effort.name() == name)
     }
 
-    /// The one of three values that belongs to this effort.
+    /// Returns the value of this effort.
     pub fn choose<T>(self, quick: T, standard: T, thorough: T) -> T {
         match self {
             Effort::Quick => quick,

@@ -1,18 +1,18 @@
-//! What all studies share, as a TOML file.
+//! The settings that all studies share, as a TOML file.
 
 use libration::Method;
 use libration::ensemble::InstructionSet;
-use libration_settings::check::named;
-use libration_settings::{Fault, Number, names};
+use libration_settings::validation::parse_names;
+use libration_settings::{Fault, Number, suggestions};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{AllSettings, Config, Effort, Spring, Start, schema};
 
-/// The default of what all studies share, with comments.
+/// The default settings that all studies share, with comments.
 pub(crate) const TEXT: &str = include_str!("default.toml");
 
-/// The keys, in the order of the file.
+/// The keys in the order of the file.
 pub(crate) const KEYS: [&str; 6] =
     ["studies", "effort", "simd", "integrators", "oscillator", "start"];
 
@@ -21,20 +21,20 @@ pub(crate) const KEYS: [&str; 6] =
 #[serde(default)]
 #[schemars(title = "Libration configuration")]
 pub(crate) struct File {
-    /// The studies to run, in this order; all of them if empty.
+    /// Studies to run, in this order (empty: all).
     studies: Vec<String>,
-    /// How much work a run may take.
+    /// Effort of a run.
     #[schemars(schema_with = "schema::effort")]
     effort: String,
-    /// The instruction set of ensembles.
+    /// Instruction set of the kernels, which changes no result.
     #[schemars(schema_with = "schema::simd")]
     simd: String,
-    /// The integrators under study, each once.
+    /// Integrators, each once, at least one.
     #[schemars(schema_with = "schema::integrators")]
     integrators: Vec<String>,
-    /// The harmonic oscillator that is simulated.
+    /// The simulated harmonic oscillator.
     oscillator: SpringTable,
-    /// The state at time zero; `q` and `v` must not both be 0.
+    /// Initial state; `q` and `v` must not both be 0.
     start: StartTable,
 }
 
@@ -50,7 +50,7 @@ struct SpringTable {
     k: Number,
 }
 
-/// A state.
+/// Initial position and velocity.
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
 struct StartTable {
@@ -68,7 +68,7 @@ impl Default for File {
         File {
             studies,
             effort: effort.name().into(),
-            simd: names::instruction_set(simd).into(),
+            simd: libration_settings::instruction_set_name(simd).into(),
             integrators: integrators.into_iter().map(|method| method.name().into()).collect(),
             oscillator: SpringTable::default(),
             start: StartTable::default(),
@@ -96,12 +96,12 @@ impl TryFrom<File> for Config {
     fn try_from(file: File) -> Result<Self, Fault> {
         let effort = Effort::from_name(&file.effort).ok_or_else(|| {
             let fault = Fault::new("effort", format!("unknown effort `{}`", file.effort));
-            fault.help(names::suggest("efforts", &file.effort, Effort::ALL.map(Effort::name)))
+            fault.help(suggestions::suggest("efforts", &file.effort, Effort::ALL.map(Effort::name)))
         })?;
         let called = ("integrator", "integrators");
         let known = Method::ALL.map(Method::name);
         let integrators =
-            named("integrators", called, &file.integrators, &known, Method::from_name)?;
+            parse_names("integrators", called, &file.integrators, &known, Method::from_name)?;
         Ok(Config {
             studies: file.studies,
             effort,
@@ -116,9 +116,9 @@ impl TryFrom<File> for Config {
 
 fn simd(name: &str) -> Result<Option<InstructionSet>, Fault> {
     let all = || InstructionSet::ALL.map(Some).into_iter().chain([None]);
-    all().find(|set| names::instruction_set(*set) == name).ok_or_else(|| {
+    all().find(|set| libration_settings::instruction_set_name(*set) == name).ok_or_else(|| {
         let fault = Fault::new("simd", format!("unknown instruction set `{name}`"));
-        let known: Vec<_> = all().map(names::instruction_set).collect();
-        fault.help(names::suggest("instruction sets", name, known))
+        let known: Vec<_> = all().map(libration_settings::instruction_set_name).collect();
+        fault.help(suggestions::suggest("instruction sets", name, known))
     })
 }

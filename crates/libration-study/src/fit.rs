@@ -1,11 +1,11 @@
-//! A power law through points, and how far it can be trusted.
+//! Fit of a power law, with its uncertainty.
 
 use libration_report::record::Tolerance;
 
-/// Points through which a power law is laid: the last ones, where the step is smallest.
+/// Number of points of a fit: the last ones, with the smallest steps.
 const WINDOW: usize = 5;
 
-/// An exponent is settled if the slopes between successive points differ by less.
+/// Largest difference of slopes between successive points of a settled exponent.
 const SETTLED: f64 = 0.01;
 
 /// The widest tolerance on an exponent: half a fifth of the distance between two orders.
@@ -18,13 +18,13 @@ pub struct Fit {
     pub exponent: f64,
     /// Its standard error.
     pub standard_error: f64,
-    /// What the next term of the expansion may shift it by.
+    /// Bound of the shift by the next term of the expansion.
     pub bend: f64,
 }
 
 impl Fit {
-    /// The law through the last points, where `x` is halved from each to the next; none if there
-    /// are too few or one is not positive and finite.
+    /// Fits the last points, for an `x` that is halved from each to the next. Returns none if there are
+    /// too few points or one is not positive and finite.
     pub fn new(x: &[f64], y: &[f64]) -> Option<Self> {
         let skipped = x.len().min(y.len()).checked_sub(WINDOW)?;
         let points: Vec<(f64, f64)> =
@@ -48,7 +48,7 @@ impl Fit {
         })
     }
 
-    /// Whether the exponent of the last points has settled, so that no smaller step is needed.
+    /// Whether the exponent of the last points is settled, so that no smaller step is required.
     pub fn is_settled(x: &[f64], y: &[f64]) -> bool {
         // The slopes at both ends of the window: a chance agreement of two is not enough.
         let slope = |i: usize| (y[i + 1] / y[i]).ln() / (x[i + 1] / x[i]).ln();
@@ -56,7 +56,7 @@ impl Fit {
         n >= WINDOW && (n - WINDOW..n - 2).all(|i| (slope(i + 1) - slope(i)).abs() < SETTLED)
     }
 
-    /// How far the exponent may lie from the limit of small steps.
+    /// Returns the largest distance of the exponent from the limit of small steps.
     ///
     /// With `e = C·hᵖ(1 + c·hᵏ + …)` the slope between `2h` and `h` differs from `p` by a multiple
     /// of `hᵏ`, `k ≥ 1`: the last slope is off by at most its difference from the one before.
@@ -64,7 +64,7 @@ impl Fit {
         (2.0 * self.standard_error + self.bend).min(WIDEST)
     }
 
-    /// The same as a tolerance with its reason.
+    /// Returns the uncertainty as a tolerance with its reason.
     pub fn tolerance(&self) -> Tolerance {
         Tolerance::absolute(
             self.uncertainty(),

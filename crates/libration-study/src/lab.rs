@@ -1,4 +1,4 @@
-//! What a study may use: the configuration, the cores, and a way to report progress.
+//! The laboratory of a study: configuration, threads and progress.
 
 use std::sync::atomic::AtomicBool;
 
@@ -10,15 +10,15 @@ use crate::{Config, Effort, StudyError};
 /// The laboratory in which a study runs.
 #[derive(Clone, Copy)]
 pub struct Lab<'a> {
-    /// What is studied.
+    /// The configuration.
     pub config: &'a Config,
-    /// How much work the study may take.
+    /// Effort of the study.
     pub effort: Effort,
     work: Work<'a>,
 }
 
 impl<'a> Lab<'a> {
-    /// A laboratory that reports its progress to `progress` and stops soon after `stop` is set.
+    /// Returns a laboratory that reports to `progress`, and stops soon after `stop` is set.
     pub fn new(
         config: &'a Config,
         effort: Effort,
@@ -28,20 +28,20 @@ impl<'a> Lab<'a> {
         Lab { config, effort, work: Work::new(progress, stop).on(config.simd) }
     }
 
-    /// One thread, on the instruction set of the configuration.
+    /// Returns a serial execution with the instruction set of the configuration.
     ///
     /// # Errors
-    /// If this processor lacks it.
+    /// If this processor lacks the instruction set.
     pub fn alone(&self) -> Result<Execution, EnsembleError> {
         self.work.serial()
     }
 
-    /// Reports that the study `name` begins, the `number`-th of `of`.
+    /// Reports the start of the study `name`, the `number`-th of `of`.
     pub fn announce(&self, name: &str, number: usize, of: usize) {
         self.work.progress().study(name, number, of);
     }
 
-    /// Runs `job` on every item, in parallel, and gives the results in the order of the items.
+    /// Runs `job` on every item in parallel, and returns the results in the order of the items.
     ///
     /// # Errors
     /// The first error of a job, or [`StudyError::Interrupted`].
@@ -54,10 +54,10 @@ impl<'a> Lab<'a> {
         self.work.sweep(what, items, job)
     }
 
-    /// Does one piece of work that has all of the machine to itself.
+    /// Runs a job with the whole machine.
     ///
     /// # Errors
-    /// Those of the work, or [`StudyError::Interrupted`].
+    /// Errors of the job, or [`StudyError::Interrupted`].
     pub fn part<R>(
         &self,
         what: &str,
@@ -66,7 +66,7 @@ impl<'a> Lab<'a> {
         self.work.part(what, work)
     }
 
-    /// Fails if the run is to stop.
+    /// Fails if the run must stop.
     ///
     /// # Errors
     /// [`StudyError::Interrupted`].

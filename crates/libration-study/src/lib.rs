@@ -1,33 +1,33 @@
-//! What a study is: a question, its settings, and the record that its run leaves.
+//! The interface of a study: question, settings and record.
 //!
-//! A [`Study`] asks a question; its run leaves a [`Record`](libration_report::Record) of numbers, each a prediction beside
-//! a measurement; its chapter is rendered from the record and from nothing else.
+//! A [`Study`] has a question. Its run returns a [`Record`](libration_report::Record) of predictions and measurements, and its
+//! chapter is rendered from the record alone.
 
 mod config;
 mod effort;
 mod file;
 mod fit;
 mod lab;
+mod log_spacing;
 mod machine;
 mod registry;
-mod sampled;
 pub mod schema;
 mod settings;
-pub mod source;
+mod source_claim;
+pub mod source_report;
 mod spring;
 mod study;
 mod table;
-mod tried;
 
 pub use config::Config;
 pub use effort::Effort;
 pub use fit::Fit;
 pub use lab::Lab;
 pub use libration_work::{Interrupted, Progress, Silent, Work};
+pub use log_spacing::log_spaced_steps;
 pub use machine::{Cache, Machine};
 pub use registry::Registry;
-pub use sampled::sampled_steps;
 pub use settings::{AllSettings, Section, Settings};
+pub use source_claim::{SourceClaim, UnjudgedClaim, order};
 pub use spring::{Spring, Start};
 pub use study::{Study, StudyError};
-pub use tried::{Tried, Unjudged, order};

@@ -1,40 +1,40 @@
-//! Where a run took place.
+//! The machine of a run.
 
 use libration::ensemble::{InstructionSet, installed_memory};
 use serde::Serialize;
 
-/// The machine and the build, as far as they bear on results.
+/// The machine and the build, as far as they affect results.
 #[derive(Clone, Debug, Serialize)]
 pub struct Machine {
-    /// Processor, as it names itself.
+    /// Name of the processor.
     pub cpu: String,
-    /// Logical cores that this process may use.
+    /// Number of logical cores available to this process.
     pub cores: usize,
     /// Operating system and architecture, as in `linux x86_64`.
     pub platform: String,
     /// Version of Libration.
     pub version: &'static str,
-    /// The compiler that built it, as in `rustc 1.95.0`.
+    /// Version of the compiler, as in `rustc 1.95.0`.
     pub compiler: &'static str,
-    /// Instruction sets for which there are kernels and which the processor has.
+    /// Instruction sets of the processor with kernels.
     pub instruction_sets: Vec<&'static str>,
-    /// Caches for data of the first core, from the nearest to the last.
+    /// Data caches of the first core, in the order of their level.
     pub caches: Vec<Cache>,
-    /// Memory in bytes, if the system tells.
+    /// Memory in bytes, if known.
     pub memory: Option<u64>,
 }
 
-/// A cache for data.
+/// A data cache.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Cache {
-    /// How far from the core, counted from 1.
+    /// Level, from 1.
     pub level: u32,
-    /// Bytes that it holds.
+    /// Size in bytes.
     pub bytes: u64,
 }
 
 impl Machine {
-    /// Looks at this machine.
+    /// Detects the current machine.
     pub fn detect() -> Self {
         Machine {
             cpu: cpu_name().unwrap_or_else(|| "unknown".into()),
@@ -49,7 +49,7 @@ impl Machine {
     }
 }
 
-/// What Linux tells of the caches of the first core.
+/// Returns the data caches of the first core, on Linux.
 fn caches() -> Vec<Cache> {
     let folder = |index: u32| format!("/sys/devices/system/cpu/cpu0/cache/index{index}");
     let mut caches: Vec<Cache> = (0..8).filter_map(|index| cache(&folder(index))).collect();
@@ -57,7 +57,7 @@ fn caches() -> Vec<Cache> {
     caches
 }
 
-/// The cache that a folder of the system describes, unless it holds instructions alone.
+/// Returns the cache that a system folder describes, unless it is an instruction cache.
 fn cache(folder: &str) -> Option<Cache> {
     let read = |name: &str| std::fs::read_to_string(format!("{folder}/{name}")).ok();
     if read("type")?.trim() == "Instruction" {
@@ -77,7 +77,7 @@ fn cache(folder: &str) -> Option<Cache> {
     })
 }
 
-/// The `model name` that Linux reports.
+/// Returns the `model name` of Linux.
 fn cpu_name() -> Option<String> {
     let info = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = info.lines().find(|line| line.starts_with("model name"))?;

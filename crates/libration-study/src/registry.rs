@@ -1,4 +1,4 @@
-//! The studies that a laboratory has, and their common configuration.
+//! The studies of a laboratory and their configuration.
 
 use libration_settings::{Document, Fault, SettingsError};
 use schemars::generate::SchemaSettings;
@@ -6,52 +6,52 @@ use schemars::json_schema;
 use serde_json::{Value, json};
 
 use crate::file::{File, KEYS, TEXT};
-use crate::settings::{Misread, Section};
+use crate::settings::{Section, SettingsTableError};
 use crate::{Config, Study, schema};
 
-/// The studies that a laboratory has, in the order of its report.
+/// The studies of a laboratory, in the order of its report.
 #[derive(Clone, Copy)]
 pub struct Registry {
-    /// All of them.
+    /// All studies.
     pub studies: &'static [&'static dyn Study],
 }
 
 impl Registry {
-    /// The study of that name, if there is one.
+    /// Returns the study with a name, if it exists.
     pub fn by_name(&self, name: &str) -> Option<&'static dyn Study> {
         self.studies.iter().copied().find(|study| study.name() == name)
     }
 
-    /// The names of the studies.
+    /// Returns the names of the studies.
     pub fn names(&self) -> Vec<&'static str> {
         self.studies.iter().map(|study| study.name()).collect()
     }
 
-    /// The default configuration: the setting of the source report (§4.3, §9.1).
+    /// Returns the default configuration, which is that of the source report (§4.3, §9.1).
     pub fn config(&self) -> Config {
         let mut config = Config::default();
         self.sections().for_each(|section| config.settings.put((section.default)()));
         config
     }
 
-    /// The default configuration as a TOML file with comments, ready to edit.
+    /// Returns the default configuration as a TOML file with comments.
     pub fn text(&self) -> String {
         let tables = self.sections().map(|section| format!("\n{}", section.text));
         [TEXT.to_owned()].into_iter().chain(tables).collect()
     }
 
-    /// Checks every value of a configuration; the order of lists is free.
+    /// Checks every value of a configuration. Lists may have any order.
     ///
     /// # Errors
-    /// The first value that is not allowed.
+    /// For the first invalid value.
     pub fn check(&self, config: &Config) -> Result<(), Fault> {
         config.check(&self.names())
     }
 
-    /// Reads a configuration; keys that are not given take their defaults.
+    /// Parses a configuration. Missing keys have their defaults.
     ///
     /// # Errors
-    /// What is wrong with `text`, and where; `file_name` is only shown.
+    /// For an invalid `text`, with the position; `file_name` appears in the message only.
     pub fn parse(&self, text: &str, file_name: &str) -> Result<Config, SettingsError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let document = Document::parse(text, file_name)?;
@@ -63,8 +63,8 @@ impl Registry {
         let mut config = Config::try_from(file).map_err(|fault| document.locate(fault))?;
         for section in sections {
             let settings = (section.read)(text).map_err(|misread| match misread {
-                Misread::Shape(error) => document.explain(&error),
-                Misread::Value(fault) => document.locate(fault),
+                SettingsTableError::Shape(error) => document.explain(&error),
+                SettingsTableError::Value(fault) => document.locate(fault),
             })?;
             config.settings.put(settings);
         }
@@ -72,7 +72,7 @@ impl Registry {
         Ok(config.sorted())
     }
 
-    /// Reads a configuration from the bytes of a file.
+    /// Parses a configuration from the bytes of a file.
     ///
     /// # Errors
     /// As [`parse`](Self::parse), and if the bytes are not UTF-8.
@@ -83,7 +83,7 @@ impl Registry {
         }
     }
 
-    /// The JSON schema of a configuration file.
+    /// Returns the JSON schema of a configuration file.
     pub fn schema(&self) -> Value {
         let settings = SchemaSettings::draft2020_12().with(|s| s.inline_subschemas = true);
         let mut generator = settings.into_generator();
@@ -91,7 +91,7 @@ impl Registry {
         root.insert("additionalProperties".to_owned(), json!(false));
         let studies = json_schema!({
             "default": [],
-            "description": "The studies to run, in this order; all of them if empty.",
+            "description": "Studies to run, in this order (empty: all).",
             "type": "array",
             "uniqueItems": true,
             "items": schema::one_of(&self.names()),

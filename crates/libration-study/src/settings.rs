@@ -11,37 +11,37 @@ use serde_json::Value;
 
 use crate::table::read;
 
-/// Settings of a study, which read and check themselves.
+/// Settings of a study: conversion from a table of the configuration, and checks.
 pub trait Settings: Any + Clone + Debug + Default + PartialEq + Send + Sync {
-    /// The name of the table, which is that of the study.
+    /// Name of the table, equal to the name of the study.
     const NAME: &'static str;
 
     /// The table in the default configuration, with comments.
     const TEXT: &'static str;
 
-    /// The table as it stands in a file, before it is checked. Keys that are missing take their defaults.
+    /// The table of a file, before the checks. Missing keys have their defaults.
     type Table: DeserializeOwned + JsonSchema + Serialize;
 
-    /// These settings as a table.
+    /// Returns the settings as a table.
     fn table(&self) -> Self::Table;
 
-    /// The settings of a table.
+    /// Returns the settings of a table.
     ///
     /// # Errors
-    /// The first value that no setting can hold.
+    /// For the first value without a representation in the settings.
     fn from_table(table: Self::Table) -> Result<Self, Fault>;
 
     /// Checks every value.
     ///
     /// # Errors
-    /// The first value that is not allowed.
+    /// For the first invalid value.
     fn check(&self) -> Result<(), Fault>;
 
-    /// Sorts lists whose order means nothing.
+    /// Sorts lists whose order has no meaning.
     fn sort(&mut self) {}
 }
 
-/// Settings of any study.
+/// Type-erased settings of a study.
 pub(crate) trait AnySettings: Any + Debug + Send + Sync {
     fn name(&self) -> &'static str;
     fn boxed(&self) -> Box<dyn AnySettings>;
@@ -122,35 +122,35 @@ impl PartialEq for AllSettings {
     }
 }
 
-/// Why a table gives no settings.
-pub(crate) enum Misread {
+/// Error of the table of a study.
+pub(crate) enum SettingsTableError {
     /// A key is unknown, or a value has the wrong type.
     Shape(toml::de::Error),
     /// A value is not allowed.
     Value(Fault),
 }
 
-/// What a [`Registry`](crate::Registry) has to know of the settings of a study.
+/// Settings of a study, for a [`Registry`](crate::Registry).
 #[derive(Clone, Copy)]
 pub struct Section {
     pub(crate) name: &'static str,
     pub(crate) text: &'static str,
     pub(crate) default: fn() -> Box<dyn AnySettings>,
-    pub(crate) read: fn(&str) -> Result<Box<dyn AnySettings>, Misread>,
+    pub(crate) read: fn(&str) -> Result<Box<dyn AnySettings>, SettingsTableError>,
     pub(crate) schema: fn(&mut SchemaGenerator) -> Schema,
 }
 
 impl Section {
-    /// The section of settings of this type.
+    /// Returns the section of settings of this type.
     pub const fn of<S: Settings>() -> Self {
         Section {
             name: S::NAME,
             text: S::TEXT,
             default: || Box::new(S::default()),
             read: |text| {
-                let table = read::<S::Table>(text, S::NAME).map_err(Misread::Shape)?;
+                let table = read::<S::Table>(text, S::NAME).map_err(SettingsTableError::Shape)?;
                 let settings = table.map_or_else(|| Ok(S::default()), S::from_table);
-                Ok(Box::new(settings.map_err(Misread::Value)?))
+                Ok(Box::new(settings.map_err(SettingsTableError::Value)?))
             },
             schema: |generator| {
                 let mut schema = S::Table::json_schema(generator);

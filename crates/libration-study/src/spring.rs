@@ -1,9 +1,9 @@
-//! The oscillator of the laboratory and its start.
+//! The oscillator of the laboratory and its initial state.
 
 use libration::catalog::Allowed;
 use libration::system::Oscillator;
 use libration::{Hamiltonian, State};
-use libration_settings::check::number;
+use libration_settings::validation::check_number;
 use libration_settings::{Fault, limits};
 use serde::Serialize;
 
@@ -17,19 +17,19 @@ pub struct Spring {
 }
 
 impl Spring {
-    /// The system that moves as this spring does.
+    /// Returns the equivalent oscillator.
     pub fn system(self) -> Oscillator<f64> {
         Oscillator::from_mass_and_stiffness(self.m, self.k)
     }
 
-    /// The natural angular frequency `ω = √(k/m)`, in rad/s.
+    /// Returns the natural angular frequency `ω = √(k/m)` in rad/s.
     pub fn omega(self) -> f64 {
         self.system().omega2.sqrt()
     }
 
     pub(crate) fn check(self) -> Result<(), Fault> {
-        number("oscillator.m", limits::SPRING, self.m)?;
-        number("oscillator.k", limits::SPRING, self.k)?;
+        check_number("oscillator.m", limits::SPRING, self.m)?;
+        check_number("oscillator.k", limits::SPRING, self.k)?;
         let omega2 = self.system().omega2;
         if Allowed::Positive.admits(omega2) {
             return Ok(());
@@ -45,7 +45,7 @@ impl Spring {
     }
 }
 
-/// The state at time zero; not the origin.
+/// Initial state; not the origin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Start {
     /// Position in m.
@@ -56,10 +56,10 @@ pub struct Start {
 
 impl Start {
     pub(crate) fn check(self, spring: Spring) -> Result<(), Fault> {
-        number("start.q", limits::COORDINATE, self.q)?;
-        number("start.v", limits::COORDINATE, self.v)?;
+        check_number("start.q", limits::COORDINATE, self.q)?;
+        check_number("start.v", limits::COORDINATE, self.v)?;
         if self.q == 0.0 && self.v == 0.0 {
-            let rest = "`start.q` and `start.v` are both 0, where nothing moves; one must not be 0";
+            let rest = "`start.q` and `start.v` are both 0; expected at least one that is not 0";
             return Err(Fault::new("start.q", rest));
         }
         let energy = spring.system().energy(&State { q: [self.q], v: [self.v] });

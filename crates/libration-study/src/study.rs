@@ -1,4 +1,4 @@
-//! A study is a question.
+//! The interface of a study.
 
 use std::error;
 
@@ -11,67 +11,67 @@ use thiserror::Error;
 
 use crate::Lab;
 use crate::settings::Section;
-use crate::tried::Tried;
+use crate::source_claim::SourceClaim;
 
-/// A question, the way to its answer, and the chapter that gives it.
+/// A study: a question, a run, and the chapter of a report.
 pub trait Study: Sync {
-    /// Name on the command line, as in `drift`.
+    /// Returns the name on the command line, as `drift`.
     fn name(&self) -> &'static str;
 
-    /// The question that the study answers.
+    /// Returns the question of the study.
     fn question(&self) -> &'static str;
 
-    /// The claims of the source report that it tries.
-    fn tries(&self) -> &'static [Tried] {
+    /// Returns the claims of the source report that the study judges.
+    fn source_claims(&self) -> &'static [SourceClaim] {
         &[]
     }
 
-    /// Its table in the configuration, if it has one: `Some(Section::of::<S>())` with its [`Settings`](crate::Settings) `S`.
+    /// Returns the table of the study in the configuration, if any: `Some(Section::of::<S>())` with its [`Settings`](crate::Settings) `S`.
     fn settings(&self) -> Option<Section> {
         None
     }
 
-    /// Does the work; leaves numbers only.
+    /// Runs the study and returns its record.
     ///
     /// # Errors
-    /// If the work is interrupted, or cannot be done under this configuration.
+    /// If the run is interrupted, or impossible with this configuration.
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError>;
 
-    /// Writes the chapter that the record supports.
+    /// Renders the chapter from a record.
     ///
     /// # Errors
-    /// If the record lacks something that the chapter shows.
+    /// If the record lacks data of the chapter.
     fn render(&self, record: &Record, page: &mut Page) -> Result<(), RecordError>;
 }
 
-/// Why a study gave no record.
+/// Error of a study.
 #[derive(Debug, Error)]
 pub enum StudyError {
-    /// The user asked for the run to stop.
+    /// The user stopped the run.
     #[error("interrupted")]
     Interrupted,
-    /// A simulation could not be run.
+    /// A simulation failed.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
-    /// The study misused its own record.
+    /// The record has no such entry.
     #[error(transparent)]
     Record(#[from] RecordError),
     /// A system could not be built.
     #[error(transparent)]
     System(#[from] libration::CatalogError),
-    /// Trajectories could not be made or run together.
+    /// An ensemble could not be created or run.
     #[error(transparent)]
     Ensemble(#[from] libration::ensemble::EnsembleError),
-    /// The cost of a loop could not be found.
+    /// The cost of a loop could not be computed.
     #[error(transparent)]
     Cost(#[from] libration::analysis::CostError),
-    /// Environments could not be made or run.
+    /// Environments could not be created or run.
     #[error(transparent)]
     Environment(#[from] libration::rl::EnvironmentError),
-    /// A replay buffer could not be made or used.
+    /// A replay buffer could not be created or used.
     #[error(transparent)]
     Replay(#[from] libration::replay::ReplayError),
-    /// The work failed in a way of its own.
+    /// Another error.
     #[error(transparent)]
     Other(Box<dyn error::Error + Send + Sync>),
     /// Exact arithmetic ran out of digits.

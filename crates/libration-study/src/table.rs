@@ -1,11 +1,11 @@
-//! One table of a TOML file, read by itself.
+//! Deserialisation of one table of a TOML file.
 
 use std::fmt;
 use std::marker::PhantomData;
 
 use serde::de::{DeserializeOwned, DeserializeSeed, Deserializer, IgnoredAny, MapAccess, Visitor};
 
-/// The value of the key `name` of a TOML file, if there is one; errors know where they stand in the file.
+/// Returns the value of the key `name` of a TOML file, if any. Errors have positions in the file.
 pub(crate) fn read<T: DeserializeOwned>(
     text: &str,
     name: &'static str,
@@ -13,7 +13,7 @@ pub(crate) fn read<T: DeserializeOwned>(
     Key::<T> { name, value: PhantomData }.deserialize(toml::Deserializer::parse(text)?)
 }
 
-/// Takes the value of one key, and ignores the others.
+/// Deserialises the value of one key and ignores the others.
 struct Key<T> {
     name: &'static str,
     value: PhantomData<T>,

@@ -1,4 +1,4 @@
-//! Long work: divided among cores, with progress, until it is done or stopped.
+//! Long computations: parallel, interruptible, with progress.
 
 mod progress;
 
@@ -16,10 +16,10 @@ pub use progress::{Progress, Silent};
 #[error("interrupted")]
 pub struct Interrupted;
 
-/// The cores, and how work reports progress and learns that it is to stop.
+/// The context of a long computation: instruction set, progress, and the flag that stops it.
 #[derive(Clone, Copy)]
 pub struct Work<'a> {
-    /// The instruction set of ensembles; the widest that there is if none.
+    /// The instruction set of ensembles; the widest of this processor if none.
     pub instructions: Option<InstructionSet>,
     progress: &'a dyn Progress,
     stop: &'a AtomicBool,
@@ -31,26 +31,26 @@ impl<'a> Work<'a> {
         Work { instructions: None, progress, stop }
     }
 
-    /// The same on an instruction set; on the widest that there is if none.
+    /// The same with an instruction set; none for the widest of this processor.
     #[must_use]
     pub fn on(self, instructions: Option<InstructionSet>) -> Self {
         Work { instructions, ..self }
     }
 
-    /// Where progress is reported to.
+    /// The receiver of progress.
     pub fn progress(&self) -> &'a dyn Progress {
         self.progress
     }
 
-    /// One thread, on the instruction set of this work.
+    /// Execution on one thread with the instruction set of this work.
     ///
     /// # Errors
-    /// If this processor lacks it.
+    /// If this processor lacks the instruction set.
     pub fn serial(&self) -> Result<Execution, EnsembleError> {
         Execution::serial().instructions(self.instructions.unwrap_or(InstructionSet::widest()))
     }
 
-    /// Runs `job` on every item, in parallel, and gives the results in the order of the items.
+    /// Runs `job` on each item in parallel and returns the results in the order of the items.
     ///
     /// # Errors
     /// The first error of a job, or [`Interrupted`].
@@ -78,7 +78,7 @@ impl<'a> Work<'a> {
         results.into_iter().filter_map(done).collect()
     }
 
-    /// Does one piece of work that has all of the machine to itself.
+    /// Runs one part of the work alone.
     ///
     /// # Errors
     /// Those of the work, or [`Interrupted`].
@@ -94,7 +94,7 @@ impl<'a> Work<'a> {
         result
     }
 
-    /// Fails if the work is to stop.
+    /// Fails if the stop flag is set.
     ///
     /// # Errors
     /// [`Interrupted`].
@@ -103,8 +103,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// Runs the numbers from zero to `count`, on all cores. Nothing here is generic: what it is compiled to is large, and there are many
-/// sweeps.
+/// Calls `run` for 0 to `count`, on all cores. It is not generic because its machine code is large.
 fn in_parallel(count: usize, run: &(dyn Fn(usize) + Sync)) {
     (0..count).into_par_iter().for_each(run);
 }

@@ -1,20 +1,20 @@
-//! How far work is.
+//! Progress of long computations.
 
-/// Told how far the work is. Work itself knows no terminal.
+/// Receives the progress of a computation.
 pub trait Progress: Sync {
-    /// The study `name` begins, the `number`-th of `of`.
+    /// The study `name` begins: number `number` of `of`.
     fn study(&self, name: &str, number: usize, of: usize) {
         let _ = (name, number, of);
     }
-    /// `what` begins; it has `total` parts of about equal size.
+    /// The computation `what` of `total` parts begins.
     fn begin(&self, what: &str, total: usize);
     /// One part is done.
     fn advance(&self);
-    /// All that began is done.
+    /// The computation is done.
     fn end(&self);
 }
 
-/// Reports nothing.
+/// Discards progress.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 

@@ -1,4 +1,4 @@
-//! What hot loops are made of.
+//! Instructions in hot loops, by kind.
 
 use std::fmt::Write;
 

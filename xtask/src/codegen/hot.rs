@@ -1,4 +1,4 @@
-//! The loops that take the steps.
+//! Hot loops of a kernel.
 
 use super::function::Function;
 use super::instruction::Instruction;

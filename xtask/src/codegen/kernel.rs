@@ -1,8 +1,8 @@
-//! Which kernel a symbol stands for.
+//! Kernels and their symbols.
 
 use std::fmt;
 
-use super::expected::{METHODS, SYSTEMS};
+use super::catalogue::{METHODS, SYSTEMS};
 
 /// A kernel of a block, as `ensemble/kernel.rs` makes them.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -21,7 +21,7 @@ pub(super) struct Kernel {
     pub(super) width: usize,
 }
 
-/// What it is compiled for.
+/// Instruction set of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Instructions {
     Avx2,
@@ -50,7 +50,7 @@ impl fmt::Display for Instructions {
 }
 
 impl Kernel {
-    /// What it is called in the table.
+    /// Returns the name in the table.
     pub(super) fn kind(&self) -> &'static str {
         if self.pass { "pass" } else { "advance" }
     }

@@ -1,10 +1,11 @@
-//! `cargo xtask codegen`: the batch kernels are still made of vectors.
+//! `cargo xtask codegen`: checks that the batch kernels are vectorised.
 //!
 //! The vectors of an ensemble are the compiler's doing, and nothing complains when it stops: the bits
 //! stay the same and the speed falls by ten. So the engine is compiled to assembly, and the loops of
 //! every kernel are read.
 
 mod assembly;
+mod catalogue;
 mod census;
 mod expected;
 mod function;
@@ -67,7 +68,7 @@ loop becomes vectors only if the whole step is inlined into it and has no loop o
 write out what repeats, as crates/libration-core/src/integrator/composition.rs does. Where registers are
 spilled, the block is too wide: see `width` in crates/libration-batch/src/ensemble/run.rs, and measure.";
 
-/// What is in the kernels of an assembly, by name.
+/// Returns the instructions of the kernels of an assembly, by name.
 fn censuses(assembly: &str) -> Vec<(Kernel, Census)> {
     let mut found: Vec<(Kernel, Census)> = function::read(assembly)
         .iter()

@@ -1,4 +1,4 @@
-//! Which kernels are not as they should be.
+//! Kernels that are not fully vectorised.
 
 use super::census::Census;
 use super::kernel::{Instructions, Kernel};
@@ -10,7 +10,7 @@ use super::kernel::{Instructions, Kernel};
 /// as wide.
 const OPERATIONS_PER_SPILL: usize = 14;
 
-/// A sentence for each kernel that is not all vectors.
+/// Returns a message for each kernel that is not fully vectorised.
 pub(super) fn complaints(censuses: &[(Kernel, Census)]) -> Vec<String> {
     let sentence = |(kernel, census): &(Kernel, Census)| {
         let Kernel { instructions, float, system, method, .. } = kernel;
@@ -21,7 +21,7 @@ pub(super) fn complaints(censuses: &[(Kernel, Census)]) -> Vec<String> {
     censuses.iter().filter_map(sentence).collect()
 }
 
-/// What is wrong with a kernel.
+/// Returns the defects of a kernel.
 fn complaint(kernel: &Kernel, census: &Census) -> Option<String> {
     let Census { vector, scalar, narrow, calls, spills } = *census;
     let room = vector / OPERATIONS_PER_SPILL;

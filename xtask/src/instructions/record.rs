@@ -1,4 +1,4 @@
-//! The counts that are kept.
+//! Recorded instruction counts.
 
 use std::fmt;
 
@@ -17,7 +17,7 @@ const HEADER: &str = "\
 ";
 
 impl Recorded {
-    /// What a file says.
+    /// Parses a file of counts.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let mut recorded = Recorded { compiler: String::new(), counts: Vec::new() };
         for (i, line) in text.lines().enumerate() {

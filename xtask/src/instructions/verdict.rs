@@ -1,4 +1,4 @@
-//! Whether counts have risen.
+//! Verdict on instruction counts.
 
 use super::kernel::Kernel;
 use super::record::Recorded;

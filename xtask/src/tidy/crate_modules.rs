@@ -38,7 +38,7 @@ pub(super) struct Use {
     pub(super) is_reexport: bool,
 }
 
-/// What a path names.
+/// Target of a path.
 enum Place {
     Module(ModulePath),
     Item { file: usize, name: String },

@@ -1,4 +1,4 @@
-//! What a rule says.
+//! A finding of a rule.
 
 use std::fmt;
 

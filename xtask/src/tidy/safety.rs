@@ -1,4 +1,4 @@
-//! Unsafe code says why it is sound.
+//! Unsafe code needs a safety comment.
 
 use super::code::has_word;
 use super::finding::Finding;

@@ -1,4 +1,4 @@
-//! The budgets of loops, beside simulations that know nothing of how they were found.
+//! Tests of budgets of loops against independent simulations.
 
 use libration::State;
 use libration::analysis::{ObserverNoise, Plant};
@@ -7,7 +7,7 @@ use libration::control::controller::{Luenberger, Pid, PidGains};
 use libration::control::{Controller, Feedback, LqrWeights};
 use libration::system::Oscillator;
 use libration_advise as advise;
-use libration_advise::{AdviseError, Budget, Correction, Kind, Law, Regulator};
+use libration_advise::{AdviseError, Budget, Correction, Imperfection, Law, Regulator};
 
 use super::case::{Case, drawn};
 use super::requests::with_work;
@@ -35,13 +35,16 @@ fn of_a_hundred_random_loops_each_budget_ends_where_simulations_become_unstable(
             }
             Err(error) => panic!("{case:?}: {error}"),
         };
-        for (i, kind) in [Kind::Latency, Kind::Jitter, Kind::Skew].into_iter().enumerate() {
+        for (i, kind) in [Imperfection::Latency, Imperfection::Jitter, Imperfection::Skew]
+            .into_iter()
+            .enumerate()
+        {
             let budget = budgets.iter().find(|budget| budget.kind == kind).unwrap();
             let Some(limit) = budget.stable_up_to else { continue };
             tried[i] += 1;
             let grows = |share: f64| match kind {
-                Kind::Latency => case.growth(case.feedback(), share * limit, 0.0) > 0.0,
-                Kind::Skew => case.growth(case.feedback(), 0.0, share * limit) > 0.0,
+                Imperfection::Latency => case.growth(case.feedback(), share * limit, 0.0) > 0.0,
+                Imperfection::Skew => case.growth(case.feedback(), 0.0, share * limit) > 0.0,
                 _ => case.mean_square(share * limit) > 1.0,
             };
             for (share, stable) in [(0.98, true), (1.02, false)] {
@@ -90,7 +93,7 @@ fn controllers_that_remember_fail_where_they_are_said_to() {
             control.law = law;
         }
         let budgets = with_work(|work| advise::budgets(work, &request)).unwrap();
-        [Kind::Latency, Kind::Skew].map(|kind| {
+        [Imperfection::Latency, Imperfection::Skew].map(|kind| {
             let found = budgets.iter().find(|budget| budget.kind == kind).unwrap();
             found.stable_up_to.unwrap()
         })
@@ -135,7 +138,7 @@ fn a_clock_that_is_replayed_is_predicted_step_by_step() {
         request.horizon = 1.0;
         let mut control = request.control.take().unwrap();
         control.loss = loss;
-        request.control = Some(control.replaying(&stamps).unwrap());
+        request.control = Some(control.with_time_stamps(&stamps).unwrap());
         let found = super::requests::advice(&request).unwrap();
         let together = &found.looped.as_ref().unwrap().together;
         assert_eq!(together.growth < 0.0, stands, "{block}: {together:?}");

@@ -1,4 +1,4 @@
-//! A loop, and what simulations say of it that know nothing of how advice is found.
+//! Loops and independent simulations of them.
 
 use libration::analysis::{Imperfections, Plant};
 use libration::catalog::Actuation;
@@ -10,7 +10,7 @@ use libration::integrator::Exact;
 use libration::random::{Address, Purpose};
 use libration::system::Oscillator;
 use libration::{AnySystem, State};
-use libration_advise::{Control, Kind, Law, Measure, Request, Tolerance};
+use libration_advise::{Control, Imperfection, Law, Measure, Request, Tolerance};
 
 /// A number from `low` to `high`.
 pub(crate) fn drawn(step: u64, low: f64, high: f64) -> f64 {
@@ -47,7 +47,7 @@ impl Case {
             horizon: 5.0,
             rollout: [64, 64],
             map: false,
-            asked_by: String::new(),
+            invocation: String::new(),
         }
     }
 
@@ -99,15 +99,15 @@ impl Case {
     }
 
     /// What the loop costs with this alone.
-    pub(crate) fn cost(self, kind: Kind, size: f64) -> f64 {
+    pub(crate) fn cost(self, kind: Imperfection, size: f64) -> f64 {
         let none = Imperfections::NONE;
         let imperfections = match kind {
-            Kind::Latency => {
+            Imperfection::Latency => {
                 Imperfections { latency: Latency::of_seconds(size, self.period).unwrap(), ..none }
             }
-            Kind::Jitter => Imperfections { jitter: Jitter::Uniform(size), ..none },
-            Kind::Skew => Imperfections { skew: size, ..none },
-            Kind::Loss => Imperfections { loss: size, ..none },
+            Imperfection::Jitter => Imperfections { jitter: Jitter::Uniform(size), ..none },
+            Imperfection::Skew => Imperfections { skew: size, ..none },
+            Imperfection::Loss => Imperfections { loss: size, ..none },
         };
         let model = Oscillator { omega2: self.omega2 };
         let plant = Plant::exact(model, State { q: [0.0], v: [0.0] }, self.period);

@@ -1,11 +1,11 @@
-//! Where advice could be wrong with confidence: long queues, fast clocks, limits, rare outbursts, what nothing meets.
+//! Tests of edge cases: long queues, fast clocks, command limits, rare outbursts, tolerances that no step meets.
 
 use libration::AnySystem;
 use libration::control::controller::PidGains;
 use libration::control::{Feedback, Jitter};
 use libration::system::{DampedOscillator, Kepler, Pendulum};
 use libration_advise as advise;
-use libration_advise::{Control, Kind, Law, Measure, Request};
+use libration_advise::{Control, Imperfection, Law, Measure, Request};
 
 use super::case::Case;
 use super::requests::{advice, with_work};
@@ -94,7 +94,7 @@ fn what_is_lost_on_a_long_way_is_not_said_to_be_simulated() {
     let found = advice(&far).unwrap();
     let together = &found.looped.as_ref().unwrap().together;
     assert!(together.simulated.is_none() && together.returns.is_none(), "{together:?}");
-    assert!(found.warnings[0].contains("too late for losses"), "{:?}", found.warnings);
+    assert!(found.warnings[0].contains("too long for losses"), "{:?}", found.warnings);
     assert!(found.holds(), "{}", found.answer);
 }
 
@@ -117,19 +117,20 @@ fn the_best_that_is_possible_is_met_when_it_is_asked_for() {
 fn a_horizon_that_cannot_be_searched_is_refused() {
     let orbit = AnySystem::Kepler(Kepler { mu: 1.0 });
     let long = free(orbit, &[1.0, 0.0], &[0.0, 1.0], Measure::Trajectory, 1e-3, 1e7);
-    assert!(advice(&long).unwrap_err().to_string().contains("give a shorter horizon"));
+    assert!(advice(&long).unwrap_err().to_string().contains("choose a shorter horizon"));
     let pendulum = AnySystem::Pendulum(Pendulum { omega2: 9.81 });
     let long = free(pendulum, &[1.0], &[0.0], Measure::Trajectory, 1e-3, 1e7);
-    assert!(advice(&long).unwrap_err().to_string().contains("give a shorter horizon"));
+    assert!(advice(&long).unwrap_err().to_string().contains("choose a shorter horizon"));
 }
 
 #[test]
 fn an_even_record_is_an_even_clock() {
     let stamps: Vec<f64> = (0..100).map(|i| f64::from(i) * 0.01).collect();
-    let even = request(0.01, |control| *control = control.clone().replaying(&stamps).unwrap());
+    let even =
+        request(0.01, |control| *control = control.clone().with_time_stamps(&stamps).unwrap());
     assert!(even.control.as_ref().unwrap().record.is_none());
     let jitter = &advice(&even).unwrap().looped.unwrap().budgets[1];
-    assert!(jitter.kind == Kind::Jitter && jitter.stated == 0.0);
+    assert!(jitter.kind == Imperfection::Jitter && jitter.stated == 0.0);
 }
 
 #[test]
@@ -138,7 +139,7 @@ fn a_cost_that_is_infinite_is_no_fault_of_integrators() {
     (late.tolerance.of, late.tolerance.most) = (Measure::Cost, 0.1);
     let found = advice(&late).unwrap();
     assert!(
-        found.answer.contains("unstable with what is stated")
+        found.answer.contains("unstable with the stated imperfections")
             && !found.answer.contains("No integrator")
     );
     assert!(found.integrators.is_empty() && !found.holds());
@@ -146,7 +147,7 @@ fn a_cost_that_is_infinite_is_no_fault_of_integrators() {
     let longer = request(0.001, |control| {
         (control.latency, control.jitter) = (0.2, Jitter::Gaussian(0.1));
     });
-    assert!(advice(&longer).unwrap_err().to_string().contains("does not stand its latency"));
+    assert!(advice(&longer).unwrap_err().to_string().contains("unstable with its latency"));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Budgets of loops and simulations.
+//! Tests of advice for loops and simulations.
 
 #![allow(clippy::unwrap_used)]
 

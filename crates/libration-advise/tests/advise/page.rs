@@ -1,4 +1,4 @@
-//! How advice is told: as a page, and as JSON.
+//! Tests of advice as a page and as JSON.
 
 use libration_advise as advise;
 
@@ -24,7 +24,8 @@ fn the_page_says_its_answer_first_and_marks_where_the_loop_stands() {
     request.map = true;
     let found = advice(&request).unwrap();
     let page = advise::page(&found);
-    let first = page.find("<p class=\"lead\">The loop stands what is stated").unwrap();
+    let first =
+        page.find("<p class=\"lead\">The loop is stable with the stated imperfections").unwrap();
     assert!(first < page.find("<table>").unwrap());
     for wanted in ["edge of stability", "as stated", "libration analyze --system oscillator"] {
         assert!(page.contains(wanted), "{wanted}");

@@ -1,4 +1,4 @@
-//! What is advised, beside simulations that know nothing of how it was found.
+//! Tests of requests for advice.
 
 use std::sync::atomic::AtomicBool;
 
@@ -6,7 +6,7 @@ use libration::AnySystem;
 use libration::control::{Feedback, Jitter};
 use libration::system::{Oscillator, Pendulum};
 use libration_advise as advise;
-use libration_advise::{Advice, AdviseError, Kind, Law, Measure, Request};
+use libration_advise::{Advice, AdviseError, Imperfection, Law, Measure, Request};
 use libration_work::{Silent, Work};
 
 use super::case::Case;
@@ -38,7 +38,7 @@ fn a_loop_that_stands_all_that_is_stated_is_simulated_as_predicted() {
     assert!(found.warnings.is_empty(), "{:?}", found.warnings);
     // The latency is nearest to its limit, and swings there.
     let failing = looped.fails_first.as_ref().unwrap();
-    assert_eq!(failing.kind, Kind::Latency);
+    assert_eq!(failing.kind, Imperfection::Latency);
     assert!((0.5..1.2).contains(&failing.frequency.unwrap()), "{failing:?}");
     // All of it together leaves less room than the worst alone.
     let room = looped.together.room.unwrap();
@@ -84,17 +84,21 @@ fn what_cannot_be_advised_on_is_refused_before_any_work() {
     let told = |request: &Request| advice(request).unwrap_err().to_string();
     let unstable = told(&case.request());
     assert!(
-        unstable.contains("unstable without") && unstable.contains("without a swing"),
+        unstable.contains("unstable without") && unstable.contains("without oscillation"),
         "{unstable}"
     );
     let damped = Case { gains: Feedback { position: 10.0, velocity: -1.0 }, ..case };
-    assert!(told(&damped.request()).contains("it swings at 0.7"), "{}", told(&damped.request()));
+    assert!(
+        told(&damped.request()).contains("it oscillates at 0.7"),
+        "{}",
+        told(&damped.request())
+    );
     let mut energy = Case { gains: Feedback { position: 10.0, velocity: 1.0 }, ..case }.request();
     energy.tolerance.of = Measure::Energy;
     assert!(told(&energy).contains("a loop does not conserve it"), "{}", told(&energy));
     let oscillator = AnySystem::Oscillator(Oscillator { omega2: 10.0 });
     let cost = free(oscillator, &[1.0], &[0.0], Measure::Cost, 0.1, 10.0);
-    assert!(told(&cost).contains("only a loop costs"));
+    assert!(told(&cost).contains("a cost requires a loop"));
     let rest = free(oscillator, &[0.0], &[0.0], Measure::Energy, 0.1, 10.0);
     assert!(told(&rest).contains("the energy at the start is zero"));
     let still = free(oscillator, &[0.0], &[0.0], Measure::Trajectory, 0.1, 10.0);

@@ -1,4 +1,4 @@
-//! The steps that are advised, beside simulations that know nothing of how they were found.
+//! Tests of advised steps against independent simulations.
 
 use std::f64::consts::TAU;
 
@@ -29,7 +29,7 @@ pub(crate) fn free(
         horizon,
         rollout: [64, 64],
         map: false,
-        asked_by: String::new(),
+        invocation: String::new(),
     }
 }
 

@@ -5,9 +5,9 @@ use std::io::Write;
 
 use super::{ExportError, Number, Rows};
 
-/// Writes rows as text: a line of names, then a line for each row.
+/// Writes rows as text: a line of names, then a line per row.
 ///
-/// Floats stand in the shortest form that reads back as the same bits in their own type.
+/// Floats are written in the shortest form that is read as the same bits.
 #[derive(Debug)]
 pub struct Csv<W> {
     out: W,
@@ -15,10 +15,10 @@ pub struct Csv<W> {
 }
 
 impl<W: Write> Csv<W> {
-    /// A file into `out` that begins with the line of `names`.
+    /// Begins a file in `out` with the line of `names`.
     ///
     /// # Errors
-    /// If `out` refuses.
+    /// If `out` cannot be written.
     pub fn new<'n>(
         mut out: W,
         names: impl IntoIterator<Item = &'n str>,

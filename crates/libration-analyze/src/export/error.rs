@@ -1,23 +1,23 @@
-//! What can go wrong with an export.
+//! Errors of exports.
 
 use std::io;
 
 use libration_data::TableError;
 use thiserror::Error;
 
-/// Why a table could not be written.
+/// Error of an export.
 #[derive(Debug, Error)]
 pub enum ExportError {
-    /// The file or pipe refused.
+    /// The file or pipe cannot be written.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// The table is none, or the format refuses it.
+    /// The table is invalid, or the format does not support it.
     #[error(transparent)]
     Table(TableError),
 }
 
 impl From<TableError> for ExportError {
-    /// An error of the file beneath stays what it was, so that a broken pipe can be recognised.
+    /// Keeps I/O errors, so that callers recognise a broken pipe.
     fn from(error: TableError) -> Self {
         match error {
             TableError::Io(error) => ExportError::Io(error),

@@ -1,4 +1,4 @@
-//! JSON: one object that says what was run, then holds the rows.
+//! JSON: one object with the request and the rows.
 
 use std::fmt::Write as _;
 use std::io;
@@ -11,7 +11,7 @@ use super::{ExportError, Number, Rows};
 
 /// Writes rows as the array `rows` of an object, one row to a line.
 ///
-/// What is not finite becomes `null`, since JSON has no other word for it.
+/// Numbers that are not finite become `null`.
 #[derive(Debug)]
 pub struct Json<W> {
     out: W,
@@ -20,10 +20,10 @@ pub struct Json<W> {
 }
 
 impl<W: Write> Json<W> {
-    /// An object into `out` that begins with the entries `head`.
+    /// Begins an object in `out` with the entries `head`.
     ///
     /// # Errors
-    /// If `out` refuses.
+    /// If `out` cannot be written.
     pub fn new(mut out: W, head: &[(&str, Value)]) -> Result<Self, ExportError> {
         out.write_all(b"{\n")?;
         for (key, value) in head {
@@ -37,7 +37,7 @@ impl<W: Write> Json<W> {
     /// Ends the object with one more entry.
     ///
     /// # Errors
-    /// If `out` refuses.
+    /// If `out` cannot be written.
     pub fn finish(mut self, key: &str, value: &impl Serialize) -> Result<(), ExportError> {
         self.out.write_all(b"\n  ],\n")?;
         entry(&mut self.out, key, value)?;

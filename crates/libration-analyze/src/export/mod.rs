@@ -1,7 +1,7 @@
 //! Tables of numbers as files: Parquet, NumPy, CSV and JSON.
 //!
-//! Parquet and NumPy files are written from a whole [`Table`]; CSV and JSON take a trajectory
-//! row by row as it comes, through [`Rows`].
+//! Parquet and NumPy files are written from a complete [`Table`]; CSV and JSON stream a trajectory row by
+//! row through [`Rows`].
 
 mod csv;
 mod error;
@@ -14,10 +14,10 @@ pub use json::Json;
 pub use libration_data::{Column, Table, Values, parquet_bytes, write_npy, write_parquet};
 pub use number::Number;
 
-/// Takes the rows of a trajectory in turn.
+/// Receives the rows of a trajectory in order.
 pub trait Rows<S> {
-    /// Takes the row at time `t` seconds: `index` holds the columns of whole numbers before it, the
-    /// last of which is the step, `values` the columns after it.
+    /// Receives the row at time `t` seconds. `index` has the integer columns before `t`, the last of which is
+    /// the step; `values` has the columns after `t`.
     ///
     /// # Errors
     /// If the row cannot be written or kept.

@@ -1,4 +1,4 @@
-//! The float types that can be exported, and their shortest decimal form.
+//! Exported float types and their shortest decimals.
 
 use std::borrow::Cow;
 use std::fmt::Write;
@@ -8,15 +8,14 @@ use libration::{Float, Scalar};
 
 use super::Values;
 
-/// A float type of which a column can be made.
+/// A float type of exported columns.
 pub trait Number: Float {
-    /// A column of these values.
+    /// The column of these values.
     fn values(values: Vec<Self>) -> Values<'static>;
 
-    /// Appends the shortest decimal that reads back, in this type, as this very number.
+    /// Appends the shortest decimal that is read as the same number in this type.
     ///
-    /// A decimal point or an exponent is always there; what is not finite becomes `inf`, `-inf`
-    /// or `NaN`.
+    /// It always has a decimal point or an exponent. Other values are `inf`, `-inf` and `NaN`.
     fn append_text(self, text: &mut String);
 }
 

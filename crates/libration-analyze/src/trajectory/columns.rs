@@ -1,4 +1,4 @@
-//! A trajectory's rows, kept as columns.
+//! Rows of a trajectory, kept as columns.
 
 use std::borrow::Cow;
 use std::collections::TryReserveError;
@@ -8,41 +8,43 @@ use libration::ensemble::InsufficientMemory;
 use super::Request;
 use crate::export::{Column, ExportError, Number, Rows, Table, Values};
 
-/// Columns that grow by a row at a time.
+/// Columns that grow row by row.
 #[derive(Debug)]
 pub(super) struct Columns<S> {
-    /// `step`, or `trajectory` and `step`.
+    /// The columns `step`, or `trajectory` and `step`.
     index: Vec<Vec<u64>>,
     t: Vec<f64>,
     values: Vec<Vec<S>>,
 }
 
 impl<S: Number> Columns<S> {
-    /// Bytes that all rows of what is asked take.
+    /// Bytes of all rows of the request.
     pub(super) fn bytes(request: &Request) -> u128 {
-        let whole = 2 + usize::from(request.copies.is_some());
+        let whole = 2 + usize::from(request.ensemble.is_some());
         let numbers = 1 + 2 * request.q.len();
         let row = whole * size_of::<u64>() + numbers * size_of::<S>();
         u128::from(request.rows()) * row as u128
     }
 
-    /// Empty columns with room for what is asked.
+    /// Empty columns with memory for all rows of the request.
     pub(super) fn new(request: &Request) -> Result<Self, InsufficientMemory> {
-        let refused = || InsufficientMemory { needed: Self::bytes(request), available: None };
-        let rows = usize::try_from(request.rows()).map_err(|_| refused())?;
+        let no_memory = || InsufficientMemory { needed: Self::bytes(request), available: None };
+        let rows = usize::try_from(request.rows()).map_err(|_| no_memory())?;
         let columns = || {
             Ok(Columns {
-                index: (0..1 + usize::from(request.copies.is_some()))
-                    .map(|_| room(rows))
+                index: (0..1 + usize::from(request.ensemble.is_some()))
+                    .map(|_| reserve(rows))
                     .collect::<Result<_, _>>()?,
-                t: room(rows)?,
-                values: (0..=2 * request.q.len()).map(|_| room(rows)).collect::<Result<_, _>>()?,
+                t: reserve(rows)?,
+                values: (0..=2 * request.q.len())
+                    .map(|_| reserve(rows))
+                    .collect::<Result<_, _>>()?,
             })
         };
-        columns().map_err(|_: TryReserveError| refused())
+        columns().map_err(|_: TryReserveError| no_memory())
     }
 
-    /// The columns under their names and units.
+    /// The columns with their names and units.
     pub(super) fn into_table(self, request: &Request) -> Result<Table<'static>, ExportError> {
         let index = self.index.into_iter().map(|column| Values::U64(Cow::Owned(column)));
         let first = index.chain([Values::F64(Cow::Owned(self.t))]);
@@ -57,7 +59,7 @@ impl<S: Number> Columns<S> {
     }
 }
 
-fn room<T>(rows: usize) -> Result<Vec<T>, TryReserveError> {
+fn reserve<T>(rows: usize) -> Result<Vec<T>, TryReserveError> {
     let mut column = Vec::new();
     column.try_reserve_exact(rows)?;
     Ok(column)

@@ -1,62 +1,72 @@
-//! What can be wrong with a request, and what can go wrong with a trajectory.
+//! Errors of trajectories.
 
 use libration::CatalogError;
+use libration::control::Latency;
 use libration::ensemble::{EnsembleError, InsufficientMemory};
 use libration::simulation::SimulationError;
 use thiserror::Error;
 
 use crate::export::ExportError;
 
-/// Why there is no trajectory.
+/// Error of a trajectory.
 #[derive(Debug, Error)]
 pub enum TrajectoryError {
-    /// A value of the request is not allowed.
+    /// A value of the request is invalid.
     #[error("`{name}` is {value}, but it must be {allowed}")]
     Value {
-        /// The field of the request, which is also the name of its flag.
+        /// The field of the request and the name of its flag.
         name: &'static str,
-        /// The value that was given.
+        /// The given value.
         value: String,
-        /// The values that it may have.
+        /// The allowed values.
         allowed: String,
     },
-    /// A parameter of the system has no counterpart in the float type.
+    /// The float type cannot represent a parameter of the system.
     #[error("{system}: `{name}` = {value:?} is {rounded} in {float}; choose a wider float type")]
     Parameter {
         /// The system.
         system: &'static str,
         /// The parameter.
         name: &'static str,
-        /// The value that was given.
+        /// The given value.
         value: f64,
-        /// What the float type makes of it.
+        /// The value rounded to the float type.
         rounded: f64,
         /// The float type.
         float: &'static str,
     },
-    /// The system does not exist in that dimension.
+    /// The system does not exist in this dimension.
     #[error(transparent)]
     Catalog(#[from] CatalogError),
-    /// The simulator refused to start.
+    /// The simulator rejected the request.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
-    /// The ensemble could not be made.
+    /// The ensemble could not be created.
     #[error(transparent)]
     Ensemble(#[from] EnsembleError),
-    /// There is not memory enough.
+    /// There is not enough memory.
     #[error("{0} (--count, --every, --float)")]
     Memory(InsufficientMemory),
     /// The result could not be written or kept.
     #[error(transparent)]
     Export(#[from] ExportError),
-    /// The caller stopped it.
+    /// The caller stopped the simulation.
     #[error("interrupted")]
     Interrupted,
 }
 
 impl TrajectoryError {
-    /// The memory that is missing, if it is that.
-    pub fn room(&self) -> Option<&InsufficientMemory> {
+    /// The error of a latency of `steps` steps of `dt` seconds.
+    pub(super) fn latency(steps: f64, dt: f64) -> Self {
+        TrajectoryError::Value {
+            name: "latency",
+            value: format!("{steps:?} steps of {dt:?} s"),
+            allowed: format!("at least 0 and at most {} steps", Latency::MOST_STEPS),
+        }
+    }
+
+    /// The missing memory, if that is the error.
+    pub fn missing_memory(&self) -> Option<&InsufficientMemory> {
         match self {
             TrajectoryError::Memory(room)
             | TrajectoryError::Ensemble(EnsembleError::Memory(room)) => Some(room),

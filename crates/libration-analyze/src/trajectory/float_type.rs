@@ -1,8 +1,8 @@
-//! The float types as a value, for callers that choose one at run time.
+//! Float types chosen at run time.
 
 use std::fmt;
 
-/// A float type in which a trajectory can be computed.
+/// A float type of a trajectory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FloatType {
     /// Double precision, 53 bits.
@@ -17,11 +17,11 @@ pub enum FloatType {
 }
 
 impl FloatType {
-    /// All of them, by falling precision.
+    /// All float types, by falling precision.
     pub const ALL: [FloatType; 4] =
         [FloatType::F64, FloatType::F32, FloatType::F16, FloatType::Bf16];
 
-    /// Name on the command line and in files.
+    /// The name on the command line and in files.
     pub const fn name(self) -> &'static str {
         match self {
             FloatType::F64 => "f64",
@@ -31,7 +31,7 @@ impl FloatType {
         }
     }
 
-    /// The largest number.
+    /// The largest finite number.
     pub fn largest(self) -> f64 {
         match self {
             FloatType::F64 => f64::MAX,
@@ -41,7 +41,7 @@ impl FloatType {
         }
     }
 
-    /// The float type of that name, if there is one.
+    /// The float type with this name, if it exists.
     pub fn from_name(name: &str) -> Option<FloatType> {
         FloatType::ALL.into_iter().find(|f| f.name() == name)
     }

@@ -1,14 +1,14 @@
-//! The file formats of a trajectory.
+//! File formats of trajectories.
 
 use std::path::Path;
 
-/// How a trajectory is written.
+/// A file format of trajectories.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Format {
-    /// Text, a line for each row, floats in their shortest form.
+    /// Text with a line per row and floats in their shortest form.
     #[default]
     Csv,
-    /// An object with what was asked, the rows, and why they end early if they do.
+    /// An object with the request, the rows, and the reason if they end early.
     Json,
     /// A NumPy structured array.
     Npy,
@@ -17,10 +17,10 @@ pub enum Format {
 }
 
 impl Format {
-    /// All of them.
+    /// All formats.
     pub const ALL: [Format; 4] = [Format::Csv, Format::Json, Format::Npy, Format::Parquet];
 
-    /// Name on the command line, and extension of its files.
+    /// The name on the command line and the extension of files.
     pub const fn name(self) -> &'static str {
         match self {
             Format::Csv => "csv",
@@ -30,27 +30,29 @@ impl Format {
         }
     }
 
-    /// What it is, in one line.
+    /// The description in one line.
     pub const fn summary(self) -> &'static str {
         match self {
-            Format::Csv => "text; floats in the shortest form that reads back as the same bits",
-            Format::Json => "an object with the request, the rows and why they end early if so",
+            Format::Csv => "text; floats in the shortest form that is read as the same bits",
+            Format::Json => {
+                "an object with the request, the rows, and the reason if they end early"
+            }
             Format::Npy => "a NumPy structured array with a field for each column",
             Format::Parquet => "Apache Parquet, compressed, with units in its metadata",
         }
     }
 
-    /// The format of that name, if there is one.
+    /// The format with this name, if it exists.
     pub fn from_name(name: &str) -> Option<Format> {
         Format::ALL.into_iter().find(|f| f.name() == name)
     }
 
-    /// The format that the extension of `path` stands for, if it stands for one.
+    /// The format of the extension of `path`, if it exists.
     pub fn of_path(path: &Path) -> Option<Format> {
         Format::from_name(&path.extension()?.to_str()?.to_ascii_lowercase())
     }
 
-    /// Whether its files are no text.
+    /// Whether files are binary.
     pub const fn is_binary(self) -> bool {
         matches!(self, Format::Npy | Format::Parquet)
     }

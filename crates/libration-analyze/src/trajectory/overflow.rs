@@ -1,34 +1,34 @@
-//! Why a trajectory overflows, where the stability of its step tells.
+//! Causes of overflows by the stability of a step.
 
 use libration::analysis::{Linearisation, eigenvalues};
 use libration::system::{DampedOscillator, Oscillator};
 use libration::{AnySystem, Float, Method, Model, State, with_system};
 
 use super::{FloatType, Request};
-use crate::analyze;
-use crate::analyze::{Criteria, Critical, Stepping, stability_windows};
+use crate::step::stability_windows;
+use crate::{Criteria, StableLatencies, Stepping, analyze};
 
-/// Unit roundoffs by which a step may lie beside a limit before rounding decides.
+/// Distance from a limit, in unit roundoffs, within which rounding decides.
 const MARGIN: f64 = 16.0;
 
-/// Why a trajectory of `request` overflows in the float type `S`, and what to do; none where neither the step, as linearised at the
+/// The cause of an overflow of `request` in the float type `S`, with a suggestion; none if neither the step, linearised at the
 /// start, nor the float type explains it.
 pub(super) fn cause<S: Float>(request: &Request) -> Option<String> {
-    match request.looped() {
-        Some(_) => looped(request),
-        None => of_step::<S>(request),
+    match request.loop_option() {
+        Some(_) => loop_cause(request),
+        None => step_cause::<S>(request),
     }
 }
 
-/// The same without a loop.
-fn of_step<S: Float>(request: &Request) -> Option<String> {
+/// The cause of an overflow without a loop.
+fn step_cause<S: Float>(request: &Request) -> Option<String> {
     let rounded = |x: f64| S::from_f64(x).to_f64();
     let dt = rounded(request.dt);
     let method = match request.stepping {
         Stepping::Method(method) => method,
-        Stepping::Exact => return Some(range(request.float, "the exact step")),
+        Stepping::Exact => return Some(range_cause(request.float, "the exact step")),
     };
-    // What is stepped has the parameters of the float type. A drive adds a bounded force.
+    // The parameters are those of the float type. A drive adds a bounded force.
     let linear = match request.system {
         AnySystem::Oscillator(Oscillator { omega2 }) => {
             Some(AnySystem::Oscillator(Oscillator { omega2: rounded(omega2) }))
@@ -44,34 +44,34 @@ fn of_step<S: Float>(request: &Request) -> Option<String> {
         _ => None,
     };
     match linear {
-        Some(system) => of_linear(method, system, dt, S::UNIT_ROUNDOFF, request.float),
+        Some(system) => linear_cause(method, system, dt, S::UNIT_ROUNDOFF, request.float),
         None => {
             let omega = start_frequency(request)?;
             let near = AnySystem::Oscillator(Oscillator { omega2: omega * omega });
-            let why = unstable(method, near, [dt, 1.0])?;
+            let why = instability_cause(method, near, [dt, 1.0])?;
             Some(format!("linearised at the start, {why}"))
         }
     }
 }
 
-/// Why a loop, or a step under an uneven clock, overflows: it is unstable, in the mean square where something is drawn.
-fn looped(request: &Request) -> Option<String> {
+/// The cause of an overflow of a loop or an uneven clock: it is unstable, or unstable in the mean square.
+fn loop_cause(request: &Request) -> Option<String> {
     let Request { system, actuation, stepping, dt, timing, .. } = *request;
     if let (None, Some(method)) = (timing.feedback, stepping.method()) {
-        let why = unstable(method, system, [dt, 1.0]).or_else(|| uneven(method, request));
+        let why = instability_cause(method, system, [dt, 1.0])
+            .or_else(|| uneven_clock_cause(method, request));
         if why.is_some() {
             return why;
         }
     }
     let (q, v, criteria) = (request.q.clone(), request.v.clone(), Criteria::default());
-    let step =
-        analyze::Request { system, actuation, stepping, dt, q, v, steps: 1, criteria, timing };
-    let analysis = analyze::analyze(&step).ok()?;
+    let step = crate::Request { system, actuation, stepping, dt, q, v, steps: 1, criteria, timing };
+    let analysis = analyze(&step).ok()?;
     let about = if system.is_linear() { "" } else { "linearised at the start, " };
     let answer = analysis.timing?;
     if let Some(excess) = answer.closed_loop_spectral_radius_minus_one.filter(|x| *x > 0.0) {
-        let way_out = answer.critical.as_ref().map_or_else(String::new, latencies);
-        // Three digits of a radius near 1 would not tell it from 1.
+        let way_out = answer.critical.as_ref().map_or_else(String::new, stable_latency_help);
+        // Three digits do not distinguish a radius near 1 from 1.
         let radius =
             if excess < 0.01 { format!("1 + {}", short(excess)) } else { short(1.0 + excess) };
         return Some(format!(
@@ -87,8 +87,8 @@ fn looped(request: &Request) -> Option<String> {
     })
 }
 
-/// The latencies with which a loop is stable that is not so with its own.
-fn latencies(critical: &Critical) -> String {
+/// The latencies with which an unstable loop becomes stable, in words.
+fn stable_latency_help(critical: &StableLatencies) -> String {
     if let Some(latency) = critical.critical_latency_seconds {
         return format!("it is stable up to a --latency of {} s", short_below(latency));
     }
@@ -105,22 +105,22 @@ fn latencies(critical: &Critical) -> String {
     }
 }
 
-/// Why a step is unstable under a clock whose mean or slowest steps are longer than `dt`.
-fn uneven(method: Method, request: &Request) -> Option<String> {
+/// The cause of instability under a clock whose mean or slowest steps are longer than `dt`.
+fn uneven_clock_cause(method: Method, request: &Request) -> Option<String> {
     let Request { system, dt, timing, record, .. } = request;
     if let Some(record) = record {
         let mean = record.iter().sum::<f64>() / record.len() as f64;
-        if let Some(why) = unstable(method, *system, [*dt, mean]) {
-            return Some(format!("of the mean recorded step, {why}"));
+        if let Some(why) = instability_cause(method, *system, [*dt, mean]) {
+            return Some(format!("at the mean recorded step, {why}"));
         }
     }
     let slowest = 1.0 + timing.skew?.largest();
-    unstable(method, *system, [*dt, slowest])
-        .map(|why| format!("of the slowest clocks' steps, {why}"))
+    instability_cause(method, *system, [*dt, slowest])
+        .map(|why| format!("at the steps of the slowest clocks, {why}"))
 }
 
-/// Of a linear system: either its step is unstable, or the numbers leave the float type.
-fn of_linear(
+/// The cause of an overflow of a linear system: an unstable step, or the range of the float type.
+fn linear_cause(
     method: Method,
     system: AnySystem,
     dt: f64,
@@ -130,8 +130,8 @@ fn of_linear(
     if let AnySystem::Oscillator(Oscillator { omega2: 0.0 })
     | AnySystem::DampedOscillator(DampedOscillator { omega2: 0.0, gamma: 0.0 }) = system
     {
-        // A free mass leaves every range; each method steps it exactly.
-        return Some(range(float, "the step"));
+        // A free mass exceeds every range; each method steps it exactly.
+        return Some(range_cause(float, "the step"));
     }
     let margin = MARGIN * roundoff;
     let windows = stability_windows(method, system)?;
@@ -139,11 +139,15 @@ fn of_linear(
         from.is_none_or(|from| dt >= from * (1.0 + margin))
             && to.is_none_or(|to| dt <= to * (1.0 - margin))
     });
-    if is_stable { Some(range(float, "the step")) } else { unstable(method, system, [dt, 1.0]) }
+    if is_stable {
+        Some(range_cause(float, "the step"))
+    } else {
+        instability_cause(method, system, [dt, 1.0])
+    }
 }
 
-/// That a stable step leaves the float type.
-fn range(float: FloatType, step: &str) -> String {
+/// The message that a stable step exceeds the range of the float type.
+fn range_cause(float: FloatType, step: &str) -> String {
     let way_out = match float {
         FloatType::F64 => "choose a start nearer to the origin",
         _ => "choose a wider --float, or a start nearer to the origin",
@@ -153,8 +157,8 @@ fn range(float: FloatType, step: &str) -> String {
     format!("{step} is stable, but a number exceeds the range of {float}, {largest}; {way_out}")
 }
 
-/// Why a step of `dt` seconds, stretched by a factor, is unstable on an oscillator; none if it is stable, or nobody knows.
-fn unstable(method: Method, system: AnySystem, [dt, stretch]: [f64; 2]) -> Option<String> {
+/// The cause of instability of an oscillator in steps of `dt` seconds times a factor; none if the step is stable, or unknown.
+fn instability_cause(method: Method, system: AnySystem, [dt, stretch]: [f64; 2]) -> Option<String> {
     let dt = dt * stretch;
     let windows = stability_windows(method, system)?;
     let name = method.name();
@@ -164,7 +168,7 @@ fn unstable(method: Method, system: AnySystem, [dt, stretch]: [f64; 2]) -> Optio
     if windows.iter().any(|window| within(&window)) {
         return None;
     }
-    // The window of small steps, where there is one: others may be slivers.
+    // The window of small steps, if it exists: others may be narrow.
     let width = |[from, to]: &[Option<f64>; 2]| to.unwrap_or(f64::INFINITY) - from.unwrap_or(0.0);
     let small = windows.iter().find(|[from, _]| from.is_none_or(|from| from == 0.0));
     let widest = || windows.iter().max_by(|a, b| width(a).total_cmp(&width(b)));
@@ -173,7 +177,7 @@ fn unstable(method: Method, system: AnySystem, [dt, stretch]: [f64; 2]) -> Optio
             "{name} is unstable with every time step: a smaller --dt only delays the overflow; choose another --integrator"
         ));
     };
-    // Of an oscillator without damping the limit is a number of the method alone.
+    // Without damping the limit depends on the method alone.
     let (symbol, unit, omega) = match system {
         AnySystem::Oscillator(model) => ("ωΔt", "", model.omega2.sqrt()),
         _ => ("Δt", " s", 1.0),
@@ -182,7 +186,7 @@ fn unstable(method: Method, system: AnySystem, [dt, stretch]: [f64; 2]) -> Optio
     let is = format!("{symbol} = {}{unit}", short(omega * dt));
     if from == 0.0 {
         let (limit, largest) = (short(omega * to), short_below(to / stretch));
-        Some(format!("{is} is beyond {name}'s limit {limit}{unit}; choose --dt below {largest}"))
+        Some(format!("{is} exceeds {name}'s limit {limit}{unit}; choose --dt below {largest}"))
     } else {
         let limits = format!("{} to {}{unit}", short(omega * from), short(omega * to));
         let choice =
@@ -191,12 +195,12 @@ fn unstable(method: Method, system: AnySystem, [dt, stretch]: [f64; 2]) -> Optio
     }
 }
 
-/// The largest angular frequency of the linearisation at the start, in rad/s; none if that turns nowhere, or grows.
+/// The largest angular frequency of the linearisation at the start, in rad/s; none if it does not oscillate, or grows.
 fn start_frequency(request: &Request) -> Option<f64> {
     with_system!(request.system, request.q.len(), |model, D| fastest::<D>(&model, request), None)
 }
 
-/// The same, of a model. It is a function of its own for each, since matrices of many digits are large on the stack.
+/// The same for a model. It is not inlined because matrices of 1024 bits are large on the stack.
 #[inline(never)]
 fn fastest<const D: usize>(model: &impl Model<D>, request: &Request) -> Option<f64> {
     let start = State {
@@ -209,17 +213,17 @@ fn fastest<const D: usize>(model: &impl Model<D>, request: &Request) -> Option<f
     (im > 0.0 && im.is_finite() && re.abs() <= 1e-9 * im).then_some(im)
 }
 
-/// Three digits of a positive number.
+/// A positive number rounded to three digits.
 fn short(x: f64) -> String {
     digits(x, f64::round)
 }
 
-/// The same, not above it.
+/// A positive number rounded down to three digits.
 fn short_below(x: f64) -> String {
     digits(x, f64::floor)
 }
 
-/// The same, not below it.
+/// A positive number rounded up to three digits.
 fn short_above(x: f64) -> String {
     digits(x, f64::ceil)
 }
@@ -230,7 +234,7 @@ fn digits(x: f64, round: fn(f64) -> f64) -> String {
     }
     let exponent = x.log10().floor() as i32 - 2;
     let number = round(x / 10.0_f64.powi(exponent));
-    // By way of a decimal, whose digits are these and no more.
+    // Parsing the decimal keeps its digits.
     let rounded: f64 = format!("{number}e{exponent}").parse().unwrap_or(x);
     if (1e-4..1e7).contains(&rounded) { format!("{rounded}") } else { format!("{rounded:e}") }
 }

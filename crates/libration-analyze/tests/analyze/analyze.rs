@@ -1,10 +1,10 @@
-//! The analysis of one step, as a user gets it.
+//! Tests of the analysis of one step.
 
 use libration::catalog::Actuation;
 use libration::integrator::VelocityVerlet;
 use libration::system::Oscillator;
 use libration::{AnySystem, Hamiltonian, Integrator, Method, State};
-use libration_analyze::analyze::{Analysis, AnalyzeError, Criteria, Request, Timing, analyze};
+use libration_analyze::{Analysis, AnalyzeError, Criteria, Request, Timing, analyze};
 
 pub(crate) fn request(system: &str, method: Method, dt: f64, q: &[f64], v: &[f64]) -> Request {
     let system = AnySystem::build(system, &[] as &[(&str, f64)]).unwrap();
@@ -213,7 +213,7 @@ fn a_nonlinear_step_is_symplectic_about_every_state_if_the_method_is() {
 #[test]
 fn a_nonlinear_answer_says_that_it_is_a_linearisation() {
     let answer = analyze(&request("pendulum", Method::Rk4, 0.01, &[1.0], &[0.0])).unwrap();
-    assert!(!answer.about.linear);
+    assert!(!answer.request.linear);
     assert!(json(&answer)["note"].as_str().unwrap().contains("linearisation"));
 }
 

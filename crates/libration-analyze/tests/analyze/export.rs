@@ -1,4 +1,4 @@
-//! What is written reads back as the same bits.
+//! Tests that exported tables are read as the same bits.
 
 use bytes::Bytes;
 use half::{bf16, f16};

@@ -1,10 +1,8 @@
-//! How loops grow whose commands are lost, beside a NumPy program that knows nothing of Libration.
+//! Tests of the growth of loops with losses against an independent NumPy program.
 
 use libration::catalog;
 use libration::control::{Feedback, Jitter};
-use libration_analyze::analyze::{
-    Criteria, GrowthAnswer, Late, Request, Stepping, Timing, analyze,
-};
+use libration_analyze::{Criteria, LatencyOption, LoopGrowth, Request, Stepping, Timing, analyze};
 use serde_json::Value;
 
 /// A case of `../reference/loops.json`, which `tools/loop_reference.py` made.
@@ -25,7 +23,7 @@ fn request(case: &Value) -> Request {
     let gains = &case["feedback"];
     let timing = Timing {
         feedback: Some(Feedback { position: number(&gains[0]), velocity: number(&gains[1]) }),
-        latency: Some(Late::Steps(number(&case["latency_steps"]))),
+        latency: Some(LatencyOption::Steps(number(&case["latency_steps"]))),
         jitter,
         loss: Some(number(&case["loss"])),
         ..Timing::default()
@@ -43,7 +41,7 @@ fn request(case: &Value) -> Request {
     }
 }
 
-fn growth(request: &Request) -> Option<GrowthAnswer> {
+fn growth(request: &Request) -> Option<LoopGrowth> {
     analyze(request).unwrap().timing.unwrap().growth
 }
 

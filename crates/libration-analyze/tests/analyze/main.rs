@@ -1,4 +1,4 @@
-//! Analyses and trajectories of systems that are chosen at run time.
+//! Tests of analyses and trajectories of systems chosen at run time.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,9 +1,9 @@
-//! What a trajectory that overflows says of the reason.
+//! Tests of the causes of overflows.
 
 use libration::catalog::Actuation;
 use libration::{AnySystem, Method};
-use libration_analyze::analyze::Stepping;
-use libration_analyze::trajectory::{Copies, Ending, FloatType, Request, simulate};
+use libration_analyze::Stepping;
+use libration_analyze::trajectory::{EnsembleOptions, FloatType, Outcome, Request, simulate};
 
 /// The report's oscillator, or another system with these parameters.
 fn request(system: &str, parameters: &[(&str, f64)], method: Method, dt: f64) -> Request {
@@ -17,7 +17,7 @@ fn request(system: &str, parameters: &[(&str, f64)], method: Method, dt: f64) ->
         q: vec![1.0],
         v: vec![0.0],
         every: 30_000,
-        copies: None,
+        ensemble: None,
         timing: Default::default(),
         record: None,
         seed: 0,
@@ -26,10 +26,10 @@ fn request(system: &str, parameters: &[(&str, f64)], method: Method, dt: f64) ->
 
 /// The reason that the trajectory ends; none if it does not.
 fn reason(request: &Request) -> Option<String> {
-    match simulate(request).unwrap().ending {
-        Ending::Whole => None,
-        Ending::Stopped(stopped) => Some(stopped.reason),
-        Ending::NotFinite { reason, .. } => Some(reason.unwrap_or_default()),
+    match simulate(request).unwrap().outcome {
+        Outcome::Complete => None,
+        Outcome::Diverged(stopped) => Some(stopped.reason),
+        Outcome::NotFinite { reason, .. } => Some(reason.unwrap_or_default()),
     }
 }
 
@@ -38,10 +38,10 @@ fn the_limit_of_a_method_on_an_oscillator_is_named_with_the_step_that_it_allows(
     let of = |method, dt| request("oscillator", &[("omega2", 10.0)], method, dt);
     // ω = √10, so that the limits 2, 2√2 and 1.5734 of ωΔt are at Δt = 0.63245, 0.89442 and 0.49755.
     for (method, dt, said, below) in [
-        (Method::VelocityVerlet, 0.7, "ωΔt = 2.21 is beyond velocity-verlet's limit 2", 0.632),
-        (Method::SymplecticEuler, 1.0, "ωΔt = 3.16 is beyond symplectic-euler's limit 2", 0.632),
-        (Method::Rk4, 0.9, "ωΔt = 2.85 is beyond rk4's limit 2.83", 0.894),
-        (Method::Yoshida4, 0.51, "ωΔt = 1.61 is beyond yoshida4's limit 1.57", 0.497),
+        (Method::VelocityVerlet, 0.7, "ωΔt = 2.21 exceeds velocity-verlet's limit 2", 0.632),
+        (Method::SymplecticEuler, 1.0, "ωΔt = 3.16 exceeds symplectic-euler's limit 2", 0.632),
+        (Method::Rk4, 0.9, "ωΔt = 2.85 exceeds rk4's limit 2.83", 0.894),
+        (Method::Yoshida4, 0.51, "ωΔt = 1.61 exceeds yoshida4's limit 1.57", 0.497),
     ] {
         let found = reason(&of(method, dt)).unwrap();
         let wanted = format!("the state stopped being finite: {said}; choose --dt below {below}");
@@ -56,7 +56,7 @@ fn a_damped_step_has_a_limit_of_its_own() {
     let parameters = [("omega2", 10.0), ("gamma", 1.0)];
     let of = |dt| request("damped-oscillator", &parameters, Method::ExplicitEuler, dt);
     let found = reason(&of(0.2)).unwrap();
-    let wanted = "Δt = 0.2 s is beyond explicit-euler's limit 0.1 s; choose --dt below 0.1";
+    let wanted = "Δt = 0.2 s exceeds explicit-euler's limit 0.1 s; choose --dt below 0.1";
     assert!(found.ends_with(wanted), "{found}");
     assert_eq!(reason(&of(0.0999)), None);
 }
@@ -93,7 +93,8 @@ fn a_nonlinear_system_is_judged_by_its_linearisation_at_the_start_or_not_at_all(
     let parameters = [("alpha", 1.0), ("beta", 100.0)];
     let stiff = request("duffing", &parameters, Method::Leapfrog, 0.1);
     let found = reason(&Request { q: vec![10.0], ..stiff }).unwrap();
-    let wanted = "linearised at the start, ωΔt = 17.3 is beyond leapfrog's limit 2; choose --dt below 0.0115";
+    let wanted =
+        "linearised at the start, ωΔt = 17.3 exceeds leapfrog's limit 2; choose --dt below 0.0115";
     assert!(found.ends_with(wanted), "{found}");
     // Beyond its energy of escape the exact solution leaves for infinity as well.
     let (q, v) = (vec![0.0, 2.0], vec![0.0, 1.0]);
@@ -103,10 +104,10 @@ fn a_nonlinear_system_is_judged_by_its_linearisation_at_the_start_or_not_at_all(
 
 #[test]
 fn several_trajectories_have_the_reason_of_one() {
-    let copies = Some(Copies { count: 3, spread: 0.1, threads: 1, instructions: None });
+    let ensemble = Some(EnsembleOptions { count: 3, spread: 0.1, threads: 1, instructions: None });
     let of = |dt| request("oscillator", &[("omega2", 10.0)], Method::VelocityVerlet, dt);
-    let found = reason(&Request { copies, ..of(0.7) }).unwrap();
-    assert_eq!(found, "ωΔt = 2.21 is beyond velocity-verlet's limit 2; choose --dt below 0.632");
+    let found = reason(&Request { ensemble, ..of(0.7) }).unwrap();
+    assert_eq!(found, "ωΔt = 2.21 exceeds velocity-verlet's limit 2; choose --dt below 0.632");
 }
 
 #[test]
@@ -135,6 +136,6 @@ fn recorded_steps_beyond_the_limit_of_the_method_are_named_with_their_mean() {
     let even = request("oscillator", &[("omega2", 10.0)], Method::VelocityVerlet, 0.1);
     let slow = Request { record: Some(vec![7.0; 3000]), steps: 3000, every: 3000, ..even };
     let found = reason(&slow).unwrap();
-    let wanted = "of the mean recorded step, ωΔt = 2.21 is beyond velocity-verlet's limit 2; choose --dt below 0.0903";
+    let wanted = "at the mean recorded step, ωΔt = 2.21 exceeds velocity-verlet's limit 2; choose --dt below 0.0903";
     assert!(found.ends_with(wanted), "{found}");
 }

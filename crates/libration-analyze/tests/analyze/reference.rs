@@ -1,4 +1,4 @@
-//! A million steps against the orbits of exact arithmetic.
+//! Tests of a million steps against exact arithmetic.
 
 use libration::catalog::Actuation;
 use libration::{AnySystem, Method};
@@ -65,7 +65,7 @@ fn a_million_steps_stay_within_the_rounding_bound() {
             q: start,
             v: rest,
             every,
-            copies: None,
+            ensemble: None,
             timing: Default::default(),
             record: None,
             seed: 0,

@@ -1,7 +1,7 @@
-//! The time steps at which a damped oscillator is stable, beside a NumPy program that scans for them.
+//! Tests of stability windows of a damped oscillator against a NumPy scan.
 
 use libration::{AnySystem, Method};
-use libration_analyze::analyze::{Request, analyze};
+use libration_analyze::{Request, analyze};
 use serde_json::Value;
 
 use super::analyze::request;
@@ -64,7 +64,7 @@ fn textbook_verlet_is_said_to_be_another_method_where_forces_depend_on_velocitie
         };
         analyze(&Request { system, ..request(system.name(), method, 0.01, q, v) })
             .unwrap()
-            .about
+            .request
             .note
     };
     for system in ["damped-oscillator", "driven-oscillator"] {

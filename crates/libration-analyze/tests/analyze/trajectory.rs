@@ -1,15 +1,16 @@
-//! Trajectories as tables.
+//! Tests of trajectories as tables.
 
 use std::sync::atomic::AtomicBool;
 
 use libration::catalog::Actuation;
 use libration::control::Jitter;
 use libration::{AnySystem, Method, catalog};
-use libration_analyze::analyze::{Stepping, Timing};
 use libration_analyze::export::Values;
 use libration_analyze::trajectory::{
-    Copies, Ending, FloatType, Format, Request, Trajectory, TrajectoryError, simulate, write,
+    EnsembleOptions, FloatType, Format, Outcome, Request, Trajectory, TrajectoryError, simulate,
+    write,
 };
+use libration_analyze::{Stepping, Timing};
 
 fn request(system: &str, method: Method, dt: f64, steps: u64) -> Request {
     let system = AnySystem::build(system, &[] as &[(&str, f64)]).unwrap();
@@ -25,7 +26,7 @@ fn request(system: &str, method: Method, dt: f64, steps: u64) -> Request {
         q,
         v,
         every: 1,
-        copies: None,
+        ensemble: None,
         timing: Default::default(),
         record: None,
         seed: 0,
@@ -51,7 +52,7 @@ fn the_start_and_the_last_step_are_always_there() {
     let of = |n, every| {
         let request = Request { every, ..request("oscillator", Method::Rk4, 0.01, n) };
         let trajectory = simulate(&request).unwrap();
-        assert_eq!(trajectory.ending, Ending::Whole);
+        assert_eq!(trajectory.outcome, Outcome::Complete);
         assert_eq!(trajectory.table.rows() as u64, request.rows());
         steps(&trajectory)
     };
@@ -83,8 +84,8 @@ fn time_is_the_step_times_dt_to_the_bit() {
 fn exact_steps_go_where_the_solution_is_alone_and_in_numbers() {
     let stepping = Stepping::Exact;
     let one = Request { stepping, ..request("oscillator", Method::Rk4, 0.3, 1000) };
-    let copies = Some(Copies { count: 3, spread: 0.0, threads: 1, instructions: None });
-    for request in [one.clone(), Request { copies, ..one.clone() }] {
+    let ensemble = Some(EnsembleOptions { count: 3, spread: 0.0, threads: 1, instructions: None });
+    for request in [one.clone(), Request { ensemble, ..one.clone() }] {
         let trajectory = simulate(&request).unwrap();
         let omega = request.system.parameters()[0].1.sqrt();
         for (q, t) in f64s(&trajectory, "q0").into_iter().zip(f64s(&trajectory, "t")) {
@@ -138,7 +139,7 @@ fn an_overflow_ends_the_rows_at_the_last_finite_state() {
         let request = request("oscillator", Method::ExplicitEuler, 0.1, 100_000);
         let request = Request { every, ..request };
         let trajectory = simulate(&request).unwrap();
-        let Ending::Stopped(stopped) = &trajectory.ending else { panic!("it overflows") };
+        let Outcome::Diverged(stopped) = &trajectory.outcome else { panic!("it overflows") };
         assert_eq!((stopped.step, stopped.t), (step, step as f64 * 0.1));
         assert_eq!(steps(&trajectory).last(), Some(&(step - 1)));
         assert!(f64s(&trajectory, "q0").iter().all(|q| q.is_finite()));
@@ -167,7 +168,7 @@ fn every_system_runs_in_every_float_type_and_format() {
             assert_eq!(units, request.column_units());
             for format in Format::ALL {
                 let mut bytes = Vec::new();
-                assert_eq!(write(&request, format, &mut bytes, &never).unwrap(), Ending::Whole);
+                assert_eq!(write(&request, format, &mut bytes, &never).unwrap(), Outcome::Complete);
                 assert!(bytes.len() > 9 * (2 * d + 3));
             }
         }
@@ -211,17 +212,18 @@ fn a_set_flag_stops_the_work() {
     assert!(matches!(error, TrajectoryError::Interrupted));
 }
 
-const COPIES: Copies = Copies { count: 1, spread: 0.0, threads: 0, instructions: None };
+const COPIES: EnsembleOptions =
+    EnsembleOptions { count: 1, spread: 0.0, threads: 0, instructions: None };
 
 #[test]
 fn each_of_many_trajectories_has_the_rows_that_it_has_alone() {
     let alone = Request { every: 7, ..request("pendulum", Method::Yoshida4, 0.1, 30) };
-    let copies = Copies { count: 5, spread: 0.5, ..COPIES };
-    let many = simulate(&Request { copies: Some(copies), ..alone.clone() }).unwrap();
-    assert_eq!(many.ending, Ending::Whole);
+    let ensemble = EnsembleOptions { count: 5, spread: 0.5, ..COPIES };
+    let many = simulate(&Request { ensemble: Some(ensemble), ..alone.clone() }).unwrap();
+    assert_eq!(many.outcome, Outcome::Complete);
     assert_eq!(many.table.rows(), 5 * 6);
     for n in 0..5 {
-        let scale = copies.scale(n);
+        let scale = ensemble.scale(n);
         assert_eq!(scale, 0.5 + 0.25 * n as f64);
         let lone = simulate(&Request { q: vec![scale], ..alone.clone() }).unwrap();
         for name in ["q0", "v0", "energy"] {
@@ -235,12 +237,12 @@ fn each_of_many_trajectories_has_the_rows_that_it_has_alone() {
 
 #[test]
 fn one_that_overflows_is_named_and_the_others_go_on() {
-    let copies = Some(Copies { count: 3, spread: 1.0, ..COPIES });
+    let ensemble = Some(EnsembleOptions { count: 3, spread: 1.0, ..COPIES });
     let unstable = request("oscillator", Method::ExplicitEuler, 0.1, 20_000);
-    let request = Request { every: 20_000, copies, ..unstable };
+    let request = Request { every: 20_000, ensemble, ..unstable };
     let trajectory = simulate(&request).unwrap();
     // The first starts at rest in the origin, where it stays.
-    let Ending::NotFinite { count, first, reason } = &trajectory.ending else { panic!() };
+    let Outcome::NotFinite { count, first, reason } = &trajectory.outcome else { panic!() };
     assert_eq!((*count, &**first), (2, &[1, 2][..]));
     assert!(reason.as_ref().is_some_and(|why| why.contains("unstable with every time step")));
     assert_eq!(f64s(&trajectory, "q0")[3], 0.0);
@@ -254,23 +256,27 @@ fn one_that_overflows_is_named_and_the_others_go_on() {
 #[test]
 fn what_no_ensemble_can_do_is_refused_before_any_work() {
     let base = request("oscillator", Method::Rk4, 0.1, 10);
-    let of = |copies: Copies, float| {
-        let request = Request { float, copies: Some(copies), ..base.clone() };
+    let of = |ensemble: EnsembleOptions, float| {
+        let request = Request { float, ensemble: Some(ensemble), ..base.clone() };
         simulate(&request).unwrap_err().to_string()
     };
     let (f64, f16) = (FloatType::F64, FloatType::F16);
-    for (copies, float, told) in [
-        (Copies { count: 0, ..COPIES }, f64, "`count` is 0, but it must be at least 1"),
+    for (ensemble, float, told) in [
+        (EnsembleOptions { count: 0, ..COPIES }, f64, "`count` is 0, but it must be at least 1"),
         (
-            Copies { count: 1 << 40, ..COPIES },
+            EnsembleOptions { count: 1 << 40, ..COPIES },
             f64,
             "`count` is 1099511627776, but it must be at most",
         ),
-        (Copies { count: 2, spread: f64::INFINITY, ..COPIES }, f64, "`spread` is inf"),
-        (Copies { count: 2, spread: 1e300, ..COPIES }, FloatType::F32, "`spread` is 1e300"),
+        (EnsembleOptions { count: 2, spread: f64::INFINITY, ..COPIES }, f64, "`spread` is inf"),
+        (
+            EnsembleOptions { count: 2, spread: 1e300, ..COPIES },
+            FloatType::F32,
+            "`spread` is 1e300",
+        ),
         (COPIES, f16, "`float` is f16, but it must be f64 or f32"),
     ] {
-        let error = of(copies, float);
+        let error = of(ensemble, float);
         assert!(error.contains(told), "{error}");
     }
 }

@@ -1,4 +1,4 @@
-//! What `advise` takes.
+//! Arguments of `advise`.
 
 use std::path::PathBuf;
 
@@ -6,28 +6,26 @@ use clap::Args;
 use libration::catalog;
 use libration::control::{Feedback, Jitter, LqrWeights};
 use libration_advise::{Control, Law, Measure, Request, Tolerance};
-use libration_analyze::analyze::Late;
-use libration_settings::setting::Setting;
+use libration_analyze::LatencyOption;
+use libration_settings::initial_value_problem::InitialValueProblem;
 
 use super::SystemArgs;
 use super::timing::{feedback, finite, latency, law, weights};
 use crate::error::Failure;
 
-/// What `advise` takes.
+/// Arguments of `advise`.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES, override_usage = USAGE, args_override_self = true)]
 pub(crate) struct AdviseArgs {
-    /// File of what is asked; it has more than the flags, such as controllers that remember
-    #[arg(long, value_name = "FILE", conflicts_with_all = ASKED)]
+    /// Request file; it has keys without an option, such as controllers with memory
+    #[arg(long, value_name = "FILE", conflicts_with_all = REQUEST_OPTIONS)]
     pub(crate) config: Option<PathBuf>,
     #[command(flatten)]
     system: Option<SystemArgs>,
-    /// Close the loop with the command −KP·q − KD·v: a force where --set m= is given (gains in N/m and N·s/m), else an
-    /// acceleration (gains in s⁻² and s⁻¹);
-    /// without it the system is simulated as it is
+    /// Gains of the feedback −KP·q − KD·v [default: no loop; in s⁻² and s⁻¹, with --set m= in N/m and N·s/m]
     #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
     feedback: Option<Feedback>,
-    /// Between two samples of the loop, in s
+    /// Sample period of the loop in s
     #[arg(
         long,
         value_name = "SECONDS",
@@ -36,15 +34,15 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     period: f64,
-    /// How late a command arrives, as 0.015 (in s) or 1.5steps, of --period
+    /// Latency of a command: 0.015 (in s) or 1.5steps (of --period) [default: 0]
     #[arg(
         long,
         value_name = "TIME",
         value_parser = latency,
         allow_hyphen_values = true
     )]
-    latency: Option<Late>,
-    /// The law of sample times with its relative rms up to 1, as gaussian:0.05 or uniform:0.05
+    latency: Option<LatencyOption>,
+    /// Jitter of the period: gaussian or uniform, and its rms relative to the period (0 to 1), as gaussian:0.05
     #[arg(
         long,
         value_name = "LAW:RMS",
@@ -52,10 +50,10 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     jitter: Option<Jitter>,
-    /// Time stamps that were measured, in place of --jitter: what `measure-jitter --output` writes, or a log
+    /// File of measured time stamps in place of --jitter, from `measure-jitter --output` or a log
     #[arg(long, value_name = "FILE", conflicts_with_all = ["jitter", "skew"])]
     pub(crate) jitter_file: Option<PathBuf>,
-    /// The part by which the clock is slow, as 1e-4; negative where it is fast
+    /// Relative clock error, as 1e-4; positive: slow, negative: fast
     #[arg(
         long,
         value_name = "PART",
@@ -63,7 +61,7 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     skew: Option<f64>,
-    /// The probability that a command is lost
+    /// Probability that a command is lost (0 to below 1)
     #[arg(
         long,
         value_name = "P",
@@ -71,7 +69,7 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     loss: Option<f64>,
-    /// What the loop costs under noise: the mean of QQ·q² + VV·v² + UU·u². If nothing is said that of its energy, ½(ω²q² + v²)
+    /// Weights of the mean cost QQ·q² + VV·v² + UU·u² under noise [default: the energy, ½(ω²q² + v²)]
     #[arg(
         long,
         value_name = "QQ,VV,UU",
@@ -80,7 +78,7 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     cost_weights: Option<LqrWeights>,
-    /// From so far off the operating point --q the loop must return, in m or rad
+    /// Largest deviation from --q from which the loop must return, in m or rad
     #[arg(
         long,
         value_name = "FAR",
@@ -90,7 +88,7 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     deviation: f64,
-    /// What is tolerated, of energy, phase, trajectory or cost
+    /// Tolerance: energy, phase, trajectory or cost, and its largest error
     #[arg(
         long,
         value_name = "OF=MOST",
@@ -99,7 +97,7 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     tolerance: ToleranceArg,
-    /// For how long, in s
+    /// Duration over which --tolerance holds, in s
     #[arg(
         long,
         value_name = "SECONDS",
@@ -108,19 +106,19 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     horizon: f64,
-    /// File for a page with all of it and a map of stability, as HTML
+    /// Write an HTML page with a stability map to FILE
     #[arg(long, value_name = "FILE")]
     pub(crate) page: Option<PathBuf>,
-    /// Print JSON, with all digits
+    /// Print the result as JSON, with all digits
     #[arg(long)]
     pub(crate) json: bool,
-    /// Print a file of what can be asked, with comments, and stop
-    #[arg(long, conflicts_with_all = ["config", "page", "json", "jitter_file"], conflicts_with_all = ASKED)]
+    /// Print a request file with comments, and exit
+    #[arg(long, conflicts_with_all = ["config", "page", "json", "jitter_file"], conflicts_with_all = REQUEST_OPTIONS)]
     pub(crate) print_config: bool,
 }
 
-/// The flags that a file takes the place of.
-const ASKED: [&str; 10] = [
+/// Options that conflict with a request file.
+const REQUEST_OPTIONS: [&str; 10] = [
     "system",
     "set",
     "q",
@@ -146,26 +144,26 @@ Examples:
   libration advise --print-config > mine.toml
   libration advise --config mine.toml --jitter-file robot.csv --page budget.html
 
-Limits are those of the loop in exact steps of its period, linearised at --q; what acts together is simulated as well.
-Exit code 1 if the loop does not stand what is stated, costs more than is tolerated, or no integrator is
-accurate enough.";
+The limits are those of the loop in exact steps of its period, linearised at --q. All imperfections together are
+also simulated. The exit code is 1 if the loop is unstable with the stated values, if it exceeds the tolerance, or
+if no integrator is accurate enough.";
 
-/// What is tolerated.
+/// The value of `--tolerance`.
 #[derive(Clone, Copy, Debug)]
 struct ToleranceArg(Tolerance);
 
 impl AdviseArgs {
-    /// What is asked by flags.
+    /// Returns the request that the options describe.
     pub(crate) fn request(&self) -> Result<Request, Failure> {
         let Some(system) = &self.system else {
             return Err(Failure::usage(
-                "nothing is asked: it must be --config FILE, or --system NAME with what else is to be said of it",
+                "no request is given; expected --config FILE, or --system NAME and its options",
             ));
         };
-        let Setting { system, actuation, q, mut v } = {
+        let InitialValueProblem { system, actuation, q, mut v } = {
             let mut given = system.clone();
             one_degree_of_freedom(&given.system, self.feedback)?;
-            // A loop is held where it is: at the origin, if nothing is said.
+            // The operating point of a loop is the origin by default.
             if self.feedback.is_some() && given.q.is_none() {
                 given.q = Some(super::number::Coordinates::origin());
             }
@@ -185,7 +183,7 @@ impl AdviseArgs {
             weights: self.cost_weights,
             deviation: self.deviation,
         });
-        self.instead(Request {
+        self.with_timing(Request {
             system,
             actuation,
             q,
@@ -195,12 +193,12 @@ impl AdviseArgs {
             horizon: self.horizon,
             rollout: [4096, 1024],
             map: false,
-            asked_by: String::new(),
+            invocation: String::new(),
         })
     }
 
-    /// What is asked, with that in place of it which flags say is wrong with the loop.
-    pub(crate) fn instead(&self, mut request: Request) -> Result<Request, Failure> {
+    /// Returns the request with the timing options in place of its own.
+    pub(crate) fn with_timing(&self, mut request: Request) -> Result<Request, Failure> {
         let Some(control) = &mut request.control else {
             let given = [
                 (self.latency.is_some(), "latency"),
@@ -210,14 +208,14 @@ impl AdviseArgs {
             ];
             return match given.into_iter().find(|(given, _)| *given) {
                 Some((_, flag)) => Err(Failure::usage(format!(
-                    "--{flag} is given, but there is no loop: it needs --feedback, or a controller in the file"
+                    "--{flag} is given, but there is no loop; expected --feedback, or a controller in the file"
                 ))),
                 None => Ok(request),
             };
         };
         control.latency = match self.latency {
-            Some(Late::Seconds(seconds)) => seconds,
-            Some(Late::Steps(steps)) => steps * control.period,
+            Some(LatencyOption::Seconds(seconds)) => seconds,
+            Some(LatencyOption::Steps(steps)) => steps * control.period,
             None => control.latency,
         };
         match (self.jitter, &control.record) {
@@ -227,7 +225,7 @@ impl AdviseArgs {
             (Some(jitter), None) => control.jitter = jitter,
             (None, Some(_)) if self.skew.is_some() => {
                 return Err(Failure::usage(
-                    "--skew is given, but the time stamps of the file say how far the clock is off",
+                    "--skew is given, but the time stamps of the file determine the skew",
                 ));
             }
             (None, _) => {}
@@ -238,7 +236,7 @@ impl AdviseArgs {
     }
 }
 
-/// Fails where a loop is to be closed around a system with several degrees of freedom.
+/// Fails if `feedback` is given for a system with several degrees of freedom.
 fn one_degree_of_freedom(system: &str, feedback: Option<Feedback>) -> Result<(), Failure> {
     match catalog::find(system) {
         Ok(entry) if feedback.is_some() && !entry.dimensions.contains(&1) => {
@@ -252,12 +250,12 @@ fn one_degree_of_freedom(system: &str, feedback: Option<Feedback>) -> Result<(),
 }
 
 fn number(text: &str) -> Result<f64, String> {
-    finite(text).ok_or_else(|| "it must be a finite number".to_owned())
+    finite(text).ok_or_else(|| "expected a finite number".to_owned())
 }
 
 fn tolerance(text: &str) -> Result<ToleranceArg, String> {
     let rule =
-        "it must be one of energy, phase, trajectory and cost, and how much of it, as energy=1e-6";
+        "expected energy, phase, trajectory or cost, and a number greater than 0, as energy=1e-6";
     let (name, most) = text.split_once('=').ok_or(rule)?;
     let of = Measure::ALL.into_iter().find(|measure| measure.name() == name.trim()).ok_or(rule)?;
     let most = finite(most).filter(|most| *most > 0.0).ok_or(rule)?;

@@ -1,4 +1,4 @@
-//! What `analyze` takes.
+//! Arguments of `analyze`.
 
 use clap::Args;
 
@@ -6,7 +6,7 @@ use super::number::{criterion, forecast_steps};
 use super::timing::{CostArgs, TimingArgs};
 use super::{StepArgs, SystemArgs};
 
-/// What theory says of one step.
+/// Arguments of `analyze`.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct AnalyzeArgs {
@@ -18,7 +18,7 @@ pub(crate) struct AnalyzeArgs {
     pub(crate) timing: TimingArgs,
     #[command(flatten)]
     pub(crate) cost: CostArgs,
-    /// Number of steps over which the largest energy drift is taken; of a linear system up to 1e15
+    /// Number of steps for the largest energy drift (linear systems: up to 1e15)
     #[arg(
         long,
         value_name = "N",
@@ -27,19 +27,16 @@ pub(crate) struct AnalyzeArgs {
         allow_hyphen_values = true
     )]
     pub(crate) steps: u64,
-    /// Also say the largest dt whose relative energy drift stays below this over --steps, whatever phase
-    /// of its orbit a run visits (oscillator)
+    /// Print the largest dt with a relative energy drift below DRIFT over --steps (oscillator; worst phase of the orbit)
     #[arg(long, value_name = "DRIFT", value_parser = criterion, allow_hyphen_values = true)]
     pub(crate) max_drift: Option<f64>,
-    /// Also say the largest dt at which |q| stays below this over --steps, whatever phase of its orbit a
-    /// run visits (oscillator)
+    /// Print the largest dt with |q| below LENGTH over --steps (oscillator; worst phase of the orbit)
     #[arg(long, value_name = "LENGTH", value_parser = criterion, allow_hyphen_values = true)]
     pub(crate) max_amplitude: Option<f64>,
-    /// Also say the largest dt whose error stays below this part of the amplitude over --steps, from any
-    /// start (oscillator)
+    /// Print the largest dt with an error below ERROR times the amplitude over --steps (oscillator; any start)
     #[arg(long, value_name = "ERROR", value_parser = criterion, allow_hyphen_values = true)]
     pub(crate) max_error: Option<f64>,
-    /// Print JSON, with all digits
+    /// Print the result as JSON, with all digits
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -52,14 +49,14 @@ Examples:
                     --feedback 10,2 --latency 0.015 --jitter gaussian:0.1
   libration analyze --system pendulum --q 2.5 --integrator velocity-verlet --dt 0.05 --json
 
-Of a nonlinear system, matrix and eigenvalues are those of one step linearised about --q, --v.
-With --feedback rows stand in blocks: what holds of one step of the plant without feedback, of the closed
-loop, and of the closed loop under jitter, skew and losses. In JSON `spectral_radius` is that of the plant,
-`closed_loop_spectral_radius` that of the loop with its latency.
-Between whole steps critical latency and stable latencies follow the textbook's λᵈ; the end of
-split steps is where a command that arrives within a step splits it, as the spectral radius of the loop
-and simulations have it. The cost is the stationary mean under white noise of the acceleration of unit
-intensity: of exact steps over continuous time, of an integrator over its steps, with the noise
-held through each; half the clocks of --skew are slow by its rms, half fast. Second moments are those of
-the loop with its latency, jitter and losses, of a clock at its nominal rate; they are known up to a
-latency of 90 steps. The exponent of a typical run is not known with a latency or losses.";
+For a nonlinear system, the matrix and the eigenvalues are those of one step linearised about --q, --v.
+With --feedback the rows form blocks: one step of the plant without feedback, the closed loop, and the
+closed loop with jitter, skew and losses. In JSON, `spectral_radius` is that of the plant and
+`closed_loop_spectral_radius` is that of the loop with its latency.
+StableLatencies latency and stable latencies between whole steps use λᵈ, as textbooks do. The limit \"of split
+steps\" lets a command that arrives within a step split that step, as the spectral radius of the loop and
+simulations do. The cost is the stationary mean under white noise of the acceleration, of unit intensity:
+over continuous time for exact steps, else over the steps of the integrator, with constant noise in each.
+With --skew half of the clocks are slow by its rms, half are fast. Second moments include latency, jitter
+and losses, for a clock at its nominal rate and a latency of at most 90 steps. The exponent of a typical
+run is not available with a latency or losses.";

@@ -1,4 +1,4 @@
-//! What `bench` takes.
+//! Arguments of `bench`.
 
 use std::path::PathBuf;
 
@@ -11,14 +11,14 @@ use libration_study_batch::bench::{BenchFloat, Implementation, RolloutCase, Roll
 use super::number::count;
 use super::{efforts, simd};
 
-/// What `bench` takes.
+/// Arguments of `bench`.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct BenchArgs {
-    /// Time these implementations alone [default: all of them, and what limits them]
+    /// Measure only these implementations [default: all, and the limits of the machine]
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = implementations())]
     pub(crate) implementation: Vec<Implementation>,
-    /// Numbers of trajectories for --implementation [default: 1000, 100000 and 10000000]
+    /// Numbers of trajectories for --implementation [default: 1000,100000,10000000]
     #[arg(
         long,
         value_name = "N",
@@ -29,7 +29,7 @@ pub(crate) struct BenchArgs {
         allow_hyphen_values = true
     )]
     pub(crate) count: Vec<usize>,
-    /// Float types for --implementation [default: both]
+    /// Float types for --implementation [default: f32,f64]
     #[arg(
         long,
         value_name = "TYPE",
@@ -39,10 +39,10 @@ pub(crate) struct BenchArgs {
         conflicts_with = "rollouts"
     )]
     pub(crate) float: Vec<BenchFloat>,
-    /// Time rollouts of environments, against fills of as much memory
+    /// Measure rollouts of environments, relative to a fill of the same memory
     #[arg(long, conflicts_with = "implementation")]
     pub(crate) rollouts: bool,
-    /// Environments and horizons for --rollouts, as in 4096x1024 [default: those of the report, and a swing-up]
+    /// Environments × horizon for --rollouts, as 4096x1024 [default: the cases of the report and a swing-up]
     #[arg(
         long,
         value_name = "NxT",
@@ -52,34 +52,34 @@ pub(crate) struct BenchArgs {
         allow_hyphen_values = true
     )]
     pub(crate) case: Vec<RolloutCase>,
-    /// Time replay buffers, data sets and checkpoints, against copies of as many bytes in memory and to the disk
+    /// Measure replay buffers, data sets and checkpoints, relative to copies of the same bytes
     #[arg(long, conflicts_with_all = ["implementation", "rollouts"])]
     pub(crate) storage: bool,
-    /// Where --storage writes [default: the system's folder for temporary files]
+    /// Folder for the files of --storage [default: the folder for temporary files]
     #[arg(long, value_name = "DIR", requires = "storage")]
     pub(crate) folder: Option<PathBuf>,
-    /// Instruction set [default: the widest of this processor, or LIBRATION_SIMD]
+    /// Instruction set [default: LIBRATION_SIMD, or the widest of this processor]
     #[arg(long, value_name = "SET", value_parser = simd::instruction_sets())]
     pub(crate) simd: Option<InstructionSet>,
-    /// How much work the run may take
+    /// Effort of the run
     #[arg(long, value_parser = efforts(), default_value = "quick")]
     pub(crate) effort: Effort,
-    /// Print JSON
+    /// Print the result as JSON
     #[arg(long)]
     pub(crate) json: bool,
 }
 
 const EXAMPLES: &str = "\
 Examples:
-  libration bench                                  what this machine can do, and what limits it
+  libration bench                                  speed of this machine and its limits
   libration bench --effort standard --json > machine.json
   libration bench --implementation fused,threads --count 1e3,1e5,1e7 --float f32
-  libration bench --rollouts --effort standard     how near to the memory rollouts come
-  libration bench --storage --folder /data         how near to the disk data sets come
+  libration bench --rollouts --effort standard     rollouts relative to the memory bandwidth
+  libration bench --storage --folder /data         data sets relative to the disk
 
 All implementations advance harmonic oscillators by symplectic Euler and give the same bits.
-Rates are medians; of each it is said how far the quartiles of its repeats lie apart.
-Exit code 1 if a ratio of speeds misses its prediction.";
+Rates are medians; spread is the distance between the quartiles of the repetitions.
+The exit code is 1 if a ratio of speeds misses its prediction.";
 
 fn implementations() -> impl TypedValueParser<Value = Implementation> {
     let value = |one: Implementation| PossibleValue::new(one.name()).help(one.summary());
@@ -92,9 +92,9 @@ fn floats() -> impl TypedValueParser<Value = BenchFloat> {
         .try_map(|name| BenchFloat::from_name(&name).ok_or("unknown float type"))
 }
 
-/// A case of so many environments over such a horizon.
+/// Parses `ENVIRONMENTSxHORIZON`.
 fn rollout_case(text: &str) -> Result<RolloutCase, String> {
-    let shape = || "it must be environments × horizon, as in 4096x1024".to_owned();
+    let shape = || "expected environments × horizon, as 4096x1024".to_owned();
     let (environments, horizon) = text.split_once(['x', '×']).ok_or_else(shape)?;
     let [environments, horizon] = [environments, horizon].map(count);
     let (environments, horizon) = (environments?, horizon?);

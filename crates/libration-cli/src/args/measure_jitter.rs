@@ -1,38 +1,37 @@
-//! What `measure-jitter` takes.
+//! Arguments of `measure-jitter`.
 
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use libration_advise::wakeups::{Plan, Priority};
+use libration_advise::jitter_measurement::{Plan, Priority};
 
-/// What `measure-jitter` takes.
+/// Arguments of `measure-jitter`.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct MeasureJitterArgs {
-    /// How often the loop wakes up in a second
+    /// Rate of the loop in Hz
     #[arg(long, value_name = "HZ", default_value = "1000", allow_hyphen_values = true)]
     rate: f64,
-    /// For how many seconds, with each priority
+    /// Duration for each priority in s
     #[arg(long, value_name = "S", default_value = "10", allow_hyphen_values = true)]
     seconds: f64,
-    /// Keep all cores busy meanwhile
+    /// Keep all cores busy during the measurement
     #[arg(long)]
     load: bool,
-    /// With which priority: that of every program, one in real time (which the system must allow), or first the one and then the
-    /// other
+    /// Priority of the thread: ordinary, raised (real time; requires permission) or both in turn
     #[arg(long, value_name = "WHICH", default_value = "both")]
-    priority: Which,
-    /// File for the time stamps, of ordinary priority unless --priority says raised: CSV, with a column `time_ns`
+    priority: PriorityChoice,
+    /// Write the time stamps to FILE as CSV, with a column `time_ns` (with --priority both: those of ordinary)
     #[arg(long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Measure nothing: tell of the time stamps of a file, in seconds or nanoseconds, as a log has them
+    /// Analyze the time stamps of FILE (in s or ns) without a measurement
     #[arg(
         long,
         value_name = "FILE",
         conflicts_with_all = ["rate", "seconds", "load", "priority", "output"]
     )]
     pub(crate) from: Option<PathBuf>,
-    /// Print JSON, with all digits
+    /// Print the result as JSON, with all digits
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -45,28 +44,28 @@ Examples:
   libration simulate --system oscillator --integrator velocity-verlet --dt 0.002 --steps 29000 \
                      --time-stamps robot.csv
 
-A thread sleeps up to deadlines on a grid, by the monotonic clock, and notes when it woke up; it does nothing else.
-What it measured is a clock: `simulate --time-stamps` replays it, and so does `[jitter] time_stamps` of a configuration.";
+A thread sleeps until deadlines on a regular grid of the monotonic clock, and records the times of its wake-ups.
+`simulate --time-stamps` replays the time stamps, and so does `[jitter] time_stamps` of a configuration.";
 
 impl MeasureJitterArgs {
-    /// What is measured.
+    /// Returns the plan of the measurement.
     pub(crate) fn plan(&self) -> Plan {
         Plan { rate: self.rate, seconds: self.seconds, load: self.load }
     }
 
-    /// With which priorities, one after the other.
+    /// Returns the priorities, in the order of measurement.
     pub(crate) fn priorities(&self) -> &'static [Priority] {
         match self.priority {
-            Which::Ordinary => &[Priority::Ordinary],
-            Which::Raised => &[Priority::Raised],
-            Which::Both => &[Priority::Ordinary, Priority::Raised],
+            PriorityChoice::Ordinary => &[Priority::Ordinary],
+            PriorityChoice::Raised => &[Priority::Raised],
+            PriorityChoice::Both => &[Priority::Ordinary, Priority::Raised],
         }
     }
 }
 
-/// With which priority the loop runs.
+/// The value of `--priority`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Which {
+enum PriorityChoice {
     Ordinary,
     Raised,
     Both,

@@ -1,4 +1,4 @@
-//! The command line as types: what can be asked, and in which words.
+//! The command line as types.
 
 mod advise;
 mod analyze;
@@ -31,15 +31,15 @@ pub(crate) use simulate::SimulateArgs;
 pub(crate) use system::{StepArgs, SystemArgs};
 pub(crate) use timing::CostArgs;
 
-/// A laboratory for the stability of simulations: what theory predicts beside what was measured.
+/// A laboratory for the stability of simulations: predictions of theory and measurements.
 #[derive(Debug, Parser)]
 #[command(name = "libration", version, propagate_version = true, max_term_width = 100)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// No progress and no summary; only what fails is told
+    /// Print errors only, without progress and summary
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,
-    /// When to use colour; `auto` looks at the terminal and at NO_COLOR
+    /// Use of colour (auto: on a terminal, unless NO_COLOR is set)
     #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
     pub(crate) color: ColorChoice,
     #[command(subcommand)]
@@ -48,21 +48,21 @@ pub(crate) struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  libration lab                              every study, at the setting of the report
-  libration lab drift --effort quick --open  one study, in seconds, shown in the browser
-  libration lab --print-config > mine.toml   the setting, ready to edit
-  libration lab --config mine.toml           the studies at your own setting
+  libration lab                              all studies, with the settings of the report
+  libration lab drift --effort quick --open  one study in seconds, opened in the browser
+  libration lab --print-config > mine.toml   the configuration, ready to edit
+  libration lab --config mine.toml           all studies, with that configuration
   libration simulate --system oscillator --integrator rk4 --dt 0.01 --steps 1000
                                              a trajectory as CSV
   libration analyze --system oscillator --integrator rk4 --dt 0.01
-                                             what theory says of one step
+                                             matrix, eigenvalues and stability of one step
   libration advise --system oscillator --feedback 10,2 --period 0.01 --latency 0.02
-                                             what a loop can afford
+                                             limits of a control loop
   libration rollout --out data --transitions 1e8
                                              a data set of rollouts, as Parquet
-  libration bench                            what this machine can do
-  libration measure-jitter --rate 500        how punctual it is
-  libration list                             what there is
+  libration bench                            speed of this machine
+  libration measure-jitter --rate 500        wake-up times of a loop of 500 Hz
+  libration list                             all studies, systems and integrators
 
 Exit codes: 0 success, 1 a failed run or a finding that disagrees, 2 wrong input, 130 interrupted";
 
@@ -70,52 +70,52 @@ Exit codes: 0 success, 1 a failed run or a finding that disagrees, 2 wrong input
 pub(crate) enum Command {
     /// Run studies and write a report
     Lab(LabArgs),
-    /// Say what theory makes of one step of an integrator on a system
+    /// Analyze one step: update matrix, eigenvalues, stability and drift
     Analyze(AnalyzeArgs),
-    /// Say what can be afforded: integrator, step, float type, latency, jitter, skew and losses
+    /// Compute limits: integrator, time step, float type, latency, jitter, skew and losses
     Advise(AdviseArgs),
-    /// Simulate one trajectory and write its rows
+    /// Simulate one or many trajectories and write them as rows
     Simulate(SimulateArgs),
-    /// Write a data set of rollouts, larger than memory, and go on where it was interrupted
+    /// Write a data set of rollouts, or resume an interrupted one
     Rollout(RolloutArgs),
-    /// Read a data set again, or compute it again, and compare
+    /// Check the files of a data set, recompute it or repair it
     Verify(VerifyArgs),
-    /// Time this machine: how fast trajectories advance, and what limits them
+    /// Measure the speed of this machine and its limits
     Bench(BenchArgs),
-    /// Measure how punctual this machine is: when a real loop wakes up
+    /// Measure the jitter of a periodic loop on this machine
     MeasureJitter(MeasureJitterArgs),
     /// List studies, systems and integrators
     List(ListArgs),
-    /// Print a completion script for a shell
+    /// Print the completion script of a shell
     Completions(CompletionsArgs),
 }
 
-/// What `lab` takes.
+/// Arguments of `lab`.
 #[derive(Args, Debug)]
 #[command(after_help = LAB_EXAMPLES)]
 pub(crate) struct LabArgs {
     /// Studies to run [default: those of the configuration, or all]
     #[arg(value_name = "STUDY", value_parser = study_names())]
     pub(crate) studies: Vec<String>,
-    /// Configuration file [default: the setting of the report]
+    /// Configuration file [default: the settings of the report]
     #[arg(long, value_name = "FILE")]
     pub(crate) config: Option<PathBuf>,
-    /// Folder for the report
+    /// Output folder of the report
     #[arg(long, value_name = "DIR", default_value = "libration-report")]
     pub(crate) out: PathBuf,
-    /// How much work the run may take [default: that of the configuration, or standard]
+    /// Effort of the run [default: that of the configuration, or standard]
     #[arg(long, value_parser = efforts())]
     pub(crate) effort: Option<Effort>,
-    /// Instruction set of what is timed [default: that of the configuration, or LIBRATION_SIMD]
+    /// Instruction set of the kernels [default: that of the configuration, or LIBRATION_SIMD]
     #[arg(long, value_name = "SET", value_parser = simd::instruction_sets())]
     pub(crate) simd: Option<InstructionSet>,
-    /// Show the report in the browser when it is ready
+    /// Open the report in the browser
     #[arg(long)]
     pub(crate) open: bool,
-    /// Print the default configuration, with comments, and stop
+    /// Print the default configuration with comments, and exit
     #[arg(long, conflicts_with_all = ["schema", "config", "studies", "effort", "simd", "open"])]
     pub(crate) print_config: bool,
-    /// Print a JSON schema of the configuration, for editors, and stop
+    /// Print the JSON schema of the configuration, and exit
     #[arg(long, conflicts_with_all = ["config", "studies", "effort", "simd", "open"])]
     pub(crate) schema: bool,
 }
@@ -126,38 +126,38 @@ Examples:
   libration lab spectrum drift --out my-report
   libration lab --config mine.toml --effort thorough
 
-The folder gets report.html, results.json, figures/*.svg and data/*.parquet when all studies have ended; they
-replace those of an earlier run. Until then they are in its folder libration-unfinished, and stay there if an
-interrupted run would replace a complete report.";
+The output folder contains report.html, results.json, figures/*.svg and data/*.parquet. They replace those of an
+earlier run when all studies have ended. Until then they are in the subfolder libration-unfinished. An interrupted
+run leaves them there if the output folder contains a complete report.";
 
-/// What `list` takes.
+/// Arguments of `list`.
 #[derive(Args, Debug)]
 pub(crate) struct ListArgs {
-    /// Print JSON
+    /// Print the result as JSON
     #[arg(long)]
     pub(crate) json: bool,
 }
 
-/// What `completions` takes.
+/// Arguments of `completions`.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Example:\n  libration completions bash > ~/.local/share/bash-completion/completions/libration"
 )]
 pub(crate) struct CompletionsArgs {
-    /// The shell
+    /// Name of the shell
     pub(crate) shell: clap_complete::Shell,
 }
 
-/// The arguments of this process. Help and version end up here as failures with exit code 0.
+/// Parses the arguments of this process. Help and version are failures with exit code 0.
 pub(crate) fn parse() -> Result<Arguments, Failure> {
-    let words: Vec<OsString> = std::env::args_os().collect();
-    let command = Arguments::command().color(asked_color(&words));
-    let matches = command.try_get_matches_from(words)?;
+    let args: Vec<OsString> = std::env::args_os().collect();
+    let command = Arguments::command().color(color_choice(&args));
+    let matches = command.try_get_matches_from(args)?;
     Ok(Arguments::from_arg_matches(&matches)?)
 }
 
-/// The colour that is asked for, even if the rest of the command line is wrong.
-fn asked_color(words: &[OsString]) -> ColorChoice {
+/// Returns the value of `--color`, even if the rest of the command line is wrong.
+fn color_choice(words: &[OsString]) -> ColorChoice {
     let words: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
     let next = words.iter().skip(1).map(AsRef::as_ref).chain([""]);
     let choices =

@@ -1,15 +1,15 @@
-//! Numbers as flags take them.
+//! Parsers of numbers.
 
 use std::fmt;
 
 use libration_settings::limits;
 
-/// The coordinates of one flag.
+/// The coordinates of one option.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Coordinates(pub(super) Vec<f64>);
 
 impl Coordinates {
-    /// Of one degree of freedom.
+    /// Returns the origin of one degree of freedom.
     pub(super) fn origin() -> Self {
         Coordinates(vec![0.0])
     }
@@ -22,14 +22,14 @@ impl fmt::Display for Coordinates {
     }
 }
 
-/// Reads coordinates: finite numbers, separated by commas.
+/// Parses coordinates: finite numbers, separated by commas.
 pub(super) fn coordinates(text: &str) -> Result<Coordinates, String> {
     text.split(',').map(coordinate).collect::<Result<_, _>>().map(Coordinates)
 }
 
 fn coordinate(word: &str) -> Result<f64, String> {
     let word = word.trim();
-    let rule = "coordinates are finite numbers, separated by commas, as in 1,-0.5";
+    let rule = "expected finite numbers, separated by commas, as 1,-0.5";
     match word.parse::<f64>() {
         _ if word.is_empty() => Err(format!("a coordinate is missing; {rule}")),
         Ok(x) if limits::COORDINATE.admits(x) => Ok(x),
@@ -38,55 +38,54 @@ fn coordinate(word: &str) -> Result<f64, String> {
     }
 }
 
-/// Reads `KEY=VALUE`; which keys and values there are depends on the system.
+/// Parses `KEY=VALUE`. The system determines which keys and values are allowed.
 pub(super) fn assignment(text: &str) -> Result<(String, f64), String> {
-    let (key, value) =
-        text.split_once('=').ok_or("it must be KEY=VALUE, as in omega2=10".to_owned())?;
+    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE, as omega2=10".to_owned())?;
     let (key, value) = (key.trim(), value.trim());
     if key.is_empty() {
-        return Err("the key is missing; it must be KEY=VALUE, as in omega2=10".into());
+        return Err("the key is missing; expected KEY=VALUE, as omega2=10".into());
     }
     let value = value.parse().map_err(|_| format!("the value `{value}` is not a number"))?;
     Ok((key.to_owned(), value))
 }
 
-/// Reads a time step.
+/// Parses a time step.
 pub(super) fn time_step(text: &str) -> Result<f64, String> {
     let dt = text
         .trim()
         .parse()
-        .map_err(|_| format!("it is not a number; a time step must be {}", limits::TIME_STEP))?;
+        .map_err(|_| format!("not a number; expected a time step that is {}", limits::TIME_STEP))?;
     limits::within(limits::TIME_STEP, "--dt", dt)?;
     Ok(dt)
 }
 
-/// Reads what a criterion tolerates.
+/// Parses the limit of a criterion.
 pub(super) fn criterion(text: &str) -> Result<f64, String> {
-    let rule = "it must be between 1e-60 and 1e60";
+    let rule = "expected a number between 1e-60 and 1e60";
     match text.trim().parse::<f64>() {
         Ok(x) if limits::CRITERION.contains(&x) => Ok(x),
         Ok(_) => Err(rule.into()),
-        Err(_) => Err(format!("it is not a number; {rule}")),
+        Err(_) => Err(format!("not a number; {rule}")),
     }
 }
 
-/// Reads a number of steps of a trajectory; also as `1e6`.
+/// Parses a number of steps of a trajectory; also as `1e6`.
 pub(super) fn trajectory_steps(text: &str) -> Result<u64, String> {
     let steps = whole_number(text).ok_or_else(|| {
-        format!("it is not a whole number; steps must be {}", limits::trajectory_steps_allowed())
+        format!("not a whole number; expected {}", limits::trajectory_steps_allowed())
     })?;
     limits::trajectory_steps("--steps", steps)
 }
 
-/// Reads a number of steps of a forecast; also as `1e12`.
+/// Parses a number of steps of a forecast; also as `1e12`.
 pub(super) fn forecast_steps(text: &str) -> Result<u64, String> {
     let steps = whole_number(text).ok_or_else(|| {
-        format!("it is not a whole number; steps must be {}", limits::forecast_steps_allowed())
+        format!("not a whole number; expected {}", limits::forecast_steps_allowed())
     })?;
     limits::forecast_steps("--steps", steps)
 }
 
-/// The whole number that `text` stands for, written as `1000` or `1e3`.
+/// Parses a whole number, written as `1000` or `1e3`.
 pub(super) fn whole_number(text: &str) -> Option<i128> {
     let text = text.trim();
     let with_exponent = || {
@@ -95,8 +94,9 @@ pub(super) fn whole_number(text: &str) -> Option<i128> {
     };
     text.parse().ok().or_else(with_exponent)
 }
-/// Reads a number of trajectories; also as `1e5`.
+
+/// Parses a number of trajectories; also as `1e5`.
 pub(super) fn count(text: &str) -> Result<usize, String> {
     let count = whole_number(text).and_then(|n| usize::try_from(n).ok()).filter(|&n| n >= 1);
-    count.ok_or_else(|| "it must be a whole number of at least 1, and below 2⁶⁴".to_owned())
+    count.ok_or_else(|| "expected a whole number of at least 1 and below 2⁶⁴".to_owned())
 }

@@ -1,38 +1,38 @@
-//! The flags that choose a system, a start and a step; shared by the commands that simulate.
+//! Options of the system, its start and its step, which several commands share.
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use libration::catalog::{ENTRIES, Entry};
 use libration::integrator::Exact;
 use libration::{CatalogError, Method, catalog};
-use libration_analyze::analyze::Stepping;
-use libration_settings::names;
-use libration_settings::setting::Setting;
+use libration_analyze::Stepping;
+use libration_settings::initial_value_problem::InitialValueProblem;
+use libration_settings::suggestions;
 
 use super::number::{Coordinates, assignment, coordinates, time_step};
 use crate::error::Failure;
 
-/// Which system, with which parameters, from where.
+/// The system, its parameters and its start.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SystemArgs {
-    /// The system; `libration list` shows them with their parameters
+    /// Name of the system; see `libration list`
     #[arg(long, value_name = "NAME", value_parser = system_names(), hide_possible_values = true)]
     pub(crate) system: String,
-    /// A parameter of the system, as in `omega2=10`; may be repeated. `m` takes `k` with it, in kg and N/m: commands are then forces
+    /// Parameter of the system, as omega2=10; repeatable. m= (kg) requires k= (N/m), and commands are forces
     #[arg(long, value_name = "KEY=VALUE", value_parser = assignment, allow_hyphen_values = true)]
     pub(crate) set: Vec<(String, f64)>,
-    /// Positions at the start, separated by commas [default: the system's own]
+    /// Initial positions, separated by commas [default: those of the system]
     #[arg(long, value_name = "Q,…", value_parser = coordinates, allow_hyphen_values = true)]
     pub(crate) q: Option<Coordinates>,
-    /// Velocities at the start, separated by commas [default: the system's own]
+    /// Initial velocities, separated by commas [default: those of the system]
     #[arg(long, value_name = "V,…", value_parser = coordinates, allow_hyphen_values = true)]
     pub(crate) v: Option<Coordinates>,
 }
 
-/// Which integrator, with which time step.
+/// The integrator and its time step.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct StepArgs {
-    /// The integrator (`libration list` shows them), or `exact`: steps of a linear system without error
+    /// Name of the integrator, or `exact` for a linear system; see `libration list`
     #[arg(long, value_name = "NAME", value_parser = integrators(), hide_possible_values = true)]
     pub(crate) integrator: Stepping,
     /// Time step in s
@@ -41,11 +41,11 @@ pub(crate) struct StepArgs {
 }
 
 impl SystemArgs {
-    /// The system and its start; what is not given comes from the catalogue.
+    /// Returns the system and its start. Missing values are those of the catalogue.
     ///
     /// # Errors
-    /// Wrong input: a parameter that is unknown or not allowed, or a wrong number of coordinates.
-    pub(crate) fn resolve(&self) -> Result<Setting, Failure> {
+    /// If a parameter is unknown or not allowed, or the number of coordinates is wrong.
+    pub(crate) fn resolve(&self) -> Result<InitialValueProblem, Failure> {
         let (system, actuation) =
             catalog::build(&self.system, &self.set).map_err(wrong_parameter)?;
         let entry = system.entry();
@@ -63,12 +63,13 @@ impl SystemArgs {
             return Err(unequal_counts(q, v));
         }
         let given = |x: &Option<Coordinates>| x.as_ref().map(|x| x.0.clone());
-        Setting::new((system, actuation), given(&self.q), given(&self.v)).map_err(Failure::usage)
+        InitialValueProblem::new((system, actuation), given(&self.q), given(&self.v))
+            .map_err(Failure::usage)
     }
 }
 
 fn wrong_parameter(error: CatalogError) -> Failure {
-    Failure::usage(format!("{error}{} (--set)", names::meant(&error)))
+    Failure::usage(format!("{error}{} (--set)", suggestions::catalog_help(&error)))
 }
 
 fn wrong_count(entry: &Entry, flag: &str, given: &Coordinates) -> Failure {
@@ -79,13 +80,13 @@ fn wrong_count(entry: &Entry, flag: &str, given: &Coordinates) -> Failure {
     };
     let (name, count) = (entry.name, given.0.len());
     let noun = if count == 1 { "coordinate" } else { "coordinates" };
-    Failure::usage(format!("{flag} `{given}` has {count} {noun}, but {name} takes {needed}"))
+    Failure::usage(format!("{flag} `{given}` has {count} {noun}; {name} requires {needed}"))
 }
 
 fn unequal_counts(q: &Coordinates, v: &Coordinates) -> Failure {
     let (of_q, of_v) = (q.0.len(), v.0.len());
     Failure::usage(format!(
-        "--q `{q}` and --v `{v}` have {of_q} and {of_v} coordinates, but they must have equally many"
+        "--q `{q}` has {of_q} coordinates and --v `{v}` has {of_v}; expected equal numbers"
     ))
 }
 

@@ -15,12 +15,12 @@ use crate::output_file::OutputFile;
 use crate::progress::Reporter;
 use crate::{interrupt, terminal};
 
-/// Says what can be afforded.
+/// Computes the limits of a loop or a simulation and prints them.
 pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
     if args.print_config {
         return Ok(terminal::print(advise::DEFAULT)?);
     }
-    let request = asked(args)?;
+    let request = load_request(args)?;
     let unwritable = |path: &Path, error: &std::io::Error| {
         format!("cannot write `{}` (--page): {error}", path.display())
     };
@@ -37,7 +37,7 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
     let advice = advice.map_err(failure)?;
     let text = match args.json {
         true => serde_json::to_string_pretty(&advice).map_err(Failure::run)? + "\n",
-        false => told(&advice),
+        false => describe(&advice),
     };
     terminal::print(&text)?;
     if let Some((path, mut file)) = file {
@@ -47,21 +47,22 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
     if advice.holds() { Ok(()) } else { Err(Failure::Disagreement) }
 }
 
-fn asked(args: &AdviseArgs) -> Result<Request, Failure> {
+/// Returns the request of the file or of the options.
+fn load_request(args: &AdviseArgs) -> Result<Request, Failure> {
     let mut request = match &args.config {
-        Some(path) => args.instead(config_file::read(path, advise::parse)?)?,
+        Some(path) => args.with_timing(config_file::read(path, advise::parse)?)?,
         None => args.request()?,
     };
     request.map = args.page.is_some();
-    request.asked_by = again();
+    request.invocation = command_line();
     if let Some(path) = &args.jitter_file {
         let Some(control) = request.control.take() else {
             return Err(Failure::usage(
-                "--jitter-file is given, but there is no loop whose clock it could be",
+                "--jitter-file is given, but there is no loop; expected --feedback, or a controller in the file",
             ));
         };
         let replaying =
-            time_stamps::read(path, "--jitter-file", |stamps| control.replaying(&stamps))?;
+            time_stamps::read(path, "--jitter-file", |stamps| control.with_time_stamps(&stamps))?;
         request.control = Some(replaying);
     }
     Ok(request)
@@ -75,18 +76,17 @@ fn failure(error: AdviseError) -> Failure {
                 "cost" => "cost-weights",
                 flag => flag,
             };
-            Failure::usage(format!("--{flag} is {value:?}, but it must be {allowed}"))
+            Failure::usage(format!("--{flag} is {value:?}; expected {allowed}"))
         }
-        error
-        @ (AdviseError::Unstable { .. } | AdviseError::Late(_) | AdviseError::Ensemble(_)) => {
-            Failure::run(error)
-        }
+        error @ (AdviseError::Unstable { .. }
+        | AdviseError::LatencyTooLong(_)
+        | AdviseError::Ensemble(_)) => Failure::run(error),
         error => Failure::usage(error),
     }
 }
 
-/// The command that asks this again, whatever the program is called, wherever it writes and however it tells it.
-fn again() -> String {
+/// Returns the command line that repeats this request, without `--json` and `--page`.
+fn command_line() -> String {
     let mut words = vec!["libration".to_owned()];
     let mut given = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
     while let Some(word) = given.next() {
@@ -107,14 +107,14 @@ fn again() -> String {
     quoted.collect::<Vec<String>>().join(" ")
 }
 
-/// The answer for a reader at a terminal.
-fn told(advice: &Advice) -> String {
+/// Returns the answer as text.
+fn describe(advice: &Advice) -> String {
     let mut text = format!("{}\n", advice.answer);
     for warning in &advice.warnings {
-        let _ = writeln!(text, "MIND: {warning}");
+        let _ = writeln!(text, "warning: {warning}");
     }
     if let Some(looped) = &advice.looped {
-        of_loop(looped, &advice.again, &mut text);
+        describe_loop(looped, &advice.again, &mut text);
     }
     if !advice.integrators.is_empty() {
         let _ = writeln!(
@@ -164,7 +164,7 @@ fn told(advice: &Advice) -> String {
     if let Some(t) = &advice.throughput {
         let _ = writeln!(
             text,
-            "one core takes {:.3e} such steps of the plant alone a second with {} trajectories (measured now); {} steps of each are \
+            "one core: {:.3e} steps of the plant per second with {} trajectories (measured now); {} steps of each: \
              {:.1} MB of rollouts in f32",
             t.steps_a_second,
             t.trajectories,
@@ -172,16 +172,17 @@ fn told(advice: &Advice) -> String {
             t.bytes as f64 / 1e6
         );
     }
-    let _ = writeln!(text, "what is simulated or measured, again: {}", advice.again);
+    let _ = writeln!(text, "repeat with: {}", advice.again);
     text
 }
 
-fn of_loop(looped: &LoopAdvice, again: &str, text: &mut String) {
+/// Appends the budgets of a loop.
+fn describe_loop(looped: &LoopAdvice, again: &str, text: &mut String) {
     let _ = writeln!(text, "\n{}; a sample every {} s", looped.controller, looped.period);
     if looped.held_command != 0.0 {
         let _ = writeln!(
             text,
-            "a {} of {:.6} {} holds the operating point",
+            "command at the operating point: {} of {:.6} {}",
             looped.command, looped.held_command, looped.command_unit
         );
     }
@@ -211,30 +212,30 @@ fn of_loop(looped: &LoopAdvice, again: &str, text: &mut String) {
             budget.how
         );
     }
-    let ours = format!("{again} --json");
-    for budget in looped.budgets.iter().filter(|budget| budget.command != ours) {
+    let own = format!("{again} --json");
+    for budget in looped.budgets.iter().filter(|budget| budget.command != own) {
         let _ = writeln!(text, "  {}", budget.command);
     }
     let together = &looped.together;
     let _ = writeln!(
         text,
-        "\ntogether: second moments change by {:+.4e} a period (exact)",
+        "\nall imperfections together: second moments change by {:+.4e} per period (exact)",
         together.growth.exp_m1()
     );
     if let Some(cost) = together.cost {
         let _ = writeln!(
             text,
-            "it costs {cost:.6e} under unit noise, {:.6e} without any of it (exact: Lyapunov equation)",
+            "cost under unit noise: {cost:.6e}, without imperfections {:.6e} (exact: Lyapunov equation)",
             together.ideal_cost
         );
     }
-    if together.command != ours {
+    if together.command != own {
         let _ = writeln!(text, "  {}", together.command);
     }
     if let Some(s) = &together.simulated {
         let _ = writeln!(
             text,
-            "simulated, {} loops, {} periods, noise held for a period, without what commands cost: {:.5e} ± {:.1e}, predicted {:.5e}",
+            "cost of {} simulated loops, {} periods, constant noise in each period, without the cost of commands: {:.5e} ± {:.1e}, predicted {:.5e}",
             s.loops, s.periods, s.cost, s.error, s.predicted
         );
     }
@@ -242,7 +243,7 @@ fn of_loop(looped: &LoopAdvice, again: &str, text: &mut String) {
         let [back, all] = r.of_asked;
         let _ = writeln!(
             text,
-            "of {all} starts {} off {back} return; all do from {}{:.4} (simulated)",
+            "{back} of {all} loops return from a deviation of {}; all return from {}{:.4} (simulated)",
             r.asked,
             if r.up_to < r.tried_up_to { "up to " } else { "as far as was tried, " },
             r.up_to

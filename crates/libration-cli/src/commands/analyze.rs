@@ -4,20 +4,19 @@ use std::fmt::Write as _;
 use std::io;
 use std::io::Write as _;
 
-use libration_analyze::analyze;
-use libration_analyze::analyze::{
-    Analysis, Criteria, ModifiedHamiltonian, Request, Stepping, Timing,
+use libration_analyze::{
+    Analysis, Criteria, ModifiedHamiltonian, Request, Stepping, Timing, analyze,
 };
+use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::limits;
-use libration_settings::setting::Setting;
 
 use super::closed_loop::{dephasing, describe_loop};
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
 
-/// Analyses one step and prints what theory says of it.
+/// Analyzes one step and prints the result.
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
-    let Setting { system, actuation, q, v } = args.system.resolve()?;
+    let InitialValueProblem { system, actuation, q, v } = args.system.resolve()?;
     let (stepping, dt) = (args.step.integrator, args.step.dt);
     let CostArgs { loss, cost_weights: weights } = args.cost;
     let timing = Timing { loss, weights, ..args.timing.timing() };
@@ -32,21 +31,21 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     };
     let request =
         Request { system, actuation, stepping, dt, q, v, steps: args.steps, criteria, timing };
-    let analysis = analyze::analyze(&request).map_err(Failure::usage)?;
+    let analysis = analyze(&request).map_err(Failure::usage)?;
     let text = match args.json {
         true => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
         false => describe(&analysis, &request),
     };
     match io::stdout().lock().write_all(text.as_bytes()) {
-        // A reader that has seen enough is not an error.
+        // A closed pipe is not an error.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         outcome => Ok(outcome?),
     }
 }
 
-/// The analysis for a reader at a terminal.
+/// Returns the analysis as text.
 fn describe(analysis: &Analysis, request: &Request) -> String {
-    let (about, criteria) = (&analysis.about, &request.criteria);
+    let (about, criteria) = (&analysis.request, &request.criteria);
     let parameters: Vec<String> =
         about.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let mut text = format!(
@@ -102,9 +101,9 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
     if analysis.stability_windows.is_none() && one_mode && derived {
         line("stable for dt in s", UNKNOWN.into());
     }
-    let mut largest = |what: &str, asked: Option<f64>, dt: Option<Option<f64>>| {
-        if let Some(asked) = asked {
-            line("largest dt in s", format!("{} for {what} {asked:?}", known(dt)));
+    let mut largest = |what: &str, limit: Option<f64>, dt: Option<Option<f64>>| {
+        if let Some(limit) = limit {
+            line("largest dt in s", format!("{} for {what} {limit:?}", known(dt)));
         }
     };
     if let Some(dt) = &analysis.largest_dt {
@@ -161,10 +160,10 @@ fn describe(analysis: &Analysis, request: &Request) -> String {
     text
 }
 
-/// What stands for a number that is not derived.
+/// Text in place of a result that exact arithmetic cannot derive.
 const UNKNOWN: &str = "not known: the polynomials of this step outgrow exact arithmetic";
 
-/// A largest time step, in words where there is none.
+/// Returns a largest time step as text.
 fn known(dt: Option<Option<f64>>) -> String {
     match dt {
         Some(Some(dt)) => format!("{dt:?}"),

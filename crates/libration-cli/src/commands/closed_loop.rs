@@ -1,17 +1,16 @@
-//! The blocks of `libration analyze` that are about a loop.
+//! The blocks of `libration analyze` for a control loop.
 
 use std::fmt::Write as _;
 
-use libration_analyze::analyze::{CostAnswer, Critical, GrowthAnswer, Timing, TimingAnswer};
+use libration_analyze::{LoopAnalysis, LoopCost, LoopGrowth, StableLatencies, Timing};
 
-/// What feedback, latency, jitter, skew and losses make of a step: a block for each set of conditions under which its
-/// rows hold, with them as its heading.
-pub(super) fn describe_loop(answer: &TimingAnswer, timing: &Timing, text: &mut String) {
+/// Appends a block for each set of conditions (feedback, latency, jitter, skew, losses), with the conditions as heading.
+pub(super) fn describe_loop(answer: &LoopAnalysis, timing: &Timing, text: &mut String) {
     let late = answer.latency_steps.filter(|steps| *steps > 0.0);
     let drawn = [
         ("jitter", timing.jitter.is_some()),
         ("losses", timing.loss.is_some()),
-        // All that is told of clocks that differ, besides when they fall out of step, is what they cost.
+        // Skew changes the cost only; the dephasing time has a row of its own.
         ("skew", timing.skew.is_some() && answer.cost.is_some()),
     ];
     let drawn: Vec<&str> = drawn.into_iter().filter_map(|(name, is)| is.then_some(name)).collect();
@@ -35,7 +34,7 @@ pub(super) fn describe_loop(answer: &TimingAnswer, timing: &Timing, text: &mut S
     }
 }
 
-/// Steps after which the mean over clocks of different rates has fallen.
+/// Returns the steps until the mean over clocks of different rates is 1/e.
 pub(super) fn dephasing(steps: Option<f64>) -> String {
     number(steps, "steps")
 }
@@ -56,13 +55,13 @@ impl Lines<'_> {
     }
 }
 
-/// What holds of even steps without losses.
-fn describe_steady(answer: &TimingAnswer, lines: &mut Lines<'_>) {
+/// Appends the rows of even steps without losses.
+fn describe_steady(answer: &LoopAnalysis, lines: &mut Lines<'_>) {
     if let (Some([kp, kd]), Some(steps)) = (answer.feedback, answer.latency_steps) {
         let [of_kp, of_kd] = answer.feedback_units.unwrap_or_default();
         let quantity = answer.command.unwrap_or("command");
         let law = format!("-({kp:?} {of_kp}) q - ({kd:?} {of_kd}) v");
-        lines.row(quantity, &format!("{law}, {steps:?} steps late"));
+        lines.row(quantity, &format!("{law}, latency {steps:?} steps"));
     }
     if let (Some(radius), Some(excess)) =
         (answer.closed_loop_spectral_radius, answer.closed_loop_spectral_radius_minus_one)
@@ -74,7 +73,7 @@ fn describe_steady(answer: &TimingAnswer, lines: &mut Lines<'_>) {
     }
 }
 
-fn describe_critical(critical: &Critical, lines: &mut Lines<'_>) {
+fn describe_critical(critical: &StableLatencies, lines: &mut Lines<'_>) {
     lines.row("critical latency", &number(critical.critical_latency_steps, "steps"));
     lines.row("", &number(critical.critical_latency_seconds, "s"));
     lines.row("of split steps", &number(critical.critical_latency_split_steps, "steps"));
@@ -88,8 +87,8 @@ fn describe_critical(critical: &Critical, lines: &mut Lines<'_>) {
 }
 
 fn describe_growth(
-    growth: &GrowthAnswer,
-    answer: &TimingAnswer,
+    growth: &LoopGrowth,
+    answer: &LoopAnalysis,
     timing: &Timing,
     lines: &mut Lines<'_>,
 ) {
@@ -113,18 +112,18 @@ fn describe_growth(
     }
 }
 
-fn describe_cost(cost: &CostAnswer, lines: &mut Lines<'_>) {
+fn describe_cost(cost: &LoopCost, lines: &mut Lines<'_>) {
     let [q, v, u] = cost.cost_weights;
     let command = if u == 0.0 { String::new() } else { format!(" {u:+?} u²") };
     let of = format!("{q:?} q² {v:+?} v²{command} under unit noise");
     let shown = match (cost.cost, cost.cost_infinite) {
         (Some(cost), _) => format!("{cost:?}, the mean of {of}"),
         (None, Some(_)) => "infinite: second moments grow".into(),
-        (None, None) => "not known: the loop has to know too many numbers".into(),
+        (None, None) => "not known: the state of the loop has too many dimensions".into(),
     };
     lines.row("cost", &shown);
     if let Some(increase) = cost.cost_increase {
-        lines.row("", &format!("{increase:+e} of that of an ideal clock and link"));
+        lines.row("", &format!("{increase:+e} relative to a loop with an ideal clock and link"));
     }
 }
 
@@ -132,12 +131,12 @@ fn number(x: Option<f64>, unit: &str) -> String {
     x.map_or_else(|| "none".to_owned(), |x| format!("{x:?} {unit}"))
 }
 
-/// Why there are no second moments.
+/// Reason for missing second moments.
 const TOO_FAR: &str =
-    "not known: steps turn too far in a deviation, or the latency is above 90 steps";
+    "not known: a deviation of the steps is too large, or the latency is above 90 steps";
 
-/// The rule of steps that would be negative.
-const CLIPPED: &str = "some steps would be negative: they are of length zero";
+/// Note on steps with a negative length.
+const CLIPPED: &str = "steps with a negative length are set to zero";
 
-/// What growth is not about.
-const NOMINAL: &str = "both of a clock at its nominal rate, without the skew";
+/// Note on growth with skew.
+const NOMINAL: &str = "both for a clock at its nominal rate, without the skew";

@@ -1,4 +1,4 @@
-//! Files of settings.
+//! Settings files.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -7,7 +7,7 @@ use libration_settings::SettingsError;
 
 use crate::error::Failure;
 
-/// What `parse` makes of the file that `--config` names.
+/// Reads and parses the file of `--config`.
 pub(super) fn read<T>(
     path: &Path,
     parse: impl FnOnce(&str, &str) -> Result<T, SettingsError>,

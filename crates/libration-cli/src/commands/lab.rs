@@ -10,13 +10,13 @@ use libration_lab::{STUDIES, session};
 use libration_report::record::{Record, Verdict};
 use libration_study::{Config, Lab, Study};
 
-use super::judgement::judge;
+use super::disagreements::check_findings;
 use crate::args::{LabArgs, simd};
 use crate::error::Failure;
 use crate::progress::Reporter;
 use crate::{interrupt, terminal};
 
-/// Runs studies and writes a report, or prints what describes a configuration.
+/// Runs studies and writes a report, or prints the configuration or its schema.
 pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
     if args.print_config {
         return Ok(terminal::print(&STUDIES.text())?);
@@ -34,10 +34,10 @@ pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
     if args.open {
         show(&report);
     }
-    judge(&results.studies)
+    check_findings(&results.studies)
 }
 
-/// Opens the report in the program that shows HTML. Without one the run is as good as with it.
+/// Opens the report in the browser. A failure is only a warning.
 fn show(report: &Path) {
     // Some of these programs start in another folder.
     if let Err(error) = report.canonicalize().and_then(open::that_detached) {
@@ -45,7 +45,7 @@ fn show(report: &Path) {
     }
 }
 
-/// The configuration that the file and the flags make together; flags win.
+/// Returns the configuration of the file, with options in place of its values.
 fn configure(args: &LabArgs) -> Result<Config, Failure> {
     let mut config = match &args.config {
         Some(path) => read(path)?,
@@ -55,7 +55,7 @@ fn configure(args: &LabArgs) -> Result<Config, Failure> {
         config.studies.clone_from(&args.studies);
     }
     config.effort = args.effort.unwrap_or(config.effort);
-    config.simd = simd::asked(args.simd)?.or(config.simd);
+    config.simd = simd::instruction_set(args.simd)?.or(config.simd);
     STUDIES.check(&config).map_err(Failure::usage)?;
     Ok(config)
 }
@@ -71,14 +71,14 @@ fn read(path: &Path) -> Result<Config, Failure> {
 
 fn unwritable(folder: &Path, error: &OutputError) -> Failure {
     let reason = if folder.is_file() {
-        "it is a file, but it must be a folder".to_owned()
+        "it is a file; expected a folder".to_owned()
     } else {
         format!("`{}`: {}", error.path.display(), error.source)
     };
     Failure::usage(format!("cannot write into the folder `{}` (--out): {reason}", folder.display()))
 }
 
-/// The studies that the configuration names, in its order.
+/// Returns the studies of the configuration, in its order.
 fn chosen(config: &Config) -> Vec<&'static dyn Study> {
     if config.studies.is_empty() {
         return STUDIES.studies.to_vec();
@@ -97,7 +97,7 @@ fn investigate(config: &Config, output: &Output, reporter: &Reporter) -> Result<
     })
 }
 
-/// A line for each study, and the path of the report.
+/// Returns one line per study, and the path of the report.
 fn summary(results: &Results, report: &Path) -> String {
     let width = results.studies.iter().map(|r| r.name.len()).chain(["study".len()]).max();
     let width = width.unwrap_or_default();
@@ -115,7 +115,7 @@ fn summary(results: &Results, report: &Path) -> String {
     text
 }
 
-/// How many findings agree, of those that have a prediction.
+/// Returns how many findings with a prediction agree.
 fn agreement(record: &Record) -> String {
     let predicted = record.findings.iter().filter(|f| f.verdict != Verdict::Measured);
     let agree = record.findings.iter().filter(|f| f.agrees()).count();

@@ -21,7 +21,7 @@ pub(crate) fn run(args: &ListArgs) -> Result<(), Failure> {
 fn as_json() -> Value {
     let study = |study: &&dyn Study| json!({ "name": study.name(), "question": study.question() });
     let integrator = |method: Method| json!({ "name": method.name(), "order": method.order(), "summary": method.summary() });
-    // Its error is that of no order.
+    // An exact step has no order.
     let exact = json!({ "name": Exact::NAME, "order": null, "summary": Exact::SUMMARY });
     json!({
         "studies": STUDIES.studies.iter().map(study).collect::<Vec<_>>(),
@@ -59,13 +59,13 @@ fn as_text() -> String {
     format!("Studies\n{studies}\nSystems\n{systems}\nIntegrators\n{integrators}")
 }
 
-/// A line for each name.
+/// Returns one line per name.
 fn lines(names: &[(&str, &str)]) -> String {
     let width = names.iter().map(|(name, _)| name.len()).max().unwrap_or_default();
     names.iter().map(|(name, about)| line(&format!("  {name:width$}  "), about)).collect()
 }
 
-/// A line for the system, and one for each parameter.
+/// Returns a line for the system, and one per parameter.
 fn system_text(system: &Entry) -> String {
     let dimensions = match (system.dimensions.start(), system.dimensions.end()) {
         (1, 1) => "1 dimension".to_owned(),
@@ -80,10 +80,10 @@ fn system_text(system: &Entry) -> String {
     line(&format!("  {}  ", system.name), &about) + &parameters.collect::<String>()
 }
 
-/// `text` after `label`, wrapped so that no line is wider than the page.
+/// Returns `label` and `text`, wrapped at the width of the page.
 fn line(label: &str, text: &str) -> String {
     const PAGE: usize = 100;
-    // Columns are counted in characters.
+    // Width in characters, not in bytes.
     let indent = label.chars().count();
     let (mut lines, mut column) = (label.to_owned(), indent);
     for word in text.split_whitespace() {

@@ -5,7 +5,9 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use libration::control::clock::Recorded;
-use libration_advise::wakeups::{Plan, Priority, Quantile, Statistics, WakeupError, Wakeups};
+use libration_advise::jitter_measurement::{
+    JitterMeasurementError, Plan, Priority, Quantile, Statistics, WakeupTimes,
+};
 use serde_json::{Value, json};
 
 use super::time_stamps;
@@ -14,25 +16,25 @@ use crate::error::Failure;
 use crate::output_file::OutputFile;
 use crate::{interrupt, terminal};
 
-/// Measures, or reads what was measured, and tells.
+/// Measures the jitter of a loop, or reads time stamps, and prints statistics.
 pub(crate) fn run(args: &MeasureJitterArgs, quiet: bool) -> Result<(), Failure> {
     if let Some(path) = &args.from {
         let stamps = time_stamps::read(path, "--from", |stamps| {
-            // What is no clock is refused as a replay would refuse it.
+            // Time stamps that a replay rejects are rejected here, too.
             Recorded::steps_between(&stamps).map(|_| stamps)
         })?;
         let statistics = Statistics::of(&stamps, None);
         return match args.json {
             true => print_json(&json!(statistics)),
-            false => Ok(terminal::print(&told(&path.display().to_string(), &statistics))?),
+            false => Ok(terminal::print(&describe(&path.display().to_string(), &statistics))?),
         };
     }
     let plan = args.plan();
     plan.check().map_err(|error| Failure::usage(format!("--{error}")))?;
     let stop = interrupt::listen();
-    // Before anything is measured, so that nothing is measured in vain.
+    // An output file that cannot be written must fail before the measurement.
     let mut file = args.output.as_deref().map(create).transpose()?;
-    let mut told_json = Vec::new();
+    let mut json_results = Vec::new();
     let mut interrupted = false;
     for &priority in args.priorities() {
         let name = named(priority);
@@ -41,11 +43,11 @@ pub(crate) fn run(args: &MeasureJitterArgs, quiet: bool) -> Result<(), Failure> 
             terminal::say(&format!("measuring for {} s, {name}{load}", plan.seconds));
         }
         let wakeups = match plan.measure(priority, stop) {
-            Err(error @ WakeupError::NotAllowed(_)) if args.priorities().len() > 1 => {
+            Err(error @ JitterMeasurementError::NotAllowed(_)) if args.priorities().len() > 1 => {
                 terminal::say(&format!("note: {error}"));
                 continue;
             }
-            Err(WakeupError::Interrupted) => {
+            Err(JitterMeasurementError::Interrupted) => {
                 interrupted = true;
                 break;
             }
@@ -57,7 +59,7 @@ pub(crate) fn run(args: &MeasureJitterArgs, quiet: bool) -> Result<(), Failure> 
                 .map_err(|error| Failure::run(unwritable(path, &error)))?;
         }
         match args.json {
-            true => told_json.push(json!({
+            true => json_results.push(json!({
                 "rate": plan.rate,
                 "load": plan.load,
                 "priority": name,
@@ -65,7 +67,7 @@ pub(crate) fn run(args: &MeasureJitterArgs, quiet: bool) -> Result<(), Failure> 
             })),
             false => {
                 let head = format!("{} Hz, {name}: {} wake-ups", plan.rate, wakeups.times.len());
-                terminal::print(&told(&head, &statistics))?;
+                terminal::print(&describe(&head, &statistics))?;
             }
         }
         if wakeups.stopped {
@@ -74,10 +76,10 @@ pub(crate) fn run(args: &MeasureJitterArgs, quiet: bool) -> Result<(), Failure> 
         }
     }
     if args.json {
-        print_json(&json!(told_json))?;
+        print_json(&json!(json_results))?;
     }
     match interrupted {
-        true => Err(Failure::Interrupted("interrupted: that is all that was measured".into())),
+        true => Err(Failure::Interrupted("interrupted; the output ends here".into())),
         false => Ok(()),
     }
 }
@@ -104,7 +106,7 @@ fn create(path: &Path) -> Result<(&Path, OutputFile), Failure> {
 }
 
 /// Writes the time stamps.
-fn write(file: OutputFile, plan: &Plan, name: &str, wakeups: &Wakeups) -> std::io::Result<()> {
+fn write(file: OutputFile, plan: &Plan, name: &str, wakeups: &WakeupTimes) -> std::io::Result<()> {
     let mut out = BufWriter::new(file);
     let load = if plan.load { "all cores busy" } else { "no load" };
     writeln!(out, "# wake-ups of a loop of {} Hz, {name}, {load}", plan.rate)?;
@@ -113,22 +115,25 @@ fn write(file: OutputFile, plan: &Plan, name: &str, wakeups: &Wakeups) -> std::i
     out.into_inner().map_err(|error| error.into_error())?.keep()
 }
 
-/// All of it for a reader at a terminal.
-fn told(head: &str, statistics: &Statistics) -> String {
+/// Returns the statistics as text.
+fn describe(head: &str, statistics: &Statistics) -> String {
     let mut text = format!("{head}\n");
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:<22} {value}");
     };
     if let Some(lateness) = &statistics.lateness {
-        line("late by", listed(&lateness.quantiles));
-        line("slept through", format!("{} deadlines", lateness.overruns));
+        line("lateness", listed(&lateness.quantiles));
+        line("missed", format!("{} deadlines", lateness.overruns));
     }
     line("intervals", listed(&statistics.lengths));
-    line("mean interval", format!("{}, wanted {}", time(statistics.mean), time(statistics.period)));
+    line(
+        "mean interval",
+        format!("{}, nominal {}", time(statistics.mean), time(statistics.period)),
+    );
     let rms = statistics.jitter_rms;
     line("jitter, relative rms", format!("{rms:.3e}, as in --jitter gaussian:{rms:.3}"));
     if statistics.gaps > 0 && statistics.heavy_tailed() {
-        line("", "a few long gaps make most of that: replay the time stamps instead".into());
+        line("", "a few long gaps dominate the rms; help: replay the time stamps instead".into());
     }
     line("gaps above 1.5 periods", statistics.gaps.to_string());
     if statistics.repeats > 0 {
@@ -148,15 +153,15 @@ fn told(head: &str, statistics: &Statistics) -> String {
                     "highest at {:.4} Hz: {:.1} times white noise",
                     peak.frequency, peak.density
                 ),
-                None => "no line stands out".into(),
+                None => "no distinct peak".into(),
             },
         );
     }
     if let Some(lateness) = &statistics.lateness {
         let most = lateness.histogram.iter().map(|&(_, count)| count).max().unwrap_or(1).max(1);
-        let told = lateness.histogram.iter().skip_while(|(_, count)| *count == 0);
-        for &(from, count) in told {
-            // A bar for every few; what occurs at all is seen.
+        let bins = lateness.histogram.iter().skip_while(|(_, count)| *count == 0);
+        for &(from, count) in bins {
+            // Rounded up: each bin with a count has a bar.
             let bar = (40 * count).div_ceil(most);
             line(
                 &format!("{:>10} and more", time(from)),
@@ -167,19 +172,19 @@ fn told(head: &str, statistics: &Statistics) -> String {
     text
 }
 
-/// What the first correlation says of the cause.
+/// Returns the likely cause of the first correlation.
 fn meaning(first: f64) -> &'static str {
     match first {
-        c if c < -0.35 => "each wake-up is late for itself: time does not drift",
-        c if c > 0.35 => "the rate wanders: neighbouring intervals are alike",
-        _ => "intervals vary each for itself",
+        c if c < -0.35 => "the latenesses of wake-ups are independent; the time does not drift",
+        c if c > 0.35 => "the rate varies slowly; neighbouring intervals are similar",
+        _ => "intervals are independent",
     }
 }
 
 fn listed(quantiles: &[Quantile]) -> String {
     let one = |q: &Quantile| match q.part {
-        0.0 => format!("least {}", time(q.value)),
-        1.0 => format!("most {}", time(q.value)),
+        0.0 => format!("min {}", time(q.value)),
+        1.0 => format!("max {}", time(q.value)),
         part => format!("{} % {}", 100.0 * part, time(q.value)),
     };
     quantiles.iter().map(one).collect::<Vec<_>>().join(", ")

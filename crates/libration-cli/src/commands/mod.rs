@@ -6,7 +6,7 @@ mod bench;
 mod closed_loop;
 mod completions;
 mod config_file;
-mod judgement;
+mod disagreements;
 mod lab;
 mod list;
 mod measure_jitter;
@@ -18,7 +18,7 @@ use crate::args::{Arguments, Command};
 use crate::error::Failure;
 use crate::terminal;
 
-/// Does what was asked.
+/// Runs the command.
 pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
     terminal::set_color(arguments.color);
     match arguments.command {

@@ -8,20 +8,20 @@ use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use libration::ensemble::Execution;
 use libration::rl::EnvironmentError;
 use libration_env::dataset;
-use libration_env::dataset::{Check, Dataset, DatasetError, Flaw, Job, Watch};
+use libration_env::dataset::{Dataset, DatasetError, Flaw, Monitor, VerifyOptions, WriteJob};
 
 use super::config_file;
 use crate::args::{RolloutArgs, VerifyArgs};
 use crate::error::{Failure, is_unusable};
 use crate::{interrupt, progress, terminal};
 
-/// Writes a data set, or goes on with one.
+/// Writes a data set, or resumes one.
 pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
     if args.print_config {
         return Ok(terminal::print(dataset::DEFAULT)?);
     }
     let Some(out) = &args.out else {
-        return Err(Failure::usage("--out is missing; it must be a folder"));
+        return Err(Failure::usage("--out is missing; expected a folder"));
     };
     let dataset = match &args.config {
         Some(path) => config_file::read(path, dataset::parse)?,
@@ -36,7 +36,7 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
     if let Some(caveat) = dataset.caveat().filter(|_| !quiet) {
         terminal::say(&format!("note: {caveat}"));
     }
-    let job = Job {
+    let job = WriteJob {
         dataset: &dataset,
         format: args.format,
         shard: args.shard,
@@ -49,14 +49,14 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
     watcher.clear();
     let manifest = manifest.map_err(|error| match error {
         DatasetError::Interrupted => Failure::Interrupted(format!(
-            "interrupted; `{}` holds {} transitions, and --resume goes on",
+            "interrupted; `{}` holds {} transitions; help: continue with --resume",
             out.display(),
             watcher.transitions.load(Ordering::Relaxed)
         )),
         error => failed(error, out),
     })?;
     if !quiet {
-        let (count, bytes) = watcher.told();
+        let (count, bytes) = watcher.totals();
         let seconds = watcher.began.elapsed().as_secs_f64();
         terminal::print(&format!(
             "{count} transitions in {} chunks, {:.3} GB, after {seconds:.1} s of this run: {}\n",
@@ -68,15 +68,15 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Reads a data set; computes all of it again, or what is broken, if asked to.
+/// Checks a data set; recomputes all of it with `--replay`, and broken chunks with `--repair`.
 pub(crate) fn verify(args: &VerifyArgs, quiet: bool) -> Result<(), Failure> {
     let execution = if args.replay || args.repair { Some(threads(args.threads)?) } else { None };
-    let how = Check {
+    let how = VerifyOptions {
         replay: execution.as_ref().filter(|_| args.replay),
         repair: execution.as_ref().filter(|_| args.repair),
     };
     let watcher = Watcher::new(quiet, &args.folder, 0, interrupt::listen());
-    let checked = dataset::check(&args.folder, how, &watcher);
+    let checked = dataset::verify(&args.folder, how, &watcher);
     watcher.clear();
     let (manifest, flaws) = checked.map_err(|error| match error {
         DatasetError::Interrupted => Failure::Interrupted("interrupted".to_owned()),
@@ -90,7 +90,7 @@ pub(crate) fn verify(args: &VerifyArgs, quiet: bool) -> Result<(), Failure> {
             let folder = args.folder.to_string_lossy();
             let folder = shlex::try_quote(&folder).unwrap_or_default();
             terminal::say(&format!(
-                "help: `libration verify --repair {folder}` computes broken chunks again and replaces them"
+                "help: `libration verify --repair {folder}` recomputes broken chunks and replaces them"
             ));
         }
         return Err(Failure::Disagreement);
@@ -111,7 +111,7 @@ pub(crate) fn verify(args: &VerifyArgs, quiet: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A flaw as a line: of which chunk and file, and what is wrong.
+/// Returns a flaw as a line: chunk, file and defect.
 fn shown(flaw: &Flaw, folder: &Path) -> String {
     let whose = match &*flaw.chunk {
         "" => String::new(),
@@ -124,10 +124,10 @@ fn threads(threads: usize) -> Result<Execution, Failure> {
     Execution::serial().threads(threads).map_err(|error| Failure::ensemble(&error))
 }
 
-/// What is wrong with the input is known before any work; all else went wrong meanwhile.
+/// Converts an error: wrong input is known before any work, all other errors occur during the run.
 fn failed(error: DatasetError, folder: &Path) -> Failure {
     use libration_env::dataset::DataError;
-    if let Some(room) = error.room() {
+    if let Some(room) = error.missing_memory() {
         return Failure::room(room, &error);
     }
     match error {
@@ -140,14 +140,14 @@ fn failed(error: DatasetError, folder: &Path) -> Failure {
     }
 }
 
-/// What is done so far, and how fast.
+/// Progress and rate of a run.
 struct Watcher {
     quiet: bool,
     folder: PathBuf,
     bar: Option<ProgressBar>,
     transitions: AtomicU64,
     bytes: AtomicU64,
-    /// Of those what was there before.
+    /// Bytes of an earlier run.
     before: AtomicU64,
     began: Instant,
     stop: &'static AtomicBool,
@@ -173,7 +173,8 @@ impl Watcher {
         Watcher { quiet, folder, bar, transitions, bytes, before, began, stop }
     }
 
-    fn told(&self) -> (u64, u64) {
+    /// Returns the transitions and bytes so far.
+    fn totals(&self) -> (u64, u64) {
         (self.transitions.load(Ordering::Relaxed), self.bytes.load(Ordering::Relaxed))
     }
 
@@ -182,31 +183,31 @@ impl Watcher {
     }
 }
 
-impl Watch for Watcher {
-    fn there(&self, transitions: u64, bytes: u64) {
+impl Monitor for Watcher {
+    fn on_present(&self, transitions: u64, bytes: u64) {
         self.transitions.fetch_add(transitions, Ordering::Relaxed);
         self.bytes.fetch_add(bytes, Ordering::Relaxed);
         self.before.fetch_add(bytes, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
             bar.inc(transitions);
-            // Neither rate nor time left follow from what was there.
+            // The rate excludes the transitions of an earlier run.
             bar.reset_eta();
         }
     }
 
-    fn done(&self, transitions: u64, bytes: u64) {
+    fn on_written(&self, transitions: u64, bytes: u64) {
         self.transitions.fetch_add(transitions, Ordering::Relaxed);
         self.bytes.fetch_add(bytes, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
             bar.inc(transitions);
-            let bytes = self.told().1 as f64 / 1e9;
+            let bytes = self.totals().1 as f64 / 1e9;
             let before = self.before.load(Ordering::Relaxed) as f64 / 1e9;
             let rate = (bytes - before) / self.began.elapsed().as_secs_f64().max(1e-3);
             bar.set_message(format!("{bytes:.2} GB, {rate:.2} GB/s"));
         }
     }
 
-    fn checked(&self, bytes: u64, of: u64) {
+    fn on_verified(&self, bytes: u64, of: u64) {
         if let Some(bar) = &self.bar {
             let [bytes, of] = [bytes, of].map(|bytes| bytes as f64 / 1e9);
             let rate = bytes / self.began.elapsed().as_secs_f64().max(1e-3);
@@ -218,14 +219,14 @@ impl Watch for Watcher {
         }
     }
 
-    fn repaired(&self, flaw: &Flaw) {
+    fn on_repaired(&self, flaw: &Flaw) {
         if !self.quiet {
-            let tell = || terminal::say(&format!("repaired: {}", shown(flaw, &self.folder)));
-            self.bar.as_ref().map_or_else(tell, |bar| bar.suspend(tell));
+            let print = || terminal::say(&format!("repaired: {}", shown(flaw, &self.folder)));
+            self.bar.as_ref().map_or_else(print, |bar| bar.suspend(print));
         }
     }
 
-    fn stops(&self) -> bool {
+    fn should_stop(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 }

@@ -10,9 +10,9 @@ use libration::control::clock::Recorded;
 use libration_analyze::export::ExportError;
 use libration_analyze::trajectory;
 use libration_analyze::trajectory::{
-    Copies, Ending, Format, Request, Stopped, TrajectoryError, Watch,
+    Divergence, EnsembleOptions, Format, Monitor, Outcome, Request, TrajectoryError,
 };
-use libration_settings::setting::Setting;
+use libration_settings::initial_value_problem::InitialValueProblem;
 
 use super::time_stamps;
 use crate::args::{SimulateArgs, simd};
@@ -34,21 +34,21 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
     // Rows on the same terminal would break a bar.
     let rows_shown = args.output.is_none() && io::stdout().is_terminal();
     let watcher = Watcher::new(quiet || rows_shown, request.steps, interrupt::listen());
-    let ending = match &args.output {
+    let outcome = match &args.output {
         Some(path) => into_file(path, &request, format, &watcher),
         None => into_stdout(&request, format, &watcher),
     };
     watcher.clear();
-    match ending? {
+    match outcome? {
         _ if quiet => {}
-        Ending::Whole => {}
-        Ending::Stopped(Stopped { step, t, reason }) => {
+        Outcome::Complete => {}
+        Outcome::Diverged(Divergence { step, t, reason }) => {
             let last = step - 1;
             terminal::say(&format!(
                 "note: the last row is step {last}: at step {step} (t = {t} s) {reason}"
             ));
         }
-        Ending::NotFinite { count, first, reason } => {
+        Outcome::NotFinite { count, first, reason } => {
             let named: Vec<String> = first.iter().map(usize::to_string).collect();
             let more = if count > first.len() { ", …" } else { "" };
             let are = if count == 1 { "trajectory is" } else { "trajectories are" };
@@ -62,12 +62,12 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The format that is asked for, by name or by the ending of the file; both must say the same.
+/// Returns the format of `--format` or of the extension of `--output`; both must agree.
 fn format(args: &SimulateArgs) -> Result<Format, Failure> {
     let Some(path) = args.output.as_deref() else { return Ok(args.format.unwrap_or_default()) };
     match (args.format, Format::of_path(path)) {
         (Some(named), Some(ending)) if named != ending => Err(Failure::usage(format!(
-            "--format {} and --output `{}` contradict each other: the file ends in .{}",
+            "--format {} contradicts --output `{}`, whose extension is .{}",
             named.name(),
             path.display(),
             ending.name()
@@ -75,8 +75,7 @@ fn format(args: &SimulateArgs) -> Result<Format, Failure> {
         (None, None) if path.extension().is_some() => {
             let endings = Format::ALL.map(|format| format!(".{}", format.name())).join(", ");
             Err(Failure::usage(format!(
-                "--output `{}` does not tell the format: it must end in one of {endings}, or \
-                 --format must be given",
+                "--output `{}` has an unknown extension; expected one of {endings}, or --format",
                 path.display()
             )))
         }
@@ -85,8 +84,8 @@ fn format(args: &SimulateArgs) -> Result<Format, Failure> {
 }
 
 fn request(args: &SimulateArgs) -> Result<Request, Failure> {
-    let Setting { system, actuation, q, v } = args.system.resolve()?;
-    let instructions = if args.count.is_some() { simd::asked(args.simd)? } else { None };
+    let InitialValueProblem { system, actuation, q, v } = args.system.resolve()?;
+    let instructions = if args.count.is_some() { simd::instruction_set(args.simd)? } else { None };
     Ok(Request {
         actuation,
         system,
@@ -97,7 +96,7 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
         q,
         v,
         every: args.every,
-        copies: args.count.map(|count| Copies {
+        ensemble: args.count.map(|count| EnsembleOptions {
             count,
             spread: args.spread,
             threads: args.threads,
@@ -119,41 +118,41 @@ fn into_file(
     request: &Request,
     format: Format,
     watcher: &Watcher,
-) -> Result<Ending, Failure> {
+) -> Result<Outcome, Failure> {
     let unwritable =
         |error: io::Error| format!("cannot write `{}` (--output): {error}", path.display());
     let file = OutputFile::create(path).map_err(|error| Failure::usage(unwritable(error)))?;
     let mut out = BufWriter::with_capacity(BUFFER, file);
-    let ending =
+    let outcome =
         trajectory::write(request, format, &mut out, watcher).map_err(|error| match error {
             TrajectoryError::Export(ExportError::Io(error)) => Failure::run(unwritable(error)),
             TrajectoryError::Interrupted => {
-                Failure::Interrupted(format!("interrupted; `{}` is as it was", path.display()))
+                Failure::Interrupted(format!("interrupted; `{}` is unchanged", path.display()))
             }
             error => failure(error),
         })?;
     let written = out.into_inner().map_err(|error| error.into_error());
     written.and_then(OutputFile::keep).map_err(|error| Failure::run(unwritable(error)))?;
-    Ok(ending)
+    Ok(outcome)
 }
 
-fn into_stdout(request: &Request, format: Format, watcher: &Watcher) -> Result<Ending, Failure> {
+fn into_stdout(request: &Request, format: Format, watcher: &Watcher) -> Result<Outcome, Failure> {
     if format.is_binary() && io::stdout().is_terminal() {
         let name = format.name();
         return Err(Failure::usage(format!(
             "--format {name} is binary, and standard output is a terminal; \
-             it must be a file (--output FILE.{name}) or a pipe"
+             expected a file (--output FILE.{name}) or a pipe"
         )));
     }
     let mut out = BufWriter::with_capacity(BUFFER, io::stdout());
     let outcome = trajectory::write(request, format, &mut out, watcher);
     match outcome {
-        // A reader that has seen enough is not an error.
+        // A closed pipe is not an error.
         Err(TrajectoryError::Export(ExportError::Io(error)))
             if error.kind() == ErrorKind::BrokenPipe =>
         {
             drop(out.into_parts());
-            Ok(Ending::Whole)
+            Ok(Outcome::Complete)
         }
         Err(TrajectoryError::Export(ExportError::Io(error))) => {
             drop(out.into_parts());
@@ -168,7 +167,7 @@ fn into_stdout(request: &Request, format: Format, watcher: &Watcher) -> Result<E
     }
 }
 
-/// How many steps are taken, told on a terminal.
+/// Progress of the steps, on a terminal.
 struct Watcher {
     bar: Option<ProgressBar>,
     stop: &'static AtomicBool,
@@ -184,25 +183,25 @@ impl Watcher {
     }
 }
 
-impl Watch for Watcher {
-    fn reached(&self, step: u64) {
+impl Monitor for Watcher {
+    fn on_step(&self, step: u64) {
         self.bar.iter().for_each(|bar| bar.set_position(step));
     }
 
-    fn stops(&self) -> bool {
+    fn should_stop(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 }
 
-/// The failure that an error in a request, or in the work, amounts to.
+/// Converts an error of a request or of its run.
 fn failure(error: TrajectoryError) -> Failure {
-    if let Some(room) = error.room() {
+    if let Some(room) = error.missing_memory() {
         return Failure::room(room, &error);
     }
     match error {
         TrajectoryError::Ensemble(error) => Failure::ensemble(&error),
         TrajectoryError::Value { name, value, allowed } => {
-            Failure::usage(format!("--{name} is {value}, but it must be {allowed}"))
+            Failure::usage(format!("--{name} is {value}; expected {allowed}"))
         }
         TrajectoryError::Parameter { .. } => Failure::usage(format!("{error} (--float)")),
         TrajectoryError::Catalog(_) | TrajectoryError::Simulation(_) => Failure::usage(error),

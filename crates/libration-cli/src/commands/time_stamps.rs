@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use libration::control::clock::RecordedError;
-use libration_advise::wakeups;
+use libration_advise::jitter_measurement;
 
 use crate::error::Failure;
 
-/// What `make` makes of the time stamps of a file, in seconds, that a flag names.
+/// Reads the time stamps, in seconds, of the file of an option, and converts them.
 pub(super) fn read<T>(
     path: &Path,
     flag: &str,
@@ -16,6 +16,6 @@ pub(super) fn read<T>(
     let wrong = |reason: String| {
         Failure::usage(format!("cannot use `{}` ({flag}): {reason}", path.display()))
     };
-    let stamps = wakeups::time_stamps(path).map_err(wrong)?;
+    let stamps = jitter_measurement::read_time_stamps(path).map_err(wrong)?;
     make(stamps).map_err(|error| wrong(error.to_string()))
 }

@@ -95,7 +95,7 @@ fn advice_is_given_from_flags_and_its_command_shows_the_limit() {
     let words = [&ADVISE[..], &["10,2", "--period", "0.02", "--latency", "0.02"]].concat();
     libration(&words)
         .success()
-        .stdout(predicate::str::starts_with("The loop stands what is stated"));
+        .stdout(predicate::str::starts_with("The loop is stable with the stated imperfections"));
     let found = json(&words);
     let latency = &found["loop"]["budgets"][0];
     let command = latency["command"].as_str().unwrap();
@@ -174,10 +174,13 @@ fn a_command_names_files_as_a_shell_takes_them() {
 #[test]
 fn a_loop_that_does_not_stand_what_is_stated_ends_with_1_and_an_unstable_one_says_how() {
     let late = [&ADVISE[..], &["10,2", "--period", "0.02", "--latency", "0.2"]].concat();
-    libration(&late).code(1).stdout(predicate::str::contains("unstable with what is stated"));
+    libration(&late)
+        .code(1)
+        .stdout(predicate::str::contains("unstable with the stated imperfections"));
     let unstable = [&ADVISE[..], &["10,-2", "--period", "0.02"]].concat();
     libration(&unstable).code(1).stderr(
-        predicate::str::contains("unstable without").and(predicate::str::contains("it swings at")),
+        predicate::str::contains("unstable without")
+            .and(predicate::str::contains("it oscillates at")),
     );
 }
 
@@ -192,7 +195,7 @@ fn what_cannot_be_advised_on_is_a_usage_error_and_writes_nothing() {
         (&["10,2", "--cost-weights", "0,0,0"], "above 0 for one of the three"),
         (&["10,2", "--loss", "2"], "--loss is 2"),
         (&["10,2", "--tolerance", "energy=1e-3"], "a loop does not conserve it"),
-        (&["10,2", "--tolerance", "speed=1"], "one of energy, phase, trajectory and cost"),
+        (&["10,2", "--tolerance", "speed=1"], "expected energy, phase, trajectory or cost"),
         (&["10,2", "--jitter-file", "none.csv"], "none.csv"),
     ] {
         let words = [&ADVISE[..], rest, &["--page", page]].concat();
@@ -212,7 +215,7 @@ fn a_file_that_is_printed_is_a_file_that_can_be_asked() {
     let [config, page] = [&config, &page].map(|path| path.to_str().unwrap());
     libration(&["advise", "-q", "--config", config, "--page", page]).success();
     let text = fs::read_to_string(page).unwrap();
-    assert!(text.contains("What can be afforded") && text.contains("<svg"));
+    assert!(text.contains("Budget of a simulation or a control loop") && text.contains("<svg"));
     fs::write(config, "[loop]\nlatency = \"late\"\n").unwrap();
     libration(&["advise", "--config", config]).code(2).stderr(
         predicate::str::contains("loop.latency").and(predicate::str::contains("mine.toml")),

@@ -213,7 +213,7 @@ fn what_cannot_be_is_refused_before_a_folder_is_made() {
         ("dt = 0", "`dt` is 0.0, but it must be"),
         ("integrator = \"verlet\"", "did you mean `velocity-verlet`?"),
         ("integrater = \"rk4\"", "unknown key `integrater`"),
-        ("[system.kepler]", "has no single degree of freedom"),
+        ("[system.kepler]", "does not have a single degree of freedom"),
         ("[system.pendulum]\nomega = 3", "unknown parameter `omega`"),
         ("[system.pendulum]\n[system.oscillator]", "must be one table"),
         ("[task.regulate]\nbound = -1", "`bound` is -1.0"),
@@ -221,8 +221,8 @@ fn what_cannot_be_is_refused_before_a_folder_is_made() {
         ("[start]\nq = [1, 0]", "`start.q` is from 1.0 to 0.0, but it must rise"),
         ("[delays]\naction = [0, 5000]", "it must be 0 to 4096"),
         ("[noise]\njitter = -0.1", "`noise.jitter` is -0.1"),
-        ("[policy.linear]\nweights = [1]", "`weights` are 1, but they must be 2"),
-        ("[policy.random]\nlow = 1\nhigh = 1", "that must rise"),
+        ("[policy.linear]\nweights = [1]", "`weights` has 1 numbers, but it must have 2"),
+        ("[policy.random]\nlow = 1\nhigh = 1", "`low` must be below `high`"),
         ("[chunk]\nsteps = 0", "`chunk.steps` is 0"),
         ("seed = \"x\"", "seed"),
         ("[policy.constant]\naction = 1e300", "constant action 0 is 1e300"),
@@ -233,7 +233,7 @@ fn what_cannot_be_is_refused_before_a_folder_is_made() {
     let found = refused("", "--shard 3/2");
     assert!(found.contains("as 2/3"), "{found}");
     let found = refused("", "--shard 2/2");
-    assert!(found.contains("has 1 groups of environments to divide"), "{found}");
+    assert!(found.contains("at most 1 shards, one per group of environments"), "{found}");
     assert!(refused("", "--transitions 0").contains("from 1 to 1e15"));
     let found = refused("environments = 1", "--transitions 1e15");
     assert!(found.contains("would take 1000000000000000 steps"), "{found}");

@@ -175,7 +175,7 @@ fn what_cannot_be_simulated_of_a_loop_is_refused_in_words() {
         ("--system oscillator --latency 1steps", "--feedback"),
         ("--system oscillator --jitter gaussian:0.1 --float f16", "f64 or f32"),
         ("--system oscillator --q 1,0,0 --v 0,0,0 --skew uniform:0.1", "at most 2"),
-        ("--system driven-oscillator --feedback 1,1", "no coordinate is the time"),
+        ("--system driven-oscillator --feedback 1,1", "without a time coordinate"),
         ("--system oscillator --seed -1", "--seed"),
     ] {
         libration(&format!("{words} {more}")).assert().code(2).stderr(contains(told));
@@ -200,7 +200,7 @@ fn a_loop_is_stepped_by_the_time_stamps_of_another() {
     let back = path("back", "1\n0.5\n");
     let text = path("text", "1\n2\nthree\n");
     for (steps, file, told) in [
-        (4, stamps.as_str(), "--steps is 4, but it must be at most 3"),
+        (4, stamps.as_str(), "--steps is 4; expected at most 3"),
         (1, &back, "time stamp 2 is -0.5 s; it must be at least the 0 s"),
         (1, &text, "line 3 is `three`"),
         (1, "/nowhere/at/all", "/nowhere/at/all"),

@@ -30,12 +30,12 @@ fn a_flipped_bit_and_a_manifest_that_lies_are_found() {
     let sum = |bytes: &[u8]| libration_data::checksum([bytes]);
     fs::write(&manifest, text.replace(&sum(&good), &sum(&bytes))).unwrap();
     verify("").success();
-    let lie = contains("holds other numbers than the settings lead to");
+    let lie = contains("differs from the numbers of the settings");
     verify("--replay").code(1).stderr(lie);
     fs::write(&manifest, text.replace("\"version\":\"0", "\"version\":\"7")).unwrap();
     verify("--replay").code(2).stderr(contains("was written by version"));
     fs::write(&manifest, text.replace("\"omega2\":9.81", "\"omega2\":9.8")).unwrap();
-    verify("--replay").code(1).stderr(contains("holds other numbers"));
+    verify("--replay").code(1).stderr(contains("differs from the numbers"));
     let resumed = write(&dir, "set", "--format npy --resume").code(2);
     resumed.stderr(contains("its data.system.pendulum.omega2 is 9.8; it must be 9.81"));
 }
@@ -66,7 +66,7 @@ fn a_data_set_that_lacks_chunks_or_has_others_does_not_pass() {
         lines[30].replace("\"chunk\":\"000005-00000004\"", "\"chunk\":\"000005-00000005\"");
     let said = verified(&[&lines[..], &[&another]].concat());
     assert!(
-        said.contains("chunk 000005-00000005: set/manifest.jsonl tells of it after the last"),
+        said.contains("chunk 000005-00000005: set/manifest.jsonl lists it after the last"),
         "{said}"
     );
     fs::write(dir.path().join("set/reward/zzz.npy"), b"").unwrap();
@@ -164,7 +164,7 @@ fn what_the_settings_do_not_lead_to_is_left_as_it_is_and_said() {
     let sum = |bytes: &[u8]| libration_data::checksum([bytes]);
     fs::write(&manifest, text.replace(&sum(&good), &sum(b"other"))).unwrap();
     let said = "set/reward/000003-00000002.npy has the checksum";
-    let cannot = "cannot be repaired: the settings lead to other bytes";
+    let cannot = "cannot be repaired: the settings give other bytes";
     let run = libration("verify set --repair").current_dir(dir.path()).assert().code(1);
     run.stderr(
         contains(said).and(contains(cannot)).and(contains("repaired: chunk 000001-00000004")),
@@ -194,7 +194,7 @@ fn a_length_that_the_settings_do_not_lead_to_is_never_called_repaired() {
     let [found, other] = [good.len(), good.len() + 1];
     let said = || {
         contains(format!("has {found} bytes; the manifest says {other}"))
-            .and(contains("cannot be repaired: the settings lead to other bytes"))
+            .and(contains("cannot be repaired: the settings give other bytes"))
     };
     let run = libration("verify set --repair").current_dir(dir.path()).assert().code(1);
     run.stdout(is_empty()).stderr(said().and(contains("repaired: chunk").not()));
@@ -270,7 +270,7 @@ fn a_manifest_whose_chunks_are_not_the_first_in_order_is_not_said_to_be_continue
     swapped.swap(2, 3);
     for lines in [without, swapped] {
         fs::write(&manifest, lines.join("\n") + "\n").unwrap();
-        let what = "cannot be continued: chunk 000000-00000002 stands where 000000-00000001 should";
+        let what = "cannot be continued: chunk 000000-00000002 is in the place of 000000-00000001";
         let said = || contains(what).and(contains("help: delete line 3 and all lines after it"));
         let run = libration("verify set").current_dir(dir.path()).assert().code(1);
         run.stderr(said().and(contains("is unfinished").not()));
@@ -285,5 +285,5 @@ fn a_manifest_whose_chunks_are_not_the_first_in_order_is_not_said_to_be_continue
     let more = lines[30].replace("\"chunk\":\"000005-00000004\"", "\"chunk\":\"000006-00000000\"");
     fs::write(&manifest, text.clone() + &more + "\n").unwrap();
     let resumed = write(&dir, "set", "--format npy --resume").code(2);
-    resumed.stderr(contains("chunk 000006-00000000 stands after the last chunk"));
+    resumed.stderr(contains("chunk 000006-00000000 is after the last chunk"));
 }

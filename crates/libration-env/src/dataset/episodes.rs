@@ -1,22 +1,22 @@
-//! What environments did, episode by episode.
+//! Episodes of environments.
 
 use libration::ensemble::InsufficientMemory;
 use libration::rl::Rollout;
 
-use super::world::Number;
+use super::group::Number;
 
-/// An episode, or a part of a very long one.
+/// An episode, or a part of a long one.
 #[derive(Clone, Debug)]
 pub(super) struct Episode<T, const O: usize> {
-    /// Of which environment.
+    /// The environment.
     pub(super) environment: usize,
     /// The step of its first action.
     pub(super) first: u64,
-    /// What was seen before each action, and after the last.
+    /// The observations before each action and after the last.
     pub(super) observation: Vec<T>,
     pub(super) action: Vec<T>,
     pub(super) reward: Vec<T>,
-    /// Whether it came to an end of its own; otherwise it was cut off.
+    /// Whether it was terminated; otherwise it was truncated.
     pub(super) terminated: bool,
 }
 
@@ -32,7 +32,7 @@ impl<T, const O: usize> Episode<T, O> {
         }
     }
 
-    /// Room for one more step.
+    /// Reserves memory for one more step.
     fn grow(&mut self) -> Result<(), InsufficientMemory> {
         let grown = self
             .observation
@@ -44,32 +44,32 @@ impl<T, const O: usize> Episode<T, O> {
         grown.map_err(|_| InsufficientMemory { needed: needed as u128, available: None })
     }
 
-    /// How many actions it has.
+    /// The number of actions.
     pub(super) fn len(&self) -> usize {
         self.action.len()
     }
 }
 
-/// Episodes that go on, one of each environment of a group.
+/// The open episodes of a group, one per environment.
 #[derive(Debug)]
 pub(super) struct Episodes<T, const O: usize> {
     open: Vec<Episode<T, O>>,
-    /// The most actions of one: it is cut off there.
+    /// The largest number of actions of an episode, at which it is truncated.
     most: usize,
 }
 
 impl<T: Number, const O: usize> Episodes<T, O> {
-    /// None yet, of so many environments from the first on.
+    /// Empty episodes of `len` environments from number `first` on.
     pub(super) fn new(first: usize, len: usize, most: usize) -> Self {
         Episodes { open: (first..first + len).map(Episode::new).collect(), most }
     }
 
-    /// Takes in a rollout whose first step has this number; gives the episodes that ended there, in the order of their ends.
+    /// Appends a rollout that begins at step `first` and returns the ended episodes in the order of their ends.
     ///
-    /// The action by which an environment was lost led nowhere, and is left out.
+    /// The action by which an environment was lost is omitted.
     ///
     /// # Errors
-    /// If there is no memory for those that go on.
+    /// If there is no memory for the open episodes.
     pub(super) fn take(
         &mut self,
         first: u64,
@@ -106,7 +106,7 @@ impl<T: Number, const O: usize> Episodes<T, O> {
         Ok(ended)
     }
 
-    /// Cuts off those that go on; `next` is what each would have seen.
+    /// Truncates the open episodes; `next` has their final observations.
     pub(super) fn cut(&mut self, next: &[T]) -> Vec<Episode<T, O>> {
         let (next, _) = next.as_chunks::<O>();
         let open = self.open.iter_mut().zip(next);
@@ -114,7 +114,7 @@ impl<T: Number, const O: usize> Episodes<T, O> {
     }
 }
 
-/// What an episode was, if anything was done in it; another begins in its place.
+/// Closes an episode and begins another; returns it if it has actions.
 fn close<T: Number, const O: usize>(
     open: &mut Episode<T, O>,
     seen: &[T],

@@ -1,4 +1,4 @@
-//! What can go wrong with a data set.
+//! Errors of data sets.
 
 use std::path::PathBuf;
 
@@ -7,19 +7,19 @@ use libration::rl::EnvironmentError;
 use libration_data::{DataError, TableError};
 use thiserror::Error;
 
-/// Why a data set cannot be written or trusted.
+/// Error of writing or verifying a data set.
 #[derive(Debug, Error)]
 pub enum DatasetError {
-    /// A file or folder.
+    /// A file or folder failed.
     #[error(transparent)]
     Data(#[from] DataError),
-    /// The environments cannot be so.
+    /// The settings of the environments are invalid.
     #[error(transparent)]
     Environment(#[from] EnvironmentError),
-    /// There is not memory enough for the chunks that are on their way at once.
+    /// There is not enough memory for the chunks in flight.
     #[error("{room} (chunk.steps is {steps}, chunk.environments {environments})")]
     Room {
-        /// How much is needed, and there.
+        /// The needed and the available memory.
         room: InsufficientMemory,
         /// Steps of a chunk.
         steps: usize,
@@ -29,60 +29,60 @@ pub enum DatasetError {
     /// A table cannot be written.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// More shards than there are groups of environments, or one that is none of them.
+    /// The shard does not exist, or there are more shards than groups of environments.
     #[error(
-        "shard {index} of {of}: shards are numbered from 1, and this data set has {groups} groups of environments \
-         to divide (chunk.environments)"
+        "shard {index} of {of}: expected a shard from 1 on, and at most {groups} shards, one per group of environments \
+         (chunk.environments)"
     )]
     Shard {
         /// Which one.
         index: usize,
-        /// Of how many.
+        /// The number of shards.
         of: usize,
-        /// Groups there are.
+        /// The number of groups.
         groups: usize,
     },
-    /// Episodes are numbered through all of a data set.
+    /// Minari numbers episodes over the whole data set.
     #[error(
-        "{of} shards: Minari numbers the episodes of a data set from first to last, so there can only be one"
+        "{of} shards: Minari numbers the episodes of the whole data set and requires a single shard"
     )]
     Whole {
-        /// Shards that are asked for.
+        /// The number of shards.
         of: usize,
     },
-    /// The manifest tells no settings that can be read.
+    /// The settings in the manifest cannot be read.
     #[error("the settings in the manifest of {} cannot be read: {what}", folder.display())]
     Settings {
-        /// Of which folder.
+        /// The folder.
         folder: PathBuf,
-        /// Why.
+        /// The reason.
         what: String,
     },
     /// The chunks of the manifest are not the first ones in order.
     #[error("the manifest of {} cannot be continued: {what}", folder.display())]
     Order {
-        /// Of which folder.
+        /// The folder.
         folder: PathBuf,
-        /// Which chunk is wrong where, and what to do.
+        /// The wrong chunk, its place and a suggestion.
         what: String,
     },
-    /// It was written by another version, which may compute otherwise.
-    #[error("{} was written by version {found}; this is {}, which may compute otherwise", folder.display(), env!("CARGO_PKG_VERSION"))]
+    /// Another version wrote the data set and may compute other numbers.
+    #[error("{} was written by version {found}; this is {}, which may compute other numbers", folder.display(), env!("CARGO_PKG_VERSION"))]
     Version {
-        /// Which folder.
+        /// The folder.
         folder: PathBuf,
-        /// By which version.
+        /// The version that wrote it.
         found: String,
     },
-    /// A broken file that its settings do not lead to.
+    /// A broken file that cannot be recomputed.
     #[error("{} {what}", path.display())]
     Unrepairable {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Its error.
         what: String,
     },
-    /// The user stopped it.
+    /// The user stopped the work.
     #[error("interrupted")]
     Interrupted,
 }
@@ -94,8 +94,8 @@ impl From<EnsembleError> for DatasetError {
 }
 
 impl DatasetError {
-    /// The memory that is missing, if it is that.
-    pub fn room(&self) -> Option<&InsufficientMemory> {
+    /// The missing memory, if that is the error.
+    pub fn missing_memory(&self) -> Option<&InsufficientMemory> {
         match self {
             DatasetError::Room { room, .. } => Some(room),
             DatasetError::Environment(error) => error.room(),
@@ -103,7 +103,7 @@ impl DatasetError {
         }
     }
 
-    /// Settings that cannot be read.
+    /// The error of settings that cannot be read.
     pub(super) fn settings(folder: &std::path::Path) -> impl Fn(&dyn ToString) -> Self {
         let folder = folder.to_owned();
         move |what| DatasetError::Settings { folder: folder.clone(), what: what.to_string() }

@@ -1,24 +1,24 @@
-//! The formats of data sets.
+//! File formats of data sets.
 
 use libration::rl::Layout;
 
-/// How the files of a data set are made.
+/// A file format of data sets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum DataFormat {
-    /// Apache Parquet: a row for each transition, compressed.
+    /// Apache Parquet: a row per transition, compressed.
     #[default]
     Parquet,
-    /// NumPy's own: a tensor `[step, environment, …]` for each field.
+    /// NumPy: a tensor `[step, environment, …]` per field.
     Npy,
-    /// What the package Minari reads: a folder for each episode, with a Parquet file.
+    /// Minari: a folder with a Parquet file per episode.
     Minari,
 }
 
 impl DataFormat {
-    /// All of them.
+    /// All formats.
     pub const ALL: [DataFormat; 3] = [DataFormat::Parquet, DataFormat::Npy, DataFormat::Minari];
 
-    /// Its name, which is the extension of files except for Minari's.
+    /// The name, and the extension of files except for Minari.
     pub const fn name(self) -> &'static str {
         match self {
             DataFormat::Parquet => "parquet",
@@ -27,23 +27,21 @@ impl DataFormat {
         }
     }
 
-    /// What it is, in one line.
+    /// The description in one line.
     pub const fn summary(self) -> &'static str {
         match self {
-            DataFormat::Parquet => {
-                "a row for each transition, compressed; for pandas, pyarrow, polars"
-            }
-            DataFormat::Npy => "a tensor [step, environment, …] for each field; for NumPy",
-            DataFormat::Minari => "a folder for each episode; for Minari",
+            DataFormat::Parquet => "a row per transition, compressed; for pandas, pyarrow, polars",
+            DataFormat::Npy => "a tensor [step, environment, …] per field; for NumPy",
+            DataFormat::Minari => "a folder per episode; for Minari",
         }
     }
 
-    /// The format of that name, if there is one.
+    /// The format with this name, if it exists.
     pub fn from_name(name: &str) -> Option<DataFormat> {
         DataFormat::ALL.into_iter().find(|format| format.name() == name)
     }
 
-    /// How tensors lie in memory, so that nothing has to be turned around.
+    /// The memory layout that needs no transposition.
     pub(super) fn layout(self) -> Layout {
         match self {
             DataFormat::Parquet => Layout::Planes,

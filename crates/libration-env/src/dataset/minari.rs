@@ -1,4 +1,4 @@
-//! Episodes as the package Minari keeps them in its Parquet store: a folder for each, and one file about all.
+//! Episodes in the Parquet format of the package Minari: a folder per episode and one metadata file.
 //!
 //! Farama Foundation, *Minari: a dataset API for offline reinforcement learning*, 0.5. A folder holds one record batch, of the
 //! actions and one more row for what was seen last.
@@ -11,62 +11,62 @@ use libration_data::{Chunk, Table, TableError, Values, run_on_threads, write_par
 use serde_json::{Value, json};
 
 use super::DataFormat;
-use super::chunk::{NamedFile, column};
+use super::chunk_files::{NamedFile, column};
 use super::episodes::Episode;
+use super::group::Number;
 use super::settings::Dataset;
-use super::world::Number;
-use crate::environments::Acting;
+use crate::environments::PolicySettings;
 
-/// The version of the package whose store this is.
+/// The version of the package with this format.
 const VERSION: &str = "0.5.4";
-/// Rows of an episode that pyarrow gives Minari at once; of longer ones it would see no more.
+/// Rows of an episode that pyarrow returns to Minari at once; Minari ignores further rows.
 const BATCH: usize = 131_072;
-/// Transitions of a group that are kept until their episodes end.
+/// Largest number of transitions of a group in open episodes.
 const KEPT: usize = 1 << 26;
 
 impl Dataset {
-    /// The most actions of an episode.
+    /// The largest number of actions of an episode.
     pub(super) fn longest(&self) -> usize {
         (KEPT / self.chunk.environments).clamp(1, BATCH - 1)
     }
 }
 
-/// What the chunks before another one hold, from the first of the data set on.
+/// Totals over the chunks before another one.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Before {
-    /// How many there are.
+pub(super) struct Totals {
+    /// Number of chunks.
     pub(super) chunks: u64,
-    /// Episodes.
+    /// Number of episodes.
     pub(super) episodes: u64,
-    /// Actions in them.
+    /// Number of actions.
     pub(super) actions: u64,
-    /// Of all files.
+    /// Bytes of all files.
     pub(super) bytes: u64,
 }
 
-impl Before {
-    /// As a manifest tells.
-    pub(super) fn of(chunks: &[Chunk]) -> Self {
-        let told = |name: &str| {
-            let held = chunks.last().and_then(|chunk| chunk.holds.get(name));
-            held.and_then(|held| held.get(1)).and_then(Value::as_u64).unwrap_or(0)
+impl Totals {
+    /// The totals of the chunks of a manifest.
+    pub(super) fn of_chunks(chunks: &[Chunk]) -> Self {
+        let total = |name: &str| {
+            let entry = chunks.last().and_then(|chunk| chunk.holds.get(name));
+            entry.and_then(|entry| entry.get(1)).and_then(Value::as_u64).unwrap_or(0)
         };
-        Before {
+        Totals {
             chunks: chunks.len() as u64,
-            episodes: told("episodes"),
-            actions: told("actions"),
+            episodes: total("episodes"),
+            actions: total("actions"),
             bytes: chunks.iter().flat_map(|chunk| &chunk.files).map(|file| file.bytes).sum(),
         }
     }
 
-    /// And what a chunk of these episodes holds, in files of so many bytes.
+    /// The totals with one more chunk of these episodes and bytes.
     pub(super) fn and<T: Number, const O: usize>(
         self,
         episodes: &[Episode<T, O>],
         bytes: u64,
     ) -> Self {
         let actions: u64 = episodes.iter().map(|episode| episode.len() as u64).sum();
-        Before {
+        Totals {
             chunks: self.chunks + 1,
             episodes: self.episodes + episodes.len() as u64,
             actions: self.actions + actions,
@@ -75,7 +75,7 @@ impl Before {
     }
 }
 
-/// The files of some episodes, the first of which has this number.
+/// The files of some episodes; the first has the number `first`.
 pub(super) fn files<T: Number, const O: usize>(
     episodes: &[Episode<T, O>],
     first: u64,
@@ -100,7 +100,7 @@ pub(super) fn files<T: Number, const O: usize>(
     Ok(each.into_iter().flatten().collect())
 }
 
-/// A row for each action, and one more.
+/// A table with a row per action and a final row.
 fn rows<'a, T: Number, const O: usize>(
     episode: &'a Episode<T, O>,
     dataset: &Dataset,
@@ -111,7 +111,7 @@ fn rows<'a, T: Number, const O: usize>(
         flags[episode.len() - 1] = u8::from(is);
         Values::Bool(flags.into())
     };
-    let units: Vec<_> = dataset.recipe.seen().iter().map(|&(_, unit)| unit).collect();
+    let units: Vec<_> = dataset.recipe.observed().iter().map(|&(_, unit)| unit).collect();
     let list = |of| Values::Lists(1, Box::new(of));
     let mut seen =
         column("observations", "1", Values::Lists(O, Box::new(T::view(&episode.observation))));
@@ -125,8 +125,8 @@ fn rows<'a, T: Number, const O: usize>(
     ])
 }
 
-/// What Minari asks of a data set.
-pub(super) fn about(dataset: &Dataset, all: Before) -> String {
+/// The metadata file of a data set.
+pub(super) fn metadata(dataset: &Dataset, all: Totals) -> String {
     let (system, task) = (dataset.recipe.system.any().name(), dataset.recipe.task.name());
     let about = json!({
         "dataset_id": format!("libration/{system}-{task}-v0"),
@@ -145,23 +145,25 @@ pub(super) fn about(dataset: &Dataset, all: Before) -> String {
     about.to_string()
 }
 
-/// Between which numbers each that is seen lies: cosines and sines within one, unless a sensor adds noise.
+/// The bounds of the observations: one for cosines and sines without noise, else infinite.
 fn bounds(dataset: &Dataset) -> Vec<[f64; 2]> {
     let exact = dataset.recipe.noise.observation.rms() == 0.0;
     let circle = |name: &str| exact && (name.starts_with("cos_") || name.starts_with("sin_"));
     let bound = |name| if circle(name) { 1.0 } else { f64::INFINITY };
-    dataset.recipe.seen().iter().map(|&(name, _)| [-bound(name), bound(name)]).collect()
+    dataset.recipe.observed().iter().map(|&(name, _)| [-bound(name), bound(name)]).collect()
 }
 
-/// Between which numbers actions lie.
-fn actions(policy: &Acting) -> [f64; 2] {
+/// The bounds of the actions.
+fn actions(policy: &PolicySettings) -> [f64; 2] {
     match *policy {
-        Acting::Random { low, high } => [low, high],
-        Acting::Linear { .. } | Acting::Constant(_) => [-f64::INFINITY, f64::INFINITY],
+        PolicySettings::Random { low, high } => [low, high],
+        PolicySettings::Linear { .. } | PolicySettings::Constant(_) => {
+            [-f64::INFINITY, f64::INFINITY]
+        }
     }
 }
 
-/// A box of Gymnasium as Minari writes it: JSON as Python has it, with infinite numbers.
+/// A box space of Gymnasium in the JSON of Minari, which allows infinite numbers.
 fn space(dataset: &Dataset, bounds: &[[f64; 2]]) -> String {
     let number = |x: f64| match x {
         f64::INFINITY => "Infinity".to_owned(),

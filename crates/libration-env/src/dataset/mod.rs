@@ -1,28 +1,30 @@
-//! Data sets of rollouts: what `libration rollout` writes.
+//! Data sets of rollouts, the output of `libration rollout`.
 //!
-//! A data set is divided into groups of neighbouring environments, and what each group does into chunks of steps. All of it follows
-//! from its settings, so that whoever was stopped computes again where it was, and whoever doubts computes it again.
+//! A data set is divided into groups of neighbouring environments, and the rollout of a group into chunks of steps. Its numbers
+//! follow from the settings, so that an interrupted data set can be resumed, and each data set can be verified by recomputation.
 
-mod again;
-mod chunk;
+mod chunk_files;
+mod chunk_order;
 mod episodes;
 mod error;
 mod format;
+mod group;
+mod group_rollout;
+mod manifest_settings;
+mod memory_check;
 mod minari;
-mod reading;
+mod monitor;
 mod repair;
-mod room;
 mod settings;
-mod stream;
+mod table_conversion;
 mod tables;
-mod told;
-mod watch;
-mod world;
+mod verification;
+mod writer;
 
-pub use again::{Check, check};
 pub use error::DatasetError;
 pub use format::DataFormat;
 pub use libration_data::{DataError, Flaw};
+pub use monitor::Monitor;
 pub use settings::{DEFAULT, Dataset, parse};
-pub use stream::{Job, write};
-pub use watch::Watch;
+pub use verification::{VerifyOptions, verify};
+pub use writer::{WriteJob, write};

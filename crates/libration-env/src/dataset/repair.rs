@@ -1,4 +1,4 @@
-//! Broken files of a data set, computed again and replaced.
+//! Repair of broken files of a data set.
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::RangeInclusive;
@@ -7,44 +7,44 @@ use std::path::Path;
 use libration::ensemble::Execution;
 use libration_data::{Chunk, Flaw, Folder, Manifest, NewFile, checksum, verify, write_files};
 
-use super::minari::Before;
-use super::stream::Course;
-use super::world::{Group, Number, Visit};
-use super::{DataFormat, Dataset, DatasetError, Watch};
-use crate::environments::{Actor, Batch};
+use super::group::{Group, GroupVisitor, Number};
+use super::group_rollout::GroupRollout;
+use super::minari::Totals;
+use super::{DataFormat, Dataset, DatasetError, Monitor};
+use crate::environments::{AnyPolicy, Batch};
 
-/// What a manifest describes: a data set, its format, and which groups of environments.
-pub(super) struct Described<'a> {
+/// The part of a data set in a folder: its format and groups of environments.
+pub(super) struct DatasetPart<'a> {
     pub(super) dataset: &'a Dataset,
     pub(super) format: DataFormat,
     /// The first group, and the one after the last.
     pub(super) groups: [usize; 2],
 }
 
-/// The files that are not what the manifest says. All are read.
-pub(super) fn broken(
+/// Reads all files and returns those that differ from the manifest.
+pub(super) fn find_broken(
     folder: &Path,
     manifest: &Manifest,
-    watch: &dyn Watch,
+    monitor: &dyn Monitor,
 ) -> Result<Vec<Flaw>, DatasetError> {
     let of = manifest.bytes();
     let flaws = verify(folder, manifest, |bytes| {
-        watch.checked(bytes, of);
-        !watch.stops()
+        monitor.on_verified(bytes, of);
+        !monitor.should_stop()
     });
-    if watch.stops() { Err(DatasetError::Interrupted) } else { Ok(flaws) }
+    if monitor.should_stop() { Err(DatasetError::Interrupted) } else { Ok(flaws) }
 }
 
-/// Computes the chunks of broken files again and replaces these files, each whole or not at all. Gives the flaws that stay: those of
-/// files that the settings do not lead to, and folders in the place of files.
+/// Recomputes the chunks of broken files and replaces these files atomically. Returns the remaining flaws: files that differ from
+/// the recomputed ones, and folders in the place of files.
 pub(super) fn repair(
     folder: &Folder,
-    described: &Described<'_>,
+    part: &DatasetPart<'_>,
     flaws: &[Flaw],
     execution: &Execution,
-    watch: &dyn Watch,
+    monitor: &dyn Monitor,
 ) -> Result<Vec<Flaw>, DatasetError> {
-    let Described { dataset, format, groups: [first, end] } = *described;
+    let DatasetPart { dataset, format, groups: [first, end] } = *part;
     let chunks = &folder.manifest().chunks;
     let numbers: HashMap<&str, usize> =
         chunks.iter().enumerate().map(|(i, chunk)| (&*chunk.chunk, i)).collect();
@@ -61,59 +61,68 @@ pub(super) fn repair(
             Some((group, number)) if group < end => {
                 of_groups.entry(group).or_default().entry(number).or_default().push(flaw);
             }
-            _ => lost.push(stays(flaw)),
+            _ => lost.push(unrepairable(flaw)),
         }
     }
     for (number, broken) in of_groups {
         let (start, lost) = ((number - first) * each, &mut lost);
         let last = broken.keys().last().copied().unwrap_or(start);
         let (numbers, group) = (start..=last, dataset.group(number));
-        let again =
-            Again { dataset, format, group, numbers, broken, folder, execution, watch, lost };
+        let again = Recomputation {
+            dataset,
+            format,
+            group,
+            numbers,
+            broken,
+            folder,
+            execution,
+            monitor,
+            lost,
+        };
         dataset.with(group, execution, again)??;
     }
     Ok(lost)
 }
 
-/// A flaw that no computation mends.
-fn stays(flaw: &Flaw) -> Flaw {
-    let what = format!("{}; cannot be repaired: the settings lead to other bytes", flaw.what);
+/// The flaw of a file that differs from the recomputed one.
+fn unrepairable(flaw: &Flaw) -> Flaw {
+    let what = format!("{}; cannot be repaired: the settings give other bytes", flaw.what);
     Flaw { what, ..flaw.clone() }
 }
 
-/// The chunks of a group up to the last broken one.
-struct Again<'a> {
+/// The recomputation of the chunks of a group up to the last broken one.
+struct Recomputation<'a> {
     dataset: &'a Dataset,
     format: DataFormat,
     group: Group,
-    /// Which of the manifest they are.
+    /// The indices of the chunks in the manifest.
     numbers: RangeInclusive<usize>,
     broken: BTreeMap<usize, Vec<&'a Flaw>>,
     folder: &'a Folder,
     execution: &'a Execution,
-    watch: &'a dyn Watch,
+    monitor: &'a dyn Monitor,
     lost: &'a mut Vec<Flaw>,
 }
 
-impl Visit for Again<'_> {
+impl GroupVisitor for Recomputation<'_> {
     type Output = Result<(), DatasetError>;
 
     fn visit<T: Number, const O: usize>(
         self,
         all: Box<dyn Batch<T, O>>,
-        actor: Actor<'static, T, O>,
+        actor: AnyPolicy<'static, T, O>,
     ) -> Self::Output {
-        let Again { dataset, format, group, folder, execution, watch, lost, .. } = self;
+        let Recomputation { dataset, format, group, folder, execution, monitor, lost, .. } = self;
         let chunks = &folder.manifest().chunks;
-        let mut course = Course::new(dataset, format, group, all, actor);
+        let mut rollout = GroupRollout::new(dataset, format, group, all, actor);
         let mut used = None;
         for number in self.numbers {
-            if watch.stops() {
+            if monitor.should_stop() {
                 return Err(DatasetError::Interrupted);
             }
-            let mut done = course.next(used.take())?;
+            let mut done = rollout.next(used.take())?;
             if let Some(flaws) = self.broken.get(&number) {
-                let before = Before::of(&chunks[..number]);
+                let before = Totals::of_chunks(&chunks[..number]);
                 let files = done.files(dataset, format, execution.thread_count(), before)?;
                 let files = files.list();
                 let mends = |flaw: &&Flaw| same(&files, &chunks[number], &flaw.path);
@@ -123,8 +132,8 @@ impl Visit for Again<'_> {
                     |file: &&NewFile<'_>| mended.iter().any(|flaw| flaw.path == file.path);
                 let files: Vec<_> = files.iter().filter(is_mended).cloned().collect();
                 write_files(folder.path(), &files)?;
-                mended.into_iter().for_each(|flaw| watch.repaired(flaw));
-                lost.extend(others.into_iter().map(stays));
+                mended.into_iter().for_each(|flaw| monitor.on_repaired(flaw));
+                lost.extend(others.into_iter().map(unrepairable));
             }
             used = Some(done);
         }
@@ -132,7 +141,7 @@ impl Visit for Again<'_> {
     }
 }
 
-/// Whether a file that was computed again is what the manifest says.
+/// Whether a recomputed file matches the manifest.
 fn same(files: &[NewFile<'_>], chunk: &Chunk, path: &Path) -> bool {
     let stored = chunk.files.iter().find(|stored| stored.path == path);
     let again = files.iter().find(|file| file.path == path);

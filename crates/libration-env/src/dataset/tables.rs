@@ -1,11 +1,11 @@
-//! The tables of a file of settings.
+//! Tables of settings files.
 
 use std::collections::BTreeMap;
 
 use libration_settings::{Count, Number};
 use serde::Deserialize;
 
-/// Settings as they stand in a file.
+/// A settings file.
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct File {
@@ -26,7 +26,7 @@ pub(super) struct File {
     pub(super) policy: PolicyTable,
 }
 
-/// A piece of the data set.
+/// The size of chunks.
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct ChunkTable {
@@ -34,7 +34,7 @@ pub(super) struct ChunkTable {
     pub(super) steps: Count,
 }
 
-/// What is seen, paid, and over.
+/// The task.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum TaskTable {
@@ -59,7 +59,7 @@ pub(super) struct SwingUpTable {
     pub(super) effort: Number,
 }
 
-/// To follow a sine.
+/// The task to track a sine.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct TrackTable {
@@ -94,7 +94,7 @@ pub(super) struct NoiseTable {
     pub(super) observation: Number,
 }
 
-/// Who acts.
+/// The policy.
 #[derive(Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum PolicyTable {

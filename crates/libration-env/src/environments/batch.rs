@@ -1,4 +1,4 @@
-//! Environments of which nothing is known but what they show.
+//! Environments of any type.
 
 use std::ops::Range;
 
@@ -8,86 +8,86 @@ use libration::ensemble::Execution;
 use libration::rl::{EnvironmentError, Environments, EpisodeEnd, Rollout, StepBuffers, World};
 use libration::{Elementary, Float};
 
-use super::Actor;
+use super::AnyPolicy;
 
-/// [`Environments`] of any kind that show `O` numbers.
+/// [`Environments`] of any type with `O` observations.
 pub trait Batch<T, const O: usize>: Send + Sync {
-    /// How many there are.
+    /// The number of environments.
     fn len(&self) -> usize;
 
-    /// Whether there are none.
+    /// Whether there are no environments.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Actions of each so far.
+    /// The number of actions per environment so far.
     fn step(&self) -> u64;
 
-    /// Fills `rollout` with what all do.
+    /// Fills `rollout`.
     ///
     /// # Errors
     /// See [`Environments::rollout`].
     fn rollout(
         &mut self,
-        actor: Actor<'_, T, O>,
+        actor: AnyPolicy<'_, T, O>,
         rollout: &mut Rollout<T, O, 1>,
     ) -> Result<(), EnvironmentError>;
 
-    /// Fills some rows of `rollout`, those before which are full.
+    /// Fills the rows `rows` of `rollout`; the rows before must be full.
     ///
     /// # Errors
     /// See [`Environments::fill`].
     fn fill(
         &mut self,
-        actor: Actor<'_, T, O>,
+        actor: AnyPolicy<'_, T, O>,
         rollout: &mut Rollout<T, O, 1>,
         rows: Range<usize>,
     ) -> Result<(), EnvironmentError>;
 
-    /// One action of each.
+    /// Takes one action in each environment.
     ///
     /// # Errors
     /// See [`Environments::act`].
     fn act(
         &mut self,
-        actor: Actor<'_, T, O>,
+        actor: AnyPolicy<'_, T, O>,
         to: StepBuffers<'_, T>,
     ) -> Result<Vec<EpisodeEnd<T, O>>, EnvironmentError>;
 
-    /// Writes what is seen now: `[n, i]`.
+    /// Writes the current observations, `[n, i]`.
     ///
     /// # Errors
     /// See [`Environments::observe`].
     fn observe(&mut self, to: &mut [T]) -> Result<(), EnvironmentError>;
 
-    /// Begins another episode in every environment for which there is a `true`.
+    /// Begins a new episode in each environment with `true`.
     ///
     /// # Errors
     /// See [`Environments::reset`].
     fn reset(&mut self, which: &[bool]) -> Result<(), EnvironmentError>;
 
-    /// Ends the episode of every environment for which there is a `true`.
+    /// Ends the episode of each environment with `true`.
     ///
     /// # Errors
     /// See [`Environments::end`].
     fn end(&mut self, which: &[bool]) -> Result<(), EnvironmentError>;
 
-    /// Begins a first episode in every environment for which there is a seed.
+    /// Begins a first episode in each environment with a seed.
     ///
     /// # Errors
     /// See [`Environments::seed`].
     fn seed(&mut self, seeds: &[Option<u64>]) -> Result<(), EnvironmentError>;
 
-    /// Where they are stepped from now on.
+    /// Sets the execution of later steps.
     fn execute(&mut self, execution: Execution);
 
-    /// Position and velocity of one, if there is such.
+    /// Position and velocity of environment `n`, if it exists.
     fn state(&self, n: usize) -> Option<[T; 2]>;
 
-    /// All that they are, as bytes.
+    /// The complete state as bytes.
     fn to_bytes(&self) -> Vec<u8>;
 
-    /// Makes them what they were.
+    /// Restores a state of [`to_bytes`](Self::to_bytes).
     ///
     /// # Errors
     /// See [`Checkpoint::restore`].
@@ -109,7 +109,7 @@ where
 
     fn rollout(
         &mut self,
-        actor: Actor<'_, T, O>,
+        actor: AnyPolicy<'_, T, O>,
         rollout: &mut Rollout<T, O, 1>,
     ) -> Result<(), EnvironmentError> {
         Environments::rollout(self, actor, rollout)
@@ -117,7 +117,7 @@ where
 
     fn fill(
         &mut self,
-        actor: Actor<'_, T, O>,
+        actor: AnyPolicy<'_, T, O>,
         rollout: &mut Rollout<T, O, 1>,
         rows: Range<usize>,
     ) -> Result<(), EnvironmentError> {
@@ -126,7 +126,7 @@ where
 
     fn act(
         &mut self,
-        actor: Actor<'_, T, O>,
+        actor: AnyPolicy<'_, T, O>,
         to: StepBuffers<'_, T>,
     ) -> Result<Vec<EpisodeEnd<T, O>>, EnvironmentError> {
         Environments::act(self, actor, to)

@@ -1,17 +1,17 @@
-//! Environments chosen when the program runs: a [`Recipe`] of names and numbers, and the [`Batch`] that is made of it.
+//! Environments chosen at run time: [`EnvironmentSettings`], and the [`Batch`] built from them.
 //!
-//! What they do is compiled here once, for data sets and for whoever knows no types.
+//! Their kernels are compiled here once, for data sets and for Python.
 
-mod actor;
 mod batch;
-mod plant;
-mod recipe;
+mod construction;
+mod policy;
+mod settings;
+mod system;
 mod task;
-mod world;
 
-pub use actor::{Acting, Actor};
 pub use batch::Batch;
-pub use plant::Lone;
-pub use recipe::{Noise, Recipe};
+pub use construction::{BatchVisitor, EnvironmentFloat};
+pub use policy::{AnyPolicy, PolicySettings};
+pub use settings::{EnvironmentSettings, Noise};
+pub use system::SingleDofSystem;
 pub use task::Task;
-pub use world::{Compiled, Visit};

@@ -1,28 +1,28 @@
-//! What is seen, paid, and over.
+//! Tasks of environments, chosen at run time.
 
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 
 /// One of the engine's tasks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Task {
-    /// To rest at the origin.
+    /// Rest at the origin.
     Regulate(Regulate),
-    /// To stand a pendulum on its head.
+    /// Swing a pendulum up.
     SwingUp(SwingUp),
-    /// To follow a sine.
+    /// Track a sine.
     Track(Track<Sine>),
 }
 
-/// What a number is that is seen.
+/// The quantity of an observation.
 #[derive(Clone, Copy)]
-pub(super) enum Seen {
+pub(super) enum ObservedQuantity {
     Position,
     Velocity,
-    Neither,
+    Dimensionless,
 }
 
 impl Task {
-    /// Its name in files of settings.
+    /// The name in settings files.
     pub fn name(&self) -> &'static str {
         match self {
             Task::Regulate(_) => "regulate",
@@ -31,10 +31,10 @@ impl Task {
         }
     }
 
-    /// Names of what is seen, and what each is.
-    pub(super) fn seen(&self) -> &'static [(&'static str, Seen)] {
-        use Seen::{Neither, Position, Velocity};
-        const STATE: [(&str, Seen); 4] = [
+    /// Names and quantities of the observations.
+    pub(super) fn observed(&self) -> &'static [(&'static str, ObservedQuantity)] {
+        use ObservedQuantity::{Dimensionless, Position, Velocity};
+        const STATE: [(&str, ObservedQuantity); 4] = [
             ("q0", Position),
             ("v0", Velocity),
             ("reference_q0", Position),
@@ -42,13 +42,15 @@ impl Task {
         ];
         match self {
             Task::Regulate(_) => &STATE[..2],
-            Task::SwingUp(_) => &[("cos_q0", Neither), ("sin_q0", Neither), ("v0", Velocity)],
+            Task::SwingUp(_) => {
+                &[("cos_q0", Dimensionless), ("sin_q0", Dimensionless), ("v0", Velocity)]
+            }
             Task::Track(_) => &STATE,
         }
     }
 
-    /// How many numbers are seen.
+    /// The number of observations.
     pub fn observations(&self) -> usize {
-        self.seen().len()
+        self.observed().len()
     }
 }

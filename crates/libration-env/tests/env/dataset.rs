@@ -1,4 +1,4 @@
-//! Data sets beside the engine that they come from.
+//! Tests of data sets against the engine.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +12,9 @@ use libration::rl::start::UniformStart;
 use libration::rl::task::SwingUp;
 use libration::rl::{Environment, Environments, Plan, Rollout};
 use libration::system::Pendulum;
-use libration_env::dataset::{Check, DataFormat, Dataset, Job, Watch, check, parse, write};
+use libration_env::dataset::{
+    DataFormat, Dataset, Monitor, VerifyOptions, WriteJob, parse, verify, write,
+};
 
 const SETTINGS: &str = "\
 seed = 3
@@ -40,8 +42,8 @@ bias = 0.125
 #[derive(Default)]
 struct Count(AtomicU64, AtomicU64);
 
-impl Watch for Count {
-    fn done(&self, transitions: u64, bytes: u64) {
+impl Monitor for Count {
+    fn on_written(&self, transitions: u64, bytes: u64) {
         self.0.fetch_add(transitions, Ordering::Relaxed);
         self.1.fetch_add(bytes, Ordering::Relaxed);
     }
@@ -62,7 +64,7 @@ fn a_data_set_holds_the_bits_of_the_environments_of_the_engine() {
     let out = dir.path().join("set");
     let dataset = parse(SETTINGS, "set.toml").unwrap();
     assert_eq!((dataset.len(), dataset.share([1, 2]), dataset.share([2, 2])), (7500, 4800, 2700));
-    let job = Job {
+    let job = WriteJob {
         dataset: &dataset,
         format: DataFormat::Npy,
         shard: [1, 1],
@@ -117,7 +119,7 @@ fn settings_are_read_back_from_a_manifest_whatever_they_are() {
         let out = dir.path().join("set");
         let dataset = parse(text, "set.toml").unwrap();
         let dataset = if text.is_empty() { dataset.transitions(4096).unwrap() } else { dataset };
-        let job = Job {
+        let job = WriteJob {
             dataset: &dataset,
             format: DataFormat::Parquet,
             shard: [1, 1],
@@ -128,7 +130,8 @@ fn settings_are_read_back_from_a_manifest_whatever_they_are() {
         write(&job, &Count::default()).unwrap();
         let again = Execution::serial().threads(3).unwrap();
         let count = Count::default();
-        let (_, flaws) = check(&out, Check { replay: Some(&again), repair: None }, &count).unwrap();
+        let (_, flaws) =
+            verify(&out, VerifyOptions { replay: Some(&again), repair: None }, &count).unwrap();
         assert_eq!(flaws, [], "{text}");
         assert_eq!(u128::from(count.0.into_inner()), dataset.len());
     }

@@ -65,7 +65,7 @@ fn bad_values_are_named_with_what_is_allowed() {
         ("[spectrum]\ndt = -inf", "-inf", "`spectrum.dt` is -inf"),
         ("[drift]\ndt = [0.1, -0.2]", "-0.2", "`drift.dt` is -0.2, but it must be finite"),
         ("[drift]\ndt = []", "[]", "`drift.dt` must hold at least one time step"),
-        ("[drift]\ndt = [0.1, 1e-1]", "1e-1", "time step 0.1 stands in `drift.dt` twice"),
+        ("[drift]\ndt = [0.1, 1e-1]", "1e-1", "time step 0.1 occurs twice in `drift.dt`"),
         ("[drift]\nsteps = 0", "0", "`drift.steps` is 0, but it must be 1 to 1000000000"),
         ("[drift]\nsteps = -5", "-5", "`drift.steps` is -5, but it must be 1 to"),
         ("[drift]\nsteps = 2e9", "2e9", "`drift.steps` is 2000000000"),
@@ -76,7 +76,7 @@ fn bad_values_are_named_with_what_is_allowed() {
         (
             "[convergence]\nsystems = ['pendulum', 'keppler']",
             "'keppler'",
-            "no system `keppler` can be studied",
+            "unknown system `keppler`",
         ),
         ("[convergence]\nsystems = []", "[]", "`convergence.systems` must name at least one"),
         ("[convergence]\ncoarsest = 40", "40", "must be a multiple of 16 from 16 to 4096"),

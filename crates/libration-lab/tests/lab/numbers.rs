@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use libration_lab::untried::UNTRIED;
+use libration_lab::untried_claims::UNTRIED;
 
 use crate::default_run::{measured, predicted, records};
 

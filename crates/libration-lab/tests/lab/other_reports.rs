@@ -107,7 +107,7 @@ fn a_claim_that_is_not_judged_says_why() {
     let all = STUDIES.studies;
     let leapfrog = Config { integrators: vec![Method::Leapfrog], ..STUDIES.config() };
     let why = because(&leapfrog, "C16", all).unwrap_or_default();
-    assert!(why.ends_with("left out: velocity Verlet, RK4"), "{why}");
+    assert!(why.ends_with("not in the configuration: velocity Verlet, RK4"), "{why}");
     let why = because(&STUDIES.config(), "C16", all).unwrap_or_default();
     assert!(why.contains("the source’s own run"), "{why}");
     let why = because(&STUDIES.config(), "C16", &[]).unwrap_or_default();

@@ -221,7 +221,7 @@ fn an_entry_of_the_ledger_leads_to_the_figures_that_show_its_evidence() {
         let head = figure.split("<figcaption><b>").nth(1).unwrap();
         numbers.extend(head.strip_prefix("Figure ").and_then(|rest| rest.split(' ').next()));
     }
-    for claim in STUDIES.studies.iter().flat_map(|study| study.tries()) {
+    for claim in STUDIES.studies.iter().flat_map(|study| study.source_claims()) {
         for name in claim.figures {
             let there = figures.contains(name) || numbers.contains(name);
             assert!(there, "{} names the figure {name}, which the page lacks", claim.id);

@@ -2,14 +2,14 @@
 
 use serde::Serialize;
 
-/// How a value becomes a place.
+/// The scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Default)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scale {
     /// Equal differences are equal lengths.
     #[default]
     Linear,
-    /// Equal ratios are equal lengths; zero and below have no place.
+    /// Equal ratios are equal lengths; zero and negative values have no place.
     Log,
 }
 
@@ -37,13 +37,13 @@ impl Scale {
 pub struct Axis {
     /// The quantity, with its symbol.
     pub label: String,
-    /// Its unit; none for what has no dimension.
+    /// The unit; none for dimensionless quantities.
     pub unit: Option<String>,
     /// Linear or logarithmic.
     pub scale: Scale,
-    /// The smallest and largest value shown; those of the data, with some air, if absent.
+    /// The smallest and largest shown value; none for those of the data with a margin.
     pub range: Option<[f64; 2]>,
-    /// Names in place of numbers: the first stands at 0, the next at −1, and so on downwards.
+    /// Names in place of numbers: the first at 0, the next at −1, and so on.
     pub names: Vec<String>,
 }
 
@@ -65,14 +65,14 @@ impl Axis {
         Self { label: label.into(), names, range, ..Self::default() }
     }
 
-    /// Names the unit.
+    /// Sets the unit.
     #[must_use]
     pub fn unit(mut self, unit: impl Into<String>) -> Self {
         self.unit = Some(unit.into());
         self
     }
 
-    /// Sets the smallest and largest value shown.
+    /// Sets the smallest and largest shown value.
     #[must_use]
     pub fn range(mut self, low: f64, high: f64) -> Self {
         self.range = Some([low, high]);
@@ -87,8 +87,8 @@ impl Axis {
         }
     }
 
-    /// The range shown on the scale (logarithms on a logarithmic axis), given the data and the
-    /// share of their extent to be left free at each end.
+    /// The shown range on the scale (logarithms on a logarithmic axis) for the data, with a share of
+    /// their extent as margin at each end.
     pub(super) fn span(&self, data: impl Iterator<Item = f64>, air: f64) -> Span {
         if let Some([low, high]) = self.range {
             let (low, high) = (self.scale.of(low), self.scale.of(high));
@@ -119,7 +119,7 @@ impl Axis {
     }
 }
 
-/// What an axis shows, on its scale.
+/// The shown range of an axis, on its scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Span {
     pub(super) scale: Scale,
@@ -128,7 +128,7 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// How far along the axis a value lies: 0 at its low end, 1 at its high end.
+    /// The position of a value along the axis: 0 at its low end, 1 at its high end.
     pub(super) fn share(&self, value: f64) -> f64 {
         (self.scale.of(value) - self.low) / (self.high - self.low)
     }
@@ -140,7 +140,7 @@ impl Span {
     }
 }
 
-/// A span laid onto the page, from one pixel coordinate to another.
+/// A span on the page, from one pixel coordinate to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ruler {
     pub(super) span: Span,

@@ -1,21 +1,21 @@
-//! Colours for values.
+//! Colours of values.
 
 use serde::Serialize;
 
 use super::axis::Scale;
 
-/// How values become colours, and what the colour bar says.
+/// The mapping of values to colours, with the colour bar.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Colors {
     /// The colours.
     pub map: ColorMap,
-    /// Whether equal steps or equal ratios of value are equal steps of colour.
+    /// Linear: equal differences are equal steps of colour. Logarithmic: equal ratios.
     pub scale: Scale,
-    /// The values at the two ends; those of the data if absent.
+    /// The values at the two ends; none for those of the data.
     pub range: Option<[f64; 2]>,
-    /// What is shown.
+    /// The quantity.
     pub label: String,
-    /// Its unit, if it has one.
+    /// The unit, if it has one.
     pub unit: Option<String>,
 }
 
@@ -26,7 +26,7 @@ pub enum ColorMap {
     /// From small to large, even in lightness, safe for the colour-blind.
     #[default]
     Viridis,
-    /// Both signs, white at the middle.
+    /// For both signs, white in the middle.
     Diverging,
 }
 
@@ -58,7 +58,7 @@ impl Colors {
         self
     }
 
-    /// Names the unit.
+    /// Sets the unit.
     #[must_use]
     pub fn unit(mut self, unit: impl Into<String>) -> Self {
         self.unit = Some(unit.into());

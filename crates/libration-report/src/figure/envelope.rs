@@ -1,11 +1,11 @@
-//! Long series, thinned without losing their extremes.
+//! Envelopes of long series.
 
 use serde::Serialize;
 
 /// The smallest and largest value of a series in each of many buckets.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]
 pub struct Envelope {
-    /// Where each bucket stands; the first and last are those of the series.
+    /// The abscissa of each bucket; the first and last are those of the series.
     pub x: Vec<f64>,
     /// The smallest value in each bucket.
     pub low: Vec<f64>,

@@ -1,11 +1,11 @@
-//! The ranges that a panel shows.
+//! Ranges of a panel.
 
 use super::axis::{Scale, Span};
-use super::drawn::edges;
 use super::mark::{Across, Shape};
+use super::mark_geometry::edges;
 use super::panel::Panel;
 
-/// The horizontal and vertical ranges of a panel whose frame has an aspect.
+/// The horizontal and vertical ranges of a panel with a frame of this aspect.
 pub(super) fn spans(panel: &Panel, aspect: f64) -> [Span; 2] {
     let (mut xs, mut ys) = (Vec::new(), Vec::new());
     let (mut dots, mut filled) = (false, false);
@@ -42,7 +42,7 @@ pub(super) fn spans(panel: &Panel, aspect: f64) -> [Span; 2] {
     if panel.equal && linear { equal(x, y, aspect) } else { [x, y] }
 }
 
-/// Collects the values of points that have a place and are not beyond a range that was set.
+/// Collects the values of points with a place within the set ranges.
 fn both(x: &[f64], y: &[f64], panel: &Panel, xs: &mut Vec<f64>, ys: &mut Vec<f64>) {
     let within = |range: Option<[f64; 2]>, v: f64| range.is_none_or(|[a, b]| v >= a && v <= b);
     for (&x, &y) in x.iter().zip(y) {
@@ -54,7 +54,7 @@ fn both(x: &[f64], y: &[f64], panel: &Panel, xs: &mut Vec<f64>, ys: &mut Vec<f64
     }
 }
 
-/// Widens one range until a unit is as long on both axes.
+/// Widens one range until a unit has the same length on both axes.
 fn equal(mut x: Span, mut y: Span, aspect: f64) -> [Span; 2] {
     let ratio = (x.high - x.low) / (y.high - y.low) / aspect;
     if ratio < 1.0 {

@@ -21,7 +21,7 @@ impl Rect {
         self.y + self.height
     }
 
-    pub(super) fn grown(&self, by: f64) -> Self {
+    pub(super) fn expanded(&self, by: f64) -> Self {
         let (width, height) = (self.width + 2.0 * by, self.height + 2.0 * by);
         Self { x: self.x - by, y: self.y - by, width, height }
     }
@@ -30,11 +30,11 @@ impl Rect {
         x >= self.x && x <= self.right() && y >= self.y && y <= self.bottom()
     }
 
-    pub(super) fn holds(&self, other: &Self) -> bool {
+    pub(super) fn contains_rect(&self, other: &Self) -> bool {
         self.contains([other.x, other.y]) && self.contains([other.right(), other.bottom()])
     }
 
-    pub(super) fn meets(&self, other: &Self) -> bool {
+    pub(super) fn intersects(&self, other: &Self) -> bool {
         self.x < other.right()
             && other.x < self.right()
             && self.y < other.bottom()
@@ -42,7 +42,7 @@ impl Rect {
     }
 
     /// The part of a segment inside (Liang and Barsky).
-    pub(super) fn cut(&self, a: Place, b: Place) -> Option<[Place; 2]> {
+    pub(super) fn clip_segment(&self, a: Place, b: Place) -> Option<[Place; 2]> {
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
         let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
         let sides = [
@@ -68,12 +68,12 @@ impl Rect {
     }
 
     /// The parts of a polyline inside; a corner that is not finite ends a part.
-    pub(super) fn cut_line(&self, line: &[Place]) -> Vec<Vec<Place>> {
+    pub(super) fn clip_line(&self, line: &[Place]) -> Vec<Vec<Place>> {
         let mut parts: Vec<Vec<Place>> = Vec::new();
         let mut open = false;
         for pair in line.windows(2) {
             let [a, b] = [pair[0], pair[1]];
-            let inside = if finite(a) && finite(b) { self.cut(a, b) } else { None };
+            let inside = if finite(a) && finite(b) { self.clip_segment(a, b) } else { None };
             let Some([from, to]) = inside else {
                 open = false;
                 continue;
@@ -88,7 +88,7 @@ impl Rect {
     }
 
     /// The parts of a polyline outside.
-    pub(super) fn spare(&self, line: &[Place]) -> Vec<Vec<Place>> {
+    pub(super) fn outside_parts(&self, line: &[Place]) -> Vec<Vec<Place>> {
         let mut parts: Vec<Vec<Place>> = Vec::new();
         let mut add = |from: Place, to: Place| match parts.last_mut() {
             _ if from == to => {}
@@ -96,7 +96,7 @@ impl Rect {
             _ => parts.push(vec![from, to]),
         };
         for pair in line.windows(2) {
-            match self.cut(pair[0], pair[1]) {
+            match self.clip_segment(pair[0], pair[1]) {
                 Some([enter, leave]) => {
                     add(pair[0], enter);
                     add(leave, pair[1]);
@@ -108,7 +108,7 @@ impl Rect {
     }
 
     /// The part of a polygon inside (Sutherland and Hodgman).
-    pub(super) fn cut_polygon(&self, polygon: &[Place]) -> Vec<Place> {
+    pub(super) fn clip_polygon(&self, polygon: &[Place]) -> Vec<Place> {
         let mut corners: Vec<Place> = polygon.iter().copied().filter(|&p| finite(p)).collect();
         let sides =
             [(0, self.x, 1.0), (0, self.right(), -1.0), (1, self.y, 1.0), (1, self.bottom(), -1.0)];
@@ -152,20 +152,20 @@ mod tests {
 
     #[test]
     fn a_line_that_leaves_and_returns_is_two_parts() {
-        let parts = BOX.cut_line(&[[1.0, 5.0], [1.0, 1e12], [9.0, 1e12], [9.0, 5.0]]);
+        let parts = BOX.clip_line(&[[1.0, 5.0], [1.0, 1e12], [9.0, 1e12], [9.0, 5.0]]);
         assert_eq!(parts, [vec![[1.0, 5.0], [1.0, 10.0]], vec![[9.0, 10.0], [9.0, 5.0]]]);
     }
 
     #[test]
     fn a_corner_without_a_place_is_a_gap() {
         let parts =
-            BOX.cut_line(&[[1.0, 1.0], [2.0, 2.0], [f64::NAN, 3.0], [4.0, 4.0], [5.0, 5.0]]);
+            BOX.clip_line(&[[1.0, 1.0], [2.0, 2.0], [f64::NAN, 3.0], [4.0, 4.0], [5.0, 5.0]]);
         assert_eq!(parts.len(), 2);
     }
 
     #[test]
     fn a_line_makes_room_for_a_label() {
-        let parts = BOX.spare(&[[-5.0, 5.0], [5.0, 5.0], [15.0, 5.0], [20.0, 5.0]]);
+        let parts = BOX.outside_parts(&[[-5.0, 5.0], [5.0, 5.0], [15.0, 5.0], [20.0, 5.0]]);
         assert_eq!(
             parts,
             [vec![[-5.0, 5.0], [0.0, 5.0]], vec![[10.0, 5.0], [15.0, 5.0], [20.0, 5.0]]]
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn a_polygon_around_the_box_becomes_the_box() {
         let around = [[-5.0, -5.0], [50.0, -5.0], [50.0, 50.0], [-5.0, 50.0]];
-        let mut corners = BOX.cut_polygon(&around);
+        let mut corners = BOX.clip_polygon(&around);
         corners.sort_by(|a, b| a.partial_cmp(b).unwrap());
         assert_eq!(corners, [[0.0, 0.0], [0.0, 10.0], [10.0, 0.0], [10.0, 10.0]]);
     }

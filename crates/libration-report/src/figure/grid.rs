@@ -1,4 +1,4 @@
-//! Values on a regular grid, and the lines along which they are equal.
+//! Values on a regular grid, and their contour lines.
 
 use std::collections::HashMap;
 

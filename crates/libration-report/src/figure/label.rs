@@ -1,15 +1,16 @@
-//! Labels on the lines themselves, clear of each other and of what is drawn.
+//! Labels at marks, without overlaps.
 
-use super::drawn::Drawn;
+use super::frame::Frame;
 use super::geometry::{Place, Rect, centre};
-use super::layout::{Frame, LABEL, SMALL};
 use super::mark::{Across, Shape};
+use super::mark_geometry::MarkGeometry;
 use super::panel::Panel;
+use super::sizes::{LABEL, SMALL};
 use super::style::Ink;
 use super::ticks;
 use crate::text;
 
-/// A text beside the mark it names.
+/// A label of a mark.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Label {
     /// The index of the mark in its panel.
@@ -22,7 +23,7 @@ pub(super) struct Label {
     pub(super) at: Place,
     /// The place on the mark that it belongs to.
     pub(super) anchor: Place,
-    /// Stands to the right of the frame.
+    /// Whether the label is to the right of the frame.
     pub(super) outside: bool,
 }
 
@@ -34,17 +35,17 @@ impl Label {
         Rect { x: self.at[0], y: self.at[1] - height / 2.0, width, height }
     }
 
-    /// A text moved away from its line is joined to it by a thin line.
+    /// The thin line from a label to its mark, if they are apart.
     pub(super) fn leader(&self) -> Option<[Place; 2]> {
         let far = self.outside && (self.at[1] - self.anchor[1]).abs() > 5.0;
         far.then(|| [[self.anchor[0] + 1.5, self.anchor[1]], [self.at[0] - 2.0, self.at[1]]])
     }
 }
 
-/// Places the labels of a panel. A mark without a place for its label has none in the answer.
+/// Places the labels of a panel; a mark without space for its label gets none.
 pub(super) fn place(
     panel: &Panel,
-    drawn: &[Drawn],
+    drawn: &[MarkGeometry],
     frame: &Frame,
     columns: usize,
     bar: bool,
@@ -66,7 +67,7 @@ pub(super) fn place(
             outside: false,
         };
         match (&mark.shape, &drawn[index]) {
-            (Shape::Note { .. }, Drawn::Words(at)) => {
+            (Shape::Note { .. }, MarkGeometry::Text(at)) => {
                 let note = Label { size: SMALL + 0.5, bold: false, at: *at, anchor: *at, ..label };
                 table.labels.push(note);
             }
@@ -97,7 +98,7 @@ pub(super) fn place(
             outside: false,
         };
         match (&mark.shape, &drawn[index]) {
-            (_, Drawn::Levels(levels)) => {
+            (_, MarkGeometry::Levels(levels)) => {
                 let steps = levels.windows(2).map(|pair| (pair[1].0 - pair[0].0).abs());
                 let step = steps.fold(f64::INFINITY, f64::min);
                 for (level, lines) in levels {
@@ -109,18 +110,18 @@ pub(super) fn place(
                 }
             }
             _ if done || mark.label.is_none() => {}
-            (Shape::Rule { across, .. }, Drawn::Lines(lines)) => {
+            (Shape::Rule { across, .. }, MarkGeometry::Lines(lines)) => {
                 let small = Label { size: SMALL + 0.5, bold: false, ..label };
                 table.by_rule(small, *across, lines);
             }
-            (Shape::Region { .. }, Drawn::Areas(areas)) => {
+            (Shape::Region { .. }, MarkGeometry::Areas(areas)) => {
                 let Some(at) = areas.first().and_then(|area| centre(area)) else { continue };
                 let rect = label.rect();
                 let places = [0.0, -0.6, 0.6, -1.2, 1.2, -2.4, 2.4];
                 let places = places.map(|k| [at[0] - rect.width / 2.0, at[1] + k * 20.0]);
                 table.first_free(label, places.map(|p| (p, at)));
             }
-            (_, Drawn::Lines(lines) | Drawn::Areas(lines)) => {
+            (_, MarkGeometry::Lines(lines) | MarkGeometry::Areas(lines)) => {
                 table.along(label, ends[index], lines)
             }
             _ => {}
@@ -130,13 +131,13 @@ pub(super) fn place(
 }
 
 /// The last visible place of a line, or the middle of the right end of a band.
-fn end(drawn: &Drawn, frame: &Rect) -> Option<Place> {
+fn end(drawn: &MarkGeometry, frame: &Rect) -> Option<Place> {
     match drawn {
-        Drawn::Lines(parts) => {
-            let inside = |place: &&Place| frame.grown(0.5).contains(**place);
+        MarkGeometry::Lines(parts) => {
+            let inside = |place: &&Place| frame.expanded(0.5).contains(**place);
             parts.iter().rev().find_map(|part| part.iter().rev().find(inside)).copied()
         }
-        Drawn::Areas(areas) => {
+        MarkGeometry::Areas(areas) => {
             let area = areas.iter().rev().find(|area| !area.is_empty())?;
             let right = area.iter().map(|p| p[0]).fold(f64::MIN, f64::max);
             let near: Vec<Place> = area.iter().copied().filter(|p| p[0] > right - 8.0).collect();
@@ -177,7 +178,7 @@ fn spread(labels: &mut [Label], frame: &Rect) {
 
 struct Table<'a> {
     frame: &'a Frame,
-    drawn: &'a [Drawn],
+    drawn: &'a [MarkGeometry],
     labels: Vec<Label>,
 }
 
@@ -210,10 +211,11 @@ impl Table<'_> {
             let p = line[(count * f64::from(k * 7 % 20) / 20.0) as usize];
             ([p[0] - rect.width / 2.0, p[1]], p)
         });
-        let inside = self.frame.rect.grown(-2.0);
+        let inside = self.frame.rect.expanded(-2.0);
         let free = places.map(|(at, anchor)| Label { at, anchor, ..label.clone() }).find(|label| {
             let rect = label.rect();
-            inside.holds(&rect) && self.labels.iter().all(|l| !l.rect().grown(3.0).meets(&rect))
+            inside.contains_rect(&rect)
+                && self.labels.iter().all(|l| !l.rect().expanded(3.0).intersects(&rect))
         });
         self.labels.extend(free);
     }
@@ -248,16 +250,17 @@ impl Table<'_> {
 
     fn is_free(&self, label: &Label) -> bool {
         let rect = label.rect();
-        if !self.frame.rect.grown(-3.0).holds(&rect) {
+        if !self.frame.rect.expanded(-3.0).contains_rect(&rect) {
             return false;
         }
-        let near = rect.grown(2.0);
-        let covers = |line: &[Place]| line.windows(2).any(|p| near.cut(p[0], p[1]).is_some());
-        let spoiled = |drawn: &Drawn| match drawn {
-            Drawn::Points(points) => points.iter().any(|&p| near.grown(2.0).contains(p)),
+        let near = rect.expanded(2.0);
+        let covers =
+            |line: &[Place]| line.windows(2).any(|p| near.clip_segment(p[0], p[1]).is_some());
+        let spoiled = |drawn: &MarkGeometry| match drawn {
+            MarkGeometry::Points(points) => points.iter().any(|&p| near.expanded(2.0).contains(p)),
             other => other.strokes().into_iter().any(covers),
         };
-        self.labels.iter().all(|l| !l.rect().grown(2.0).meets(&rect))
+        self.labels.iter().all(|l| !l.rect().expanded(2.0).intersects(&rect))
             && !self.drawn.iter().any(spoiled)
     }
 }

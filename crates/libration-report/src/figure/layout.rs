@@ -1,79 +1,57 @@
-//! Where everything stands on the page. Both back ends draw from this.
+//! Layout of figures on the page, for both back ends.
 
 use super::axis::{Ruler, Span};
 use super::color::Colors;
-use super::drawn::Drawn;
 use super::extent::spans;
+use super::frame::Frame;
 use super::geometry::Rect;
 use super::label;
 use super::label::Label;
 use super::mark::{Mark, Shape};
+use super::mark_geometry::MarkGeometry;
 use super::panel::{Figure, Panel};
+use super::sizes::{NORMAL, SMALL, WIDTH};
 use super::ticks::{Tick, ticks};
 use crate::text;
 
-/// The width of every figure, in pixels.
-pub(super) const WIDTH: f64 = 860.0;
-/// The size of the numbers at the ticks.
-pub(super) const SMALL: f64 = 12.0;
-/// The size of axis titles.
-pub(super) const NORMAL: f64 = 13.0;
-/// The size of labels.
-pub(super) const LABEL: f64 = 13.5;
-/// How much wider than a line over a picture its pale edge is.
-pub(super) const EDGE: f64 = 2.4;
 const GUTTER: f64 = 26.0;
 const LEGEND_LINE: f64 = 22.0;
 const SWATCH: f64 = 34.0;
 
-/// The size at which a title of an axis fits beside a frame that is `length` long.
-pub(super) fn title_size(title: &str, length: f64) -> f64 {
-    let needed = text::width(title, NORMAL);
-    (NORMAL * ((length + 36.0) / needed).min(1.0)).max(9.0)
-}
-
-/// A figure laid out.
+/// The layout of a figure.
 #[derive(Debug, Clone)]
-pub(super) struct Layout<'a> {
+pub(super) struct FigureLayout<'a> {
     pub(super) height: f64,
-    pub(super) panels: Vec<Placed<'a>>,
-    pub(super) legend: Vec<Entry<'a>>,
+    pub(super) panels: Vec<PanelLayout<'a>>,
+    pub(super) legend: Vec<LegendEntry<'a>>,
 }
 
-/// The place of a panel on the page.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
-    pub(super) rect: Rect,
-    pub(super) x: Ruler,
-    pub(super) y: Ruler,
-}
-
-/// A panel laid out.
+/// The layout of a panel.
 #[derive(Debug, Clone)]
-pub(super) struct Placed<'a> {
+pub(super) struct PanelLayout<'a> {
     pub(super) panel: &'a Panel,
     pub(super) frame: Frame,
     pub(super) x_ticks: Vec<Tick>,
     pub(super) y_ticks: Vec<Tick>,
-    pub(super) drawn: Vec<Drawn>,
+    pub(super) drawn: Vec<MarkGeometry>,
     pub(super) labels: Vec<Label>,
-    pub(super) bar: Option<Bar<'a>>,
+    pub(super) bar: Option<ColorBar<'a>>,
     /// The left edge of the numbers at the vertical axis.
     pub(super) numbers: f64,
 }
 
 /// A colour bar.
 #[derive(Debug, Clone)]
-pub(super) struct Bar<'a> {
+pub(super) struct ColorBar<'a> {
     pub(super) rect: Rect,
     pub(super) colors: &'a Colors,
     pub(super) ruler: Ruler,
     pub(super) ticks: Vec<Tick>,
 }
 
-/// A mark named above the figure.
+/// An entry of the legend above the figure.
 #[derive(Debug, Clone)]
-pub(super) struct Entry<'a> {
+pub(super) struct LegendEntry<'a> {
     pub(super) mark: &'a Mark,
     pub(super) text: &'a str,
     /// The left end of the sample; the text stands to its right.
@@ -90,9 +68,9 @@ struct Margins {
     right: f64,
 }
 
-impl<'a> Layout<'a> {
-    /// Lays a figure out. Margins depend on numbers and labels, and these on the frames: the first
-    /// round measures, the second places.
+impl<'a> FigureLayout<'a> {
+    /// The layout of a figure. Margins depend on numbers and labels, which depend on the frames: the first
+    /// pass measures, the second places.
     pub(super) fn of(figure: &'a Figure) -> Self {
         let columns = figure.columns.clamp(1, figure.panels.len().max(1));
         let start = vec![Margins { left: 64.0, right: 16.0 }; columns];
@@ -123,7 +101,7 @@ impl<'a> Layout<'a> {
             for (panel, margin) in row.iter().zip(margins) {
                 x += margin.left;
                 let rect = Rect { x, y, width, height };
-                panels.push(Placed::of(panel, rect, columns));
+                panels.push(PanelLayout::of(panel, rect, columns));
                 x += width + margin.right + GUTTER;
             }
             y += height + 50.0;
@@ -133,11 +111,11 @@ impl<'a> Layout<'a> {
         layout
     }
 
-    /// The marks whose label has no place of its own, each text once.
-    fn entries(&self) -> Vec<Entry<'a>> {
+    /// The marks without a label in a panel, each text once.
+    fn entries(&self) -> Vec<LegendEntry<'a>> {
         let left = self.panels.first().map_or(0.0, |placed| placed.frame.rect.x);
         let (mut x, mut y) = (left, 14.0);
-        let mut entries: Vec<Entry<'a>> = Vec::new();
+        let mut entries: Vec<LegendEntry<'a>> = Vec::new();
         for placed in &self.panels {
             for (index, mark) in placed.panel.marks.iter().enumerate() {
                 let Some(text) = mark.label.as_deref() else { continue };
@@ -150,7 +128,7 @@ impl<'a> Layout<'a> {
                 if x > left && x + width > WIDTH - 8.0 {
                     (x, y) = (left, y + LEGEND_LINE);
                 }
-                entries.push(Entry { mark, text, x, y, text_x: x + sample });
+                entries.push(LegendEntry { mark, text, x, y, text_x: x + sample });
                 x += width + 18.0;
             }
         }
@@ -158,14 +136,25 @@ impl<'a> Layout<'a> {
     }
 }
 
-impl<'a> Placed<'a> {
+impl Figure {
+    /// Whether any panel shows data. Rules and notes are not data.
+    pub fn has_data(&self) -> bool {
+        FigureLayout::of(self).panels.iter().any(|placed| {
+            let data = |mark: &Mark| !matches!(mark.shape, Shape::Rule { .. } | Shape::Note { .. });
+            let mut marks = placed.panel.marks.iter().zip(&placed.drawn);
+            marks.any(|(mark, drawn)| data(mark) && !drawn.is_empty())
+        })
+    }
+}
+
+impl<'a> PanelLayout<'a> {
     fn of(panel: &'a Panel, rect: Rect, columns: usize) -> Self {
         let [x, y] = spans(panel, rect.width / rect.height);
         let x = Ruler { span: x, from: rect.x, to: rect.right() };
         let y = Ruler { span: y, from: rect.bottom(), to: rect.y };
         let frame = Frame { rect, x, y };
         let bar = panel.marks.iter().find_map(|mark| match &mark.shape {
-            Shape::Raster { grid, colors } => Some(Bar::of(colors, &grid.z, &rect)),
+            Shape::Raster { grid, colors } => Some(ColorBar::of(colors, &grid.z, &rect)),
             _ => None,
         });
         let x_ticks = ticks(&x.span, rect.width, 62.0);
@@ -173,20 +162,20 @@ impl<'a> Placed<'a> {
             [] => ticks(&y.span, rect.height, 34.0),
             names => named(names),
         };
-        let mut drawn: Vec<Drawn> =
-            panel.marks.iter().map(|m| Drawn::of(&m.shape, &frame)).collect();
+        let mut drawn: Vec<MarkGeometry> =
+            panel.marks.iter().map(|m| MarkGeometry::of(&m.shape, &frame)).collect();
         let labels = label::place(panel, &drawn, &frame, columns, bar.is_some());
         for label in labels.iter().filter(|label| !label.outside) {
-            drawn.iter_mut().for_each(|d| d.make_room(&label.rect().grown(2.0)));
+            drawn.iter_mut().for_each(|d| d.clear_label(&label.rect().expanded(2.0)));
         }
         let widest = y_ticks.iter().map(|tick| text::width(&tick.label, SMALL)).fold(0.0, f64::max);
         let numbers = rect.x - 8.0 - widest;
         Self { panel, frame, x_ticks, y_ticks, drawn, labels, bar, numbers }
     }
 
-    /// A picture keeps its colours in the dark, so what lies on it keeps those of the light.
-    pub(super) fn on_picture(&self) -> bool {
-        self.drawn.iter().any(|drawn| matches!(drawn, Drawn::Picture(_)))
+    /// Whether the panel has a raster. Its colours do not change in the dark, so marks over it are light.
+    pub(super) fn is_on_raster(&self) -> bool {
+        self.drawn.iter().any(|drawn| matches!(drawn, MarkGeometry::Picture(_)))
     }
 
     /// The space that this panel needs on both sides of its frame.
@@ -201,7 +190,7 @@ impl<'a> Placed<'a> {
     }
 }
 
-impl<'a> Bar<'a> {
+impl<'a> ColorBar<'a> {
     fn of(colors: &'a Colors, values: &[f64], frame: &Rect) -> Self {
         let [low, high] = colors.ends(values);
         let (low, high) = (colors.scale.of(low), colors.scale.of(high));

@@ -1,4 +1,4 @@
-//! What is drawn into a panel.
+//! Marks of a panel.
 
 use serde::Serialize;
 
@@ -7,14 +7,14 @@ use super::envelope::Envelope;
 use super::grid::Grid;
 use super::style::{Dash, Ink, Marker, Style};
 
-/// One thing drawn into a panel, in data coordinates.
+/// A mark of a panel, in data coordinates.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Mark {
-    /// What the reader is told it is: on the line where there is room, in the legend otherwise.
+    /// The label, on the line if there is space, else in the legend.
     pub label: Option<String>,
-    /// How it is drawn.
+    /// The style.
     pub style: Style,
-    /// What is drawn.
+    /// The geometry.
     pub shape: Shape,
 }
 
@@ -31,7 +31,7 @@ pub enum Shape {
         /// Ordinates.
         y: Vec<f64>,
     },
-    /// Points on their own.
+    /// Unconnected points.
     Points {
         /// Abscissae.
         x: Vec<f64>,
@@ -51,7 +51,7 @@ pub enum Shape {
     Contour {
         /// The values.
         grid: Grid,
-        /// The levels to be drawn.
+        /// The levels.
         levels: Vec<f64>,
     },
     /// A filled polygon.
@@ -63,7 +63,7 @@ pub enum Shape {
     },
     /// A straight line across the panel at one value.
     Rule {
-        /// Which axis the value belongs to.
+        /// The direction of the line.
         across: Across,
         /// The value.
         at: f64,
@@ -97,12 +97,12 @@ impl Mark {
         Self::new(Shape::Line { x: x.into(), y: y.into() })
     }
 
-    /// Points on their own: filled circles unless [`marker`](Self::marker) says otherwise.
+    /// Unconnected points: filled circles unless [`marker`](Self::marker) changes them.
     pub fn points(x: impl Into<Vec<f64>>, y: impl Into<Vec<f64>>) -> Self {
         Self::new(Shape::Points { x: x.into(), y: y.into() }).marker(Marker::Circle)
     }
 
-    /// A prediction: open circles in the ink of theory, to lie over the measurement.
+    /// A prediction: open circles in the ink of theory, over the measurement.
     pub fn prediction(x: impl Into<Vec<f64>>, y: impl Into<Vec<f64>>) -> Self {
         Self::new(Shape::Points { x: x.into(), y: y.into() }).ink(Ink::Theory).width(1.1)
     }
@@ -137,12 +137,12 @@ impl Mark {
         Self::new(Shape::Rule { across: Across::Vertical, at }).dash(Dash::Dashed).width(1.2)
     }
 
-    /// Words at a place.
+    /// Text at a place.
     pub fn note(x: f64, y: f64, text: impl Into<String>) -> Self {
         Self::new(Shape::Note { x, y }).label(text)
     }
 
-    /// Says what the mark is.
+    /// Sets the label.
     #[must_use]
     pub fn label(mut self, label: impl Into<String>) -> Self {
         self.label = Some(label.into());

@@ -1,11 +1,11 @@
-//! Figures: one description, two back ends that draw the same.
+//! Figures: one description with two back ends.
 //!
-//! A [`Figure`] says what is to be seen. [`svg::inline`] and [`svg::standalone`] draw it for a page
-//! and for a file; [`plotly`] gives the drawing one can look into. Both start from one layout:
-//! ranges, ticks, places of labels and contour lines are computed once.
+//! A [`Figure`] describes the data. [`svg::inline`] and [`svg::standalone`] draw it for a page and for a
+//! file; [`plotly`] draws it interactively. Both use one layout: ranges, ticks, labels and contour lines
+//! are computed once.
 //!
 //! ```
-//! use libration_lab::figure::{Axis, Figure, Ink, Mark, Panel, embed, svg};
+//! use libration_report::figure::{Axis, Figure, Ink, Mark, Panel, embed, svg};
 //!
 //! let steps = [1e-3, 1e-2, 1e-1];
 //! let panel = Panel::new(
@@ -25,19 +25,21 @@
 
 mod axis;
 mod color;
-mod drawn;
 mod envelope;
 mod extent;
+mod frame;
 mod geometry;
 mod grid;
 mod label;
 mod layout;
 mod mark;
+mod mark_geometry;
 mod page;
 mod palette;
 mod panel;
-mod picture;
 mod plotly;
+mod raster_image;
+mod sizes;
 mod style;
 pub mod svg;
 mod ticks;

@@ -12,8 +12,8 @@ use crate::text;
 const PLOTLY: &[u8] = include_bytes!("../../assets/plotly.min.js.gz");
 const SCRIPT: &str = include_str!("../../assets/figure.js");
 
-/// The `<figure>` element: the SVG, the caption, and the data that the interactive drawing needs.
-/// It is complete without [`scripts`], only not interactive.
+/// The `<figure>` element with the SVG, the caption and the data of the interactive figure. Without
+/// [`scripts`] it is static.
 pub fn embed(figure: &Figure) -> String {
     let id = text::escape(&figure.id);
     let number =
@@ -31,8 +31,8 @@ pub fn embed(figure: &Figure) -> String {
     )
 }
 
-/// What a page with figures needs once: the stylesheet and the scripts. Put it at the end of the
-/// body; nothing is fetched from anywhere.
+/// The stylesheet and the scripts of a page with figures, for the end of the body. They load nothing from
+/// the network.
 pub fn scripts() -> String {
     format!(
         "<style>{STYLESHEET}</style>\n\

@@ -1,16 +1,16 @@
-//! The stylesheet, for pages and for files that stand alone.
+//! The stylesheet of figures in pages and in standalone files.
 
 /// The stylesheet of figures in a page: the colours of all inks, light and dark, and the classes.
 pub const STYLESHEET: &str = include_str!("../../assets/figure.css");
 
-/// Which of the two colours of a custom property is meant.
+/// The light or dark colour of a custom property.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Tone {
     Light,
     Dark,
 }
 
-/// The part of the stylesheet that a figure itself needs.
+/// The part of the stylesheet for the figure itself.
 fn plot() -> &'static str {
     let part = STYLESHEET.split("/* end plot */").next().unwrap_or_default();
     part.split_once("own. */").map_or("", |(_, rules)| rules)
@@ -25,9 +25,9 @@ pub(super) fn color(name: &str, tone: Tone) -> Option<&'static str> {
     Some(if tone == Tone::Light { light } else { dark })
 }
 
-/// The rules of a figure with colours in place of custom properties. What lies on a picture is
-/// light in both tones, as `color-scheme` has it in a page.
-pub(super) fn concrete(tone: Tone) -> String {
+/// The rules of a figure with colours in place of custom properties. Marks over a raster are light in
+/// both tones.
+pub(super) fn resolved_stylesheet(tone: Tone) -> String {
     let mut out = String::new();
     for rule in plot().lines() {
         out.push_str(&resolve(rule, tone));
@@ -98,8 +98,8 @@ mod tests {
 
     #[test]
     fn a_file_of_its_own_has_no_custom_property() {
-        assert!(!concrete(Tone::Light).contains("var("));
-        assert!(concrete(Tone::Light).contains("#c8500a"));
-        assert!(concrete(Tone::Dark).contains("#f08a4b"));
+        assert!(!resolved_stylesheet(Tone::Light).contains("var("));
+        assert!(resolved_stylesheet(Tone::Light).contains("#c8500a"));
+        assert!(resolved_stylesheet(Tone::Dark).contains("#f08a4b"));
     }
 }

@@ -1,27 +1,26 @@
-//! The description of a figure.
+//! Descriptions of figures.
 
 use serde::Serialize;
 
 use super::axis::Axis;
-use super::layout::Layout;
-use super::mark::{Mark, Shape};
+use super::mark::Mark;
 
-/// A figure: what both back ends draw.
+/// The description of a figure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Figure {
-    /// A name that serves as file stem and anchor: letters, digits and hyphens.
+    /// The file stem and anchor: letters, digits and hyphens.
     pub id: String,
-    /// The number the figure has in the report whose claims it judges.
+    /// The number of the figure in the source report.
     pub number: Option<String>,
     /// The finding in one sentence.
     pub title: String,
-    /// What else the reader must know to read the figure.
+    /// Further information about the figure.
     pub caption: String,
-    /// The figure in words, for those who cannot see it.
+    /// The description for screen readers.
     pub description: String,
     /// The panels, row by row.
     pub panels: Vec<Panel>,
-    /// How many panels stand in a row.
+    /// The number of panels per row.
     pub columns: usize,
     /// The width of a panel's frame over its height.
     pub aspect: f64,
@@ -42,21 +41,21 @@ impl Figure {
         }
     }
 
-    /// Sets the number the figure has in the source report.
+    /// Sets the number of the figure in the source report.
     #[must_use]
     pub fn number(mut self, number: impl Into<String>) -> Self {
         self.number = Some(number.into());
         self
     }
 
-    /// Sets what follows the title below the figure.
+    /// Sets the caption after the title.
     #[must_use]
     pub fn caption(mut self, caption: impl Into<String>) -> Self {
         self.caption = caption.into();
         self
     }
 
-    /// Puts the figure into words.
+    /// Sets the description for screen readers.
     #[must_use]
     pub fn description(mut self, description: impl Into<String>) -> Self {
         self.description = description.into();
@@ -70,7 +69,7 @@ impl Figure {
         self
     }
 
-    /// Sets how many panels stand in a row.
+    /// Sets the number of panels per row.
     #[must_use]
     pub fn columns(mut self, columns: usize) -> Self {
         self.columns = columns.max(1);
@@ -83,29 +82,20 @@ impl Figure {
         self.aspect = aspect;
         self
     }
-
-    /// Whether data are drawn in any panel; lines across a panel and words are none.
-    pub fn shows_anything(&self) -> bool {
-        Layout::of(self).panels.iter().any(|placed| {
-            let data = |mark: &Mark| !matches!(mark.shape, Shape::Rule { .. } | Shape::Note { .. });
-            let mut marks = placed.panel.marks.iter().zip(&placed.drawn);
-            marks.any(|(mark, drawn)| data(mark) && !drawn.is_empty())
-        })
-    }
 }
 
 /// One frame with its two axes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Panel {
-    /// Written above the frame, if there is more than one.
+    /// The title above the frame.
     pub title: Option<String>,
     /// The horizontal axis.
     pub x: Axis,
     /// The vertical axis.
     pub y: Axis,
-    /// One unit is as long on both axes, as phase portraits want it. A range grows where needed.
+    /// Whether a unit has the same length on both axes, as in phase portraits. A range grows if needed.
     pub equal: bool,
-    /// What is drawn, the first lowest.
+    /// The marks, from bottom to top.
     pub marks: Vec<Mark>,
 }
 
@@ -122,21 +112,21 @@ impl Panel {
         self
     }
 
-    /// Makes one unit as long on both axes.
+    /// Gives a unit the same length on both axes.
     #[must_use]
     pub fn equal(mut self) -> Self {
         self.equal = true;
         self
     }
 
-    /// Adds a mark on top of those before it.
+    /// Adds a mark on top.
     #[must_use]
     pub fn mark(mut self, mark: Mark) -> Self {
         self.marks.push(mark);
         self
     }
 
-    /// Adds marks on top of those before them.
+    /// Adds marks on top.
     #[must_use]
     pub fn marks(mut self, marks: impl IntoIterator<Item = Mark>) -> Self {
         self.marks.extend(marks);

@@ -1,26 +1,26 @@
 //! Figures for Plotly.js, from the same layout.
 
+mod annotation;
 mod shape;
 mod trace;
-mod words;
 
 use serde_json::{Value, json};
 
 use super::axis::{Axis, Ruler, Scale};
-use super::layout::{Layout, NORMAL, SMALL, WIDTH};
+use super::layout::FigureLayout;
 use super::mark::Shape;
 use super::panel::Figure;
+use super::sizes::{NORMAL, SMALL, WIDTH};
 use super::style::Style;
 use super::ticks::Tick;
 use crate::text;
 
 const FONT: &str = "system-ui, -apple-system, 'Segoe UI', sans-serif";
 
-/// Data and layout for Plotly.js, for a drawing as wide as `width`. Colours are `var(--name)`, or
-/// `var(--name)/opacity`: the script of the page puts in those of the reader's preference, and for
-/// `light(--name)` always those of the light.
+/// Data and layout for Plotly.js. Colours are `var(--name)` or `var(--name)/opacity`, which the script of
+/// the page replaces by the preferred colour scheme, or `light(--name)` for the light scheme.
 pub fn plotly(figure: &Figure) -> Value {
-    let layout = Layout::of(figure);
+    let layout = FigureLayout::of(figure);
     let height = layout.height;
     let mut data = Vec::new();
     let mut annotations = Vec::new();
@@ -49,19 +49,19 @@ pub fn plotly(figure: &Figure) -> Value {
             }
         }
         let mut labels: Vec<Value> =
-            placed.labels.iter().map(|label| words::label(label, placed, n)).collect();
-        if placed.on_picture() {
+            placed.labels.iter().map(|label| annotation::label(label, placed, n)).collect();
+        if placed.is_on_raster() {
             traces = trace::edged(traces);
             traces.iter_mut().chain(&mut rules).chain(&mut labels).for_each(always_light);
         }
         data.extend(traces);
         shapes.extend(rules);
-        annotations.extend(words::titles(placed, height));
+        annotations.extend(annotation::titles(placed, height));
         annotations.extend(labels);
     }
     for entry in &layout.legend {
         let at = [entry.text_x, entry.y];
-        annotations.push(words::words(entry.text, at, height, NORMAL, "ink", "left", 0));
+        annotations.push(annotation::annotation(entry.text, at, height, NORMAL, "ink", "left", 0));
         shapes.push(shape::sample(entry, height));
     }
     out["annotations"] = annotations.into();
@@ -69,7 +69,7 @@ pub fn plotly(figure: &Figure) -> Value {
     json!({ "data": data, "layout": out })
 }
 
-/// Asks for the colours of the light in what lies on a picture, whatever the reader prefers.
+/// Sets the light colours of marks over a raster.
 fn always_light(value: &mut Value) {
     match value {
         Value::String(text) if text.starts_with("var(--") => {
@@ -83,7 +83,7 @@ fn always_light(value: &mut Value) {
     }
 }
 
-/// The number of a panel in the names of its axes.
+/// The index of a panel in the names of its axes.
 #[derive(Debug, Clone, Copy)]
 struct Number(usize);
 
@@ -95,7 +95,7 @@ impl Number {
 
 fn axis(axis: &Axis, ruler: &Ruler, ticks: &[Tick], length: f64, anchor: &str) -> Value {
     let (from, to) = (ruler.from / length, ruler.to / length);
-    // Ordinates count from the foot of the page.
+    // Ordinates count from the bottom of the page.
     let domain = if from < to { [from, to] } else { [1.0 - from, 1.0 - to] };
     let named: Vec<&Tick> = ticks.iter().filter(|tick| !tick.label.is_empty()).collect();
     let log = axis.scale == Scale::Log;

@@ -1,9 +1,9 @@
-//! How a mark is drawn: a role, not a colour.
+//! Styles of marks, by role.
 
 use serde::Serialize;
 
-/// The role of a mark. The stylesheet gives each role one colour, light and dark, and each role has
-/// its own dash, so that lines stay apart without colour.
+/// The role of a mark. The stylesheet maps each role to a light and a dark colour. Each role has a dash,
+/// so that lines differ without colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Default)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -22,9 +22,9 @@ pub enum Ink {
     Yoshida4,
     /// The Verlet variant printed in textbooks that updates the velocity with the old force.
     TextbookVerlet,
-    /// What theory predicts.
+    /// Predictions of theory.
     Theory,
-    /// Anything without a role of its own.
+    /// Marks without a role.
     #[default]
     Neutral,
     /// Stable, permitted, confirmed.
@@ -36,7 +36,7 @@ pub enum Ink {
 }
 
 impl Ink {
-    /// How many accents the stylesheet defines.
+    /// The number of accents in the stylesheet.
     pub const ACCENTS: u8 = 6;
 
     /// The name of the CSS custom property, without its two dashes.

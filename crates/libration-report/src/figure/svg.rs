@@ -7,10 +7,11 @@ use std::fmt::Write;
 
 use path::px;
 
-use super::layout::{LABEL, Layout, NORMAL, Placed, SMALL, WIDTH, title_size};
-use super::palette::{Tone, concrete};
+use super::layout::{FigureLayout, PanelLayout};
+use super::palette::{Tone, resolved_stylesheet};
 use super::panel::Figure;
-use super::picture;
+use super::raster_image;
+use super::sizes::{LABEL, NORMAL, SMALL, WIDTH, title_size};
 use crate::text;
 use crate::text::escape;
 
@@ -20,15 +21,15 @@ pub fn inline(figure: &Figure) -> String {
     document(figure, "")
 }
 
-/// The figure as a file of its own, light or dark by the reader's preference.
+/// The figure as a standalone file, in the preferred colour scheme.
 pub fn standalone(figure: &Figure) -> String {
-    let (light, dark) = (concrete(Tone::Light), concrete(Tone::Dark));
+    let (light, dark) = (resolved_stylesheet(Tone::Light), resolved_stylesheet(Tone::Dark));
     let style = format!("<style>{light}@media (prefers-color-scheme:dark){{{dark}}}</style>");
     document(figure, &style)
 }
 
 fn document(figure: &Figure, style: &str) -> String {
-    let layout = Layout::of(figure);
+    let layout = FigureLayout::of(figure);
     let id = escape(&figure.id);
     let (width, height) = (px(WIDTH), px(layout.height));
     let mut out = format!("<svg class=\"plot\" viewBox=\"0 0 {width} {height}\"");
@@ -62,10 +63,10 @@ fn document(figure: &Figure, style: &str) -> String {
     out
 }
 
-fn panel(placed: &Placed<'_>, clip: &str, out: &mut String) {
+fn panel(placed: &PanelLayout<'_>, clip: &str, out: &mut String) {
     let rect = placed.frame.rect;
     let (x, y, right, bottom) = (px(rect.x), px(rect.y), px(rect.right()), px(rect.bottom()));
-    let edge = rect.grown(1.5);
+    let edge = rect.expanded(1.5);
     let _ = write!(
         out,
         "<clipPath id=\"{clip}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>",
@@ -123,7 +124,7 @@ fn panel(placed: &Placed<'_>, clip: &str, out: &mut String) {
     labels(placed, out);
 }
 
-fn titles(placed: &Placed<'_>, out: &mut String) {
+fn titles(placed: &PanelLayout<'_>, out: &mut String) {
     let rect = placed.frame.rect;
     let (middle_x, middle_y) = (rect.x + rect.width / 2.0, rect.y + rect.height / 2.0);
     if let Some(head) = &placed.panel.title {
@@ -150,7 +151,7 @@ fn title(words: &str, length: f64, transform: &str, out: &mut String) {
     );
 }
 
-fn bar(placed: &Placed<'_>, out: &mut String) {
+fn bar(placed: &PanelLayout<'_>, out: &mut String) {
     let Some(bar) = &placed.bar else { return };
     let rect = bar.rect;
     let _ = write!(
@@ -160,7 +161,7 @@ fn bar(placed: &Placed<'_>, out: &mut String) {
         px(rect.y),
         px(rect.width),
         px(rect.height),
-        picture::of_bar(bar.colors.map)
+        raster_image::bar_image(bar.colors.map)
     );
     for tick in bar.ticks.iter().filter(|tick| !tick.label.is_empty()) {
         let place = bar.ruler.at(tick.value);
@@ -176,7 +177,7 @@ fn bar(placed: &Placed<'_>, out: &mut String) {
     title(&bar.colors.title(), rect.height, &side, out);
 }
 
-fn labels(placed: &Placed<'_>, out: &mut String) {
+fn labels(placed: &PanelLayout<'_>, out: &mut String) {
     for label in &placed.labels {
         let class = match (label.bold, label.size > SMALL) {
             (true, _) => "label",
@@ -186,7 +187,7 @@ fn labels(placed: &Placed<'_>, out: &mut String) {
         let halo = if label.outside { "" } else { " halo" };
         let (x, y) = (px(label.at[0]), px(label.at[1] + 0.35 * label.size));
         let words = text::svg(&label.text, label.size);
-        let on = if placed.on_picture() && !label.outside { " on-picture" } else { "" };
+        let on = if placed.is_on_raster() && !label.outside { " on-picture" } else { "" };
         let _ = write!(out, "<g class=\"ink-{}{on}\">", label.ink.name());
         if let Some([from, to]) = label.leader() {
             let d = path::line(&[from, to]);

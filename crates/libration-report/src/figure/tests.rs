@@ -2,8 +2,9 @@
 
 use std::collections::HashSet;
 
-use super::drawn::Drawn;
-use super::layout::{Layout, WIDTH};
+use super::layout::FigureLayout;
+use super::mark_geometry::MarkGeometry;
+use super::sizes::WIDTH;
 use super::*;
 use crate::text;
 
@@ -69,7 +70,7 @@ fn a_logarithmic_axis_reaches_rounding() {
     let drawn = figure(Panel::new(Axis::linear("t"), y).mark(line));
     let svg = svg::inline(&drawn);
     let line = corners(&paths(&svg, "line")[0], &['M', 'L']);
-    let frame = Layout::of(&drawn).panels[0].frame.rect;
+    let frame = FigureLayout::of(&drawn).panels[0].frame.rect;
     assert!((line[0][1] - frame.bottom()).abs() < 0.06, "10⁻¹⁶ stands at the foot");
     assert!((line[1][1] - (frame.y + frame.height / 2.0)).abs() < 0.06, "10⁻⁸ in the middle");
     assert!((line[2][1] - frame.y).abs() < 0.06, "1 at the top");
@@ -100,13 +101,17 @@ fn labels_of_close_lines_do_not_overlap() {
         Mark::line(x, [0.0, end]).ink(Ink::Accent(i as u8)).label(format!("line {i}"))
     });
     let drawn = figure(Panel::new(Axis::linear("t"), Axis::linear("y")).marks(lines));
-    let layout = Layout::of(&drawn);
+    let layout = FigureLayout::of(&drawn);
     let labels = &layout.panels[0].labels;
     assert_eq!(labels.len(), 4, "all have a place on their line");
     for (index, label) in labels.iter().enumerate() {
         let rect = label.rect();
         assert!(rect.right() <= WIDTH && rect.y >= 0.0 && rect.bottom() <= layout.height);
-        assert!(labels[..index].iter().all(|other| !other.rect().meets(&rect)), "{}", label.text);
+        assert!(
+            labels[..index].iter().all(|other| !other.rect().intersects(&rect)),
+            "{}",
+            label.text
+        );
     }
     let heights: Vec<f64> = labels.iter().map(|label| label.at[1]).collect();
     assert!(heights.windows(2).all(|pair| pair[0] > pair[1]), "in the order of the lines");
@@ -119,7 +124,7 @@ fn a_label_without_room_goes_to_the_legend() {
     let axis = Axis::linear("t").range(0.0, 1.0);
     let panel = Panel::new(axis, Axis::linear("y")).marks(wall).mark(named);
     let drawn = figure(panel.mark(Mark::line([0.9, 1.0], [0.0, 59.0])).mark(Mark::vertical(0.95)));
-    let layout = Layout::of(&drawn);
+    let layout = FigureLayout::of(&drawn);
     assert_eq!(layout.legend.len(), 1);
     assert!(layout.panels[0].labels.is_empty());
 }
@@ -170,7 +175,7 @@ fn both_back_ends_show_the_same_places() {
     let centres = circles.iter().map(|[x, y]| [x + Style::default().radius, *y]);
     assert!(centres.zip(expected(1)).all(|(a, b)| near(&a, b)) && circles.len() == 3);
     for (placed, [x, y]) in
-        Layout::of(&drawn).panels.iter().zip([["xaxis", "yaxis"], ["xaxis2", "yaxis2"]])
+        FigureLayout::of(&drawn).panels.iter().zip([["xaxis", "yaxis"], ["xaxis2", "yaxis2"]])
     {
         let shown = |axis: &str| [0, 1].map(|end| layout[axis]["range"][end].as_f64().unwrap());
         assert_eq!(shown(x), [placed.frame.x.span.low, placed.frame.x.span.high]);
@@ -184,8 +189,8 @@ fn a_contour_is_found_on_the_scale_of_the_axes() {
     let grid = Grid::sample(decades.clone(), decades, |x, y| (x * y).log10());
     let panel = Panel::new(Axis::log("x"), Axis::log("y")).mark(Mark::contour(grid, [0.5]));
     let drawn = figure(panel);
-    let layout = Layout::of(&drawn);
-    let Drawn::Levels(levels) = &layout.panels[0].drawn[0] else { panic!("a contour") };
+    let layout = FigureLayout::of(&drawn);
+    let MarkGeometry::Levels(levels) = &layout.panels[0].drawn[0] else { panic!("a contour") };
     let frame = layout.panels[0].frame;
     for [x, y] in levels.iter().flat_map(|(_, parts)| parts.iter().flatten()) {
         let decades = |share: f64, span: axis::Span| span.low + share * (span.high - span.low);
@@ -212,7 +217,7 @@ fn a_contour_of_values_over_decades_is_found_in_their_logarithm() {
 fn one_unit_is_as_long_on_both_axes() {
     let portrait = Panel::new(Axis::linear("x"), Axis::linear("v")).equal();
     let drawn = figure(portrait.mark(Mark::line([-1.0, 3.0], [-1.0, 1.0])));
-    let frame = Layout::of(&drawn).panels[0].frame;
+    let frame = FigureLayout::of(&drawn).panels[0].frame;
     let x = frame.rect.width / (frame.x.span.high - frame.x.span.low);
     let y = frame.rect.height / (frame.y.span.high - frame.y.span.low);
     assert!((x / y - 1.0).abs() < 1e-12, "{x} {y}");
@@ -268,8 +273,8 @@ fn a_long_title_fits_beside_its_axis() {
     let long = "the largest relative deviation of the energy from its value at the start, so far";
     let y = Axis::linear(long).unit("1");
     let drawn = figure(Panel::new(Axis::linear("t"), y).mark(Mark::line([0.0, 1.0], [0.0, 1.0])));
-    let height = Layout::of(&drawn.clone().aspect(2.0)).panels[0].frame.rect.height;
-    let size = layout::title_size(&drawn.panels[0].y.title(), height);
+    let height = FigureLayout::of(&drawn.clone().aspect(2.0)).panels[0].frame.rect.height;
+    let size = sizes::title_size(&drawn.panels[0].y.title(), height);
     assert!(text::width(long, size) < height + 40.0 && size >= 9.0, "{size}");
 }
 

@@ -1,8 +1,8 @@
-//! Where an axis is marked, and with which numbers.
+//! Ticks of axes.
 
 use super::axis::{Scale, Span};
 
-/// A marked value.
+/// A tick.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Tick {
     pub(super) value: f64,
@@ -38,7 +38,7 @@ fn step(least: f64) -> f64 {
         .unwrap_or(10.0 * decade)
 }
 
-/// A multiple of a step without the noise of its product.
+/// A multiple of a step without its rounding error.
 fn tidy(value: f64, step: f64) -> f64 {
     let decimals = (1 - step.log10().floor() as i64).max(0);
     if decimals > 15 {
@@ -47,7 +47,7 @@ fn tidy(value: f64, step: f64) -> f64 {
     format!("{value:.*}", decimals as usize).parse().unwrap_or(value)
 }
 
-/// The power of ten to be written beside the numbers; 0 if they are short without it.
+/// The common power of ten of the numbers; 0 if they are short without it.
 fn shared_power(values: &[f64], step: f64) -> i32 {
     let largest = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     if (largest < 1e5 && step >= 0.99e-4) || largest == 0.0 {
@@ -76,8 +76,7 @@ fn written(mantissa: &str, power: i32) -> String {
     }
 }
 
-/// A level of a contour, as short as it goes; long numbers have as many digits as tell it from the
-/// next level.
+/// The shortest text of a contour level; long numbers have enough digits to distinguish the next level.
 pub(super) fn level(value: f64, step: f64) -> String {
     let plain = value.to_string();
     let scientific = format!("{value:e}");
@@ -115,7 +114,7 @@ fn log(low: f64, high: f64, most: f64) -> Vec<Tick> {
     if stride > 1 || decades > most {
         return ticks;
     }
-    // Less than two marked decades say too little: name some of the values between.
+    // With less than two labelled decades some values between get labels.
     let named: &[u32] = match ticks.len() {
         0 | 1 if decades < 0.7 => &[2, 3, 4, 5, 6, 7, 8, 9],
         0..=2 if 0.3 * most > 0.8 * decades => &[2, 5],
@@ -139,7 +138,7 @@ fn log(low: f64, high: f64, most: f64) -> Vec<Tick> {
     ticks
 }
 
-/// Correctly rounded, also where `powi` would underflow on the way.
+/// A correctly rounded power of ten, also where `powi` underflows.
 fn power_of_ten(decade: i32) -> f64 {
     format!("1e{decade}").parse().unwrap_or(f64::NAN)
 }

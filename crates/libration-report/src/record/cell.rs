@@ -1,40 +1,39 @@
-//! One entry of a table: numbers are kept as numbers, and set in type by the page alone.
+//! Cells of tables.
 
 use serde::{Serialize, Serializer};
 
 use crate::notation::{count, number};
 
-/// One entry of a table.
+/// A cell of a table. Numbers are stored as numbers and formatted by the page.
 #[derive(Clone, Debug, Serialize, PartialEq)]
 #[serde(untagged)]
 pub enum Cell {
-    /// A number, or the statement that there is none.
+    /// A number, or its absence.
     Number(Quantity),
-    /// Words, or a formula.
+    /// Text, or a formula.
     Text(String),
 }
 
-/// What stands in a column of numbers.
+/// An entry of a column of numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Quantity {
-    /// A number with all its digits, and how many of them mean something; without that, as many as the
-    /// table shows.
+    /// A number with all digits, and the number of significant digits; none for that of the table.
     Real(f64, Option<usize>),
-    /// A whole number of things.
+    /// A count.
     Count(u64),
-    /// Intervals in rising order, and how many digits of their ends to show.
+    /// Intervals in rising order, and the number of digits of their ends.
     Intervals(Vec<[f64; 2]>, usize),
-    /// No number that a file can hold; these words stand in its place on the page.
+    /// No number, and the text in its place on the page.
     Absent(String),
 }
 
 impl Cell {
-    /// A number of which the page shows `digits` digits, whatever its table shows.
+    /// A number with `digits` significant digits on the page.
     pub fn rounded(x: f64, digits: usize) -> Self {
         Cell::Number(Quantity::Real(x, Some(digits)))
     }
 
-    /// No number, and the words that stand in its place on the page; `null` in `results.json`.
+    /// No number, and the text in its place on the page; `null` in `results.json`.
     pub fn absent(words: impl Into<String>) -> Self {
         Cell::Number(Quantity::Absent(words.into()))
     }
@@ -53,7 +52,7 @@ impl Cell {
         }
     }
 
-    /// The entry as the page sets it, with `digits` significant digits if it says no others.
+    /// The text of the cell on the page, by default with `digits` significant digits.
     pub fn typeset(&self, digits: usize) -> String {
         match self {
             Cell::Number(Quantity::Real(x, own)) => number(*x, own.unwrap_or(digits)),
@@ -73,7 +72,7 @@ impl Cell {
 }
 
 impl Serialize for Quantity {
-    /// JSON has no infinity and no NaN: both are `null`.
+    /// Infinity and NaN are `null` in JSON.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Quantity::Real(x, _) => serializer.serialize_f64(*x),

@@ -1,10 +1,10 @@
-//! A sentence of the source report, judged by what was found.
+//! Claims of the source report, judged by findings.
 
 use serde::Serialize;
 
 use super::{Finding, Verdict};
 
-/// What has become of a claim.
+/// The verdict on a claim.
 #[derive(Clone, Copy, Debug, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClaimVerdict {
@@ -16,7 +16,7 @@ pub enum ClaimVerdict {
     Refuted,
     /// The source does not say enough to try it.
     NotReproducible,
-    /// A finding that it rests on disagrees with theory, so nothing can be said.
+    /// A finding that decides it disagrees with theory.
     Undecided,
 }
 
@@ -44,7 +44,7 @@ impl Judgement {
         Judgement::new(ClaimVerdict::Conditional, because)
     }
 
-    /// The condition of a conditional verdict in a few words, to stand beside it.
+    /// Adds the condition of a conditional verdict in a few words.
     #[must_use]
     pub fn only(mut self, condition: impl Into<String>) -> Self {
         self.condition = Some(condition.into());
@@ -67,14 +67,14 @@ impl Judgement {
     }
 }
 
-/// The claim that is to be judged, and the findings that judge it.
+/// A claim to judge, and the findings that decide it.
 #[derive(Clone, Copy, Debug)]
 pub struct Ruling<'a> {
     /// Number in the ledger, as in `C16`.
     pub id: &'a str,
     /// Section of the source report.
     pub source: &'a str,
-    /// What the source says, in our words.
+    /// The statement of the source, paraphrased.
     pub text: &'a str,
     /// Identifiers of the findings that decide.
     pub findings: &'a [&'a str],
@@ -87,13 +87,13 @@ pub struct Claim {
     pub id: String,
     /// Section of the source report.
     pub source: String,
-    /// What the source says, in our words.
+    /// The statement of the source, paraphrased.
     pub text: String,
     /// The verdict.
     pub verdict: ClaimVerdict,
     /// Where a conditional verdict holds, in a few words.
     pub condition: Option<String>,
-    /// Why.
+    /// The reason.
     pub because: String,
     /// Identifiers of the findings that decided.
     pub findings: Vec<String>,

@@ -1,40 +1,40 @@
-//! A prediction beside a measurement.
+//! Findings: predictions and measurements.
 
 use std::fmt;
 
 use serde::Serialize;
 
-/// One number that was measured, beside what theory says it must be.
+/// A measured number with the prediction of theory.
 #[derive(Clone, Debug, Serialize, PartialEq)]
 pub struct Finding {
     /// Identifier, unique in the report: `study.subject.quantity`.
     pub id: String,
-    /// What was measured, in words.
+    /// The measured quantity, in words.
     pub text: String,
     /// Unit of both numbers; `1` if there is none.
     pub unit: String,
-    /// What theory predicts, if it predicts anything.
+    /// The prediction, if there is one.
     pub predicted: Option<f64>,
-    /// What came out.
+    /// The measurement.
     pub measured: f64,
-    /// How the measurement should stand to the prediction.
+    /// The expected relation of the measurement to the prediction.
     pub relation: Relation,
-    /// How far the two may lie apart, and why.
+    /// The allowed difference and its reason.
     #[serde(flatten)]
     pub tolerance: Tolerance,
     /// Whether they agree.
     pub verdict: Verdict,
-    /// Why a measurement that was to be judged is not.
+    /// The reason why a measurement could not be judged.
     pub undecided: Option<Undecided>,
 }
 
-/// Why a measurement that was to be judged is not; its words.
+/// The reason why a measurement could not be judged.
 #[derive(Clone, Debug, Serialize, PartialEq, Eq)]
 #[serde(untagged)]
 pub enum Undecided {
-    /// It was too noisy, and may be judged another time.
+    /// The measurement was too noisy; another run may judge it.
     Noisy(String),
-    /// What was wanted was not reached, nor would the machine reach it by what else is known of it.
+    /// The target was not reached and is beyond the machine.
     Beyond(String),
 }
 
@@ -45,7 +45,7 @@ impl fmt::Display for Undecided {
     }
 }
 
-/// How a measurement should stand to its prediction.
+/// The expected relation of a measurement to its prediction.
 #[derive(Clone, Copy, Debug, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Relation {
@@ -61,20 +61,20 @@ pub enum Relation {
 #[derive(Clone, Copy, Debug, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The measurement is what theory says.
+    /// The measurement agrees with the prediction.
     Agrees,
-    /// It is not.
+    /// The measurement disagrees with the prediction.
     Disagrees,
     /// There is no prediction.
     Measured,
 }
 
-/// The largest difference that still counts as agreement.
+/// The largest difference that counts as agreement.
 #[derive(Clone, Debug, Serialize, PartialEq)]
 pub struct Tolerance {
     /// The largest allowed absolute difference, in the finding's unit.
     pub tolerance: Option<f64>,
-    /// Where it comes from.
+    /// The reason for the tolerance.
     pub tolerance_reason: String,
     #[serde(skip)]
     relative: bool,
@@ -144,7 +144,7 @@ impl Finding {
         }
     }
 
-    /// A measurement about which theory says nothing.
+    /// A measurement without a prediction.
     pub fn measured(
         id: impl Into<String>,
         text: impl Into<String>,
@@ -168,19 +168,19 @@ impl Finding {
         }
     }
 
-    /// This, which was to be judged, but could not be because of `reason`.
+    /// The same finding, not judged because of `reason`.
     #[must_use]
     pub fn undecided(self, reason: Undecided) -> Self {
         Finding { undecided: Some(reason), ..self }
     }
 
-    /// Whether the measurement is what theory says.
+    /// Whether the measurement agrees with the prediction.
     pub fn agrees(&self) -> bool {
         self.verdict == Verdict::Agrees
     }
 
-    /// Whether a prediction other than zero agrees, but so would zero: it is no larger than its tolerance.
-    pub fn agrees_as_zero_would(&self) -> bool {
+    /// Whether a nonzero prediction agrees but is no larger than its tolerance, so that zero would agree too.
+    pub fn agrees_with_zero(&self) -> bool {
         let small = |p: f64| p != 0.0 && self.tolerance.tolerance.is_some_and(|t| t >= p.abs());
         self.agrees() && self.relation == Relation::Equal && self.predicted.is_some_and(small)
     }
@@ -211,7 +211,7 @@ mod tests {
     fn a_prediction_below_its_tolerance_says_no_more_than_zero() {
         let found = |p, size| {
             Finding::predicted("a.b", "", "1", p, p, Tolerance::absolute(size, ""))
-                .agrees_as_zero_would()
+                .agrees_with_zero()
         };
         assert!(found(1e-3, 1e-2) && found(-1e-3, 1e-3));
         assert!(!found(1e-3, 1e-4) && !found(0.0, 1.0));

@@ -1,4 +1,4 @@
-//! What a study leaves behind: numbers, and nothing that is alive.
+//! Records of studies.
 
 mod cell;
 mod claim;
@@ -15,22 +15,22 @@ pub use finding::{Finding, Relation, Tolerance, Undecided, Verdict};
 pub use series::{Column, Series};
 pub use table::Table;
 
-/// The outcome of one study; the report is rendered from it and from nothing else.
+/// The results of a study, from which the report is rendered.
 #[derive(Clone, Debug, Serialize)]
 pub struct Record {
     /// The study's name, as on the command line.
     pub name: String,
-    /// The question that the study asks.
+    /// The question of the study.
     pub question: String,
-    /// Wall-clock time that the study took, in seconds.
+    /// Wall-clock time of the study, in s.
     pub seconds: f64,
-    /// Predictions beside measurements.
+    /// Predictions and measurements.
     pub findings: Vec<Finding>,
     /// Sentences of the source report, judged by the findings.
     pub claims: Vec<Claim>,
     /// Tables, with all digits.
     pub tables: Vec<Table>,
-    /// The figures that were drawn from this record.
+    /// The figures of this record.
     pub figures: Vec<FigureFile>,
     /// The files of its series.
     pub data: Vec<DataFile>,
@@ -39,7 +39,7 @@ pub struct Record {
     pub series: Vec<Series>,
 }
 
-/// Where a figure of a record was written.
+/// The file of a figure.
 #[derive(Clone, Debug, Serialize, PartialEq, Eq)]
 pub struct FigureFile {
     /// Identifier, unique in the report.
@@ -48,7 +48,7 @@ pub struct FigureFile {
     pub file: String,
 }
 
-/// Where a series of a record was written.
+/// The file of a series.
 #[derive(Clone, Debug, Serialize, PartialEq, Eq)]
 pub struct DataFile {
     /// Name, unique in the study.
@@ -57,7 +57,7 @@ pub struct DataFile {
     pub file: String,
 }
 
-/// A study asked its own record for something that is not there.
+/// Error of a missing part of a record.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum RecordError {
     /// No finding has this identifier.
@@ -65,7 +65,7 @@ pub enum RecordError {
     NoFinding {
         /// The study.
         study: String,
-        /// What was asked for.
+        /// The missing name.
         id: String,
     },
     /// No series has this name.
@@ -73,7 +73,7 @@ pub enum RecordError {
     NoSeries {
         /// The study.
         study: String,
-        /// What was asked for.
+        /// The missing name.
         name: String,
     },
     /// No table has this name.
@@ -81,7 +81,7 @@ pub enum RecordError {
     NoTable {
         /// The study.
         study: String,
-        /// What was asked for.
+        /// The missing name.
         name: String,
     },
     /// A series has no column of this name.
@@ -89,13 +89,13 @@ pub enum RecordError {
     NoColumn {
         /// The series.
         series: String,
-        /// What was asked for.
+        /// The missing name.
         column: String,
     },
 }
 
 impl Record {
-    /// An empty record of the study `name`, which asks `question`.
+    /// An empty record of the study `name` with its question.
     pub fn new(name: &str, question: &str) -> Self {
         Record {
             name: name.into(),
@@ -116,8 +116,8 @@ impl Record {
         self.findings.push(finding);
     }
 
-    /// Judges a claim of the source report by findings that are already here. A claim about an
-    /// integrator that was not studied stays unjudged.
+    /// Judges a claim of the source report by findings of this record. Without these findings it adds no
+    /// claim.
     pub fn judge(&mut self, ruling: Ruling<'_>, judge: impl FnOnce(&[&Finding]) -> Judgement) {
         let evidence: Option<Vec<&Finding>> =
             ruling.findings.iter().map(|id| self.finding(id).ok()).collect();

@@ -1,4 +1,4 @@
-//! Named columns of numbers: what stands behind a figure.
+//! Series: the named columns of numbers behind a figure.
 
 use super::RecordError;
 

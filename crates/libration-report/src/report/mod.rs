@@ -1,20 +1,20 @@
-//! The report: one self-contained page, rendered from records.
+//! The HTML report, a self-contained page rendered from records.
 
 mod chapter;
 
 use crate::figure;
 use crate::page::{Chapter, Page};
-use crate::text::{escape, plain, prose};
+use crate::text::{escape, plain, render_html};
 
 const STYLE: &str = include_str!("../../assets/report.css");
 const SCRIPT: &str = include_str!("../../assets/report.js");
 
-/// What stands around the chapters of a report.
+/// The parts of a report around its chapters.
 #[derive(Clone, Debug)]
 pub struct Cover {
-    /// What was run, in a line of prose.
+    /// The run, in a line of text.
     pub setting: String,
-    /// Where it was run, in a line of prose.
+    /// The machine, in a line of text.
     pub machine: String,
     /// Whether the run had ended when the report was written.
     pub complete: bool,
@@ -24,16 +24,16 @@ pub struct Cover {
     pub ledger: String,
 }
 
-/// The report: the cover, and the chapters in turn.
+/// Renders the report: the cover and the chapters.
 pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
     let headline = headline(chapters);
     let mut links = String::from("<a href=\"#top\">The answer</a>");
     if !cover.ledger.is_empty() {
-        links += "<a href=\"#ledger\">The ledger</a>";
+        links += "<a href=\"#ledger\">Claims</a>";
     }
     let mut body = String::new();
     for chapter in chapters {
-        let (name, title) = (escape(&chapter.record.name), prose(&chapter.page.title));
+        let (name, title) = (escape(&chapter.record.name), render_html(&chapter.page.title));
         links += &format!("<a href=\"#{name}\">{title}</a>");
         body += &chapter::render(chapter);
     }
@@ -46,8 +46,8 @@ pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
          <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{score}{answers}{numbers}{ledger}{body}\
          {machine}</main>\n{scripts}<script>{SCRIPT}</script>\n</body></html>\n",
         name = escape(&plain(&headline)),
-        title = prose(&headline),
-        setting = prose(&cover.setting),
+        title = render_html(&headline),
+        setting = render_html(&cover.setting),
         alarm = alarm(cover, chapters),
         score = cover.score,
         answers = answers(chapters),
@@ -58,8 +58,8 @@ pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
     )
 }
 
-/// A page by itself, which says its answer first.
-pub fn sheet(page: &Page, sub: &str) -> String {
+/// Renders a single page, with its answer first.
+pub fn render_page(page: &Page, sub: &str) -> String {
     format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
@@ -68,23 +68,22 @@ pub fn sheet(page: &Page, sub: &str) -> String {
          <h1>{title}</h1>\n<p class=\"sub\">{sub}</p>\n<p class=\"lead\">{answer}</p>\n{blocks}</main>\n\
          {scripts}<script>{SCRIPT}</script>\n</body></html>\n",
         name = escape(&plain(&page.title)),
-        title = prose(&page.title),
-        sub = prose(sub),
-        answer = prose(&page.answer),
+        title = render_html(&page.title),
+        sub = render_html(sub),
+        answer = render_html(&page.answer),
         blocks = page.blocks.iter().map(chapter::block).collect::<String>(),
         scripts = figure::scripts(),
     )
 }
 
-/// What the report says in one sentence. Later studies rest on earlier ones, so the last that has
-/// a sentence for the head of the page leads.
+/// The headline of the report. Later studies build on earlier ones, so it is the last headline of a
+/// chapter.
 fn headline(chapters: &[Chapter]) -> String {
     let headlines = chapters.iter().rev().map(|c| c.page.headline.clone());
     headlines.filter(|h| !h.is_empty()).chain(["Libration".to_owned()]).take(1).collect()
 }
 
-/// What a reader must know stands before everything else: that studies are missing, and findings that
-/// contradict theory.
+/// Renders the warnings at the head of the report: missing studies, and findings that contradict theory.
 fn alarm(cover: &Cover, chapters: &[Chapter]) -> String {
     let incomplete = match cover.complete {
         true => String::new(),
@@ -118,13 +117,13 @@ fn answers(chapters: &[Chapter]) -> String {
         .enumerate()
         .map(|(i, c)| {
             let class = if i == 0 { " class=\"lead\"" } else { "" };
-            let (question, answer) = (prose(&c.record.question), prose(&c.page.answer));
+            let (question, answer) = (render_html(&c.record.question), render_html(&c.page.answer));
             format!("<p{class}><span class=\"asked\">{question}</span> {answer}</p>\n")
         })
         .collect()
 }
 
-/// The most telling numbers of the chapters.
+/// Renders the key numbers of the chapters.
 fn numbers(chapters: &[Chapter]) -> String {
     let boxes: String = chapters
         .iter()
@@ -132,19 +131,19 @@ fn numbers(chapters: &[Chapter]) -> String {
         .flat_map(|c| &c.page.highlights)
         .take(4)
         .map(|h| {
-            let (value, text) = (prose(&h.value), prose(&h.text));
+            let (value, text) = (render_html(&h.value), render_html(&h.text));
             format!("<div><strong>{value}</strong><span>{text}</span></div>")
         })
         .collect();
     format!("<div class=\"four\">{boxes}</div>\n")
 }
 
-/// Opens what scrolls sideways where it is too wide: the keys reach it, and it has a name.
-pub fn scroll(name: &str) -> String {
+/// The opening tag of a container that scrolls wide content, with a name and keyboard focus.
+pub fn scroll_container(name: &str) -> String {
     format!("<div class=\"scroll\" role=\"group\" tabindex=\"0\" aria-label=\"{}\">", escape(name))
 }
 
 fn machine(cover: &Cover) -> String {
-    let text = prose(&cover.machine);
+    let text = render_html(&cover.machine);
     format!("<h2 id=\"machine\">This machine</h2>\n<p class=\"sub\">{text}</p>\n")
 }

@@ -1,4 +1,4 @@
-//! The rate of independent multiplications and additions: as fast as this processor computes.
+//! The peak rate of independent multiplications and additions.
 
 use libration::Float;
 use libration::analysis::{DataFlow, Operation};

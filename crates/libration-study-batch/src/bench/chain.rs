@@ -1,10 +1,10 @@
-//! The latency of arithmetic: operations each of which waits for the one before.
+//! The latency of arithmetic: chains of dependent operations.
 
 use std::hint::black_box;
 
 use libration::Float;
 
-/// What a chain is made of, over and over.
+/// The operation of a chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Link {
     /// A multiplication.

@@ -1,4 +1,4 @@
-//! Page faults: pages that come to be as they are first written.
+//! Page faults of memory at its first write.
 
 use libration_study::StudyError;
 

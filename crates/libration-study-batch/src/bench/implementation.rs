@@ -1,4 +1,4 @@
-//! The same simulation written in seven ways.
+//! Seven implementations of one simulation.
 
 use serde::{Serialize, Serializer};
 
@@ -18,12 +18,12 @@ pub enum Implementation {
     OneStep,
     /// All steps at once on a block of trajectories, then on the next block.
     Fused,
-    /// The same, each thread with its own trajectories.
+    /// As `Fused`, with trajectories divided among threads.
     Threads,
 }
 
 impl Implementation {
-    /// All of them, from the first to the fastest.
+    /// All implementations, from the slowest to the fastest.
     pub const ALL: [Implementation; 7] = [
         Implementation::Dynamic,
         Implementation::Scalar,
@@ -65,7 +65,7 @@ impl Implementation {
         }
     }
 
-    /// What it does, in a sentence.
+    /// Returns a description.
     pub const fn summary(self) -> &'static str {
         match self {
             Implementation::Dynamic => "each trajectory alone, each step through a virtual call",

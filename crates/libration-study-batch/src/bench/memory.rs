@@ -1,4 +1,4 @@
-//! Loops that do nothing but move memory.
+//! Loops that only move memory.
 
 use libration::Float;
 use libration::ensemble::Loop;

@@ -15,6 +15,7 @@ mod rollouts;
 mod rung;
 mod stopwatch;
 mod storage;
+mod task;
 
 pub use crate::throughput::Rate;
 pub use crate::throughput::Wanted;
@@ -32,6 +33,7 @@ pub(crate) use peers::{Peer, Peers, RolloutPeer, StoragePeer, check_peers};
 pub(crate) use platform::PlatformPendulum;
 pub(crate) use rollouts::{FEEDBACK, fill, regulating, regulating_from, rollout, suited};
 pub use rollouts::{RolloutCase, RolloutRate, RolloutTask, rollouts};
-pub(crate) use rung::{Task, prepare};
+pub(crate) use rung::prepare;
 pub(crate) use stopwatch::{Contestant, Rates, Turns, race};
 pub use storage::{StorageRate, Stored, storage};
+pub(crate) use task::Task;

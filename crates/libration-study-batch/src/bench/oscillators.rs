@@ -1,4 +1,4 @@
-//! The kernels that are shipped, as contestants.
+//! The shipped kernels as contestants.
 
 use std::hint::black_box;
 

@@ -1,4 +1,4 @@
-//! A simulation as an array language runs it: one operation at a time, over all of the memory.
+//! A simulation with array operations: one operation per pass over the memory.
 
 use libration::Float;
 use libration::ensemble::{Buffer, EnsembleError, InstructionSet, Loop, Pages};

@@ -1,4 +1,4 @@
-//! What programs of `benches/` measured: Libration beside programs that cannot run within it.
+//! Results of the programs in `benches/`: Libration compared with other programs.
 
 use std::path::Path;
 
@@ -43,9 +43,9 @@ pub(crate) struct Peer {
     pub(crate) ratio: f64,
     /// Between which half of them lie.
     pub(crate) quartiles: [f64; 2],
-    /// What is to be reached.
+    /// Least ratio.
     pub(crate) wanted: f64,
-    /// What the arithmetic of the machine would reach.
+    /// Limit by the arithmetic of the machine.
     pub(crate) most: f64,
 }
 
@@ -68,7 +68,7 @@ pub(crate) struct RolloutPeer {
     pub(crate) ratio: f64,
     /// Between which half of them lie.
     pub(crate) quartiles: [f64; 2],
-    /// What is to be reached.
+    /// Least ratio.
     pub(crate) wanted: f64,
 }
 
@@ -81,7 +81,7 @@ impl PeerRow for RolloutPeer {
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct StoragePeer {
     pub(crate) peer: String,
-    /// What both did.
+    /// Description of the work.
     pub(crate) what: String,
     /// Threads of Libration, and of the peer.
     pub(crate) threads: [u64; 2],
@@ -89,7 +89,7 @@ pub(crate) struct StoragePeer {
     pub(crate) ratio: f64,
     /// Between which half of them lie.
     pub(crate) quartiles: [f64; 2],
-    /// What is to be reached.
+    /// Least ratio.
     pub(crate) wanted: f64,
 }
 
@@ -98,12 +98,12 @@ impl PeerRow for StoragePeer {
     const PROGRAM: &str = "benches/storage.py";
 }
 
-/// How fast a rollout was.
+/// Rate of a rollout.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct PeerRate {
     pub(crate) environments: u64,
     pub(crate) horizon: Option<u64>,
-    /// Whose it is.
+    /// Name of the program.
     pub(crate) name: String,
     pub(crate) transitions_per_second: f64,
 }

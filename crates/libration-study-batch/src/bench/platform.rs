@@ -1,4 +1,4 @@
-//! A pendulum that asks the platform for its sine.
+//! A pendulum with the sine of the platform.
 
 use libration::{State, System};
 

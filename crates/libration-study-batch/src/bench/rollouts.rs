@@ -1,4 +1,4 @@
-//! Rollouts against the memory that they write.
+//! Rates of rollouts, relative to fills.
 
 use std::hint::black_box;
 
@@ -18,7 +18,7 @@ use libration_study::{Lab, Machine, StudyError};
 
 use super::{Contestant, Rates, Turns, race};
 
-/// What the environments of a rollout are to do.
+/// The task of the environments of a rollout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RolloutTask {
     /// The source's case: an oscillator under linear feedback, 17 bytes a transition.
@@ -40,9 +40,9 @@ impl RolloutTask {
 /// A rollout to be timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RolloutCase {
-    /// What is done.
+    /// The task.
     pub task: RolloutTask,
-    /// How many environments there are.
+    /// Number of environments.
     pub environments: usize,
     /// Actions of each.
     pub horizon: usize,
@@ -77,12 +77,12 @@ impl RolloutCase {
         Ok(InsufficientMemory::check(4 * self.all_bytes())?)
     }
 
-    /// How many transitions it has.
+    /// Returns the number of transitions.
     pub fn transitions(&self) -> usize {
         self.environments.saturating_mul(self.horizon)
     }
 
-    /// What the rollout holds.
+    /// Returns the size in bytes.
     pub(crate) fn plan(&self) -> Plan {
         let plan = Plan::new(self.horizon, self.environments);
         if self.task == RolloutTask::SwingUp { plan.truncated() } else { plan }
@@ -104,32 +104,32 @@ impl RolloutCase {
     }
 }
 
-/// How a rollout of so many bytes is best written on this machine.
+/// Returns the faster kind of stores for a rollout of a size.
 pub(crate) fn suited(bytes: usize) -> Writes {
     let caches = Machine::detect().caches;
     let near = caches.iter().rev().find(|cache| cache.level <= 2);
     Writes::suited(bytes as u128, near.map_or(1 << 20, |cache| cache.bytes))
 }
 
-/// How fast a rollout is, in the faster way to write it.
+/// Rate of a rollout, with the faster kind of stores.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RolloutRate {
-    /// What was timed.
+    /// The measured case.
     pub case: RolloutCase,
-    /// How the numbers lie.
+    /// Layout of the tensors.
     pub layout: Layout,
-    /// How they were written.
+    /// Kind of stores.
     pub writes: Writes,
     /// On how many threads: a small one takes no more than it is worth.
     pub threads: usize,
     /// Transitions a second: the median of the rounds.
     pub median: f64,
-    /// How far the quartiles of the rounds lie apart.
+    /// Distance of the quartiles of the rounds.
     pub spread: f64,
     /// The share of a fill of as many bytes, by as many threads, written as [`against`](RolloutCase::against) says: the median of the
     /// rounds.
     pub share: f64,
-    /// How far the quartiles of the shares lie apart.
+    /// Distance of the quartiles of the shares.
     pub share_spread: f64,
 }
 

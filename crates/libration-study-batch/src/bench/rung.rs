@@ -1,4 +1,4 @@
-//! The rungs of the ladder: each implementation, ready to run.
+//! The implementations of the benchmark, ready to run.
 
 use libration::ensemble::{AnyEnsemble, EnsembleError, Execution};
 use libration::integrator::SymplecticEuler;
@@ -7,7 +7,7 @@ use libration::{Float, Integrator, Method, State};
 
 use super::oscillators::oscillators;
 use super::passes::Passes;
-use super::{Bench, Implementation};
+use super::{Bench, Implementation, Task};
 
 /// Oscillators under symplectic Euler, in one implementation.
 pub(crate) trait Rung {
@@ -16,26 +16,6 @@ pub(crate) trait Rung {
 
     /// Position and velocity of trajectory `n`.
     fn state(&self, n: usize) -> [f64; 2];
-}
-
-/// What is simulated.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Task {
-    /// Number of trajectories.
-    pub(crate) count: usize,
-    /// `ω²`.
-    pub(crate) omega2: f64,
-    /// The time step, in s.
-    pub(crate) dt: f64,
-}
-
-impl Task {
-    /// Position and velocity from which trajectory `n` starts: each elsewhere, so that none can be
-    /// left out.
-    pub(super) fn start(&self, n: usize) -> [f64; 2] {
-        let share = n as f64 / self.count as f64;
-        [1.0 + share, 0.5 - share]
-    }
 }
 
 /// `task`, to be run by `implementation`, on the instruction set and threads of `execution` as far

@@ -1,4 +1,4 @@
-//! Timing: contestants take turns, so that what slows the machine down slows all of them down.
+//! Timing of contestants in alternation, so that load of the machine affects all of them.
 
 use std::hint::black_box;
 use std::sync::atomic::{Ordering, compiler_fence};
@@ -6,11 +6,11 @@ use std::time::Instant;
 
 use libration_study::{Lab, StudyError};
 
-/// Something whose speed is wanted.
+/// A measured piece of work.
 pub(crate) struct Contestant<'a> {
-    /// Does its work so many times.
+    /// Repeats the work a number of times.
     run: Box<dyn FnMut(u64) + 'a>,
-    /// What one time amounts to, in the unit of the rates.
+    /// Amount of one repetition, in the unit of the rates.
     work: f64,
 }
 
@@ -30,7 +30,7 @@ impl<'a> Contestant<'a> {
         begun.elapsed().as_secs_f64()
     }
 
-    /// How many times fill a turn of so many seconds.
+    /// Returns the number of repetitions of a turn of a duration.
     fn calibrate(&mut self, lab: &Lab<'_>, seconds: f64) -> Result<u64, StudyError> {
         // The first turn warms caches and branch predictors up.
         let mut times = 1;
@@ -47,12 +47,12 @@ impl<'a> Contestant<'a> {
     }
 }
 
-/// How long a measurement takes.
+/// Number and duration of turns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turns {
-    /// How often each contestant has its turn.
+    /// Number of turns of each contestant.
     pub(crate) rounds: usize,
-    /// How long a turn takes, in seconds, if the work can be had in such small portions.
+    /// Least duration of a turn in s.
     pub(crate) seconds: f64,
 }
 
@@ -102,17 +102,17 @@ impl Rates {
         self.quantile(0.75) - self.quantile(0.25)
     }
 
-    /// How many there are.
+    /// Returns the number of rounds.
     pub(crate) fn rounds(&self) -> usize {
         self.0.len()
     }
 
-    /// What `combine` makes of these and others, round by round.
+    /// Combines these rates with others, round by round.
     pub(crate) fn with(&self, other: &Rates, combine: impl Fn(f64, f64) -> f64) -> Rates {
         Rates(self.0.iter().zip(&other.0).map(|(&own, &other)| combine(own, other)).collect())
     }
 
-    /// What `combine` makes of these and two others, round by round.
+    /// Combines these rates with two others, round by round.
     pub(crate) fn with_two(
         &self,
         [one, two]: [&Rates; 2],

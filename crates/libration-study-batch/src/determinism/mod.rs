@@ -1,19 +1,19 @@
-//! What bits depend on: what may be changed without another result, and what may not.
+//! The study `determinism`: changes that preserve results, and changes that do not.
 
-mod broken;
 mod claims;
-mod kept;
+mod invariance;
 mod render;
 mod runs;
-mod tried;
+mod sensitivity;
+mod source_claims;
 
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::RecordError;
-use libration_study::{Lab, Study, StudyError, Tried};
+use libration_study::{Lab, SourceClaim, Study, StudyError};
 
-use self::tried::TRIED;
-use crate::changed;
+use self::source_claims::SOURCE_CLAIMS;
+use crate::bit_comparison;
 
 /// The study `determinism`.
 #[derive(Clone, Copy, Debug)]
@@ -28,15 +28,15 @@ impl Study for Determinism {
         "What does a result depend on, to the bit, and what not?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
         let mut record = Record::new(self.name(), self.question());
-        changed::begin(&mut record);
-        kept::measure(lab, &mut record)?;
-        broken::measure(lab, &mut record)?;
+        bit_comparison::begin(&mut record);
+        invariance::measure(lab, &mut record)?;
+        sensitivity::measure(lab, &mut record)?;
         claims::judge(&mut record);
         Ok(record)
     }

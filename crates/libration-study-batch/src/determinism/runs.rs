@@ -31,13 +31,13 @@ pub(super) fn start(n: usize) -> [f32; 2] {
     [1.0 + n as f32 / 8192.0, 0.0]
 }
 
-/// How many of two lists differ.
+/// Returns the number of different entries of two lists.
 pub(super) fn differing(a: &[Bits], b: &[Bits]) -> usize {
     a.iter().zip(b).filter(|(a, b)| a != b).count()
 }
 
 /// The first `count` trajectories after all steps, taken in so many calls.
-pub(super) fn plain(
+pub(super) fn run_plain(
     lab: &Lab<'_>,
     count: usize,
     execution: Execution,
@@ -58,7 +58,7 @@ pub(super) fn plain(
 
 /// The same in loops where nothing is ideal: jitter, a rate for each clock, feedback that is late by a part of a
 /// step.
-pub(super) fn shaken(
+pub(super) fn run_perturbed(
     lab: &Lab<'_>,
     count: usize,
     execution: Execution,

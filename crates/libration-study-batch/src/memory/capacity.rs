@@ -1,11 +1,11 @@
-//! How soon the memory of this machine is full.
+//! The time until the memory of this machine is full.
 
 use libration_report::record::{Finding, Record};
 use libration_study::{Lab, Machine, StudyError};
 
 use super::BYTES;
 use crate::bench::{RolloutCase, RolloutTask, rollout};
-use crate::desk::Desk;
+use crate::measurement::Measurement;
 
 /// A rollout of the source's table that most caches hold.
 const CASE: RolloutCase =
@@ -13,8 +13,8 @@ const CASE: RolloutCase =
 
 /// Times one rollout on all cores, and tells when it would have filled the memory.
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let desk = Desk::new(lab)?;
-    let [rates] = desk.look([rollout(CASE, CASE.plan(), &desk.parallel)?])?;
+    let measurement = Measurement::new(lab)?;
+    let [rates] = measurement.sweep_rates([rollout(CASE, CASE.plan(), &measurement.parallel)?])?;
     record.find(Finding::measured(
         "memory.rate",
         format!(

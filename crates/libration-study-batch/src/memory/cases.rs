@@ -1,14 +1,14 @@
-//! The source's rollouts, in bytes: planned, and held.
+//! Planned and allocated bytes of the rollouts of the source.
 
 use libration::rl::{EnvironmentError, Plan, Rollout};
 use libration_report::record::{Cell, Finding, Record, Table, Tolerance};
 use libration_study::StudyError;
 
 use super::{ACTION, BYTES, MB, MIB, OBSERVATION, bytes};
-use crate::reported::{EXAMPLES, Reported, TABLE};
+use crate::source_rollouts::{EXAMPLES, SourceRollout, TABLE};
 
 /// Every rollout of which the source prints numbers, each once.
-fn cases() -> impl Iterator<Item = Reported> {
+fn cases() -> impl Iterator<Item = SourceRollout> {
     TABLE.iter().map(|row| row.of).chain([EXAMPLES[1]])
 }
 
@@ -29,7 +29,7 @@ pub(super) fn measure(record: &mut Record) -> Result<(), StudyError> {
     for case in cases() {
         let plan = Plan::new(case.horizon, case.environments);
         let planned = bytes(plan);
-        let held = held(plan)?;
+        let allocated = allocated_bytes(plan)?;
         let name = case.name();
         let exactly = || Tolerance::exact("whole numbers, of which doubles hold 2⁵³");
         let transitions = plan.transitions() as f64;
@@ -49,13 +49,13 @@ pub(super) fn measure(record: &mut Record) -> Result<(), StudyError> {
             planned,
             exactly(),
         ));
-        if let Some(held) = held {
+        if let Some(allocated) = allocated {
             record.find(Finding::predicted(
                 format!("memory.{name}.held"),
                 format!("memory that the tensors of {} transitions are", case.title()),
                 "B",
                 planned,
-                held,
+                allocated,
                 exactly(),
             ));
         }
@@ -65,7 +65,7 @@ pub(super) fn measure(record: &mut Record) -> Result<(), StudyError> {
             (transitions as u64).into(),
             ((planned / transitions) as u64).into(),
             (planned as u64).into(),
-            held.map_or_else(|| Cell::absent("no room"), |held| (held as u64).into()),
+            allocated.map_or_else(|| Cell::absent("no room"), |bytes| (bytes as u64).into()),
             Cell::rounded(planned / MB, 5),
             Cell::rounded(planned / MIB, 5),
             case.megabytes.into(),
@@ -76,7 +76,7 @@ pub(super) fn measure(record: &mut Record) -> Result<(), StudyError> {
 }
 
 /// Bytes of all tensors of a rollout, if there is room for it. Nobody writes them, so that no page comes to be.
-fn held(plan: Plan) -> Result<Option<f64>, StudyError> {
+fn allocated_bytes(plan: Plan) -> Result<Option<f64>, StudyError> {
     let rollout = match Rollout::<f32, OBSERVATION, ACTION>::new(plan) {
         Ok(rollout) => rollout,
         Err(EnvironmentError::Room { .. }) => return Ok(None),

@@ -4,7 +4,7 @@ use libration_report::notation::{count, number, seconds};
 use libration_report::record::{Judgement, Record, Ruling};
 
 use super::{MB, MIB};
-use crate::reported::{BYTES, EXAMPLES};
+use crate::source_rollouts::{BYTES, EXAMPLES};
 
 /// Memory that is full within so many seconds is what a program meets first.
 const SOON: f64 = 3600.0;
@@ -64,7 +64,7 @@ fn examples(record: &mut Record) {
     });
 }
 
-/// What it grows with.
+/// Judges claims about the growth of memory.
 fn growth(record: &mut Record) {
     let ids = ["memory.growth.environments", "memory.growth.horizon", "memory.growth.both"];
     let text = "Memory grows exponentially.";
@@ -87,7 +87,7 @@ fn growth(record: &mut Record) {
     });
 }
 
-/// What it fills.
+/// Judges the claim about full memory.
 fn capacity(record: &mut Record) {
     let ids = ["memory.rate", "memory.full"];
     let text =

@@ -5,7 +5,7 @@ use libration_report::record::{Record, RecordError};
 
 use super::MIB;
 use super::growth::{HORIZONS, column};
-use crate::reported::{EXAMPLES, TABLE};
+use crate::source_rollouts::{EXAMPLES, TABLE};
 
 /// Memory against environments, a line for each horizon, with what the source prints.
 pub(super) fn growth(record: &Record) -> Result<Figure, RecordError> {
@@ -23,11 +23,11 @@ pub(super) fn growth(record: &Record) -> Result<Figure, RecordError> {
     panel = panel.mark(Mark::points(x, y).ink(Ink::Neutral).label("the source"));
     if let Ok(memory) = record.finding("memory.installed") {
         let level = Mark::horizontal(memory.measured / MIB).ink(Ink::Bad);
-        panel = panel.mark(level.label("all of this machine"));
+        panel = panel.mark(level.label("memory of this machine"));
     }
-    Ok(Figure::new("fig-9-10", "Memory is a product of environments and steps")
+    Ok(Figure::new("fig-9-10", "Memory of a rollout against environments")
         .caption(
-            "Lines: 17 bytes for each transition. Points: what the source prints in table 9.11 and in §6.5, \
+            "Lines: 17 bytes per transition. Points: values of the source in table 9.11 and in §6.5, \
              taken for MiB.",
         )
         .description("Log-log: memory against environments, parallel lines of slope one.")

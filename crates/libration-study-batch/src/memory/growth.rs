@@ -1,4 +1,4 @@
-//! How memory grows with environments and with the horizon.
+//! Growth of memory with the environments and the horizon.
 
 use libration::rl::Plan;
 use libration_report::record::{Finding, Record, Series, Tolerance};
@@ -9,12 +9,12 @@ use super::{MIB, bytes};
 /// Horizons of the figure.
 pub(super) const HORIZONS: [usize; 4] = [64, 512, 1024, 2048];
 
-/// What is fitted and drawn: powers of two from 64.
+/// Returns the numbers of the fit: powers of two from 64.
 fn numbers() -> Vec<usize> {
     (6..=16).map(|power| 1 << power).collect()
 }
 
-/// Why an exponent may be off.
+/// Reason for the tolerance of an exponent.
 const ROUNDING: &str = "a few roundings of logarithms of 9 to 25, over a span of 2.8";
 
 /// Fits the growth, and leaves the curves.

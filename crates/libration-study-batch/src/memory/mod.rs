@@ -1,4 +1,4 @@
-//! How much memory rollouts take, and how that grows.
+//! The study `memory`: size of rollouts and its growth.
 
 mod capacity;
 mod cases;
@@ -6,16 +6,16 @@ mod claims;
 mod figures;
 mod growth;
 mod render;
-mod tried;
+mod source_claims;
 mod types;
 
 use libration::rl::Plan;
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::RecordError;
-use libration_study::{Lab, Study, StudyError, Tried};
+use libration_study::{Lab, SourceClaim, Study, StudyError};
 
-use self::tried::TRIED;
+use self::source_claims::SOURCE_CLAIMS;
 
 /// Numbers that are seen in a transition of the source's oscillator: position and velocity.
 const OBSERVATION: usize = 2;
@@ -48,8 +48,8 @@ impl Study for Memory {
         "How much memory do rollouts take, how does it grow, and how soon is it full?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {

@@ -6,7 +6,7 @@ use libration_report::record::{Record, RecordError};
 
 use super::MIB;
 use super::figures::growth;
-use crate::reported::EXAMPLES;
+use crate::source_rollouts::EXAMPLES;
 
 /// Writes the chapter.
 pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
@@ -15,8 +15,8 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     let [example, _] = EXAMPLES;
     let taken = record.finding(&format!("memory.{}", example.name()))?.measured / MIB;
     page.answer = format!(
-        "{} bytes for each transition of each environment: {} are {} MiB. It grows in proportion to the environments \
-         and to the horizon, and not exponentially.",
+        "{} bytes per transition of an environment: {} take {} MiB. Memory is proportional to the number of environments \
+         and to the horizon.",
         number(each, 2),
         example.title(),
         number(taken, 3)
@@ -24,21 +24,23 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     if let Ok(full) = record.finding("memory.full") {
         let after = seconds(full.measured, 2);
         page.answer.push_str(&format!(
-            " At the rate of this machine its memory is full after {after}, if everything is kept."
+            " At the rate of this machine its memory is full after {after}, if all rollouts are kept."
         ));
-        page.highlights
-            .push(Highlight { value: after, text: "until kept rollouts fill this machine".into() });
+        page.highlights.push(Highlight {
+            value: after,
+            text: "until rollouts fill the memory of this machine".into(),
+        });
     }
     page.paragraph(
-        "A rollout is planned before anything is allocated, so that a size that does not fit is refused with what \
-         would. The plan is compared with the tensors that are then held, field by field and to the byte.",
+        "The size of a rollout is computed before any allocation; a size that does not fit is rejected with the size that \
+         would fit. The computed size is compared with the allocated tensors, field by field and to the byte.",
     );
     page.figure(growth(record)?.number("9.10"));
     page.table(record.table("rollouts in memory")?, 3);
     page.paragraph(
-        "The source takes 16 bytes for a transition in §6.5 and 17 in table 9.11, lists fields of 13, and says MB where \
-         it means MiB; its numbers of §6.5 mix all of these. Numbers of half the size do not halve a transition, \
-         since a flag remains a byte, and what a learner needs beside them (log-probabilities, values) costs more \
+        "The source assumes 16 bytes per transition in §6.5 and 17 in table 9.11, lists fields of 13 bytes, and writes MB for \
+         MiB; the numbers of §6.5 mix these. Floats of half the size do not halve a transition, \
+         since a flag remains one byte, and the log-probabilities and values of a learner add more bytes \
          than that saves.",
     );
     page.table(record.table("bytes of a transition")?, 3);

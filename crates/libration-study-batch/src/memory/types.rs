@@ -1,10 +1,10 @@
-//! What a transition takes in other float types, and with more fields.
+//! Bytes of a transition with other float types and more fields.
 
 use libration::rl::Plan;
 use libration_report::record::{Cell, Finding, Record, Table};
 
 use super::{ACTION, MIB, OBSERVATION};
-use crate::reported::{EXAMPLES, LISTED};
+use crate::source_rollouts::{EXAMPLES, LISTED};
 
 /// Bytes of a number of each float type.
 const FLOATS: [(&str, usize); 3] =

@@ -1,4 +1,4 @@
-//! Advantages and returns, beside the rollouts that they are made of.
+//! Advantages and returns, relative to the rollouts that they read.
 
 use std::hint::black_box;
 
@@ -9,7 +9,7 @@ use libration_study::StudyError;
 
 use super::cases::{on, on_cores};
 use crate::bench::{Contestant, FEEDBACK, RolloutCase, RolloutTask, regulating, rollout, suited};
-use crate::desk::{Desk, aim};
+use crate::measurement::{Measurement, aim};
 
 const CASE: RolloutCase =
     RolloutCase { task: RolloutTask::Regulate, environments: 4096, horizon: 256 };
@@ -22,15 +22,18 @@ const WANTED: f64 = 0.5;
 const DISCOUNTS: Discounts = Discounts { rewards: 0.99, errors: 0.95 };
 
 /// Races the two on one core and on all.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
     let columns =
         ["threads", "rollout (10⁶ transitions/s)", "advantages (10⁶ transitions/s)", "ratio"];
     let mut table = Table::new("advantages", &columns);
-    for execution in desk.executions() {
+    for execution in measurement.executions() {
         let threads = execution.thread_count();
         let plan = CASE.plan().writes(suited(CASE.bytes()));
         let contestants = [rollout(CASE, plan, execution)?, estimates(execution)?];
-        let [rollouts, advantages] = desk.look(contestants)?;
+        let [rollouts, advantages] = measurement.sweep_rates(contestants)?;
         let ratio = advantages.over(&rollouts);
         let id = format!("rollout.advantages{}", on(threads));
         let text = format!(

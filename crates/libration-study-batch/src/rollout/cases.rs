@@ -1,4 +1,4 @@
-//! Rollouts against fills of as much memory: in both layouts, written through the caches and past them.
+//! Rollouts relative to fills of the same memory, in both layouts, with stores through and past the caches.
 
 use libration::ensemble::Execution;
 use libration::rl::{Layout, Writes};
@@ -6,7 +6,7 @@ use libration_report::record::{Cell, Finding, Record, Table};
 use libration_study::{Effort, StudyError};
 
 use crate::bench::{Rates, RolloutCase, RolloutTask, fill, rollout, suited};
-use crate::desk::{Desk, aim};
+use crate::measurement::{Measurement, aim};
 
 /// Bytes of a rollout that is too large for a quick run.
 const LARGE: usize = 1 << 28;
@@ -38,7 +38,7 @@ pub(super) fn name(case: RolloutCase) -> String {
     format!("{task}{}x{}", case.environments, case.horizon)
 }
 
-/// What identifiers end with on so many threads.
+/// Returns the suffix of identifiers for a number of threads.
 pub(super) fn on(threads: usize) -> &'static str {
     if threads == 1 { "" } else { ".threads" }
 }
@@ -49,7 +49,10 @@ pub(super) fn on_cores(threads: usize) -> String {
 }
 
 /// Times all of them, as far as effort and memory go.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
     let mut missing = Table::new("not timed", &["task", "environments", "horizon", "because"]);
     let mut table = Table::new(
         "layouts",
@@ -67,7 +70,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     );
     for case in RolloutCase::ALL {
         let refused = match case.check() {
-            _ if desk.lab.effort == Effort::Quick && case.bytes() >= LARGE => {
+            _ if measurement.lab.effort == Effort::Quick && case.bytes() >= LARGE => {
                 Some(format!("a run of this effort goes to {} MiB", LARGE >> 20))
             }
             Ok(()) => None,
@@ -83,7 +86,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
             ]);
             continue;
         }
-        timed(desk, case, record, &mut table)?;
+        timed(measurement, case, record, &mut table)?;
     }
     record.tables.push(table);
     record.tables.push(missing);
@@ -92,12 +95,12 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
 
 /// Races one case against its fills.
 fn timed(
-    desk: &Desk<'_>,
+    measurement: &Measurement<'_>,
     case: RolloutCase,
     record: &mut Record,
     table: &mut Table,
 ) -> Result<(), StudyError> {
-    for execution in desk.executions() {
+    for execution in measurement.executions() {
         let mut best = [0.0_f64; 2];
         for (l, (layout, layout_name)) in LAYOUTS.into_iter().enumerate() {
             let mut contestants = Vec::new();
@@ -106,7 +109,7 @@ fn timed(
                 contestants.push(rollout(case, plan, execution)?);
                 contestants.push(fill(case, writes, execution)?);
             }
-            let rates = desk.race_of(&mut contestants)?;
+            let rates = measurement.compare_rates_of(&mut contestants)?;
             let mut row: Vec<Cell> = vec![
                 case.task.name().into(),
                 (case.environments as u64).into(),
@@ -124,7 +127,7 @@ fn timed(
             }
             table.push(row);
         }
-        tell(record, case, execution, best);
+        add_row(record, case, execution, best);
     }
     Ok(())
 }
@@ -149,7 +152,7 @@ fn compare(record: &mut Record, case: RolloutCase, execution: &Execution, rates:
 }
 
 /// The rates of both layouts, in the faster way to write them.
-fn tell(record: &mut Record, case: RolloutCase, execution: &Execution, [one, planes]: [f64; 2]) {
+fn add_row(record: &mut Record, case: RolloutCase, execution: &Execution, [one, planes]: [f64; 2]) {
     let (name, on) = (name(case), on(execution.thread_count()));
     let threads = on_cores(case.plan().threads(execution));
     let what = format!("{} × {}, {threads}", case.environments, case.horizon);

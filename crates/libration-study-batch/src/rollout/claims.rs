@@ -6,7 +6,7 @@ mod numbers;
 use libration_report::notation::{count, list, number};
 use libration_report::record::{Finding, Judgement, Record, Ruling, Verdict};
 
-use crate::reported::EXAMPLES;
+use crate::source_rollouts::EXAMPLES;
 
 /// A rate that is tens of millions.
 const TENS_OF_MILLIONS: f64 = 1e7;
@@ -23,7 +23,7 @@ fn show(x: f64) -> String {
     number(x, 3)
 }
 
-/// How a batch is stepped and stored.
+/// Judges claims about steps and storage of a batch.
 fn design(record: &mut Record) {
     let ids = ["rollout.source.overhead", "rollout.source.share", "rollout.step.least"];
     let text = "A batched environment needs no loop in Python at all.";
@@ -55,7 +55,7 @@ fn design(record: &mut Record) {
     });
 }
 
-/// What a rollout's bits depend on.
+/// Judges the claim about the reproducibility of rollouts.
 fn bits(record: &mut Record) {
     let kept: Vec<String> =
         record.findings.iter().map(|f| f.id.clone()).filter(|id| id.contains(".kept.")).collect();

@@ -5,8 +5,8 @@ use libration_report::notation::number;
 use libration_report::record::{Record, RecordError};
 
 use super::scaling::{EXECUTIONS, Varied, series_name};
-use super::table::line;
-use crate::reported::TABLE;
+use super::source_table::line;
+use crate::source_rollouts::TABLE;
 
 /// The inks of one core and of all, the same in every figure.
 const INKS: [Ink; 2] = [Ink::Accent(0), Ink::Accent(1)];
@@ -17,14 +17,14 @@ const CORES: [&str; 2] = ["one core", "all cores"];
 pub(super) fn scaling(record: &Record) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("fig-9-9", "Rollouts against environments and horizon")
         .caption(
-            "Solid: rollouts. Dashed: fills of as much memory, on as many cores. Left: a fixed horizon, with the rows of \
+            "Solid: rollouts. Dashed: fills of the same memory on the same number of cores. Left: a fixed horizon, with the rows of \
              the source’s table 9.11. Right: 1024 environments.",
         )
-        .description("Log-log: transitions a second rise to a plateau below the fills.")
+        .description("Log-log: transitions per second rise to a plateau below the fills.")
         .columns(2)
         .aspect(0.95);
     for varied in Varied::ALL {
-        let mut panel = Panel::new(Axis::log(varied.name()), Axis::log("transitions a second"));
+        let mut panel = Panel::new(Axis::log(varied.name()), Axis::log("transitions per second"));
         for (i, execution) in EXECUTIONS.into_iter().enumerate() {
             let Ok(series) = record.series(&series_name(varied, execution)) else { continue };
             let x = series.column(varied.name())?;
@@ -67,13 +67,13 @@ pub(super) fn steps(record: &Record) -> Result<Figure, RecordError> {
     Ok(Figure::new(
         "step-times",
         format!(
-            "A step costs {} µs in the source however few environments take it; here one of {fewest} takes {} µs",
+            "Time of a step: {} µs in the source with few environments, {} µs here with {fewest}",
             number(1e6 * reported.fixed, 2),
             number(1e6 * least, 2)
         ),
     )
     .caption(
-        "Where a curve is flat, more environments cost nothing, and transitions a second rise with their number.",
+        "On the flat part of a curve more environments take no more time, and the rate of transitions rises with their number.",
     )
     .description("Log-log: time of a step against environments, flat at first and then in proportion.")
     .panel(panel))
@@ -84,7 +84,7 @@ pub(super) fn summary(record: &Record) -> Result<Figure, RecordError> {
     let series = record.series("summary")?;
     let places: Vec<f64> = (0..TABLE.len()).map(|row| -(row as f64)).collect();
     let names = TABLE.map(|row| row.of.title());
-    let mut panel = Panel::new(Axis::log("transitions a second"), Axis::names("", names));
+    let mut panel = Panel::new(Axis::log("transitions per second"), Axis::names("", names));
     let all = [
         ("source", "the source", Ink::Neutral, Marker::Square),
         ("numpy", "NumPy", Ink::Accent(2), Marker::Diamond),
@@ -98,9 +98,9 @@ pub(super) fn summary(record: &Record) -> Result<Figure, RecordError> {
             panel = panel.mark(points.radius(4.0).label(label));
         }
     }
-    Ok(Figure::new("fig-9-11", "The rollouts of table 9.11, as the source has them and here")
-        .caption("Environments × steps; interleaved, in the faster way to write, into tensors that were used before.")
-        .description("Points by row on a logarithmic axis of transitions a second.")
+    Ok(Figure::new("fig-9-11", "Rollouts of table 9.11: source and this run")
+        .caption("Environments × steps; interleaved, with the faster stores, into reused tensors.")
+        .description("Points by row on a logarithmic axis of transitions per second.")
         .aspect(2.2)
         .panel(panel))
 }

@@ -1,21 +1,24 @@
-//! Where neighbouring positions lie in the tensor of observations.
+//! The layout of the tensor of observations.
 
 use libration::rl::{Layout, Plan};
 use libration_report::record::{Finding, Record, Tolerance};
 use libration_study::StudyError;
 
-use super::kept::rolled;
-use crate::desk::Desk;
+use super::invariance::rolled;
+use crate::measurement::Measurement;
 
 /// Environments and steps of the rollout that is looked at.
 const SIZE: usize = 3;
 
 /// Looks up the positions that two environments saw first, in both layouts.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
     let layouts = [("interleaved", Layout::Interleaved, 2), ("planes", Layout::Planes, 1)];
     for (name, layout, numbers) in layouts {
         let plan = Plan::new(SIZE, SIZE).truncated().log_probabilities().layout(layout);
-        let rollouts = rolled(0..SIZE, 1, desk.serial.clone(), &[plan])?;
+        let rollouts = rolled(0..SIZE, 1, measurement.serial.clone(), &[plan])?;
         let Some(rollout) = rollouts.first() else { continue };
         let place = |n| {
             let [position, _] = rollout.seen(0, n);

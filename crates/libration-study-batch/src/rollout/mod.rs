@@ -1,32 +1,32 @@
-//! How fast rollouts of many environments are written, and what their bits depend on.
+//! The study `rollout`: rates of rollouts and the reproducibility of their bits.
 
 mod advantages;
+mod affine_cost;
 mod cases;
 mod claims;
 mod figures;
-mod fresh;
-mod kept;
+mod fresh_memory;
+mod invariance;
 mod layout;
-mod line;
 mod peers;
-mod regime;
 mod render;
 mod scaling;
+mod scaling_limit;
 mod settings;
+mod source_claims;
+mod source_table;
 mod summary;
-mod table;
-mod tried;
 
-use libration_study::Tried;
+use libration_study::SourceClaim;
 
 pub use self::settings::RolloutSettings;
-use self::tried::TRIED;
+use self::source_claims::SOURCE_CLAIMS;
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::RecordError;
 use libration_study::{Lab, Section, Study, StudyError};
 
-use crate::desk::Desk;
+use crate::measurement::Measurement;
 
 /// The study `rollout`.
 #[derive(Clone, Copy, Debug)]
@@ -41,8 +41,8 @@ impl Study for Rollout {
         "How fast are rollouts of many environments, what limits them, and what do their bits depend on?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn settings(&self) -> Option<Section> {
@@ -50,22 +50,22 @@ impl Study for Rollout {
     }
 
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
-        let desk = Desk::new(lab)?;
+        let measurement = Measurement::new(lab)?;
         let mut record = Record::new(self.name(), self.question());
         let parts: [(&str, Part); 7] = [
             ("layouts and ways to write", cases::measure),
             ("environments and horizons", scaling::measure),
-            ("fresh memory", fresh::measure),
+            ("fresh memory", fresh_memory::measure),
             ("advantages", advantages::measure),
-            ("bits", kept::measure),
+            ("bits", invariance::measure),
             ("layout", layout::measure),
             ("peers", peers::measure),
         ];
         for (what, part) in parts {
-            lab.part(what, || part(&desk, &mut record))?;
+            lab.part(what, || part(&measurement, &mut record))?;
         }
-        table::check(&mut record);
-        regime::detect(&mut record)?;
+        source_table::check(&mut record);
+        scaling_limit::detect(&mut record)?;
         summary::compare(lab, &mut record)?;
         claims::judge(&mut record);
         Ok(record)
@@ -77,4 +77,4 @@ impl Study for Rollout {
 }
 
 /// A part of the study.
-type Part = fn(&Desk<'_>, &mut Record) -> Result<(), StudyError>;
+type Part = fn(&Measurement<'_>, &mut Record) -> Result<(), StudyError>;

@@ -1,11 +1,11 @@
-//! Libration's rollouts beside NumPy, numba, C and PufferLib, as another program measured them.
+//! Rollouts of Libration compared with NumPy, numba, C and PufferLib, measured by `benches/rollouts.py`.
 
 use libration_report::record::{Cell, Record, Table};
 use libration_study::{Lab, StudyError};
 
 use super::cases::on_cores;
 use crate::bench::{Peers, RolloutPeer};
-use crate::desk::{Desk, Ratio, aim};
+use crate::measurement::{Measurement, Ratio, aim};
 use crate::rollout::RolloutSettings;
 
 /// The file that the configuration names, if it names one.
@@ -22,8 +22,11 @@ fn id(row: &RolloutPeer) -> String {
 }
 
 /// Judges the ratios of that file.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let Some(peers) = read(desk.lab)? else { return Ok(()) };
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
+    let Some(peers) = read(measurement.lab)? else { return Ok(()) };
     let columns =
         ["task", "environments", "horizon", "threads", "peer", "times as fast", "spread", "wanted"];
     let mut table = Table::new("peers", &columns);
@@ -92,9 +95,9 @@ mod tests {
         config.get::<RolloutSettings>().peers = Some(path);
         let stop = AtomicBool::new(false);
         let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
-        let desk = Desk::new(&lab).expect("this machine has its instruction set");
+        let measurement = Measurement::new(&lab).expect("this machine has its instruction set");
         let mut record = Record::new("rollout", "");
-        measure(&desk, &mut record).expect("the file is there");
+        measure(&measurement, &mut record).expect("the file is there");
         let found = |id: &str| record.finding(id).expect("a finding for each row");
         assert_eq!(found("rollout.numpy-256x512").measured, 50.0);
         let bar = (!cfg!(debug_assertions)).then_some(2.0);

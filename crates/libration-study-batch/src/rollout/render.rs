@@ -5,73 +5,75 @@ use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError};
 
 use super::{figures, summary};
-use crate::changed;
-use crate::reported::EXAMPLES;
+use crate::bit_comparison;
+use crate::source_rollouts::EXAMPLES;
 
 /// Writes the chapter.
 pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
     page.title = "Rollouts".into();
     answer(record, page);
     page.paragraph(
-        "A rollout is what environments saw, did and were paid over a horizon: 17 bytes for each transition of the \
-         source’s oscillator. Here its loop is closed by a linear policy. What it is measured against is a fill: \
-         a loop that writes as much memory in the same way and computes nothing. Rates are medians of rounds in which \
-         all take turns.",
+        "A rollout has the observations, actions and rewards of environments over a horizon: 17 bytes per transition of the \
+         oscillator of the source. Its actions come from a linear policy. The reference is a fill: \
+         a loop that writes the same memory in the same way without computing. Rates are medians of rounds in which \
+         the measurements alternate.",
     );
     page.figure(figures::summary(record)?.number("9.11"));
     page.table(record.table(summary::NAME)?, 3);
     page.figure(figures::scaling(record)?.number("9.9"));
-    page.heading("What limits a rollout");
+    page.heading("Limits of a rollout");
     page.paragraph(
-        "The source reports that rollouts become bound by memory as they grow. In its own table transitions become \
-         cheaper with the number of environments, which a limit of memory does not do: the cost of a step, which a \
-         loop in Python pays whatever it does, is shared by more of them. So a step costs a + b·N. The four times of \
-         the table lie on no such line either.",
+        "The source reports that large rollouts are limited by memory. In its table, however, the time per transition falls \
+         with the number of environments. That indicates a fixed cost per step, as of a Python loop, which more environments \
+         share: a step then takes a + b·N. The four times of the table do not lie on such a line \
+         either.",
     );
     page.figure(figures::steps(record)?);
     page.table(record.table("steps of table 9.11")?, 3);
     page.paragraph(
-        "Here regimes are read off the curves: where more environments or steps reach twice the rate, what is paid once \
-         outweighs the rest; beyond, rates within a factor of 1.3 make one plateau, which is bound by stores where the \
-         rate comes to three quarters of a fill.",
+        "The regimes follow from the measured curves. If more environments or steps reach twice the rate, fixed costs \
+         dominate. Beyond that, rates within a factor of 1.3 form a plateau; it is limited by stores if the \
+         rate is at least three quarters of a fill.",
     );
     page.table(record.table("regimes")?, 3);
-    page.heading("Layouts, and ways to write");
+    page.heading("Layouts and stores");
     page.paragraph(
-        "What the source calls a structure of arrays is an array of structures: position and velocity of an environment \
-         lie side by side. Where no cache holds the rollout, stores past the caches save reading each line before it \
-         is overwritten; where one does, they may go the longer way. Both are told in millions of transitions a second, and as \
-         shares of a fill that writes in the same way.",
+        "The structure of arrays of the source is in fact an array of structures: position and velocity of an environment \
+         are adjacent. If the rollout exceeds the caches, stores past the caches avoid the read of each line before it \
+         is overwritten; if it fits, they may be slower. Rates are in millions of transitions per second and relative to \
+         a fill that writes in the same way.",
     );
     page.table(record.table("layouts")?, 3);
     let missing = record.table("not timed")?;
     if !missing.rows.is_empty() {
-        page.paragraph("What was not timed:");
+        page.paragraph("Not measured:");
         page.table(missing, 3);
     }
     page.paragraph(
-        "Tensors that were never written cost a fault for every page. A rollout that is filled again and again pays \
-         that once.",
+        "New tensors cause a page fault for every page. A rollout that is reused causes \
+         them once.",
     );
     page.table(record.table("fresh and used tensors")?, 3);
-    page.paragraph("Generalised advantages and returns read what a rollout wrote, from its last step to the first.");
+    page.paragraph(
+        "Generalised advantages and returns read a rollout from its last step to the first.",
+    );
     page.table(record.table("advantages")?, 3);
     if let Ok(peers) = record.table("peers") {
         page.heading("Peers");
         page.paragraph(
-            "The same transitions in NumPy with outputs that are there already, in numba on as many threads, in a loop \
-             in C on one core, and PufferLib’s CartPole beside a pendulum that swings up; by `benches/rollouts.py`, \
-             each in turn and in the fastest of its ways.",
+            "The same transitions in NumPy with preallocated outputs, in numba on the same number of threads, in a loop \
+             in C on one core, and CartPole of PufferLib compared with a pendulum swing-up. `benches/rollouts.py` \
+             measures them alternately, each in its fastest variant.",
         );
         page.table(peers, 3);
     }
     page.heading("Bits");
     page.paragraph(
-        "Environments with random starts, a time limit, late observations and actions, uneven clocks, noise and another \
-         spring in each episode, under a policy that explores. Of each a hash is made of all that it saw, did and was \
-         paid. What environment 7 does is the same among 77 and among 3000.",
+        "The environments have random starts, a time limit, latencies of observations and actions, jitter and skew, noise and \
+         a random spring in each episode, with a random policy. A hash covers all observations, actions and rewards of an \
+         environment. Environment 7 has the same hash among 77 and among 3000.",
     );
-    page.table(changed::table(record)?, 4);
+    page.table(bit_comparison::table(record)?, 4);
     Ok(())
 }
 
@@ -86,23 +88,23 @@ fn answer(record: &Record, page: &mut Page) {
         let all = all.map(|all| format!(", all cores {}·10⁶", number(all / 1e6, 3)));
         let share = value(format!("rollout.{}", example.name()));
         let share = share.map(|share| {
-            format!(" One core writes {} % as fast as a fill.", number(100.0 * share, 2))
+            format!(" One core reaches {} % of the rate of a fill.", number(100.0 * share, 2))
         });
         sentences.push(format!(
-            "{}: one core makes {rate} transitions a second{}.{}",
+            "{}: {rate} transitions per second on one core{}.{}",
             example.title(),
             all.unwrap_or_default(),
             share.unwrap_or_default()
         ));
         page.highlights.push(Highlight {
             value: rate,
-            text: format!("transitions a second on one core, {}", example.title()),
+            text: format!("transitions per second on one core, {}", example.title()),
         });
     }
     let kept = record.findings.iter().filter(|f| f.id.starts_with("rollout.kept."));
     let (all, held) = kept.fold((0, 0), |(all, held), f| (all + 1, held + usize::from(f.agrees())));
     sentences.push(format!(
-        "Its bits depend on the environment’s number, the seed and the policy: {held} of {all} other changes leave all of them."
+        "The bits depend on the number of the environment, the seed and the policy: {held} of {all} other changes preserve all bits."
     ));
     page.answer = sentences.join(" ");
 }

@@ -4,12 +4,12 @@ use libration_report::record::{Record, Series};
 use libration_study::StudyError;
 
 use crate::bench::{Rates, RolloutCase, RolloutTask, fill, rollout, suited};
-use crate::desk::Desk;
+use crate::measurement::Measurement;
 
 /// Environments whose horizons are varied.
 const ENVIRONMENTS: usize = 1024;
 
-/// What is varied.
+/// The variable of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Varied {
     Environments,
@@ -27,9 +27,9 @@ impl Varied {
         }
     }
 
-    /// What is rolled out.
-    fn cases(self, desk: &Desk<'_>) -> Vec<RolloutCase> {
-        let effort = desk.lab.effort;
+    /// Returns the case of a rollout.
+    fn cases(self, measurement: &Measurement<'_>) -> Vec<RolloutCase> {
+        let effort = measurement.lab.effort;
         let of = |environments, horizon| RolloutCase {
             task: RolloutTask::Regulate,
             environments,
@@ -59,17 +59,20 @@ pub(super) fn series_name(varied: Varied, execution: &str) -> String {
 }
 
 /// Times both sweeps, on one core and on all, in turn with fills.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
     for varied in Varied::ALL {
-        let cases = varied.cases(desk);
+        let cases = varied.cases(measurement);
         let cases: Vec<_> = cases.into_iter().filter(|case| case.check().is_ok()).collect();
-        for (execution, name) in desk.executions().zip(EXECUTIONS) {
+        for (execution, name) in measurement.executions().zip(EXECUTIONS) {
             let mut rates: Vec<[Rates; 2]> = Vec::new();
             for &case in &cases {
                 let writes = suited(case.bytes());
                 let plan = case.plan().writes(writes);
                 let contestants = [rollout(case, plan, execution)?, fill(case, writes, execution)?];
-                rates.push(desk.look(contestants)?);
+                rates.push(measurement.sweep_rates(contestants)?);
             }
             let count =
                 |of: fn(&RolloutCase) -> usize| cases.iter().map(|c| of(c) as f64).collect();

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use libration_settings::{Fault, path};
+use libration_settings::{Fault, optional_path};
 use libration_study::Settings;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -12,15 +12,15 @@ use crate::bench::{RolloutPeer, check_peers};
 /// Settings of the study `rollout`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RolloutSettings {
-    /// What `benches/rollouts.py` wrote on this machine, if its ratios are to be judged.
+    /// Result file of `benches/rollouts.py` on this machine, if any.
     pub peers: Option<PathBuf>,
 }
 
-/// The study of rollouts.
+/// Settings of the study `rollout`.
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
-    /// A file that `benches/rollouts.py` wrote on this machine; none if empty.
+    /// Result file of `benches/rollouts.py` on this machine (empty: none).
     peers: String,
 }
 
@@ -36,11 +36,11 @@ impl Settings for RolloutSettings {
     type Table = Table;
 
     fn table(&self) -> Table {
-        Table { peers: path::text(self.peers.as_ref()) }
+        Table { peers: optional_path::to_text(self.peers.as_ref()) }
     }
 
     fn from_table(table: Table) -> Result<Self, Fault> {
-        Ok(RolloutSettings { peers: path::of(table.peers) })
+        Ok(RolloutSettings { peers: optional_path::from_text(table.peers) })
     }
 
     fn check(&self) -> Result<(), Fault> {

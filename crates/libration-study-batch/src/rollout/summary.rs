@@ -1,10 +1,10 @@
-//! The source's table 9.11 beside the same rollouts here.
+//! Table 9.11 of the source and the same rollouts in this run.
 
 use libration_report::record::{Cell, Record, Series, Table};
 use libration_study::{Lab, StudyError};
 
 use super::peers;
-use crate::reported::TABLE;
+use crate::source_rollouts::TABLE;
 
 /// Its name.
 pub(super) const NAME: &str = "table 9.11";

@@ -1,31 +1,32 @@
-//! The figure of the chapter on what is kept.
+//! The figure of the chapter on storage.
 
 use libration_report::figure::{Axis, Figure, Ink, Mark, Panel};
 use libration_report::notation::number;
 use libration_report::record::{Record, RecordError};
 
-use super::draws::COLUMNS;
+use super::sampling_cost::COLUMNS;
 
 /// Times against the transitions that a buffer holds.
 pub(super) fn draws(record: &Record) -> Result<Figure, RecordError> {
     let series = record.series("draws")?;
     let kept = series.column("transitions")?;
-    let mut panel = Panel::new(Axis::log("transitions kept"), Axis::log("time of one").unit("ns"));
+    let mut panel =
+        Panel::new(Axis::log("transitions kept"), Axis::log("time per transition").unit("ns"));
     for (i, (name, done)) in COLUMNS.into_iter().enumerate() {
         let line = Mark::line(kept, series.column(name)?);
         panel = panel.mark(line.ink(Ink::Accent(i as u8)).label(done));
     }
     Ok(Figure::new("draws", title(record)?)
         .caption(
-            "Transitions of 17 bytes, one core, batches of 256, rollouts of 64 × 16. An insertion and a uniform draw take the same \
-             operations however much is kept; a draw by priority goes down a tree of eights, one level more for eight times as much. \
-             What else rises are waits for memory.",
+            "Transitions of 17 bytes, one core, batches of 256, rollouts of 64 × 16. The number of operations of an insertion and of a uniform draw is independent of the size of the \
+             buffer; a draw by priority descends a tree with eight children per node, one level more for eight times the size. \
+             The rest of the increase is memory latency.",
         )
-        .description("Log-log: time of a transition against the number that is kept.")
+        .description("Log-log: time per transition against the size of the buffer.")
         .panel(panel))
 }
 
-/// How much dearer more of them make everything.
+/// Returns a title with the increase of the times.
 fn title(record: &Record) -> Result<String, RecordError> {
     let series = record.series("draws")?;
     let kept = series.column("transitions")?;
@@ -36,7 +37,7 @@ fn title(record: &Record) -> Result<String, RecordError> {
     }
     let most = grown.into_iter().fold(0.0, f64::max);
     Ok(format!(
-        "{} times as many transitions, and each is inserted or drawn in at most {} times the time",
+        "With {} times as many transitions, an insertion or a draw takes at most {} times the time",
         number(larger, 4),
         number(most, 2)
     ))

@@ -1,4 +1,4 @@
-//! What may be changed about a data set without another byte, and a checkpoint without another bit.
+//! Changes that preserve every byte of a data set and every bit of a checkpoint.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -11,16 +11,16 @@ use libration::integrator::VelocityVerlet;
 use libration::system::Pendulum;
 use libration_data::{DataError, Manifest, load_state, save_state};
 use libration_env::dataset;
-use libration_env::dataset::{DataFormat, Dataset, DatasetError, Job, Watch};
+use libration_env::dataset::{DataFormat, Dataset, DatasetError, Monitor, WriteJob};
 use libration_report::record::{Finding, Record, Tolerance};
 use libration_study::{Lab, StudyError};
 use serde_json::Value;
 use tempfile::TempDir;
 
 use super::folder;
-use crate::changed;
-use crate::changed::tell;
-use crate::failure::failed;
+use crate::bit_comparison;
+use crate::bit_comparison::add_row;
+use crate::dataset_error::failed;
 
 /// Environments in four groups, each of three chunks, with all that can be wrong.
 const SETTINGS: &str = "\
@@ -54,12 +54,12 @@ struct After {
     done: AtomicU64,
 }
 
-impl Watch for After {
-    fn done(&self, transitions: u64, _: u64) {
+impl Monitor for After {
+    fn on_written(&self, transitions: u64, _: u64) {
         self.done.fetch_add(transitions, Ordering::Relaxed);
     }
 
-    fn stops(&self) -> bool {
+    fn should_stop(&self) -> bool {
         self.done.load(Ordering::Relaxed) >= self.most
     }
 }
@@ -72,7 +72,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     let outer = folder(lab);
     let outer = TempDir::new_in(&outer).map_err(DataError::io("write", &outer)).map_err(failed)?;
     let sets = Sets { lab, folder: outer.path(), dataset: settings() };
-    changed::begin(record);
+    bit_comparison::begin(record);
     for format in DataFormat::ALL {
         let name = format.name();
         let whole = sets.written(format, "whole", 1, &[[1, 1]])?;
@@ -87,7 +87,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         for (id, how, sums) in ways {
             let differ = whole.iter().filter(|(path, sum)| sums.get(*path) != Some(sum)).count()
                 + sums.keys().filter(|path| !whole.contains_key(*path)).count();
-            tell(
+            add_row(
                 record,
                 &format!("data set, {name}: {how}"),
                 whole.len(),
@@ -126,7 +126,7 @@ impl Sets<'_> {
         shard: [usize; 2],
         watch: &After,
     ) -> Result<Sums, DatasetError> {
-        let job = Job {
+        let job = WriteJob {
             dataset: &self.dataset,
             format,
             shard,
@@ -210,7 +210,7 @@ fn checkpoint(lab: &Lab<'_>, folder: &Path, record: &mut Record) -> Result<(), S
         differ as f64,
         Tolerance::exact(reason),
     );
-    tell(record, "checkpoint: half-way, and on three threads", one.len(), finding);
+    add_row(record, "checkpoint: half-way, and on three threads", one.len(), finding);
     Ok(())
 }
 

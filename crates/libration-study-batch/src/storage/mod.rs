@@ -1,20 +1,20 @@
-//! How fast transitions and states are kept, in memory and on disks, and whether what is kept is what was there.
+//! The study `storage`: speed and correctness of replay buffers, data sets and checkpoints.
 
-mod circle;
 mod claims;
-mod draws;
 mod figures;
 mod files;
 mod peers;
 mod render;
+mod ring_buffer;
+mod sampling_cost;
 mod settings;
+mod source_claims;
 mod speeds;
-mod tried;
 
-use libration_study::Tried;
+use libration_study::SourceClaim;
 
 pub use self::settings::StorageSettings;
-use self::tried::TRIED;
+use self::source_claims::SOURCE_CLAIMS;
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::RecordError;
@@ -33,8 +33,8 @@ impl Study for Storage {
         "How fast are replay buffers, data sets and checkpoints, and is what they keep what was there?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn settings(&self) -> Option<Section> {
@@ -44,8 +44,8 @@ impl Study for Storage {
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
         let mut record = Record::new(self.name(), self.question());
         let parts: [(&str, Part); 5] = [
-            ("a circle", circle::measure),
-            ("draws", draws::measure),
+            ("a circle", ring_buffer::measure),
+            ("draws", sampling_cost::measure),
             ("files", files::measure),
             ("speeds", speeds::measure),
             ("peers", peers::measure),

@@ -1,10 +1,10 @@
-//! Replay buffers beside cpprb, and Parquet beside pyarrow, as another program measured them.
+//! Replay buffers compared with cpprb, and Parquet with pyarrow, measured by `benches/storage.py`.
 
 use libration_report::record::{Cell, Record, Table};
 use libration_study::{Lab, StudyError};
 
 use crate::bench::{Peers, StoragePeer};
-use crate::desk::{Ratio, aim};
+use crate::measurement::{Ratio, aim};
 use crate::storage::StorageSettings;
 
 /// Judges the ratios of the file that the configuration names, if it names one.

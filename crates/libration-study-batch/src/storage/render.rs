@@ -1,46 +1,46 @@
-//! The chapter on what is kept.
+//! The chapter on storage.
 
 use libration_report::notation::number;
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError};
 
 use super::figures;
-use crate::changed;
+use crate::bit_comparison;
 
 /// Writes the chapter.
 pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
     page.title = "Replay, data sets, checkpoints".into();
     answer(record, page)?;
     page.paragraph(
-        "A learner draws batches from the transitions that were seen last; an engineer keeps more of them than memory holds. \
-         Speeds are medians of rounds in which each takes its turn with a copy of as many bytes, in memory or to the same \
-         disk; to the disk means past the system’s cache, and waited for. A checkpoint is compared with as many bytes as are kept \
-         and taken up; those it takes up come from the system’s cache.",
+        "A replay buffer has the latest transitions in memory; a data set has more transitions than memory. \
+         Speeds are medians of rounds that alternate with a copy of the same number of bytes, in memory or to the same \
+         disk. Writes to the disk include the flush of the system’s cache. A checkpoint is compared with a write and a read \
+         of the same number of bytes; the read comes from the system’s cache.",
     );
     page.table(record.table("speeds")?, 3);
     if let Ok(peers) = record.table("peers") {
         page.paragraph(
-            "The same batches from a buffer of cpprb as large, and pyarrow writing the same columns with the same settings from \
-             memory; by `benches/storage.py`, each in turn.",
+            "The same batches from a cpprb buffer of the same size, and the same columns written by pyarrow with the same settings \
+             from memory. `benches/storage.py` measures them alternately.",
         );
         page.table(peers, 3);
     }
-    page.heading("A circle of transitions");
+    page.heading("Memory of a replay buffer");
     page.paragraph(
-        "Transitions are kept once: what is seen next is the next row, or stands apart where an episode ended. So a buffer \
-         takes the 17 bytes of a transition, where the usual way takes 25, and room for as many ends as it is given.",
+        "Each observation is stored once: the next observation is the next row, or a separate entry if the episode ended. A buffer \
+         therefore takes 17 bytes per transition instead of the usual 25, plus the capacity for ends of episodes.",
     );
     page.figure(figures::draws(record)?);
-    page.heading("What changes no byte");
+    page.heading("Reproducibility of data sets");
     page.paragraph(
         "Data sets of environments with random starts, time limits, latencies, jitter, skew and noise, in twelve chunks: written \
-         on several threads, stopped twice and gone on with, and in shards. Of each file the checksum is compared.",
+         on several threads, interrupted and resumed twice, and in shards. The checksums of all files are compared.",
     );
-    page.table(changed::table(record)?, 4);
+    page.table(bit_comparison::table(record)?, 4);
     Ok(())
 }
 
-/// How fast the disk is filled, what a batch takes, and whether anything differs.
+/// Writes the answer: rate to the disk, time of a batch, and reproducibility.
 fn answer(record: &Record, page: &mut Page) -> Result<(), RecordError> {
     let value = |id: &str| record.finding(id).map(|f| f.measured);
     let million = |rate: f64| format!("{}·10⁶", number(rate / 1e6, 3));
@@ -50,9 +50,9 @@ fn answer(record: &Record, page: &mut Page) -> Result<(), RecordError> {
     let kept = record.findings.iter().filter(|f| f.id.starts_with("storage.kept."));
     let (all, same) = kept.fold((0, 0), |(all, same), f| (all + 1, same + usize::from(f.agrees())));
     page.answer = format!(
-        "Data sets go to this disk at {} transitions a second, {} % of what it takes at all. A batch of 256 is drawn from a \
-         million transitions in {} µs, by priority and with other priorities given in {} µs. {same} of {all} changes that must \
-         not change a byte change none.",
+        "Data sets: {} transitions per second to this disk, {} % of its rate. A batch of 256 from a \
+         million transitions: {} µs, with priorities and their update {} µs. {same} of {all} changes that must \
+         preserve every byte do so.",
         million(npy),
         number(100.0 * share, 2),
         number(batch, 2),
@@ -60,7 +60,7 @@ fn answer(record: &Record, page: &mut Page) -> Result<(), RecordError> {
     );
     page.highlights.push(Highlight {
         value: million(npy),
-        text: "transitions a second to the disk, each with its checksum".into(),
+        text: "transitions per second to the disk, with checksums".into(),
     });
     Ok(())
 }

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use libration_settings::check::folder;
-use libration_settings::{Fault, path};
+use libration_settings::validation::check_folder;
+use libration_settings::{Fault, optional_path};
 use libration_study::Settings;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,19 +13,19 @@ use crate::bench::{StoragePeer, check_peers};
 /// Settings of the study `storage`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StorageSettings {
-    /// Where it writes, in a folder of its own; the system's folder for temporary files if none.
+    /// Folder for a temporary subfolder; by default the folder for temporary files.
     pub folder: Option<PathBuf>,
-    /// What `benches/storage.py` wrote on this machine, if its ratios are to be judged.
+    /// Result file of `benches/storage.py` on this machine, if any.
     pub peers: Option<PathBuf>,
 }
 
-/// The study of what is kept.
+/// Settings of the study `storage`.
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
-    /// The folder in which a folder of its own is written to; that of the system for temporary files if empty.
+    /// Folder for a temporary subfolder (empty: the folder for temporary files).
     folder: String,
-    /// A file that `benches/storage.py` wrote on this machine; none if empty.
+    /// Result file of `benches/storage.py` on this machine (empty: none).
     peers: String,
 }
 
@@ -41,15 +41,21 @@ impl Settings for StorageSettings {
     type Table = Table;
 
     fn table(&self) -> Table {
-        Table { folder: path::text(self.folder.as_ref()), peers: path::text(self.peers.as_ref()) }
+        Table {
+            folder: optional_path::to_text(self.folder.as_ref()),
+            peers: optional_path::to_text(self.peers.as_ref()),
+        }
     }
 
     fn from_table(table: Table) -> Result<Self, Fault> {
-        Ok(StorageSettings { folder: path::of(table.folder), peers: path::of(table.peers) })
+        Ok(StorageSettings {
+            folder: optional_path::from_text(table.folder),
+            peers: optional_path::from_text(table.peers),
+        })
     }
 
     fn check(&self) -> Result<(), Fault> {
-        folder("storage.folder", self.folder.as_deref())?;
+        check_folder("storage.folder", self.folder.as_deref())?;
         check_peers::<StoragePeer>("storage.peers", self.peers.as_deref())?;
         Ok(())
     }

@@ -1,13 +1,13 @@
-//! Speeds of what is kept, as shares of copies.
+//! Speeds of storage, relative to copies.
 
 use libration_report::record::{Cell, Finding, Record, Table};
 use libration_study::{Lab, StudyError};
 
 use super::folder;
 use crate::bench::{StorageRate, Stored, storage};
-use crate::desk::{Ratio, aim};
+use crate::measurement::{Ratio, aim};
 
-/// What a share is to reach.
+/// Returns the least share.
 fn wanted(stored: Stored) -> Option<f64> {
     match stored {
         Stored::Insert | Stored::Npy => Some(0.8),
@@ -28,8 +28,8 @@ fn work(stored: Stored) -> &'static str {
     }
 }
 
-/// The same as tables have it, and what it is compared with.
-fn briefly(stored: Stored) -> [&'static str; 2] {
+/// Returns the labels of a measurement and of its reference for tables.
+fn copy_labels(stored: Stored) -> [&'static str; 2] {
     match stored {
         Stored::Sample => ["256 drawn uniformly", ""],
         Stored::Prioritised => ["256 drawn by priority, and changed", ""],
@@ -61,7 +61,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
             aim(record, id, text, wanted(stored), ratio, reason);
         }
         let or_none = |x: Option<f64>| x.map_or_else(|| Cell::absent(""), |x| Cell::rounded(x, 2));
-        let [what, of] = briefly(stored);
+        let [what, of] = copy_labels(stored);
         table.push([
             what.into(),
             (threads as u64).into(),

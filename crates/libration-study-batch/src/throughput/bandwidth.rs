@@ -1,4 +1,4 @@
-//! The memory: what the machine moves when it does nothing else.
+//! The memory bandwidth of the machine.
 
 use std::hint::black_box;
 
@@ -7,9 +7,9 @@ use libration_report::record::{Finding, Record, Table};
 use libration_study::{Machine, StudyError};
 
 use crate::bench::{Contestant, Rates, Triad, Update};
-use crate::desk::Desk;
+use crate::measurement::Measurement;
 
-/// What the arrays are made of.
+/// Element type of the arrays.
 type Number = f32;
 
 /// Three arrays together are this many times as large as the last cache.
@@ -17,9 +17,9 @@ const FAR: u64 = 6;
 
 /// What the arrays of a measurement take together, in bytes: larger than the last cache, if the effort and
 /// the memory allow.
-pub(super) fn footprint(desk: &Desk<'_>) -> u64 {
+pub(super) fn footprint(measurement: &Measurement<'_>) -> u64 {
     let last = Machine::detect().caches.last().map_or(32 << 20, |cache| cache.bytes);
-    let most = desk.lab.effort.choose(256 << 20, 2 << 30, 8 << 30);
+    let most = measurement.lab.effort.choose(256 << 20, 2 << 30, 8 << 30);
     let free = available_memory().unwrap_or(1 << 30);
     (FAR * last).max(256 << 20).min(most).min(free / 4)
 }
@@ -65,20 +65,24 @@ impl Kernel {
 }
 
 /// Measures bandwidths on one core and on all.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
     let mut table = Table::new(
         "bandwidth",
         &["loop", "formula", "arrays of (MiB)", "one core (GB/s)", "all cores (GB/s)"],
     );
-    let len = usize::try_from(footprint(desk)).unwrap_or(usize::MAX) / 3 / size_of::<Number>();
+    let len =
+        usize::try_from(footprint(measurement)).unwrap_or(usize::MAX) / 3 / size_of::<Number>();
     let mut planes = Vec::new();
     for _ in 0..3 {
         planes.push(Buffer::<Number>::new(len, Pages::Huge)?);
     }
     for kernel in Kernel::ALL {
         let mut rates = Vec::new();
-        for execution in desk.executions() {
-            rates.push(bandwidth(desk, kernel, &mut planes, execution)?);
+        for execution in measurement.executions() {
+            rates.push(bandwidth(measurement, kernel, &mut planes, execution)?);
         }
         let gigabytes: Vec<f64> = rates.iter().map(|rate| rate.median() / 1e9).collect();
         let all = gigabytes.last().copied().unwrap_or(f64::NAN);
@@ -120,12 +124,12 @@ fn mebibytes(len: usize) -> usize {
 
 /// Bytes a second that `kernel` reads and writes on the threads of `execution`, each with its part of the planes.
 fn bandwidth(
-    desk: &Desk<'_>,
+    measurement: &Measurement<'_>,
     kernel: Kernel,
     planes: &mut [Buffer<Number>],
     execution: &Execution,
 ) -> Result<Rates, StudyError> {
-    let set = desk.set();
+    let set = measurement.set();
     let [a, b, c] = planes else { return Err(StudyError::Exact("there are three planes".into())) };
     let len = a.len();
     let part = len.div_ceil(execution.thread_count()).next_multiple_of(64);
@@ -148,6 +152,6 @@ fn bandwidth(
     };
     let bytes = (kernel.arrays() * len * size_of::<Number>()) as f64;
     let contestant = Contestant::new(bytes, |times| (0..times).for_each(|_| work()));
-    let [rates] = desk.look([contestant])?;
+    let [rates] = measurement.sweep_rates([contestant])?;
     Ok(rates)
 }

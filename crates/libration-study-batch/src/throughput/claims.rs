@@ -6,15 +6,15 @@ use libration_report::record::{Judgement, Record, Ruling};
 use super::comparison::gain_id;
 use crate::bench::BenchFloat::{F32, F64};
 use crate::bench::Implementation::{Fused, InPlace, OneStep, Scalar, Temporaries};
-use crate::reported::SATURATED;
+use crate::source_rollouts::SATURATED;
 
 /// A billion.
 const BILLION: f64 = 1e9;
 
-/// What counts as several times as fast.
+/// Least factor for "several times as fast".
 const SEVERAL: f64 = 2.0;
 
-/// What counts as a substantial increase.
+/// Least factor for a substantial increase.
 const SUBSTANTIAL: f64 = 1.2;
 
 /// Judges them from the findings of the record.
@@ -28,7 +28,7 @@ fn show(x: f64) -> String {
     number(x, 3)
 }
 
-/// How fast which implementation is.
+/// Judges claims about rates.
 fn rates(record: &mut Record) {
     let text = "Array operations update more than a billion particles a second.";
     let ids = ["throughput.best.in-place", "throughput.best.fused"];
@@ -109,7 +109,7 @@ fn rates(record: &mut Record) {
     });
 }
 
-/// What limits the rates.
+/// Judges claims about limits.
 fn limits(record: &mut Record) {
     let at_1e5 = gain_id(Fused, InPlace, F32, 1e5);
     let text = "At the numbers of particles that were tried the work is bound by the memory.";
@@ -202,7 +202,7 @@ fn limits(record: &mut Record) {
     });
 }
 
-/// What the memory does.
+/// Judges claims about bandwidth.
 fn bandwidth(record: &mut Record) {
     let text = "Bandwidth is particle-steps a second times four times the size of a float.";
     let ids = ["throughput.arrays.in-place", "throughput.arrays.temporaries"];

@@ -1,4 +1,4 @@
-//! Implementations beside each other, from the curves of the record.
+//! Comparison of implementations, from the curves of the record.
 
 use libration_report::record::{Finding, Record, RecordError, Series, Table};
 
@@ -18,7 +18,7 @@ pub(super) fn compare(record: &mut Record) -> Result<(), RecordError> {
     traffic(record)
 }
 
-/// How much faster one implementation is than another, number by number.
+/// Records the speedups between implementations at several numbers of trajectories.
 fn gains(record: &mut Record) {
     use Implementation::{Fused, InPlace, OneStep, Scalar, Temporaries};
     for (one, other) in
@@ -75,7 +75,7 @@ pub(super) fn gain_id(
     format!("throughput.{}-over-{}.{}.{count:e}", one.name(), other.name(), float.name())
 }
 
-/// How rates grow with the number of trajectories, and how far they go.
+/// Records the growth of rates with the number of trajectories, and their maxima.
 fn shapes(record: &mut Record) {
     for implementation in [Implementation::Scalar, Implementation::InPlace, Implementation::Fused] {
         let name = implementation.name();

@@ -1,4 +1,4 @@
-//! What fresh memory costs: pages that come to be as they are first written.
+//! The cost of page faults of new memory.
 
 use std::hint::black_box;
 
@@ -8,7 +8,7 @@ use libration_study::StudyError;
 
 use super::scaling::Wanted;
 use crate::bench::{BenchFloat, Contestant, Implementation, PAGE, Task, count_faults, prepare};
-use crate::desk::Desk;
+use crate::measurement::Measurement;
 
 /// Numbers in the buffer that is written.
 const LEN: usize = 16 << 20;
@@ -20,7 +20,10 @@ const HUGE_PAGE: usize = 2 << 20;
 const TRAJECTORIES: usize = 10_000_000;
 
 /// Times writes to fresh and to warm memory, and counts the faults.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
     let mut table =
         Table::new("page faults", &["memory", "pages", "faults", "written (GB/s)", "over warm"]);
     let mut warm = Buffer::<f32>::new(LEN, Pages::Huge)?;
@@ -43,7 +46,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         }
     });
     let contestants = [again, fresh(Pages::Ordinary), fresh(Pages::Huge)];
-    let [again, ordinary, huge] = desk.look(contestants)?;
+    let [again, ordinary, huge] = measurement.sweep_rates(contestants)?;
     table.push([
         "warm".into(),
         Cell::absent("—"),
@@ -90,21 +93,25 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
             ));
         }
     }
-    temporaries(desk, record, &mut table)?;
+    temporaries(measurement, record, &mut table)?;
     record.tables.push(table);
     Ok(())
 }
 
 /// The page faults of a step whose every result is a new array.
-fn temporaries(desk: &Desk<'_>, record: &mut Record, table: &mut Table) -> Result<(), StudyError> {
+fn temporaries(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+    table: &mut Table,
+) -> Result<(), StudyError> {
     let count = TRAJECTORIES;
     let float = BenchFloat::F32;
     if (Wanted { implementation: Implementation::Temporaries, float, count }).check().is_err() {
         return Ok(());
     }
     for implementation in [Implementation::Temporaries, Implementation::InPlace] {
-        let task = Task { count, ..desk.task(count) };
-        let mut rung = prepare::<f32>(implementation, task, &desk.serial)?;
+        let task = Task { count, ..measurement.task(count) };
+        let mut rung = prepare::<f32>(implementation, task, &measurement.serial)?;
         // The first steps make the allocator learn what it is asked for.
         rung.advance(2);
         let steps = 4;

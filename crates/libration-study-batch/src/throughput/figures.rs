@@ -27,14 +27,14 @@ pub(super) fn scaling(record: &Record) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("fig-9-7", title(record))
         .caption(
             "Circles are predicted: the scalar loop by the latency of one trajectory’s arithmetic (it \
-             may begin the next meanwhile), fused steps by independent arithmetic, one step a pass by a loop that moves the same memory. Upright lines: \
+             may begin the next meanwhile), fused steps by independent arithmetic, one step per pass by a loop that moves the same memory. Upright lines: \
              two arrays fill a cache.",
         )
-        .description("Log-log: steps a second against the number of trajectories.")
+        .description("Log-log: steps per second against the number of trajectories.")
         .columns(2)
         .aspect(0.95);
     for float in BenchFloat::ALL {
-        let mut panel = Panel::new(Axis::log("trajectories N"), Axis::log("steps a second"))
+        let mut panel = Panel::new(Axis::log("trajectories N"), Axis::log("steps per second"))
             .title(float.name());
         for cache in Machine::detect().caches {
             let holds = cache.bytes as f64 / (2 * float.bytes()) as f64;
@@ -91,7 +91,7 @@ fn title(record: &Record) -> String {
             "Fused steps are {} times as fast as array operations at N = 10⁵",
             number(gain, 2)
         ),
-        Err(_) => "Steps a second against the number of trajectories".into(),
+        Err(_) => "Steps per second against the number of trajectories".into(),
     }
 }
 
@@ -121,12 +121,12 @@ pub(super) fn heat(record: &Record) -> Result<Figure, RecordError> {
         counts.iter().min_by(|a, b| off(a).total_cmp(&off(b))).copied().unwrap_or(x)
     };
     let grid = Grid::sample(across, places, |x, row| rate(nearest(x), row));
-    let colors = Colors::new("steps a second").log().unit("1/s");
+    let colors = Colors::new("steps per second").log().unit("1/s");
     let axis = Axis::log("trajectories N");
     let panel = Panel::new(axis, Axis::names("", names)).mark(Mark::raster(grid, colors));
-    Ok(Figure::new("fig-9-8", "Every implementation at every number of trajectories")
-        .caption("Blank where there was no memory, or where a lone loop would tell nothing new.")
-        .description("Heat map: steps a second by implementation and number of trajectories.")
+    Ok(Figure::new("fig-9-8", "Speed by implementation and number of trajectories")
+        .caption("Blank: too little memory, or a scalar loop beyond the measured range.")
+        .description("Heat map: steps per second by implementation and number of trajectories.")
         .aspect(1.6)
         .panel(panel))
 }
@@ -153,31 +153,27 @@ pub(super) fn roofline(record: &Record) -> Result<Figure, RecordError> {
     let most = steps.iter().copied().fold(0.0, f64::max);
     let gain = series.column("attained")?;
     let gain = gain.iter().copied().fold(0.0, f64::max) / gain.first().copied().unwrap_or(f64::NAN);
-    let panel =
-        Panel::new(Axis::log("operations a byte"), Axis::log("operations a second").unit("1/s"))
-            .mark(
-                Mark::line(x, series.column("at_once")?)
-                    .ink(Ink::Neutral)
-                    .label("memory or arithmetic"),
-            )
-            .mark(
-                Mark::line(x, series.column("attained")?).ink(Ink::Accent(0)).label("fused steps"),
-            )
-            .mark(
-                Mark::prediction(x, series.column("in_turn")?)
-                    .dash(Dash::Solid)
-                    .label("one after the other"),
-            );
+    let panel = Panel::new(
+        Axis::log("operations per byte"),
+        Axis::log("operations per second").unit("1/s"),
+    )
+    .mark(Mark::line(x, series.column("at_once")?).ink(Ink::Neutral).label("memory or arithmetic"))
+    .mark(Mark::line(x, series.column("attained")?).ink(Ink::Accent(0)).label("fused steps"))
+    .mark(
+        Mark::prediction(x, series.column("in_turn")?)
+            .dash(Dash::Solid)
+            .label("one after the other"),
+    );
     Ok(Figure::new(
         "roofline",
-        format!("With {most} steps a pass the same memory gives {} times the work", number(gain, 2)),
+        format!("With {most} steps per pass the same memory traffic gives {} times the work", number(gain, 2)),
     )
     .caption(
-        "Symplectic Euler in f32 on one core, on the largest arrays of this run, 1 to 128 steps a pass. The roof \
+        "Symplectic Euler in f32 on one core, on the largest arrays of this run, 1 to 128 steps per pass. The roof \
          is the lower of measured bandwidth and measured arithmetic; circles: if each waited for the \
          other.",
     )
-    .description("Log-log: operations a second against operations a byte, below two roofs.")
+    .description("Log-log: operations per second against operations per byte, below two roofs.")
     .panel(panel))
 }
 

@@ -1,4 +1,4 @@
-//! Fused steps on one core, beside independent arithmetic in the same proportion.
+//! Fused steps on one core, compared with independent arithmetic in the same proportion.
 
 use std::hint::black_box;
 
@@ -10,7 +10,7 @@ use libration_report::record::{Record, Table};
 use libration_study::StudyError;
 
 use crate::bench::{Bench, BenchFloat, Contestant, Mix, Rates, stepping, widths, with_float};
-use crate::desk::{Desk, judge};
+use crate::measurement::{Measurement, judge};
 
 /// Trajectories whose states stay in a cache of the core, in whole blocks of most widths.
 pub(super) const RESIDENT: usize = 49_920;
@@ -42,21 +42,24 @@ pub(super) struct Peak {
 }
 
 /// The peak for steps of `flow` on floats of type `T`: the fastest of all widths.
-pub(super) fn peak<T: Bench>(desk: &Desk<'_>, flow: &DataFlow) -> Result<Peak, StudyError> {
-    let (set, mix) = (desk.set(), Mix::of(flow));
+pub(super) fn peak<T: Bench>(
+    measurement: &Measurement<'_>,
+    flow: &DataFlow,
+) -> Result<Peak, StudyError> {
+    let (set, mix) = (measurement.set(), Mix::of(flow));
     let operations = arithmetic(flow);
     let offered: Vec<usize> = widths::<T>(set).collect();
     let peaks = offered.iter().map(|&width| Peak { mix, width, operations });
     let peaks: Vec<Peak> = peaks.collect();
     let mut contestants: Vec<_> = peaks.iter().map(|peak| peak.contestant::<T>(set)).collect();
-    let rates = desk.look_at(&mut contestants)?;
+    let rates = measurement.sweep_rates_of(&mut contestants)?;
     let fastest = rates.iter().zip(peaks).max_by(|a, b| a.0.median().total_cmp(&b.0.median()));
     let (_, peak) = fastest.ok_or(StudyError::Exact("no loop fits the registers".into()))?;
     Ok(peak)
 }
 
 impl Peak {
-    /// The same for steps of so many operations more.
+    /// Returns the peak with additional operations per step.
     pub(super) fn with(self, operations: usize) -> Self {
         Peak { operations: self.operations + operations, ..self }
     }
@@ -68,8 +71,8 @@ impl Peak {
         })
     }
 
-    /// The same on all threads of `execution` at once.
-    pub(super) fn on_threads<T: Bench>(self, execution: &Execution) -> Contestant<'static> {
+    /// Returns the peak on all threads of `execution`.
+    pub(super) fn run_on_threads<T: Bench>(self, execution: &Execution) -> Contestant<'static> {
         let execution = execution.clone();
         let (set, threads) = (execution.instruction_set(), execution.thread_count());
         Contestant::new(self.work() * threads as f64, move |times| {
@@ -92,7 +95,10 @@ impl Peak {
 }
 
 /// Races every method against its peak, and leaves the rates of the peaks in a table.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
     let mut table = Table::new(
         "fused steps",
         &[
@@ -105,9 +111,9 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
             "spread",
         ],
     );
-    for &method in &desk.lab.config.integrators {
+    for &method in &measurement.lab.config.integrators {
         for float in BenchFloat::ALL {
-            let (peak, rates) = with_float!(float, T => against_peak::<T>(desk, method))?;
+            let (peak, rates) = with_float!(float, T => against_peak::<T>(measurement, method))?;
             let [fused, arithmetic] = &rates;
             let share = fused.over(arithmetic);
             let name = float.name();
@@ -119,7 +125,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
                      independent multiplications and additions amount to",
                     method.title()
                 ),
-                bar(method, desk.set()),
+                bar(method, measurement.set()),
                 &share,
             );
             table.push([
@@ -143,19 +149,19 @@ pub(super) fn arithmetic(flow: &DataFlow) -> usize {
 }
 
 /// The operations of a step of `method` on an oscillator.
-pub(super) fn flow(desk: &Desk<'_>, method: Method) -> DataFlow {
-    let task = desk.task(1);
+pub(super) fn flow(measurement: &Measurement<'_>, method: Method) -> DataFlow {
+    let task = measurement.task(1);
     let system = Oscillator { omega2: task.omega2 };
     with_method!(method, |m| DataFlow::of_step::<_, 1>(m, &system, task.dt))
 }
 
 /// The peak of a method, and its rates: fused steps, and the peak.
 fn against_peak<T: Bench>(
-    desk: &Desk<'_>,
+    measurement: &Measurement<'_>,
     method: Method,
 ) -> Result<(Peak, [Rates; 2]), StudyError> {
-    let peak = peak::<T>(desk, &flow(desk, method))?;
-    let fused = stepping::<T>(method, desk.task(RESIDENT), STEPS, &desk.serial)?;
-    let rates = desk.race([fused, peak.contestant::<T>(desk.set())])?;
+    let peak = peak::<T>(measurement, &flow(measurement, method))?;
+    let fused = stepping::<T>(method, measurement.task(RESIDENT), STEPS, &measurement.serial)?;
+    let rates = measurement.compare_rates([fused, peak.contestant::<T>(measurement.set())])?;
     Ok((peak, rates))
 }

@@ -1,4 +1,4 @@
-//! A lone trajectory, whose every operation waits for the one before.
+//! The latency of a step of a single trajectory.
 
 use std::hint::black_box;
 
@@ -11,7 +11,7 @@ use super::fused::{STEPS, flow};
 use crate::bench::{
     Bench, BenchFloat, CHAIN_LINKS, Chain, Contestant, Link, Rates, stepping, with_float,
 };
-use crate::desk::{Desk, judge};
+use crate::measurement::{Measurement, judge};
 
 /// Share of the bound that a lone trajectory is to reach.
 const BAR: f64 = 0.9;
@@ -20,7 +20,10 @@ const BAR: f64 = 0.9;
 const ROUNDS: u64 = 1000;
 
 /// Races single trajectories against chains of dependent operations.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
     let mut table = Table::new(
         "a lone trajectory",
         &[
@@ -32,9 +35,10 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
             "share",
         ],
     );
-    for &method in &desk.lab.config.integrators {
+    for &method in &measurement.lab.config.integrators {
         for float in BenchFloat::ALL {
-            let (chain, [time, bound]) = with_float!(float, T => against_chain::<T>(desk, method))?;
+            let (chain, [time, bound]) =
+                with_float!(float, T => against_chain::<T>(measurement, method))?;
             let share = bound.over(&time);
             let name = float.name();
             judge(
@@ -65,13 +69,13 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
 
 /// The longest chain of a step, in operations; the time of a step, and the bound on it, in ns.
 fn against_chain<T: Bench>(
-    desk: &Desk<'_>,
+    measurement: &Measurement<'_>,
     method: Method,
 ) -> Result<(f64, [Rates; 2]), StudyError> {
-    let flow = flow(desk, method);
-    let lone = stepping::<T>(method, desk.task(1), 16 * STEPS, &desk.serial)?;
-    let [time, product, sum, both] = desk
-        .race([
+    let flow = flow(measurement, method);
+    let lone = stepping::<T>(method, measurement.task(1), 16 * STEPS, &measurement.serial)?;
+    let [time, product, sum, both] = measurement
+        .compare_rates([
             lone,
             chain::<T>(Link::Product),
             chain::<T>(Link::Sum),

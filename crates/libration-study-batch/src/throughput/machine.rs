@@ -1,12 +1,15 @@
-//! The machine on which all this was measured.
+//! The machine of the measurements.
 
 use libration_report::record::{Cell, Record, RecordError, Table};
 use libration_study::Machine;
 
-use crate::desk::Desk;
+use crate::measurement::Measurement;
 
 /// Describes it, with the ends of its powers that `record` holds.
-pub(super) fn describe(desk: &Desk<'_>, record: &mut Record) -> Result<(), RecordError> {
+pub(super) fn describe(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), RecordError> {
     let measured = |id: &str| record.finding(id).map(|f| Cell::rounded(f.measured, 3));
     let powers = [
         ("arithmetic of one core, f32 (10⁹ operations/s)", measured("throughput.roof.peak")?),
@@ -22,7 +25,7 @@ pub(super) fn describe(desk: &Desk<'_>, record: &mut Record) -> Result<(), Recor
     row("processor", machine.cpu.into());
     row("cores for this process", (machine.cores as u64).into());
     row("instruction sets", machine.instruction_sets.join(", ").into());
-    row("instruction set in use", desk.set().name().into());
+    row("instruction set in use", measurement.set().name().into());
     for cache in machine.caches {
         row(&format!("data cache {} (KiB)", cache.level), (cache.bytes >> 10).into());
     }
@@ -43,7 +46,7 @@ pub(super) fn describe(desk: &Desk<'_>, record: &mut Record) -> Result<(), Recor
     Ok(())
 }
 
-/// How far the quartiles of each rate of the curves lie apart, as a share of it.
+/// Returns the relative distance of the quartiles of each rate.
 fn noises(record: &Record) -> Result<Vec<f64>, RecordError> {
     let mut noises = Vec::new();
     for series in record.series.iter().filter(|series| series.name.starts_with("scaling-")) {

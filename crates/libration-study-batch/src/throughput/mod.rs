@@ -1,4 +1,4 @@
-//! What this machine can do: how fast many trajectories advance, and what limits them.
+//! The study `throughput`: rates of many trajectories and their limits.
 
 mod bandwidth;
 mod claims;
@@ -11,25 +11,25 @@ mod machine;
 mod one_step;
 mod peers;
 mod perturbed;
-mod regime;
 mod render;
 mod roofline;
 mod scaling;
+mod scaling_limit;
 mod settings;
 mod sine;
+mod source_claims;
 mod threads;
-mod tried;
 
-use libration_study::Tried;
+use libration_study::SourceClaim;
 
 pub use self::settings::ThroughputSettings;
-use self::tried::TRIED;
+use self::source_claims::SOURCE_CLAIMS;
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::RecordError;
 use libration_study::{Lab, Section, Study, StudyError};
 
-use crate::desk::Desk;
+use crate::measurement::Measurement;
 
 pub use scaling::{Rate, Wanted, ladder};
 
@@ -46,8 +46,8 @@ impl Study for Throughput {
         "How fast do many trajectories advance on this machine, and what limits them?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn settings(&self) -> Option<Section> {
@@ -55,7 +55,7 @@ impl Study for Throughput {
     }
 
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
-        let desk = Desk::new(lab)?;
+        let measurement = Measurement::new(lab)?;
         let mut record = Record::new(self.name(), self.question());
         let parts: [(&str, Part); 11] = [
             ("fused steps against independent arithmetic", fused::measure),
@@ -71,12 +71,12 @@ impl Study for Throughput {
             ("peers", peers::measure),
         ];
         for (what, part) in parts {
-            lab.part(what, || part(&desk, &mut record))?;
+            lab.part(what, || part(&measurement, &mut record))?;
         }
-        regime::detect(&mut record)?;
+        scaling_limit::detect(&mut record)?;
         comparison::compare(&mut record)?;
         claims::judge(&mut record);
-        machine::describe(&desk, &mut record)?;
+        machine::describe(&measurement, &mut record)?;
         Ok(record)
     }
 
@@ -86,4 +86,4 @@ impl Study for Throughput {
 }
 
 /// A part of the study.
-type Part = fn(&Desk<'_>, &mut Record) -> Result<(), StudyError>;
+type Part = fn(&Measurement<'_>, &mut Record) -> Result<(), StudyError>;

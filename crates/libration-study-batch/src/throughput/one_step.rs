@@ -1,4 +1,4 @@
-//! One step a pass, beside a loop that moves the same memory.
+//! One step per pass, compared with a loop that moves the same memory.
 
 use std::hint::black_box;
 
@@ -8,14 +8,17 @@ use libration_report::record::{Record, Table};
 use libration_study::StudyError;
 
 use crate::bench::{Contestant, Update, stepping};
-use crate::desk::{Desk, judge};
+use crate::measurement::{Measurement, judge};
 
 /// Share of the update loop that one step a pass is to reach.
 const BAR: f64 = 0.9;
 
 /// Races ensembles far larger than the nearer caches against loops of the same traffic.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let counts: &[usize] = desk.lab.effort.choose(
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
+    let counts: &[usize] = measurement.lab.effort.choose(
         &[1_000_000],
         &[10_000_000, 100_000_000],
         &[10_000_000, 100_000_000],
@@ -37,13 +40,15 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         if InsufficientMemory::check(2 * bytes).is_err() {
             continue;
         }
-        for execution in [&desk.serial, &desk.parallel] {
+        for execution in [&measurement.serial, &measurement.parallel] {
             let threads = execution.thread_count();
-            if threads == 1 && !std::ptr::eq(execution, &desk.serial) {
+            if threads == 1 && !std::ptr::eq(execution, &measurement.serial) {
                 continue;
             }
-            let step = stepping::<f32>(Method::SymplecticEuler, desk.task(count), 1, execution)?;
-            let [step, update] = desk.race([step, update(desk, count, execution)?])?;
+            let step =
+                stepping::<f32>(Method::SymplecticEuler, measurement.task(count), 1, execution)?;
+            let [step, update] =
+                measurement.compare_rates([step, update(measurement, count, execution)?])?;
             let share = step.over(&update);
             let power = (count as f64).log10();
             let on = if threads == 1 { "one core".into() } else { format!("{threads} threads") };
@@ -79,12 +84,12 @@ const BYTES: f64 = 4.0 * size_of::<f32>() as f64;
 
 /// One pass of the update loop over planes of the same size, each thread with its own part.
 pub(super) fn update<'a>(
-    desk: &Desk<'_>,
+    measurement: &Measurement<'_>,
     count: usize,
     execution: &Execution,
 ) -> Result<Contestant<'a>, StudyError> {
-    let set = desk.set();
-    let task = desk.task(count);
+    let set = measurement.set();
+    let task = measurement.task(count);
     let (s, t) = (-(task.omega2 * task.dt) as f32, task.dt as f32);
     let mut x = Buffer::<f32>::new(count, Pages::Huge)?;
     let mut y = Buffer::<f32>::new(count, Pages::Huge)?;

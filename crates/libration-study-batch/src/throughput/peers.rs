@@ -1,16 +1,21 @@
-//! Libration beside NumPy and numba, as another program measured them.
+//! Libration compared with NumPy and numba, measured by `benches/peers.py`.
 
 use libration_report::notation::number;
 use libration_report::record::{Finding, Record, Table, Undecided};
 use libration_study::StudyError;
 
 use crate::bench::{Peer, Peers};
-use crate::desk::{Desk, Ratio, judge};
+use crate::measurement::{Measurement, Ratio, judge};
 use crate::throughput::ThroughputSettings;
 
 /// Judges the ratios of the file that the configuration names, if it names one.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let Some(path) = &desk.lab.config.get::<ThroughputSettings>().peers else { return Ok(()) };
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
+    let Some(path) = &measurement.lab.config.get::<ThroughputSettings>().peers else {
+        return Ok(());
+    };
     let peers = Peers::<Peer>::read(path).map_err(StudyError::Exact)?;
     let mut table = Table::new(
         "peers",
@@ -95,9 +100,9 @@ mod tests {
         config.get::<ThroughputSettings>().peers = Some(path);
         let stop = AtomicBool::new(false);
         let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
-        let desk = Desk::new(&lab).expect("this machine has its instruction set");
+        let measurement = Measurement::new(&lab).expect("this machine has its instruction set");
         let mut record = Record::new("throughput", "");
-        measure(&desk, &mut record).expect("the file is there");
+        measure(&measurement, &mut record).expect("the file is there");
         let found = |count| {
             let id = format!("throughput.fused-over-numpy-in-place.f32.1e{count}");
             record.finding(&id).expect("a finding for each row").clone()

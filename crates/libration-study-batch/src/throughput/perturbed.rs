@@ -1,4 +1,4 @@
-//! What clocks and late commands cost, beside steps that are all alike.
+//! The cost of jittered clocks and late commands, relative to a fixed clock.
 
 use std::hint::black_box;
 
@@ -15,7 +15,7 @@ use libration_study::StudyError;
 
 use super::fused::RESIDENT;
 use crate::bench::Contestant;
-use crate::desk::{Desk, judge};
+use crate::measurement::{Measurement, judge};
 
 /// Steps of a pass: as many as a draw by address serves.
 const STEPS: u64 = libration::random::EPOCH;
@@ -35,11 +35,14 @@ const CONTESTANTS: [(&str, &str, Option<f64>); 4] = [
 ];
 
 /// Races perturbed loops against an ensemble with a fixed clock.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let task = desk.task(RESIDENT);
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
+    let task = measurement.task(RESIDENT);
     let (system, dt) = (All(Oscillator { omega2: task.omega2 as f32 }), task.dt as f32);
     let starts: Vec<State<f32, 1>> = (0..RESIDENT).map(start).collect();
-    let mut plain = Ensemble::new(&starts, desk.serial.clone())?;
+    let mut plain = Ensemble::new(&starts, measurement.serial.clone())?;
     let fixed = Contestant::new(RESIDENT as f64 * STEPS as f64, move |times| {
         for _ in 0..times {
             // One value for all is never too few or too many.
@@ -52,19 +55,19 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
     let gains = Feedback { position: 1.0, velocity: 0.1 };
     let late = Latency::of_steps(1.0).ok_or_else(|| StudyError::Exact("no latency".into()))?;
     let delayed = base.controller(StateFeedback::<1>::to_origin(gains)).delay(Schedule::late(late));
-    let rates = desk.race([
+    let rates = measurement.compare_rates([
         fixed,
-        contestant(desk, base.clock(Skewed(Jitter::Gaussian(0.01))), dt, &starts)?,
-        contestant(desk, base.clock(Jittered(Uniform(0.1))), dt, &starts)?,
-        contestant(desk, base.clock(Jittered(Gaussian(0.1))), dt, &starts)?,
-        contestant(desk, delayed, dt, &starts)?,
+        contestant(measurement, base.clock(Skewed(Jitter::Gaussian(0.01))), dt, &starts)?,
+        contestant(measurement, base.clock(Jittered(Uniform(0.1))), dt, &starts)?,
+        contestant(measurement, base.clock(Jittered(Gaussian(0.1))), dt, &starts)?,
+        contestant(measurement, delayed, dt, &starts)?,
     ])?;
     let [fixed, perturbed @ ..] = &rates;
     let mut table = Table::new("clocks and delays", &["with", "cost", "wanted at most"]);
     for ((id, what, most), rates) in CONTESTANTS.into_iter().zip(perturbed) {
         let ratio = rates.over(fixed);
         // Bars are for kernels that the registers hold.
-        let bar = most.filter(|_| desk.set().registers() >= 32).map(|most| 1.0 / most);
+        let bar = most.filter(|_| measurement.set().registers() >= 32).map(|most| 1.0 / most);
         judge(
             record,
             format!("throughput.{id}"),
@@ -88,7 +91,7 @@ fn start(n: usize) -> State<f32, 1> {
 }
 
 fn contestant<'a, T, K, C, L>(
-    desk: &Desk<'_>,
+    measurement: &Measurement<'_>,
     setup: Setup<All<Oscillator<T>>, SymplecticEuler, K, C, L>,
     dt: T,
     starts: &[State<T, 1>],
@@ -99,7 +102,7 @@ where
     C: Clock<T> + 'a,
     L: Delay<T> + 'a,
 {
-    let mut loops = Loops::new(setup, dt, 0, [T::zero()], starts, desk.serial.clone())?;
+    let mut loops = Loops::new(setup, dt, 0, [T::zero()], starts, measurement.serial.clone())?;
     Ok(Contestant::new(RESIDENT as f64 * STEPS as f64, move |times| {
         for _ in 0..times {
             // Clocks and delays that know all steps never end.

@@ -12,46 +12,46 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.title = "Throughput".into();
     answer(record, page);
     page.paragraph(
-        "Every implementation advances the same oscillators by symplectic Euler, and all of them give \
-         the same bits. What sets them apart is how often they go to the memory, and whether the \
-         processor finds something to do while it waits for an operation.",
+        "Every implementation advances the same oscillators by symplectic Euler, with \
+         the same bits. The implementations differ in the number of memory accesses, and in the independent \
+         operations that the processor can execute at the same time.",
     );
     page.figure(figures::scaling(record)?.number("9.7"));
     page.figure(figures::heat(record)?.number("9.8"));
     let missing = record.table("not timed")?;
     if !missing.rows.is_empty() {
-        page.paragraph("What was asked for and not timed:");
+        page.paragraph("Not measured:");
         page.table(missing, 3);
     }
     if let Ok(peers) = record.table("peers") {
         page.heading("Peers");
         page.paragraph(
-            "The same oscillators, float and number of steps in NumPy, in place on one core as NumPy is, and \
-             in numba, in parallel and with a block of particles in the cache for all steps; by \
-             `benches/peers.py`, each in turn. The last column is what the arithmetic of this machine would \
-             reach.",
+            "The same oscillators, float type and number of steps in NumPy, in place on one core, and \
+             in numba, in parallel and with a block of particles in the cache for all steps. \
+             `benches/peers.py` measures them alternately. The last column is the limit by the arithmetic of this \
+             machine.",
         );
         page.table(peers, 3);
     }
-    page.heading("What limits a step");
+    page.heading("Limits of a step");
     page.paragraph(
-        "A step of a lone trajectory takes as long as its longest chain of operations that wait for each \
-         other. The program finds that chain by running the shipped step on a number that takes note of \
-         what is done to it, and times chains of multiplications and additions in the same run.",
+        "A step of a single trajectory takes the time of its longest chain of dependent \
+         operations. The program finds this chain by running the shipped step on a number type that records \
+         operations, and measures chains of multiplications and additions in the same run.",
     );
     page.table(record.table("a lone trajectory")?, 3);
     page.paragraph(
-        "Where a block of trajectories is in registers, one lane’s waiting is the work of another, and \
-         the limit is how many operations the processor starts in a cycle. Beside the fused steps \
-         stands a loop of independent multiplications and additions in the proportion of the method, \
+        "With a block of trajectories in registers, the lanes are independent, and \
+         the limit is the number of operations that the processor starts per cycle. The reference of the fused steps \
+         is a loop of independent multiplications and additions in the proportion of the method, \
          the fastest of several widths.",
     );
     page.table(record.table("fused steps")?, 3);
     page.table(record.table("threads")?, 3);
     page.paragraph(
-        "Clocks, delays and controllers run in the same lanes. Random numbers are drawn by address once for 256 \
-         steps and follow from each other in between, so that a trajectory’s noise depends on its number, \
-         the step and the seed alone. How many times as long a step takes as one with a fixed clock:",
+        "Clocks, delays and controllers run in the same lanes. A counter-based generator gives a new state every 256 \
+         steps and a sequential one the numbers in between, so that the noise of a trajectory depends only on its number, \
+         the step and the seed. Time of a step relative to one with a fixed clock:",
     );
     page.table(record.table("clocks and delays")?, 3);
     page.heading("Memory");
@@ -64,21 +64,21 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.table(record.table("bandwidth")?, 3);
     page.table(record.table("one step a pass")?, 3);
     page.paragraph(
-        "The source estimates bandwidth as four times the size of a float for each step (formula 5.6). \
-         That is what a step needs, not what array operations move: each of the five goes through the \
-         memory by itself, and together they access twelve arrays.",
+        "The source estimates bandwidth as four times the size of a float per step (formula 5.6). \
+         That is the minimum of a step. Array operations move more: each of the five passes through the \
+         memory separately, and together they access twelve arrays.",
     );
     page.table(record.table("bytes of a step")?, 3);
     page.paragraph(
-        "Memory that was never written costs a fault for every page: the system finds it, clears it and \
-         maps it. That, and not a collector of garbage, is what a new array for every result costs.",
+        "New memory causes a fault for every page: the system finds a page, clears it and \
+         maps it. This is the cost of a new array for every result, not garbage collection.",
     );
     page.table(record.table("page faults")?, 3);
     page.heading("Regimes");
     page.paragraph(
-        "Read off the curves: where more trajectories reach twice the rate, a pass costs about the same \
-         whatever it holds; beyond, rates within a factor of 1.3 make one plateau. Passes that move no more \
-         than 1.2 times the bytes of the loops over memory are bound by it; others are named by the \
+        "The regimes follow from the measured curves. If more trajectories reach twice the rate, fixed costs of a pass \
+         dominate. Beyond that, rates within a factor of 1.3 form a plateau. A plateau is limited by memory if its \
+         passes move at most 1.2 times the bytes per second of the memory loops; other plateaus have the name of the \
          smallest cache that holds their arrays.",
     );
     page.table(record.table("regimes")?, 3);
@@ -96,26 +96,25 @@ fn answer(record: &Record, page: &mut Page) {
         let rate = format!("{}·10⁹", number(fused, 3));
         // What is more than all, or noise, is no share.
         let of = match share <= 1.0 + spread && spread < 0.1 {
-            true => format!(
-                ", {} % of what independent arithmetic amounts to",
-                number(100.0 * share, 3)
-            ),
+            true => {
+                format!(", {} % of the rate of independent arithmetic", number(100.0 * share, 3))
+            }
             false => String::new(),
         };
         sentences
-            .push(format!("One core takes {rate} steps of symplectic Euler a second in f32{of}."));
+            .push(format!("One core: {rate} steps of symplectic Euler per second in f32{of}."));
         page.highlights
-            .push(Highlight { value: rate, text: "steps a second on one core, f32".into() });
+            .push(Highlight { value: rate, text: "steps per second on one core, f32".into() });
     }
     if let Some(gain) = value("throughput.fused-over-in-place.f32.1e5") {
         sentences.push(format!(
-            "For 10⁵ trajectories that is {} times what array operations reach on the same core: they are \
-             bound by their own passes, not by the problem.",
+            "For 10⁵ trajectories this is {} times the rate of array operations on the same core, which are \
+             limited by their passes through memory.",
             number(gain, 2)
         ));
     }
     if let Some(gain) = value("throughput.threads.gain") {
-        sentences.push(format!("All cores take {} times as many as one.", number(gain, 3)));
+        sentences.push(format!("All cores reach {} times the rate of one.", number(gain, 3)));
     }
     page.answer = sentences.join(" ");
 }
@@ -136,14 +135,14 @@ fn noise(record: &Record, page: &mut Page) {
     let noisy = |f: &&Finding| matches!(f.undecided, Some(Undecided::Noisy(_)));
     let noisy = speeds().filter(noisy).count();
     page.paragraph(
-        "Ratios that are judged are medians of ratios of neighbouring turns; their tolerance is \
-         twice the standard error of that median. Where an instruction set has few registers, and in a build \
-         with debug assertions, nothing is judged.",
+        "Ratios with a criterion are medians of ratios of neighbouring rounds; their tolerance is \
+         twice the standard error of that median. There is no verdict for instruction sets with few registers, or in a build \
+         with debug assertions.",
     );
     if noisy > 0 {
         page.note(format!(
-            "The machine had other work: of {} ratios that could be judged, the quartiles of {noisy} lay \
-             too far apart for a verdict. Run the chapter again on a quiet machine.",
+            "The machine was busy: of {} ratios with a criterion, the quartiles of {noisy} are \
+             too far apart for a verdict. Repeat the study on an idle machine.",
             judged + noisy
         ));
     }

@@ -1,4 +1,4 @@
-//! From memory-bound to arithmetic-bound, by the number of steps a pass.
+//! Roofline: rates against the number of steps per pass.
 
 use std::hint::black_box;
 
@@ -10,7 +10,7 @@ use super::bandwidth::footprint;
 use super::fused::{flow, peak};
 use super::one_step::update;
 use crate::bench::{Contestant, oscillators};
-use crate::desk::{Desk, judge};
+use crate::measurement::{Measurement, judge};
 
 /// Bytes that a pass moves for each trajectory: position and velocity, read and written.
 const BYTES: f64 = 4.0 * size_of::<f32>() as f64;
@@ -25,19 +25,25 @@ const JUDGED: u64 = 16;
 const BAR: f64 = 0.9;
 
 /// Races ensembles that no cache holds, with more and more steps a pass.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
     // Two arrays, as large as those of which bandwidths are told, but not so that it takes minutes.
-    let bytes = (footprint(desk) / 3 * 2).min(1 << 30);
+    let bytes = (footprint(measurement) / 3 * 2).min(1 << 30);
     let count = usize::try_from(bytes).unwrap_or(usize::MAX) / (2 * size_of::<f32>());
-    let task = desk.task(count);
+    let task = measurement.task(count);
     let method = Method::SymplecticEuler;
-    let arithmetic = peak::<f32>(desk, &flow(desk, method))?;
+    let arithmetic = peak::<f32>(measurement, &flow(measurement, method))?;
     let operations = arithmetic.operations() as f64;
     let loops = || -> Result<_, StudyError> {
-        Ok([arithmetic.contestant::<f32>(desk.set()), update(desk, count, &desk.serial)?])
+        Ok([
+            arithmetic.contestant::<f32>(measurement.set()),
+            update(measurement, count, &measurement.serial)?,
+        ])
     };
-    let [peak, memory] = desk.look(loops()?)?.map(|rates| rates.median());
-    let mut ensemble = oscillators::<f32>(task, &desk.serial)?;
+    let [peak, memory] = measurement.sweep_rates(loops()?)?.map(|rates| rates.median());
+    let mut ensemble = oscillators::<f32>(task, &measurement.serial)?;
     let dt = task.dt as f32;
     let mut columns: [Vec<f64>; 5] = Default::default();
     for steps in STEPS {
@@ -50,7 +56,8 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         });
         let rates = if steps == JUDGED {
             let [arithmetic, memory] = loops()?;
-            let [rates, arithmetic, memory] = desk.race([pass, arithmetic, memory])?;
+            let [rates, arithmetic, memory] =
+                measurement.compare_rates([pass, arithmetic, memory])?;
             let in_turn = arithmetic.with(&memory, |peak, memory| bounds(peak, memory, k)[0]);
             judge(
                 record,
@@ -62,12 +69,12 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
                 ),
                 // Worse than that would be a third thing that limits. With few registers there is
                 // one: blocks go through a cache.
-                (desk.set().registers() >= 32).then_some(BAR),
+                (measurement.set().registers() >= 32).then_some(BAR),
                 &rates.over(&in_turn),
             );
             rates
         } else {
-            let [rates] = desk.look([pass])?;
+            let [rates] = measurement.sweep_rates([pass])?;
             rates
         };
         let [in_turn, at_once] = bounds(peak, memory, k);

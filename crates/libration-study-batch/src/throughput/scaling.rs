@@ -5,7 +5,7 @@ use libration_report::record::{Record, Series, Table};
 use libration_study::{Lab, StudyError};
 
 use crate::bench::{Bench, BenchFloat, Contestant, Implementation, Task, prepare, with_float};
-use crate::desk::Desk;
+use crate::measurement::Measurement;
 use crate::throughput::ThroughputSettings;
 
 /// Steps that are taken with a block of trajectories before the next.
@@ -39,7 +39,7 @@ impl Wanted {
     }
 }
 
-/// How fast trajectories advance.
+/// Rate of an implementation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
     /// The implementation.
@@ -59,14 +59,17 @@ pub struct Rate {
 /// # Errors
 /// If the run is to stop, or memory, threads or instruction set are not to be had.
 pub fn ladder(lab: &Lab<'_>, wanted: &[Wanted]) -> Result<Vec<Rate>, StudyError> {
-    let desk = Desk::new(lab)?;
-    wanted.iter().map(|&wanted| rate(&desk, wanted)).collect()
+    let measurement = Measurement::new(lab)?;
+    wanted.iter().map(|&wanted| rate(&measurement, wanted)).collect()
 }
 
 /// Measures what the configuration asks for, as far as effort and memory go.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let most = desk.lab.effort.choose(1_000_000, 10_000_000, usize::MAX);
-    let counts = desk.lab.config.get::<ThroughputSettings>().counts.into_iter();
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
+    let most = measurement.lab.effort.choose(1_000_000, 10_000_000, usize::MAX);
+    let counts = measurement.lab.config.get::<ThroughputSettings>().counts.into_iter();
     let counts = counts.map(|count| usize::try_from(count).unwrap_or(usize::MAX));
     let (counts, beyond): (Vec<usize>, Vec<usize>) = counts.partition(|&count| count <= most);
     let mut missing =
@@ -75,7 +78,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
         let because = format!("a run of this effort goes to {most}");
         missing.push(["all".into(), "both".into(), (count as u64).into(), because.into()]);
     }
-    for &implementation in &desk.lab.config.get::<ThroughputSettings>().implementations {
+    for &implementation in &measurement.lab.config.get::<ThroughputSettings>().implementations {
         for &count in counts.iter().filter(|&&n| implementation.is_lone() && n > MOST_LONE) {
             let because = format!("one by one, more than {MOST_LONE} take as long each");
             let name = implementation.title().into();
@@ -89,7 +92,7 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
                     continue;
                 }
                 match wanted.check() {
-                    Ok(()) => points.push(rate(desk, wanted)?),
+                    Ok(()) => points.push(rate(measurement, wanted)?),
                     Err(no_room) => missing.push([
                         implementation.title().into(),
                         float.name().into(),
@@ -117,12 +120,12 @@ pub(super) fn arrays(implementation: Implementation) -> usize {
     }
 }
 
-fn rate(desk: &Desk<'_>, wanted: Wanted) -> Result<Rate, StudyError> {
+fn rate(measurement: &Measurement<'_>, wanted: Wanted) -> Result<Rate, StudyError> {
     let Wanted { implementation, float, count } = wanted;
     let contestant = with_float!(float, T => {
-        contestant::<T>(implementation, desk.task(count), &desk.parallel)
+        contestant::<T>(implementation, measurement.task(count), &measurement.parallel)
     })?;
-    let [rates] = desk.look([contestant])?;
+    let [rates] = measurement.sweep_rates([contestant])?;
     Ok(Rate { implementation, float, count, median: rates.median(), spread: rates.spread() })
 }
 

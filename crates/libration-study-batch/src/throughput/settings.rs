@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use libration_settings::check::{counts, named, whole};
-use libration_settings::{Count, Fault, path};
+use libration_settings::validation::{check_counts, parse_counts, parse_names};
+use libration_settings::{Count, Fault, optional_path};
 use libration_study::{Settings, schema};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
@@ -13,11 +13,11 @@ use crate::bench::{Implementation, Peer, check_peers};
 /// Settings of the study `throughput`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ThroughputSettings {
-    /// The implementations that are timed, each once.
+    /// Implementations to measure, each once.
     pub implementations: Vec<Implementation>,
-    /// Numbers of trajectories, rising; the effort and the memory bound them.
+    /// Numbers of trajectories, ascending; effort and memory limit them.
     pub counts: Vec<u64>,
-    /// What `benches/peers.py` wrote on this machine, if its ratios are to be judged.
+    /// Result file of `benches/peers.py` on this machine, if any.
     pub peers: Option<PathBuf>,
 }
 
@@ -35,13 +35,13 @@ impl Default for ThroughputSettings {
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
-    /// The implementations that are timed, each once.
+    /// Implementations to measure, each once.
     #[schemars(schema_with = "implementations_schema")]
     implementations: Vec<String>,
-    /// Numbers of trajectories, each once; the effort and the memory bound them.
+    /// Numbers of trajectories, each once; effort and memory limit them.
     #[schemars(schema_with = "schema::horizons")]
     counts: Vec<Count>,
-    /// A file that `benches/peers.py` wrote on this machine; none if empty.
+    /// Result file of `benches/peers.py` on this machine (empty: none).
     peers: String,
 }
 
@@ -60,21 +60,21 @@ impl Settings for ThroughputSettings {
         Table {
             implementations: self.implementations.iter().map(|one| one.name().into()).collect(),
             counts: self.counts.iter().map(|&n| Count(n.into())).collect(),
-            peers: path::text(self.peers.as_ref()),
+            peers: optional_path::to_text(self.peers.as_ref()),
         }
     }
 
     fn from_table(table: Table) -> Result<Self, Fault> {
         Ok(ThroughputSettings {
             implementations: implementations("throughput.implementations", &table.implementations)?,
-            counts: whole("throughput.counts", table.counts)?,
-            peers: path::of(table.peers),
+            counts: parse_counts("throughput.counts", table.counts)?,
+            peers: optional_path::from_text(table.peers),
         })
     }
 
     fn check(&self) -> Result<(), Fault> {
         each_once("throughput.implementations", &self.implementations)?;
-        counts("throughput.counts", &self.counts)?;
+        check_counts("throughput.counts", &self.counts)?;
         check_peers::<Peer>("throughput.peers", self.peers.as_deref())?;
         Ok(())
     }
@@ -87,7 +87,7 @@ impl Settings for ThroughputSettings {
 /// The implementations of these names.
 fn implementations(key: &'static str, list: &[String]) -> Result<Vec<Implementation>, Fault> {
     let known = Implementation::ALL.map(Implementation::name);
-    named(key, ("implementation", "implementations"), list, &known, Implementation::from_name)
+    parse_names(key, ("implementation", "implementations"), list, &known, Implementation::from_name)
 }
 
 /// Implementations, at least one, each once.

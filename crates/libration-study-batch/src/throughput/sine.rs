@@ -1,4 +1,4 @@
-//! The pendulum with the project's sine, beside the same loop with the platform's.
+//! The pendulum with the sine of Libration, compared with the sine of the platform.
 
 use std::hint::black_box;
 
@@ -13,25 +13,28 @@ use libration_study::StudyError;
 
 use super::fused::{RESIDENT, arithmetic, peak};
 use crate::bench::{Contestant, PlatformPendulum};
-use crate::desk::{Desk, aim};
+use crate::measurement::{Measurement, aim};
 
 /// Steps of a pass.
 const STEPS: u64 = 16;
 
-/// How many times as fast as with the platform's sine the loop is to be.
+/// Least speedup over the sine of the platform.
 const BAR: f64 = 8.0;
 
 /// Races the two, and the independent arithmetic that the step and its sine amount to.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let task = desk.task(1);
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
+    let task = measurement.task(1);
     let omega2 = task.omega2 as f32;
     let flow =
         DataFlow::of_step::<_, 1>(SymplecticEuler, &Pendulum { omega2: task.omega2 }, task.dt);
-    let limit = peak::<f32>(desk, &flow)?.with(arithmetic(&DataFlow::of_sine32()));
-    let [own, platform, limit] = desk.race([
-        contestant(desk, Pendulum { omega2 })?,
-        contestant(desk, PlatformPendulum { omega2 })?,
-        limit.contestant::<f32>(desk.set()),
+    let limit = peak::<f32>(measurement, &flow)?.with(arithmetic(&DataFlow::of_sine32()));
+    let [own, platform, limit] = measurement.compare_rates([
+        contestant(measurement, Pendulum { omega2 })?,
+        contestant(measurement, PlatformPendulum { omega2 })?,
+        limit.contestant::<f32>(measurement.set()),
     ])?;
     let (ratio, most) = (own.over(&platform), limit.over(&platform).median());
     let id = "throughput.sine".to_owned();
@@ -60,14 +63,14 @@ pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyE
 }
 
 fn contestant<'a, Sys: System<f32, 1> + Copy + Send + Sync + 'a>(
-    desk: &Desk<'_>,
+    measurement: &Measurement<'_>,
     system: Sys,
 ) -> Result<Contestant<'a>, StudyError> {
-    let task = desk.task(RESIDENT);
+    let task = measurement.task(RESIDENT);
     let dt = task.dt as f32;
     // All swings, from small to nearly over the top.
     let start = |n| State { q: [3.0 * n as f32 / RESIDENT as f32], v: [0.0] };
-    let mut ensemble = Ensemble::<f32, 1>::from_fn(RESIDENT, desk.serial.clone(), start)?;
+    let mut ensemble = Ensemble::<f32, 1>::from_fn(RESIDENT, measurement.serial.clone(), start)?;
     Ok(Contestant::new(RESIDENT as f64 * STEPS as f64, move |times| {
         for _ in 0..times {
             // One value for all is never too few or too many.

@@ -1,4 +1,4 @@
-//! All cores against one.
+//! Speedup with all cores.
 
 use libration::Method;
 use libration_report::record::{Finding, Record, Table};
@@ -6,28 +6,31 @@ use libration_study::StudyError;
 
 use super::fused::{RESIDENT, STEPS, flow, peak};
 use crate::bench::{Contestant, Rates, stepping};
-use crate::desk::{Desk, judge};
+use crate::measurement::{Measurement, judge};
 
-/// What fused steps are to gain from all cores, of what independent arithmetic gains.
+/// Least speedup of fused steps, relative to that of independent arithmetic.
 const BAR: f64 = 0.9;
 
 /// Steps of a pass: threads meet at the end of the whole horizon.
 const HORIZON: u64 = 5 * STEPS;
 
 /// Races fused steps and independent arithmetic, each on one thread, on two and so on.
-pub(super) fn measure(desk: &Desk<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let cores = desk.parallel.thread_count();
-    let task = desk.task(RESIDENT * cores);
+pub(super) fn measure(
+    measurement: &Measurement<'_>,
+    record: &mut Record,
+) -> Result<(), StudyError> {
+    let cores = measurement.parallel.thread_count();
+    let task = measurement.task(RESIDENT * cores);
     let method = Method::SymplecticEuler;
-    let peak = peak::<f32>(desk, &flow(desk, method))?;
+    let peak = peak::<f32>(measurement, &flow(measurement, method))?;
     let counts = thread_counts(cores);
     let mut contestants: Vec<Contestant<'_>> = Vec::new();
     for &threads in &counts {
-        let execution = desk.serial.clone().threads(threads)?;
+        let execution = measurement.serial.clone().threads(threads)?;
         contestants.push(stepping::<f32>(method, task, HORIZON, &execution)?);
-        contestants.push(peak.on_threads::<f32>(&execution));
+        contestants.push(peak.run_on_threads::<f32>(&execution));
     }
-    let rates = desk.race_of(&mut contestants)?;
+    let rates = measurement.compare_rates_of(&mut contestants)?;
     let pairs: Vec<(usize, [&Rates; 2])> = counts
         .iter()
         .zip(rates.chunks_exact(2))

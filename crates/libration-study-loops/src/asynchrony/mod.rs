@@ -1,12 +1,12 @@
-//! Clocks of different rates: how an ensemble falls out of step, and what stays as it is.
+//! The study `asynchrony`: dephasing, energy and stability with clocks of different rates.
 
-mod bounded;
 mod claims;
-mod mean;
+mod energy_band;
+mod ensemble_mean;
 mod render;
 mod replay;
-mod stable;
-mod tried;
+mod source_claims;
+mod stable_clocks;
 
 use libration::State;
 use libration::analysis::Plant;
@@ -18,10 +18,10 @@ use libration::system::Oscillator;
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::RecordError;
-use libration_study::{Lab, Study, StudyError, Tried};
+use libration_study::{Lab, SourceClaim, Study, StudyError};
 
-use self::tried::TRIED;
-use super::swarm::{Seen, follow};
+use self::source_claims::SOURCE_CLAIMS;
+use super::loop_ensemble::{Snapshot, run_snapshots};
 
 /// The study `asynchrony`.
 #[derive(Clone, Copy, Debug)]
@@ -36,16 +36,16 @@ impl Study for Asynchrony {
         "How fast do clocks of different rates fall apart?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
         let mut record = Record::new(self.name(), self.question());
         if lab.config.integrators.contains(&libration::Method::VelocityVerlet) {
-            mean::measure(lab, &mut record)?;
-            bounded::measure(lab, &mut record)?;
-            stable::measure(lab, &mut record)?;
+            ensemble_mean::measure(lab, &mut record)?;
+            energy_band::measure(lab, &mut record)?;
+            stable_clocks::measure(lab, &mut record)?;
             replay::measure(lab, &mut record)?;
         }
         claims::judge(&mut record);
@@ -90,10 +90,10 @@ fn run(
     (dt, seed): (f64, u64),
     starts: &[State<f64, 1>],
     at: &[u64],
-) -> Result<Vec<Seen>, StudyError> {
+) -> Result<Vec<Snapshot>, StudyError> {
     let clock = (Skewed(clocks.skew), Jittered(Gaussian(clocks.jitter)));
     let setup = Setup::new(All(model), VelocityVerlet).clock(clock);
-    follow(lab, setup, (dt, seed), starts, at)
+    run_snapshots(lab, setup, (dt, seed), starts, at)
 }
 
 fn start(lab: &Lab<'_>) -> State<f64, 1> {

@@ -14,32 +14,34 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
         foreseen("asynchrony.gaussian.steps").zip(foreseen("asynchrony.uniform.steps"))
     {
         page.answer = format!(
-            "At Δt = 10 ms and rates that differ by 1 % the mean of an ensemble falls to 1/e in {} steps if rates are \
-             Gaussian and in {} if they are uniform; {} and {} were measured. Energy stays bounded, and each trajectory is stable as long as its \
-             own step is.",
+            "At Δt = 10 ms and clock rates with an rms of 1 % the mean of an ensemble falls to 1/e in {} steps for Gaussian \
+             and {} steps for uniform rates (theory); measured: {} and {}. The energy stays bounded. A trajectory is stable if \
+             its own step is.",
             number(gaussian, 4),
             number(uniform, 4),
             number(found("asynchrony.gaussian.steps").unwrap_or(f64::NAN), 3),
             number(found("asynchrony.uniform.steps").unwrap_or(f64::NAN), 3)
         );
         page.headline =
-            "Clocks that differ pull an ensemble apart and leave each trajectory alone.".into();
+            "Different clock rates damp the mean of an ensemble; the stability of each trajectory depends on its own step only.".into();
         page.highlights.push(Highlight {
             value: number(gaussian, 4),
-            text: "steps to dephase by theory, with Gaussian rates of 1 % at Δt = 10 ms".into(),
+            text:
+                "steps until the mean falls to 1/e (theory), Gaussian rates of 1 % rms, Δt = 10 ms"
+                    .into(),
         });
     }
     if let Some(slower) = found("asynchrony.jitter.slower") {
         page.highlights.push(Highlight {
             value: format!("{}×", number(slower, 2)),
-            text: "longer with independent jitter of the same size".into(),
+            text: "as many steps with independent jitter of the same rms".into(),
         });
     }
     page.paragraph(
-        "A clock that is fast by δ is ahead by nθ'δ after n steps, where θ' is how fast the angle of a step follows its \
-         length. The mean over an ensemble is the characteristic function of the rates at nθ': it falls as a Gaussian, or \
-         as a sinc with echoes. Errors of a rate add up, those of independent jitter cancel, so that jitter takes 2/(θ's)² \
-         steps for what takes rates √2/(θ's).",
+        "A clock with a relative rate error δ has a phase error of nθ'δ after n steps, where θ' is the derivative of the \
+         angle of a step with respect to its length. The mean over an ensemble is the characteristic function of the rates at nθ': a Gaussian \
+         for Gaussian rates, a sinc for uniform ones. Rate errors add up, independent jitter partly cancels: with the same rms s, \
+         jitter takes 2/(θ's)² steps to 1/e, and rates √2/(θ's).",
     );
     page.figure(dephasing(record)?);
     if let Ok(table) = record.table("falling apart") {
@@ -51,18 +53,14 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
 
 /// Amplitudes of means against steps.
 fn dephasing(record: &Record) -> Result<Figure, RecordError> {
-    let mut figure = Figure::new("dephasing", "How an ensemble falls out of step")
+    let mut figure = Figure::new("dephasing", "Mean over an ensemble with different clocks")
         .caption("Lines: amplitude of the mean over the ensemble, measured. Circles: predicted. Dashed: 1/e.")
         .description("Amplitude against steps: curves fall from one along their predictions.")
         .columns(2)
         .aspect(1.2);
     let panels = [
         ("Δt = 10 ms, rates of 1 %", [("gaussian", "Gaussian"), ("uniform", "uniform")], false),
-        (
-            "ωΔt = 0.3, 5 %",
-            [("rates", "rates that differ"), ("jitter", "independent jitter")],
-            true,
-        ),
+        ("ωΔt = 0.3, 5 %", [("rates", "different rates"), ("jitter", "independent jitter")], true),
     ];
     for (title, ensembles, log) in panels {
         let steps = if log { Axis::log("steps") } else { Axis::linear("steps") };
@@ -95,10 +93,10 @@ fn sparse(values: &[f64]) -> Vec<f64> {
 
 /// Energies of all trajectories, and which are stable.
 fn alone(record: &Record) -> Result<Figure, RecordError> {
-    let mut figure = Figure::new("asynchrony-alone", "Each trajectory is as stable as its own step")
+    let mut figure = Figure::new("asynchrony-alone", "Energy and stability of single trajectories")
         .caption(
-            "Left: largest energy drift of 64 trajectories, under the band of the fastest clock. Right: growth of each of \
-             many trajectories at ωΔt = 1.9 and rates of 6 %, against its own z.",
+            "Left: largest energy drift of 64 trajectories, below the bound of the fastest clock. Right: growth of \
+             many trajectories at ωΔt = 1.9 and rates of 6 %, against the z of each.",
         )
         .description("Left: a line below a bound. Right: growth is zero up to 2 and rises beyond.")
         .columns(2)
@@ -113,7 +111,7 @@ fn alone(record: &Record) -> Result<Figure, RecordError> {
             )
             .title("Energy at ωΔt = 0.3, rates of 5 %")
             .mark(line.ink(Ink::VelocityVerlet).label("measured"))
-            .mark(Mark::horizontal(bound).ink(Ink::Theory).label("band of the fastest clock")),
+            .mark(Mark::horizontal(bound).ink(Ink::Theory).label("bound of the fastest clock")),
         );
     }
     if let Ok(series) = record.series("stable") {

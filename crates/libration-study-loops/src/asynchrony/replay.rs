@@ -1,4 +1,4 @@
-//! Whether a run with uneven clocks of different rates can be repeated.
+//! Repeatability of runs with jitter and skew.
 
 use libration::control::Jitter;
 use libration_report::record::{Finding, Record, Tolerance};

@@ -1,4 +1,4 @@
-//! By how much an imperfection makes a loop cost more.
+//! Increase of the cost of a loop by an imperfection.
 
 use libration::analysis::{CostError, Imperfections, Plant};
 use libration::control::clock::{Fixed, Gaussian, Jittered, Skewed};
@@ -13,9 +13,9 @@ use libration::{Float, Integrator, State};
 use libration_report::record::{Finding, Record, Tolerance};
 use libration_study::{Lab, StudyError};
 
+use super::disturbed_run::{COUNT, DT, SEED, SPRING};
 use super::imperfection::{Kind, Profile};
-use super::predicted::{GAINS, ORIGIN};
-use super::trial::{COUNT, DT, SEED, SPRING};
+use super::prediction::{GAINS, ORIGIN};
 
 /// The energy, as the mean of which the cost is taken.
 const ENERGY: LqrWeights =

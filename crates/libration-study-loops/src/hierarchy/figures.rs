@@ -48,7 +48,7 @@ fn divergences(record: &Record, figure: Figure, last: f64) -> Result<Figure, Rec
 pub(super) fn short(record: &Record) -> Result<Figure, RecordError> {
     let figure = Figure::new("hierarchy-short", "Four imperfections, over a thousand steps")
         .caption(
-            "Distance from the undisturbed orbit, root mean square over starts all around it. Lines: \
+            "Distance from the undisturbed orbit, root mean square over starts around it. Lines: \
              simulated. Circles: predicted.",
         )
         .description("Log-log: distance against steps, a line for each imperfection, a panel for each choice of sizes.");
@@ -59,8 +59,8 @@ pub(super) fn short(record: &Record) -> Result<Figure, RecordError> {
 pub(super) fn long(record: &Record) -> Result<Figure, RecordError> {
     let figure = Figure::new("hierarchy-long", "Four imperfections, over a long horizon")
         .caption(
-            "The same for longer. The order depends on the sizes, and changes with the horizon: latency \
-             grows exponentially, asynchrony like n, jitter like √n.",
+            "As above, over a longer horizon. The order depends on the sizes and on the horizon: latency \
+             grows exponentially, asynchrony as n, jitter as √n.",
         )
         .description("Log-log: distance against steps, a line for each imperfection, a panel for each choice of sizes.");
     divergences(record, figure, f64::INFINITY)

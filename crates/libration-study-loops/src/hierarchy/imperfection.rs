@@ -1,4 +1,4 @@
-//! What is imperfect, and by how much.
+//! Imperfections and their sizes.
 
 /// An imperfection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +38,7 @@ impl Profile {
     }
 }
 
-/// All that are tried: equal sizes, and two presets.
+/// All profiles: equal sizes, and two presets.
 pub(super) const PROFILES: &[Profile] = &[
     Profile::equal("equal-7", "all of size 2⁻⁷", 7),
     Profile::equal("equal-10", "all of size 2⁻¹⁰", 10),

@@ -1,23 +1,23 @@
-//! Latency, jitter, asynchrony and precision side by side: a profile, and never one list.
+//! The study `hierarchy`: profile of latency, jitter, asynchrony and precision.
 
 mod claims;
 mod cost;
+mod disturbed_run;
 mod figures;
 mod imperfection;
-mod predicted;
+mod prediction;
 mod profile;
 mod render;
-mod trial;
-mod tried;
+mod source_claims;
 
 use imperfection::{Kind, PROFILES, Profile};
 use libration_report::Record;
 use libration_report::notation::count;
 use libration_report::page::Page;
 use libration_report::record::{Cell, Finding, RecordError, Series, Table, Tolerance};
-use libration_study::{Lab, Study, StudyError, Tried};
+use libration_study::{Lab, SourceClaim, Study, StudyError};
 
-use self::tried::TRIED;
+use self::source_claims::SOURCE_CLAIMS;
 
 /// The study `hierarchy`.
 #[derive(Clone, Copy, Debug)]
@@ -32,8 +32,8 @@ impl Study for Hierarchy {
         "Which imperfection matters most?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
@@ -43,11 +43,14 @@ impl Study for Hierarchy {
             &["sizes", "imperfection", "size", "after (steps)", "predicted", "measured"],
         );
         let mut whole = profile::table(horizon(lab));
-        let margins = Kind::ALL.map(predicted::critical);
+        let margins = Kind::ALL.map(prediction::critical);
         let steps = checkpoints(horizon(lab));
         for profile in PROFILES {
             let effects = lab.sweep(profile.title, &Kind::ALL, |&kind| {
-                Ok((trial::run(lab, kind, profile, &steps)?, cost::measured(lab, kind, profile)?))
+                Ok((
+                    disturbed_run::run(lab, kind, profile, &steps)?,
+                    cost::measured(lab, kind, profile)?,
+                ))
             })?;
             let mut series = Series::new(format!("profile-{}", profile.tag)).with(
                 "step",
@@ -63,7 +66,7 @@ impl Study for Hierarchy {
                 let measured = effect.distance;
                 let expected: Vec<f64> = steps
                     .iter()
-                    .map(|&n| predicted::divergence(kind, profile, n).unwrap_or(f64::NAN))
+                    .map(|&n| prediction::divergence(kind, profile, n).unwrap_or(f64::NAN))
                     .collect();
                 for n in [SHORT, horizon(lab)] {
                     let Some(i) = steps.iter().position(|&step| step == n) else { continue };
@@ -138,7 +141,7 @@ fn find(
     record.find(if expected.is_nan() {
         Finding::measured(id, text, "1", measured)
     } else {
-        let (share, reason) = predicted::tolerance(kind, profile);
+        let (share, reason) = prediction::tolerance(kind, profile);
         Finding::predicted(id, text, "1", expected, measured, Tolerance::relative(share, reason))
     });
 }

@@ -1,11 +1,11 @@
-//! What an imperfection does in three respects, and how much of its margin a size uses.
+//! Effects of an imperfection on distance, energy and cost, and its share of the margin.
 
 use libration_report::notation::{count, number};
 use libration_report::record::{Cell, Finding, Record, Table, Tolerance};
 
+use super::disturbed_run::Effect;
 use super::imperfection::{Kind, Profile};
-use super::predicted;
-use super::trial::Effect;
+use super::prediction;
 
 /// A distance at which trajectories are apart, in units of the orbit.
 const FAR: f64 = 0.1;
@@ -47,9 +47,9 @@ pub(super) fn find(
     let id = |what: &str| format!("hierarchy.{}.{}.{what}", profile.tag, kind.tag());
     let text = |what: &str| format!("{}, {}: {what}", profile.title, kind.title());
     let apart = crossing(steps, &effect.distance);
-    let foreseen = predicted::horizon(kind, profile, FAR, last);
+    let foreseen = prediction::horizon(kind, profile, FAR, last);
     if let Some((apart, foreseen)) = apart.zip(foreseen) {
-        let share = 2.0 * predicted::tolerance(kind, profile).0 + 0.05;
+        let share = 2.0 * prediction::tolerance(kind, profile).0 + 0.05;
         let why = "twice the tolerance of a distance, which grows at least like √n, and straight lines between six \
                    points of a decade";
         let text = text("steps until trajectories are a tenth of the orbit apart");
@@ -57,11 +57,11 @@ pub(super) fn find(
         record.find(Finding::predicted(id("tenth"), text, "steps", foreseen, apart, tolerance));
     }
     let pumped = effect.energy.last().copied().unwrap_or(f64::NAN);
-    let expected = predicted::energy(kind, profile, last);
+    let expected = prediction::energy(kind, profile, last);
     let what = text(&format!("rms of ln E/E₀ after {} steps", count(last)));
     record.find(match expected {
         Some(expected) => {
-            let (size, why) = predicted::energy_tolerance(kind, profile, expected);
+            let (size, why) = prediction::energy_tolerance(kind, profile, expected);
             let tolerance = Tolerance::absolute(size, why);
             Finding::predicted(id("energy"), what, "1", expected, pumped, tolerance)
         }

@@ -44,7 +44,7 @@ fn explodes(record: &Record) -> bool {
     GROWN.iter().all(|id| record.finding(id).is_ok_and(|f| f.measured > EXPLODED))
 }
 
-fn told(f: &[&Finding], steps: &str) -> String {
+fn evidence(f: &[&Finding], steps: &str) -> String {
     format!(
         "ln E walks at random: 2γN on average, 2√(γN) wide, with γ = σ²z⁴/8 of symplectic Euler and σ²z⁶/32 \
          of velocity Verlet. At Δt = 1 ms and σ = 10 % ln E stays within {} and {} over {steps} steps, at \
@@ -69,7 +69,7 @@ fn energy(record: &mut Record, steps: u64) {
             "{}. Steps of different lengths keep different ellipses, and to change between them pumps; steps of \
              RK4 are functions of one matrix and commute: at Δt = 0.1 s and σ = 10 % ln E spreads by {} with RK4, and by \
              {} with symplectic Euler",
-            told(f, &steps),
+            evidence(f, &steps),
             number(f[4].measured, 2),
             number(f[5].measured, 2)
         ))
@@ -80,7 +80,7 @@ fn energy(record: &mut Record, steps: u64) {
     record.judge(Ruling { id: "C93", source: "9.6", text, findings: &findings }, |f| {
         Judgement::conditional(format!(
             "{}; phases walk {} and {} rad meanwhile",
-            told(f, &steps),
+            evidence(f, &steps),
             number(f[4].measured, 2),
             number(f[5].measured, 2)
         ))

@@ -1,16 +1,16 @@
-//! How the energy walks under jitter.
+//! Random walk of the energy with jitter.
 
 use libration::analysis::Plant;
 use libration::control::Jitter;
 use libration::{Method, State};
 use libration_report::notation::count;
 use libration_report::record::{Cell, Finding, Record, Relation, Series, Table, Tolerance};
-use libration_study::{Lab, StudyError, sampled_steps};
+use libration_study::{Lab, StudyError, log_spaced_steps};
 
 use super::setting::{FREE, Setting, Theory};
 use super::{METHODS, free, start};
+use crate::loop_ensemble::Snapshot;
 use crate::sample::{ERRORS, Sample, WHY_ERRORS};
-use crate::swarm::Seen;
 
 /// The time steps, in s.
 pub(super) const DT: [f64; 4] = [0.001, 0.01, 0.1, 0.3];
@@ -37,7 +37,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     let all = all.filter(|&(m, dt, rms)| m != Method::Rk4 || (dt > 0.05 && rms == RMS[2]));
     let settings: Vec<Setting> =
         all.map(|(m, dt, rms)| Setting::new(lab.config, m, dt, rms)).collect();
-    let at = sampled_steps(horizon(lab), 4.0);
+    let at = log_spaced_steps(horizon(lab), 4.0);
     let starts = vec![start(lab); lab.effort.choose(64, 64, 512)];
     let what = format!("energy under jitter over {} steps", count(horizon(lab)));
     let runs = lab.sweep(&what, &settings, |setting| {
@@ -98,12 +98,12 @@ struct Run {
 }
 
 impl Run {
-    fn new(setting: &Setting, theory: Theory, lab: &Lab<'_>, seen: &[Seen]) -> Self {
+    fn new(setting: &Setting, theory: Theory, lab: &Lab<'_>, seen: &[Snapshot]) -> Self {
         let omega2 = setting.model.omega2;
         let begin = start(lab);
         let energy = |s: &State<f64, 1>| omega2 * s.q[0] * s.q[0] + s.v[0] * s.v[0];
         let (form, first) = (theory.form, theory.form.at(&begin).ln());
-        let walk = |s: &Seen| {
+        let walk = |s: &Snapshot| {
             let changes = s.logarithms(|y| form.at(y));
             Sample::of(&changes.iter().map(|x| x - first).collect::<Vec<_>>())
         };
@@ -123,7 +123,7 @@ impl Run {
         self.steps.last().copied().unwrap_or(0.0)
     }
 
-    /// What is expected of the logarithm of the energy after so many steps: mean and deviation.
+    /// Returns the predicted mean and deviation of the logarithm of the energy after `n` steps.
     fn predicted(&self, steps: f64) -> [f64; 2] {
         let deviation = self.theory.deviation(self.setting.rms);
         [2.0 * self.theory.rate * steps, deviation * steps.sqrt()]

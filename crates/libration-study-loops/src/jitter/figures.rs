@@ -8,10 +8,10 @@ use super::energy::{DT, RMS};
 
 /// Phases against steps.
 pub(super) fn phases(record: &Record) -> Result<Figure, RecordError> {
-    let mut figure = Figure::new("jitter-phase", "Jitter makes the phase a random walk")
+    let mut figure = Figure::new("jitter-phase", "Random walk of the phase with jitter")
         .number("9.12")
         .caption(
-            "Standard deviation of the phase against nominal time (upper line) and against the time that has passed \
+            "Standard deviation of the phase relative to nominal time (upper line) and relative to elapsed time \
              (lower line). Circles: predicted, zσ√n and aσ√(n/2).",
         )
         .description("Log-log: two lines of slope one half, far apart, on their predictions.")
@@ -43,7 +43,7 @@ pub(super) fn phases(record: &Record) -> Result<Figure, RecordError> {
 
 /// Energies against steps.
 pub(super) fn energies(record: &Record) -> Result<Figure, RecordError> {
-    let mut figure = Figure::new("jitter-energy", "Jitter makes the energy a random walk")
+    let mut figure = Figure::new("jitter-energy", "Random walk of the energy with jitter")
         .number("9.13")
         .caption(
             "Root mean square of ln E/E₀ under Gaussian jitter of 5 %, along the ellipse of a steady step. Circles: \
@@ -94,7 +94,7 @@ pub(super) fn memory(record: &Record) -> Result<Figure, RecordError> {
         let marker = [Marker::Circle, Marker::Square][i];
         panel = panel.mark(points.marker(marker).radius(4.0).label(format!("measured, ωΔt = {z}")));
     }
-    Ok(Figure::new("jitter-memory", "Of jitter counts what has twice the angle of a step")
+    Ok(Figure::new("jitter-memory", "Growth and correlation of jitter")
         .caption("Symplectic Euler under autoregressive jitter of 1 %. Lines: S(2θ)/σ², with the power spectrum S.")
         .description("Growth against correlation: points on curves that have a maximum.")
         .panel(panel))
@@ -124,15 +124,12 @@ pub(super) fn resonance(record: &Record) -> Result<Figure, RecordError> {
             .label("predicted: product of a period"),
     )
     .mark(measured.radius(2.4).label("measured"));
-    Ok(Figure::new(
-        "jitter-resonance",
-        "A clock that swings at twice the angle of a step is a resonance",
-    )
-    .caption("Symplectic Euler at ωΔt = 0.95, step times that swing as a sine with σ = 5 %.")
-    .description(
-        "Growth against frequency: an arch above twice the angle of a step, zero elsewhere.",
-    )
-    .panel(panel))
+    Ok(Figure::new("jitter-resonance", "Resonance of a clock at twice the angle of a step")
+        .caption("Symplectic Euler at ωΔt = 0.95, step times that vary as a sine with σ = 5 %.")
+        .description(
+            "Growth against frequency: an arch above twice the angle of a step, zero elsewhere.",
+        )
+        .panel(panel))
 }
 
 /// Sizes under steps that alternate.
@@ -148,8 +145,8 @@ pub(super) fn switching(record: &Record) -> Result<Figure, RecordError> {
         panel = panel.mark(line.ink(ink).label(words).width(1.4));
     }
     let panel = Panel { x: panel.x.range(0.0, 400.0), ..panel };
-    Ok(Figure::new("jitter-switching", "Two lengths of a step, each stable, are unstable together")
-        .caption("Velocity Verlet at ωΔt = 0.9 with a damper of 0.15 ω, which is sampled once a step; ticks are missed.")
+    Ok(Figure::new("jitter-switching", "Instability of two stable step lengths in alternation")
+        .caption("Velocity Verlet at ωΔt = 0.9 with a damper of 0.15 ω, which is sampled once per step; ticks are missed.")
         .description("Size against steps: two lines fall, the third rises.")
         .panel(panel))
 }

@@ -1,4 +1,4 @@
-//! The clock of a loop that ran: what it would do to an oscillator.
+//! The effect of a measured clock on an oscillator.
 
 use libration::analysis::{JitterMargin, Plant};
 use libration::control::clock::Recorded;
@@ -6,8 +6,8 @@ use libration::control::{Feedback, Jitter};
 use libration::ensemble::{All, Loops, Setup};
 use libration::number::Wide;
 use libration::{Method, State};
-use libration_advise::wakeups;
-use libration_advise::wakeups::Statistics;
+use libration_advise::jitter_measurement;
+use libration_advise::jitter_measurement::Statistics;
 use libration_report::notation::{count, number, seconds};
 use libration_report::page::Page;
 use libration_report::record::{Cell, Finding, Record, RecordError, Table, Tolerance};
@@ -30,7 +30,7 @@ const GAINS: Feedback = Feedback { position: 10.0, velocity: 2.0 };
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
     let Some(path) = &lab.config.get::<JitterSettings>().time_stamps else { return Ok(()) };
     let wrong = |why: String| StudyError::Exact(format!("reading `{}`: {why}", path.display()));
-    let stamps = wakeups::time_stamps(path).map_err(wrong)?;
+    let stamps = jitter_measurement::read_time_stamps(path).map_err(wrong)?;
     let statistics = Statistics::of(&stamps, None);
     let steps: Vec<f64> =
         stamps.windows(2).map(|pair| (pair[1] - pair[0]) / statistics.mean).collect();

@@ -13,8 +13,8 @@ use libration_study::{Lab, StudyError};
 use super::margin::{margin, plant};
 use super::setting::{FREE, Setting};
 use super::{SEED, free, start};
+use crate::loop_ensemble::{Snapshot, run_snapshots};
 use crate::sample::Sample;
-use crate::swarm::{Seen, follow};
 
 /// The ends of the map: `ωΔt`, and the standard deviation of a step.
 const Z: [f64; 2] = [0.2, 1.95];
@@ -44,11 +44,11 @@ pub(super) fn damped(
     rms: f64,
     starts: &[State<f64, 1>],
     at: &[u64],
-) -> Result<Vec<Seen>, StudyError> {
+) -> Result<Vec<Snapshot>, StudyError> {
     let setup = Setup::new(All(lab.config.oscillator.system()), VelocityVerlet)
         .controller(StateFeedback::to_origin(damping(lab)))
         .clock(Jittered(Gaussian(rms)));
-    follow(lab, setup, (dt, SEED), starts, at)
+    run_snapshots(lab, setup, (dt, SEED), starts, at)
 }
 
 /// Measures both maps.
@@ -101,7 +101,7 @@ fn spread([low, high]: [f64; 2], count: u32, log: bool) -> Vec<f64> {
 }
 
 /// `γ` from the variance of a walk, which shows it long before the mean does; where it has shown, from the mean.
-fn walk(seen: &[Seen], size: impl Fn(&State<f64, 1>) -> f64, steps: u64) -> f64 {
+fn walk(seen: &[Snapshot], size: impl Fn(&State<f64, 1>) -> f64, steps: u64) -> f64 {
     let Some(last) = seen.last() else { return f64::NAN };
     let ends = Sample::of(&last.logarithms(size).iter().map(|x| x / 2.0).collect::<Vec<_>>());
     let by_variance = ends.deviation.powi(2) / steps as f64;
@@ -109,7 +109,7 @@ fn walk(seen: &[Seen], size: impl Fn(&State<f64, 1>) -> f64, steps: u64) -> f64 
 }
 
 /// The mean growth of `ln |y|` in a step over the second half.
-fn rate(seen: &[Seen], size: impl Fn(&State<f64, 1>) -> f64, steps: u64) -> f64 {
+fn rate(seen: &[Snapshot], size: impl Fn(&State<f64, 1>) -> f64, steps: u64) -> f64 {
     let [middle, end] = seen else { return f64::NAN };
     let [middle, end] = [middle, end].map(|s| Sample::of(&s.logarithms(&size)).mean);
     (end - middle) / steps as f64

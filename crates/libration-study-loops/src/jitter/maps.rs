@@ -1,4 +1,4 @@
-//! Maps of growth over time step and jitter, fit for print.
+//! Figures of growth over time step and jitter.
 
 use libration_report::figure::{Axis, ColorMap, Colors, Dash, Figure, Grid, Ink, Mark, Panel};
 use libration_report::record::{Record, RecordError};
@@ -48,9 +48,9 @@ pub(super) fn maps(record: &Record) -> Result<Figure, RecordError> {
     let line = |name: &str| boundary(record, name);
     Ok(figure
         .caption(
-            "Colours: measured, 64 trajectories a cell, Gaussian jitter. Lines: predicted. Left, without damping every \
-             jitter makes the energy grow; the line is γN = ½ of a million steps. Right, with a damper of 0.06 ω: the \
-             solid line is where the Lyapunov exponent vanishes, the dashed one where the mean square begins to grow.",
+            "Colours: measured, 64 trajectories per cell, Gaussian jitter. Lines: predicted. Left: without damping the energy grows with any \
+             jitter; the line is γN = ½ for a million steps. Right: with a damper of 0.06 ω; on \
+             the solid line the Lyapunov exponent is zero, on the dashed one the growth of the mean square.",
         )
         .description("Two heat maps over Δt and σ with boundaries from upper left to lower right.")
         .columns(2)

@@ -1,4 +1,4 @@
-//! How much jitter a loop bears.
+//! The jitter margin of a loop.
 
 use libration::Method;
 use libration::analysis::{JitterMargin, Plant};

@@ -1,4 +1,4 @@
-//! Steps of uneven length: what they do to energy, phase and stability.
+//! The study `jitter`: energy, phase and stability with jittered steps.
 
 mod claims;
 mod energy;
@@ -14,14 +14,14 @@ mod replay;
 mod resonance;
 mod setting;
 mod settings;
+mod source_claims;
 mod spectrum;
 mod switching;
-mod tried;
 
-use libration_study::Tried;
+use libration_study::SourceClaim;
 
 pub use self::settings::JitterSettings;
-use self::tried::TRIED;
+use self::source_claims::SOURCE_CLAIMS;
 use libration::Method;
 use libration_report::Record;
 use libration_report::page::Page;
@@ -41,8 +41,8 @@ impl Study for Jitter {
         "What does an uneven clock do?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn settings(&self) -> Option<Section> {
@@ -104,12 +104,12 @@ fn free(
     model: libration::system::Oscillator<f64>,
     starts: &[libration::State<f64, 1>],
     at: &[u64],
-) -> Result<Vec<super::swarm::Seen>, StudyError> {
+) -> Result<Vec<super::loop_ensemble::Snapshot>, StudyError> {
     use libration::control::clock::{Gaussian, Jittered};
     use libration::ensemble::{All, Setup};
     with_jittered!(setting.method, |m| {
         let setup = Setup::new(All(model), m).clock(Jittered(Gaussian(setting.rms)));
-        super::swarm::follow(lab, setup, (setting.dt, SEED), starts, at)
+        super::loop_ensemble::run_snapshots(lab, setup, (setting.dt, SEED), starts, at)
     })
 }
 

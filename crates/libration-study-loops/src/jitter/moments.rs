@@ -1,4 +1,4 @@
-//! Second moments under jitter, which a matrix carries from step to step.
+//! Second moments with jitter, from the moment matrix.
 
 use libration::Method;
 use libration_report::notation::count;

@@ -1,4 +1,4 @@
-//! How the phase walks: against the nominal time, and against the time that has passed.
+//! Random walk of the phase, relative to nominal and to elapsed time.
 
 use std::f64::consts::{PI, SQRT_2, TAU};
 
@@ -7,13 +7,13 @@ use libration::system::Oscillator;
 use libration::{Method, State};
 use libration_report::notation::count;
 use libration_report::record::{Finding, Record, Series, Table, Tolerance};
-use libration_study::{Lab, StudyError, sampled_steps};
+use libration_study::{Lab, StudyError, log_spaced_steps};
 
 use super::setting::{Setting, Theory};
 use super::{free, start};
 use crate::sample::{ERRORS, Sample};
 
-/// Where phases are followed.
+/// Time steps and jitter of the phase runs.
 const SETTINGS: [(Method, f64, f64); 4] = [
     (Method::VelocityVerlet, 0.001, 0.1),
     (Method::VelocityVerlet, 0.01, 0.01),
@@ -79,7 +79,7 @@ fn run(lab: &Lab<'_>, setting: &Setting) -> Result<Option<Run>, StudyError> {
     let walk = speed * setting.rms;
     let most = (WIDE_ENOUGH / walk).powi(2) as u64;
     let last = most.min(lab.effort.choose(10_000, 1_000_000, 1_000_000)).max(1);
-    let at = sampled_steps(last, 4.0);
+    let at = log_spaced_steps(last, 4.0);
     let count = lab.effort.choose(64, 64, 512);
     let seen = free(lab, setting, setting.model, &vec![start(lab); count], &at)?;
     // What moves freely goes as far as time does; the seed is the same, and so are its steps.

@@ -1,4 +1,4 @@
-//! Whether a jittered run can be repeated.
+//! Repeatability of runs with jitter.
 
 use libration::control::clock::{Gaussian, Jittered};
 use libration::ensemble::{All, Setup};
@@ -7,7 +7,7 @@ use libration_report::record::{Finding, Record, Tolerance};
 use libration_study::{Lab, StudyError};
 
 use super::{SEED, start};
-use crate::swarm::follow;
+use crate::loop_ensemble::run_snapshots;
 
 const STEPS: u64 = 10_000;
 
@@ -17,7 +17,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         .clock(Jittered(Gaussian(0.05)));
     let dt = 0.1 / lab.config.oscillator.omega();
     let run = |seed: u64, count: usize| {
-        let seen = follow(lab, setup, (dt, seed), &vec![start(lab); count], &[STEPS])?;
+        let seen = run_snapshots(lab, setup, (dt, seed), &vec![start(lab); count], &[STEPS])?;
         let states = seen.iter().flat_map(|s| s.directions().iter().take(8));
         Ok::<_, StudyError>(states.map(|s| [s.q[0], s.v[0]]).collect::<Vec<_>>())
     };

@@ -1,4 +1,4 @@
-//! Jitter that swings: parametric resonance at twice the angle of a step.
+//! Periodic jitter: parametric resonance at twice the angle of a step.
 
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -12,7 +12,7 @@ use libration_study::{Lab, StudyError};
 
 use super::SEED;
 use super::setting::{FREE, Setting, Theory};
-use crate::swarm::follow;
+use crate::loop_ensemble::run_snapshots;
 
 /// `ωΔt`.
 const Z: f64 = 0.95;
@@ -124,7 +124,7 @@ fn growth(
     let starts: Vec<_> = around.map(|(v, q)| State { q: [q], v: [v * omega] }).collect();
     let clock = Sinusoidal { rms: RMS, rate, phase: 0.0 };
     let setup = Setup::new(All(setting.model), SymplecticEuler).clock(clock);
-    let seen = follow(lab, setup, (setting.dt, SEED), &starts, &[half, 2 * half])?;
+    let seen = run_snapshots(lab, setup, (setting.dt, SEED), &starts, &[half, 2 * half])?;
     let sizes: Vec<Vec<f64>> = seen.iter().map(|s| s.logarithms(|y| theory.form.at(y))).collect();
     let [middle, end] = &sizes[..] else { return Ok(f64::NAN) };
     let growths = middle.iter().zip(end).map(|(a, b)| (b - a) / 2.0 / half as f64);

@@ -1,4 +1,4 @@
-//! A method on the configured oscillator, a time step and the jitter of it.
+//! A method on the configured oscillator, with a time step and its jitter.
 
 use libration::analysis::{Linearisation, Plant, QuadraticForm, Resonance, StepNoise};
 use libration::control::{Feedback, Jitter};
@@ -8,7 +8,7 @@ use libration::{Method, State};
 use libration_report::notation::{number, seconds};
 use libration_study::Config;
 
-use crate::swarm::FASTEST;
+use crate::loop_ensemble::FASTEST;
 
 /// Nobody commands.
 pub(super) const FREE: Feedback = Feedback { position: 0.0, velocity: 0.0 };
@@ -26,15 +26,15 @@ pub(super) struct Setting {
     pub(super) rms: f64,
 }
 
-/// What theory says of a setting.
+/// Predictions for a setting.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Theory {
     pub(super) resonance: Resonance,
     /// `γ`: the mean growth of `ln |y|` in a step.
     pub(super) rate: f64,
-    /// The same where jitter is weak.
+    /// The same for weak jitter.
     pub(super) weak: f64,
-    /// What the steady step carries along: an ellipse.
+    /// The invariant ellipse of the step without jitter.
     pub(super) form: QuadraticForm<f64>,
     /// By how much a longer step changes `ln det M`, for each part of its length.
     damping: f64,

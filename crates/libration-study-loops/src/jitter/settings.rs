@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use libration_advise::wakeups;
-use libration_settings::{Fault, path};
+use libration_advise::jitter_measurement;
+use libration_settings::{Fault, optional_path};
 use libration_study::Settings;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,15 +11,15 @@ use serde::{Deserialize, Serialize};
 /// Settings of the study `jitter`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JitterSettings {
-    /// Time stamps of a loop that ran on this host, if its clock is to be judged.
+    /// File with measured time stamps of a loop on this host, if any.
     pub time_stamps: Option<PathBuf>,
 }
 
-/// The study of uneven clocks.
+/// Settings of the study `jitter`.
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
-    /// A file of time stamps, as `libration measure-jitter --output` writes it; none if empty.
+    /// File of time stamps from `libration measure-jitter --output` (empty: none).
     time_stamps: String,
 }
 
@@ -35,11 +35,11 @@ impl Settings for JitterSettings {
     type Table = Table;
 
     fn table(&self) -> Table {
-        Table { time_stamps: path::text(self.time_stamps.as_ref()) }
+        Table { time_stamps: optional_path::to_text(self.time_stamps.as_ref()) }
     }
 
     fn from_table(table: Table) -> Result<Self, Fault> {
-        Ok(JitterSettings { time_stamps: path::of(table.time_stamps) })
+        Ok(JitterSettings { time_stamps: optional_path::from_text(table.time_stamps) })
     }
 
     fn check(&self) -> Result<(), Fault> {
@@ -52,5 +52,5 @@ impl Settings for JitterSettings {
 fn time_stamps(key: &'static str, path: Option<&Path>) -> Result<(), Fault> {
     let Some(path) = path else { return Ok(()) };
     let wrong = |why| Fault::new(key, format!("cannot use `{}`: {why}", path.display()));
-    wakeups::time_stamps(path).map(|_| ()).map_err(wrong)
+    jitter_measurement::read_time_stamps(path).map(|_| ()).map_err(wrong)
 }

@@ -1,4 +1,4 @@
-//! Jitter with memory: only what has twice the angle of a step makes the energy walk.
+//! Correlated jitter: growth from the spectrum at twice the angle of a step.
 
 use libration::Method;
 use libration::analysis::StepNoise;
@@ -10,8 +10,8 @@ use libration_study::{Lab, StudyError};
 
 use super::setting::{Setting, Theory};
 use super::{SEED, start};
+use crate::loop_ensemble::run_snapshots;
 use crate::sample::{ERRORS, Sample};
-use crate::swarm::follow;
 
 /// Steps `ωΔt`, which turn by half a radian and by one.
 const Z: [f64; 2] = [0.3, 0.95];
@@ -37,7 +37,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         };
         let clock = Correlated { rms: RMS, correlation };
         let setup = Setup::new(All(setting.model), SymplecticEuler).clock(clock);
-        let seen = follow(lab, setup, (setting.dt, SEED), &starts, &[steps])?;
+        let seen = run_snapshots(lab, setup, (setting.dt, SEED), &starts, &[steps])?;
         let walk = seen.iter().flat_map(|s| s.logarithms(|y| theory.form.at(y)));
         let walk = Sample::of(&walk.map(|x| x / 2.0).collect::<Vec<_>>());
         Ok(Some((theory, noise, walk)))

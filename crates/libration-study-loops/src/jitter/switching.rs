@@ -1,4 +1,4 @@
-//! Two lengths of a step, each stable, that are unstable together.
+//! Instability of two stable step lengths in alternation.
 
 use libration::Method;
 use libration::analysis::Plant;
@@ -11,7 +11,7 @@ use libration_report::record::{Finding, Record, Relation, Series, Tolerance};
 use libration_study::{Lab, StudyError};
 
 use super::{SEED, start};
-use crate::swarm::follow;
+use crate::loop_ensemble::run_snapshots;
 
 /// `ωΔt` of a step on time.
 const Z: f64 = 0.9;
@@ -48,7 +48,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
             .controller(StateFeedback::to_origin(feedback))
             .clock(Recorded::repeated(order));
         let at: Vec<u64> = (0..=2 * blocks).map(|n| n * block).collect();
-        let seen = follow(lab, setup, (dt, SEED), &[start(lab)], &at)?;
+        let seen = run_snapshots(lab, setup, (dt, SEED), &[start(lab)], &at)?;
         let size = |y: &libration::State<f64, 1>| model.omega2 * y.q[0] * y.q[0] + y.v[0] * y.v[0];
         let sizes: Vec<f64> = seen.iter().flat_map(|s| s.logarithms(size)).collect();
         let half = blocks as usize;

@@ -4,7 +4,7 @@ use libration_report::Record;
 use libration_report::notation::number;
 use libration_report::record::{Judgement, Ruling};
 
-use super::onset::FACTORS;
+use super::critical_latency::FACTORS;
 
 /// Judges them from the findings of the record.
 pub(super) fn judge(record: &mut Record) {

@@ -1,13 +1,13 @@
-//! The figures of the chapter.
+//! The figures of the chapter on latency.
 
 use libration_report::figure::{Axis, ColorMap, Colors, Dash, Figure, Grid, Ink, Mark, Panel};
 use libration_report::notation::number;
 use libration_report::record::{Record, RecordError};
-use libration_study::source::DT;
+use libration_study::source_report::DT;
 
+use super::critical_latency::MARGIN;
 use super::map;
 use super::map::{Kind, METHODS};
-use super::onset::MARGIN;
 
 /// Latencies of the force of which orbits are shown.
 const LATE: [u8; 5] = [0, 1, 2, 5, 10];
@@ -18,7 +18,9 @@ pub(super) fn short(record: &Record) -> Result<Figure, RecordError> {
     for late in LATE {
         let series = record.series(&format!("force-{late}"))?;
         let steps = series.column("step")?;
-        let Some(i) = steps.iter().position(|&n| n == super::force::SHORT as f64) else { continue };
+        let Some(i) = steps.iter().position(|&n| n == super::late_force::SHORT as f64) else {
+            continue;
+        };
         x.push(f64::from(late));
         y.push(series.column("amplitude")?[i]);
         forecast.push(series.column("predicted")?[i]);
@@ -34,11 +36,11 @@ pub(super) fn short(record: &Record) -> Result<Figure, RecordError> {
             .label("symplectic Euler"),
     )
     .mark(Mark::prediction(x, forecast).label("predicted"));
-    Ok(Figure::new("fig-9-14", "A force that is late adds to the amplitude, step by step")
+    Ok(Figure::new("fig-9-14", "Amplitude and latency of the force")
         .number("9.14")
         .caption(format!(
-            "The source’s oscillator, Δt = {} s, after 1000 steps. Line: simulated. Circles: what the spectral \
-             radius of the step with its latency makes of the amplitude after 100 steps.",
+            "The source’s oscillator, Δt = {} s, after 1000 steps. Line: simulated. Circles: predicted from the \
+             amplitude after 100 steps and the spectral radius of the step with its latency.",
             number(DT, 3)
         ))
         .description("The amplitude rises almost in proportion to the latency.")
@@ -61,11 +63,11 @@ pub(super) fn long(record: &Record) -> Result<Figure, RecordError> {
             )
             .mark(Mark::prediction(steps, series.column("predicted")?));
     }
-    Ok(Figure::new("fig-9-15", "Over a million steps every latency of the force is an explosion")
+    Ok(Figure::new("fig-9-15", "Amplitude over a million steps with latencies of the force")
         .number("9.15")
         .caption(
             "Amplitudes of the source’s oscillator with its force 0, 1, 2, 5 and 10 steps of 1 ms late. Lines: \
-             simulated. Circles: predicted. The one that is one step late is explicit Euler, bit by bit.",
+             simulated. Circles: predicted. A latency of one step is explicit Euler, bit by bit.",
         )
         .description("Straight lines on a logarithmic axis, steeper for longer latencies.")
         .panel(panel))
@@ -77,7 +79,7 @@ pub(super) fn windows(record: &Record) -> Result<Figure, RecordError> {
     let x = series.column("latency")?;
     let panel = Panel::new(
         Axis::linear("latency of the command (steps)"),
-        Axis::linear("ln ρ, growth a step"),
+        Axis::linear("ln ρ, growth per step"),
     )
     .mark(Mark::horizontal(0.0).ink(Ink::Neutral).width(0.8))
     .mark(
@@ -87,7 +89,7 @@ pub(super) fn windows(record: &Record) -> Result<Figure, RecordError> {
             .label("measured"),
     )
     .mark(Mark::prediction(x, series.column("predicted")?).label("predicted"));
-    Ok(Figure::new("latency-windows", "A loop that is unstable may be stable again if its command comes later still")
+    Ok(Figure::new("latency-windows", "Windows of stability at larger latencies")
         .caption(
             "Velocity Verlet, Δt = 10 ms, feedback of the velocity alone, K = (0, 1). Below the line the loop is \
              stable. Every whole latency was simulated; circles are spectral radii.",
@@ -101,19 +103,17 @@ pub(super) fn windows(record: &Record) -> Result<Figure, RecordError> {
 pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
     let margin = margin(record)?;
     let (id, title) = match kind {
-        Kind::Gain => ("latency-map-gain", "Where a late command leaves the loop stable, by gain"),
-        Kind::Step => {
-            ("latency-map-step", "Where a late command leaves the loop stable, by time step")
-        }
+        Kind::Gain => ("latency-map-gain", "Stability by latency and gain"),
+        Kind::Step => ("latency-map-step", "Stability by latency and time step"),
     };
     let caption = match kind {
-        Kind::Gain => "Colour: growth a step of simulated loops, a run for each whole latency and gain; blue \
+        Kind::Gain => "Colour: growth per step of simulated loops, a run for each whole latency and gain; blue \
                        decays. Lines: ρ = 1, from the shipped step. Feedback of the velocity alone, K = (0, K_d), \
                        ω² = 10 s⁻², Δt = 40 ms. The lobes are latencies of about whole periods: the \
                        command of the last swing damps as well as that of this one, if it is weak."
             .to_owned(),
         Kind::Step => format!(
-            "Colour: growth a step of simulated loops; blue decays. Solid: ρ = 1, from the shipped step. Dashed: the \
+            "Colour: growth per step of simulated loops; blue decays. Solid: ρ = 1, from the shipped step. Dashed: the \
              delay margin of the continuous loop, {} s. What lies between is the latency that integrator and hold \
              hide. {}, ω² = 10 s⁻².",
             number(margin, 5),
@@ -142,7 +142,7 @@ pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
             Kind::Step => Axis::log("time step Δt").unit("s"),
         };
         let colors =
-            Colors::new("ln ρ, growth a step").map(ColorMap::Diverging).range(-reach, reach);
+            Colors::new("ln ρ, growth per step").map(ColorMap::Diverging).range(-reach, reach);
         let across = Axis::linear("latency of the command (steps)");
         let across = across.range(-0.5, f64::from(kind.longest()) + 0.5);
         let mut panel = Panel::new(across, vertical.range(low, high))

@@ -8,14 +8,14 @@ use libration_report::notation::{count, number};
 use libration_report::record::{Finding, Series, Tolerance};
 use libration_study::{Lab, StudyError};
 
-use super::edge::{is_stable, lines};
-use super::onset::GAINS;
-use super::simulated::Loop;
+use super::critical_latency::GAINS;
+use super::loop_simulation::Loop;
+use super::stability_edge::{is_stable, lines};
 
 /// The integrators that are mapped.
 pub(super) const METHODS: [Method; 2] = [Method::VelocityVerlet, Method::SymplecticEuler];
 
-/// What changes from row to row.
+/// The variable of the rows of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kind {
     /// The feedback of the velocity, at a time step of 40 ms.

@@ -1,24 +1,24 @@
-//! How late a command may be: forces and commands that come late, in simulation and in theory.
+//! The study `latency`: late forces and commands, in simulation and in theory.
 
-mod chance;
 mod claims;
-mod edge;
+mod critical_latency;
 mod figures;
-mod force;
+mod late_force;
+mod loop_simulation;
 mod map;
-mod onset;
+mod random_latency;
 mod render;
-mod simulated;
-mod single;
-mod tried;
-mod window;
+mod single_precision;
+mod source_claims;
+mod stability_edge;
+mod stability_window;
 
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::RecordError;
-use libration_study::{Lab, Study, StudyError, Tried};
+use libration_study::{Lab, SourceClaim, Study, StudyError};
 
-use self::tried::TRIED;
+use self::source_claims::SOURCE_CLAIMS;
 
 /// The study `latency`. Its loops are its own, on the spring of the source; nothing of it is configured.
 #[derive(Clone, Copy, Debug)]
@@ -33,18 +33,18 @@ impl Study for Latency {
         "How late may a command be?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
         let mut record = Record::new(self.name(), self.question());
-        force::measure(lab, &mut record)?;
-        single::measure(lab, &mut record)?;
-        onset::measure(lab, &mut record)?;
-        window::measure(lab, &mut record)?;
+        late_force::measure(lab, &mut record)?;
+        single_precision::measure(lab, &mut record)?;
+        critical_latency::measure(lab, &mut record)?;
+        stability_window::measure(lab, &mut record)?;
         map::measure(lab, &mut record)?;
-        chance::measure(lab, &mut record)?;
+        random_latency::measure(lab, &mut record)?;
         claims::judge(&mut record);
         Ok(record)
     }

@@ -80,7 +80,7 @@ fn rule(
     record.judge(Ruling { id, source, text, findings: &findings }, judge);
 }
 
-/// How far an exponent is from its order.
+/// Returns the distance of an exponent from its order.
 fn off(finding: &Finding) -> f64 {
     finding.predicted.map_or(f64::NAN, |order| (finding.measured - order).abs())
 }

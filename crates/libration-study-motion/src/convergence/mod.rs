@@ -3,17 +3,17 @@
 mod claims;
 mod render;
 mod settings;
-mod trap;
-mod tried;
-mod words;
+mod source_claims;
+mod splitting_order;
+mod start_at_equilibrium;
 
 pub use self::settings::ConvergenceSettings;
-use self::tried::TRIED;
+use self::source_claims::SOURCE_CLAIMS;
 use libration::Method;
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::{Cell, Finding, RecordError, Relation, Series, Table, Tolerance};
-use libration_study::{Fit, Lab, Section, Study, StudyError, Tried};
+use libration_study::{Fit, Lab, Section, SourceClaim, Study, StudyError};
 
 use super::subject::{Errors, Halvings, Kind, Law, ROUNDING, Subject, configured};
 
@@ -44,9 +44,9 @@ impl Study for Convergence<'_> {
         "Does the error fall with the power of the time step that each method promises?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
+    fn source_claims(&self) -> &'static [SourceClaim] {
         // The source says nothing of a user's own systems.
-        if self.own.is_empty() { TRIED } else { &[] }
+        if self.own.is_empty() { SOURCE_CLAIMS } else { &[] }
     }
 
     fn settings(&self) -> Option<Section> {
@@ -61,8 +61,8 @@ impl Study for Convergence<'_> {
         orders(lab, subjects, &mut record)?;
         symmetries(lab, subjects, &mut record)?;
         if self.own.is_empty() {
-            trap::set(lab, &mut record)?;
-            words::certify(lab, &mut record)?;
+            start_at_equilibrium::measure(lab, &mut record)?;
+            splitting_order::certify(lab, &mut record)?;
             claims::judge(&mut record);
         }
         Ok(record)
@@ -82,7 +82,7 @@ fn halvings(lab: &Lab<'_>) -> Halvings {
 }
 
 /// One method on one system.
-struct Trial<'a> {
+struct Case<'a> {
     subject: &'a dyn Subject,
     law: Law,
     method: Method,
@@ -102,11 +102,11 @@ fn promised(law: Law, method: Method, kind: Kind) -> Option<f64> {
 /// Fits the order of every method on every system.
 fn orders(lab: &Lab<'_>, subjects: &[&dyn Subject], record: &mut Record) -> Result<(), StudyError> {
     let laws = lab.sweep("reference orbits", subjects, |subject| Ok(subject.law()))?;
-    let trials: Vec<Trial<'_>> = subjects
+    let trials: Vec<Case<'_>> = subjects
         .iter()
         .zip(laws)
         .flat_map(|(&subject, law)| {
-            lab.config.integrators.iter().map(move |&method| Trial { subject, law, method })
+            lab.config.integrators.iter().map(move |&method| Case { subject, law, method })
         })
         .collect();
     let found = lab.sweep("errors at ever smaller steps", &trials, |trial| {
@@ -150,7 +150,7 @@ fn orders(lab: &Lab<'_>, subjects: &[&dyn Subject], record: &mut Record) -> Resu
     Ok(())
 }
 
-impl Trial<'_> {
+impl Case<'_> {
     /// Adds what was found of one kind of error; gives the cells of the table.
     fn order(&self, kind: Kind, errors: &Errors, record: &mut Record) -> [Cell; 4] {
         let (name, of) = match kind {
@@ -269,5 +269,5 @@ fn symmetries(
     Ok(())
 }
 
-/// Where the bound on a defect that vanishes comes from.
+/// Explanation of the bound on a zero defect.
 const SYMMETRY: &str = "2⁻⁹⁰⁰: 1024 bits, less what a step and its products can lose of them";

@@ -6,7 +6,7 @@ use libration_report::notation::number;
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError, Series};
 
-use crate::ink::ink;
+use crate::method_color::method_color;
 
 /// Writes the chapter.
 pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
@@ -14,36 +14,36 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     let systems = systems(record)?;
     summary(record, page, &systems);
     page.paragraph(
-        "Every method runs in double-double, where no rounding is seen, at ever smaller steps: until \
-         the slopes between successive errors settle. The reference is the flow itself to about \
-         thirty digits, extrapolated from a midpoint rule that shares no line with the methods. \
-         Errors are taken over a whole orbit, because at single points they may be of higher order \
-         by accident: a closed orbit forgives a phase error at its turning point.",
+        "Every method runs in double-double arithmetic, whose rounding is negligible. The time step is halved \
+         until the slopes between successive errors settle. The reference is the exact flow to about \
+         thirty digits, extrapolated from a midpoint rule that is independent of the methods. \
+         Errors are averaged over a whole orbit, because at single points they may be of higher order \
+         by accident: at a turning point of a closed orbit a phase error has no effect on the position.",
     );
     page.figure(errors(record, &systems, "global")?);
     page.table(record.table("orders")?, 4);
     page.paragraph(
-        "The exponents are least-squares slopes through the five smallest steps of each line. A \
-         step errs by one order more than the orbit, since an orbit has 1/Δt steps.",
+        "The exponents are least-squares slopes through the five smallest steps of each line. The \
+         error of one step is of one order higher than that of the orbit, which has 1/Δt steps.",
     );
     page.figure(errors(record, &systems, "local")?);
     if let Ok(trap) = record.series("trap") {
-        page.heading("A trap");
+        page.heading("Order from a start without force");
         page.paragraph(
-            "Symplectic Euler is of order 1. Started where the force vanishes, its positions are \
-             those of a Verlet orbit that begins half a kick later, and converge like one: whoever \
-             looks at positions alone finds order 2. The velocity tells.",
+            "Symplectic Euler is of order 1. From a start where the force vanishes, its positions are \
+             those of a Verlet orbit that begins half a kick later. The positions alone therefore \
+             show order 2; the velocities show order 1.",
         );
         page.figure(trapped(trap)?);
     }
     if let Ok(words) = record.table("words") {
-        page.heading("What no oscillator can tell");
+        page.heading("Order conditions of splitting methods");
         page.paragraph(
-            "A splitting method is a word of kicks and drifts. Its exponentials, multiplied out in two \
-             letters that do not commute, must agree with `e^(K + D)` on all words of up to p letters; \
-             then the order is p on every system, without a run. On an oscillator words with a \
-             repeated letter vanish: the lookalike, whose weights fit all others, has order 4 there \
-             and order 3 on a pendulum, as its word says.",
+            "A splitting method is a product of exponentials of kicks K and drifts D, which do not commute. \
+             If its expansion agrees with `e^(K + D)` in all words of up to p letters, the order is p on \
+             every system; no run is needed. On an oscillator some words vanish. The method `lookalike` \
+             fits all other words: its order is 4 on an oscillator and 3 on a pendulum, as the expansion \
+             predicts.",
         );
         page.table(words, 3);
     }
@@ -86,7 +86,8 @@ fn summary(record: &Record, page: &mut Page, systems: &[(String, String)]) {
     if let Some(worst) = distances.reduce(f64::max) {
         page.highlights.push(Highlight {
             value: number(worst, 2),
-            text: "largest distance of a fitted order from the promised one, in phase space".into(),
+            text: "largest difference between a fitted and a predicted order, in phase space"
+                .into(),
         });
     }
 }
@@ -129,9 +130,9 @@ fn slopes(record: &Record, systems: &[(String, String)], kind: &str, rise: &str)
         (true, true) => format!("Each line falls with the slope {rise} of its method{everywhere}."),
         (true, false) => format!(
             "Lines fall with the slope {rise} of their method where theory promises it and the \
-             table says so."
+             table confirms it."
         ),
-        _ => "No line was found to fall with a promised slope.".into(),
+        _ => "No line falls with the predicted slope.".into(),
     }
 }
 
@@ -145,7 +146,7 @@ fn panel(series: &Series, title: &str, local: bool) -> Result<Panel, RecordError
         let guide = guide(dt, errors, order);
         panel = panel
             .mark(Mark::line(dt, guide).ink(Ink::Theory).dash(Dash::Solid).width(0.8))
-            .mark(Mark::line(dt, errors).ink(ink(method)).label(method.title()));
+            .mark(Mark::line(dt, errors).ink(method_color(method)).label(method.title()));
     }
     Ok(panel)
 }

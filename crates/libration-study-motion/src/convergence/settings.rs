@@ -10,9 +10,9 @@ use crate::subject::settings::{check_systems, coarsest, coarsest_schema, systems
 /// Settings of the study `convergence`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConvergenceSettings {
-    /// The systems under study, each once, of [`SYSTEMS`](libration_study_motion::SYSTEMS).
+    /// Systems, each once, from [`SYSTEMS`](crate::SYSTEMS).
     pub systems: Vec<String>,
-    /// Steps a turn at the largest time step, a multiple of 16.
+    /// Steps per turn at the largest time step, a multiple of 16.
     pub coarsest: u64,
 }
 
@@ -27,14 +27,14 @@ impl Default for ConvergenceSettings {
     }
 }
 
-/// The study of orders.
+/// Settings of the study `convergence`.
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
-    /// The systems under study, each once.
+    /// Systems, each once.
     #[schemars(schema_with = "systems_schema")]
     systems: Vec<String>,
-    /// Steps a turn at the largest time step, a multiple of 16.
+    /// Steps per turn at the largest time step, a multiple of 16.
     #[schemars(schema_with = "coarsest_schema")]
     coarsest: Count,
 }

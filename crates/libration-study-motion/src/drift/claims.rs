@@ -10,7 +10,7 @@ use libration_study::Config;
 use super::{source_setting, tag};
 use crate::drift::DriftSettings;
 
-/// Where RK4 stops losing energy and begins to gain it: z = 2√2.
+/// The z above which RK4 gains energy: 2√2.
 const RK4_LIMIT: f64 = 2.0 * std::f64::consts::SQRT_2;
 
 /// The drift of an energy that has grown e-fold: less does not tell an exponential from a line.

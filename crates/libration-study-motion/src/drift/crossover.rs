@@ -1,4 +1,4 @@
-//! The step at which RK4's steady loss overtakes the bounded oscillation of velocity Verlet.
+//! The number of steps after which the energy loss of RK4 exceeds the oscillation of velocity Verlet.
 
 use libration::analysis::{EnergyBand, Linearisation, Spectrum, forecast_drift};
 use libration::simulation::{EnergyDrift, Sample, Simulator};
@@ -15,16 +15,16 @@ use crate::drift::DriftSettings;
 /// Steps of Verlet's orbit that are seen before RK4's begin.
 const STRETCH: u64 = 1 << 20;
 
-/// What theory says of one time step.
+/// Predictions for one time step.
 struct Prediction {
     /// Steps until RK4's loss equals the depth of Verlet's band.
     to_the_band: f64,
-    /// The same to leading order in z.
+    /// The number of steps to leading order in z.
     leading_order: f64,
     /// Steps until it equals what Verlet's discrete orbit makes of the band within the simulation,
     /// which is less where the orbit closes, or nearly so, after a few points.
     to_the_orbit: f64,
-    /// What Verlet's discrete orbit makes of its band, and the band.
+    /// Largest drift of the discrete orbit of Verlet, and its bound.
     depth: f64,
     band: (f64, f64),
 }

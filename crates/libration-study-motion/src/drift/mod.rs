@@ -1,23 +1,23 @@
-//! Energy drift over long horizons, beside what theory says it must be.
+//! The study `drift`: energy drift over long horizons, predicted and measured.
 
 mod claims;
 mod crossover;
+mod drift_observer;
+mod drift_run;
 mod invariant;
 mod overflow;
 mod portrait;
 mod render;
-mod repeat;
+mod repeatability;
 mod setting;
 mod settings;
+mod source_claims;
 mod source_setting;
-mod trial;
-mod tried;
-mod watch;
 
-use libration_study::Tried;
+use libration_study::SourceClaim;
 
 pub use self::settings::DriftSettings;
-use self::tried::TRIED;
+use self::source_claims::SOURCE_CLAIMS;
 use libration::Method;
 use libration_report::Record;
 use libration_report::notation::{count, number, seconds};
@@ -25,8 +25,8 @@ use libration_report::page::Page;
 use libration_report::record::{Cell, Finding, RecordError, Relation, Series, Table, Tolerance};
 use libration_study::{Lab, Section, Study, StudyError};
 
+use self::drift_run::DriftRun;
 use self::setting::{ROUNDING, Setting, UNCERTAINTY};
-use self::trial::Trial;
 
 /// The study `drift`.
 #[derive(Clone, Copy, Debug)]
@@ -41,8 +41,8 @@ impl Study for Drift {
         "Does the energy stay near its start, and does each method do what theory says it must?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn settings(&self) -> Option<Section> {
@@ -52,7 +52,7 @@ impl Study for Drift {
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
         let mut record = Record::new(self.name(), self.question());
         trials(lab, &mut record)?;
-        repeat::compare(lab, &mut record)?;
+        repeatability::compare(lab, &mut record)?;
         crossover::measure(lab, &mut record)?;
         portrait::trace(lab, &mut record)?;
         claims::judge(lab.config, &mut record);
@@ -64,7 +64,7 @@ impl Study for Drift {
     }
 }
 
-/// Where rounding may leave half of an energy, nothing is predicted.
+/// Rounding error of the energy above which there is no prediction.
 const LOST: f64 = 0.5;
 
 /// A time step in identifiers and names of series and files, as in `dt-0.001` or `dt-1e-300`.
@@ -83,7 +83,7 @@ fn trials(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
         .flat_map(|&dt| config.integrators.iter().map(move |&m| Setting::new(config, m, dt)))
         .collect();
     let what = format!("energy drift over {} steps", count(config.get::<DriftSettings>().steps));
-    let found = lab.sweep(&what, &settings, Trial::run)?;
+    let found = lab.sweep(&what, &settings, DriftRun::run)?;
     let columns = [
         "Δt (s)",
         "integrator",
@@ -112,13 +112,13 @@ fn trials(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
     let chunks = found.chunks(config.integrators.len().max(1));
     for (&dt, trials) in config.get::<DriftSettings>().dt.iter().zip(chunks) {
         record.series.push(series(dt, trials));
-        record.series.extend(trials.iter().map(Trial::signed_series));
+        record.series.extend(trials.iter().map(DriftRun::signed_series));
     }
     Ok(())
 }
 
 /// The largest drift; where no float holds it, its logarithm.
-fn largest(trial: &Trial) -> Finding {
+fn largest(trial: &DriftRun) -> Finding {
     let Setting { method, dt, steps, .. } = trial.setting;
     let id = format!("drift.{}.{}.largest", method.name(), tag(dt));
     let text = format!(
@@ -151,7 +151,7 @@ fn largest(trial: &Trial) -> Finding {
 
 /// A largest drift beside its prediction; without one where rounding may leave as much as the orbit.
 fn unless_lost(
-    trial: &Trial,
+    trial: &DriftRun,
     id: String,
     text: String,
     predicted: f64,
@@ -168,7 +168,7 @@ fn unless_lost(
 }
 
 /// The whole run lies within the closed-form envelope, where there is one.
-fn within_band(trial: &Trial) -> Option<Finding> {
+fn within_band(trial: &DriftRun) -> Option<Finding> {
     let Setting { method, dt, .. } = trial.setting;
     let excursion = trial.excursion?;
     let rounding = Some(trial.setting.rounding()).filter(|&rounding| rounding < LOST)?;
@@ -189,7 +189,7 @@ fn within_band(trial: &Trial) -> Option<Finding> {
 
 /// What a symplectic step conserves stays what it is: this tells rounding, which may grow with the
 /// run, from the error of the method, which does not.
-fn conserved(trial: &Trial) -> Option<Finding> {
+fn conserved(trial: &DriftRun) -> Option<Finding> {
     let Setting { method, dt, steps, .. } = trial.setting;
     let strayed = trial.invariant?;
     let rounding = Some(trial.setting.rounding()).filter(|&rounding| rounding < LOST)?;
@@ -210,7 +210,7 @@ fn conserved(trial: &Trial) -> Option<Finding> {
 }
 
 /// The largest drift from the start that drifts most, if starts differ.
-fn worst(trial: &Trial) -> Option<Finding> {
+fn worst(trial: &DriftRun) -> Option<Finding> {
     let Setting { method, dt, .. } = trial.setting;
     let worst = trial.worst?;
     Some(unless_lost(
@@ -230,8 +230,8 @@ fn worst(trial: &Trial) -> Option<Finding> {
 }
 
 /// The running maxima of all methods at one time step.
-fn series(dt: f64, trials: &[Trial]) -> Series {
-    let steps = trials.first().map(|t| t.sampled_steps()).unwrap_or_default();
+fn series(dt: f64, trials: &[DriftRun]) -> Series {
+    let steps = trials.first().map(|t| t.log_spaced_steps()).unwrap_or_default();
     let times = steps.iter().map(|&n| n * dt).collect();
     let mut series = Series::new(tag(dt)).with("step", "1", steps).with("t", "s", times);
     for trial in trials {

@@ -7,7 +7,7 @@ use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError, Series};
 
 use super::{methods, tag};
-use crate::ink::ink;
+use crate::method_color::method_color;
 
 /// Unit roundoff of `f64`, where drift sinks into rounding.
 const ROUNDING: f64 = 1.1e-16;
@@ -20,33 +20,33 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     let Some((&first, &last)) = dts.first().zip(dts.last()) else { return Ok(()) };
     summary(record, page, first);
     page.paragraph(
-        "Theory leaves no room: a step carries a quadratic form along, `Q(My) = det M · Q(y)`, and \
-         an orbit is caught between two multiples of it. Where the determinant is one and the step is \
-         stable, the energy stays in a band for ever; else it grows or decays, step by step. The \
-         circles below are that envelope, derived from the shipped steps; the lines are simulated.",
+        "Each step multiplies a quadratic form by its determinant, `Q(My) = det M · Q(y)`, and the energy \
+         lies between two multiples of that form. With determinant one and a stable step, the energy stays \
+         in a band without limit of time; otherwise it grows or decays in every step. The \
+         circles below are this envelope, derived from the shipped steps; the lines are simulated.",
     );
     page.figure(running(record, first)?.number("9.1"));
     page.figure(signed(record, first)?.number("9.2"));
     page.table(record.table("largest drift")?, 7);
     page.paragraph(
         "The predictions in the table are exact: the largest drift over the discrete orbit, from \
-         powers of the update matrix with 1024 bits. The worst start is where the same orbit, \
-         entered at another phase, swings most; the configured start may be a flattering one.",
+         powers of the update matrix with 1024 bits. The worst start is the phase of the same orbit \
+         with the largest drift; the drift from the configured start may be smaller.",
     );
     for &dt in &dts[1..] {
-        page.figure(running(record, dt)?.caption("As before, with a larger step."));
+        page.figure(running(record, dt)?.caption("As above, with a larger time step."));
     }
     if record.series("crossover").is_ok() {
-        page.heading("When RK4 falls behind");
+        page.heading("Crossover of RK4 and Verlet");
         page.paragraph(
-            "RK4 loses z⁶/72 of the energy a step, from whatever start; from rest Verlet’s swings by \
-             z²/4, and the loss overtakes the swing after 18/z⁴ steps. From a start in motion the \
-             swing is another, and so is the number of steps: the line is that of the configured \
-             start. Below it RK4 holds the energy better, however symplectic the other is.",
+            "RK4 loses z⁶/72 of the energy per step, from any start. From rest the energy of Verlet \
+             oscillates by z²/4, and the loss of RK4 exceeds this after 18/z⁴ steps. From a start in motion \
+             both numbers differ; the line belongs to the configured start. Below the line RK4 has the \
+             smaller energy error, although it is not symplectic.",
         );
         page.figure(crossover(record)?);
     }
-    page.heading("In phase space");
+    page.heading("Phase space");
     page.figure(portraits(record, last)?);
     Ok(())
 }
@@ -66,19 +66,19 @@ fn summary(record: &Record, page: &mut Page, dt: f64) {
         && fills_its_band(record, dt)
     {
         page.headline = format!(
-            "At Δt = {shown} Verlet’s energy swings by {} for ever, RK4 has lost {} by the end: it \
-             falls behind only after {} steps.",
+            "Relative energy error at Δt = {shown}: at most {} for velocity Verlet at all times, {} for \
+             RK4 at the end. RK4 exceeds Verlet after {} steps.",
             number(verlet, 2),
             number(rk4, 2),
             number(crossover, 2)
         );
         page.highlights.push(Highlight {
             value: number(rk4, 3),
-            text: format!("of the energy, lost by RK4 at Δt = {shown}"),
+            text: format!("relative energy loss of RK4 at Δt = {shown}"),
         });
         page.highlights.push(Highlight {
             value: format!("{} steps", number(crossover, 2)),
-            text: "until RK4’s loss overtakes Verlet’s swing".into(),
+            text: "until the energy error of RK4 exceeds that of Verlet".into(),
         });
     }
     let sizes: Vec<String> = methods(record)
@@ -94,8 +94,8 @@ fn summary(record: &Record, page: &mut Page, dt: f64) {
         })
         .collect();
     page.answer = format!(
-        "Largest relative energy drift at Δt = {shown}: {}{}. Each is what the method’s own step \
-         says it must be.",
+        "Largest relative energy drift at Δt = {shown}: {}{}. Each agrees with the prediction \
+         from the step of its method.",
         sizes.join(", "),
         left.concat()
     );
@@ -117,9 +117,8 @@ fn running(record: &Record, dt: f64) -> Result<Figure, RecordError> {
         .mark(Mark::horizontal(ROUNDING).label("rounding of f64").ink(Ink::Neutral));
     for method in methods(record) {
         let column = |what: &str| series.column(&format!("{} {what}", method.name()));
-        panel = panel.mark(
-            Mark::line(steps, shown(column("measured")?)).ink(ink(method)).label(method.title()),
-        );
+        let line = Mark::line(steps, shown(column("measured")?)).ink(method_color(method));
+        panel = panel.mark(line.label(method.title()));
         let (x, y) = each_half_decade(steps, column("predicted")?);
         panel = panel.mark(Mark::prediction(x, y));
     }
@@ -127,8 +126,8 @@ fn running(record: &Record, dt: f64) -> Result<Figure, RecordError> {
         if tag(dt) == "dt-0.001" { "fig-9-1".into() } else { format!("drift-{}", tag(dt)) };
     Ok(Figure::new(number, format!("Largest energy drift so far, Δt = {}", seconds(dt, 3)))
         .caption(
-            "Explicit Euler gains energy at every step. Within their stability limits the symplectic \
-             methods fill a band within a turn and never leave it, and RK4 loses energy steadily. \
+            "Explicit Euler gains energy in every step. Within their stability limits the energy of \
+             symplectic methods stays in a band, and RK4 loses energy in every step. \
              Lines: simulated in f64. Circles: the envelope that follows from the step, from the \
              first half-turn on.",
         )
@@ -136,7 +135,7 @@ fn running(record: &Record, dt: f64) -> Result<Figure, RecordError> {
         .panel(panel))
 }
 
-/// What is worth showing: an energy beyond a million times its start has left the figure.
+/// Returns values below a million times the initial energy, and NaN beyond.
 fn shown(values: &[f64]) -> Vec<f64> {
     values.iter().map(|&y| if y < 1e6 { y } else { f64::NAN }).collect()
 }
@@ -151,9 +150,9 @@ fn each_half_decade(x: &[f64], y: &[f64]) -> (Vec<f64>, Vec<f64>) {
 fn signed(record: &Record, dt: f64) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("fig-9-2", "Energy drift with its sign, without explicit Euler")
         .caption(
-            "Each method on its own scale. From rest symplectic Euler swings both ways and Verlet only \
-             down; RK4 goes down for good. Shaded: lowest to highest drift in each stretch of the \
-             run. Thin lines: the envelope that follows from the step.",
+            "Scales differ between methods. From rest the energy of symplectic Euler oscillates up and down, \
+             that of Verlet only down; RK4 loses energy monotonically. Shaded: lowest to highest drift in each \
+             part of the run. Thin lines: the envelope that follows from the step.",
         )
         .description("The drift of each method against time, with its closed-form envelope.")
         .aspect(4.2);
@@ -173,7 +172,7 @@ fn band(method: Method, series: &Series) -> Result<Panel, RecordError> {
     };
     Ok(Panel::new(Axis::linear("time t").unit("s"), Axis::linear("(E − E₀)/E₀"))
         .title(method.title())
-        .mark(Mark::envelope(envelope).ink(ink(method)))
+        .mark(Mark::envelope(envelope).ink(method_color(method)))
         .mark(bound("bound_low")?)
         .mark(bound("bound_high")?))
 }
@@ -196,7 +195,7 @@ fn crossover(record: &Record) -> Result<Figure, RecordError> {
         )
         .mark(
             Mark::points(measured.0, measured.1)
-                .ink(ink(Method::Rk4))
+                .ink(method_color(Method::Rk4))
                 .radius(4.5)
                 .label("measured"),
         )
@@ -204,28 +203,31 @@ fn crossover(record: &Record) -> Result<Figure, RecordError> {
     let note = |x: f64, y: f64, text: &str| Mark::note(x, y, text).ink(Ink::Neutral);
     let middle = (low * high).sqrt();
     let top = steps.iter().copied().filter(|s| s.is_finite()).fold(1.0, f64::max);
-    Ok(Figure::new("crossover", "The step at which RK4’s loss overtakes Verlet’s swing")
-        .caption(format!(
-            "Above the line Verlet holds the energy better, below it RK4 does.{}",
-            crossed(dt, steps)
-        ))
-        .description("Log-log: the crossover falls with the fourth power of the time step.")
-        .aspect(2.2)
-        .panel(panel.mark(note(middle * 1.6, top / 30.0, "Verlet better")).mark(note(
-            low * 1.3,
-            3e3,
-            "RK4 better",
-        ))))
+    Ok(Figure::new(
+        "crossover",
+        "Number of steps until the energy error of RK4 exceeds that of Verlet",
+    )
+    .caption(format!(
+        "Above the line Verlet has the smaller energy error, below it RK4.{}",
+        crossed(dt, steps)
+    ))
+    .description("Log-log: the crossover falls with the fourth power of the time step.")
+    .aspect(2.2)
+    .panel(panel.mark(note(middle * 1.6, top / 30.0, "Verlet better")).mark(note(
+        low * 1.3,
+        3e3,
+        "RK4 better",
+    ))))
 }
 
-/// Where the horizon of the source crosses the line, in words.
+/// Returns a sentence about the crossing of the line with the horizon of the source.
 fn crossed(dt: &[f64], steps: &[f64]) -> String {
     const HORIZON: f64 = 1e6;
     let pairs = dt.windows(2).zip(steps.windows(2));
     let crossing = pairs.into_iter().find(|(_, n)| n[0] >= HORIZON && n[1] < HORIZON);
     crossing.map_or_else(String::new, |(dt, _)| {
         format!(
-            " A million steps, the horizon of the source, crosses it between Δt = {} and {}.",
+            " The horizon of the source, a million steps, crosses the line between Δt = {} and {}.",
             seconds(dt[0], 3),
             seconds(dt[1], 3)
         )
@@ -237,10 +239,9 @@ fn portraits(record: &Record, dt: f64) -> Result<Figure, RecordError> {
     let mut figure =
         Figure::new("portraits", format!("Six turns in phase space at Δt = {}", seconds(dt, 3)))
             .caption(
-                "Dots: the simulated orbit, in units in which the exact one is the thin circle. \
-                 Lines: the curve that the step carries along. Symplectic Euler’s is a tilted \
-                 ellipse, Verlet’s an upright one; explicit Euler and RK4 have circles that grow \
-                 and shrink by √det M a step.",
+                "Dots: the simulated orbit. Thin circle: the exact orbit. Lines: the invariant curve of the \
+                 step: a tilted ellipse for symplectic Euler, an upright one for Verlet; for explicit Euler \
+                 and RK4 circles that grow or shrink by √det M per step.",
             )
             .description("Phase portraits, one for each integrator.")
             .columns(2)
@@ -275,7 +276,7 @@ fn portraits(record: &Record, dt: f64) -> Result<Figure, RecordError> {
             )
             .mark(
                 Mark::points(orbit.column("x")?, orbit.column("v_over_omega")?)
-                    .ink(ink(method))
+                    .ink(method_color(method))
                     .radius(2.0),
             ),
         );

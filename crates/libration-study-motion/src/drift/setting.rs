@@ -1,4 +1,4 @@
-//! One integrator at one time step, and the rounding that its run may carry.
+//! One integrator at one time step, with bounds on rounding.
 
 use libration::analysis::DriftForecast;
 use libration::simulation::{EnergyDrift, Sample, Simulator};
@@ -9,16 +9,16 @@ use libration_study::{Config, StudyError};
 use crate::drift::DriftSettings;
 use crate::rounding::{rounding_of_run, slip_of_run};
 
-/// Where the bound of [`Setting::rounding`] comes from, for the reader.
+/// Explanation of the bound [`Setting::rounding`], for the page.
 pub(super) const ROUNDING: &str = "eᶻ(12√n + s·n) roundings, with s = z/10 for products of shears and z² \
                                    for others, times the condition of the eigenvectors";
 
-/// Where that of [`Setting::uncertainty`] comes from.
+/// Explanation of the bound [`Setting::uncertainty`].
 pub(super) const UNCERTAINTY: &str = "eᶻ(12√n + s·n) roundings, with s = z/10 for products of shears and z² for others, times the \
      condition of the eigenvectors; and what the slip of the phase changes where the orbit does not \
      reach the edge of its band";
 
-/// What is run.
+/// Integrator and time step of a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setting {
     pub(super) method: Method,

@@ -1,6 +1,6 @@
 //! Settings of the study `drift`.
 
-use libration_settings::check::{list, steps};
+use libration_settings::validation::{check_list, check_steps};
 use libration_settings::{Count, Fault, Number, limits, numbers};
 use libration_study::{Settings, schema};
 use schemars::JsonSchema;
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Settings of the study `drift`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriftSettings {
-    /// The time steps under study, in s, rising.
+    /// Time steps in s, ascending.
     pub dt: Vec<f64>,
     /// Number of steps.
     pub steps: u64,
@@ -21,14 +21,14 @@ impl Default for DriftSettings {
     }
 }
 
-/// The study of energy drift.
+/// Settings of the study `drift`.
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
     /// Time steps in s, each once.
     #[schemars(schema_with = "schema::time_steps")]
     dt: Vec<Number>,
-    /// Number of steps at each of them.
+    /// Number of steps at each time step.
     #[schemars(schema_with = "schema::steps")]
     steps: Count,
 }
@@ -49,12 +49,15 @@ impl Settings for DriftSettings {
     }
 
     fn from_table(table: Table) -> Result<Self, Fault> {
-        Ok(DriftSettings { dt: numbers(table.dt), steps: steps("drift.steps", table.steps.0)? })
+        Ok(DriftSettings {
+            dt: numbers(table.dt),
+            steps: check_steps("drift.steps", table.steps.0)?,
+        })
     }
 
     fn check(&self) -> Result<(), Fault> {
-        list("drift.dt", "time step", limits::TIME_STEP, &self.dt)?;
-        steps("drift.steps", self.steps.into())?;
+        check_list("drift.dt", "time step", limits::TIME_STEP, &self.dt)?;
+        check_steps("drift.steps", self.steps.into())?;
         Ok(())
     }
 

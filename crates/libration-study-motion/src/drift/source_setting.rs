@@ -3,7 +3,7 @@
 use libration::Method;
 use libration_report::notation::{number, seconds};
 use libration_report::record::{Finding, Judgement, Record};
-use libration_study::{Config, source};
+use libration_study::{Config, source_report};
 
 use super::claims::{id, rule};
 use super::tag;
@@ -11,14 +11,14 @@ use crate::drift::DriftSettings;
 
 /// A claim about the source's own runs says nothing of other springs, starts, steps and horizons.
 pub(super) fn is_run(config: &Config) -> bool {
-    source::is_its_orbit(config)
-        && config.get::<DriftSettings>().dt.contains(&source::DT)
-        && config.get::<DriftSettings>().steps == source::STEPS
+    source_report::is_source_orbit(config)
+        && config.get::<DriftSettings>().dt.contains(&source_report::DT)
+        && config.get::<DriftSettings>().steps == source_report::STEPS
 }
 
 /// The claims about the source's own time step and horizon.
 pub(super) fn judge(record: &mut Record) {
-    let dt = source::DT;
+    let dt = source_report::DT;
     let of = |m: Method| id(m, dt, "largest");
     let leading = format!("drift.crossover.{}.leading-order", tag(dt));
     let pair = vec![of(Method::Rk4), of(Method::VelocityVerlet), leading];
@@ -40,8 +40,8 @@ pub(super) fn judge(record: &mut Record) {
                 "for the energy it holds only beyond 18/z⁴ steps, {} at this step; the source’s own \
                  setting, z = {} and a million steps, lies at {} of it; {}",
                 number(crossover, 2),
-                number(source::OMEGA2.sqrt() * dt, 3),
-                number(source::STEPS as f64 / crossover, 2),
+                number(source_report::OMEGA2.sqrt() * dt, 3),
+                number(source_report::STEPS as f64 / crossover, 2),
                 compared(f)
             );
             if f[0].measured < f[1].measured {

@@ -1,4 +1,4 @@
-//! What a step costs: force evaluations, and time.
+//! The cost of a step: force evaluations and time.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -13,7 +13,7 @@ use libration_study::{Lab, StudyError};
 /// Runs of which the median is taken.
 const REPEATS: usize = 9;
 
-/// What one step of a method costs.
+/// The cost of one step of a method.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cost {
     pub(super) method: Method,

@@ -1,18 +1,18 @@
-//! What accuracy costs: force evaluations and time against stability and errors.
+//! The study `efficiency`: force evaluations and time against stability and errors.
 
-mod answers;
+mod accuracy_target;
 mod claims;
 mod cost;
-mod demand;
+mod recommendations;
 mod render;
 mod settings;
-mod tried;
-mod work;
+mod source_claims;
+mod work_precision;
 
-use libration_study::Tried;
+use libration_study::SourceClaim;
 
 pub use self::settings::EfficiencySettings;
-use self::tried::TRIED;
+use self::source_claims::SOURCE_CLAIMS;
 use libration::State;
 use libration_report::Record;
 use libration_report::page::Page;
@@ -32,8 +32,8 @@ impl Study for Efficiency {
         "Which integrator gives the accuracy I need for the least work?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn settings(&self) -> Option<Section> {
@@ -43,8 +43,8 @@ impl Study for Efficiency {
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
         let mut record = Record::new(self.name(), self.question());
         let costs = cost::measure(lab, &mut record)?;
-        work::measure(lab, &costs, &mut record)?;
-        answers::give(lab, &costs, &mut record)?;
+        work_precision::measure(lab, &costs, &mut record)?;
+        recommendations::recommend(lab, &costs, &mut record)?;
         claims::judge(&mut record);
         Ok(record)
     }

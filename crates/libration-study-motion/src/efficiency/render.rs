@@ -6,7 +6,7 @@ use libration_report::notation::list;
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Cell, Record, RecordError, Series};
 
-use crate::ink::ink;
+use crate::method_color::method_color;
 use crate::subject::Symmetry;
 
 /// Writes the chapter.
@@ -14,30 +14,30 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.title = "Efficiency".into();
     answer(record, page)?;
     page.paragraph(
-        "A step is the wrong unit of work: a method with four force evaluations may take steps four \
-         times as large, or forty. The figures have the work for one period of the oscillator on one \
-         axis and the error of the same run on the other; the circles bound what any phase of the \
-         orbit can show, by the eigenvalues and the conserved form of the shipped step.",
+        "Work is counted in force evaluations, not in steps, since methods differ in the evaluations per step. \
+         The figures show the error of a run against the work for one period of the oscillator. The circles \
+         are bounds over all phases of the orbit, from the eigenvalues and the conserved form of the \
+         shipped step.",
     );
     page.figure(precision(record)?.number("9.6"));
     let methods: Vec<Method> = series(record).map(|(method, _)| method).collect();
     page.paragraph(format!(
-        "Read from left to right, a line that lies lower gives more accuracy for the same work. Its \
-         slope is the order of the error.{}",
+        "A lower line has a smaller error for the same work. Its slope is the order of the \
+         error.{}",
         who_pays(&methods)
     ));
     page.table(record.table("answers")?, 4);
-    page.heading("What a step costs");
+    page.heading("Cost of a step");
     page.paragraph(
-        "Force evaluations are counted in a run and follow from the tableau, which is read off the \
-         step itself. Times are those of a single trajectory, step after step, and belong to this \
+        "Force evaluations are counted in a run and agree with the tableau of the method. \
+         Times are those of a single trajectory on this \
          machine.",
     );
     page.table(record.table("cost of a step")?, 3);
     Ok(())
 }
 
-/// Whose work for a tolerance on the energy depends on the horizon, of the methods that are shown.
+/// Returns a sentence about the methods whose work for an energy tolerance depends on the horizon.
 fn who_pays(methods: &[Method]) -> String {
     let (keep, pay): (Vec<Method>, Vec<Method>) =
         methods.iter().partition(|m| Symmetry::of_method(**m).0);
@@ -45,12 +45,12 @@ fn who_pays(methods: &[Method]) -> String {
     let free = match keep.is_empty() {
         true => "",
         false => {
-            " For the energy the symplectic methods need the same work for a period or for a million."
+            " For a given energy error the work per period of symplectic methods is independent of the horizon."
         }
     };
     match pay.as_slice() {
         [] => free.into(),
-        pay => format!("{free} What {} must spend on it grows with the horizon.", titles(pay)),
+        pay => format!("{free} The work of {} grows with the horizon.", titles(pay)),
     }
 }
 
@@ -73,11 +73,11 @@ fn answer(record: &Record, page: &mut Page) -> Result<(), RecordError> {
     let chosen = |kind: &str| rows.iter().rfind(|r| text(&r[0]) == kind && &text(&r[1]) == middle);
     let sentence = |row: &Vec<Cell>| {
         let other = match text(&row[7]).as_str() {
-            "—" => "; no other method that was tried gets there".to_owned(),
-            name => format!("; {name} would need {}", text(&row[8])),
+            "—" => "; no other method in this run reaches this error".to_owned(),
+            name => format!("; {name} needs {}", text(&row[8])),
         };
         format!(
-            "For an error of {} in {} over {} periods take {} at ωΔt = {}: {} force evaluations a \
+            "Cheapest method for an error of {} in {} over {} periods: {} at ωΔt = {}, with {} force evaluations per \
              period{other}.",
             text(&row[1]),
             text(&row[0]),
@@ -95,7 +95,7 @@ fn answer(record: &Record, page: &mut Page) -> Result<(), RecordError> {
             value: text(&row[3]),
             text: format!(
                 "{} an energy error of {} over {} periods",
-                if text(&row[7]) == "—" { "alone gets to" } else { "is cheapest for" },
+                if text(&row[7]) == "—" { "alone reaches" } else { "is cheapest for" },
                 text(&row[1]),
                 text(&row[2])
             ),
@@ -119,7 +119,7 @@ fn precision(record: &Record) -> Result<Figure, RecordError> {
             for_a_percent(record)?
         ))
         .description(
-            "Log-log: error in energy, phase and state against force evaluations a period.",
+            "Log-log: error in energy, phase and state against force evaluations per period.",
         )
         .columns(2)
         .aspect(1.2);
@@ -131,14 +131,15 @@ fn precision(record: &Record) -> Result<Figure, RecordError> {
     ] {
         let by_time = title.ends_with("time");
         let (x, label) = match by_time {
-            true => ("time_per_period", Axis::log("time a period").unit("ns")),
-            false => ("force_evaluations_per_period", Axis::log("force evaluations a period")),
+            true => ("time_per_period", Axis::log("time per period").unit("ns")),
+            false => ("force_evaluations_per_period", Axis::log("force evaluations per period")),
         };
         let mut panel = Panel::new(label, axis).title(title);
         for (method, series) in series(record) {
             let x = series.column(x)?;
             let measured = shown(series.column(column)?);
-            panel = panel.mark(Mark::line(x, measured).ink(ink(method)).label(method.title()));
+            panel =
+                panel.mark(Mark::line(x, measured).ink(method_color(method)).label(method.title()));
             if !by_time {
                 let bound = shown(series.column(&format!("{column}_bound"))?);
                 let every = |v: &[f64]| -> Vec<f64> { v.iter().step_by(2).copied().collect() };
@@ -173,15 +174,16 @@ fn for_a_percent(record: &Record) -> Result<String, RecordError> {
     let least: Vec<&str> = least.iter().map(String::as_str).collect();
     let mut words = match least.as_slice() {
         [] => String::new(),
-        least => format!(" An error of a percent takes the least work with {}.", list(least)),
+        least => format!(" Methods with the least work for an error of 1 %: {}.", list(least)),
     };
     if !never.is_empty() {
-        words += &format!(" At no step shown does {} reach it in state.", list(&never));
+        words +=
+            &format!(" No step in the figure reaches this error in state with {}.", list(&never));
     }
     Ok(words)
 }
 
-/// What is worth showing: below rounding there is nothing, and beyond a hundredfold no use.
+/// Returns values above rounding and below a hundred, and NaN elsewhere.
 fn shown(values: &[f64]) -> Vec<f64> {
     values.iter().map(|&y| if (1e-15..1e2).contains(&y) { y } else { f64::NAN }).collect()
 }

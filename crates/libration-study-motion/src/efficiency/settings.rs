@@ -1,6 +1,6 @@
 //! Settings of the study `efficiency`.
 
-use libration_settings::check::{counts, list, whole};
+use libration_settings::validation::{check_counts, check_list, parse_counts};
 use libration_settings::{Count, Fault, Number, limits, numbers};
 use libration_study::{Settings, schema};
 use schemars::JsonSchema;
@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 /// Settings of the study `efficiency`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EfficiencySettings {
-    /// Errors that are tolerated, in energy and in state, rising.
+    /// Tolerated errors in energy and in state, ascending.
     pub tolerances: Vec<f64>,
-    /// Horizons, in periods of the oscillator, rising.
+    /// Horizons in periods of the oscillator, ascending.
     pub periods: Vec<u64>,
 }
 
@@ -24,11 +24,11 @@ impl Default for EfficiencySettings {
     }
 }
 
-/// The study of cost against stability and accuracy.
+/// Settings of the study `efficiency`.
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
-    /// Errors that are tolerated, in energy and in state, each once.
+    /// Tolerated errors in energy and in state, each once.
     #[schemars(schema_with = "schema::tolerances")]
     tolerances: Vec<Number>,
     /// Horizons in periods of the oscillator, each once.
@@ -57,13 +57,13 @@ impl Settings for EfficiencySettings {
     fn from_table(table: Table) -> Result<Self, Fault> {
         Ok(EfficiencySettings {
             tolerances: numbers(table.tolerances),
-            periods: whole("efficiency.periods", table.periods)?,
+            periods: parse_counts("efficiency.periods", table.periods)?,
         })
     }
 
     fn check(&self) -> Result<(), Fault> {
-        list("efficiency.tolerances", "tolerance", limits::TOLERANCE, &self.tolerances)?;
-        counts("efficiency.periods", &self.periods)?;
+        check_list("efficiency.tolerances", "tolerance", limits::TOLERANCE, &self.tolerances)?;
+        check_counts("efficiency.periods", &self.periods)?;
         Ok(())
     }
 

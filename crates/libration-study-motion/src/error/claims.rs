@@ -2,7 +2,7 @@
 
 use libration_report::notation::{count, number};
 use libration_report::record::{Finding, Judgement, Record, Ruling};
-use libration_study::{Config, source};
+use libration_study::{Config, source_report};
 
 use crate::error::ErrorSettings;
 
@@ -17,8 +17,8 @@ const PRINTED: [(&str, &str, &str, f64, f64); 4] = [
 /// Judges them from the findings of the record, where the setting is the source's own.
 pub(super) fn judge(config: &Config, record: &mut Record) {
     let is_its_run = (config.get::<ErrorSettings>().dt, config.get::<ErrorSettings>().steps)
-        == (source::DT, source::STEPS);
-    if !is_its_run || !source::is_its_orbit(config) {
+        == (source_report::DT, source_report::STEPS);
+    if !is_its_run || !source_report::is_source_orbit(config) {
         return;
     }
     for (id, method, title, printed, digits) in PRINTED {

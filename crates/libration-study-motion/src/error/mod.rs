@@ -1,17 +1,17 @@
-//! The error against the exact solution, and what the source's numbers really are.
+//! The error relative to the exact solution, and the numbers of the source.
 
 mod claims;
 mod mean;
 mod render;
+mod rk4_mistakes;
 mod run;
 mod settings;
-mod suspects;
-mod tried;
+mod source_claims;
 
-use libration_study::Tried;
+use libration_study::SourceClaim;
 
 pub use self::settings::ErrorSettings;
-use self::tried::TRIED;
+use self::source_claims::SOURCE_CLAIMS;
 use libration::{Method, State};
 use libration_report::Record;
 use libration_report::notation::{count, seconds};
@@ -25,7 +25,7 @@ use self::run::{Run, Setting};
 #[derive(Clone, Copy, Debug)]
 pub struct Error;
 
-/// Where the bound on rounding comes from, for the reader.
+/// Explanation of the bound on rounding, for the page.
 const ROUNDING: &str = "the rounding of a run, as for its energy drift, and 8 roundings of the angle ωt for the \
                         rounded coefficients";
 
@@ -38,8 +38,8 @@ impl Study for Error {
         "How far from the exact solution is each method after a long run, and why?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn settings(&self) -> Option<Section> {
@@ -108,7 +108,7 @@ fn horizon(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
     record.tables.push(table);
     record.series.extend(runs.iter().map(series));
     if let Some(run) = runs.iter().find(|run| run.setting.method == Method::Rk4) {
-        record.tables.push(suspects::table(&run.setting));
+        record.tables.push(rk4_mistakes::table(&run.setting));
     }
     if let Some(run) = runs.iter().find(|run| run.setting.method == Method::ExplicitEuler) {
         record.series.extend(amplitude(run)?);

@@ -6,7 +6,7 @@ use libration_report::notation::number;
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError};
 
-use crate::ink::ink;
+use crate::method_color::method_color;
 
 /// Writes the chapter.
 pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
@@ -14,20 +14,20 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     let is_the_sources = record.claims.iter().any(|claim| claim.id == "C75");
     summary(record, page, is_the_sources);
     page.paragraph(
-        "On the oscillator an orbit of a method is a sum of powers of its eigenvalues, and so is the \
-         exact one: the mean square of their difference over any number of steps is a geometric \
-         series. The circles are its sum, with 1024 bits; the lines are simulated, beside an exact \
-         solution in double-double.",
+        "On the oscillator the numerical and the exact orbit are sums of powers of eigenvalues. The mean \
+         square of their difference over any number of steps is therefore a geometric series. The circles \
+         are its sum, with 1024 bits; the lines are simulated errors relative to an exact solution in \
+         double-double.",
     );
     page.figure(running(record)?.number("9.3"));
     page.table(record.table("errors")?, 6);
     if is_the_sources {
         page.paragraph(
-            "The first three of the source’s numbers come out to their last digit for a million steps \
-             of 1 ms, as root mean squares over a million instants from the start on, if the state \
-             after a step is compared with the solution before it. That slip alone is worth z/√2 = 0.00224, four fifths of what the source \
-             reports for Verlet. Compared at its own time, each method does what its phase error \
-             says it must.",
+            "A million steps of 1 ms reproduce the first three numbers of the source to the last digit, as root \
+             mean squares over a million instants from the start, if the state after a step is compared with the \
+             solution before it. This time shift alone gives z/√2 = 0.00224, four fifths of the error that the source \
+             reports for Verlet. Compared at equal times, the error of each method agrees with its phase \
+             error.",
         );
     }
     if let Ok(suspects) = record.table("suspects")
@@ -35,11 +35,11 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     {
         page.heading("The RK4 of the source");
         page.paragraph(
-            "The source’s RK4 prints 0.90339, four hundred times the error of a correct one in the \
-             same comparison. What is known: an RK4 in which one stage moves the position by an \
-             acceleration times Δt, where Δt² belongs, is detuned by ⅚Δt and ends 2.6 rad out of \
-             phase, which lands within a part in 300 of that number, and nothing else tried does. \
-             What is not known: which slip it was. None prints all five digits.",
+            "The source reports 0.90339 for RK4, four hundred times the error of a correct RK4 in the \
+             same comparison. If one stage of RK4 adds an acceleration times Δt to the position in place of \
+             Δt², the frequency is wrong by ⅚Δt and the final phase error is 2.6 rad. The error of this \
+             variant is within 1/300 of the number of the source; no other variant in the table is. \
+             No variant reproduces all five digits, so the mistake of the source remains unknown.",
         );
         page.table(suspects, 6);
     }
@@ -67,15 +67,15 @@ fn summary(record: &Record, page: &mut Page, is_the_sources: bool) {
     {
         page.highlights.push(Highlight {
             value: format!("{} %", number(100.0 * (1.0 - verlet / late), 2)),
-            text: "of Verlet’s error in the source is a time stamp that is late by one step".into(),
+            text: "of the error of Verlet in the source is due to a time shift of one step".into(),
         });
     }
     if let (Some(verlet), Some(rk4)) =
         (error(Method::VelocityVerlet, "aligned"), error(Method::Rk4, "aligned"))
     {
         page.headline = format!(
-            "Beside the exact solution RK4 is off by {} m, Verlet by {} m: the source has them the \
-             other way round.",
+            "RMS error in position: RK4 {} m, velocity Verlet {} m. The source reports the opposite \
+             order.",
             number(rk4, 2),
             number(verlet, 2)
         );
@@ -96,14 +96,14 @@ fn with_series<'a>(
 fn running(record: &Record) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("fig-9-3", "RMS error in position so far")
         .caption(
-            "Left: each state beside the solution at its own time. Right: beside the solution one \
-             step before, as the source compares; where a method is more accurate than that slip, it \
-             shows the slip. Lines: simulated. Circles: the geometric series.",
+            "Left: error relative to the solution at the same time. Right: relative to the solution one \
+             step before, as in the source. There the time shift hides the error of accurate \
+             methods. Lines: simulated. Circles: the geometric series.",
         )
         .description("Log-log: running root mean square error of each method against time.")
         .columns(2)
         .aspect(1.15);
-    for (title, column) in [("At its own time", "aligned"), ("One step late", "late")] {
+    for (title, column) in [("At the same time", "aligned"), ("One step late", "late")] {
         let mut panel = Panel::new(Axis::log("time t").unit("s"), Axis::log("RMS error").unit("m"))
             .title(title);
         for (method, series) in with_series(record, "running") {
@@ -112,7 +112,9 @@ fn running(record: &Record) -> Result<Figure, RecordError> {
             let every =
                 |values: &[f64]| -> Vec<f64> { values.iter().rev().step_by(8).copied().collect() };
             panel = panel
-                .mark(Mark::line(t, shown(measured)).ink(ink(method)).label(method.title()))
+                .mark(
+                    Mark::line(t, shown(measured)).ink(method_color(method)).label(method.title()),
+                )
                 .mark(Mark::prediction(every(t), every(&shown(predicted))));
         }
         figure = figure.panel(panel);
@@ -129,18 +131,18 @@ fn steps(record: &Record) -> Result<Figure, RecordError> {
         panel = panel
             .mark(
                 Mark::line(dt, shown(series.column("measured")?))
-                    .ink(ink(method))
+                    .ink(method_color(method))
                     .label(method.title()),
             )
             .mark(Mark::prediction(dt, shown(series.column("predicted")?)));
     }
     Ok(Figure::new("error-step", "RMS error over the same time, for larger steps")
         .caption(
-            "An error of order p rises with the p-th power of the step, until the orbit is a whole \
-             turn out of phase and no error can be larger, unless the orbit itself grows. Lines: \
+            "An error of order p rises with the p-th power of the step, until the phase error is a whole \
+             turn. Beyond that the error grows only if the orbit does. Lines: \
              simulated. Circles: the geometric series.",
         )
-        .description("Log-log: error against time step, flat where the phase is lost.")
+        .description("Log-log: error against time step, flat for phase errors above a turn.")
         .panel(panel))
 }
 
@@ -159,12 +161,12 @@ fn growth(record: &Record) -> Result<Figure, RecordError> {
     let edge = |y: Vec<f64>| Mark::line(t.clone(), y).ink(Ink::Theory).dash(Dash::Solid).width(1.0);
     let below = bound.iter().map(|b| -b).collect();
     let panel = Panel::new(Axis::linear("time t").unit("s"), Axis::linear("x").unit("m"))
-        .mark(Mark::envelope(envelope).ink(ink(Method::ExplicitEuler)))
+        .mark(Mark::envelope(envelope).ink(method_color(Method::ExplicitEuler)))
         .mark(edge(bound.clone()))
         .mark(edge(below));
     Ok(Figure::new("fig-9-4", "Explicit Euler: the amplitude grows exponentially")
         .caption(
-            "Shaded: lowest to highest position in each stretch of the run. Lines: ±(1 + z²)ⁿᐟ² times \
+            "Shaded: lowest to highest position in each part of the run. Lines: ±(1 + z²)ⁿᐟ² times \
              the start, from the determinant.",
         )
         .description("The position of explicit Euler against time, within its exponential bounds.")

@@ -1,11 +1,11 @@
-//! One integrator beside the exact solution.
+//! One integrator compared with the exact solution.
 
 use libration::analysis::{ErrorForecast, Linearisation, UpdateMatrix};
 use libration::number::{TwoFloat, Wide};
 use libration::simulation::{Sample, Simulator};
 use libration::system::Oscillator;
 use libration::{Elementary, Float, Method, Model, Scalar, State, with_method};
-use libration_study::{StudyError, sampled_steps};
+use libration_study::{StudyError, log_spaced_steps};
 
 use super::mean::SumOfSquares;
 use crate::rounding::rounding_of_run;
@@ -13,7 +13,7 @@ use crate::rounding::rounding_of_run;
 /// Samples of the running error for each decade of steps.
 const PER_DECADE: f64 = 16.0;
 
-/// What is run.
+/// Integrator and time step of a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setting {
     pub(super) method: Method,
@@ -70,15 +70,15 @@ impl Setting {
 
     /// Simulates in `f64`, beside an exact solution in double-double.
     pub(super) fn run(&self) -> Result<Run, StudyError> {
-        let sampled = sampled_steps(self.steps, PER_DECADE);
-        let mut watch = Watch::new(self, &sampled);
+        let sampled = log_spaced_steps(self.steps, PER_DECADE);
+        let mut watch = ErrorObserver::new(self, &sampled);
         let system = Model::<1>::on::<f64>(&self.oscillator);
         let finished = with_method!(self.method, |m| {
             let mut simulator = Simulator::new(system, m, self.start, self.dt)?;
             // Leaving the range of f64 is a result; what was seen until then is kept.
             simulator.run(self.steps, &mut |sample: &Sample<f64, 1>| watch.see(sample)).is_ok()
         });
-        let Watch { aligned, late, running, last, amplitude, .. } = watch;
+        let ErrorObserver { aligned, late, running, last, amplitude, .. } = watch;
         let rms = root_mean(aligned, late, self.steps);
         let forecast = self.forecast();
         Ok(Run { setting: *self, forecast, rms, last, sampled, running, amplitude, finished })
@@ -86,7 +86,7 @@ impl Setting {
 }
 
 /// Follows a run beside the exact solution.
-struct Watch<'a> {
+struct ErrorObserver<'a> {
     /// The exact flow of one step.
     rotation: UpdateMatrix<TwoFloat, 1>,
     exact: State<TwoFloat, 1>,
@@ -98,9 +98,9 @@ struct Watch<'a> {
     amplitude: f64,
 }
 
-impl<'a> Watch<'a> {
+impl<'a> ErrorObserver<'a> {
     fn new(setting: &Setting, sampled: &'a [u64]) -> Self {
-        Watch {
+        ErrorObserver {
             rotation: rotation(setting.oscillator, setting.dt),
             exact: setting.start.map(TwoFloat::from_f64),
             sampled,

@@ -1,6 +1,6 @@
 //! Settings of the study `error`.
 
-use libration_settings::check::{number, steps};
+use libration_settings::validation::{check_number, check_steps};
 use libration_settings::{Count, Fault, Number, limits};
 use libration_study::{Settings, schema};
 use schemars::JsonSchema;
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Settings of the study `error`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErrorSettings {
-    /// The time step, in s.
+    /// Time step in s.
     pub dt: f64,
     /// Number of steps.
     pub steps: u64,
@@ -21,7 +21,7 @@ impl Default for ErrorSettings {
     }
 }
 
-/// The study of the error against the exact solution.
+/// Settings of the study `error`.
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
@@ -49,12 +49,12 @@ impl Settings for ErrorSettings {
     }
 
     fn from_table(table: Table) -> Result<Self, Fault> {
-        Ok(ErrorSettings { dt: table.dt.0, steps: steps("error.steps", table.steps.0)? })
+        Ok(ErrorSettings { dt: table.dt.0, steps: check_steps("error.steps", table.steps.0)? })
     }
 
     fn check(&self) -> Result<(), Fault> {
-        number("error.dt", limits::TIME_STEP, self.dt)?;
-        steps("error.steps", self.steps.into())?;
+        check_number("error.dt", limits::TIME_STEP, self.dt)?;
+        check_steps("error.steps", self.steps.into())?;
         Ok(())
     }
 }

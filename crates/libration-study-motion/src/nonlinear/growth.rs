@@ -1,4 +1,4 @@
-//! Whether the energy drift grows with the horizon.
+//! Growth of the energy drift with the horizon.
 
 use libration::Method;
 use libration_report::notation::{count, number};
@@ -6,26 +6,25 @@ use libration_report::record::{Cell, Finding, Record, Relation, Series, Table, T
 use libration_study::{Lab, StudyError};
 
 use super::super::subject::Horizon;
-use super::Trial;
+use super::Case;
 use crate::nonlinear::NonlinearSettings;
 
 /// A drift beyond this changes the orbit so much that it is another one.
 const SMALL: f64 = 0.1;
 
-/// Runs every trial over the whole horizon.
+/// Runs every case over the whole horizon.
 pub(super) fn measure(
     lab: &Lab<'_>,
-    trials: &[Trial<'_>],
+    cases: &[Case<'_>],
     record: &mut Record,
 ) -> Result<(), StudyError> {
     let (steps, turns) =
         (lab.config.get::<NonlinearSettings>().steps, lab.config.get::<NonlinearSettings>().turns);
     let what = format!("energy drift over {} turns", count(turns));
-    let found =
-        lab.sweep(&what, trials, |trial| trial.subject.horizon(trial.method, steps, turns))?;
+    let found = lab.sweep(&what, cases, |case| case.subject.horizon(case.method, steps, turns))?;
     let columns = ["system", "integrator", "largest drift", "half-way", "exponent of time"];
     let mut table = Table::new("growth", &columns);
-    for (trial, horizon) in trials.iter().zip(&found) {
+    for (case, horizon) in cases.iter().zip(&found) {
         let grown = Grown::new(horizon, steps);
         // What has left the floats by then has no size.
         if grown.last.is_finite() {
@@ -34,14 +33,14 @@ pub(super) fn measure(
                 count(turns),
                 count(steps)
             );
-            record.find(Finding::measured(trial.id("largest"), trial.text(&what), "1", grown.last));
+            record.find(Finding::measured(case.id("largest"), case.text(&what), "1", grown.last));
         }
-        if let Some(finding) = finding(trial, &grown) {
+        if let Some(finding) = finding(case, &grown) {
             record.find(finding);
         }
         table.push([
-            trial.subject.title().into(),
-            trial.method.title().into(),
+            case.subject.title().into(),
+            case.method.title().into(),
             size(grown.last),
             size(grown.half),
             match grown.exponent() {
@@ -52,9 +51,9 @@ pub(super) fn measure(
     }
     record.tables.push(table);
     let per_subject = found.chunks(lab.config.integrators.len().max(1));
-    let first_of = trials.iter().step_by(lab.config.integrators.len().max(1));
-    for (trial, horizons) in first_of.zip(per_subject) {
-        record.series.push(series(trial, &lab.config.integrators, horizons, steps));
+    let first_of = cases.iter().step_by(lab.config.integrators.len().max(1));
+    for (case, horizons) in first_of.zip(per_subject) {
+        record.series.push(series(case, &lab.config.integrators, horizons, steps));
     }
     Ok(())
 }
@@ -91,17 +90,17 @@ impl Grown {
 }
 
 /// Bounded for a symplectic method, linear for the others as long as the drift is small.
-fn finding(trial: &Trial<'_>, grown: &Grown) -> Option<Finding> {
-    let id = trial.id("growth");
-    let text = trial.text("exponent of time in the energy drift, over the second half of the run");
+fn finding(case: &Case<'_>, grown: &Grown) -> Option<Finding> {
+    let id = case.id("growth");
+    let text = case.text("exponent of time in the energy drift, over the second half of the run");
     let exponent = grown.exponent();
     if !exponent.is_finite() {
         return None;
     }
-    if trial.law.velocity_dependent {
+    if case.law.velocity_dependent {
         return Some(Finding::measured(id, text, "1", exponent));
     }
-    if trial.is_symplectic() {
+    if case.is_symplectic() {
         let why = "a drift that grows linearly has 1, one that walks at random ½; an orbit that \
                    still visits rarer phases for the first time has less than half of that";
         let bound = Tolerance::absolute(0.2, why);
@@ -114,7 +113,7 @@ fn finding(trial: &Trial<'_>, grown: &Grown) -> Option<Finding> {
     // The swing within a turn adds to the ramp, and the ramp steepens as the orbit changes.
     let swing = grown.turn / grown.half;
     let uncertainty = 2.0 * swing + 4.0 * grown.last;
-    Some(if trial.closes && uncertainty < 0.2 {
+    Some(if case.closes && uncertainty < 0.2 {
         let why = format!(
             "twice the share {} of the first turn’s swing in the drift half-way, and four times \
              the drift itself, by which the rate may change",
@@ -127,10 +126,10 @@ fn finding(trial: &Trial<'_>, grown: &Grown) -> Option<Finding> {
 }
 
 /// The running maxima of all methods on one system.
-fn series(trial: &Trial<'_>, methods: &[Method], horizons: &[Horizon], steps: u64) -> Series {
+fn series(case: &Case<'_>, methods: &[Method], horizons: &[Horizon], steps: u64) -> Series {
     let step = horizons.first().map(|h| h.step.clone()).unwrap_or_default();
     let turns = step.iter().map(|&n| n as f64 / steps as f64).collect();
-    let series = Series::new(format!("growth-{}", trial.subject.name())).with("turns", "1", turns);
+    let series = Series::new(format!("growth-{}", case.subject.name())).with("turns", "1", turns);
     methods
         .iter()
         .zip(horizons)

@@ -1,13 +1,13 @@
-//! The time step at which stability is lost, and what a large step does to an orbit.
+//! Stability limits, and orbits at a large step.
 
 use libration::Method;
 use libration_report::notation::{count, seconds};
 use libration_report::record::{Cell, Finding, Record, Series, Table, Tolerance};
 use libration_study::{Lab, StudyError};
 
-use super::super::spectrum::largest_stable;
-use super::super::subject::{Loss, Orbits};
-use super::Trial;
+use super::super::subject::{Orbits, StabilityLimit};
+use super::Case;
+use crate::stable_step::largest_stable;
 
 /// Steps of an orbit about the equilibrium.
 const SMALL_STEPS: u64 = 20_000;
@@ -15,27 +15,28 @@ const SMALL_STEPS: u64 = 20_000;
 /// Points of a portrait.
 const POINTS: u64 = 280;
 
-/// Searches the limits of every trial.
+/// Searches the limits of every case.
 pub(super) fn search(
     lab: &Lab<'_>,
-    trials: &[Trial<'_>],
+    cases: &[Case<'_>],
     record: &mut Record,
 ) -> Result<(), StudyError> {
     let steps = lab.effort.choose(400, 1_000, 10_000);
     let execution = lab.alone()?;
-    let found = lab.sweep("largest stable steps", trials, |trial| {
-        let linear = largest_stable(trial.method)?;
-        let subject = trial.subject;
+    let found = lab.sweep("largest stable steps", cases, |case| {
+        let linear = largest_stable(case.method)?;
+        let subject = case.subject;
         let small = match subject.frequency() {
             Some(omega) => {
-                let loss = subject.loss(&execution, Orbits::Small, trial.method, SMALL_STEPS)?;
+                let loss =
+                    subject.stability_limit(&execution, Orbits::Small, case.method, SMALL_STEPS)?;
                 Some((linear / omega, omega, loss))
             }
             None => None,
         };
         // A method that is never stable loses every orbit, the later the smaller the step.
         let large = match linear > 0.0 {
-            true => subject.loss(&execution, Orbits::Configured, trial.method, steps)?,
+            true => subject.stability_limit(&execution, Orbits::Configured, case.method, steps)?,
             false => None,
         };
         Ok((small, large))
@@ -43,42 +44,37 @@ pub(super) fn search(
     let columns =
         ["system", "integrator", "small: predicted (s)", "measured (s)", "from the start (s)"];
     let mut table = Table::new("limits", &columns);
-    for (trial, (small, large)) in trials.iter().zip(&found) {
+    for (case, (small, large)) in cases.iter().zip(&found) {
         let mut cells = [const { None }; 3];
-        if let Some((predicted, omega, Some(Loss { dt: measured, .. }))) = *small {
-            record.find(small_orbit(trial, predicted, omega, measured));
+        if let Some((predicted, omega, Some(StabilityLimit { dt: measured, .. }))) = *small {
+            record.find(small_orbit(case, predicted, omega, measured));
             cells[0] = Some(Cell::rounded(predicted, 6));
             cells[1] = Some(Cell::rounded(measured, 6));
         }
-        if let Some(Loss { dt: measured, apart }) = *large {
+        if let Some(StabilityLimit { dt: measured, spacing }) = *large {
             let what = format!(
                 "first Δt at which the energy changes by as much as there was, from the configured \
                  start within {} steps, among steps that are {} apart: a gap between two of them \
                  would not be seen",
                 count(4 * steps),
-                seconds(apart, 2)
+                seconds(spacing, 2)
             );
-            record.find(Finding::measured(
-                trial.id("start-limit"),
-                trial.text(&what),
-                "s",
-                measured,
-            ));
+            record.find(Finding::measured(case.id("start-limit"), case.text(&what), "s", measured));
             cells[2] = Some(measured.into());
         }
         table.push(
-            [trial.subject.title().into(), trial.method.title().into()]
+            [case.subject.title().into(), case.method.title().into()]
                 .into_iter()
                 .chain(cells.map(|cell| cell.unwrap_or_else(|| Cell::absent("—")))),
         );
     }
     record.tables.push(table);
     let larges: Vec<Option<f64>> = found.iter().map(|(_, l)| l.map(|loss| loss.dt)).collect();
-    portraits(lab, trials, &larges, record)
+    portraits(lab, cases, &larges, record)
 }
 
 /// The limit about the equilibrium: that of the oscillator, at the frequency of its linearisation.
-fn small_orbit(trial: &Trial<'_>, predicted: f64, omega: f64, measured: f64) -> Finding {
+fn small_orbit(case: &Case<'_>, predicted: f64, omega: f64, measured: f64) -> Finding {
     let n = SMALL_STEPS as f64;
     let (size, why) = match predicted {
         0.0 => (0.05 / omega, "the smallest step that is tried, ωΔt = 0.05".to_owned()),
@@ -93,8 +89,8 @@ fn small_orbit(trial: &Trial<'_>, predicted: f64, omega: f64, measured: f64) -> 
         ),
     };
     Finding::predicted(
-        trial.id("small-limit"),
-        trial.text("largest Δt at which a small orbit about the equilibrium stays small"),
+        case.id("small-limit"),
+        case.text("largest Δt at which a small orbit about the equilibrium stays small"),
         "s",
         predicted,
         measured,
@@ -105,37 +101,36 @@ fn small_orbit(trial: &Trial<'_>, predicted: f64, omega: f64, measured: f64) -> 
 /// Orbits at a step that is large for velocity Verlet.
 fn portraits(
     lab: &Lab<'_>,
-    trials: &[Trial<'_>],
+    cases: &[Case<'_>],
     limits: &[Option<f64>],
     record: &mut Record,
 ) -> Result<(), StudyError> {
-    let step = |trial: &Trial<'_>| {
-        let same = |t: &Trial<'_>| t.subject.name() == trial.subject.name();
+    let step = |case: &Case<'_>| {
+        let same = |t: &Case<'_>| t.subject.name() == case.subject.name();
         let verlet =
-            trials.iter().zip(limits).find(|(t, _)| same(t) && t.method == Method::VelocityVerlet);
+            cases.iter().zip(limits).find(|(t, _)| same(t) && t.method == Method::VelocityVerlet);
         let limit = verlet.and_then(|(_, limit)| *limit).filter(|&limit| limit > 0.0);
-        limit.map_or(trial.subject.turn() / 16.0, |limit| 0.5 * limit)
+        limit.map_or(case.subject.turn() / 16.0, |limit| 0.5 * limit)
     };
-    let found = lab.sweep("portraits", trials, |trial| {
-        trial.subject.portrait(trial.method, step(trial), POINTS)
-    })?;
-    for (trial, portrait) in trials.iter().zip(found) {
+    let found = lab
+        .sweep("portraits", cases, |case| case.subject.portrait(case.method, step(case), POINTS))?;
+    for (case, portrait) in cases.iter().zip(found) {
         let n = portrait.x.len();
-        let named = |series: Series, x, y| match trial.subject.dimension() {
+        let named = |series: Series, x, y| match case.subject.dimension() {
             1 => series.with("q", "", x).with("v·turn/2π", "", y),
             _ => series.with("q₀", "", x).with("q₁", "", y),
         };
-        let name = format!("portrait-{}-{}", trial.subject.name(), trial.method.name());
+        let name = format!("portrait-{}-{}", case.subject.name(), case.method.name());
         record.series.push(named(Series::new(name), portrait.x, portrait.y).with(
             "dt",
             "s",
-            vec![step(trial); n],
+            vec![step(case); n],
         ));
-        let path = format!("path-{}", trial.subject.name());
+        let path = format!("path-{}", case.subject.name());
         if record.series(&path).is_err() {
             // RK4 at 400 steps a turn is the orbit itself, to the width of a line.
-            let dt = trial.subject.turn() / 400.0;
-            let exact = trial.subject.portrait(Method::Rk4, dt, 2 * POINTS)?;
+            let dt = case.subject.turn() / 400.0;
+            let exact = case.subject.portrait(Method::Rk4, dt, 2 * POINTS)?;
             record.series.push(named(Series::new(path), exact.x, exact.y));
         }
     }

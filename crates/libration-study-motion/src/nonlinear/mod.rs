@@ -1,11 +1,11 @@
-//! What linear theory leaves open: energy, symmetry and stability of nonlinear systems.
+//! The study `nonlinear`: energy, symmetry and stability of nonlinear systems.
 
+mod captions;
 mod growth;
 mod limit;
 mod render;
 mod settings;
 mod symmetries;
-mod words;
 
 pub use self::settings::NonlinearSettings;
 use libration::Method;
@@ -52,11 +52,11 @@ impl Study for Nonlinear<'_> {
         let configured = configured(lab.config, &lab.config.get::<NonlinearSettings>().systems)?;
         let configured: Vec<&dyn Subject> = configured.iter().map(AsRef::as_ref).collect();
         let subjects = if self.own.is_empty() { &configured } else { self.own };
-        let trials = trials(lab, subjects)?;
-        growth::measure(lab, &trials, &mut record)?;
-        exponents(lab, &trials, &mut record)?;
-        symmetries::measure(lab, &trials, &mut record)?;
-        limit::search(lab, &trials, &mut record)?;
+        let cases = cases(lab, subjects)?;
+        growth::measure(lab, &cases, &mut record)?;
+        exponents(lab, &cases, &mut record)?;
+        symmetries::measure(lab, &cases, &mut record)?;
+        limit::search(lab, &cases, &mut record)?;
         let mut systems = Table::new("systems", &["name", "system"]);
         subjects.iter().for_each(|s| systems.push([s.name().into(), s.title().into()]));
         record.tables.push(systems);
@@ -69,7 +69,7 @@ impl Study for Nonlinear<'_> {
 }
 
 /// One method on one system, and what is known of both beforehand.
-struct Trial<'a> {
+struct Case<'a> {
     subject: &'a dyn Subject,
     law: Law,
     closes: bool,
@@ -78,7 +78,7 @@ struct Trial<'a> {
     reversible: bool,
 }
 
-impl Trial<'_> {
+impl Case<'_> {
     fn id(&self, quantity: &str) -> String {
         format!("nonlinear.{}.{}.{quantity}", self.subject.name(), self.method.name())
     }
@@ -103,17 +103,17 @@ impl Trial<'_> {
 }
 
 /// Every method on every system.
-fn trials<'a>(lab: &Lab<'_>, subjects: &[&'a dyn Subject]) -> Result<Vec<Trial<'a>>, StudyError> {
+fn cases<'a>(lab: &Lab<'_>, subjects: &[&'a dyn Subject]) -> Result<Vec<Case<'a>>, StudyError> {
     let known =
         lab.sweep("what theory says", subjects, |subject| Ok((subject.law(), subject.closes())))?;
-    let mut trials = Vec::new();
+    let mut cases = Vec::new();
     for (&subject, (law, closes)) in subjects.iter().zip(known) {
         for &method in &lab.config.integrators {
             let (symplectic, reversible) = Symmetry::of_method(method);
-            trials.push(Trial { subject, law, closes, method, symplectic, reversible });
+            cases.push(Case { subject, law, closes, method, symplectic, reversible });
         }
     }
-    Ok(trials)
+    Ok(cases)
 }
 
 /// The time steps that this effort affords.
@@ -122,40 +122,40 @@ fn halvings(lab: &Lab<'_>) -> Halvings {
 }
 
 /// How the energy's swing within a turn, and its mean change in a turn, depend on the step.
-fn exponents(lab: &Lab<'_>, trials: &[Trial<'_>], record: &mut Record) -> Result<(), StudyError> {
-    let found = lab.sweep("energy at ever smaller steps", trials, |trial| {
-        let changes = |change| trial.subject.changes(change, trial.method, halvings(lab));
-        let rate = (!trial.is_symplectic()).then(|| changes(Change::Rate)).transpose()?;
+fn exponents(lab: &Lab<'_>, cases: &[Case<'_>], record: &mut Record) -> Result<(), StudyError> {
+    let found = lab.sweep("energy at ever smaller steps", cases, |case| {
+        let changes = |change| case.subject.changes(change, case.method, halvings(lab));
+        let rate = (!case.is_symplectic()).then(|| changes(Change::Rate)).transpose()?;
         Ok((changes(Change::Swing)?, rate))
     })?;
-    for (trial, (swing, rate)) in trials.iter().zip(found) {
-        let order = f64::from(trial.method.order());
-        let known = !trial.law.velocity_dependent;
-        let even = trial.method.order().is_multiple_of(2);
+    for (case, (swing, rate)) in cases.iter().zip(found) {
+        let order = f64::from(case.method.order());
+        let known = !case.law.velocity_dependent;
+        let even = case.method.order().is_multiple_of(2);
         // The step is ρ-reversible with Δt → −Δt: a term of the modified equation with an even
         // power of Δt changes the energy by a function that is odd under time reversal, and gives
         // back on one half of a closed orbit what it takes on the other.
         let secular = if even { order + 1.0 } else { order };
         // On a linear system RK4 keeps the shape of the energy: nothing swings, all is secular.
-        let swinging = if trial.law.linear && !trial.symplectic { secular } else { order };
+        let swinging = if case.law.linear && !case.symplectic { secular } else { order };
         if let Some(fit) = Fit::new(&swing.dt, &swing.size) {
             let what = "exponent of Δt in the largest energy drift within a turn";
-            record.find(trial.exponent("swing-order", what, known.then_some(swinging), fit));
+            record.find(case.exponent("swing-order", what, known.then_some(swinging), fit));
         }
         if let Some(rate) = rate {
             if let Some(fit) = Fit::new(&rate.dt, &rate.size) {
                 let what = "exponent of Δt in the mean energy change of a turn";
-                let promised = (known && trial.closes).then_some(secular);
-                record.find(trial.exponent("rate-order", what, promised, fit));
+                let promised = (known && case.closes).then_some(secular);
+                record.find(case.exponent("rate-order", what, promised, fit));
             }
             record.series.push(
-                Series::new(format!("rate-{}-{}", trial.subject.name(), trial.method.name()))
+                Series::new(format!("rate-{}-{}", case.subject.name(), case.method.name()))
                     .with("dt", "s", rate.dt)
                     .with("rate", "", rate.size),
             );
         }
         record.series.push(
-            Series::new(format!("swing-{}-{}", trial.subject.name(), trial.method.name()))
+            Series::new(format!("swing-{}-{}", case.subject.name(), case.method.name()))
                 .with("dt", "s", swing.dt)
                 .with("swing", "", swing.size),
         );

@@ -6,8 +6,8 @@ use libration_report::notation::{number, seconds};
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Column, Record, RecordError};
 
-use super::words::{growths, rates, step_of_portraits};
-use crate::ink::ink;
+use super::captions::{growths, rates, step_of_portraits};
+use crate::method_color::method_color;
 
 /// Writes the chapter.
 pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
@@ -15,9 +15,9 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     let systems = systems(record)?;
     summary(record, page, &systems)?;
     page.paragraph(
-        "Where forces are not linear no matrix says what a million steps do. What theory does say \
-         are powers: a symplectic method of order p keeps the energy within a band that shrinks as \
-         Δt^p and does not widen with time; the others drift, and the drift grows with the \
+        "With nonlinear forces no update matrix predicts a million steps. Theory predicts powers of the \
+         time step: a symplectic method of order p keeps the energy in a band of width Δt^p, \
+         constant in time. With other methods the energy drifts, and the drift grows with the \
          horizon.",
     );
     page.figure(growth(record, &systems)?);
@@ -25,24 +25,24 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.figure(swings(record, &systems)?);
     if let Some(rates) = rates(record) {
         page.paragraph(format!(
-            "Within one turn the energy of a method of order p swings by Δt^p, where forces are not \
-             linear. What is left after a turn is another matter: of an even order p the term Δt^p \
-             is odd under time reversal, so that a closed orbit gives back on one half what it took \
-             on the other. In a turn of a closed orbit the energy therefore drifts by {rates}."
+            "Within one turn the energy of a method of order p oscillates by Δt^p, if forces are not \
+             linear. The change after a whole turn differs: for an even order p the term Δt^p \
+             is odd under time reversal, and its contributions to the two halves of a closed orbit \
+             cancel. In a turn of a closed orbit the energy therefore drifts by {rates}."
         ));
     }
     page.heading("One step");
     page.paragraph(
-        "Duals of 1024 bits carry the Jacobian of each shipped step along the orbit. A defect is \
-         either zero to all bits, or a power of Δt; the sizes are those at 256 steps a turn.",
+        "Dual numbers of 1024 bits give the Jacobian of each shipped step along the orbit. A defect is \
+         either zero to all bits, or a power of Δt; the sizes are those at 256 steps per turn.",
     );
     page.table(record.table("defects")?, 3);
-    page.heading("Where stability ends");
+    page.heading("Limits of stability");
     page.paragraph(
-        "Close to an equilibrium a step is stable as far as on the oscillator of the same highest \
-         frequency, and simulation finds the limit there. From the configured start it ends where \
-         it ends: the search scans upward, then again below the first loss with a finer grid and \
-         longer runs, since resonances open narrow gaps.",
+        "Close to an equilibrium the stability limit is that of an oscillator with the same highest \
+         frequency, and simulation confirms it. From the configured start there is no prediction: a \
+         search scans the time steps upward, and then below the first unstable step with a finer grid and \
+         longer runs, since resonances cause narrow unstable ranges.",
     );
     page.table(record.table("limits")?, 4);
     page.figure(portraits(record, &systems)?);
@@ -92,7 +92,7 @@ pub(super) fn summary(
     if let Some(worst) = growths(|&p| p == 0.0).reduce(f64::max) {
         page.highlights.push(Highlight {
             value: format!("t^{{{:.2}}}", worst.max(0.0)),
-            text: "fastest growth of a symplectic method’s energy drift".into(),
+            text: "fastest growth of the energy drift of a symplectic method".into(),
         });
     }
     let rate = |(name, title): &(String, String)| {
@@ -116,7 +116,7 @@ fn figure(id: &str, title: &str, systems: &[(String, String)]) -> Figure {
     }
 }
 
-/// What is worth drawing: an energy beyond a thousand times its start has left the figure.
+/// Returns values up to a thousand times the initial energy, and NaN beyond.
 fn shown(values: &[f64]) -> Vec<f64> {
     values.iter().map(|&y| if y < 1e3 { y } else { f64::NAN }).collect()
 }
@@ -135,7 +135,7 @@ fn growth(record: &Record, systems: &[(String, String)]) -> Result<Figure, Recor
         for method in Method::ALL {
             let Ok(largest) = series.column(method.name()) else { continue };
             let line = Mark::line(turns, shown(largest));
-            panel = panel.mark(line.ink(ink(method)).label(method.title()));
+            panel = panel.mark(line.ink(method_color(method)).label(method.title()));
         }
         figure = figure.panel(panel);
     }
@@ -148,8 +148,8 @@ fn swings(record: &Record, systems: &[(String, String)]) -> Result<Figure, Recor
     let mut figure = figure("nonlinear-swing", title, systems)
         .caption(match record.series.iter().any(|series| series.name.starts_with("rate-")) {
             true => {
-                "Lines: the largest drift within a turn. Crosses: the mean change in a turn, of what \
-                 does not keep areas of phase space."
+                "Lines: the largest drift within a turn. Crosses: the mean change in a turn, for \
+                 methods that are not symplectic."
             }
             false => "Lines: the largest drift within a turn.",
         })
@@ -161,11 +161,12 @@ fn swings(record: &Record, systems: &[(String, String)]) -> Result<Figure, Recor
             let name = format!("{name}-{}", method.name());
             let Ok(swing) = record.series(&format!("swing-{name}")) else { continue };
             let line = Mark::line(swing.column("dt")?, shown(swing.column("swing")?));
-            panel = panel.mark(line.ink(ink(method)).label(method.title()));
+            panel = panel.mark(line.ink(method_color(method)).label(method.title()));
             let Ok(rate) = record.series(&format!("rate-{name}")) else { continue };
             let points = Mark::points(rate.column("dt")?, shown(rate.column("rate")?));
-            panel =
-                panel.mark(points.ink(ink(method)).marker(libration_report::figure::Marker::Cross));
+            panel = panel.mark(
+                points.ink(method_color(method)).marker(libration_report::figure::Marker::Cross),
+            );
         }
         figure = figure.panel(panel);
     }
@@ -176,8 +177,8 @@ fn swings(record: &Record, systems: &[(String, String)]) -> Result<Figure, Recor
 fn portraits(record: &Record, systems: &[(String, String)]) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("nonlinear-portraits", "Orbits at a large step")
         .caption(format!(
-            "{} Position and velocity in one dimension, the plane of motion in two. Thin line: the \
-             same start in small steps.",
+            "{} Position and velocity for one dimension, the plane of motion for two. Thin line: the \
+             same start with small steps.",
             step_of_portraits(record, systems)
         ))
         .description("Points of orbits, one panel for each system and method.")
@@ -201,7 +202,11 @@ fn portraits(record: &Record, systems: &[(String, String)]) -> Result<Figure, Re
                 )
                 .title(format!("{title}: {}, Δt = {}", method.title(), seconds(dt, 2)))
                 .equal()
-                .mark(Mark::points(x.values.clone(), y.values.clone()).ink(ink(method)).radius(1.4))
+                .mark(
+                    Mark::points(x.values.clone(), y.values.clone())
+                        .ink(method_color(method))
+                        .radius(1.4),
+                )
                 .mark(Mark::line(path_x, path_y).ink(Ink::Neutral).dash(Dash::Solid).width(0.7)),
             );
         }

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use libration_settings::check::count_in;
+use libration_settings::validation::check_count_in;
 use libration_settings::{Count, Fault};
 use libration_study::{Settings, schema};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -13,15 +13,15 @@ use crate::subject::settings::{check_systems, systems_schema};
 /// Steps per turn over a long horizon.
 const STEPS_A_TURN: RangeInclusive<u64> = 16..=10_000;
 
-/// Turns of a long horizon: fewer than these show no growth.
+/// Turns of a long horizon; fewer turns show no growth.
 const TURNS: RangeInclusive<u64> = 100..=100_000;
 
 /// Settings of the study `nonlinear`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NonlinearSettings {
-    /// The systems under study, each once, of [`SYSTEMS`](libration_study_motion::SYSTEMS).
+    /// Systems, each once, from [`SYSTEMS`](crate::SYSTEMS).
     pub systems: Vec<String>,
-    /// Steps a turn over the long horizon.
+    /// Steps per turn over the long horizon.
     pub steps: u64,
     /// Turns of the long horizon.
     pub turns: u64,
@@ -41,10 +41,10 @@ impl Default for NonlinearSettings {
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
-    /// The systems under study, each once.
+    /// Systems, each once.
     #[schemars(schema_with = "systems_schema")]
     systems: Vec<String>,
-    /// Steps a turn over the long horizon.
+    /// Steps per turn over the long horizon.
     #[schemars(schema_with = "steps_schema")]
     steps: Count,
     /// Turns of the long horizon.
@@ -74,15 +74,15 @@ impl Settings for NonlinearSettings {
     fn from_table(table: Table) -> Result<Self, Fault> {
         Ok(NonlinearSettings {
             systems: table.systems,
-            steps: count_in("nonlinear.steps", STEPS_A_TURN, table.steps.0)?,
-            turns: count_in("nonlinear.turns", TURNS, table.turns.0)?,
+            steps: check_count_in("nonlinear.steps", STEPS_A_TURN, table.steps.0)?,
+            turns: check_count_in("nonlinear.turns", TURNS, table.turns.0)?,
         })
     }
 
     fn check(&self) -> Result<(), Fault> {
         check_systems("nonlinear.systems", &self.systems)?;
-        count_in("nonlinear.steps", STEPS_A_TURN, self.steps.into())?;
-        count_in("nonlinear.turns", TURNS, self.turns.into())?;
+        check_count_in("nonlinear.steps", STEPS_A_TURN, self.steps.into())?;
+        check_count_in("nonlinear.turns", TURNS, self.turns.into())?;
         Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use libration::Method;
 use libration_report::notation::{list, number, seconds};
 use libration_report::record::{Finding, Judgement, Record, Ruling};
-use libration_study::{Config, source};
+use libration_study::{Config, source_report};
 
 use super::tag;
 use crate::precision::PrecisionSettings;
@@ -21,9 +21,9 @@ const VISIBLE: f64 = 0.1;
 pub(super) fn judge(config: &Config, record: &mut Record) {
     drifts(config, record);
     sufficient(config, record);
-    let own_run = config.get::<PrecisionSettings>().steps == source::STEPS
-        && config.get::<PrecisionSettings>().dt.contains(&source::DT);
-    if source::is_its_orbit(config) && own_run {
+    let own_run = config.get::<PrecisionSettings>().steps == source_report::STEPS
+        && config.get::<PrecisionSettings>().dt.contains(&source_report::DT);
+    if source_report::is_source_orbit(config) && own_run {
         long_horizon(config, record);
     }
     rounded_step(config, record);
@@ -63,13 +63,13 @@ fn rule(
 /// The methods of which the source shows drifts in both precisions.
 const CONSERVATIVE: [Method; 3] = [Method::SymplecticEuler, Method::VelocityVerlet, Method::Rk4];
 
-/// What the source says of drifts in single precision, wherever it says so.
+/// Statement of the source about drifts in single precision.
 fn drifts(config: &Config, record: &mut Record) {
     let settings = found(config, record, &CONSERVATIVE, "f32");
     let predicted = |f: &Finding| f.predicted.unwrap_or(f64::NAN);
     let ratio = |f: &Finding| f.measured / predicted(f);
     let alike = |f: &Finding| (ratio(f) - 1.0).abs() <= NEARLY;
-    let told = |f: &[&Finding]| -> String {
+    let evidence = |f: &[&Finding]| -> String {
         let one = |((m, dt, _), f): (&(Method, f64, String), &&Finding)| {
             format!("{} at {}: {}", m.title(), seconds(*dt, 3), number(ratio(f), 3))
         };
@@ -89,7 +89,7 @@ fn drifts(config: &Config, record: &mut Record) {
             format!(
                 "the largest drift in f32, in units of what it is without rounding — {}. What is \
                  negligible is so beside a large error of the method",
-                told(f)
+                evidence(f)
             ),
         )
     });
@@ -103,7 +103,7 @@ fn drifts(config: &Config, record: &mut Record) {
                 "the ratios are {}. None of these runs diverges: their largest drift is {}. The source’s own \
                  number, δE ≈ 0.005, is what symplectic Euler swings by at z = 0.01: of its \
                  methods the one that shows least of its rounding",
-                told(f),
+                evidence(f),
                 number(largest, 2)
             ),
         )
@@ -127,7 +127,7 @@ fn drifts(config: &Config, record: &mut Record) {
     });
 }
 
-/// What single precision would do to a simulation for learning, of which the source has none.
+/// Judges the claim about single precision in simulations for learning, which the source does not run.
 fn sufficient(config: &Config, record: &mut Record) {
     let settings = found(config, record, &[Method::SymplecticEuler], "ahead");
     let text =
@@ -144,7 +144,7 @@ fn sufficient(config: &Config, record: &mut Record) {
     });
 }
 
-/// What the source says of a million steps.
+/// Judges the claims about a million steps.
 fn long_horizon(config: &Config, record: &mut Record) {
     let symplectic = [Method::SymplecticEuler, Method::VelocityVerlet];
     let phases = found(config, record, &symplectic, "phase");

@@ -1,4 +1,4 @@
-//! Clocks that add up their steps.
+//! Clocks that sum their steps.
 
 use half::{bf16, f16};
 use libration::Float;
@@ -17,7 +17,7 @@ type Clock = (&'static str, fn(f64, u64) -> Option<[f64; 2]>);
 const CLOCKS: [Clock; 4] =
     [("bf16", show::<bf16>), ("f16", show::<f16>), ("f32", show::<f32>), ("f64", show::<f64>)];
 
-/// What the clocks show after all steps, at every time step.
+/// Measures the clocks after all steps, at every time step.
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
     let config = &lab.config.get::<PrecisionSettings>();
     let columns =

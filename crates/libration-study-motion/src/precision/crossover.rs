@@ -1,11 +1,11 @@
-//! When the rounding of a step has left as much as its error.
+//! The number of steps after which rounding exceeds the error of the method.
 
 use libration::integrator::VelocityVerlet;
 use libration::{Float, State};
 use libration_report::Record;
 use libration_report::notation::{count, seconds};
 use libration_report::record::{Cell, Finding, Table, Tolerance};
-use libration_study::{Lab, StudyError, sampled_steps};
+use libration_study::{Lab, StudyError, log_spaced_steps};
 
 use super::in_float::InFloat;
 use super::orbits::follow;
@@ -62,7 +62,7 @@ fn at(lab: &Lab<'_>, dt: f64) -> Option<(f64, f64, Option<f64>)> {
     if !random || !(8.0..4e6 / ORBITS as f64).contains(&reach) {
         return Some((truncation, predicted, None));
     }
-    let sampled = sampled_steps(reach as u64, PER_DECADE);
+    let sampled = log_spaced_steps(reach as u64, PER_DECADE);
     let change = |from: &State<f32, 1>, to: &State<f32, 1>| one.change(from, to);
     let orbits = follow(&one.starts(ORBITS), &sampled, |s| one.step(s), change);
     let rms = |i: usize| {

@@ -3,26 +3,26 @@
 use libration_report::figure::{Axis, Figure, Ink, Mark, Panel};
 use libration_report::record::{Record, RecordError};
 
-use super::kind::KINDS;
+use super::float_type::FLOAT_TYPES;
 
 /// The ink of a float type: the 24 bits of `f32` and the 53 of `f64` have their own.
-fn ink(i: usize) -> Ink {
-    match KINDS[i].name {
+fn series_color(i: usize) -> Ink {
+    match FLOAT_TYPES[i].name {
         "f64" => Ink::Good,
         "f32" => Ink::VelocityVerlet,
         _ => Ink::Accent(i as u8),
     }
 }
 
-/// What every fourth sample shows.
+/// Returns every fourth value.
 fn every(values: &[f64]) -> Vec<f64> {
     values.iter().copied().step_by(4).collect()
 }
 
 /// Drift against steps, for all types, with the prediction where there is one.
 pub(super) fn types(record: &Record) -> Result<Figure, RecordError> {
-    let mut panel = Panel::new(Axis::log("steps"), Axis::log("rms drift of what is conserved"));
-    for (i, kind) in KINDS.iter().enumerate() {
+    let mut panel = Panel::new(Axis::log("steps"), Axis::log("rms drift of the invariant"));
+    for (i, kind) in FLOAT_TYPES.iter().enumerate() {
         let Ok(series) = record.series(&format!("type-{}", kind.name)) else { continue };
         let (step, drift) = (series.column("step")?, series.column("drift")?);
         let comparable = series.column("comparable")?;
@@ -32,15 +32,15 @@ pub(super) fn types(record: &Record) -> Result<Figure, RecordError> {
             .zip(comparable)
             .map(|(&drift, &comparable)| if comparable > 0.0 { drift } else { f64::NAN })
             .collect();
-        panel = panel.mark(Mark::line(step, drift).ink(ink(i)).label(kind.name));
+        panel = panel.mark(Mark::line(step, drift).ink(series_color(i)).label(kind.name));
         if predicted.iter().any(|d| !d.is_nan()) {
             panel = panel.mark(Mark::prediction(every(step), every(&predicted)));
         }
     }
-    Ok(Figure::new("precision-types", "What rounding leaves, in eleven float types")
+    Ok(Figure::new("precision-types", "Drift from rounding in eleven float types")
         .caption(
-            "Root mean square over many orbits of the relative change of what velocity Verlet conserves. \
-             Lines: simulated. Circles: √n times the rounding of single steps, where roundings are \
+            "Root mean square over many orbits of the relative change of the invariant of velocity Verlet. \
+             Lines: simulated. Circles: √n times the rounding error of single steps, if these are \
              independent and no orbit has closed.",
         )
         .description("Log-log: drift against the number of steps, a line for each float type.")
@@ -65,10 +65,10 @@ pub(super) fn bits(record: &Record) -> Result<Figure, RecordError> {
             .mark(Mark::points(bits, only(drift, 0.0)).ink(Ink::VelocityVerlet).label("plain"))
             .mark(Mark::points(bits, only(drift, 1.0)).ink(Ink::Accent(2)).label("compensated"))
             .mark(Mark::prediction(bits, predicted));
-    Ok(Figure::new("precision-bits", "What a bit is worth")
+    Ok(Figure::new("precision-bits", "Drift against the bits of the significand")
         .caption(
-            "After all steps. Each bit halves what rounding leaves, as predicted (circles), down to where \
-             orbits close: with few bits they do so early, and drift no further.",
+            "After all steps. Each bit halves the drift, as predicted (circles), unless orbits close: \
+             with few bits they close early, and the drift stops.",
         )
         .description("Drift on a logarithmic axis against the bits of the significand.")
         .panel(panel))
@@ -76,10 +76,10 @@ pub(super) fn bits(record: &Record) -> Result<Figure, RecordError> {
 
 /// Both forms of Verlet in single precision.
 pub(super) fn forms(record: &Record) -> Result<Figure, RecordError> {
-    let mut figure = Figure::new("precision-forms", "One method in two forms, in f32")
+    let mut figure = Figure::new("precision-forms", "Drift of two forms of Verlet in f32")
         .caption(
-            "The textbook’s form rounds with a bias, and drifts like n; the product of kicks and drifts \
-             does not, and drifts like √n. Lines: simulated. Circles: from the rounding of single steps.",
+            "The rounding of the textbook form is biased, and its drift grows as n; the product of kicks and drifts \
+             has no bias, and its drift grows as √n. Lines: simulated. Circles: from the rounding of single steps.",
         )
         .description("Log-log: drift of two forms of Verlet against the number of steps.")
         .columns(2)

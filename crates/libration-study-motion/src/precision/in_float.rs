@@ -25,9 +25,9 @@ pub(super) struct InFloat<I, F> {
     pub(super) start: State<F, 1>,
     /// The oscillator with the parameters that the float has.
     pub(super) model: Oscillator<f64>,
-    /// What the step would be, were it not rounded.
+    /// The step without rounding.
     pub(super) matrix: UpdateMatrix<Wide, 1>,
-    /// What that carries along; conserved where its determinant is one.
+    /// The quadratic form of that step; conserved if the determinant is one.
     form: QuadraticForm<TwoFloat>,
     band: EnergyBand,
     /// Angle in rad by which an orbit turns in a step.
@@ -40,7 +40,7 @@ impl<I: Integrator, F: Float> InFloat<I, F> {
         InFloat::with_force_in::<F>(method, config, dt)
     }
 
-    /// The same with the parameter of the force rounded to another float.
+    /// Returns this step with the parameter of the force rounded to another float.
     pub(super) fn with_force_in<G: Float>(method: I, config: &Config, dt: f64) -> Option<Self> {
         let rounded = |x: f64| F::from_f64(x).to_f64();
         let omega2 = config.oscillator.system().omega2;
@@ -90,7 +90,7 @@ impl<I: Integrator, F: Float> InFloat<I, F> {
         low.abs().max(high.abs())
     }
 
-    /// What the step conserves, relative to its value at another state, minus one.
+    /// Returns the invariant of the step relative to its value at another state, minus one.
     pub(super) fn change(&self, from: &State<F, 1>, to: &State<F, 1>) -> f64 {
         let at = |state: &State<F, 1>| self.form.at(&state.map(|x| TwoFloat::from_f64(x.to_f64())));
         let before = at(from);
@@ -125,7 +125,7 @@ impl<I: Integrator, F: Float> InFloat<I, F> {
         self.rounding_of(steps, |state| self.step(state), exact)
     }
 
-    /// The same of another step than this, with the same orbits.
+    /// Returns the same for another step, with the same orbits.
     pub(super) fn rounding_of<W: Float>(
         &self,
         steps: u64,

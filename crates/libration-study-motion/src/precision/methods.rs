@@ -1,4 +1,4 @@
-//! Every method in single precision beside exact arithmetic and beside `f64`: energy, phase and state.
+//! Every method in single precision compared with exact arithmetic and with `f64`: energy, phase and state.
 
 use std::f64::consts::TAU;
 
@@ -11,7 +11,7 @@ use libration_report::record::{Cell, Finding, Relation, Table, Tolerance};
 use libration_study::{Lab, StudyError};
 
 use super::in_float::InFloat;
-use super::parts::{between, nearest_turn};
+use super::mixed_precision::{between, nearest_turn};
 use super::tag;
 use super::types::ERRORS;
 use crate::precision::PrecisionSettings;
@@ -55,7 +55,7 @@ struct Run {
     largest: f64,
     /// The last state, as `(ωq, v)`.
     end: (f64, f64),
-    /// The same in the coordinates in which the step turns.
+    /// The same in the coordinates in which the step is a rotation.
     looked: (f64, f64),
     /// Angle in rad by which the orbit has turned, in those.
     turned: TwoFloat,
@@ -104,7 +104,7 @@ struct Compared {
     double: Option<Run>,
     /// The largest drift in exact arithmetic, of the `f32` step and of the `f64` step.
     exact: [f64; 2],
-    /// How far these orbits stay off the edge of their bands.
+    /// Distance of these orbits from the edge of their bands.
     gap: [f64; 2],
     /// What rounding may leave in an `f32` energy, relative to it; none where steps do not round at random.
     rounding: Option<f64>,
@@ -114,7 +114,7 @@ struct Compared {
     slip: Option<f64>,
 }
 
-/// Where bounds on a run in `f32` come from.
+/// Explanation of the bounds on a run in `f32`.
 const ROUNDED: &str = "what the roundings of single steps leave, four times √n of their scatter, n times their mean, and four times the \
                        error of that; and how far the orbit stays off the edge of its band";
 

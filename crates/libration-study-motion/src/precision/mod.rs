@@ -1,25 +1,25 @@
-//! What the float type costs: rounding of steps, orbits that close, clocks that lag.
+//! The study `precision`: rounding of steps, closed orbits, slow clocks.
 
 mod claims;
 mod clock;
 mod crossover;
 mod figures;
+mod float_type;
 mod in_float;
-mod kind;
 mod methods;
+mod mixed_precision;
 mod orbits;
-mod parts;
 mod render;
 mod settings;
+mod source_claims;
 mod textbook;
-mod trial;
-mod tried;
 mod types;
+mod verlet_run;
 
-use libration_study::Tried;
+use libration_study::SourceClaim;
 
 pub use self::settings::PrecisionSettings;
-use self::tried::TRIED;
+use self::source_claims::SOURCE_CLAIMS;
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::RecordError;
@@ -38,8 +38,8 @@ impl Study for Precision {
         "What does the float type cost?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn settings(&self) -> Option<Section> {
@@ -52,7 +52,7 @@ impl Study for Precision {
         textbook::measure(lab, &mut record)?;
         crossover::measure(lab, &mut record)?;
         clock::measure(lab, &mut record)?;
-        parts::measure(lab, &mut record)?;
+        mixed_precision::measure(lab, &mut record)?;
         methods::measure(lab, &mut record)?;
         claims::judge(lab.config, &mut record);
         Ok(record)

@@ -1,4 +1,4 @@
-//! Many orbits of one step, until they repeat themselves.
+//! Many orbits of one step, until they close.
 
 use libration::{Float, State};
 
@@ -8,7 +8,7 @@ const ABREAST: usize = 4;
 /// One orbit, seen at some steps.
 #[derive(Clone, Debug)]
 pub(super) struct Orbit {
-    /// What was measured there; NaN where the orbit has left the range of the float.
+    /// Measured values; NaN for an orbit beyond the range of the float.
     pub(super) seen: Vec<f64>,
     /// The step at which it was found to repeat itself, and the period.
     pub(super) repeats: Option<(u64, u64)>,

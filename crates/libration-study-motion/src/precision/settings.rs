@@ -1,6 +1,6 @@
 //! Settings of the study `precision`.
 
-use libration_settings::check::{list, steps};
+use libration_settings::validation::{check_list, check_steps};
 use libration_settings::{Count, Fault, Number, limits, numbers};
 use libration_study::{Settings, schema};
 use schemars::JsonSchema;
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Settings of the study `precision`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrecisionSettings {
-    /// The time steps under study, in s, rising.
+    /// Time steps in s, ascending.
     pub dt: Vec<f64>,
     /// Number of steps.
     pub steps: u64,
@@ -21,7 +21,7 @@ impl Default for PrecisionSettings {
     }
 }
 
-/// The study of float types.
+/// Settings of the study `precision`.
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
@@ -51,13 +51,13 @@ impl Settings for PrecisionSettings {
     fn from_table(table: Table) -> Result<Self, Fault> {
         Ok(PrecisionSettings {
             dt: numbers(table.dt),
-            steps: steps("precision.steps", table.steps.0)?,
+            steps: check_steps("precision.steps", table.steps.0)?,
         })
     }
 
     fn check(&self) -> Result<(), Fault> {
-        list("precision.dt", "time step", limits::TIME_STEP, &self.dt)?;
-        steps("precision.steps", self.steps.into())?;
+        check_list("precision.dt", "time step", limits::TIME_STEP, &self.dt)?;
+        check_steps("precision.steps", self.steps.into())?;
         Ok(())
     }
 

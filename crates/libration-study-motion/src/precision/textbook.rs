@@ -1,16 +1,16 @@
-//! The textbook's form of Verlet in single precision: rounding with a bias.
+//! The textbook form of Verlet in single precision: biased rounding.
 
 use libration::integrator::{TextbookVerlet, VelocityVerlet};
 use libration::{Float, Integrator, State};
 use libration_report::Record;
 use libration_report::notation::{count, seconds};
 use libration_report::record::{Finding, Series, Table, Tolerance};
-use libration_study::{Lab, StudyError, sampled_steps};
+use libration_study::{Lab, StudyError, log_spaced_steps};
 
 use super::in_float::InFloat;
 use super::orbits::follow;
-use super::trial::closes;
 use super::types::ERRORS;
+use super::verlet_run::closes;
 use super::{tag, types};
 use crate::precision::PrecisionSettings;
 
@@ -55,7 +55,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     Ok(())
 }
 
-/// What one form gave at one time step.
+/// Result of one form at one time step.
 struct Form {
     name: &'static str,
     bias: f64,
@@ -70,7 +70,7 @@ fn of<I: Integrator>(lab: &Lab<'_>, name: &'static str, method: I, dt: f64) -> O
     let (config, steps) = (lab.config, lab.config.get::<PrecisionSettings>().steps);
     let one = InFloat::<_, f32>::new(method, config, dt)?;
     let local = one.rounding::<f64>(lab.effort.choose(1_000_000, 4_000_000, 16_000_000))?;
-    let sampled = sampled_steps(steps, PER_DECADE);
+    let sampled = log_spaced_steps(steps, PER_DECADE);
     let orbits = lab.effort.choose(8, 16, 64);
     let change = |from: &State<f32, 1>, to: &State<f32, 1>| one.change(from, to);
     let followed = follow(&one.starts(orbits), &sampled, |s| one.step(s), change);

@@ -5,8 +5,8 @@ use libration_report::notation::count;
 use libration_report::record::{Cell, Finding, Series, Table, Tolerance};
 use libration_study::{Lab, StudyError};
 
-use super::kind::KINDS;
-use super::trial::{Closed, Trial};
+use super::float_type::FLOAT_TYPES;
+use super::verlet_run::{Closed, VerletRun};
 use crate::precision::PrecisionSettings;
 
 /// Standard errors that a measurement may be off by: by chance one in 16 000 is.
@@ -16,7 +16,7 @@ pub(super) const ERRORS: f64 = 4.0;
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
     let steps = lab.config.get::<PrecisionSettings>().steps;
     let what = format!("float types over {} steps", count(steps));
-    let found = lab.sweep(&what, KINDS, |kind| Ok((kind.run)(lab, kind)))?;
+    let found = lab.sweep(&what, FLOAT_TYPES, |kind| Ok((kind.run)(lab, kind)))?;
     let columns = [
         "float",
         "bits",
@@ -29,7 +29,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         "largest drift for ever",
     ];
     let mut table = Table::new("float types", &columns);
-    for (kind, trial) in KINDS.iter().zip(&found) {
+    for (kind, trial) in FLOAT_TYPES.iter().zip(&found) {
         let Some(trial) = trial else {
             let missing = || Cell::absent("—");
             let row = [Cell::from(kind.name), u64::from(kind.bits).into()];
@@ -41,7 +41,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         table.push(row(trial, steps));
     }
     record.tables.push(table);
-    let trials: Vec<&Trial> = found.iter().flatten().collect();
+    let trials: Vec<&VerletRun> = found.iter().flatten().collect();
     for trial in &trials {
         record.series.push(series(trial));
     }
@@ -50,12 +50,12 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
 }
 
 /// The drift after `n` steps that roundings leave if they are independent.
-fn independent(trial: &Trial, n: u64) -> f64 {
+fn independent(trial: &VerletRun, n: u64) -> f64 {
     trial.local.map_or(f64::NAN, |local| (local.spread * n as f64).sqrt())
 }
 
 /// Mean and scatter of the drifts, as far as roundings are independent.
-fn brouwer(trial: &Trial, record: &mut Record) {
+fn brouwer(trial: &VerletRun, record: &mut Record) {
     let (Some(n), Some(local)) = (trial.comparable, trial.local) else { return };
     let Some(i) = trial.sampled.iter().position(|&sampled| sampled == n) else { return };
     let (mean, scatter) = trial.moments(i);
@@ -118,7 +118,7 @@ pub(super) fn cycle(name: &str, steps: u64, closed: Option<Closed>, record: &mut
     }
 }
 
-fn row(trial: &Trial, steps: u64) -> Vec<Cell> {
+fn row(trial: &VerletRun, steps: u64) -> Vec<Cell> {
     let roundings = trial.local.map(|local| local.spread.sqrt() / trial.unit_roundoff);
     let closed =
         |f: fn(&Closed) -> Cell| trial.closed.as_ref().map_or_else(|| Cell::absent("—"), f);
@@ -140,7 +140,7 @@ fn row(trial: &Trial, steps: u64) -> Vec<Cell> {
 }
 
 /// The drift against the number of steps.
-fn series(trial: &Trial) -> Series {
+fn series(trial: &VerletRun) -> Series {
     let steps = &trial.sampled;
     Series::new(format!("type-{}", trial.name))
         .with("step", "1", steps.iter().map(|&n| n as f64).collect())
@@ -153,8 +153,8 @@ fn series(trial: &Trial) -> Series {
 }
 
 /// The drift after all steps against the bits of the significand.
-fn by_bits(trials: &[&Trial], steps: u64) -> Series {
-    let of = |f: &dyn Fn(&Trial) -> f64| trials.iter().map(|trial| f(trial)).collect();
+fn by_bits(trials: &[&VerletRun], steps: u64) -> Series {
+    let of = |f: &dyn Fn(&VerletRun) -> f64| trials.iter().map(|trial| f(trial)).collect();
     Series::new("bits")
         .with("bits", "1", of(&|t| f64::from(t.bits)))
         .with("compensated", "1", of(&|t| f64::from(u8::from(t.name == "f32-compensated"))))

@@ -1,7 +1,6 @@
-//! Where stability ends, from the polynomials and from simulation.
+//! Limits of stability, from polynomials and from simulation.
 
 use libration::analysis::SymbolicStep;
-use libration::number::Wide;
 use libration::simulation::Simulator;
 use libration::system::Oscillator;
 use libration::{Method, State, with_method};
@@ -10,9 +9,7 @@ use libration_study::StudyError;
 
 use super::step::radius_at;
 use crate::growth::{GROWTH, grows};
-
-/// Where the search for a limit ends.
-const HIGHEST: f64 = 8.0;
+use crate::stable_step::{HIGHEST, largest_stable};
 
 /// A limit, as predicted and as measured.
 #[derive(Clone, Debug)]
@@ -82,15 +79,6 @@ impl Limit {
             None => Finding::measured(id, text, "1", self.measured),
         }
     }
-}
-
-/// The first `z = ωΔt` at which `method` is unstable on the undamped oscillator: the end of its first
-/// window of stability, if that begins at zero.
-pub(crate) fn largest_stable(method: Method) -> Result<f64, StudyError> {
-    let symbolic = SymbolicStep::new(method)
-        .ok_or_else(|| StudyError::Exact(format!("deriving {}", method.title())))?;
-    let first = symbolic.stability_windows().into_iter().find(|window| window.from.is_zero());
-    Ok(first.map_or(0.0, |window| window.to.map_or(HIGHEST, Wide::to_f64)))
 }
 
 /// The first point at which `stable` is lost, walking from 0 in steps of 0.01 and then bisecting;

@@ -1,4 +1,4 @@
-//! What one step does: its matrix, eigenvalues, symmetries, and where it is stable.
+//! The study `spectrum`: matrix, eigenvalues, symmetries and stability of one step.
 
 mod claims;
 mod exact;
@@ -6,20 +6,19 @@ mod limit;
 mod region;
 mod render;
 mod settings;
+mod source_claims;
 mod step;
-mod tried;
 
-use libration_study::Tried;
+use libration_study::SourceClaim;
 
 pub use self::settings::SpectrumSettings;
-use self::tried::TRIED;
+use self::source_claims::SOURCE_CLAIMS;
 use libration::Method;
 use libration::analysis::SymbolicStep;
 use libration::system::Oscillator;
 use libration_study::Section;
 
 use self::limit::Limit;
-pub(super) use self::limit::largest_stable;
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::{Finding, RecordError, Relation, Series, Table, Tolerance};
@@ -41,8 +40,8 @@ impl Study for Spectrum {
         "What does one step do to the oscillator, and which steps keep it stable?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn settings(&self) -> Option<Section> {

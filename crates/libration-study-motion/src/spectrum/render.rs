@@ -7,7 +7,7 @@ use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError};
 
 use super::region::{IMAGINARY, REAL};
-use crate::ink::ink;
+use crate::method_color::method_color;
 use crate::subject::Symmetry;
 
 /// Writes the chapter.
@@ -19,12 +19,12 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     let described: Vec<String> = shown
         .iter()
         .map(|&(m, z)| match z {
-            0.0 => format!("{} none at all", m.title()),
+            0.0 => format!("{} never", m.title()),
             z => format!("{} up to ωΔt = {}", m.title(), number(z, 6)),
         })
         .collect();
     page.answer =
-        format!("How large a step keeps an oscillator bounded: {}.", described.join("; "));
+        format!("Largest step that keeps an oscillator bounded: {}.", described.join("; "));
     if let Some((method, z)) = shown.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
         page.highlights.push(Highlight {
             value: number(*z, 5),
@@ -32,22 +32,22 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
         });
     }
     page.paragraph(
-        "An integrator is a function of a number type. Run on polynomials in z = ωΔt, the shipped \
-         steps print their own update matrices, in exact fractions:",
+        "An integrator is generic over its number type. With polynomials in z = ωΔt as numbers, the shipped \
+         steps return their update matrices in exact fractions:",
     );
     page.table(record.table("update matrices")?, 6);
     page.paragraph(
-        "With 1024 bits in place of 53 the same steps tell what follows from them, free of \
-         cancellation. A determinant of one keeps areas of phase space, a defect of zero in \
-         `M(−Δt)M(Δt) − 1` makes a method reversible; the two are not the same.",
+        "The numbers below come from the same steps with 1024 bits in place of 53, without \
+         cancellation. A determinant of one preserves areas of phase space; a zero defect of \
+         `M(−Δt)M(Δt) − 1` means time reversibility. These are different properties.",
     );
     page.table(record.table("one step")?, 4);
     page.figure(phase_errors(record)?);
     page.paragraph(
-        "Where a step is stable is a question about modes, damped and undamped. The maps show the \
-         spectral radius of each shipped step on a mode with eigenvalues λ and λ̄: it is |R(λΔt)| \
-         for a Runge–Kutta method, and it exists as well for the split steps, which have no such \
-         function. Orbits decay within the contour and grow outside it.",
+        "The stability of a step depends on the mode, damped or undamped. The maps show the \
+         spectral radius of each shipped step on a mode with eigenvalues λ and λ̄. It is |R(λΔt)| \
+         for a Runge–Kutta method; split steps have a spectral radius, but no stability function R. \
+         Orbits decay inside the contour and grow outside it.",
     );
     page.figure(regions(record, &shown)?);
     Ok(())
@@ -56,7 +56,7 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
 /// Phase error against the step, prediction over measurement.
 fn phase_errors(record: &Record) -> Result<Figure, RecordError> {
     let mut panel =
-        Panel::new(Axis::log("z = ωΔt"), Axis::log("|phase error| of a step").unit("rad"));
+        Panel::new(Axis::log("z = ωΔt"), Axis::log("|phase error| per step").unit("rad"));
     let mut shown = Vec::new();
     for series in record.series.iter().filter(|s| s.name.starts_with("sweep-")) {
         let name = &series.name["sweep-".len()..];
@@ -68,12 +68,12 @@ fn phase_errors(record: &Record) -> Result<Figure, RecordError> {
         };
         let line = Mark::line(z, size("phase_error_measured")?);
         panel = panel
-            .mark(line.ink(ink(method)).label(method.title()))
+            .mark(line.ink(method_color(method)).label(method.title()))
             .mark(Mark::prediction(z, size("phase_error_predicted")?));
     }
     Ok(Figure::new("phase-error", "Phase error of one step against the size of the step")
         .caption(format!(
-            "{}Lines are measured, from the angle after thousands of steps; circles are predicted \
+            "{}Lines: measured, from the angle after thousands of steps. Circles: predicted \
              from the step.",
             phases(&shown)
         ))
@@ -81,11 +81,11 @@ fn phase_errors(record: &Record) -> Result<Figure, RecordError> {
         .panel(panel))
 }
 
-/// What theory says of the phase errors of those methods that are shown.
+/// Returns a sentence about the phase errors of the methods in the figure.
 fn phases(shown: &[Method]) -> String {
     let mut words = String::new();
     if [Method::SymplecticEuler, Method::VelocityVerlet].iter().all(|m| shown.contains(m)) {
-        words += "Symplectic Euler and velocity Verlet turn alike, by z³/24 too far: they have the \
+        words += "Symplectic Euler and velocity Verlet lead by z³/24: they have the \
                   same eigenvalues. ";
     }
     if shown.contains(&Method::Rk4) {
@@ -108,11 +108,11 @@ fn powers(shown: &[Method]) -> String {
     format!("Log-log: the phase error against z. It rises: {}.", parts.join(", "))
 }
 
-/// Which piece of the imaginary axis each region takes in, from the limits that were measured.
+/// Returns a sentence about the stable part of the imaginary axis, from the measured limits.
 fn pieces(shown: &[(Method, f64)]) -> String {
     let mut words = "The contour is ρ = 1.".to_owned();
     if shown.iter().any(|&(m, z)| m == Method::ExplicitEuler && z == 0.0) {
-        words += " Explicit Euler’s disc touches the imaginary axis at the origin alone.";
+        words += " The disc of explicit Euler touches the imaginary axis only at the origin.";
     }
     let up_to = |(m, z): &(Method, f64)| format!("{} up to ωΔt = {}", m.title(), number(*z, 4));
     let of = |symplectic: bool| {
@@ -122,20 +122,20 @@ fn pieces(shown: &[(Method, f64)]) -> String {
     };
     let (symplectic, others) = (of(true), of(false));
     if !others.is_empty() {
-        words += &format!(" A piece of the axis is stable for {others}.");
+        words += &format!(" Part of the imaginary axis is stable for {others}.");
     }
     if !symplectic.is_empty() {
         words += &format!(" The symplectic methods have ρ = 1 exactly there: {symplectic}.");
     }
     if shown.iter().any(|&(_, z)| z > 0.0) {
-        words += " The bar marks the stable piece, measured by simulation.";
+        words += " The bar marks the stable part, measured by simulation.";
     }
     words
 }
 
 /// Maps of the spectral radius, one a method.
 fn regions(record: &Record, shown: &[(Method, f64)]) -> Result<Figure, RecordError> {
-    let mut figure = Figure::new("stability-regions", "Where a step is stable")
+    let mut figure = Figure::new("stability-regions", "Stability regions")
         .caption(pieces(shown))
         .description("Maps of the spectral radius over the complex plane of λΔt.")
         .columns(2)
@@ -165,7 +165,7 @@ fn regions(record: &Record, shown: &[(Method, f64)]) -> Result<Figure, RecordErr
         if limit > 0.0 {
             panel = panel.mark(
                 Mark::line([0.0, 0.0], [-limit, limit])
-                    .ink(ink(method))
+                    .ink(method_color(method))
                     .dash(Dash::Solid)
                     .width(3.4),
             );

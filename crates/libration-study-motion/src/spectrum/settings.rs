@@ -1,6 +1,6 @@
 //! Settings of the study `spectrum`.
 
-use libration_settings::check::number;
+use libration_settings::validation::check_number;
 use libration_settings::{Fault, Number, limits};
 use libration_study::{Settings, schema};
 use schemars::JsonSchema;
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Settings of the study `spectrum`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpectrumSettings {
-    /// The time step at which numbers are shown, in s.
+    /// Time step of the tables in s.
     pub dt: f64,
 }
 
@@ -19,11 +19,11 @@ impl Default for SpectrumSettings {
     }
 }
 
-/// The study of update matrices, eigenvalues and stability regions.
+/// Settings of the study `spectrum`.
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
-    /// Time step in s at which numbers are shown.
+    /// Time step of the tables in s.
     #[schemars(schema_with = "schema::time_step")]
     dt: Number,
 }
@@ -48,7 +48,7 @@ impl Settings for SpectrumSettings {
     }
 
     fn check(&self) -> Result<(), Fault> {
-        number("spectrum.dt", limits::TIME_STEP, self.dt)?;
+        check_number("spectrum.dt", limits::TIME_STEP, self.dt)?;
         Ok(())
     }
 }

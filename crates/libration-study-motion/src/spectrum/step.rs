@@ -1,4 +1,4 @@
-//! One integrator at one step: what theory says of it, and what a simulation shows.
+//! One integrator at one step: theory and simulation.
 
 use libration::analysis::{Eigenvalues, Linearisation, Spectrum, UpdateMatrix};
 use libration::number::Wide;
@@ -12,7 +12,7 @@ use crate::rounding::{accumulated, condition, path_of_unit_step, substeps};
 /// Unit roundoff of the simulations.
 const U: f64 = <f64 as Float>::UNIT_ROUNDOFF;
 
-/// What theory says of one step on the oscillator, from 1024 bits.
+/// Theory of one step on the oscillator, with 1024 bits.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Theory {
     pub(super) radius_minus_one: f64,
@@ -65,7 +65,7 @@ impl Measured {
     }
 }
 
-/// What a simulation in `f64` shows of many steps.
+/// Simulation of many steps in `f64`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run {
     /// Number of steps taken.
@@ -113,7 +113,7 @@ impl Run {
         Ok(Some(Run::of(method, oscillator, dt, steps, theory, &after)))
     }
 
-    /// What the matrix of `steps` steps says, in units in which orbits are circles.
+    /// Returns results of the matrix of `steps` steps, in units in which orbits are circles.
     fn of(
         method: Method,
         oscillator: Oscillator<f64>,

@@ -12,12 +12,12 @@ use crate::stability::StabilitySettings;
 const COMPARED: [Method; 4] =
     [Method::ExplicitEuler, Method::SymplecticEuler, Method::VelocityVerlet, Method::Rk4];
 
-/// How far boundedness alone lets RK4 and velocity Verlet go.
+/// The stability limits of RK4 and velocity Verlet without a tolerance.
 const BOUNDED: [&str; 2] = ["stability.rk4.window-1-to", "stability.velocity-verlet.window-1-to"];
 
 /// A row of findings: a criterion, a horizon, and the largest steps of [`COMPARED`].
 struct Row {
-    words: String,
+    label: String,
     steps: u64,
     dt: [f64; 4],
 }
@@ -69,7 +69,7 @@ fn ids(rows: &[(Limit, u64)]) -> Vec<String> {
 
 fn read(rows: &[(Limit, u64)], findings: &[&Finding]) -> Vec<Row> {
     let of = |(&(limit, steps), f): (&(Limit, u64), &[&Finding])| Row {
-        words: limit.words(),
+        label: limit.label(),
         steps,
         dt: [0, 1, 2, 3].map(|i| f[i].measured),
     };
@@ -87,13 +87,13 @@ impl Row {
 fn list(rows: &[&Row]) -> String {
     let mut groups: Vec<(&str, Vec<String>)> = Vec::new();
     for row in rows {
-        match groups.last_mut().filter(|(words, _)| *words == row.words) {
+        match groups.last_mut().filter(|(label, _)| *label == row.label) {
             Some((_, horizons)) => horizons.push(count(row.steps)),
-            None => groups.push((&row.words, vec![count(row.steps)])),
+            None => groups.push((&row.label, vec![count(row.steps)])),
         }
     }
-    let group = |(words, horizons): &(&str, Vec<String>)| {
-        format!("an {words} over {} steps", horizons.join(", "))
+    let group = |(label, horizons): &(&str, Vec<String>)| {
+        format!("an {label} over {} steps", horizons.join(", "))
     };
     groups.iter().map(group).collect::<Vec<_>>().join("; ")
 }

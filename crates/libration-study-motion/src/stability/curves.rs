@@ -1,4 +1,4 @@
-//! The largest step against the horizon, and where Verlet and RK4 tie.
+//! The largest step against the horizon, and the crossovers of Verlet and RK4.
 
 use libration::analysis::{LargestStep, Linearisation, Spectrum};
 use libration::simulation::{EnergyDrift, Sample, Simulator};

@@ -22,7 +22,7 @@ const STRIDE: f64 = 1.25;
 /// Relative precision of the search.
 const PRECISION: f64 = 1e-8;
 
-/// What a step must keep to, for a number of steps.
+/// A criterion that a step must meet for a number of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Limit {
     Amplitude(f64),
@@ -37,7 +37,7 @@ pub(super) struct Case {
     pub(super) steps: u64,
 }
 
-/// What came out, in s.
+/// Results, in s.
 struct Outcome {
     predicted: f64,
     measured: f64,
@@ -53,7 +53,7 @@ impl Limit {
         }
     }
 
-    pub(super) fn words(self) -> String {
+    pub(super) fn label(self) -> String {
         match self {
             Limit::Amplitude(_) => format!("|x| below {} times the start", number(AMPLITUDE, 3)),
             Limit::Drift(tolerance) => format!("energy drift below {}", number(tolerance, 3)),
@@ -111,7 +111,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     let columns: Vec<&str> = ["criterion", "steps"].into_iter().chain(titles).collect();
     let mut table = Table::new("largest steps", &columns);
     for (row, outcomes) in rows.iter().zip(found.chunks(config.integrators.len().max(1))) {
-        let head: [Cell; 2] = [row.0.words().into(), row.1.into()];
+        let head: [Cell; 2] = [row.0.label().into(), row.1.into()];
         let cells = outcomes.iter().map(|outcome| match outcome {
             Some(outcome) => Cell::from(outcome.measured),
             None => Cell::absent("—"),
@@ -126,7 +126,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
             format!(
                 "{}: largest Δt with {} over {} steps, by search",
                 case.method.title(),
-                case.limit.words(),
+                case.limit.label(),
                 count(case.steps)
             ),
             "s",

@@ -5,13 +5,13 @@ mod curves;
 mod largest;
 mod render;
 mod settings;
-mod tried;
+mod source_claims;
 mod windows;
 
-use libration_study::Tried;
+use libration_study::SourceClaim;
 
 pub use self::settings::StabilitySettings;
-use self::tried::TRIED;
+use self::source_claims::SOURCE_CLAIMS;
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::RecordError;
@@ -30,8 +30,8 @@ impl Study for Stability {
         "How large may a time step be, and what does “stable” have to mean for it?"
     }
 
-    fn tries(&self) -> &'static [Tried] {
-        TRIED
+    fn source_claims(&self) -> &'static [SourceClaim] {
+        SOURCE_CLAIMS
     }
 
     fn settings(&self) -> Option<Section> {

@@ -6,33 +6,33 @@ use libration_report::notation::number;
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Cell, Record, RecordError, Series};
 
-use crate::ink::ink;
+use crate::method_color::method_color;
 
 /// Writes the chapter.
 pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
     page.title = "Stable time steps".into();
     summary(record, page)?;
     page.paragraph(
-        "Without a tolerance, stable means that every orbit stays bounded. The polynomials of the \
-         shipped step decide it: by Jury’s criterion stability can change only at their roots, which \
-         Sturm’s theorem isolates in exact arithmetic. No gap is too narrow for that. A sweep on a \
-         grid, with short runs, is another matter; the last column is what it reports.",
+        "Without a tolerance, stable means that every orbit stays bounded. This follows from the polynomials of the \
+         shipped step: by Jury’s criterion stability can change only at their roots, which \
+         Sturm’s theorem isolates in exact arithmetic, however close they are. The last column has the \
+         result of a sweep on a grid with short runs, which can miss narrow unstable ranges.",
     );
     page.table(record.table("windows")?, 15);
     page.figure(windows(record)?);
     page.paragraph(
-        "With a tolerance, the answer depends on what is tolerated and for how long. The energy of a \
+        "With a tolerance, the largest step depends on the tolerance and on the horizon. The energy of a \
          symplectic step stays between two multiples of the form that it conserves; that of RK4 and \
-         of explicit Euler changes by the determinant, step after step. Either way the largest step \
-         is a root of a polynomial. The table has what a search by simulation found.",
+         of explicit Euler changes by the determinant in every step. In both cases the largest step \
+         is a root of a polynomial. The table also has the result of a search by simulation.",
     );
     page.figure(against_horizon(record)?.number("9.5"));
     page.table(record.table("largest steps")?, 5);
     page.paragraph(
-        "The largest step of Verlet does not shrink with the horizon, that of RK4 does, with its \
-         sixth root. So for every tolerance ε below one there is a number of steps N*(ε) up to which \
-         RK4 allows the larger step, and beyond which Verlet does; from rest it is about 9/(8ε²). \
-         Count force evaluations, two against four here, and Verlet leads earlier.",
+        "The largest step of Verlet is independent of the horizon; that of RK4 falls with the \
+         sixth root of the horizon. For every tolerance ε below one RK4 therefore allows the larger step up to \
+         a number of steps N*(ε), and Verlet beyond it; from rest N* is about 9/(8ε²). \
+         Per force evaluation (Verlet two, RK4 four) Verlet leads earlier.",
     );
     Ok(())
 }
@@ -52,15 +52,15 @@ fn summary(record: &Record, page: &mut Page) -> Result<(), RecordError> {
         return Ok(());
     }
     page.answer = format!(
-        "“Verlet allows a larger step than RK4” is true of an energy tolerance over long enough runs: \
-         RK4’s largest step falls below Verlet’s after {}. Of boundedness alone it is false.",
+        "With an energy tolerance Verlet allows a larger step than RK4 in long runs: \
+         the largest step of RK4 falls below that of Verlet after {}. Without a tolerance RK4 allows the larger step.",
         ties.join(", ")
     );
     if let (Some(e), Some(n)) = (tolerance.first(), steps.first()) {
         page.highlights.push(Highlight {
             value: format!("{} steps", number(*n, 3)),
             text: format!(
-                "until Verlet allows a larger step than RK4, at a drift of {}",
+                "until Verlet allows a larger step than RK4, for a tolerated drift of {}",
                 number(*e, 2)
             ),
         });
@@ -85,8 +85,10 @@ fn windows(record: &Record) -> Result<Figure, RecordError> {
     for (i, name) in names.iter().enumerate() {
         let y = -(i as f64);
         let of = |row: f64| row as usize == i;
-        let colour =
-            Method::ALL.into_iter().find(|m| m.title() == name).map_or(Ink::Accent(3), ink);
+        let colour = Method::ALL
+            .into_iter()
+            .find(|m| m.title() == name)
+            .map_or(Ink::Accent(3), method_color);
         for ((&row, &from), &to) in rows.iter().zip(from).zip(to) {
             if of(row) {
                 let bar = Mark::line([from, to], [y, y]);
@@ -94,11 +96,11 @@ fn windows(record: &Record) -> Result<Figure, RecordError> {
             }
         }
     }
-    Ok(Figure::new("windows", "The steps at which every orbit stays bounded")
+    Ok(Figure::new("windows", "Time steps with bounded orbits")
         .caption(
             "Bars: windows of stability, isolated exactly. The composition of three nearly equal \
-             Verlet steps loses stability for a moment near z = π, where its substeps conspire, and \
-             finds it again: a sweep would never notice, a long run would.",
+             Verlet steps is unstable in a very narrow range near z = π, by a resonance of its substeps. \
+             A sweep misses this range; a long run inside it does not.",
         )
         .description("A bar for each interval of stable steps, a row for each integrator.")
         .aspect(2.6)
@@ -109,9 +111,9 @@ fn windows(record: &Record) -> Result<Figure, RecordError> {
 fn against_horizon(record: &Record) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("fig-9-5", "Largest time step against the length of the run")
         .caption(
-            "Lines: roots of the criterion. Dots: found by search, with simulations. Under a \
-             tolerance on the energy RK4 starts above Verlet and falls below; under one on the \
-             amplitude, the usual test for explosions, RK4 allows the largest step for ever.",
+            "Lines: roots of the criterion. Dots: search by simulation. With an \
+             energy tolerance RK4 allows the larger step in short runs and Verlet in long ones; with an \
+             amplitude limit, the usual test for instability, RK4 allows the largest step at every horizon.",
         )
         .description("Log-log: the largest step of each method against the number of steps.")
         .columns(2)
@@ -139,8 +141,8 @@ fn horizon(record: &Record, series: &Series) -> Result<Panel, RecordError> {
         });
         let (x, y): (Vec<f64>, Vec<f64>) = searched.unzip();
         panel = panel
-            .mark(Mark::line(steps, dt).ink(ink(method)).label(method.title()))
-            .mark(Mark::points(x, y).ink(ink(method)).radius(3.0));
+            .mark(Mark::line(steps, dt).ink(method_color(method)).label(method.title()))
+            .mark(Mark::points(x, y).ink(method_color(method)).radius(3.0));
     }
     Ok(panel)
 }

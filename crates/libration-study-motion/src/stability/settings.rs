@@ -1,6 +1,6 @@
 //! Settings of the study `stability`.
 
-use libration_settings::check::{counts, list, whole};
+use libration_settings::validation::{check_counts, check_list, parse_counts};
 use libration_settings::{Count, Fault, Number, limits, numbers};
 use libration_study::{Settings, schema};
 use schemars::JsonSchema;
@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 /// Settings of the study `stability`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StabilitySettings {
-    /// Relative energy drifts that are tolerated, rising.
+    /// Tolerated relative energy drifts, ascending.
     pub tolerances: Vec<f64>,
-    /// Numbers of steps, rising.
+    /// Numbers of steps, ascending.
     pub steps: Vec<u64>,
 }
 
@@ -24,11 +24,11 @@ impl Default for StabilitySettings {
     }
 }
 
-/// The study of the largest stable time step.
+/// Settings of the study `stability`.
 #[derive(Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
-    /// Relative energy drifts that are tolerated, each once.
+    /// Tolerated relative energy drifts, each once.
     #[schemars(schema_with = "schema::tolerances")]
     tolerances: Vec<Number>,
     /// Numbers of steps, each once.
@@ -57,13 +57,13 @@ impl Settings for StabilitySettings {
     fn from_table(table: Table) -> Result<Self, Fault> {
         Ok(StabilitySettings {
             tolerances: numbers(table.tolerances),
-            steps: whole("stability.steps", table.steps)?,
+            steps: parse_counts("stability.steps", table.steps)?,
         })
     }
 
     fn check(&self) -> Result<(), Fault> {
-        list("stability.tolerances", "tolerance", limits::TOLERANCE, &self.tolerances)?;
-        counts("stability.steps", &self.steps)?;
+        check_list("stability.tolerances", "tolerance", limits::TOLERANCE, &self.tolerances)?;
+        check_counts("stability.steps", &self.steps)?;
         Ok(())
     }
 

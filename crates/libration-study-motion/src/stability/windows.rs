@@ -24,7 +24,7 @@ const UNEVEN: (&str, &str) = ("uneven-thirds", "Verlet in thirds of 33, 34 and 3
 /// Steps of a simulation that decides whether an orbit grows.
 const STEPS: u64 = 20_000;
 
-/// What a hasty search does: a grid of steps, short runs, and the largest step that survived.
+/// A coarse search: a grid of steps, short runs, and the largest stable step.
 const HASTY_GRID: f64 = 0.05;
 const HASTY_STEPS: u64 = 100;
 const HASTY_AMPLITUDE: f64 = 10.0;
@@ -121,7 +121,7 @@ fn examine(
     Ok(Subject { name, title, windows, edges, hasty: hasty(integrator), gap })
 }
 
-/// Where growth begins between a stable and an unstable step, by bisection on simulations.
+/// Returns the onset of growth between a stable and an unstable step, by bisection.
 fn boundary(integrator: impl Integrator, mut stable: f64, mut unstable: f64) -> f64 {
     while (unstable - stable).abs() > 1e-12 * stable {
         let middle = 0.5 * (stable + unstable);

@@ -1,4 +1,4 @@
-//! The systems of the catalogue as they are studied.
+//! Systems of the catalogue as subjects of studies.
 
 use libration::{AnySystem, CatalogError, Model, State};
 use libration_study::Config;

@@ -1,9 +1,9 @@
-//! What a method does to the energy of a system: over a turn, and over a long horizon.
+//! The energy error of a method over a turn and over a long horizon.
 
 use libration::number::TwoFloat;
 use libration::simulation::{EnergyDrift, Sample, SimulationError};
 use libration::{Float, Hamiltonian, Method, Model, Scalar, State};
-use libration_study::{Fit, StudyError, sampled_steps};
+use libration_study::{Fit, StudyError, log_spaced_steps};
 
 use super::{Halvings, Problem};
 
@@ -20,7 +20,7 @@ const FIRST_ORDER: u64 = 64;
 /// Samples of a running maximum for each decade of steps.
 const PER_DECADE: f64 = 16.0;
 
-/// Which quantity of the energy.
+/// The kind of a change of the energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
     /// The largest relative drift within a turn.
@@ -135,7 +135,7 @@ pub(super) fn horizon<M: Model<D>, const D: usize>(
     turns: u64,
 ) -> Result<Horizon, StudyError> {
     let last = steps * turns;
-    let step = sampled_steps(last, PER_DECADE);
+    let step = log_spaced_steps(last, PER_DECADE);
     let mut drift = EnergyDrift::new(problem.model.on::<f64>(), &problem.start);
     let mut largest = Vec::with_capacity(step.len());
     let mut watch = |s: &Sample<f64, D>| {

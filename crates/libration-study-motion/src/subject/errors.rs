@@ -1,30 +1,26 @@
-//! Errors of a method at ever smaller time steps, without visible rounding.
+//! Errors of a method at halved time steps, without visible rounding.
 
 use libration::number::TwoFloat;
 use libration::simulation::SimulationError;
-use libration::{Float, Hamiltonian, Method, Model, Scalar, State};
+use libration::{Float, Method, Model, State};
 use libration_study::{Fit, StudyError};
 
 use super::flow::flow;
 use super::{Halvings, Problem};
-
-/// Samples of an orbit at which errors are taken: three quarters of a turn, so that no symmetry of
-/// a closed orbit falls on the end.
-const SAMPLED: usize = 12;
 
 /// Samples from which orbits start. The configured start itself may be special: where the force or
 /// the velocity vanishes, symplectic Euler is of order two in one of the coordinates. Of two points
 /// of an orbit that are an eighth of a turn apart, one at least is not.
 const STARTS: [usize; 2] = [1, 3];
 
-/// Which error.
+/// The kind of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// That of one step from a point of the exact orbit.
+    /// Error of one step from a point of the exact orbit.
     Local,
-    /// That of orbits after many steps, from generic points of the exact one.
+    /// Error of orbits after many steps, from generic points of the exact orbit.
     Global,
-    /// That of the orbit from the start itself, which may be special.
+    /// Error of the orbit from the configured start, which may be special.
     FromStart,
 }
 
@@ -49,41 +45,6 @@ impl Errors {
         self.position.push(q);
         self.velocity.push(v);
         self.together.push(q.hypot(v * turn / std::f64::consts::TAU));
-    }
-}
-
-/// The exact orbit at evenly spaced times.
-#[derive(Clone, Debug)]
-pub(super) struct Orbit<const D: usize> {
-    /// The start and the samples.
-    states: Vec<State<TwoFloat, D>>,
-    uncertainty: f64,
-}
-
-impl<const D: usize> Orbit<D> {
-    pub(super) fn new(
-        system: &impl Hamiltonian<TwoFloat, D>,
-        start: State<TwoFloat, D>,
-        turn: TwoFloat,
-    ) -> Self {
-        let interval = turn.ratio(1, Halvings::SAMPLES as i32);
-        let (mut states, mut uncertainty) = (vec![start], 0.0);
-        for _ in 0..SAMPLED {
-            let (next, off) = flow(system, states[states.len() - 1], interval);
-            states.push(next);
-            uncertainty += off;
-        }
-        Orbit { states, uncertainty }
-    }
-
-    /// The start and the samples.
-    pub(super) fn states(&self) -> &[State<TwoFloat, D>] {
-        &self.states
-    }
-
-    /// The sum of what each interval may be off, relative to the size of the orbit.
-    pub(super) fn uncertainty(&self) -> f64 {
-        self.uncertainty
     }
 }
 
@@ -135,7 +96,7 @@ fn global<M: Model<D>, const D: usize>(
     Ok(mean.root())
 }
 
-/// The same of a single step from each sample.
+/// Returns the error of a single step from each sample.
 fn local<M: Model<D>, const D: usize>(
     problem: &Problem<M, D>,
     method: Method,

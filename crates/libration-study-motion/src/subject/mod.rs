@@ -1,9 +1,12 @@
-//! A system under study, whichever it is: one of the catalogue's, or one of the user's own.
+//! Subjects of studies: systems of the catalogue or of the user.
 
 mod catalogue;
 mod energy;
 mod errors;
 mod flow;
+mod measurements;
+mod orbit;
+mod orbits;
 mod portrait;
 mod problem;
 pub(crate) mod settings;
@@ -18,10 +21,10 @@ pub use self::catalogue::SYSTEMS;
 pub(crate) use self::catalogue::configured;
 pub use self::energy::{Change, Changes, Horizon};
 pub use self::errors::{Errors, Kind};
+pub use self::orbits::Orbits;
 pub use self::portrait::Portrait;
 pub use self::problem::Problem;
-pub(super) use self::stability::Loss;
-pub use self::stability::Orbits;
+pub(super) use self::stability::StabilityLimit;
 pub(crate) use self::symmetry::ROUNDING;
 pub use self::symmetry::Symmetry;
 use libration_study::StudyError;
@@ -46,12 +49,12 @@ impl Halvings {
     }
 }
 
-/// What the acceleration of a system depends on, read off its Jacobian along the orbit.
+/// Properties of the acceleration of a system, from its Jacobian along the orbit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Law {
-    /// It is linear in `(q, v)`.
+    /// Whether the acceleration is linear in `(q, v)`.
     pub linear: bool,
-    /// It depends on the velocity, so that no kick is an exact flow.
+    /// Whether it depends on the velocity; a kick is then no exact flow.
     pub velocity_dependent: bool,
 }
 
@@ -71,20 +74,20 @@ pub trait Subject: Sync {
     /// About the time that one revolution takes, in s; time steps are given as fractions of it.
     fn turn(&self) -> f64;
 
-    /// What the acceleration depends on.
+    /// Returns the properties of the acceleration.
     fn law(&self) -> Law;
 
     /// How far the reference orbit may be off, relative to the size of the orbit: the largest
     /// difference from the same with half the step.
     fn reference_error(&self) -> f64;
 
-    /// The errors of `method` at ever smaller steps, until their order settles.
+    /// Returns the errors of `method` at halved steps, until their order settles.
     ///
     /// # Errors
     /// If no time step or start is possible.
     fn errors(&self, kind: Kind, method: Method, halvings: Halvings) -> Result<Errors, StudyError>;
 
-    /// What `method` does to the energy at ever smaller steps, until the order settles.
+    /// Returns the change of the energy with `method` at halved steps, until the order settles.
     ///
     /// # Errors
     /// If no time step or start is possible.
@@ -112,13 +115,13 @@ pub trait Subject: Sync {
     ///
     /// # Errors
     /// If the system refuses the memory for the orbits that are tried together.
-    fn loss(
+    fn stability_limit(
         &self,
         execution: &Execution,
         orbits: Orbits,
         method: Method,
         steps: u64,
-    ) -> Result<Option<Loss>, StudyError>;
+    ) -> Result<Option<StabilityLimit>, StudyError>;
 
     /// The first `steps` points of the orbit at a time step `dt`.
     ///

@@ -1,4 +1,4 @@
-//! An orbit as a picture.
+//! Points of an orbit for a figure.
 
 use libration::simulation::{Sample, SimulationError};
 use libration::{Method, Model};

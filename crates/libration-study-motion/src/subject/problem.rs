@@ -1,20 +1,13 @@
-//! A model with a start, and how long a turn takes.
+//! A model with a start and the time of a turn.
 
 use std::sync::OnceLock;
 
-use libration::analysis::Linearisation;
-use libration::ensemble::Execution;
 use libration::number::TwoFloat;
 use libration::simulation::{Sample, SimulationError, Simulator};
 use libration::system::DynSystem;
-use libration::{Float, Method, Model, Scalar, State, System, integrator, with_method};
-use libration_study::StudyError;
+use libration::{Float, Method, Model, Scalar, State, System, with_method};
 
-use super::errors::Orbit;
-use super::{
-    Change, Changes, Errors, Halvings, Horizon, Kind, Law, Loss, Orbits, Portrait, Subject,
-    Symmetry, energy, errors, portrait, stability, symmetry,
-};
+use super::orbit::Orbit;
 
 /// A system of any kind under study: all that the laboratory must know of it.
 ///
@@ -30,8 +23,8 @@ use super::{
 /// ```
 #[derive(Debug)]
 pub struct Problem<M, const D: usize> {
-    name: String,
-    title: String,
+    pub(super) name: String,
+    pub(super) title: String,
     pub(super) model: M,
     pub(super) start: State<f64, D>,
     pub(super) turn: f64,
@@ -42,7 +35,7 @@ pub struct Problem<M, const D: usize> {
 impl<M: Model<D>, const D: usize> Problem<M, D> {
     /// `model` from `start`; a revolution takes about `turn` seconds.
     ///
-    /// What is no letter or digit in `name` becomes a hyphen.
+    /// Characters of `name` other than letters and digits become hyphens.
     pub fn new(name: &str, model: M, start: State<f64, D>, turn: f64) -> Self {
         let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
         Problem {
@@ -108,84 +101,5 @@ impl<M: Model<D>, const D: usize> Problem<M, D> {
             simulator.run(steps, watch)?;
             Ok(simulator.sample().state)
         })
-    }
-}
-
-impl<M: Model<D>, const D: usize> Subject for Problem<M, D>
-where
-    // Threads share it where many orbits are tried at once.
-    M::On<f64>: Send + Sync,
-{
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn title(&self) -> &str {
-        &self.title
-    }
-
-    fn dimension(&self) -> usize {
-        D
-    }
-
-    fn turn(&self) -> f64 {
-        self.turn
-    }
-
-    fn law(&self) -> Law {
-        let depends = |state: &State<TwoFloat, D>| {
-            // The generator does not depend on the integrator or the step.
-            let at = state.map(Float::to_f64);
-            let any = Linearisation::new(integrator::Leapfrog, self.model, &at, self.turn);
-            any.generator.dv.iter().any(|column| column.v.iter().any(|x| !x.is_zero()))
-        };
-        Law { linear: M::LINEAR, velocity_dependent: self.orbit().states().iter().any(depends) }
-    }
-
-    fn reference_error(&self) -> f64 {
-        self.orbit().uncertainty()
-    }
-
-    fn errors(&self, kind: Kind, method: Method, halvings: Halvings) -> Result<Errors, StudyError> {
-        errors::measure(self, kind, method, halvings)
-    }
-
-    fn changes(
-        &self,
-        change: Change,
-        method: Method,
-        halvings: Halvings,
-    ) -> Result<Changes, StudyError> {
-        energy::changes(self, change, method, halvings)
-    }
-
-    fn horizon(&self, method: Method, steps: u64, turns: u64) -> Result<Horizon, StudyError> {
-        energy::horizon(self, method, steps, turns)
-    }
-
-    fn closes(&self) -> bool {
-        energy::closes(self)
-    }
-
-    fn frequency(&self) -> Option<f64> {
-        stability::frequency(self)
-    }
-
-    fn loss(
-        &self,
-        execution: &Execution,
-        orbits: Orbits,
-        method: Method,
-        steps: u64,
-    ) -> Result<Option<Loss>, StudyError> {
-        stability::loss(self, execution, orbits, method, steps)
-    }
-
-    fn portrait(&self, method: Method, dt: f64, steps: u64) -> Result<Portrait, StudyError> {
-        portrait::trace(self, method, dt, steps)
-    }
-
-    fn symmetry(&self, method: Method, steps: u64) -> Symmetry {
-        symmetry::measure(self, method, steps)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use libration_settings::{Fault, names};
+use libration_settings::{Fault, suggestions};
 use libration_study::schema::{list, one_of};
 use schemars::{Schema, SchemaGenerator, json_schema};
 
@@ -11,7 +11,7 @@ use super::{Halvings, SYSTEMS};
 /// Steps per turn at the largest step of a sequence of halvings.
 pub(crate) const COARSEST: RangeInclusive<u64> = COARSEST_UNIT..=4096;
 
-/// The divisor of such a number: orbits are compared that often per turn.
+/// The divisor of such a number: the number of comparisons per turn.
 const COARSEST_UNIT: u64 = Halvings::SAMPLES;
 
 /// The number `value` of steps per turn at the largest step.
@@ -27,15 +27,15 @@ pub(crate) fn coarsest(key: &'static str, value: i128) -> Result<u64, Fault> {
     }
 }
 
-/// Names of systems that can be studied, at least one, each once.
+/// Checks names of systems: known, at least one, each once.
 pub(crate) fn check_systems(key: &'static str, systems: &[String]) -> Result<(), Fault> {
     if systems.is_empty() {
         return Err(Fault::new(key, format!("`{key}` must name at least one system")));
     }
     for (i, name) in systems.iter().enumerate() {
         if !SYSTEMS.contains(&name.as_str()) {
-            let fault = Fault::at(key, i, format!("no system `{name}` can be studied"));
-            return Err(fault.help(names::suggest("systems", name, SYSTEMS)));
+            let fault = Fault::at(key, i, format!("unknown system `{name}`"));
+            return Err(fault.help(suggestions::suggest("systems", name, SYSTEMS)));
         }
         if systems[..i].contains(name) {
             return Err(Fault::at(key, i, format!("the system `{name}` is named twice")));

@@ -1,28 +1,18 @@
-//! The time step at which a method loses an orbit, searched for by simulation.
+//! The stability limit of a method, by simulation.
 
 use libration::analysis::{Complex, Eigenvalues, Linearisation, Spectrum, eigenvalues};
 use libration::ensemble::Execution;
 use libration::{Method, Model, State, integrator};
 use libration_study::StudyError;
 
-use super::Problem;
-use super::sweep::{distance, first_lost};
+use super::sweep::{distance, first_unstable};
+use super::{Orbits, Problem};
 
 /// `ωΔt` up to which a search goes; no integrator here is stable as far as that.
 const FURTHEST: f64 = 8.0;
 
 /// The displacement of a small orbit, as a share of the configured start's.
 const SMALL: f64 = 1e-6;
-
-/// From where an orbit starts that may be lost, and how one knows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Orbits {
-    /// From the configured start: lost if the energy has changed by as much as there was, or is no
-    /// number.
-    Configured,
-    /// Close to the equilibrium: lost if it has grown a thousandfold.
-    Small,
-}
 
 /// The highest angular frequency of small oscillations about the equilibrium, in rad/s; none if
 /// there is no equilibrium or nothing oscillates.
@@ -43,14 +33,14 @@ pub(super) fn frequency<M: Model<D>, const D: usize>(problem: &Problem<M, D>) ->
     imaginary.into_iter().reduce(f64::max).filter(|&omega| omega > 0.0)
 }
 
-/// Up to where orbits were not lost.
+/// A stability limit from a search.
 #[derive(Clone, Copy, Debug)]
-pub struct Loss {
+pub struct StabilityLimit {
     /// The largest time step in s up to which no step that was tried lost its orbit; zero if the
     /// smallest did.
     pub dt: f64,
     /// How far apart the steps that were tried are, in s: of a narrower gap nothing is known.
-    pub apart: f64,
+    pub spacing: f64,
 }
 
 /// Time steps of the fine scan.
@@ -66,13 +56,13 @@ const PARTS: u32 = 64;
 /// resonances, or at single steps in chaos that takes its time. A second scan begins at a hundredth of
 /// the first loss, much finer and with runs four times as long. Then the last interval is narrowed
 /// down; bisection alone would find some end of some gap.
-pub(super) fn loss<M: Model<D>, const D: usize>(
+pub(super) fn stability_limit<M: Model<D>, const D: usize>(
     problem: &Problem<M, D>,
     execution: &Execution,
     orbits: Orbits,
     method: Method,
     steps: u64,
-) -> Result<Option<Loss>, StudyError>
+) -> Result<Option<StabilityLimit>, StudyError>
 where
     M::On<f64>: Send + Sync,
 {
@@ -81,7 +71,7 @@ where
     let scan = |from: f64, width: f64, count: u32, steps: u64| {
         let z = |i: u32| from + width * f64::from(i);
         let dts: Vec<f64> = (1..=count).map(|i| z(i) / omega).collect();
-        let lost = first_lost(execution, problem, orbits, &start, method, &dts, steps)?;
+        let lost = first_unstable(execution, problem, orbits, &start, method, &dts, steps)?;
         Ok::<_, StudyError>(lost.map(|i| z(i as u32 + 1)))
     };
     let mut width = 0.05;
@@ -89,7 +79,7 @@ where
         return Ok(None);
     };
     if first <= width {
-        return Ok(Some(Loss { dt: 0.0, apart: width / omega }));
+        return Ok(Some(StabilityLimit { dt: 0.0, spacing: width / omega }));
     }
     // About the equilibrium growth is monotone in the step: there are no gaps to be found.
     let steps = if orbits == Orbits::Configured { 4 * steps } else { steps };
@@ -107,7 +97,7 @@ where
             None => low = high - part,
         }
     }
-    Ok(Some(Loss { dt: low / omega, apart: width / omega }))
+    Ok(Some(StabilityLimit { dt: low / omega, spacing: width / omega }))
 }
 
 /// The frequency in which time steps are counted, and a start; none of small orbits without an
@@ -152,13 +142,16 @@ mod tests {
         let (orbits, method) = (Orbits::Configured, Method::VelocityVerlet);
         let start = State { q: [0.4, 0.0], v: [0.0, 2.0] };
         let kepler = Problem::new("kepler", Kepler { mu: 1.0 }, start, std::f64::consts::TAU);
-        let found = loss(&kepler, &Execution::serial(), orbits, method, 1_000).unwrap().unwrap();
-        assert!(found.dt < 0.2010 && found.apart < 4e-5, "{found:?}");
+        let found =
+            stability_limit(&kepler, &Execution::serial(), orbits, method, 1_000).unwrap().unwrap();
+        assert!(found.dt < 0.2010 && found.spacing < 4e-5, "{found:?}");
 
         let start = State { q: [2.0], v: [0.0] };
         let turn = std::f64::consts::TAU / 9.81_f64.sqrt();
         let pendulum = Problem::new("pendulum", Pendulum { omega2: 9.81 }, start, turn);
-        let found = loss(&pendulum, &Execution::serial(), orbits, method, 1_000).unwrap().unwrap();
-        assert!(found.dt < 0.3903 && found.apart < 1e-4, "{found:?}");
+        let found = stability_limit(&pendulum, &Execution::serial(), orbits, method, 1_000)
+            .unwrap()
+            .unwrap();
+        assert!(found.dt < 0.3903 && found.spacing < 1e-4, "{found:?}");
     }
 }

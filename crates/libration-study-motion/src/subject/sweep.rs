@@ -1,4 +1,4 @@
-//! One orbit at many time steps at once: which of them lose it.
+//! One orbit at many time steps at once: the first unstable one.
 
 use core::ops::Range;
 
@@ -18,7 +18,7 @@ const TOGETHER: usize = 416;
 ///
 /// It is looked at after every step. A lane holds the bits of the lone trajectory, so it makes no
 /// difference how many are tried together.
-pub(super) fn first_lost<M: Model<D>, const D: usize>(
+pub(super) fn first_unstable<M: Model<D>, const D: usize>(
     execution: &Execution,
     problem: &Problem<M, D>,
     orbits: Orbits,
@@ -33,7 +33,7 @@ where
     let system = problem.model.on::<f64>();
     let bound = Bound::new(problem, &system, orbits, start);
     for (i, dts) in dts.chunks(TOGETHER).enumerate() {
-        let watch = |range| Watch::new(range, system, bound);
+        let watch = |range| BoundObserver::new(range, system, bound);
         let mut ensemble = Ensemble::from_fn(dts.len(), execution.clone(), |_| *start)?;
         // The one place in which a method becomes a type for many trajectories.
         let watched = with_method!(method, |m| {
@@ -58,7 +58,7 @@ pub(super) fn distance<const D: usize>(a: &State<f64, D>, b: &State<f64, D>, ome
     (squares[0] + squares[1] / (omega * omega)).sqrt()
 }
 
-/// How far an orbit may go before it is lost.
+/// The bound of an orbit; an orbit beyond it is lost.
 #[derive(Clone, Copy, Debug)]
 enum Bound<const D: usize> {
     /// The change of its energy from `start`.
@@ -89,20 +89,20 @@ impl<const D: usize> Bound<D> {
 }
 
 /// Notes which orbits stay within a bound, and finite.
-struct Watch<Sys, const D: usize> {
+struct BoundObserver<Sys, const D: usize> {
     first: usize,
     system: Sys,
     bound: Bound<D>,
     stays: Vec<bool>,
 }
 
-impl<Sys, const D: usize> Watch<Sys, D> {
+impl<Sys, const D: usize> BoundObserver<Sys, D> {
     fn new(orbits: Range<usize>, system: Sys, bound: Bound<D>) -> Self {
-        Watch { first: orbits.start, system, bound, stays: vec![true; orbits.len()] }
+        BoundObserver { first: orbits.start, system, bound, stays: vec![true; orbits.len()] }
     }
 }
 
-impl<Sys: Hamiltonian<f64, D> + Send, const D: usize> Observer<f64, D> for Watch<Sys, D> {
+impl<Sys: Hamiltonian<f64, D> + Send, const D: usize> Observer<f64, D> for BoundObserver<Sys, D> {
     // One index for all planes, whose lengths are the same: so the loops become vectors.
     #[allow(clippy::needless_range_loop)]
     #[inline(always)]
@@ -196,12 +196,19 @@ mod tests {
             let alone: Vec<bool> =
                 dts.iter().map(|&dt| is_lost_alone(problem, orbits, start, method, dt)).collect();
             for (dt, &alone) in dts.iter().zip(&alone) {
-                let lost =
-                    first_lost(&Execution::serial(), problem, orbits, start, method, &[*dt], STEPS);
+                let lost = first_unstable(
+                    &Execution::serial(),
+                    problem,
+                    orbits,
+                    start,
+                    method,
+                    &[*dt],
+                    STEPS,
+                );
                 assert_eq!(lost, Ok(alone.then_some(0)), "{method:?}, {dt} s");
             }
             let first =
-                first_lost(&Execution::serial(), problem, orbits, start, method, &dts, STEPS);
+                first_unstable(&Execution::serial(), problem, orbits, start, method, &dts, STEPS);
             assert_eq!(first, Ok(alone.iter().position(|&lost| lost)), "{method:?}");
             count += alone.iter().filter(|&&lost| lost).count();
         }
@@ -231,7 +238,7 @@ mod tests {
         dts[2 * TOGETHER + 7] = 0.5;
         dts[2 * TOGETHER + 9] = 0.5;
         let method = Method::VelocityVerlet;
-        let lost = first_lost(
+        let lost = first_unstable(
             &Execution::serial(),
             &kepler,
             Orbits::Configured,
@@ -247,7 +254,7 @@ mod tests {
     fn a_start_that_is_not_finite_is_lost() {
         let kepler = kepler();
         let start = State { q: [f64::INFINITY, 0.0], v: [0.0, 1.0] };
-        let lost = first_lost(
+        let lost = first_unstable(
             &Execution::serial(),
             &kepler,
             Orbits::Configured,

@@ -1,4 +1,4 @@
-//! The symmetries of a step along an orbit: areas, and time.
+//! Symplecticity and reversibility of a step along an orbit.
 
 use libration::analysis::{Linearisation, UpdateMatrix};
 use libration::number::{TwoFloat, Wide};

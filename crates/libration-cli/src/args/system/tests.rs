@@ -1,4 +1,4 @@
-//! What the shared flags take, and what they say about what they do not take.
+//! Tests of the shared options: accepted values and error messages.
 
 use clap::Parser;
 use libration_analyze::trajectory::FloatType;
@@ -14,12 +14,12 @@ struct Probe {
 }
 
 /// The outcome of a command line that starts with a system, an integrator and a time step.
-fn probe(system: &str, flags: &str) -> Result<(Probe, Setting), String> {
+fn probe(system: &str, flags: &str) -> Result<(Probe, InitialValueProblem), String> {
     let steps = if flags.contains("--steps") { "" } else { "--steps 10" };
     parse(&format!("probe --system {system} --integrator rk4 --dt 0.01 {steps} {flags}"))
 }
 
-fn parse(line: &str) -> Result<(Probe, Setting), String> {
+fn parse(line: &str) -> Result<(Probe, InitialValueProblem), String> {
     let probe = Probe::try_parse_from(line.split(' ').filter(|word| !word.is_empty()))
         .map_err(|error| error.to_string())?;
     match probe.args.system.resolve() {
@@ -61,16 +61,16 @@ fn the_other_flags_are_read() {
 fn wrong_input_is_named_with_what_is_allowed() {
     let cases: &[(&str, &str, &[&str])] = &[
         ("oscilator", "", &["'oscilator'", "--system", "'oscillator'", "kepler"]),
-        ("kepler", "--q 1", &["--q `1` has 1 coordinate,", "kepler takes 2 numbers"]),
-        ("kepler", "--v 1,2,3", &["--v `1,2,3` has 3 coordinates", "kepler takes 2 numbers"]),
+        ("kepler", "--q 1", &["--q `1` has 1 coordinate,", "kepler requires 2 numbers"]),
+        ("kepler", "--v 1,2,3", &["--v `1,2,3` has 3 coordinates", "kepler requires 2 numbers"]),
         ("oscillator", "--q 1,2,3,4,5,6,7,8,9", &["has 9 coordinates", "1 to 8 numbers"]),
-        ("pendulum", "--q 1,2", &["--q `1,2` has 2 coordinates", "pendulum takes 1 number"]),
-        ("oscillator", "--q 1,2 --v 1", &["--q `1,2` and --v `1`", "2 and 1", "equally many"]),
+        ("pendulum", "--q 1,2", &["--q `1,2` has 2 coordinates", "pendulum requires 1 number"]),
+        ("oscillator", "--q 1,2 --v 1", &["--q `1,2` has 2", "--v `1` has 1", "equal numbers"]),
         ("oscillator", "--q 1,x", &["--q", "`x` is not a number", "separated by commas"]),
         ("oscillator", "--q 1,", &["--q", "a coordinate is missing"]),
         ("oscillator", "--v nan", &["--v", "`nan` is not finite"]),
         ("oscillator", "--v -inf", &["--v", "`-inf` is not finite"]),
-        ("oscillator", "--v 1;2", &["--v", "`1;2` is not a number", "as in 1,-0.5"]),
+        ("oscillator", "--v 1;2", &["--v", "`1;2` is not a number", "as 1,-0.5"]),
         ("oscillator", "--set k", &["--set", "'k'", "KEY=VALUE"]),
         ("oscillator", "--set =1", &["--set", "the key is missing"]),
         ("oscillator", "--set k=soft", &["--set", "`soft` is not a number"]),

@@ -14,21 +14,21 @@ use libration_study_batch::bench::{BenchFloat, Rate, RolloutCase, Wanted};
 use libration_study_batch::{Throughput, bench};
 use serde_json::{Value, json};
 
-use super::judgement::judge;
+use super::disagreements::check_findings;
 use crate::args::{BenchArgs, simd};
 use crate::error::{Failure, is_unusable};
 use crate::progress::Reporter;
 use crate::{interrupt, terminal};
 
-/// Version of the contract that the JSON keeps.
+/// Version of the JSON format.
 const SCHEMA: &str = "libration.bench/1";
 
-/// Numbers of trajectories that are timed where none are named.
+/// Default numbers of trajectories.
 const COUNTS: [usize; 3] = [1_000, 100_000, 10_000_000];
 
-/// Times this machine, and prints what came out.
+/// Measures the speed of this machine and prints the result.
 pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), Failure> {
-    let config = Config::new(args.effort, simd::asked(args.simd)?);
+    let config = Config::new(args.effort, simd::instruction_set(args.simd)?);
     let wanted = wanted(args)?;
     let reporter = Reporter::new(quiet);
     let stop = interrupt::listen();
@@ -39,7 +39,7 @@ pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), Failure> {
         if !folder.is_dir() {
             let name = folder.display();
             return Err(Failure::usage(format!(
-                "`{name}` (--folder) must be a folder that is there"
+                "`{name}` (--folder) is not a folder; expected an existing folder"
             )));
         }
         let rates = bench::storage(&lab, &folder);
@@ -65,10 +65,10 @@ pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), Failure> {
         if args.json { rates_json(&rates) } else { rates_text(&rates) }
     };
     terminal::print(&text)?;
-    judge(&records)
+    check_findings(&records)
 }
 
-/// What is to be timed by itself, if anything is named.
+/// Returns the measurements of --implementation.
 fn wanted(args: &BenchArgs) -> Result<Vec<Wanted>, Failure> {
     let counts = if args.count.is_empty() { &COUNTS[..] } else { &args.count };
     let floats = if args.float.is_empty() { &BenchFloat::ALL[..] } else { &args.float };
@@ -89,7 +89,7 @@ fn wanted(args: &BenchArgs) -> Result<Vec<Wanted>, Failure> {
     Ok(wanted)
 }
 
-/// The rollouts that are timed: where it is to be quick, none of 256 MiB and more.
+/// Returns the rollouts to measure; with effort quick only those below 256 MiB.
 fn cases(args: &BenchArgs) -> Vec<RolloutCase> {
     if !args.case.is_empty() {
         return args.case.clone();
@@ -98,7 +98,7 @@ fn cases(args: &BenchArgs) -> Vec<RolloutCase> {
     RolloutCase::ALL.into_iter().filter(|case| case.bytes() < most).collect()
 }
 
-/// The failure that an error amounts to, where `folder` may be the one that --folder names.
+/// Converts an error; `folder` is that of --folder.
 fn failure(error: StudyError, folder: Option<&Path>) -> Failure {
     match error {
         StudyError::Interrupted => Failure::Interrupted("interrupted".to_owned()),
@@ -109,7 +109,7 @@ fn failure(error: StudyError, folder: Option<&Path>) -> Failure {
     }
 }
 
-/// Whether an error is about the folder that --folder names.
+/// Whether an error concerns the folder of --folder.
 fn is_about(error: &(dyn Error + 'static), folder: Option<&Path>) -> bool {
     let error = error.downcast_ref::<DatasetError>();
     error.zip(folder).is_some_and(|(error, folder)| is_unusable(error, folder))
@@ -135,28 +135,28 @@ fn report_text(record: &Record) -> String {
     text
 }
 
-/// What was judged, or was too noisy for it.
+/// Returns the ratios with a verdict, and those that were too noisy for one.
 fn ratios(record: &Record) -> Vec<Vec<String>> {
     let head = ["finding", "measured", "at least", "verdict"].map(String::from).to_vec();
     let verdict = |finding: &Finding| match finding.verdict {
         Verdict::Agrees => Some("reached"),
         Verdict::Disagrees => Some("missed"),
         Verdict::Measured => match finding.undecided.as_ref()? {
-            Undecided::Noisy(_) => Some("too noisy to judge: run it again"),
+            Undecided::Noisy(_) => Some("too noisy; repeat the run"),
             Undecided::Beyond(_) => Some("not reached"),
         },
     };
     let ratios = record.findings.iter().filter(|f| f.unit == "1" && f.relation != Relation::AtMost);
     let rows = ratios.filter_map(|finding| {
         let wanted = finding.predicted.map_or_else(|| "—".to_owned(), |bar| format!("{bar}"));
-        let told = [finding.id.clone(), format!("{:.3}", finding.measured), wanted];
+        let cells = [finding.id.clone(), format!("{:.3}", finding.measured), wanted];
         let verdict = verdict(finding)?.to_owned();
-        Some(told.into_iter().chain([verdict]).collect())
+        Some(cells.into_iter().chain([verdict]).collect())
     });
     std::iter::once(head).chain(rows).collect()
 }
 
-/// The head and the rows of a table, as the page would set them.
+/// Returns the head and the rows of a table, typeset as on the page.
 fn lines(table: &Table) -> Vec<Vec<String>> {
     let rows = table.rows.iter().map(|row| row.iter().map(|cell| cell.typeset(3)).collect());
     std::iter::once(table.columns.clone()).chain(rows).collect()
@@ -191,7 +191,7 @@ fn rates_text(rates: &[Rate]) -> String {
     columns(&head.into_iter().chain(rates.iter().map(row)).collect::<Vec<_>>())
 }
 
-/// Lines whose entries stand below each other.
+/// Aligns the columns of lines.
 fn columns(lines: &[Vec<String>]) -> String {
     let count = lines.first().map_or(0, Vec::len);
     // Columns are counted in characters.
@@ -210,7 +210,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entries_stand_below_each_other() {
+    fn columns_are_aligned() {
         let lines = [["a", "Δt"], ["long", "1"]].map(|line| line.map(String::from).to_vec());
         assert_eq!(columns(&lines), "  a     Δt\n  long  1\n");
     }

@@ -3,10 +3,11 @@
 use serde_json::{Value, json};
 
 use super::{Number, color, dash};
-use crate::figure::drawn::edges;
 use crate::figure::grid::Grid;
-use crate::figure::layout::{Entry, Placed, WIDTH};
+use crate::figure::layout::{LegendEntry, PanelLayout};
 use crate::figure::mark::{Across, Mark, Shape};
+use crate::figure::mark_geometry::edges;
+use crate::figure::sizes::WIDTH;
 use crate::figure::style::Marker;
 
 /// A straight line across a panel.
@@ -26,7 +27,7 @@ pub(super) fn rule(mark: &Mark, across: Across, at: f64, n: Number) -> Value {
 }
 
 /// What is seen through a picture where it has no value.
-pub(super) fn blank(grid: &Grid, placed: &Placed<'_>, n: Number) -> Option<Value> {
+pub(super) fn blank(grid: &Grid, placed: &PanelLayout<'_>, n: Number) -> Option<Value> {
     let (x, y) = (edges(&grid.x, placed.panel.x.scale), edges(&grid.y, placed.panel.y.scale));
     Some(json!({"type": "rect", "layer": "below", "xref": n.key("x"), "yref": n.key("y"),
         "x0": x.first()?, "x1": x.last()?, "y0": y.first()?, "y1": y.last()?,
@@ -34,7 +35,7 @@ pub(super) fn blank(grid: &Grid, placed: &Placed<'_>, n: Number) -> Option<Value
 }
 
 /// The sample of a mark in the legend.
-pub(super) fn sample(entry: &Entry<'_>, height: f64) -> Value {
+pub(super) fn sample(entry: &LegendEntry<'_>, height: f64) -> Value {
     let style = &entry.mark.style;
     let color = color(style);
     let (middle, reach) = (entry.x + 5.0, style.radius);

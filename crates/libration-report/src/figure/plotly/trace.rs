@@ -5,9 +5,10 @@ use serde_json::{Value, json};
 use super::{Number, color, dash};
 use crate::figure::axis::Scale;
 use crate::figure::color::ColorMap;
-use crate::figure::drawn::{contour, edges, runs};
-use crate::figure::layout::{Bar, EDGE, Placed, SMALL, WIDTH};
+use crate::figure::layout::{ColorBar, PanelLayout};
 use crate::figure::mark::{Mark, Shape};
+use crate::figure::mark_geometry::{contour, edges, runs};
+use crate::figure::sizes::{EDGE, SMALL, WIDTH};
 use crate::figure::style::{Marker, Style};
 use crate::figure::ticks::Tick;
 use crate::text;
@@ -20,7 +21,7 @@ fn values(values: &[f64], scale: Scale) -> Vec<Option<f64>> {
 /// The traces of a mark.
 pub(super) fn traces(
     mark: &Mark,
-    placed: &Placed<'_>,
+    placed: &PanelLayout<'_>,
     n: Number,
     height: f64,
     data: &mut Vec<Value>,
@@ -180,7 +181,7 @@ fn colorscale(map: ColorMap) -> Value {
     map.stops().into_iter().enumerate().map(stop).collect()
 }
 
-fn colorbar(bar: &Bar<'_>, height: f64) -> Value {
+fn colorbar(bar: &ColorBar<'_>, height: f64) -> Value {
     let named: Vec<&Tick> = bar.ticks.iter().filter(|tick| !tick.label.is_empty()).collect();
     json!({
         "x": bar.rect.x / WIDTH, "xanchor": "left", "xpad": 0, "ypad": 0, "outlinewidth": 0,

@@ -3,35 +3,36 @@
 use std::fmt::Write;
 
 use super::path::{line, px};
-use crate::figure::drawn::Drawn;
 use crate::figure::geometry::Place;
-use crate::figure::layout::{EDGE, Entry, Placed};
+use crate::figure::layout::{LegendEntry, PanelLayout};
 use crate::figure::mark::Shape;
-use crate::figure::picture;
+use crate::figure::mark_geometry::MarkGeometry;
+use crate::figure::raster_image;
+use crate::figure::sizes::EDGE;
 use crate::figure::style::{Marker, Style};
 
 /// All marks of a panel. Points stand whole at the frame, everything else is clipped to it.
-pub(super) fn marks(placed: &Placed<'_>, clip: &str, out: &mut String) {
-    let on = if placed.on_picture() { " on-picture" } else { "" };
+pub(super) fn marks(placed: &PanelLayout<'_>, clip: &str, out: &mut String) {
+    let on = if placed.is_on_raster() { " on-picture" } else { "" };
     for (mark, drawn) in placed.panel.marks.iter().zip(&placed.drawn) {
         let (style, ink) = (&mark.style, mark.style.ink.name());
         let _ = match drawn {
-            Drawn::Words(_) => continue,
-            Drawn::Points(_) => write!(out, "<g class=\"ink-{ink}{on}\">"),
-            Drawn::Picture(_) => {
+            MarkGeometry::Text(_) => continue,
+            MarkGeometry::Points(_) => write!(out, "<g class=\"ink-{ink}{on}\">"),
+            MarkGeometry::Picture(_) => {
                 write!(out, "<g class=\"ink-{ink}{on}\" clip-path=\"url(#{clip}-p)\">")
             }
             _ => write!(out, "<g class=\"ink-{ink}{on}\" clip-path=\"url(#{clip})\">"),
         };
         match drawn {
-            Drawn::Lines(parts) => stroke(&joined(parts), style, !on.is_empty(), out),
-            Drawn::Levels(levels) => {
+            MarkGeometry::Lines(parts) => stroke(&joined(parts), style, !on.is_empty(), out),
+            MarkGeometry::Levels(levels) => {
                 let all = levels.iter().map(|(_, parts)| joined(parts));
                 all.for_each(|d| stroke(&d, style, !on.is_empty(), out));
             }
-            Drawn::Points(points) => dots(points, style, out),
-            Drawn::Areas(areas) => areas.iter().for_each(|area| fill(area, style, out)),
-            Drawn::Picture(rect) => {
+            MarkGeometry::Points(points) => dots(points, style, out),
+            MarkGeometry::Areas(areas) => areas.iter().for_each(|area| fill(area, style, out)),
+            MarkGeometry::Picture(rect) => {
                 if let (Shape::Raster { grid, colors }, Some(bar)) = (&mark.shape, &placed.bar) {
                     let blank = line(&[
                         [rect.x, rect.y],
@@ -41,7 +42,7 @@ pub(super) fn marks(placed: &Placed<'_>, clip: &str, out: &mut String) {
                     ]);
                     let _ = write!(out, "<path class=\"blank\" d=\"{blank}Z\"/>");
                     let frame = [&placed.frame.x, &placed.frame.y];
-                    let data = picture::of_grid(grid, colors, &bar.ruler.span, frame);
+                    let data = raster_image::grid_image(grid, colors, &bar.ruler.span, frame);
                     let _ = write!(
                         out,
                         "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" \
@@ -53,14 +54,14 @@ pub(super) fn marks(placed: &Placed<'_>, clip: &str, out: &mut String) {
                     );
                 }
             }
-            Drawn::Words(_) => {}
+            MarkGeometry::Text(_) => {}
         }
         out.push_str("</g>");
     }
 }
 
 /// A short sample of a mark, for the legend.
-pub(super) fn sample(entry: &Entry<'_>, out: &mut String) {
+pub(super) fn sample(entry: &LegendEntry<'_>, out: &mut String) {
     let (style, x, y) = (&entry.mark.style, entry.x, entry.y);
     let end = entry.text_x - 7.0;
     match entry.mark.shape {

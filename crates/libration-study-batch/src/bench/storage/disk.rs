@@ -1,4 +1,4 @@
-//! Data sets and checkpoints on a disk, in turn with what only writes.
+//! Data sets and checkpoints on a disk, alternating with plain writes.
 
 use std::fs;
 use std::path::Path;
@@ -8,14 +8,14 @@ use libration::State;
 use libration::ensemble::{Buffer, Ensemble, Execution, Pages};
 use libration_data::{DataError, load_state, save_state, write_direct};
 use libration_env::dataset;
-use libration_env::dataset::{DataFormat, Dataset, Job, Watch};
+use libration_env::dataset::{DataFormat, Dataset, Monitor, WriteJob};
 use libration_study::{Lab, StudyError};
 use serde_json::Value;
 use tempfile::TempDir;
 
 use super::{StorageRate, Stored};
 use crate::bench::Rates;
-use crate::failure::failed;
+use crate::dataset_error::failed;
 
 /// Trajectories of a checkpoint.
 const TRAJECTORIES: usize = 1_000_000;
@@ -29,10 +29,10 @@ const PIECE: usize = 1 << 26;
 /// Watches nothing, but for the wish to stop.
 struct Stop<'a>(&'a Lab<'a>);
 
-impl Watch for Stop<'_> {
-    fn done(&self, _: u64, _: u64) {}
+impl Monitor for Stop<'_> {
+    fn on_written(&self, _: u64, _: u64) {}
 
-    fn stops(&self) -> bool {
+    fn should_stop(&self) -> bool {
         self.0.check().is_err()
     }
 }
@@ -86,7 +86,7 @@ impl Disk<'_> {
     /// Seconds for a data set, and its bytes.
     fn stream(&self, dataset: &Dataset, format: DataFormat) -> Result<(f64, u64), StudyError> {
         let out = self.folder.join(format.name());
-        let job = Job {
+        let job = WriteJob {
             dataset,
             format,
             shard: [1, 1],

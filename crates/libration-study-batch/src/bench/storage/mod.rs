@@ -1,4 +1,4 @@
-//! How fast memory and disks of transitions are, beside what copies as many bytes.
+//! Rates of storage, relative to copies of the same bytes.
 
 mod disk;
 mod replay;
@@ -9,7 +9,7 @@ use libration_study::{Lab, StudyError};
 
 use super::stopwatch::Rates;
 
-/// Something that keeps transitions or states.
+/// A kind of storage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stored {
     /// 256 transitions drawn uniformly from a million.
@@ -49,7 +49,7 @@ impl Stored {
         }
     }
 
-    /// What its rate counts.
+    /// Returns the unit of the rate.
     pub const fn unit(self) -> &'static str {
         match self {
             Stored::Sample | Stored::Prioritised => "batches/s",
@@ -58,7 +58,7 @@ impl Stored {
         }
     }
 
-    /// What it is compared with, if with anything that is in this program.
+    /// Returns the reference, if this program measures one.
     pub const fn against(self) -> Option<&'static str> {
         match self {
             Stored::Insert => Some("a copy of as many bytes in memory"),
@@ -69,20 +69,20 @@ impl Stored {
     }
 }
 
-/// How fast it is.
+/// Rate of a kind of storage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StorageRate {
-    /// What was timed.
+    /// The measured case.
     pub stored: Stored,
     /// On how many threads.
     pub threads: usize,
     /// In its [unit](Stored::unit): the median of the rounds.
     pub median: f64,
-    /// How far the quartiles of the rounds lie apart.
+    /// Distance of the quartiles of the rounds.
     pub spread: f64,
     /// The share of what it is compared with: the median of the rounds, and how far their quartiles lie apart.
     pub share: Option<[f64; 2]>,
-    /// How many rounds there were.
+    /// Number of rounds.
     pub rounds: usize,
 }
 

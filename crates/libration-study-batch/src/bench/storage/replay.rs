@@ -1,4 +1,4 @@
-//! Replay buffers, in turn with copies.
+//! Replay buffers, alternating with copies.
 
 use std::cell::RefCell;
 use std::hint::black_box;

@@ -1,12 +1,12 @@
-//! Claims about what limits rollouts.
+//! Claims about the limits of rollouts.
 
 use libration_report::notation::number;
 use libration_report::record::{Judgement, Record, Ruling};
 
 use super::show;
-use crate::reported::{EXAMPLES, SATURATED};
+use crate::source_rollouts::{EXAMPLES, SATURATED};
 
-/// From this share of a fill on a rollout is as fast as the memory lets it be, about.
+/// Least share of a fill for a rollout that is limited by memory.
 const BOUND: f64 = 0.5;
 
 /// Judges them.

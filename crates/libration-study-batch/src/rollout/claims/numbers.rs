@@ -4,8 +4,8 @@ use libration_report::notation::{count, number};
 use libration_report::record::{Judgement, Record, Ruling};
 
 use super::show;
-use crate::reported::{EXAMPLES, PEAK_MILLIONS, Row, TABLE};
-use crate::rollout::table::example_times;
+use crate::rollout::source_table::example_times;
+use crate::source_rollouts::{EXAMPLES, PEAK_MILLIONS, Row, TABLE};
 
 /// Times that lie further than this from a line are of no line.
 const SMOOTH: f64 = 0.1;

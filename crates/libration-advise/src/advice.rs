@@ -1,0 +1,221 @@
+//! The results of advice.
+
+use std::collections::BTreeMap;
+
+use libration::Method;
+use serde::Serialize;
+
+use super::budget::{Budget, FirstFailure};
+use super::combined_effect::CombinedEffect;
+use super::integrator_choice::{IntegratorChoice, evaluations, sort_by_cost};
+use super::request::{Measure, Request, Tolerance};
+use super::stabilising_changes::StabilisingChanges;
+use super::stability_map::StabilityMap;
+use super::throughput::Throughput;
+
+/// The advice on a simulation or a loop; the fields are the keys of `advise --json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Advice {
+    /// The answer in a sentence or two.
+    pub answer: String,
+    /// The warnings, most urgent first.
+    pub warnings: Vec<String>,
+    /// The system.
+    pub system: &'static str,
+    /// Its parameters.
+    pub parameters: BTreeMap<&'static str, f64>,
+    /// Initial positions, or those of the operating point.
+    pub q: Vec<f64>,
+    /// Initial velocities.
+    pub v: Vec<f64>,
+    /// The tolerance.
+    pub tolerance: ToleranceAnswer,
+    /// The horizon, in s.
+    pub horizon: f64,
+    /// The advice on the loop, if there is one.
+    #[serde(rename = "loop")]
+    pub looped: Option<LoopAdvice>,
+    /// Every integrator with its largest step, cheapest first.
+    pub integrators: Vec<IntegratorChoice>,
+    /// A command that takes the advised steps; none without advised steps.
+    pub command: Option<String>,
+    /// The shortest tried step, in s, if no step meets the tolerance and a shorter one may.
+    pub tried_down_to: Option<f64>,
+    /// The disadvantage of the second integrator; none without one.
+    pub runner_up: Option<String>,
+    /// The errors of the float types with the first integrator.
+    pub floats: Vec<FloatChoice>,
+    /// Memory and speed of rollouts with it.
+    pub throughput: Option<Throughput>,
+    /// A command that repeats this advice, with its simulations and measurements.
+    pub again: String,
+    /// The stability map of the loop, if the request asks for it.
+    #[serde(skip)]
+    pub map: Option<StabilityMap>,
+}
+
+/// A tolerance.
+#[derive(Clone, Debug, Serialize)]
+pub struct ToleranceAnswer {
+    /// The name of the measure.
+    pub of: &'static str,
+    /// The largest allowed value.
+    pub most: f64,
+}
+
+/// The advice on a loop.
+#[derive(Clone, Debug, Serialize)]
+pub struct LoopAdvice {
+    /// The controller with its gains, in words.
+    pub controller: String,
+    /// The quantity of commands: `force` if the mass of the system is given, else `acceleration`.
+    pub command: &'static str,
+    /// The unit of commands.
+    pub command_unit: &'static str,
+    /// Gains of position and velocity; with an observer those of the estimates.
+    pub gains: [f64; 2],
+    /// Their units.
+    pub gain_units: [&'static str; 2],
+    /// The command that holds the operating point.
+    pub held_command: f64,
+    /// The sampling period, in s.
+    pub period: f64,
+    /// Whether the request states any imperfection.
+    pub stated: bool,
+    /// The budget of each imperfection.
+    pub budgets: Vec<Budget>,
+    /// The effect of all stated imperfections together.
+    pub together: CombinedEffect,
+    /// The stated imperfection that fails first.
+    pub fails_first: Option<FirstFailure>,
+    /// Changes that stabilise the loop, if it is unstable.
+    pub remedies: Option<StabilisingChanges>,
+}
+
+/// The error of a float type.
+#[derive(Clone, Debug, Serialize)]
+pub struct FloatChoice {
+    /// The float type.
+    pub float: &'static str,
+    /// The error with it.
+    pub lost: f64,
+    /// The measure of the error: that of the tolerance, or the trajectory if that is a cost.
+    pub of: &'static str,
+    /// Whether the error meets the tolerance.
+    pub meets: bool,
+    /// A command that takes the steps in this float type.
+    pub command: String,
+}
+
+impl LoopAdvice {
+    /// Whether the cost of the loop exceeds a tolerance of the cost.
+    pub(super) fn exceeds_tolerated_cost(&self, tolerance: &ToleranceAnswer) -> bool {
+        let rise = self.together.cost_increase;
+        tolerance.of == Measure::Cost.name() && rise.is_none_or(|rise| rise > tolerance.most)
+    }
+}
+
+impl Advice {
+    /// Whether the loop is stable within the tolerance, and an integrator meets it.
+    pub fn holds(&self) -> bool {
+        let loop_holds = self.looped.as_ref().is_none_or(|looped| {
+            let together = &looped.together;
+            together.growth < 0.0
+                && !together.is_contradicted()
+                && !looped.exceeds_tolerated_cost(&self.tolerance)
+        });
+        loop_holds && self.chosen().is_some()
+    }
+
+    pub(super) fn new(request: &Request) -> Self {
+        let Tolerance { of, most } = request.tolerance;
+        Advice {
+            answer: String::new(),
+            warnings: Vec::new(),
+            system: request.system.name(),
+            parameters: request.actuation.parameters(request.system).into_iter().collect(),
+            q: request.q.clone(),
+            v: request.v.clone(),
+            tolerance: ToleranceAnswer { of: of.name(), most },
+            horizon: request.horizon,
+            looped: None,
+            integrators: Vec::new(),
+            command: None,
+            tried_down_to: None,
+            runner_up: None,
+            floats: Vec::new(),
+            throughput: None,
+            again: request.invocation.clone(),
+            map: None,
+        }
+    }
+
+    /// The advised integrator and step, if any meets the tolerance.
+    pub fn chosen(&self) -> Option<(&IntegratorChoice, f64)> {
+        self.integrators.first().and_then(|choice| Some((choice, choice.dt?)))
+    }
+
+    /// Sets the answer, the caveats of the integrators, and the command.
+    pub(super) fn finish(&mut self, request: &Request, answer: String) {
+        self.answer = answer;
+        let listed =
+            self.integrators.iter().filter_map(|choice| Method::from_name(choice.integrator));
+        self.warnings.extend(listed.filter_map(|method| request.system.caveat(method)));
+        let float = self.float().map_or("f64", |float| float.float);
+        self.command =
+            self.chosen().map(|(choice, dt)| request.command(choice.integrator, dt, float));
+    }
+
+    /// Sorts the integrators by cost, and sets the runner-up and warnings.
+    pub(super) fn choose(&mut self, request: &Request, mut choices: Vec<IntegratorChoice>) {
+        for choice in &mut choices {
+            let method = Method::from_name(choice.integrator);
+            let each = method.and_then(|m| evaluations(request.system, &request.q, &request.v, m));
+            choice.evaluations = each.zip(choice.dt).map(|(each, dt)| each as f64 / dt);
+        }
+        sort_by_cost(&mut choices);
+        self.runner_up = match &choices[..] {
+            [first, second, ..] => first.evaluations.zip(second.evaluations).map(|(a, b)| {
+                format!(
+                    "{} would take {:.3} times as many force evaluations, in steps of {:.4e} s",
+                    second.integrator,
+                    b / a,
+                    second.dt.unwrap_or(f64::NAN)
+                )
+            }),
+            _ => None,
+        };
+        if choices.first().is_some_and(|best| best.dt.is_none()) {
+            let least = choices.iter().min_by(|a, b| a.lost.total_cmp(&b.lost));
+            if let (Some(least), Some(shortest)) = (least, self.tried_down_to) {
+                let loses = match least.lost.is_finite() {
+                    true => format!(
+                        "the error of {} still decreases ({:.3e})",
+                        least.integrator, least.lost
+                    ),
+                    false => "no integrator follows the motion".to_owned(),
+                };
+                self.warnings.push(format!(
+                    "over this horizon the search ends at steps of {shortest:.4e} s, where {loses}; shorter steps may meet the \
+                     tolerance of {:e}",
+                    request.tolerance.most
+                ));
+            } else if let Some(least) = least {
+                self.warnings.push(format!(
+                    "no integrator meets the tolerance of {:e} with any tried step; the best possible is {:.3e}, with {} in \
+                     steps of {:.4e} s",
+                    request.tolerance.most,
+                    least.lost,
+                    least.integrator,
+                    least.best_dt.unwrap_or(f64::NAN)
+                ));
+            }
+        }
+        self.integrators = choices;
+    }
+
+    /// The narrowest float that meets the tolerance.
+    pub(super) fn float(&self) -> Option<&FloatChoice> {
+        self.floats.iter().find(|float| float.meets)
+    }
+}

@@ -1,0 +1,206 @@
+//! Advice on simulations and loops.
+
+use libration::analysis::Imperfections;
+use libration::{Float, Method, Model, State, System};
+use libration_settings::units;
+use libration_work::Work;
+
+use super::advice::{Advice, FloatChoice, LoopAdvice};
+use super::control::Control;
+use super::free_motion::FreeMotion;
+use super::integrator_choice::{best_possible, largest_step};
+use super::loop_simulation::{LoopSimulation, MOST_PERIODS};
+use super::loops::Loop;
+use super::request::{Measure, Request, Tolerance};
+use super::summary::{describe_integrator, describe_loop, loop_warnings};
+use super::{AdviseError, Budget, Throughput};
+
+/// The advice on a system without a controller.
+pub(super) fn advise_simulation<M: Model<D>, const D: usize>(
+    work: &Work<'_>,
+    model: M,
+    request: &Request,
+) -> Result<Advice, AdviseError> {
+    let free = FreeMotion::new(work, model, request)?;
+    let mut advice = Advice::new(request);
+    let most = request.tolerance.most;
+    let mut choices =
+        work.sweep("the largest step of each integrator", &Method::ALL, |&method| {
+            largest_step(work, &free, method, most, free.steps())
+        })?;
+    if choices.iter().all(|choice| choice.dt.is_none()) {
+        choices = work.sweep("the smallest error of each integrator", &Method::ALL, |&method| {
+            best_possible(work, &free, method, free.steps())
+        })?;
+        // If the search does not end by rounding, shorter steps have smaller errors.
+        let [shortest, _] = free.steps();
+        let best = choices.iter().min_by(|a, b| a.lost.total_cmp(&b.lost));
+        let ends = best.and_then(|best| best.best_dt).is_none_or(|dt| dt < 2.0 * shortest);
+        advice.tried_down_to = Some(shortest).filter(|_| ends);
+    }
+    advice.choose(request, choices);
+    if let Some((_, dt)) = advice.chosen()
+        && free.turn(dt) > 1.0
+    {
+        let turn = free.turn(dt);
+        advice.warnings.push(format!(
+            "a step is {turn:.2} rad of the fastest motion: it meets the tolerance, but does not resolve the motion"
+        ));
+    }
+    if let Some((choice, dt)) = advice.chosen() {
+        let method = Method::from_name(choice.integrator).unwrap_or(Method::Rk4);
+        let narrow = free.lost_in::<f32>(work, method, dt, f64::INFINITY)?;
+        let wide = free.lost_in::<f64>(work, method, dt, f64::INFINITY)?;
+        advice.floats = floats(request, method, dt, [narrow, wide]);
+        let narrow = advice.float().is_some_and(|float| float.float == f32::NAME);
+        advice.throughput = Some(Throughput::measure(work, request, method, dt, narrow)?);
+    }
+    let answer = describe_integrator(&advice, request);
+    advice.finish(request, answer);
+    Ok(advice)
+}
+
+fn floats(request: &Request, method: Method, dt: f64, lost: [f64; 2]) -> Vec<FloatChoice> {
+    let most = request.tolerance.most;
+    let of = |(float, lost): (&'static str, f64)| {
+        let command = request.simulation(method.name(), dt, float);
+        let of = match request.tolerance.of {
+            Measure::Cost => Measure::Trajectory,
+            of => of,
+        };
+        FloatChoice { float, lost, of: of.name(), meets: lost <= most, command }
+    };
+    [f32::NAME, f64::NAME].into_iter().zip(lost).map(of).collect()
+}
+
+impl<M: Model<1>> LoopSimulation<'_, M> {
+    /// The errors of the float types with `substeps` steps per period.
+    fn floats(
+        &self,
+        work: &Work<'_>,
+        request: &Request,
+        method: Method,
+        substeps: u64,
+    ) -> Result<Vec<FloatChoice>, AdviseError> {
+        // A cost depends on steps alone; rounding affects the trajectory.
+        let tolerance = Tolerance { of: Measure::Trajectory, ..request.tolerance };
+        let course = LoopSimulation { tolerance, ..*self };
+        let reference = course.reference(work)?;
+        let lost = [
+            course.lost::<f32>(work, method, substeps, &reference)?,
+            course.lost::<f64>(work, method, substeps, &reference)?,
+        ];
+        let dt = self.one.control.period / substeps as f64;
+        let mut all = floats(request, method, dt, lost);
+        if request.tolerance.of == Measure::Cost {
+            // The tolerance does not include the error of the integrator in the trajectory.
+            for float in &mut all {
+                float.meets = float.lost <= lost[1] + request.tolerance.most;
+            }
+        }
+        Ok(all)
+    }
+}
+
+/// Adds the largest step of each integrator for a loop, and the float types for the best.
+fn integrators<M: Model<1>>(
+    work: &Work<'_>,
+    one: &Loop<M>,
+    request: &Request,
+    advice: &mut Advice,
+) -> Result<(), AdviseError> {
+    let stepped = LoopSimulation { one, horizon: request.horizon, tolerance: request.tolerance };
+    let reference = stepped.reference(work)?;
+    // With an infinite cost the errors of integrators are undefined.
+    let methods = if stepped.has_finite_cost()? { &Method::ALL[..] } else { &[] };
+    let choices = work.sweep("the largest step of each integrator", methods, |&method| {
+        stepped.choose(work, method, &reference)
+    })?;
+    advice.choose(request, choices);
+    if let Some((choice, dt)) = advice.chosen() {
+        let method = Method::from_name(choice.integrator).unwrap_or(Method::Rk4);
+        advice.floats = stepped.floats(work, request, method, choice.substeps.unwrap_or(1))?;
+        let narrow = advice.float().is_some_and(|float| float.float == f32::NAME);
+        advice.throughput = Some(Throughput::measure(work, request, method, dt, narrow)?);
+    }
+    Ok(())
+}
+
+/// The advice on a loop.
+pub(super) fn advise_loop<M: Model<1>>(
+    work: &Work<'_>,
+    model: M,
+    control: &Control,
+    request: &Request,
+) -> Result<Advice, AdviseError> {
+    let of = request.tolerance.of;
+    if !matches!(of, Measure::Trajectory | Measure::Cost) {
+        let why = "a loop does not conserve it; set a tolerance of trajectory or cost".into();
+        return Err(AdviseError::Tolerance { of, why });
+    }
+    let one = Loop::new(model, request, control)?;
+    one.check()?;
+    let plant = one.plant();
+    let mut advice = Advice::new(request);
+    let budgets = one.budgets(work, request)?;
+    let together = one.combined_effect(work, &plant, request, &budgets)?;
+    let fails_first = one.fails_first(&budgets)?;
+    let remedies = if together.growth < 0.0 {
+        integrators(work, &one, request, &mut advice)?;
+        None
+    } else {
+        // No integrator follows a growing motion for long.
+        Some(one.stabilising_changes(&plant, &one.stated()?))
+    };
+    let rest = State { q: [request.q[0]], v: [0.0] };
+    let [held] = model.on::<f64>().acceleration(&rest);
+    advice.warnings.splice(0..0, loop_warnings(&one, &together));
+    let units = units::of(request.system, request.actuation);
+    let looped = LoopAdvice {
+        controller: one.describe_controller(),
+        command: request.actuation.name(),
+        command_unit: units.command,
+        gains: {
+            let gains = one.given_gains();
+            [gains.position, gains.velocity]
+        },
+        gain_units: [units.gains[0], units.gains[1]],
+        held_command: -held * request.actuation.mass(),
+        period: control.period,
+        stated: one.stated()? != Imperfections::NONE || control.record.is_some(),
+        budgets,
+        together,
+        fails_first,
+        remedies,
+    };
+    let mut answer = describe_loop(&looped, &advice.tolerance);
+    if !advice.integrators.is_empty() {
+        answer += &format!(" {}", describe_integrator(&advice, request));
+    }
+    let followed = MOST_PERIODS as f64 * control.period;
+    let stable = looped.remedies.is_none();
+    if stable && request.tolerance.of == Measure::Trajectory && request.horizon > followed {
+        advice.warnings.push(format!(
+            "the loop was simulated for {followed} s instead of the {} s of the request",
+            request.horizon
+        ));
+    }
+    advice.finish(request, answer);
+    if request.map {
+        advice.map = Some(one.map(work, looped.budgets[0].stable_up_to)?);
+    }
+    advice.looped = Some(looped);
+    Ok(advice)
+}
+
+/// The budget of each imperfection of a loop.
+pub(super) fn loop_budgets<M: Model<1>>(
+    work: &Work<'_>,
+    model: M,
+    control: &Control,
+    request: &Request,
+) -> Result<Vec<Budget>, AdviseError> {
+    let one = Loop::new(model, request, control)?;
+    one.check()?;
+    one.budgets(work, request)
+}

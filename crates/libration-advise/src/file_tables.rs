@@ -1,0 +1,147 @@
+//! Tables of request files.
+
+use std::collections::BTreeMap;
+
+use libration_settings::{Count, Number};
+use serde::Deserialize;
+
+/// A request file.
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct RequestFile {
+    pub(super) tolerance: BTreeMap<String, Number>,
+    pub(super) asked: AskedTable,
+    pub(super) system: BTreeMap<String, BTreeMap<String, Number>>,
+    pub(super) start: StartTable,
+    pub(super) controller: Option<ControllerTable>,
+    #[serde(rename = "loop")]
+    pub(super) looped: Option<LoopTable>,
+}
+
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct AskedTable {
+    pub(super) horizon: Number,
+    pub(super) rollout: [Count; 2],
+}
+
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct StartTable {
+    pub(super) q: Vec<Number>,
+    pub(super) v: Vec<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum ControllerTable {
+    Pd(PdTable),
+    Pid(PidTable),
+    Lqr(LqrTable),
+    Observer(ObserverTable),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PdTable {
+    pub(super) position: Number,
+    pub(super) velocity: Number,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PidTable {
+    pub(super) proportional: Number,
+    pub(super) integral: Number,
+    pub(super) derivative: Number,
+    #[serde(default = "zero")]
+    pub(super) filter: Number,
+    #[serde(default = "infinite")]
+    pub(super) most: Number,
+    #[serde(default = "one")]
+    pub(super) tracking: Number,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LqrTable {
+    pub(super) weights: [Number; 3],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ObserverTable {
+    pub(super) weights: Option<[Number; 3]>,
+    pub(super) gains: Option<[Number; 2]>,
+    pub(super) acceleration: Option<Number>,
+    pub(super) position: Option<Number>,
+    pub(super) correction: Option<[Number; 2]>,
+}
+
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct LoopTable {
+    pub(super) period: Number,
+    pub(super) latency: Number,
+    pub(super) jitter: Number,
+    pub(super) law: String,
+    pub(super) skew: Number,
+    pub(super) loss: Number,
+    pub(super) time_stamps: String,
+    pub(super) cost: Vec<Number>,
+    pub(super) deviation: Number,
+}
+
+fn zero() -> Number {
+    Number(0.0)
+}
+
+fn one() -> Number {
+    Number(1.0)
+}
+
+fn infinite() -> Number {
+    Number(f64::INFINITY)
+}
+
+impl Default for RequestFile {
+    fn default() -> Self {
+        RequestFile {
+            tolerance: [("trajectory".to_owned(), Number(1e-3))].into(),
+            asked: AskedTable::default(),
+            system: [("oscillator".to_owned(), [("omega2".to_owned(), Number(10.0))].into())]
+                .into(),
+            start: StartTable::default(),
+            controller: None,
+            looped: None,
+        }
+    }
+}
+
+impl Default for AskedTable {
+    fn default() -> Self {
+        AskedTable { horizon: Number(10.0), rollout: [Count(4096), Count(1024)] }
+    }
+}
+
+impl Default for StartTable {
+    fn default() -> Self {
+        StartTable { q: vec![Number(0.0)], v: vec![Number(0.0)] }
+    }
+}
+
+impl Default for LoopTable {
+    fn default() -> Self {
+        LoopTable {
+            period: Number(0.01),
+            latency: zero(),
+            jitter: zero(),
+            law: "gaussian".into(),
+            skew: zero(),
+            loss: zero(),
+            time_stamps: String::new(),
+            cost: Vec::new(),
+            deviation: Number(0.1),
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! The choice of integrator and step: the cheapest that meets a tolerance.
+
+use libration::catalog::Actuation;
+use libration::{AnySystem, Method};
+use libration_analyze::{Criteria, Request, Stepping, Timing, analyze};
+use libration_work::Work;
+
+use super::AdviseError;
+
+/// An integrator with its largest step within the tolerance.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct IntegratorChoice {
+    /// The name of the integrator.
+    pub integrator: &'static str,
+    /// The largest step that meets the tolerance, in s; none if no tried step does.
+    pub dt: Option<f64>,
+    /// The error with this step, in the measure of the tolerance. If no integrator meets it, the smallest error found, else
+    /// infinite.
+    pub lost: f64,
+    /// The step with the smallest error, in s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub best_dt: Option<f64>,
+    /// The error with a step 1.2 times as long, or with the next longer part of a period; none without one.
+    pub lost_beyond: Option<f64>,
+    /// Steps per period of a loop.
+    pub substeps: Option<u64>,
+    /// Force evaluations per second of simulated time; none if no step meets the tolerance.
+    pub evaluations: Option<f64>,
+}
+
+impl IntegratorChoice {
+    /// The choice of `method` without a step.
+    pub(super) fn none(method: Method) -> Self {
+        IntegratorChoice {
+            integrator: method.name(),
+            dt: None,
+            lost: f64::INFINITY,
+            best_dt: None,
+            lost_beyond: None,
+            substeps: None,
+            evaluations: None,
+        }
+    }
+}
+
+/// The error of a step, for a search.
+pub(super) trait StepTrial: Sync {
+    /// The error of `method` in steps of `dt` seconds; an error above `most` may be inexact.
+    fn lost(&self, work: &Work<'_>, method: Method, dt: f64, most: f64)
+    -> Result<f64, AdviseError>;
+}
+
+/// Ratio of neighbouring tried steps.
+const RATIO: f64 = 1.09;
+
+/// Relative accuracy of the largest step.
+const SHARP: f64 = 0.002;
+
+/// Ratio of the step tried beyond the chosen step.
+pub(super) const BEYOND: f64 = 1.2;
+
+/// The largest step between `least` and `most` with an error of at most `tolerance`, searched from above.
+pub(super) fn largest_step(
+    work: &Work<'_>,
+    trial: &impl StepTrial,
+    method: Method,
+    tolerance: f64,
+    [least, most]: [f64; 2],
+) -> Result<IntegratorChoice, AdviseError> {
+    let lost = |dt: f64| trial.lost(work, method, dt, tolerance);
+    let mut choice = IntegratorChoice::none(method);
+    let (mut above, mut low) = (most, most);
+    let mut at = lost(low)?;
+    while at > tolerance {
+        (above, low) = (low, low / RATIO);
+        if low < least {
+            return Ok(choice);
+        }
+        at = lost(low)?;
+    }
+    while above / low > 1.0 + SHARP {
+        let middle = (low * above).sqrt();
+        let here = lost(middle)?;
+        if here <= tolerance { (low, at) = (middle, here) } else { above = middle }
+    }
+    // The error may decrease again beyond.
+    let mut beyond = lost(BEYOND * low)?;
+    while beyond <= tolerance && BEYOND * low < most {
+        (low, at) = (BEYOND * low, beyond);
+        beyond = lost(BEYOND * low)?;
+    }
+    // The exact error beyond the tolerance.
+    beyond = trial.lost(work, method, BEYOND * low, f64::INFINITY)?;
+    (choice.dt, choice.lost, choice.lost_beyond) = (Some(low), at, Some(beyond));
+    Ok(choice)
+}
+
+/// The smallest error with steps between `least` and `most`, halved until rounding increases it.
+pub(super) fn best_possible(
+    work: &Work<'_>,
+    trial: &impl StepTrial,
+    method: Method,
+    [least, most]: [f64; 2],
+) -> Result<IntegratorChoice, AdviseError> {
+    let mut choice = IntegratorChoice::none(method);
+    let mut dt = most;
+    while dt >= least {
+        let here = trial.lost(work, method, dt, f64::INFINITY)?;
+        if here < choice.lost {
+            (choice.lost, choice.best_dt) = (here, Some(dt));
+        } else if here > 2.0 * choice.lost && here.is_finite() {
+            break;
+        }
+        dt /= 2.0;
+    }
+    Ok(choice)
+}
+
+/// Counted force evaluations per step.
+pub(super) fn evaluations(system: AnySystem, q: &[f64], v: &[f64], method: Method) -> Option<u64> {
+    let request = Request {
+        system,
+        actuation: Actuation::Acceleration,
+        stepping: Stepping::Method(method),
+        dt: 1e-6,
+        q: q.to_vec(),
+        v: v.to_vec(),
+        steps: 1,
+        criteria: Criteria::default(),
+        timing: Timing::default(),
+    };
+    analyze(&request).ok().map(|analysis| analysis.force_evaluations_per_step)
+}
+
+/// Sorts by cost; integrators without a step come last.
+pub(super) fn sort_by_cost(choices: &mut [IntegratorChoice]) {
+    let cost = |choice: &IntegratorChoice| choice.evaluations.unwrap_or(f64::INFINITY);
+    choices.sort_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.lost.total_cmp(&b.lost)));
+}

@@ -1,0 +1,174 @@
+//! Statistics of clocks.
+
+use serde::Serialize;
+
+use super::{Spectrum, WakeupTimes};
+
+/// Statistics of the intervals between time stamps.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Statistics {
+    /// Number of intervals.
+    pub intervals: usize,
+    /// The nominal interval, in s; the mean if it is unknown.
+    pub period: f64,
+    /// The mean interval, in s.
+    pub mean: f64,
+    /// The rms of the deviations from the mean, over the mean: the rms of a law of jitter.
+    pub jitter_rms: f64,
+    /// Quantiles of the intervals, in s.
+    pub lengths: Vec<Quantile>,
+    /// Number of intervals longer than 1.5 periods.
+    pub gaps: usize,
+    /// Number of intervals of length zero.
+    pub repeats: usize,
+    /// Autocorrelation of the deviations at lags from 1 on.
+    pub correlation: Vec<f64>,
+    /// Spectrum of the deviations; none for few intervals.
+    pub spectrum: Option<Spectrum>,
+    /// Lateness of the wake-ups; none without deadlines.
+    pub lateness: Option<Lateness>,
+}
+
+/// Lateness of wake-ups.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Lateness {
+    /// Quantiles of the lateness, in s.
+    pub quantiles: Vec<Quantile>,
+    /// Number of wake-ups after the next deadline.
+    pub overruns: usize,
+    /// Number of wake-ups per octave of lateness, from one microsecond on.
+    pub histogram: Vec<(f64, usize)>,
+}
+
+/// A quantile.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Quantile {
+    /// The share of values up to this one, from 0 to 1.
+    pub part: f64,
+    /// The value, in s.
+    pub value: f64,
+}
+
+/// Shares of the quantiles.
+const PARTS: [f64; 7] = [0.0, 0.01, 0.5, 0.9, 0.99, 0.999, 1.0];
+
+/// Largest lag of the autocorrelation.
+const LAGS: usize = 8;
+
+impl Statistics {
+    /// Statistics of a loop with known deadlines.
+    pub fn of_loop(wakeups: &WakeupTimes) -> Self {
+        let seconds = |nanoseconds: u64| nanoseconds as f64 * 1e-9;
+        let stamps: Vec<f64> = wakeups.times.iter().map(|&time| seconds(time)).collect();
+        let period = seconds(wakeups.period);
+        let late: Vec<f64> = (0..)
+            .zip(&wakeups.times)
+            .map(|(k, &time)| seconds(time.saturating_sub(k * wakeups.period)))
+            .collect();
+        Statistics { lateness: Some(Lateness::of(late, period)), ..Self::of(&stamps, Some(period)) }
+    }
+
+    /// Statistics of rising time stamps in s.
+    pub fn of(stamps: &[f64], period: Option<f64>) -> Self {
+        let lengths: Vec<f64> = stamps.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let count = lengths.len();
+        let mean = lengths.iter().sum::<f64>() / count.max(1) as f64;
+        let period = period.unwrap_or(mean);
+        let deviations: Vec<f64> = lengths.iter().map(|length| length / mean - 1.0).collect();
+        let variance = covariance(&deviations, 0);
+        let correlation = (1..=LAGS.min(count / 4))
+            .map(|lag| if variance > 0.0 { covariance(&deviations, lag) / variance } else { 0.0 })
+            .collect();
+        Statistics {
+            intervals: count,
+            period,
+            mean,
+            jitter_rms: variance.sqrt(),
+            gaps: lengths.iter().filter(|&&length| length > 1.5 * period).count(),
+            repeats: lengths.iter().filter(|&&length| length == 0.0).count(),
+            correlation,
+            spectrum: Spectrum::of(&deviations, 1.0 / mean),
+            lengths: quantiles(lengths),
+            lateness: None,
+        }
+    }
+}
+
+impl Statistics {
+    /// Whether 98 % of the intervals lie within 2.33 rms: half the width of a Gaussian law.
+    pub fn heavy_tailed(&self) -> bool {
+        let at = |part: f64| self.lengths.iter().find(|q| q.part == part).map(|q| q.value);
+        let (Some(low), Some(high)) = (at(0.01), at(0.99)) else { return false };
+        high - low < 2.33 * self.jitter_rms * self.mean
+    }
+}
+
+/// The autocovariance at `lag`.
+fn covariance(deviations: &[f64], lag: usize) -> f64 {
+    let pairs = deviations.iter().zip(deviations.iter().skip(lag));
+    pairs.map(|(a, b)| a * b).sum::<f64>() / deviations.len().max(1) as f64
+}
+
+/// Quantiles of numbers in any order.
+fn quantiles(mut values: Vec<f64>) -> Vec<Quantile> {
+    values.sort_unstable_by(f64::total_cmp);
+    let at = |part: f64| {
+        let place = (part * values.len() as f64).ceil().max(1.0) as usize - 1;
+        values.get(place).copied()
+    };
+    PARTS.into_iter().filter_map(|part| Some(Quantile { part, value: at(part)? })).collect()
+}
+
+impl Lateness {
+    fn of(late: Vec<f64>, period: f64) -> Self {
+        const MICROSECOND: f64 = 1e-6;
+        let place = |late: f64| (late / MICROSECOND).max(1.0).log2() as usize;
+        let places = late.iter().map(|&late| place(late)).max().unwrap_or(0) + 1;
+        let mut histogram: Vec<(f64, usize)> =
+            (0..places).map(|i| (MICROSECOND * 2.0_f64.powi(i as i32), 0)).collect();
+        for &late in &late {
+            histogram[place(late)].1 += 1;
+        }
+        let overruns = late.iter().filter(|&&late| late >= period).count();
+        Lateness { overruns, histogram, quantiles: quantiles(late) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_those_of_the_definitions() {
+        // Intervals 1, 1, 3, 0, 1, 1, 1, 0 of a loop with a period of 1.
+        let stamps = [0.0, 1.0, 2.0, 5.0, 5.0, 6.0, 7.0, 8.0, 8.0];
+        let found = Statistics::of(&stamps, Some(1.0));
+        assert_eq!((found.intervals, found.mean), (8, 1.0));
+        assert_eq!((found.gaps, found.repeats), (1, 2));
+        // Deviations 0, 0, 2, −1, 0, 0, 0, −1.
+        assert_eq!(found.jitter_rms, (6.0_f64 / 8.0).sqrt());
+        assert_eq!(found.correlation, [-2.0 / 6.0, 0.0]);
+        let at = |part: f64| found.lengths.iter().find(|q| q.part == part).unwrap().value;
+        assert_eq!([at(0.0), at(0.5), at(1.0)], [0.0, 1.0, 3.0]);
+        assert_eq!(found.lateness, None);
+    }
+
+    #[test]
+    fn lateness_is_counted_from_deadlines_on_a_grid() {
+        let times = vec![3_000, 1_005_000, 2_000_000, 5_500_000, 5_501_000, 5_502_000];
+        let wakeups = WakeupTimes { period: 1_000_000, times, stopped: false };
+        let found = Statistics::of_loop(&wakeups).lateness.unwrap();
+        // 3, 5, 0, 2500, 1501 and 502 µs.
+        assert_eq!(found.overruns, 2);
+        assert_eq!(found.quantiles.last().unwrap().value, 2.5e-3);
+        let counts: Vec<usize> = found.histogram.iter().map(|&(_, count)| count).collect();
+        assert_eq!(counts, [1, 1, 1, 0, 0, 0, 0, 0, 1, 0, 1, 1]);
+    }
+
+    #[test]
+    fn nothing_is_said_of_nothing() {
+        let none = Statistics::of(&[1.0], None);
+        assert_eq!((none.intervals, none.jitter_rms), (0, 0.0));
+        assert!(none.lengths.is_empty() && none.correlation.is_empty());
+    }
+}

@@ -1,0 +1,174 @@
+//! Changes that stabilise an unstable loop.
+
+use libration::Model;
+use libration::analysis::{Imperfections, Plant};
+use libration::control::Feedback;
+use serde::Serialize;
+
+use super::loops::Loop;
+
+/// The smallest single changes that stabilise a loop; none if no change of the kind was found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct StabilisingChanges {
+    /// The factor of all gains nearest to 1.
+    pub gain_factor: Option<f64>,
+    /// That factor in few digits, with which the loop is stable too.
+    #[serde(skip)]
+    pub(super) shown_factor: Option<f64>,
+    /// The gains of position and velocity with the shown factor, in the units of the loop.
+    pub gains: Option<[f64; 2]>,
+    /// The largest latency, in s, up to which the loop is stable with the other stated imperfections.
+    pub latency: Option<f64>,
+}
+
+/// Tried factors per octave.
+const PER_OCTAVE: i32 = 8;
+
+/// Tried octaves of smaller and of larger gains.
+const OCTAVES: [i32; 2] = [10, 5];
+
+/// Number of tried latencies.
+const SHARES: u32 = 64;
+
+/// Smallest rate of growth or decay per period above rounding.
+pub(super) const NEUTRAL: f64 = 1e-12;
+
+/// Number of bisections of an end, which is printed to six digits.
+const HALVINGS: u32 = 30;
+
+impl<M: Model<1>> Loop<M> {
+    /// The changes that stabilise the loop with the imperfections `stated`.
+    pub(super) fn stabilising_changes(
+        &self,
+        plant: &Plant<'_>,
+        stated: &Imperfections,
+    ) -> StabilisingChanges {
+        let amplified = |factor: f64| -> bool {
+            let amplified = self.amplified(factor);
+            // The ideal loop must be stable too.
+            amplified.settles(plant, stated) && amplified.settles(plant, &Imperfections::NONE)
+        };
+        let octaves = |count: i32, sign: f64| {
+            let factor = move |i: i32| (sign * f64::from(i) / f64::from(PER_OCTAVE)).exp2();
+            (1..=count * PER_OCTAVE).map(factor)
+        };
+        let [down, up] = OCTAVES;
+        let gain_factor = change(1.0, octaves(down, -1.0), amplified)
+            .or_else(|| change(1.0, octaves(up, 1.0), amplified))
+            .map(|[_, stable]| stable);
+        let step = self.control.period * (1.0 + stated.skew);
+        let late = step * stated.latency.steps();
+        let with = |latency: f64| -> bool {
+            let Ok(latency) = self.latency(latency / step) else { return false };
+            self.settles(plant, &Imperfections { latency, ..*stated })
+        };
+        // From below: a separate stability window is no remedy.
+        let shares = (1..=SHARES).map(|i| late * f64::from(i) / f64::from(SHARES));
+        let latency = match late > 0.0 && with(0.0) {
+            true => change(0.0, shares, |latency| !with(latency)).map(|[stable, _]| stable),
+            false => None,
+        };
+        let shown_factor = gain_factor.map(|end| {
+            let few = (4..8).map(|digits| rounded(end, digits, end > 1.0));
+            few.into_iter().find(|factor| amplified(*factor)).unwrap_or(end)
+        });
+        let gains = shown_factor.map(|factor| {
+            let Feedback { position, velocity } = self.given_gains();
+            [factor * position, factor * velocity]
+        });
+        StabilisingChanges { gain_factor, shown_factor, gains, latency }
+    }
+
+    /// Whether second moments decay by more than rounding; false if the loop is too large to analyse.
+    pub(super) fn settles(&self, plant: &Plant<'_>, with: &Imperfections) -> bool {
+        self.decays(plant, with) == Ok(true)
+            && self.growth(plant, with).is_ok_and(|growth| growth < -NEUTRAL)
+    }
+
+    /// The longest shorter period with which the loop and the ideal loop are stable.
+    pub(super) fn stable_period(&self) -> Option<f64> {
+        let stable = |period: f64| -> bool {
+            let Ok(other) = self.with_period(period) else { return false };
+            let plant = other.plant();
+            other.stated().is_ok_and(|stated| other.settles(&plant, &stated))
+                && other.settles(&plant, &Imperfections::NONE)
+        };
+        let period = self.control.period;
+        let shorter = (1..=SHARES).map(|i| period * (-f64::from(i) / 4.0).exp2());
+        change(period, shorter, stable).map(|[_, stable]| stable)
+    }
+}
+
+/// The bracket of the place where `holds` becomes true, between `from` and the first of `values` for which it is.
+fn change(
+    from: f64,
+    values: impl Iterator<Item = f64>,
+    holds: impl Fn(f64) -> bool,
+) -> Option<[f64; 2]> {
+    let mut outside = from;
+    for value in values {
+        if !holds(value) {
+            outside = value;
+            continue;
+        }
+        let mut inside = value;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (inside + outside);
+            if holds(middle) { inside = middle } else { outside = middle }
+        }
+        return Some([outside, inside]);
+    }
+    None
+}
+
+/// A positive number rounded up or down to `digits` significant digits.
+fn rounded(x: f64, digits: i32, up: bool) -> f64 {
+    let exponent = x.log10().floor() as i32 + 1 - digits;
+    let number = x / 10.0_f64.powi(exponent);
+    let number = if up { number.ceil() } else { number.floor() };
+    // Parsing the decimal keeps its digits.
+    format!("{number}e{exponent}").parse().unwrap_or(x)
+}
+
+/// A positive number rounded down to four digits.
+pub(super) fn rounded_down(x: f64) -> f64 {
+    rounded(x, 4, false)
+}
+
+impl StabilisingChanges {
+    /// The changes in a sentence.
+    pub(super) fn sentence(&self, gain_units: [&str; 2]) -> String {
+        let gains = self.shown_factor.zip(self.gains).map(|(factor, [position, velocity])| {
+            format!(
+                "all gains times {factor} (K_p = {position:.6} {}, K_d = {velocity:.6} {})",
+                gain_units[0], gain_units[1]
+            )
+        });
+        let latency =
+            self.latency.map(|latency| format!("a latency of at most {} s", rounded_down(latency)));
+        let all: Vec<String> = gains.into_iter().chain(latency).collect();
+        match all.is_empty() {
+            true => format!(
+                "No multiple of its gains from 2^-{} to 2^{}, and no smaller latency, stabilises it at this period.",
+                OCTAVES[0], OCTAVES[1]
+            ),
+            false => format!("It is stable with {}.", all.join(", or with ")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_place_nearest_to_the_start_is_found_and_none_where_none_holds() {
+        let down = || (1..=8).map(|i| 1.0 - f64::from(i) / 8.0);
+        // Holds between 0.2 and 0.6, whose upper end is nearer.
+        let [outside, inside] = change(1.0, down(), |x| (0.2..=0.6).contains(&x)).unwrap();
+        assert!(inside <= 0.6 && 0.6 < outside);
+        // An eighth, halved thirty times.
+        assert!(outside - inside < 2e-10, "{inside} {outside}");
+        assert_eq!(change(1.0, down(), |_| false), None);
+    }
+}

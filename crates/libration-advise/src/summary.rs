@@ -1,0 +1,180 @@
+//! Summaries in sentences.
+
+use libration::Model;
+
+use super::advice::{Advice, LoopAdvice, ToleranceAnswer};
+use super::budget::Budget;
+use super::combined_effect::CombinedEffect;
+use super::control::Control;
+use super::loop_simulation::MOST_PERIODS;
+use super::loops::Loop;
+use super::request::{Measure, Request, Tolerance};
+use super::stability_window::StabilityWindow;
+
+/// The advised integrator in a sentence.
+pub(super) fn describe_integrator(advice: &Advice, request: &Request) -> String {
+    let Tolerance { of, most } = request.tolerance;
+    // A loop is simulated for a limited number of periods; its cost is stationary.
+    let horizon = match &request.control {
+        Some(control) => request.horizon.min(MOST_PERIODS as f64 * control.period),
+        None => request.horizon,
+    };
+    let over = match of {
+        Measure::Cost => String::new(),
+        _ => format!(" over {horizon} s"),
+    };
+    match advice.chosen() {
+        None => {
+            let steps = advice.tried_down_to.map_or_else(String::new, |shortest| {
+                format!(" with steps of {shortest:.4e} s or more, and shorter ones were not tried")
+            });
+            format!("No integrator keeps the {} below {most:e}{over}{steps}.", of.title())
+        }
+        Some((choice, dt)) => {
+            let float = advice.float().map_or("no float type", |float| float.float);
+            format!(
+                "{} in steps of {dt:.4e} s, in {float}: the cheapest integrator that keeps the {} below {most:e}{over}.",
+                choice.integrator,
+                of.title()
+            )
+        }
+    }
+}
+
+/// The stability and cost of a loop in a few sentences.
+pub(super) fn describe_loop(looped: &LoopAdvice, tolerance: &ToleranceAnswer) -> String {
+    let CombinedEffect { growth, room, room_tried, cost_increase, .. } = looped.together;
+    if growth >= 0.0 {
+        let remedies = looped.remedies.as_ref();
+        return format!(
+            "The loop is unstable with the stated imperfections: its second moments grow by {} % per period. {}",
+            percent(growth.exp_m1()),
+            remedies.map_or_else(String::new, |remedies| remedies.sentence(looped.gain_units))
+        );
+    }
+    let regained = looped.budgets.iter().find_map(|budget| Some((budget, budget.regained?)));
+    let mut text = match (room, room_tried) {
+        _ if looped.together.is_contradicted() => {
+            "The simulation contradicts the theory of the loop: see the warnings.".to_owned()
+        }
+        _ if looped.exceeds_tolerated_cost(tolerance) => {
+            "The loop is stable with the stated imperfections, but its cost exceeds the tolerance."
+                .to_owned()
+        }
+        _ if let Some((budget, window)) = regained => describe_window(budget, window),
+        (Some(room), _) => {
+            format!(
+                "The loop is stable with the stated imperfections, also if all of them are {room:.3} times as large."
+            )
+        }
+        (None, Some(tried)) => format!(
+            "The loop is stable with the stated imperfections, also if all of them are at least {tried:.3} times as large, the most that was tried."
+        ),
+        (None, None) => "The loop is stable. The request states no imperfections.".to_owned(),
+    };
+    if let Some(failing) = &looped.fails_first {
+        text += &format!(
+            " {} fails first, with {:.1} % of its budget used; {}.",
+            capitalise(failing.kind.name()),
+            100.0 * failing.used,
+            failing.how
+        );
+    }
+    if let Some(increase) = cost_increase {
+        let tolerated = match looped.exceeds_tolerated_cost(tolerance) {
+            true => format!(", more than the tolerance of {:.3} %", 100.0 * tolerance.most),
+            false => String::new(),
+        };
+        text += &format!(
+            " Its cost is {:.3} % above that of the ideal loop{tolerated}.",
+            100.0 * increase
+        );
+    }
+    text
+}
+
+/// A share in percent with significant digits.
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent < 0.01 { format!("{percent:.2e}") } else { format!("{percent:.3}") }
+}
+
+/// A loop that is stable only in a separate window, in words.
+fn describe_window(budget: &Budget, StabilityWindow { from, to }: StabilityWindow) -> String {
+    let (kind, unit) = (budget.kind.name(), budget.unit);
+    let limit = budget.stable_up_to.unwrap_or(0.0);
+    let end = match to {
+        Some(to) => format!("from {from:.6} to {to:.6}"),
+        None => format!("from {from:.6}"),
+    };
+    format!(
+        "The loop is stable with the stated imperfections, but only in a separate stability window: {kind} alone is stable {end} {unit}, \
+         and unstable below that from {limit:.6} {unit} on. Do not rely on it: less {kind} destabilises the loop, and so does more."
+    )
+}
+
+fn capitalise(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// The warnings about a loop.
+pub(super) fn loop_warnings<M: Model<1>>(one: &Loop<M>, together: &CombinedEffect) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if let Some(returns) = &together.returns {
+        let [back, all] = returns.of_asked;
+        if back < all {
+            warnings.push(format!(
+                "the simulation contradicts the linearisation: of {all} starts at a distance of {} from the operating point only {back} \
+                 return; all return from up to {:.4}",
+                returns.asked, returns.up_to
+            ));
+        }
+    }
+    if let Some(simulated) = &together.simulated {
+        if !simulated.agrees() {
+            warnings.push(format!(
+                "the simulation contradicts the theory: the cost is {:.5e} ± {:.1e}, predicted {:.5e}",
+                simulated.cost, simulated.error, simulated.predicted
+            ));
+        } else if simulated.outbursts {
+            warnings.push(
+                "rare outbursts dominate the cost: a simulation has too few of them, and a typical run costs less"
+                    .into(),
+            );
+        }
+    } else if together.growth < 0.0 {
+        let why = match together.is_slow() {
+            true => "it decays too slowly",
+            false => "its latency is too long for losses",
+        };
+        warnings.push(format!(
+            "the loop was not simulated because {why}: the results follow from theory alone"
+        ));
+    }
+    let Control { period, .. } = one.control;
+    let turn = (2.0 * one.plant().energy().position).sqrt() * period;
+    if turn > 1.0 {
+        warnings.push(format!(
+            "the plant turns by {turn:.2} rad per period: the loop samples it sparsely"
+        ));
+    }
+    if let Some(record) = &one.control.record {
+        let gaps = record.iter().filter(|step| **step * (1.0 + one.control.skew) > 1.5).count();
+        let repeats = record.iter().filter(|step| **step == 0.0).count();
+        if gaps + repeats > 0 {
+            warnings.push(format!(
+                "of the {} time stamps, {gaps} follow a gap of more than 1.5 periods and {repeats} repeat; they are replayed unchanged",
+                record.len() + 1
+            ));
+        }
+        let skew = one.control.skew;
+        if skew.abs() > 1e-3 {
+            warnings.push(format!(
+                "the mean interval of the time stamps differs from the period by {:.3} %: counted as skew",
+                100.0 * skew
+            ));
+        }
+    }
+    warnings
+}

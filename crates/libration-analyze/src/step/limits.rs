@@ -1,0 +1,135 @@
+//! Limits of the time step, and the order of splitting methods.
+
+use libration::analysis::{
+    Criterion, LargestStep, Letter, OrbitStart, OrderCertificate, SymbolicStep, Tableau,
+    UnknownStep,
+};
+use libration::number::Wide;
+use libration::{AnySystem, Elementary, Method, Model, Scalar, State};
+use serde::Serialize;
+
+use super::Request;
+
+/// The largest time steps, in s, up to which every step meets a criterion over the horizon of the request.
+/// `null` if every step meets it; absent without the criterion, or if its polynomials exceed exact
+/// arithmetic.
+///
+/// Drift and amplitude are taken over the whole curve of an orbit. A run of few steps may miss its extremes
+/// and tolerate a larger step.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LargestDt {
+    /// For bounded orbits.
+    pub bounded: Option<f64>,
+    /// For an energy drift below `--max-drift` from the start of the request.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy_drift: Option<Option<f64>>,
+    /// For an energy drift below `--max-drift` from every start.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy_drift_worst_start: Option<Option<f64>>,
+    /// For a length of `q` below `--max-amplitude`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub amplitude: Option<Option<f64>>,
+    /// For an error below `--max-error` of the amplitude from every start. This limit is searched; the others
+    /// are roots of polynomials.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trajectory_error: Option<Option<f64>>,
+}
+
+/// The order of a splitting method on systems whose force depends on positions alone. With forces that depend
+/// on velocities a kick is not an exact flow, and most orders fall to one.
+#[derive(Clone, Debug, Serialize)]
+pub struct OrderOfWord {
+    /// The letters of the word in the order of time.
+    pub word: Vec<String>,
+    /// The order.
+    pub order: usize,
+    /// The largest relative difference of a coefficient from that of the exact flow, for words of 1, 2, …
+    /// letters.
+    pub residuals: Vec<f64>,
+}
+
+/// Largest length of the compared words.
+const LETTERS: usize = 6;
+
+impl OrderOfWord {
+    /// The order of `method`; none if it is not a product of kicks and drifts.
+    pub(super) fn of(method: Method) -> Option<Self> {
+        let shown = |letter: &Letter| match letter {
+            Letter::Kick(w) => format!("kick {}", w.to_f64()),
+            Letter::Drift(w) => format!("drift {}", w.to_f64()),
+        };
+        let word = Tableau::new(method)?.word()?;
+        let certificate = OrderCertificate::new(method, LETTERS)?;
+        Some(OrderOfWord {
+            word: word.iter().map(shown).collect(),
+            order: certificate.order(),
+            residuals: certificate.residuals.iter().map(|r| r.to_f64()).collect(),
+        })
+    }
+}
+
+/// The stability windows of a linear system, in s.
+pub(crate) fn stability_windows(
+    method: Method,
+    system: AnySystem,
+) -> Option<Vec<[Option<f64>; 2]>> {
+    // In powers of z for an oscillator of any stiffness, and of Δt where there is damping.
+    let (step, unit) = match system {
+        AnySystem::Oscillator(model) if model.omega2 > 0.0 => {
+            (SymbolicStep::new(method)?, period(model.omega2))
+        }
+        AnySystem::Oscillator(model) => {
+            let system = Model::<1>::on::<UnknownStep>(&model);
+            (SymbolicStep::of(method, &system)?, Wide::one())
+        }
+        AnySystem::DampedOscillator(model) => {
+            let system = Model::<1>::on::<UnknownStep>(&model);
+            (SymbolicStep::of(method, &system)?, Wide::one())
+        }
+        _ => return None,
+    };
+    let in_seconds = |z: Wide| (z * unit).to_f64();
+    let windows = step.stability_windows();
+    let ends = windows.iter().map(|w| [Some(in_seconds(w.from)), w.to.map(in_seconds)]);
+    // A window between two neighbouring floats holds no time step.
+    Some(ends.filter(|[from, to]| from != to).collect())
+}
+
+/// `1/ω`, in s.
+fn period(omega2: f64) -> Wide {
+    Wide::from_f64(omega2).sqrt().recip()
+}
+
+/// The largest steps of an oscillator in `D` dimensions from its polynomials.
+pub(super) fn largest_dt<const D: usize>(
+    step: Option<&SymbolicStep>,
+    start: &State<f64, D>,
+    request: &Request,
+) -> Option<LargestDt> {
+    let AnySystem::Oscillator(model) = request.system else { return None };
+    let (step, unit) = (step?, period(model.omega2));
+    let in_seconds = |z: LargestStep| match z {
+        LargestStep::Limit(z) => Some((z * unit).to_f64()),
+        LargestStep::Unlimited => None,
+    };
+    let (criteria, steps) = (&request.criteria, request.steps);
+    let largest = |criterion: &Criterion| step.largest_step(criterion).map(in_seconds);
+    let omega = model.omega2.sqrt();
+    let start = OrbitStart::new(&State { q: start.q, v: start.v.map(|v| v / omega) });
+    let drift = |start| {
+        criteria
+            .max_drift
+            .and_then(|tolerance| largest(&Criterion::EnergyDrift { tolerance, steps, start }))
+    };
+    Some(LargestDt {
+        bounded: largest(&Criterion::Bounded)?,
+        energy_drift: drift(Some(start)),
+        energy_drift_worst_start: drift(None),
+        amplitude: criteria
+            .max_amplitude
+            .and_then(|limit| largest(&Criterion::Amplitude { limit, steps, start })),
+        trajectory_error: criteria
+            .max_error
+            .map(|tolerance| in_seconds(step.largest_step_for_error(tolerance, steps))),
+    })
+}

@@ -1,0 +1,73 @@
+//! Requests for an analysis.
+
+use libration::catalog::Actuation;
+use libration::{AnySystem, Method};
+
+use super::{Criteria, Timing};
+
+/// A step of an integrator to analyse, with criteria and timing options.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The system.
+    pub system: AnySystem,
+    /// The quantity of its commands.
+    pub actuation: Actuation,
+    /// The integrator, or exact steps.
+    pub stepping: Stepping,
+    /// The time step, in s.
+    pub dt: f64,
+    /// Initial positions.
+    pub q: Vec<f64>,
+    /// Initial velocities.
+    pub v: Vec<f64>,
+    /// Number of steps of the energy drift.
+    pub steps: u64,
+    /// Criteria for the largest time step.
+    pub criteria: Criteria,
+    /// Timing options of the control loop.
+    pub timing: Timing,
+}
+
+/// The kind of steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stepping {
+    /// Steps of an integrator.
+    Method(Method),
+    /// Exact steps of a linear system: the exponential of its matrix.
+    Exact,
+}
+
+impl Stepping {
+    /// The name of exact steps on the command line.
+    pub const EXACT: &'static str = libration::integrator::Exact::NAME;
+
+    /// Name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stepping::Method(method) => method.name(),
+            Stepping::Exact => Stepping::EXACT,
+        }
+    }
+
+    /// The steps with this name, if they exist.
+    pub fn from_name(name: &str) -> Option<Stepping> {
+        match name {
+            Stepping::EXACT => Some(Stepping::Exact),
+            name => Method::from_name(name).map(Stepping::Method),
+        }
+    }
+
+    /// The integrator; none for exact steps.
+    pub fn method(self) -> Option<Method> {
+        match self {
+            Stepping::Method(method) => Some(method),
+            Stepping::Exact => None,
+        }
+    }
+}
+
+impl From<Method> for Stepping {
+    fn from(method: Method) -> Self {
+        Stepping::Method(method)
+    }
+}

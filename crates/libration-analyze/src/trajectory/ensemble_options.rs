@@ -1,0 +1,49 @@
+//! Options of an ensemble of trajectories.
+
+use libration::ensemble::{Execution, InstructionSet};
+
+use super::TrajectoryError;
+
+/// Number of trajectories, spread of their starts, and execution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnsembleOptions {
+    /// Number of trajectories.
+    pub count: usize,
+    /// Trajectory `n` of `N` starts from `1 + spread·(2n/(N − 1) − 1)` times the start of the request:
+    /// from `1 − spread` for the first to `1 + spread` for the last.
+    pub spread: f64,
+    /// Number of threads (0: one per core).
+    pub threads: usize,
+    /// The instruction set; none for the widest of this processor.
+    pub instructions: Option<InstructionSet>,
+}
+
+impl EnsembleOptions {
+    /// The factor of the start of trajectory `n`.
+    pub fn scale(&self, n: usize) -> f64 {
+        if self.count < 2 {
+            return 1.0;
+        }
+        1.0 + self.spread * (2.0 * n as f64 / (self.count - 1) as f64 - 1.0)
+    }
+
+    /// The instruction set; an error if this processor lacks it.
+    pub(super) fn instruction_set(&self) -> Result<InstructionSet, TrajectoryError> {
+        let set = self.instructions.unwrap_or_else(InstructionSet::widest);
+        set.is_available().then_some(set).ok_or_else(|| TrajectoryError::Value {
+            name: "simd",
+            value: set.name().to_owned(),
+            allowed: format!("one that this processor has: {}", available()),
+        })
+    }
+
+    /// The execution of the ensemble.
+    pub(super) fn execution(&self) -> Result<Execution, TrajectoryError> {
+        let execution = Execution::serial().instructions(self.instruction_set()?)?;
+        Ok(execution.threads(self.threads)?)
+    }
+}
+
+fn available() -> String {
+    InstructionSet::available().map(InstructionSet::name).collect::<Vec<_>>().join(", ")
+}

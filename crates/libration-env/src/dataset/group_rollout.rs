@@ -1,0 +1,71 @@
+//! The rollout of a group of environments.
+
+use libration::rl::{Plan, Rollout};
+
+use super::chunk_files::{ChunkRollout, Rows};
+use super::episodes::Episodes;
+use super::group::{Group, Number};
+use super::memory_check::not_enough_memory;
+use super::{DataFormat, Dataset, DatasetError};
+use crate::environments::{AnyPolicy, Batch};
+
+/// The rollout of a group, computed chunk by chunk into memory that is used again.
+pub(super) struct GroupRollout<'a, T: Number, const O: usize> {
+    pub(super) dataset: &'a Dataset,
+    pub(super) group: Group,
+    pub(super) all: Box<dyn Batch<T, O>>,
+    pub(super) actor: AnyPolicy<'static, T, O>,
+    format: DataFormat,
+    /// The open episodes, for formats that store episodes.
+    episodes: Option<Episodes<T, O>>,
+}
+
+impl<'a, T: Number, const O: usize> GroupRollout<'a, T, O> {
+    /// The rollout of a group from the first step on.
+    pub(super) fn new(
+        dataset: &'a Dataset,
+        format: DataFormat,
+        group: Group,
+        all: Box<dyn Batch<T, O>>,
+        actor: AnyPolicy<'static, T, O>,
+    ) -> Self {
+        let episodes = || Episodes::new(group.first, group.len, dataset.longest());
+        let episodes = (format == DataFormat::Minari).then(episodes);
+        GroupRollout { dataset, group, all, actor, format, episodes }
+    }
+
+    /// Computes the next chunk, in the memory of an older one of the same size.
+    pub(super) fn next(
+        &mut self,
+        used: Option<ChunkRollout<T, O>>,
+    ) -> Result<ChunkRollout<T, O>, DatasetError> {
+        let Dataset { chunk, steps, .. } = *self.dataset;
+        let first = self.all.step();
+        let horizon = (steps - first).min(chunk.steps as u64) as usize;
+        let plan = Plan::new(horizon, self.group.len).truncated().layout(self.format.layout());
+        let used = used.filter(|done| done.rollout.plan() == plan);
+        let mut done = match used {
+            Some(done) => done,
+            None => ChunkRollout {
+                group: self.group,
+                chunk: 0,
+                first: 0,
+                rollout: Rollout::new(plan)?,
+                episodes: Vec::new(),
+                next: vec![T::zero(); self.group.len * O],
+                rows: Rows::default(),
+            },
+        };
+        (done.chunk, done.first) = (first / chunk.steps as u64, first);
+        self.all.rollout(self.actor, &mut done.rollout)?;
+        self.all.observe(&mut done.next)?;
+        if let Some(episodes) = &mut self.episodes {
+            let ended = episodes.take(first, &done.rollout);
+            done.episodes = ended.map_err(|room| not_enough_memory(self.dataset, room))?;
+            if self.all.step() == steps {
+                done.episodes.extend(episodes.cut(&done.next));
+            }
+        }
+        Ok(done)
+    }
+}

@@ -1,0 +1,218 @@
+//! The Python class `Batch`: environments that Python steps.
+
+use libration::ensemble::Execution;
+use libration::rl::{EnvironmentError, Plan};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyTuple};
+
+use crate::any_batch::{AnyBatch, DynBatch, with_batch};
+use crate::array::{Array, Number, allocate, room};
+use crate::checked_mutex::{CheckedGuard, CheckedMutex};
+use crate::error::{Raised, value_error};
+use crate::policy::PolicyRequest;
+use crate::rollout::Memory;
+use crate::settings::Settings;
+use crate::step::{self, EpisodeStates, Step};
+
+/// Environments that the engine steps together, without Gymnasium.
+///
+/// Base class of the environments of `libration`.
+#[pyclass(subclass, frozen, module = "libration._native")]
+pub(crate) struct Batch {
+    inner: CheckedMutex<Option<Inner>>,
+}
+
+/// State until the environments are closed.
+struct Inner {
+    batch: AnyBatch,
+    episodes: EpisodeStates,
+    /// The process that has its threads.
+    process: u32,
+    threads: usize,
+}
+
+#[pymethods]
+impl Batch {
+    #[new]
+    #[pyo3(signature = (*args, **kwargs))]
+    #[allow(unused_variables, reason = "a class of Python's takes them, and sets up what is here")]
+    fn new(args: &Bound<'_, PyTuple>, kwargs: Option<&Bound<'_, PyDict>>) -> Self {
+        Batch { inner: CheckedMutex::new(None) }
+    }
+
+    /// Creates the environments; `buffers` is the number of reused arrays, or 0 for new arrays in every step.
+    fn _set_up(&self, py: Python<'_>, settings: Settings, buffers: usize) -> PyResult<()> {
+        let (recipe, execution) = (settings.recipe()?, settings.execution()?);
+        let len = settings.num_envs;
+        let batch = AnyBatch::new(&recipe, settings.single()?, len, &execution);
+        *self.inner.lock(py)? = Some(Inner {
+            batch: batch.map_err(Raised::raised)?,
+            episodes: EpisodeStates::new(&recipe, len, buffers),
+            process: std::process::id(),
+            threads: execution.thread_count(),
+        });
+        Ok(())
+    }
+
+    /// Takes one step with an action per environment: an array of shape `(num_envs, 1)` or `(num_envs,)`, in the unit of an acceleration.
+    ///
+    /// Returns observations `(num_envs, n)`, rewards, terminations and truncations `(num_envs,)`, and a dictionary with the ended episodes
+    /// (`final_obs`, `final_info`, with `"SameStep"`) and the environments whose state is not finite (`lost`).
+    ///
+    /// Raises a `ValueError` for actions with a wrong shape or that are not finite, a `TypeError` for actions that are not real numbers, and a
+    /// `RuntimeError` (Gymnasium's `ResetNeeded` and `ClosedEnvironmentError` in its environments) before the first `reset`, after the end
+    /// of an episode under `"Disabled"`, and after `close`.
+    fn step<'py>(slf: &Bound<'py, Self>, actions: &Bound<'py, PyAny>) -> PyResult<Step<'py>> {
+        let mut guard = slf.get().inner.lock(slf.py())?;
+        let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
+        episodes.expect_action(slf)?;
+        with_batch!(batch, table => step::take(slf.py(), &mut **table, episodes, actions))
+    }
+
+    /// Accepts the arguments of a step and does nothing, for benchmarks.
+    fn _nothing(&self, actions: &Bound<'_, PyAny>) {
+        let _ = (self, actions);
+    }
+
+    /// Begins episodes of the environments in `mask`: the first one under a seed, else the next one. Returns the observations.
+    #[pyo3(signature = (seeds, mask=None))]
+    fn _reset<'py>(
+        slf: &Bound<'py, Self>,
+        seeds: Vec<Option<u64>>,
+        mask: Option<Bound<'py, PyArray1<bool>>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut guard = slf.get().inner.lock(slf.py())?;
+        let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
+        let mask = match mask {
+            Some(mask) => mask.to_vec()?,
+            None => vec![true; episodes.len],
+        };
+        if seeds.len() != episodes.len || mask.len() != episodes.len {
+            let (seeds, masks, len) = (seeds.len(), mask.len(), episodes.len);
+            return Err(value_error(format!(
+                "{seeds} seeds and {masks} marks are for {len} environments"
+            )));
+        }
+        let chosen = |n: usize| seeds[n].filter(|_| mask[n]);
+        let first: Vec<Option<u64>> = (0..episodes.len).map(chosen).collect();
+        let next: Vec<bool> = (0..episodes.len).map(|n| mask[n] && seeds[n].is_none()).collect();
+        with_batch!(batch, table => {
+            let begun = table.seed(&first).and_then(|()| table.reset(&next));
+            begun.map_err(Raised::raised)?;
+            episodes.begun(&mask);
+            step::observe(slf.py(), &mut **table, episodes)
+        })
+    }
+
+    /// Ends the episodes of the selected environments.
+    fn _end(slf: &Bound<'_, Self>, which: Bound<'_, PyArray1<bool>>) -> PyResult<()> {
+        let mut guard = slf.get().inner.lock(slf.py())?;
+        let Inner { batch, .. } = open(slf, &mut guard)?;
+        let which = which.to_vec()?;
+        with_batch!(batch, table => table.end(&which)).map_err(Raised::raised)
+    }
+
+    /// Returns memory for a rollout of `horizon` steps.
+    fn _memory(
+        slf: &Bound<'_, Self>,
+        horizon: usize,
+        log_probabilities: bool,
+        values: bool,
+    ) -> PyResult<Memory> {
+        let mut guard = slf.get().inner.lock(slf.py())?;
+        let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
+        let plan = Plan::new(horizon, episodes.len).truncated();
+        let plan = Plan { log_probability: log_probabilities, value: values, ..plan };
+        Memory::new(batch, plan)
+    }
+
+    /// Fills a rollout under a policy. Returns the observations after it.
+    fn _rollout<'py>(
+        slf: &Bound<'py, Self>,
+        policy: PolicyRequest<'py>,
+        memory: &Memory,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut guard = slf.get().inner.lock(slf.py())?;
+        let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
+        episodes.expect_action(slf)?;
+        let (ended, outcome) = memory.fill(slf.py(), batch, &policy, episodes.substeps)?;
+        if !ended.is_empty() {
+            episodes.stood(&ended);
+        }
+        outcome?;
+        with_batch!(batch, table => step::observe_copy(slf.py(), &mut **table, episodes))
+    }
+
+    /// Returns positions and velocities, `(num_envs, 2)`.
+    fn _states<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        fn states<'py, T: Number>(
+            py: Python<'py>,
+            table: &dyn DynBatch<T>,
+            len: usize,
+        ) -> PyResult<Bound<'py, PyAny>> {
+            let all: Bound<'py, Array<T, 2>> = allocate(py, [len, 2])?;
+            for (n, row) in room(&all).chunks_exact_mut(2).enumerate() {
+                row.copy_from_slice(&table.state(n).unwrap_or([T::zero(); 2]));
+            }
+            Ok(all.into_any())
+        }
+        let mut guard = slf.get().inner.lock(slf.py())?;
+        let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
+        with_batch!(batch, table => states(slf.py(), &**table, episodes.len))
+    }
+
+    /// Returns the state, for environments with the same settings.
+    fn _state<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyBytes>, bool, Vec<u8>)> {
+        let mut guard = slf.get().inner.lock(slf.py())?;
+        let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
+        let state = with_batch!(batch, table => table.to_bytes());
+        Ok((PyBytes::new(slf.py(), &state), episodes.untouched, episodes.standing.clone()))
+    }
+
+    /// Restores a state.
+    fn _restore(slf: &Bound<'_, Self>, state: (Vec<u8>, bool, Vec<u8>)) -> PyResult<()> {
+        let mut guard = slf.get().inner.lock(slf.py())?;
+        let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
+        let (bytes, untouched, standing) = state;
+        if standing.len() != episodes.len {
+            return Err(value_error(format!("a state of {} environments", standing.len())));
+        }
+        with_batch!(batch, table => table.restore(&bytes)).map_err(Raised::raised)?;
+        (episodes.untouched, episodes.standing) = (untouched, standing);
+        Ok(())
+    }
+
+    /// Releases all memory. Arrays that Python references stay valid.
+    fn _close(&self, py: Python<'_>) -> PyResult<()> {
+        *self.inner.lock(py)? = None;
+        Ok(())
+    }
+}
+
+/// Returns the state, with threads of this process, or an error if the environments are closed.
+fn open<'a>(
+    slf: &Bound<'_, Batch>,
+    guard: &'a mut CheckedGuard<'_, Option<Inner>>,
+) -> PyResult<&'a mut Inner> {
+    let Some(inner) = guard.as_mut() else {
+        return Err(raise(slf, "_closed_error", "the environments are closed"));
+    };
+    // A process that was forked has none of the threads.
+    if inner.threads > 1 && inner.process != std::process::id() {
+        let execution = Execution::serial().threads(inner.threads);
+        let execution = execution.map_err(|error| EnvironmentError::from(error).raised())?;
+        with_batch!(&mut inner.batch, table => table.execute(execution));
+        inner.process = std::process::id();
+    }
+    Ok(inner)
+}
+
+/// Returns the exception of the Python class for this case, or a `RuntimeError`.
+pub(crate) fn raise(slf: &Bound<'_, Batch>, kind: &str, text: &str) -> PyErr {
+    match slf.getattr(kind).and_then(|kind| kind.call1((text,))) {
+        Ok(error) => PyErr::from_value(error),
+        Err(_) => PyRuntimeError::new_err(text.to_owned()),
+    }
+}

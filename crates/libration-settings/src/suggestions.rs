@@ -1,0 +1,83 @@
+//! Suggestions for unknown names.
+
+use libration::CatalogError;
+use libration::catalog::ENTRIES;
+
+/// Smallest similarity of a suggested name, between 0 and 1.
+const NEAR: f64 = 0.7;
+
+/// The candidate most similar to `name`, if one is similar enough.
+///
+/// A part of a compound name suffices: `verlet` is similar to `velocity-verlet`.
+pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let name = name.to_lowercase();
+    let unlikeness = |candidate: &str| {
+        let whole = strsim::jaro_winkler(&name, candidate);
+        let parts = candidate.split('-').map(|part| 0.95 * strsim::jaro_winkler(&name, part));
+        1.0 - parts.fold(whole, f64::max)
+    };
+    candidates
+        .into_iter()
+        .map(|candidate| (unlikeness(candidate), candidate))
+        .filter(|(unlikeness, _)| *unlikeness < 1.0 - NEAR)
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}
+
+/// Help for an unknown `name`: the most similar of the `known` names and a list of them; `what` is their noun in the plural.
+pub fn suggest<'a>(
+    what: &str,
+    name: &str,
+    known: impl IntoIterator<Item = &'a str> + Clone,
+) -> String {
+    let list: Vec<_> = known.clone().into_iter().map(|name| format!("`{name}`")).collect();
+    let all = format!("the {what} are {}", list.join(", "));
+    match nearest(name, known) {
+        Some(near) => format!("did you mean `{near}`? {all}"),
+        None => all,
+    }
+}
+
+/// The suggestion at the end of a message about an unknown system or parameter; empty without a similar name.
+pub fn catalog_help(error: &CatalogError) -> String {
+    let near = match error {
+        CatalogError::UnknownParameter { name, known, .. } => {
+            nearest(name, known.iter().map(|parameter| parameter.name))
+        }
+        CatalogError::UnknownSystem { name } => nearest(name, ENTRIES.map(|entry| entry.name)),
+        _ => None,
+    };
+    near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nearest_returns_the_most_similar_name() {
+        let names = ["explicit-euler", "velocity-verlet", "textbook-verlet", "leapfrog", "rk4"];
+        for (typed, meant) in [
+            ("verlet", Some("velocity-verlet")),
+            ("textbook", Some("textbook-verlet")),
+            ("euler", Some("explicit-euler")),
+            ("RK-4", Some("rk4")),
+            ("leap-frog", Some("leapfrog")),
+            ("adams", None),
+            ("", None),
+        ] {
+            assert_eq!(nearest(typed, names), meant, "{typed}");
+        }
+    }
+
+    #[test]
+    fn catalog_errors_suggest_known_names() {
+        let error = |name, parameters: &[(&str, f64)]| {
+            catalog_help(&libration::AnySystem::build(name, parameters).unwrap_err())
+        };
+        assert_eq!(error("oscilator", &[]), "; did you mean `oscillator`?");
+        assert_eq!(error("oscillator", &[("omega", 1.0)]), "; did you mean `omega2`?");
+        assert_eq!(error("oscillator", &[("temperature", 1.0)]), "");
+        assert_eq!(error("oscillator", &[("omega2", -1.0)]), "");
+    }
+}

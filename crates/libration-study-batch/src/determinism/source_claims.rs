@@ -1,0 +1,9 @@
+//! The claims of the source report that this study tries.
+
+use libration_study::SourceClaim;
+
+/// All of them, in the order of their numbers.
+pub(super) const SOURCE_CLAIMS: &[SourceClaim] = &[
+    // Of bits, which are counted in a table.
+    SourceClaim::new("C66", &[], &[]),
+];
