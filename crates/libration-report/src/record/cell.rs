@@ -1,11 +1,13 @@
 //! Cells of tables.
 
-use serde::{Serialize, Serializer};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::Value;
 
 use crate::notation::{count, number};
 
 /// A cell of a table. Numbers are stored as numbers and formatted by the page.
-#[derive(Clone, Debug, Serialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(untagged)]
 pub enum Cell {
     /// A number, or its absence.
@@ -80,6 +82,26 @@ impl Serialize for Quantity {
             Quantity::Intervals(intervals, _) => intervals.serialize(serializer),
             Quantity::Absent(_) => serializer.serialize_none(),
         }
+    }
+}
+
+/// Digits of the ends of intervals, where a file does not say how many were shown.
+const DIGITS: usize = 6;
+
+impl<'de> Deserialize<'de> for Quantity {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Ok(match Value::deserialize(deserializer)? {
+            Value::Null => Quantity::Absent("—".to_owned()),
+            Value::Number(number) => match (number.as_u64(), number.as_f64()) {
+                (Some(count), _) => Quantity::Count(count),
+                (None, Some(real)) => Quantity::Real(real, None),
+                (None, None) => return Err(D::Error::custom("not a number")),
+            },
+            list => {
+                let intervals = serde_json::from_value(list).map_err(D::Error::custom)?;
+                Quantity::Intervals(intervals, DIGITS)
+            }
+        })
     }
 }
 

@@ -1,11 +1,11 @@
 //! Claims of the source report, judged by findings.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{Finding, Verdict};
 
 /// The verdict on a claim.
-#[derive(Clone, Copy, Debug, Serialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClaimVerdict {
     /// It holds as it stands.
@@ -81,7 +81,7 @@ pub struct Ruling<'a> {
 }
 
 /// A judged claim.
-#[derive(Clone, Debug, Serialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 pub struct Claim {
     /// Number in the ledger.
     pub id: String,

@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// A measured number with the prediction of theory.
-#[derive(Clone, Debug, Serialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 pub struct Finding {
     /// Identifier, unique in the report: `study.subject.quantity`.
     pub id: String,
@@ -15,7 +15,8 @@ pub struct Finding {
     pub unit: String,
     /// The prediction, if there is one.
     pub predicted: Option<f64>,
-    /// The measurement.
+    /// The measurement; NaN where a file has none.
+    #[serde(deserialize_with = "number_or_nan")]
     pub measured: f64,
     /// The expected relation of the measurement to the prediction.
     pub relation: Relation,
@@ -28,8 +29,13 @@ pub struct Finding {
     pub undecided: Option<Undecided>,
 }
 
+/// JSON has no infinity and no NaN: both are `null` in `results.json`.
+fn number_or_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Option::deserialize(deserializer).map(|x| x.unwrap_or(f64::NAN))
+}
+
 /// The reason why a measurement could not be judged.
-#[derive(Clone, Debug, Serialize, PartialEq, Eq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(untagged)]
 pub enum Undecided {
     /// The measurement was too noisy; another run may judge it.
@@ -46,7 +52,7 @@ impl fmt::Display for Undecided {
 }
 
 /// The expected relation of a measurement to its prediction.
-#[derive(Clone, Copy, Debug, Serialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Relation {
     /// Equal, within the tolerance.
@@ -58,7 +64,7 @@ pub enum Relation {
 }
 
 /// The verdict on a finding.
-#[derive(Clone, Copy, Debug, Serialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// The measurement agrees with the prediction.
@@ -70,7 +76,7 @@ pub enum Verdict {
 }
 
 /// The largest difference that counts as agreement.
-#[derive(Clone, Debug, Serialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 pub struct Tolerance {
     /// The largest allowed absolute difference, in the finding's unit.
     pub tolerance: Option<f64>,

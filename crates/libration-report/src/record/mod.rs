@@ -6,7 +6,7 @@ mod finding;
 mod series;
 mod table;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use cell::{Cell, Quantity};
@@ -16,7 +16,7 @@ pub use series::{Column, Series};
 pub use table::Table;
 
 /// The results of a study, from which the report is rendered.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Record {
     /// The study's name, as on the command line.
     pub name: String,
@@ -40,7 +40,7 @@ pub struct Record {
 }
 
 /// The file of a figure.
-#[derive(Clone, Debug, Serialize, PartialEq, Eq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
 pub struct FigureFile {
     /// Identifier, unique in the report.
     pub id: String,
@@ -49,7 +49,7 @@ pub struct FigureFile {
 }
 
 /// The file of a series.
-#[derive(Clone, Debug, Serialize, PartialEq, Eq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
 pub struct DataFile {
     /// Name, unique in the study.
     pub name: String,

@@ -1,11 +1,11 @@
 //! A table of the report.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Cell;
 
 /// Rows under named columns.
-#[derive(Clone, Debug, Serialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 pub struct Table {
     /// Name, unique in the study.
     pub name: String,
