@@ -16,7 +16,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sampled_steps_begin_at_one_end_at_the_last_and_never_repeat() {
+    fn steps_begin_at_one_end_at_the_last_and_never_repeat() {
         for last in [1, 2, 7, 1_000_000] {
             let steps = log_spaced_steps(last, 24.0);
             assert_eq!((steps.first(), steps.last()), (Some(&1), Some(&last)));
