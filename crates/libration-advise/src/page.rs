@@ -1,6 +1,6 @@
 //! Advice as an HTML page.
 
-use libration_report::figure::{Axis, ColorMap, Colors, Dash, Figure, Ink, Mark, Marker, Panel};
+use libration_report::figure::{Axis, ColorMap, Colors, Dash, Figure, Mark, Marker, Panel, Role};
 use libration_report::notation::number;
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
@@ -157,10 +157,12 @@ fn figure(map: &StabilityMap) -> Figure {
         Axis::log("factor of all gains").range(0.25, 4.0),
     )
     .mark(Mark::raster(shown, colors))
-    .mark(Mark::contour(grid, [0.0]).ink(Ink::Theory).dash(Dash::Solid).label("edge of stability"))
+    .mark(
+        Mark::contour(grid, [0.0]).role(Role::Theory).dash(Dash::Solid).label("edge of stability"),
+    )
     .mark(
         Mark::points([map.latency], [1.0])
-            .ink(Ink::Neutral)
+            .role(Role::Neutral)
             .marker(Marker::Circle)
             .radius(5.0)
             .label("as stated"),

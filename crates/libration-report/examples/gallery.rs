@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use libration_report::figure::{
-    Axis, ColorMap, Colors, Envelope, Figure, Grid, Ink, Mark, Marker, Panel, embed, scripts, svg,
+    Axis, ColorMap, Colors, Envelope, Figure, Grid, Mark, Marker, Panel, Role, embed, scripts, svg,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -48,16 +48,16 @@ fn order() -> Figure {
     let steps = decades(-4.0, -0.3, 60);
     let few = decades(-4.0, -0.5, 15);
     let methods = [
-        ("explicit Euler", Ink::ExplicitEuler, 1, 3.0),
-        ("symplectic Euler", Ink::SymplecticEuler, 1, 1.2),
-        ("velocity Verlet", Ink::VelocityVerlet, 2, 0.4),
-        ("Yoshida 4", Ink::Yoshida4, 4, 0.6),
-        ("RK4", Ink::Rk4, 4, 0.2),
+        ("explicit Euler", Role::ExplicitEuler, 1, 3.0),
+        ("symplectic Euler", Role::SymplecticEuler, 1, 1.2),
+        ("velocity Verlet", Role::VelocityVerlet, 2, 0.4),
+        ("Yoshida 4", Role::Yoshida4, 4, 0.6),
+        ("RK4", Role::Rk4, 4, 0.2),
     ];
     let error = |h: f64, p: i32, c: f64| c * h.powi(p) + 3e-16 / h;
     let lines = methods.map(|(name, ink, p, c)| {
         let y: Vec<f64> = steps.iter().map(|&h| error(h, p, c)).collect();
-        Mark::line(steps.clone(), y).ink(ink).label(name)
+        Mark::line(steps.clone(), y).role(ink).label(name)
     });
     let predicted = methods.map(|(_, _, p, c)| {
         let y: Vec<f64> = few.iter().map(|&h| c * h.powi(p)).collect();
@@ -83,19 +83,19 @@ fn drift() -> Figure {
     let n = decades(0.0, 6.0, 200);
     let of = |f: &dyn Fn(f64) -> f64| n.iter().map(|&n| f(n)).collect::<Vec<f64>>();
     let methods = [
-        ("explicit Euler", Ink::ExplicitEuler, of(&|n| (1e-3 * n).exp() - 1.0 + 1e-3)),
-        ("symplectic Euler", Ink::SymplecticEuler, of(&|n| 1.6e-2 * (1.0 - (-n / 20.0).exp()))),
-        ("velocity Verlet", Ink::VelocityVerlet, of(&|n| 2.5e-4 * (1.0 - (-n / 20.0).exp()))),
-        ("leapfrog", Ink::Leapfrog, of(&|n| 2.2e-4 * (1.0 - (-n / 25.0).exp()))),
-        ("textbook Verlet", Ink::TextbookVerlet, of(&|n| 1.1e-4 * (1.0 - (-n / 15.0).exp()))),
-        ("RK4", Ink::Rk4, of(&|n| 1.4e-11 * n)),
+        ("explicit Euler", Role::ExplicitEuler, of(&|n| (1e-3 * n).exp() - 1.0 + 1e-3)),
+        ("symplectic Euler", Role::SymplecticEuler, of(&|n| 1.6e-2 * (1.0 - (-n / 20.0).exp()))),
+        ("velocity Verlet", Role::VelocityVerlet, of(&|n| 2.5e-4 * (1.0 - (-n / 20.0).exp()))),
+        ("leapfrog", Role::Leapfrog, of(&|n| 2.2e-4 * (1.0 - (-n / 25.0).exp()))),
+        ("textbook Verlet", Role::TextbookVerlet, of(&|n| 1.1e-4 * (1.0 - (-n / 15.0).exp()))),
+        ("RK4", Role::Rk4, of(&|n| 1.4e-11 * n)),
     ];
     let panel = Panel::new(
         Axis::log("steps n (Δt = 0.01, ω² = 10)"),
         Axis::log("max |E − E₀| / E₀ so far").range(1e-12, 100.0),
     )
-    .marks(methods.map(|(name, ink, y)| Mark::line(n.clone(), y).ink(ink).label(name)))
-    .mark(Mark::horizontal(1e-2).ink(Ink::Bad).label("1 % of the energy"));
+    .marks(methods.map(|(name, ink, y)| Mark::line(n.clone(), y).role(ink).label(name)))
+    .mark(Mark::horizontal(1e-2).role(Role::Bad).label("1 % of the energy"));
     Figure::new("fig-9-1", "RK4 loses energy, but slower than Verlet's band for 18 million steps.")
         .number("9.1")
         .caption("Largest relative drift so far. Start (1, 0).")
@@ -115,10 +115,10 @@ fn portraits() -> Figure {
     };
     let exact = even(0.0, TAU, 60);
     let methods = [
-        ("explicit Euler", Ink::ExplicitEuler, 0.02, 0.0),
-        ("symplectic Euler", Ink::SymplecticEuler, 0.0, 0.35),
-        ("velocity Verlet", Ink::VelocityVerlet, 0.0, 0.03),
-        ("RK4", Ink::Rk4, -0.004, 0.0),
+        ("explicit Euler", Role::ExplicitEuler, 0.02, 0.0),
+        ("symplectic Euler", Role::SymplecticEuler, 0.0, 0.35),
+        ("velocity Verlet", Role::VelocityVerlet, 0.0, 0.03),
+        ("RK4", Role::Rk4, -0.004, 0.0),
     ];
     let panels = methods.map(|(name, ink, rate, squeeze)| {
         let (x, y) = spiral(rate, squeeze);
@@ -128,7 +128,7 @@ fn portraits() -> Figure {
         Panel::new(Axis::linear("position x").unit("m"), Axis::linear("velocity v/ω").unit("m"))
             .title(name)
             .equal()
-            .mark(Mark::line(x, y).ink(ink).width(1.6))
+            .mark(Mark::line(x, y).role(ink).width(1.6))
             .mark(Mark::prediction(cx, cy).radius(2.0).label("exact orbit"))
     });
     let mut figure = Figure::new("portraits", "Only the symplectic methods close their orbits.")
@@ -153,17 +153,17 @@ fn stability() -> Figure {
     let left = Panel::new(Axis::linear("ωΔt"), Axis::linear("damping ζ"))
         .title("growth per step")
         .mark(Mark::raster(blank, colors))
-        .mark(Mark::contour(grid.clone(), [1.0]).ink(Ink::Theory).label("|λ| = 1"));
+        .mark(Mark::contour(grid.clone(), [1.0]).role(Role::Theory).label("|λ| = 1"));
     let side = even(-1.6, 1.6, 65);
     let saddle = Grid::sample(side.clone(), side, |x, y| x * x * x - x - y * y + 0.3 * y);
     let right = Panel::new(Axis::linear("x"), Axis::linear("y"))
         .title("levels")
         .mark(
             Mark::region([-1.5, -0.3, -0.3, -1.5], [-1.5, -1.5, -0.9, -0.9])
-                .ink(Ink::Bad)
+                .role(Role::Bad)
                 .label("forbidden"),
         )
-        .mark(Mark::contour(saddle, [-2.0, -1.0, -0.5, 0.0, 0.3]).ink(Ink::Accent(0)))
+        .mark(Mark::contour(saddle, [-2.0, -1.0, -0.5, 0.0, 0.3]).role(Role::Accent(0)))
         .mark(Mark::note(-0.9, 1.42, "x³ − x − y²"));
     Figure::new("stability", "Damping moves the limit of RK4 beyond 2√2 only a little.")
         .caption("White and the line: neither growth nor decay. Blank: not computed.")
@@ -187,12 +187,12 @@ fn band() -> Figure {
         Panel::new(Axis::linear("time t").unit("s"), Axis::linear("energy error ΔE").unit("µJ"))
             .mark(
                 Mark::envelope(Envelope::of(&t, &beat, 600))
-                    .ink(Ink::SymplecticEuler)
+                    .role(Role::SymplecticEuler)
                     .label("symplectic Euler"),
             )
             .mark(
                 Mark::line(t.iter().step_by(5000).copied().collect::<Vec<f64>>(), mean)
-                    .ink(Ink::Rk4)
+                    .role(Role::Rk4)
                     .label("mean"),
             )
             .mark(Mark::vertical(7500.0).label("restart"))
@@ -221,12 +221,12 @@ fn sweep() -> Figure {
     let points = markers.iter().zip(0..).map(|((marker, name), i)| {
         let y: Vec<f64> =
             x.iter().map(|x| f64::from(i) + (x / 2.0 + f64::from(i)).sin() * 0.4).collect();
-        Mark::points(x.clone(), y).ink(Ink::Accent(i)).marker(*marker).radius(4.0).label(*name)
+        Mark::points(x.clone(), y).role(Role::Accent(i)).marker(*marker).radius(4.0).label(*name)
     });
     let phase = even(0.0, 2.0 * PI, 100);
     let lines = (0..5).map(|i| {
         let y: Vec<f64> = phase.iter().map(|p| p.sin() * (1.0 + f64::from(i) * 0.05)).collect();
-        Mark::line(phase.clone(), y).ink(Ink::Accent(i)).label(format!("lane {i}"))
+        Mark::line(phase.clone(), y).role(Role::Accent(i)).label(format!("lane {i}"))
     });
     Figure::new("sweep", "Number formats and lanes can be told apart without colour.")
         .caption("A caption with </script> and <b>, which must stay text.")
@@ -251,7 +251,7 @@ fn tiny() -> Figure {
         .description("Two straight lines on a logarithmic axis that reaches 10 to the minus 300.")
         .panel(
             Panel::new(Axis::linear("time t").unit("s"), Axis::log("energy E").unit("J"))
-                .mark(Mark::line(t.clone(), y).ink(Ink::VelocityVerlet).label("strong damping"))
-                .mark(Mark::line(t, with_gap).ink(Ink::Rk4).label("weak damping")),
+                .mark(Mark::line(t.clone(), y).role(Role::VelocityVerlet).label("strong damping"))
+                .mark(Mark::line(t, with_gap).role(Role::Rk4).label("weak damping")),
         )
 }

@@ -1,19 +1,19 @@
 //! Colours of integrators in figures.
 
 use libration::Method;
-use libration_report::figure::Ink;
+use libration_report::figure::Role;
 
 /// Returns the colour of `method`.
-pub(crate) fn method_color(method: Method) -> Ink {
+pub(crate) fn method_color(method: Method) -> Role {
     match method {
-        Method::ExplicitEuler => Ink::ExplicitEuler,
-        Method::SymplecticEuler => Ink::SymplecticEuler,
-        Method::SymplecticEulerDriftFirst => Ink::Accent(1),
-        Method::VelocityVerlet => Ink::VelocityVerlet,
-        Method::TextbookVerlet => Ink::TextbookVerlet,
-        Method::Leapfrog => Ink::Leapfrog,
-        Method::Rk4 => Ink::Rk4,
-        Method::Yoshida4 => Ink::Yoshida4,
-        Method::Suzuki4 => Ink::Accent(2),
+        Method::ExplicitEuler => Role::ExplicitEuler,
+        Method::SymplecticEuler => Role::SymplecticEuler,
+        Method::SymplecticEulerDriftFirst => Role::Accent(1),
+        Method::VelocityVerlet => Role::VelocityVerlet,
+        Method::TextbookVerlet => Role::TextbookVerlet,
+        Method::Leapfrog => Role::Leapfrog,
+        Method::Rk4 => Role::Rk4,
+        Method::Yoshida4 => Role::Yoshida4,
+        Method::Suzuki4 => Role::Accent(2),
     }
 }

@@ -6,7 +6,7 @@ use super::mark::{Across, Shape};
 use super::mark_geometry::MarkGeometry;
 use super::panel::Panel;
 use super::sizes::{LABEL, SMALL};
-use super::style::Ink;
+use super::style::Role;
 use super::ticks;
 use crate::text;
 
@@ -16,7 +16,7 @@ pub(super) struct Label {
     /// The index of the mark in its panel.
     pub(super) mark: usize,
     pub(super) text: String,
-    pub(super) ink: Ink,
+    pub(super) role: Role,
     pub(super) size: f64,
     pub(super) bold: bool,
     /// The left end of the text, and the middle of its height.
@@ -55,11 +55,11 @@ pub(super) fn place(
     let ends: Vec<Option<Place>> = drawn.iter().map(|d| end(d, &frame.rect)).collect();
     for (index, mark) in panel.marks.iter().enumerate() {
         let text = mark.label.clone().unwrap_or_default();
-        let (ink, at) = (mark.style.ink, [0.0; 2]);
+        let (role, at) = (mark.style.role, [0.0; 2]);
         let label = Label {
             mark: index,
             text,
-            ink,
+            role,
             size: LABEL,
             bold: true,
             at,
@@ -85,12 +85,12 @@ pub(super) fn place(
     spread(&mut table.labels, &frame.rect);
     for (index, mark) in panel.marks.iter().enumerate() {
         let text = mark.label.clone().unwrap_or_default();
-        let (ink, at) = (mark.style.ink, [0.0; 2]);
+        let (role, at) = (mark.style.role, [0.0; 2]);
         let done = table.labels.iter().any(|label| label.mark == index);
         let label = Label {
             mark: index,
             text,
-            ink,
+            role,
             size: LABEL,
             bold: true,
             at,

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::color::Colors;
 use super::envelope::Envelope;
 use super::grid::Grid;
-use super::style::{Dash, Ink, Marker, Style};
+use super::style::{Dash, Marker, Role, Style};
 
 /// A mark of a panel, in data coordinates.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -102,9 +102,9 @@ impl Mark {
         Self::new(Shape::Points { x: x.into(), y: y.into() }).marker(Marker::Circle)
     }
 
-    /// A prediction: open circles in the ink of theory, over the measurement.
+    /// A prediction: open circles in the role of theory, over the measurement.
     pub fn prediction(x: impl Into<Vec<f64>>, y: impl Into<Vec<f64>>) -> Self {
-        Self::new(Shape::Points { x: x.into(), y: y.into() }).ink(Ink::Theory).width(1.1)
+        Self::new(Shape::Points { x: x.into(), y: y.into() }).role(Role::Theory).width(1.1)
     }
 
     /// The band of a long series.
@@ -151,8 +151,8 @@ impl Mark {
 
     /// Sets the role.
     #[must_use]
-    pub fn ink(mut self, ink: Ink) -> Self {
-        self.style.ink = ink;
+    pub fn role(mut self, role: Role) -> Self {
+        self.style.role = role;
         self
     }
 

@@ -5,14 +5,14 @@
 //! are computed once.
 //!
 //! ```
-//! use libration_report::figure::{Axis, Figure, Ink, Mark, Panel, embed, svg};
+//! use libration_report::figure::{Axis, Figure, Role, Mark, Panel, embed, svg};
 //!
 //! let steps = [1e-3, 1e-2, 1e-1];
 //! let panel = Panel::new(
 //!     Axis::log("time step Δt").unit("s"),
 //!     Axis::log("position error after 10 s").unit("m"),
 //! )
-//! .mark(Mark::line(steps, [1.1e-12, 1.0e-8, 1.0e-4]).ink(Ink::Rk4).label("RK4"))
+//! .mark(Mark::line(steps, [1.1e-12, 1.0e-8, 1.0e-4]).role(Role::Rk4).label("RK4"))
 //! .mark(Mark::prediction(steps, [1e-12, 1e-8, 1e-4]).label("predicted"));
 //! let figure = Figure::new("fig-9-2", "The error of RK4 falls with the fourth power of the step.")
 //!     .number("9.2")
@@ -56,4 +56,4 @@ pub use page::{embed, scripts};
 pub use palette::STYLESHEET;
 pub use panel::{Figure, Panel};
 pub use plotly::plotly;
-pub use style::{Dash, Ink, Marker, Style};
+pub use style::{Dash, Marker, Role, Style};

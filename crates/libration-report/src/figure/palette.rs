@@ -60,25 +60,25 @@ fn resolve(rule: &str, tone: Tone) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::Ink;
+    use crate::figure::Role;
 
-    const INKS: [Ink; 11] = [
-        Ink::ExplicitEuler,
-        Ink::SymplecticEuler,
-        Ink::VelocityVerlet,
-        Ink::Rk4,
-        Ink::Leapfrog,
-        Ink::Yoshida4,
-        Ink::TextbookVerlet,
-        Ink::Theory,
-        Ink::Neutral,
-        Ink::Good,
-        Ink::Bad,
+    const INKS: [Role; 11] = [
+        Role::ExplicitEuler,
+        Role::SymplecticEuler,
+        Role::VelocityVerlet,
+        Role::Rk4,
+        Role::Leapfrog,
+        Role::Yoshida4,
+        Role::TextbookVerlet,
+        Role::Theory,
+        Role::Neutral,
+        Role::Good,
+        Role::Bad,
     ];
 
     #[test]
     fn every_ink_has_two_colours_and_a_class() {
-        let accents = (0..Ink::ACCENTS).map(Ink::Accent);
+        let accents = (0..Role::ACCENTS).map(Role::Accent);
         for ink in INKS.into_iter().chain(accents) {
             let name = ink.name();
             assert!(color(&name, Tone::Light).is_some(), "{name}");

@@ -113,7 +113,7 @@ fn axis(axis: &Axis, ruler: &Ruler, ticks: &[Tick], length: f64, anchor: &str) -
 }
 
 fn color(style: &Style) -> String {
-    format!("var(--{})", style.ink.name())
+    format!("var(--{})", style.role.name())
 }
 
 fn dash(style: &Style) -> String {

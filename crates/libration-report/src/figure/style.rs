@@ -7,7 +7,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Default)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
-pub enum Ink {
+pub enum Role {
     /// Explicit Euler.
     ExplicitEuler,
     /// Symplectic Euler.
@@ -35,7 +35,7 @@ pub enum Ink {
     Accent(u8),
 }
 
-impl Ink {
+impl Role {
     /// The number of accents in the stylesheet.
     pub const ACCENTS: u8 = 6;
 
@@ -85,9 +85,10 @@ impl Ink {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Default)]
 #[serde(rename_all = "kebab-case")]
 pub enum Dash {
-    /// The pattern that belongs to the ink.
+    /// The pattern of the role.
     #[default]
-    OfInk,
+    #[serde(rename = "of-ink")]
+    OfRole,
     /// No gaps.
     Solid,
     /// Strokes of middle length.
@@ -118,11 +119,12 @@ pub enum Marker {
     Plus,
 }
 
-/// Ink, dash, width and marker of a mark.
+/// Role, dash, width and marker of a mark.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Style {
     /// The role, which decides the colour.
-    pub ink: Ink,
+    #[serde(rename = "ink")]
+    pub role: Role,
     /// The pattern of lines.
     pub dash: Dash,
     /// The width of lines in pixels of a figure 860 wide.
@@ -137,7 +139,7 @@ impl Style {
     /// The strokes and gaps of this style; empty is solid.
     pub fn dashes(&self) -> &'static [f64] {
         match self.dash {
-            Dash::OfInk => self.ink.dashes(),
+            Dash::OfRole => self.role.dashes(),
             Dash::Solid => &[],
             Dash::Dashed => &[7.0, 4.0],
             Dash::Dotted => &[1.5, 3.0],
@@ -148,7 +150,7 @@ impl Style {
 impl Default for Style {
     fn default() -> Self {
         Self {
-            ink: Ink::default(),
+            role: Role::default(),
             dash: Dash::default(),
             width: 2.2,
             marker: Marker::default(),

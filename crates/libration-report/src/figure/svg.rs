@@ -53,7 +53,7 @@ fn document(figure: &Figure, style: &str) -> String {
         panel(placed, &format!("{id}-clip-{index}"), &mut out);
     }
     for entry in &layout.legend {
-        let _ = write!(out, "<g class=\"ink-{}\">", entry.mark.style.ink.name());
+        let _ = write!(out, "<g class=\"ink-{}\">", entry.mark.style.role.name());
         mark::sample(entry, &mut out);
         let (x, y) = (px(entry.text_x), px(entry.y + 4.5));
         let words = text::svg(entry.text, NORMAL);
@@ -188,7 +188,7 @@ fn labels(placed: &PanelLayout<'_>, out: &mut String) {
         let (x, y) = (px(label.at[0]), px(label.at[1] + 0.35 * label.size));
         let words = text::svg(&label.text, label.size);
         let on = if placed.is_on_raster() && !label.outside { " on-picture" } else { "" };
-        let _ = write!(out, "<g class=\"ink-{}{on}\">", label.ink.name());
+        let _ = write!(out, "<g class=\"ink-{}{on}\">", label.role.name());
         if let Some([from, to]) = label.leader() {
             let d = path::line(&[from, to]);
             let _ = write!(out, "<path class=\"leader\" d=\"{d}\"/>");

@@ -49,14 +49,14 @@ fn busy() -> Figure {
     let words = "a < b & \"c\" ]]> </script> \u{7} 10^{-3}";
     let first = Panel::new(Axis::log(words).unit(words), Axis::log(words))
         .title(words)
-        .mark(Mark::line(x.clone(), vec![1e-16, 1e-12, 1e-3]).ink(Ink::Rk4).label(words))
+        .mark(Mark::line(x.clone(), vec![1e-16, 1e-12, 1e-3]).role(Role::Rk4).label(words))
         .mark(Mark::prediction(x.clone(), vec![2e-16, 3e-12, 5e-3]).label("predicted"))
         .mark(Mark::vertical(0.02).label("limit"));
     let second = Panel::new(Axis::linear("x").unit("m"), Axis::linear("y").unit("m"))
         .mark(Mark::raster(grid.clone(), Colors::new(words).unit("J")))
-        .mark(Mark::contour(grid, [0.5]).ink(Ink::Theory))
+        .mark(Mark::contour(grid, [0.5]).role(Role::Theory))
         .mark(Mark::envelope(Envelope::of(&[0.0, 1.0, 2.0], &[0.1, 0.2, 0.1], 4)).label("band"))
-        .mark(Mark::region([0.0, 1.0, 1.0], [0.0, 0.0, 1.0]).ink(Ink::Bad))
+        .mark(Mark::region([0.0, 1.0, 1.0], [0.0, 0.0, 1.0]).role(Role::Bad))
         .mark(Mark::note(0.5, 0.5, words));
     let mut figure = figure(first).panel(second).columns(2).number("9.1").caption(words);
     figure.title = words.into();
@@ -98,7 +98,7 @@ fn labels_of_close_lines_do_not_overlap() {
     let x = [0.0, 1.0];
     let lines = (0..4).map(|i| {
         let end = 1.0 + f64::from(i) * 1e-3;
-        Mark::line(x, [0.0, end]).ink(Ink::Accent(i as u8)).label(format!("line {i}"))
+        Mark::line(x, [0.0, end]).role(Role::Accent(i as u8)).label(format!("line {i}"))
     });
     let drawn = figure(Panel::new(Axis::linear("t"), Axis::linear("y")).marks(lines));
     let layout = FigureLayout::of(&drawn);

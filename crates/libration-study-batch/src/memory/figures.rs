@@ -1,6 +1,6 @@
 //! The figure of the chapter on memory.
 
-use libration_report::figure::{Axis, Figure, Ink, Mark, Panel};
+use libration_report::figure::{Axis, Figure, Mark, Panel, Role};
 use libration_report::record::{Record, RecordError};
 
 use super::MIB;
@@ -15,14 +15,14 @@ pub(super) fn growth(record: &Record) -> Result<Figure, RecordError> {
     for (i, horizon) in HORIZONS.into_iter().enumerate() {
         let line = Mark::line(environments, series.column(&column(horizon))?);
         let label = format!("{horizon} steps");
-        panel = panel.mark(line.ink(Ink::Accent(i as u8)).label(label));
+        panel = panel.mark(line.role(Role::Accent(i as u8)).label(label));
     }
     let printed = TABLE.iter().map(|row| row.of).chain([EXAMPLES[1]]);
     let (x, y): (Vec<f64>, Vec<f64>) =
         printed.map(|case| (case.environments as f64, case.megabytes)).unzip();
-    panel = panel.mark(Mark::points(x, y).ink(Ink::Neutral).label("the source"));
+    panel = panel.mark(Mark::points(x, y).role(Role::Neutral).label("the source"));
     if let Ok(memory) = record.finding("memory.installed") {
-        let level = Mark::horizontal(memory.measured / MIB).ink(Ink::Bad);
+        let level = Mark::horizontal(memory.measured / MIB).role(Role::Bad);
         panel = panel.mark(level.label("memory of this machine"));
     }
     Ok(Figure::new("fig-9-10", "Memory of a rollout against environments")

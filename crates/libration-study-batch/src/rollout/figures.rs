@@ -1,6 +1,6 @@
 //! The figures of the chapter on rollouts.
 
-use libration_report::figure::{Axis, Dash, Figure, Ink, Mark, Marker, Panel};
+use libration_report::figure::{Axis, Dash, Figure, Mark, Marker, Panel, Role};
 use libration_report::notation::number;
 use libration_report::record::{Record, RecordError};
 
@@ -9,7 +9,7 @@ use super::source_table::line;
 use crate::source_rollouts::TABLE;
 
 /// The inks of one core and of all, the same in every figure.
-const INKS: [Ink; 2] = [Ink::Accent(0), Ink::Accent(1)];
+const INKS: [Role; 2] = [Role::Accent(0), Role::Accent(1)];
 
 const CORES: [&str; 2] = ["one core", "all cores"];
 
@@ -31,13 +31,13 @@ pub(super) fn scaling(record: &Record) -> Result<Figure, RecordError> {
             let rates = Mark::line(x, series.column("transitions_per_second")?);
             let fills = Mark::line(x, series.column("fill")?);
             panel = panel
-                .mark(rates.ink(INKS[i]).dash(Dash::Solid).label(CORES[i]))
-                .mark(fills.ink(INKS[i]).dash(Dash::Dashed).label(format!("fill, {}", CORES[i])));
+                .mark(rates.role(INKS[i]).dash(Dash::Solid).label(CORES[i]))
+                .mark(fills.role(INKS[i]).dash(Dash::Dashed).label(format!("fill, {}", CORES[i])));
         }
         if varied == Varied::Environments {
             let x = TABLE.map(|row| row.of.environments as f64);
             let rates = TABLE.map(|row| 1e6 * row.millions);
-            panel = panel.mark(Mark::points(x, rates).ink(Ink::Neutral).label("the source"));
+            panel = panel.mark(Mark::points(x, rates).role(Role::Neutral).label("the source"));
         }
         figure = figure.panel(panel);
     }
@@ -58,12 +58,12 @@ pub(super) fn steps(record: &Record) -> Result<Figure, RecordError> {
     let panel = Panel::new(Axis::log("environments"), Axis::log("time of a step").unit("s"))
         .mark(
             Mark::line(along, fitted)
-                .ink(Ink::Neutral)
+                .role(Role::Neutral)
                 .dash(Dash::Dashed)
                 .label("a + b·N through the source"),
         )
-        .mark(Mark::points(x, TABLE.map(|row| row.step())).ink(Ink::Neutral).label("the source"))
-        .mark(Mark::line(own, series.column("seconds")?).ink(INKS[0]).label(CORES[0]));
+        .mark(Mark::points(x, TABLE.map(|row| row.step())).role(Role::Neutral).label("the source"))
+        .mark(Mark::line(own, series.column("seconds")?).role(INKS[0]).label(CORES[0]));
     Ok(Figure::new(
         "step-times",
         format!(
@@ -86,15 +86,15 @@ pub(super) fn summary(record: &Record) -> Result<Figure, RecordError> {
     let names = TABLE.map(|row| row.of.title());
     let mut panel = Panel::new(Axis::log("transitions per second"), Axis::names("", names));
     let all = [
-        ("source", "the source", Ink::Neutral, Marker::Square),
-        ("numpy", "NumPy", Ink::Accent(2), Marker::Diamond),
+        ("source", "the source", Role::Neutral, Marker::Square),
+        ("numpy", "NumPy", Role::Accent(2), Marker::Diamond),
         ("one", "one core", INKS[0], Marker::Circle),
         ("all", "all cores", INKS[1], Marker::Circle),
     ];
     for (column, label, ink, marker) in all {
         let rates = series.column(column)?;
         if rates.iter().any(|rate| rate.is_finite()) {
-            let points = Mark::points(rates, places.clone()).ink(ink).marker(marker);
+            let points = Mark::points(rates, places.clone()).role(ink).marker(marker);
             panel = panel.mark(points.radius(4.0).label(label));
         }
     }

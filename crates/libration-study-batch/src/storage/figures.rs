@@ -1,6 +1,6 @@
 //! The figure of the chapter on storage.
 
-use libration_report::figure::{Axis, Figure, Ink, Mark, Panel};
+use libration_report::figure::{Axis, Figure, Mark, Panel, Role};
 use libration_report::notation::number;
 use libration_report::record::{Record, RecordError};
 
@@ -14,7 +14,7 @@ pub(super) fn draws(record: &Record) -> Result<Figure, RecordError> {
         Panel::new(Axis::log("transitions kept"), Axis::log("time per transition").unit("ns"));
     for (i, (name, done)) in COLUMNS.into_iter().enumerate() {
         let line = Mark::line(kept, series.column(name)?);
-        panel = panel.mark(line.ink(Ink::Accent(i as u8)).label(done));
+        panel = panel.mark(line.role(Role::Accent(i as u8)).label(done));
     }
     Ok(Figure::new("draws", title(record)?)
         .caption(

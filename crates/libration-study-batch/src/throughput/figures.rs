@@ -1,6 +1,6 @@
 //! The figures of the chapter on throughput.
 
-use libration_report::figure::{Axis, Colors, Dash, Figure, Grid, Ink, Mark, Panel};
+use libration_report::figure::{Axis, Colors, Dash, Figure, Grid, Mark, Panel, Role};
 use libration_report::notation::number;
 use libration_report::record::{Record, RecordError};
 use libration_study::Machine;
@@ -10,15 +10,15 @@ use super::scaling::series_name;
 use crate::bench::{BenchFloat, Implementation};
 
 /// The ink of an implementation, the same in every figure.
-fn ink(implementation: Implementation) -> Ink {
+fn ink(implementation: Implementation) -> Role {
     match implementation {
-        Implementation::Dynamic => Ink::Accent(5),
-        Implementation::Scalar => Ink::Accent(4),
-        Implementation::Temporaries => Ink::Accent(2),
-        Implementation::InPlace => Ink::Accent(1),
-        Implementation::OneStep => Ink::Accent(3),
-        Implementation::Fused => Ink::Accent(0),
-        Implementation::Threads => Ink::SymplecticEuler,
+        Implementation::Dynamic => Role::Accent(5),
+        Implementation::Scalar => Role::Accent(4),
+        Implementation::Temporaries => Role::Accent(2),
+        Implementation::InPlace => Role::Accent(1),
+        Implementation::OneStep => Role::Accent(3),
+        Implementation::Fused => Role::Accent(0),
+        Implementation::Threads => Role::SymplecticEuler,
     }
 }
 
@@ -39,14 +39,14 @@ pub(super) fn scaling(record: &Record) -> Result<Figure, RecordError> {
         for cache in Machine::detect().caches {
             let holds = cache.bytes as f64 / (2 * float.bytes()) as f64;
             panel = panel.mark(
-                Mark::vertical(holds).ink(Ink::Neutral).label(format!("cache {}", cache.level)),
+                Mark::vertical(holds).role(Role::Neutral).label(format!("cache {}", cache.level)),
             );
         }
         for implementation in shown(record) {
             let Ok(series) = record.series(&series_name(implementation, float)) else { continue };
             let counts = series.column("trajectories")?;
             let rates = series.column("steps_per_second")?;
-            let line = Mark::line(counts, rates).ink(ink(implementation));
+            let line = Mark::line(counts, rates).role(ink(implementation));
             panel = panel.mark(line.label(implementation.title()));
             let last = counts.last().copied().unwrap_or(f64::NAN);
             if let Some(rate) = predicted(record, implementation, float, last) {
@@ -157,8 +157,10 @@ pub(super) fn roofline(record: &Record) -> Result<Figure, RecordError> {
         Axis::log("operations per byte"),
         Axis::log("operations per second").unit("1/s"),
     )
-    .mark(Mark::line(x, series.column("at_once")?).ink(Ink::Neutral).label("memory or arithmetic"))
-    .mark(Mark::line(x, series.column("attained")?).ink(Ink::Accent(0)).label("fused steps"))
+    .mark(
+        Mark::line(x, series.column("at_once")?).role(Role::Neutral).label("memory or arithmetic"),
+    )
+    .mark(Mark::line(x, series.column("attained")?).role(Role::Accent(0)).label("fused steps"))
     .mark(
         Mark::prediction(x, series.column("in_turn")?)
             .dash(Dash::Solid)

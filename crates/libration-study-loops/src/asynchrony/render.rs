@@ -1,6 +1,6 @@
 //! The chapter on clocks of different rates.
 
-use libration_report::figure::{Axis, Figure, Ink, Mark, Panel};
+use libration_report::figure::{Axis, Figure, Mark, Panel, Role};
 use libration_report::notation::number;
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError};
@@ -72,14 +72,14 @@ fn dephasing(record: &Record) -> Result<Figure, RecordError> {
             panel = panel
                 .mark(
                     Mark::line(steps, series.column("measured")?)
-                        .ink(Ink::Accent(i as u8))
+                        .role(Role::Accent(i as u8))
                         .label(words),
                 )
                 .mark(Mark::prediction(sparse(steps), sparse(series.column("predicted")?)));
             any = true;
         }
         if any {
-            let level = Mark::horizontal(std::f64::consts::E.recip()).ink(Ink::Neutral);
+            let level = Mark::horizontal(std::f64::consts::E.recip()).role(Role::Neutral);
             figure = figure.panel(panel.mark(level).title(title));
         }
     }
@@ -110,8 +110,8 @@ fn alone(record: &Record) -> Result<Figure, RecordError> {
                 Axis::linear("largest |E/E₀ − 1|").range(0.0, 1.3 * bound),
             )
             .title("Energy at ωΔt = 0.3, rates of 5 %")
-            .mark(line.ink(Ink::VelocityVerlet).label("measured"))
-            .mark(Mark::horizontal(bound).ink(Ink::Theory).label("bound of the fastest clock")),
+            .mark(line.role(Role::VelocityVerlet).label("measured"))
+            .mark(Mark::horizontal(bound).role(Role::Theory).label("bound of the fastest clock")),
         );
     }
     if let Ok(series) = record.series("stable") {
@@ -119,8 +119,8 @@ fn alone(record: &Record) -> Result<Figure, RecordError> {
         figure = figure.panel(
             Panel::new(Axis::linear("z(1 + δ)"), Axis::linear("growth of ln |y| per step"))
                 .title("Stability at ωΔt = 1.9")
-                .mark(points.ink(Ink::VelocityVerlet).radius(1.8).label("measured"))
-                .mark(Mark::vertical(2.0).ink(Ink::Theory).label("limit")),
+                .mark(points.role(Role::VelocityVerlet).radius(1.8).label("measured"))
+                .mark(Mark::vertical(2.0).role(Role::Theory).label("limit")),
         );
     }
     Ok(figure)

@@ -1,17 +1,17 @@
 //! The figures of the chapter on the hierarchy.
 
-use libration_report::figure::{Axis, Figure, Ink, Mark, Panel};
+use libration_report::figure::{Axis, Figure, Mark, Panel, Role};
 use libration_report::record::{Record, RecordError};
 
 use super::SHORT;
 use super::imperfection::{Kind, PROFILES};
 
-fn ink(kind: Kind) -> Ink {
+fn ink(kind: Kind) -> Role {
     match kind {
-        Kind::Latency => Ink::ExplicitEuler,
-        Kind::Jitter => Ink::SymplecticEuler,
-        Kind::Asynchrony => Ink::VelocityVerlet,
-        Kind::Precision => Ink::Rk4,
+        Kind::Latency => Role::ExplicitEuler,
+        Kind::Jitter => Role::SymplecticEuler,
+        Kind::Asynchrony => Role::VelocityVerlet,
+        Kind::Precision => Role::Rk4,
     }
 }
 
@@ -33,7 +33,9 @@ fn divergences(record: &Record, figure: Figure, last: f64) -> Result<Figure, Rec
             let every = |values: Vec<f64>| values.into_iter().step_by(3).collect::<Vec<f64>>();
             let expected = every(column(&format!("{}_predicted", kind.tag()))?);
             panel = panel.mark(
-                Mark::line(&steps[..shown], column(kind.tag())?).ink(ink(kind)).label(kind.title()),
+                Mark::line(&steps[..shown], column(kind.tag())?)
+                    .role(ink(kind))
+                    .label(kind.title()),
             );
             if expected.iter().any(|d| !d.is_nan()) {
                 panel = panel.mark(Mark::prediction(every(steps[..shown].to_vec()), expected));

@@ -1,6 +1,6 @@
 //! Figures of walks, of the spectrum and of switching.
 
-use libration_report::figure::{Axis, Dash, Figure, Ink, Mark, Marker, Panel};
+use libration_report::figure::{Axis, Dash, Figure, Mark, Marker, Panel, Role};
 use libration_report::notation::seconds;
 use libration_report::record::{Record, RecordError};
 
@@ -25,15 +25,15 @@ pub(super) fn phases(record: &Record) -> Result<Figure, RecordError> {
         let dt = dt.parse().map_or_else(|_| dt.to_owned(), |dt| seconds(dt, 2));
         let method = libration::Method::from_name(method).map_or(method, |m| m.title());
         let line = |name: &str, words: &str, ink| {
-            Ok::<_, RecordError>(Mark::line(steps, series.column(name)?).ink(ink).label(words))
+            Ok::<_, RecordError>(Mark::line(steps, series.column(name)?).role(ink).label(words))
         };
         let circles =
             |name: &str| Ok::<_, RecordError>(Mark::prediction(steps, series.column(name)?));
         figure = figure.panel(
             Panel::new(Axis::log("steps n"), Axis::log("deviation of the phase").unit("rad"))
                 .title(format!("{method}, Δt = {dt}, σ = {rms} %"))
-                .mark(line("nominal", "against nominal time", Ink::Accent(0))?)
-                .mark(line("elapsed", "against elapsed time", Ink::Accent(3))?)
+                .mark(line("nominal", "against nominal time", Role::Accent(0))?)
+                .mark(line("elapsed", "against elapsed time", Role::Accent(3))?)
                 .mark(circles("nominal-predicted")?.label("predicted"))
                 .mark(circles("elapsed-predicted")?),
         );
@@ -63,14 +63,14 @@ pub(super) fn energies(record: &Record) -> Result<Figure, RecordError> {
                 continue;
             };
             let steps = series.column("steps")?;
-            let line = Mark::line(steps, series.column("measured")?).ink(Ink::Accent(i as u8));
+            let line = Mark::line(steps, series.column("measured")?).role(Role::Accent(i as u8));
             panel = panel
                 .mark(line.label(format!("Δt = {}", seconds(*dt, 2))))
                 .mark(Mark::prediction(steps, series.column("predicted")?));
             any = true;
         }
         if any {
-            figure = figure.panel(panel.mark(Mark::horizontal(1.0).ink(Ink::Bad)));
+            figure = figure.panel(panel.mark(Mark::horizontal(1.0).role(Role::Bad)));
         }
     }
     Ok(figure)
@@ -85,12 +85,12 @@ pub(super) fn memory(record: &Record) -> Result<Figure, RecordError> {
     let mut panel = axes;
     for (i, z) in ["0.3", "0.95"].iter().enumerate() {
         let Ok(curve) = record.series(&format!("memory-{z}-predicted")) else { continue };
-        let ink = Ink::Accent(2 * i as u8);
-        let line = Mark::line(curve.column("correlation")?, curve.column("growth")?).ink(ink);
+        let ink = Role::Accent(2 * i as u8);
+        let line = Mark::line(curve.column("correlation")?, curve.column("growth")?).role(ink);
         panel =
             panel.mark(line.label(format!("predicted, ωΔt = {z}")).dash(Dash::Solid).width(1.2));
         let found = record.series(&format!("memory-{z}"))?;
-        let points = Mark::points(found.column("correlation")?, found.column("growth")?).ink(ink);
+        let points = Mark::points(found.column("correlation")?, found.column("growth")?).role(ink);
         let marker = [Marker::Circle, Marker::Square][i];
         panel = panel.mark(points.marker(marker).radius(4.0).label(format!("measured, ωΔt = {z}")));
     }
@@ -109,14 +109,14 @@ pub(super) fn resonance(record: &Record) -> Result<Figure, RecordError> {
     let rate = series.column("rate")?;
     let middle = series.column("twice-angle")?.first().copied().unwrap_or(f64::NAN);
     let white = series.column("white")?.first().copied().unwrap_or(f64::NAN);
-    let measured = Mark::points(rate, series.column("measured")?).ink(Ink::SymplecticEuler);
-    let weak = Mark::line(weak.column("rate")?, weak.column("growth")?).ink(Ink::Neutral);
+    let measured = Mark::points(rate, series.column("measured")?).role(Role::SymplecticEuler);
+    let weak = Mark::line(weak.column("rate")?, weak.column("growth")?).role(Role::Neutral);
     let panel = Panel::new(
         Axis::linear("frequency of the step times").unit("rad per step"),
         Axis::linear("growth of ln |y| per step"),
     )
-    .mark(Mark::horizontal(white).ink(Ink::Accent(1)).label("white jitter of the same σ"))
-    .mark(Mark::vertical(middle).ink(Ink::Neutral).label("2θ"))
+    .mark(Mark::horizontal(white).role(Role::Accent(1)).label("white jitter of the same σ"))
+    .mark(Mark::vertical(middle).role(Role::Neutral).label("2θ"))
     .mark(weak.dash(Dash::Solid).width(1.2).label("weak jitter: √((aσ)²/2 − δ²/4)"))
     .mark(
         Mark::prediction(rate, series.column("predicted")?)
@@ -136,13 +136,13 @@ pub(super) fn resonance(record: &Record) -> Result<Figure, RecordError> {
 pub(super) fn switching(record: &Record) -> Result<Figure, RecordError> {
     let mut panel = Panel::new(Axis::linear("steps"), Axis::log("√(E/E₀)").range(1e-8, 1e8));
     for (name, words, ink) in [
-        ("short", "steps on time", Ink::Good),
-        ("long", "steps twice as long", Ink::Accent(0)),
-        ("worst", "both, in the worst order", Ink::Bad),
+        ("short", "steps on time", Role::Good),
+        ("long", "steps twice as long", Role::Accent(0)),
+        ("worst", "both, in the worst order", Role::Bad),
     ] {
         let Ok(series) = record.series(&format!("switching-{name}")) else { continue };
         let line = Mark::line(series.column("steps")?, series.column("size")?);
-        panel = panel.mark(line.ink(ink).label(words).width(1.4));
+        panel = panel.mark(line.role(ink).label(words).width(1.4));
     }
     let panel = Panel { x: panel.x.range(0.0, 400.0), ..panel };
     Ok(Figure::new("jitter-switching", "Instability of two stable step lengths in alternation")

@@ -1,6 +1,6 @@
 //! Figures of growth over time step and jitter.
 
-use libration_report::figure::{Axis, ColorMap, Colors, Dash, Figure, Grid, Ink, Mark, Panel};
+use libration_report::figure::{Axis, ColorMap, Colors, Dash, Figure, Grid, Mark, Panel, Role};
 use libration_report::record::{Record, RecordError};
 
 /// The values of a rising series, each once.
@@ -58,20 +58,20 @@ pub(super) fn maps(record: &Record) -> Result<Figure, RecordError> {
         .panel(
             panel("No damping")
                 .mark(free)
-                .mark(line("boundary-free")?.ink(Ink::Bad).dash(Dash::Solid).label(few)),
+                .mark(line("boundary-free")?.role(Role::Bad).dash(Dash::Solid).label(few)),
         )
         .panel(
             panel("With a damper")
                 .mark(damped)
                 .mark(
                     line("boundary-typical")?
-                        .ink(Ink::Theory)
+                        .role(Role::Theory)
                         .dash(Dash::Solid)
                         .label("solid: exponent 0"),
                 )
                 .mark(
                     line("boundary-mean-square")?
-                        .ink(Ink::Theory)
+                        .role(Role::Theory)
                         .dash(Dash::Dashed)
                         .label("dashed: radius 1"),
                 ),

@@ -1,6 +1,6 @@
 //! The figures of the chapter on latency.
 
-use libration_report::figure::{Axis, ColorMap, Colors, Dash, Figure, Grid, Ink, Mark, Panel};
+use libration_report::figure::{Axis, ColorMap, Colors, Dash, Figure, Grid, Mark, Panel, Role};
 use libration_report::notation::number;
 use libration_report::record::{Record, RecordError};
 use libration_study::source_report::DT;
@@ -31,7 +31,7 @@ pub(super) fn short(record: &Record) -> Result<Figure, RecordError> {
     )
     .mark(
         Mark::line(x.clone(), y)
-            .ink(Ink::SymplecticEuler)
+            .role(Role::SymplecticEuler)
             .dash(Dash::Solid)
             .label("symplectic Euler"),
     )
@@ -58,7 +58,7 @@ pub(super) fn long(record: &Record) -> Result<Figure, RecordError> {
         panel = panel
             .mark(
                 Mark::line(steps, series.column("amplitude")?)
-                    .ink(Ink::Accent(i as u8))
+                    .role(Role::Accent(i as u8))
                     .label(label),
             )
             .mark(Mark::prediction(steps, series.column("predicted")?));
@@ -81,10 +81,10 @@ pub(super) fn windows(record: &Record) -> Result<Figure, RecordError> {
         Axis::linear("latency of the command (steps)"),
         Axis::linear("ln ρ, growth per step"),
     )
-    .mark(Mark::horizontal(0.0).ink(Ink::Neutral).width(0.8))
+    .mark(Mark::horizontal(0.0).role(Role::Neutral).width(0.8))
     .mark(
         Mark::line(x, series.column("measured")?)
-            .ink(Ink::VelocityVerlet)
+            .role(Role::VelocityVerlet)
             .dash(Dash::Solid)
             .label("measured"),
     )
@@ -154,7 +154,7 @@ pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
                 .map(|i| (margin / at(i), at(i)))
                 .filter(|(d, _)| *d <= f64::from(kind.longest()))
                 .unzip();
-            let line = Mark::line(x, y).ink(Ink::Neutral).dash(Dash::Dashed).width(1.4);
+            let line = Mark::line(x, y).role(Role::Neutral).dash(Dash::Dashed).width(1.4);
             panel = panel.mark(line.label("delay margin"));
         }
         // What is predicted lies over all else.
@@ -182,7 +182,7 @@ fn edges(record: &Record, kind: Kind, method: libration::Method) -> Result<Vec<M
             let here = column.iter().zip(line).filter(|(_, line)| **line as i64 == k);
             here.map(|(value, _)| *value).collect()
         };
-        let mark = Mark::line(of(x), of(y)).ink(Ink::Theory).dash(Dash::Solid).width(1.6);
+        let mark = Mark::line(of(x), of(y)).role(Role::Theory).dash(Dash::Solid).width(1.6);
         if k == 0 { mark.label("ρ = 1, predicted") } else { mark }
     };
     Ok((0..=last).map(one).collect())

@@ -1,7 +1,7 @@
 //! The chapter on orders.
 
 use libration::Method;
-use libration_report::figure::{Axis, Dash, Figure, Ink, Mark, Panel};
+use libration_report::figure::{Axis, Dash, Figure, Mark, Panel, Role};
 use libration_report::notation::number;
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError, Series};
@@ -145,8 +145,8 @@ fn panel(series: &Series, title: &str, local: bool) -> Result<Panel, RecordError
         let order = method.order() + u32::from(local);
         let guide = guide(dt, errors, order);
         panel = panel
-            .mark(Mark::line(dt, guide).ink(Ink::Theory).dash(Dash::Solid).width(0.8))
-            .mark(Mark::line(dt, errors).ink(method_color(method)).label(method.title()));
+            .mark(Mark::line(dt, guide).role(Role::Theory).dash(Dash::Solid).width(0.8))
+            .mark(Mark::line(dt, errors).role(method_color(method)).label(method.title()));
     }
     Ok(panel)
 }
@@ -163,11 +163,11 @@ fn guide(dt: &[f64], errors: &[f64], order: u32) -> Vec<f64> {
 fn trapped(series: &Series) -> Result<Figure, RecordError> {
     let dt = series.column("dt")?;
     let line = |part: &str, label: &str, accent| -> Result<Mark, RecordError> {
-        Ok(Mark::line(dt, series.column(part)?).ink(Ink::Accent(accent)).label(label))
+        Ok(Mark::line(dt, series.column(part)?).role(Role::Accent(accent)).label(label))
     };
     let guide = |part: &str, order| -> Result<Mark, RecordError> {
         let guide = guide(dt, series.column(part)?, order);
-        Ok(Mark::line(dt, guide).ink(Ink::Theory).dash(Dash::Solid).width(0.8))
+        Ok(Mark::line(dt, guide).role(Role::Theory).dash(Dash::Solid).width(0.8))
     };
     Ok(Figure::new("order-trap", "Symplectic Euler from a start without force")
         .caption(

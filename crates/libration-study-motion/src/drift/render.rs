@@ -1,7 +1,7 @@
 //! The chapter on energy drift.
 
 use libration::Method;
-use libration_report::figure::{Axis, Dash, Envelope, Figure, Ink, Mark, Panel};
+use libration_report::figure::{Axis, Dash, Envelope, Figure, Mark, Panel, Role};
 use libration_report::notation::{number, seconds};
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError, Series};
@@ -114,10 +114,10 @@ fn running(record: &Record, dt: f64) -> Result<Figure, RecordError> {
     let series = record.series(&tag(dt))?;
     let steps = series.column("step")?;
     let mut panel = Panel::new(Axis::log("steps"), Axis::log("largest |E − E₀|/E₀ so far"))
-        .mark(Mark::horizontal(ROUNDING).label("rounding of f64").ink(Ink::Neutral));
+        .mark(Mark::horizontal(ROUNDING).label("rounding of f64").role(Role::Neutral));
     for method in methods(record) {
         let column = |what: &str| series.column(&format!("{} {what}", method.name()));
-        let line = Mark::line(steps, shown(column("measured")?)).ink(method_color(method));
+        let line = Mark::line(steps, shown(column("measured")?)).role(method_color(method));
         panel = panel.mark(line.label(method.title()));
         let (x, y) = each_half_decade(steps, column("predicted")?);
         panel = panel.mark(Mark::prediction(x, y));
@@ -168,11 +168,11 @@ fn band(method: Method, series: &Series) -> Result<Panel, RecordError> {
     let t = column("t")?;
     let envelope = Envelope { x: t.clone(), low: column("low")?, high: column("high")? };
     let bound = |name: &str| -> Result<Mark, RecordError> {
-        Ok(Mark::line(t.clone(), column(name)?).ink(Ink::Theory).dash(Dash::Solid).width(0.9))
+        Ok(Mark::line(t.clone(), column(name)?).role(Role::Theory).dash(Dash::Solid).width(0.9))
     };
     Ok(Panel::new(Axis::linear("time t").unit("s"), Axis::linear("(E − E₀)/E₀"))
         .title(method.title())
-        .mark(Mark::envelope(envelope).ink(method_color(method)))
+        .mark(Mark::envelope(envelope).role(method_color(method)))
         .mark(bound("bound_low")?)
         .mark(bound("bound_high")?))
 }
@@ -189,18 +189,17 @@ fn crossover(record: &Record) -> Result<Figure, RecordError> {
         })
         .unzip();
     let (low, high) = (dt.first().copied().unwrap_or(1e-3), dt.last().copied().unwrap_or(0.1));
+    let predicted = Mark::line(dt, steps).role(Role::Theory).dash(Dash::Solid).width(1.2);
     let panel = Panel::new(Axis::log("time step Δt").unit("s"), Axis::log("steps"))
-        .mark(
-            Mark::line(dt, steps).ink(Ink::Theory).dash(Dash::Solid).width(1.2).label("predicted"),
-        )
+        .mark(predicted.label("predicted"))
         .mark(
             Mark::points(measured.0, measured.1)
-                .ink(method_color(Method::Rk4))
+                .role(method_color(Method::Rk4))
                 .radius(4.5)
                 .label("measured"),
         )
-        .mark(Mark::horizontal(1e6).label("10⁶ steps").ink(Ink::Neutral));
-    let note = |x: f64, y: f64, text: &str| Mark::note(x, y, text).ink(Ink::Neutral);
+        .mark(Mark::horizontal(1e6).label("10⁶ steps").role(Role::Neutral));
+    let note = |x: f64, y: f64, text: &str| Mark::note(x, y, text).role(Role::Neutral);
     let middle = (low * high).sqrt();
     let top = steps.iter().copied().filter(|s| s.is_finite()).fold(1.0, f64::max);
     Ok(Figure::new(
@@ -267,16 +266,16 @@ fn portraits(record: &Record, dt: f64) -> Result<Figure, RecordError> {
             )
             .title(method.title())
             .equal()
-            .mark(Mark::line(cx, cy).ink(Ink::Neutral).dash(Dash::Solid).width(0.8))
+            .mark(Mark::line(cx, cy).role(Role::Neutral).dash(Dash::Solid).width(0.8))
             .mark(
                 Mark::line(curve.column("x")?, curve.column("v_over_omega")?)
-                    .ink(Ink::Theory)
+                    .role(Role::Theory)
                     .dash(Dash::Solid)
                     .width(0.9),
             )
             .mark(
                 Mark::points(orbit.column("x")?, orbit.column("v_over_omega")?)
-                    .ink(method_color(method))
+                    .role(method_color(method))
                     .radius(2.0),
             ),
         );

@@ -138,8 +138,8 @@ fn precision(record: &Record) -> Result<Figure, RecordError> {
         for (method, series) in series(record) {
             let x = series.column(x)?;
             let measured = shown(series.column(column)?);
-            panel =
-                panel.mark(Mark::line(x, measured).ink(method_color(method)).label(method.title()));
+            panel = panel
+                .mark(Mark::line(x, measured).role(method_color(method)).label(method.title()));
             if !by_time {
                 let bound = shown(series.column(&format!("{column}_bound"))?);
                 let every = |v: &[f64]| -> Vec<f64> { v.iter().step_by(2).copied().collect() };

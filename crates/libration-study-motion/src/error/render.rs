@@ -1,7 +1,7 @@
 //! The chapter on errors.
 
 use libration::Method;
-use libration_report::figure::{Axis, Dash, Envelope, Figure, Ink, Mark, Panel};
+use libration_report::figure::{Axis, Dash, Envelope, Figure, Mark, Panel, Role};
 use libration_report::notation::number;
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError};
@@ -113,7 +113,7 @@ fn running(record: &Record) -> Result<Figure, RecordError> {
                 |values: &[f64]| -> Vec<f64> { values.iter().rev().step_by(8).copied().collect() };
             panel = panel
                 .mark(
-                    Mark::line(t, shown(measured)).ink(method_color(method)).label(method.title()),
+                    Mark::line(t, shown(measured)).role(method_color(method)).label(method.title()),
                 )
                 .mark(Mark::prediction(every(t), every(&shown(predicted))));
         }
@@ -131,7 +131,7 @@ fn steps(record: &Record) -> Result<Figure, RecordError> {
         panel = panel
             .mark(
                 Mark::line(dt, shown(series.column("measured")?))
-                    .ink(method_color(method))
+                    .role(method_color(method))
                     .label(method.title()),
             )
             .mark(Mark::prediction(dt, shown(series.column("predicted")?)));
@@ -158,10 +158,11 @@ fn growth(record: &Record) -> Result<Figure, RecordError> {
     let column = |name: &str| series.column(name).map(<[f64]>::to_vec);
     let (t, bound) = (column("t")?, column("bound")?);
     let envelope = Envelope { x: t.clone(), low: column("low")?, high: column("high")? };
-    let edge = |y: Vec<f64>| Mark::line(t.clone(), y).ink(Ink::Theory).dash(Dash::Solid).width(1.0);
+    let edge =
+        |y: Vec<f64>| Mark::line(t.clone(), y).role(Role::Theory).dash(Dash::Solid).width(1.0);
     let below = bound.iter().map(|b| -b).collect();
     let panel = Panel::new(Axis::linear("time t").unit("s"), Axis::linear("x").unit("m"))
-        .mark(Mark::envelope(envelope).ink(method_color(Method::ExplicitEuler)))
+        .mark(Mark::envelope(envelope).role(method_color(Method::ExplicitEuler)))
         .mark(edge(bound.clone()))
         .mark(edge(below));
     Ok(Figure::new("fig-9-4", "Explicit Euler: the amplitude grows exponentially")

@@ -1,7 +1,7 @@
 //! The chapter on nonlinear systems.
 
 use libration::Method;
-use libration_report::figure::{Axis, Dash, Figure, Ink, Mark, Panel};
+use libration_report::figure::{Axis, Dash, Figure, Mark, Panel, Role};
 use libration_report::notation::{number, seconds};
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Column, Record, RecordError};
@@ -135,7 +135,7 @@ fn growth(record: &Record, systems: &[(String, String)]) -> Result<Figure, Recor
         for method in Method::ALL {
             let Ok(largest) = series.column(method.name()) else { continue };
             let line = Mark::line(turns, shown(largest));
-            panel = panel.mark(line.ink(method_color(method)).label(method.title()));
+            panel = panel.mark(line.role(method_color(method)).label(method.title()));
         }
         figure = figure.panel(panel);
     }
@@ -161,11 +161,11 @@ fn swings(record: &Record, systems: &[(String, String)]) -> Result<Figure, Recor
             let name = format!("{name}-{}", method.name());
             let Ok(swing) = record.series(&format!("swing-{name}")) else { continue };
             let line = Mark::line(swing.column("dt")?, shown(swing.column("swing")?));
-            panel = panel.mark(line.ink(method_color(method)).label(method.title()));
+            panel = panel.mark(line.role(method_color(method)).label(method.title()));
             let Ok(rate) = record.series(&format!("rate-{name}")) else { continue };
             let points = Mark::points(rate.column("dt")?, shown(rate.column("rate")?));
             panel = panel.mark(
-                points.ink(method_color(method)).marker(libration_report::figure::Marker::Cross),
+                points.role(method_color(method)).marker(libration_report::figure::Marker::Cross),
             );
         }
         figure = figure.panel(panel);
@@ -204,10 +204,10 @@ fn portraits(record: &Record, systems: &[(String, String)]) -> Result<Figure, Re
                 .equal()
                 .mark(
                     Mark::points(x.values.clone(), y.values.clone())
-                        .ink(method_color(method))
+                        .role(method_color(method))
                         .radius(1.4),
                 )
-                .mark(Mark::line(path_x, path_y).ink(Ink::Neutral).dash(Dash::Solid).width(0.7)),
+                .mark(Mark::line(path_x, path_y).role(Role::Neutral).dash(Dash::Solid).width(0.7)),
             );
         }
     }

@@ -1,16 +1,16 @@
 //! The figures of the chapter on precision.
 
-use libration_report::figure::{Axis, Figure, Ink, Mark, Panel};
+use libration_report::figure::{Axis, Figure, Mark, Panel, Role};
 use libration_report::record::{Record, RecordError};
 
 use super::float_type::FLOAT_TYPES;
 
 /// The ink of a float type: the 24 bits of `f32` and the 53 of `f64` have their own.
-fn series_color(i: usize) -> Ink {
+fn series_color(i: usize) -> Role {
     match FLOAT_TYPES[i].name {
-        "f64" => Ink::Good,
-        "f32" => Ink::VelocityVerlet,
-        _ => Ink::Accent(i as u8),
+        "f64" => Role::Good,
+        "f32" => Role::VelocityVerlet,
+        _ => Role::Accent(i as u8),
     }
 }
 
@@ -32,7 +32,7 @@ pub(super) fn types(record: &Record) -> Result<Figure, RecordError> {
             .zip(comparable)
             .map(|(&drift, &comparable)| if comparable > 0.0 { drift } else { f64::NAN })
             .collect();
-        panel = panel.mark(Mark::line(step, drift).ink(series_color(i)).label(kind.name));
+        panel = panel.mark(Mark::line(step, drift).role(series_color(i)).label(kind.name));
         if predicted.iter().any(|d| !d.is_nan()) {
             panel = panel.mark(Mark::prediction(every(step), every(&predicted)));
         }
@@ -62,8 +62,8 @@ pub(super) fn bits(record: &Record) -> Result<Figure, RecordError> {
     };
     let panel =
         Panel::new(Axis::linear("bits of the significand"), Axis::log("rms drift at the end"))
-            .mark(Mark::points(bits, only(drift, 0.0)).ink(Ink::VelocityVerlet).label("plain"))
-            .mark(Mark::points(bits, only(drift, 1.0)).ink(Ink::Accent(2)).label("compensated"))
+            .mark(Mark::points(bits, only(drift, 0.0)).role(Role::VelocityVerlet).label("plain"))
+            .mark(Mark::points(bits, only(drift, 1.0)).role(Role::Accent(2)).label("compensated"))
             .mark(Mark::prediction(bits, predicted));
     Ok(Figure::new("precision-bits", "Drift against the bits of the significand")
         .caption(
@@ -90,14 +90,14 @@ pub(super) fn forms(record: &Record) -> Result<Figure, RecordError> {
         let title = tag.replacen("dt-", "Δt = ", 1) + " s";
         let mut panel = Panel::new(Axis::log("steps"), Axis::log("rms drift")).title(title);
         for (form, label, ink) in [
-            ("textbook-verlet", "textbook", Ink::TextbookVerlet),
-            ("velocity-verlet", "kick–drift–kick", Ink::VelocityVerlet),
+            ("textbook-verlet", "textbook", Role::TextbookVerlet),
+            ("velocity-verlet", "kick–drift–kick", Role::VelocityVerlet),
         ] {
             let series = record.series(&format!("form-{form}-{tag}"))?;
             let step = series.column("step")?;
             let predicted = every(series.column("drift_predicted")?);
             panel = panel
-                .mark(Mark::line(step, series.column("drift")?).ink(ink).label(label))
+                .mark(Mark::line(step, series.column("drift")?).role(ink).label(label))
                 .mark(Mark::prediction(every(step), predicted));
         }
         figure = figure.panel(panel);

@@ -1,7 +1,7 @@
 //! The chapter on one step.
 
 use libration::Method;
-use libration_report::figure::{Axis, ColorMap, Colors, Dash, Figure, Grid, Ink, Mark, Panel};
+use libration_report::figure::{Axis, ColorMap, Colors, Dash, Figure, Grid, Mark, Panel, Role};
 use libration_report::notation::{list, number};
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError};
@@ -68,7 +68,7 @@ fn phase_errors(record: &Record) -> Result<Figure, RecordError> {
         };
         let line = Mark::line(z, size("phase_error_measured")?);
         panel = panel
-            .mark(line.ink(method_color(method)).label(method.title()))
+            .mark(line.role(method_color(method)).label(method.title()))
             .mark(Mark::prediction(z, size("phase_error_predicted")?));
     }
     Ok(Figure::new("phase-error", "Phase error of one step against the size of the step")
@@ -160,12 +160,12 @@ fn regions(record: &Record, shown: &[(Method, f64)]) -> Result<Figure, RecordErr
             raster,
             Colors::new("log₁₀ ρ").map(ColorMap::Diverging).range(-1.0, 1.0),
         ))
-        .mark(Mark::contour(grid, [0.0]).ink(Ink::Theory))
-        .mark(Mark::vertical(0.0).ink(Ink::Neutral).width(0.8));
+        .mark(Mark::contour(grid, [0.0]).role(Role::Theory))
+        .mark(Mark::vertical(0.0).role(Role::Neutral).width(0.8));
         if limit > 0.0 {
             panel = panel.mark(
                 Mark::line([0.0, 0.0], [-limit, limit])
-                    .ink(method_color(method))
+                    .role(method_color(method))
                     .dash(Dash::Solid)
                     .width(3.4),
             );

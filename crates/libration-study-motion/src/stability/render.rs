@@ -1,7 +1,7 @@
 //! The chapter on stable time steps.
 
 use libration::Method;
-use libration_report::figure::{Axis, Dash, Figure, Ink, Mark, Panel};
+use libration_report::figure::{Axis, Dash, Figure, Mark, Panel, Role};
 use libration_report::notation::number;
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Cell, Record, RecordError, Series};
@@ -88,11 +88,11 @@ fn windows(record: &Record) -> Result<Figure, RecordError> {
         let colour = Method::ALL
             .into_iter()
             .find(|m| m.title() == name)
-            .map_or(Ink::Accent(3), method_color);
+            .map_or(Role::Accent(3), method_color);
         for ((&row, &from), &to) in rows.iter().zip(from).zip(to) {
             if of(row) {
                 let bar = Mark::line([from, to], [y, y]);
-                panel = panel.mark(bar.ink(colour).dash(Dash::Solid).width(7.0));
+                panel = panel.mark(bar.role(colour).dash(Dash::Solid).width(7.0));
             }
         }
     }
@@ -141,8 +141,8 @@ fn horizon(record: &Record, series: &Series) -> Result<Panel, RecordError> {
         });
         let (x, y): (Vec<f64>, Vec<f64>) = searched.unzip();
         panel = panel
-            .mark(Mark::line(steps, dt).ink(method_color(method)).label(method.title()))
-            .mark(Mark::points(x, y).ink(method_color(method)).radius(3.0));
+            .mark(Mark::line(steps, dt).role(method_color(method)).label(method.title()))
+            .mark(Mark::points(x, y).role(method_color(method)).radius(3.0));
     }
     Ok(panel)
 }

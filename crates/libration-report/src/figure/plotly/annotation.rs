@@ -57,7 +57,7 @@ pub(super) fn label(label: &Label, placed: &PanelLayout<'_>, n: Number) -> Value
     let back = |r: &Ruler, at: f64| {
         r.span.low + (at - r.from) / (r.to - r.from) * (r.span.high - r.span.low)
     };
-    let ink = format!("var(--{})", label.ink.name());
+    let ink = format!("var(--{})", label.role.name());
     let (right, down) = (label.at[0] - label.anchor[0], label.at[1] - label.anchor[1]);
     let mut out = json!({"text": text::html(&label.text), "xref": n.key("x"), "yref": n.key("y"),
         "x": back(x, label.anchor[0]), "y": back(y, label.anchor[1]),

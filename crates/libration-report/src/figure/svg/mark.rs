@@ -15,7 +15,7 @@ use crate::figure::style::{Marker, Style};
 pub(super) fn marks(placed: &PanelLayout<'_>, clip: &str, out: &mut String) {
     let on = if placed.is_on_raster() { " on-picture" } else { "" };
     for (mark, drawn) in placed.panel.marks.iter().zip(&placed.drawn) {
-        let (style, ink) = (&mark.style, mark.style.ink.name());
+        let (style, ink) = (&mark.style, mark.style.role.name());
         let _ = match drawn {
             MarkGeometry::Text(_) => continue,
             MarkGeometry::Points(_) => write!(out, "<g class=\"ink-{ink}{on}\">"),
