@@ -4,7 +4,7 @@ use super::finding::Finding;
 use super::source::Source;
 
 const LONGEST_RUST: usize = 300;
-const LONGEST_README: usize = 150;
+const LONGEST_README: usize = 100;
 
 /// An exception stands in the module's own documentation, among its first lines.
 const EXCEPTION: &str = "//! long:";
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn a_long_readme_is_too_long() {
-        assert_eq!(findings("README.md", &"x\n".repeat(151)), 1);
-        assert_eq!(findings("README.md", &"x\n".repeat(150)), 0);
+        assert_eq!(findings("README.md", &"x\n".repeat(101)), 1);
+        assert_eq!(findings("README.md", &"x\n".repeat(100)), 0);
     }
 }
