@@ -81,11 +81,11 @@ def test_jitter_skew_loss_and_cost_are_answered():
     "change, told",
     [
         ({"max_drift": 0.0}, "max_drift"),
-        ({"system": "kepler", "max_drift": 0.1}, "max_drift is answered"),
+        ({"system": "kepler", "max_drift": 0.1}, "max_drift requires"),
         ({"system": "kepler", "integrator": "exact"}, "integrator"),
         ({"feedback": (1.0, 1.0), "loss": 1.0}, "loss"),
         ({"feedback": (1.0, 1.0), "cost_weights": (1.0, 1.0)}, "cost_weights"),
-        ({"system": lambda q, v: -q}, "custom"),
+        ({"system": lambda q, v: -q}, "CustomSystem"),
         ({"steps": 10**16}, "steps"),
     ],
 )

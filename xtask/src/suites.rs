@@ -12,7 +12,7 @@ use serde_json::Value;
 use crate::{Outcome, command};
 
 /// What takes longest is begun first; the others follow as they were built.
-const LONG: [&str; 4] = ["lab", "browser", "cli", "engine"];
+const LONG: [&str; 6] = ["lab", "cli", "browser", "advise", "engine", "replay"];
 
 /// Something that is run to its end, and what it is called.
 pub(crate) struct Suite {

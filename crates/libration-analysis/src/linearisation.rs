@@ -87,6 +87,25 @@ impl<const D: usize> Linearisation<D> {
     }
 }
 
+impl Linearisation<1> {
+    /// The same in `D` degrees of freedom that do not depend on each other.
+    pub fn in_dimensions<const D: usize>(&self) -> Linearisation<D> {
+        let each = |one: &UpdateMatrix<Wide, 1>| {
+            let row = |i: usize, q: Wide, v: Wide| one.entry(i, 0) * q + one.entry(i, 1) * v;
+            UpdateMatrix::from_map(|e: State<Wide, D>| State {
+                q: core::array::from_fn(|j| row(0, e.q[j], e.v[j])),
+                v: core::array::from_fn(|j| row(1, e.q[j], e.v[j])),
+            })
+        };
+        Linearisation {
+            generator: each(&self.generator),
+            step: each(&self.step),
+            back: each(&self.back),
+            dt: self.dt,
+        }
+    }
+}
+
 /// The Jacobian of `f` at `at`, one direction of phase space at a time.
 fn jacobian<const D: usize>(f: &Rate<'_, D>, at: &State<Wide, D>) -> UpdateMatrix<Wide, D> {
     UpdateMatrix::from_map(|direction| {

@@ -3,7 +3,8 @@
 use libration::simulation::{Sample, SimulationError, Simulator};
 use libration::system::DynSystem;
 use libration::{
-    Float, Hamiltonian, Integrator, Model, Scalar, State, System, with_method, with_system,
+    AnySystem, Float, Hamiltonian, Integrator, Model, Scalar, State, System, with_method,
+    with_system,
 };
 
 use super::ensemble::EnsembleFloat;
@@ -32,12 +33,34 @@ pub(super) fn run<S: EnsembleFloat>(
         (Some(_), Stepping::Exact) => return S::run_loops(request, rows, monitor),
     }
     let dimension = request.q.len();
+    let wrong = || Err(request.system.entry().wrong_dimension(dimension).into());
     with_system!(
         request.system,
-        dimension,
-        |model, D| on_model::<S, D, _>(&model, request, rows, monitor),
-        Err(request.system.entry().wrong_dimension(dimension).into()),
+        compiled_dimension(request.system, dimension),
+        |model, D| {
+            if const { D <= NARROW || D == WIDE } {
+                on_model::<S, D, _>(&model, request, rows, monitor)
+            } else {
+                wrong()
+            }
+        },
+        wrong()
     )
+}
+
+/// Degrees of freedom of which each has a simulation of its own.
+const NARROW: usize = 2;
+
+/// Most degrees of freedom of an oscillator.
+const WIDE: usize = 8;
+
+/// The dimension in which a system is simulated. Coordinates of an isotropic oscillator do not depend on each other, so that
+/// zeros beside them change no bit, and six dimensions need one simulation for each float type.
+fn compiled_dimension(system: AnySystem, dimension: usize) -> usize {
+    match system {
+        AnySystem::Oscillator(_) if (NARROW + 1..=WIDE).contains(&dimension) => WIDE,
+        _ => dimension,
+    }
 }
 
 fn on_model<S: EnsembleFloat, const D: usize, M: Model<D>>(
@@ -56,7 +79,7 @@ fn on_model<S: EnsembleFloat, const D: usize, M: Model<D>>(
     let chosen = DynSystem(&acceleration);
     // Separate loops per method only where the speed justifies the compilation.
     let mut simulation: Box<dyn Simulation<S, D> + '_> = match request.stepping {
-        Stepping::Method(method) if const { S::IS_NATIVE && D <= 2 } => {
+        Stepping::Method(method) if const { S::IS_NATIVE && D <= NARROW } => {
             with_method!(method, |integrator| {
                 Box::new(Simulator::new(system, integrator, start, dt)?)
             })
@@ -107,10 +130,13 @@ fn advance<S: Number, const D: usize>(
     monitor: &dyn Monitor,
 ) -> Result<Outcome, TrajectoryError> {
     let Request { steps, every, .. } = *request;
-    let mut values = Vec::with_capacity(2 * D + 1);
+    let dimension = request.q.len();
+    let mut values = Vec::with_capacity(2 * dimension + 1);
     let mut show = |sample: Sample<S, D>| {
         values.clear();
-        values.extend(sample.state.coordinates());
+        for coordinates in [&sample.state.q, &sample.state.v] {
+            values.extend_from_slice(&coordinates[..dimension.min(D)]);
+        }
         values.push(energy(&sample.state));
         rows.row(&[sample.step], sample.time, &values)
     };

@@ -116,7 +116,7 @@ fn beyond_several_windows_that_of_small_steps_is_recommended() {
     let parameters = [("omega2", 100.0), ("gamma", 3.0)];
     let of = |dt| request("damped-oscillator", &parameters, Method::Suzuki4, dt);
     let found = reason(&of(0.9)).unwrap();
-    assert!(found.ends_with("beyond suzuki4's limit 0.404 s; choose --dt below 0.403"), "{found}");
+    assert!(found.ends_with("exceeds suzuki4's limit 0.404 s; choose --dt below 0.403"), "{found}");
     assert_eq!(reason(&of(0.403)), None);
 }
 

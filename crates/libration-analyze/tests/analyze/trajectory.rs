@@ -190,7 +190,10 @@ fn wrong_requests_are_refused_before_any_work() {
         (Request { steps: 0, ..good.clone() }, ["`steps`", "0", "at least 1"]),
         (Request { every: 0, ..good.clone() }, ["`every`", "0", "at least 1"]),
         (Request { q: vec![], ..good.clone() }, ["oscillator", "dimension is 0", "1 to 8"]),
-        (Request { v: vec![1.0, 2.0], ..good.clone() }, ["`v`", "1,2", "as `q` has, 1"]),
+        (
+            Request { v: vec![1.0, 2.0], ..good.clone() },
+            ["`v`", "1,2", "as many numbers as `q`: 1"],
+        ),
         (Request { steps: 1_000_000_000, ..good.clone() }, ["`every`", "at least 6", "200000000"]),
     ];
     for (request, parts) in cases {

@@ -61,7 +61,7 @@ fn losses_are_in_the_growth_of_second_moments_also_alone() {
     assert!(told(LOSSY).contains("not known with a latency and losses"));
     // A law of skews is one of other clocks.
     let skewed = told(&format!("{alone} --skew uniform:0.01"));
-    assert!(skewed.contains("of a clock at its nominal rate"), "{skewed}");
+    assert!(skewed.contains("for a clock at its nominal rate"), "{skewed}");
 }
 
 #[test]

@@ -146,7 +146,7 @@ fn the_printed_configuration_is_accepted() {
     assert!(text.contains("k = 10.0  # stiffness in N/m"), "{text}");
     assert_eq!(
         libration_lab::STUDIES.parse(&text, ""),
-        Ok(libration_study::Config::default()),
+        Ok(libration_lab::STUDIES.config()),
         "{text}"
     );
     assert!(entries(folder.path()).is_empty());

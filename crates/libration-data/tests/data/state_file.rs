@@ -69,7 +69,7 @@ fn a_file_that_is_cut_off_changed_of_another_version_or_of_something_else_is_ref
     };
     let version = format!("\"version\":\"{}\"", env!("CARGO_PKG_VERSION"));
     let newer = format!("\"version\":\"9{}\"", &env!("CARGO_PKG_VERSION")[1..]);
-    assert!(refused(&changed(&version, &newer)).contains("version 9 wrote it"));
+    assert!(refused(&changed(&version, &newer)).contains("version 9.1.0 wrote it"));
     assert!(refused(&changed("\"format\":1", "\"format\":2")).contains("in format 2"));
     let error = refused(&changed("\"ensemble\"", "\"octopus!\""));
     assert!(error.contains("its kind is octopus!; it must be ensemble"), "{error}");

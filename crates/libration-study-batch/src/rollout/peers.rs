@@ -91,8 +91,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("rollouts.json");
         std::fs::write(&path, file.to_string()).expect("a file");
-        let config = Config::default();
-        config.get::<RolloutSettings>().peers = Some(path);
+        let settings = RolloutSettings { peers: Some(path), ..RolloutSettings::default() };
+        let config = Config::default().with(settings);
         let stop = AtomicBool::new(false);
         let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
         let measurement = Measurement::new(&lab).expect("this machine has its instruction set");

@@ -59,8 +59,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("storage.json");
         std::fs::write(&path, file.to_string()).expect("a file");
-        let config = Config::default();
-        config.get::<StorageSettings>().peers = Some(path);
+        let settings = StorageSettings { peers: Some(path), ..StorageSettings::default() };
+        let config = Config::default().with(settings);
         let stop = AtomicBool::new(false);
         let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
         let mut record = Record::new("storage", "");

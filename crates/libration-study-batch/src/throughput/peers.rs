@@ -96,8 +96,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("peers.json");
         std::fs::write(&path, file.to_string()).expect("a file");
-        let config = Config::default();
-        config.get::<ThroughputSettings>().peers = Some(path);
+        let settings = ThroughputSettings { peers: Some(path), ..ThroughputSettings::default() };
+        let config = Config::default().with(settings);
         let stop = AtomicBool::new(false);
         let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
         let measurement = Measurement::new(&lab).expect("this machine has its instruction set");

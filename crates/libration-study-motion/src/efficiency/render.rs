@@ -212,7 +212,11 @@ mod tests {
         }
         let caption = for_a_percent(&record).unwrap_or_default();
         assert!(caption.contains("leapfrog in energy, leapfrog in phase and leapfrog in state"));
-        assert!(caption.ends_with("At no step shown does explicit Euler reach it in state."));
+        assert!(
+            caption.ends_with(
+                "No step in the figure reaches this error in state with explicit Euler."
+            )
+        );
         assert!(!who_pays(&[Method::Leapfrog]).contains("RK4"));
         assert!(who_pays(&[Method::Leapfrog, Method::Rk4]).contains("What RK4 must"));
     }

@@ -13,7 +13,7 @@ use super::orbit::Orbit;
 ///
 /// ```
 /// use libration::{State, system::Duffing};
-/// use libration_lab::studies::{Convergence, Nonlinear, Problem, Subject};
+/// use libration_study_motion::{Convergence, Nonlinear, Problem, Subject};
 ///
 /// let wells = Duffing { alpha: -1.0, beta: 1.0 };
 /// let problem = Problem::new("wells", wells, State { q: [1.5], v: [0.0] }, 4.4);

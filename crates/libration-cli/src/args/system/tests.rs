@@ -61,7 +61,7 @@ fn the_other_flags_are_read() {
 fn wrong_input_is_named_with_what_is_allowed() {
     let cases: &[(&str, &str, &[&str])] = &[
         ("oscilator", "", &["'oscilator'", "--system", "'oscillator'", "kepler"]),
-        ("kepler", "--q 1", &["--q `1` has 1 coordinate,", "kepler requires 2 numbers"]),
+        ("kepler", "--q 1", &["--q `1` has 1 coordinate;", "kepler requires 2 numbers"]),
         ("kepler", "--v 1,2,3", &["--v `1,2,3` has 3 coordinates", "kepler requires 2 numbers"]),
         ("oscillator", "--q 1,2,3,4,5,6,7,8,9", &["has 9 coordinates", "1 to 8 numbers"]),
         ("pendulum", "--q 1,2", &["--q `1,2` has 2 coordinates", "pendulum requires 1 number"]),
