@@ -53,7 +53,7 @@ For a nonlinear system, the matrix and the eigenvalues are those of one step lin
 With --feedback the rows form blocks: one step of the plant without feedback, the closed loop, and the
 closed loop with jitter, skew and losses. In JSON, `spectral_radius` is that of the plant and
 `closed_loop_spectral_radius` is that of the loop with its latency.
-StableLatencies latency and stable latencies between whole steps use λᵈ, as textbooks do. The limit \"of split
+The critical latency and the stable latencies between whole steps use λᵈ, as textbooks do. The limit \"of split
 steps\" lets a command that arrives within a step split that step, as the spectral radius of the loop and
 simulations do. The cost is the stationary mean under white noise of the acceleration, of unit intensity:
 over continuous time for exact steps, else over the steps of the integrator, with constant noise in each.

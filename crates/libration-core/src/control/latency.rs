@@ -32,16 +32,19 @@ impl Latency {
     }
 
     /// In steps.
+    #[inline]
     pub fn steps(self) -> f64 {
         self.steps as f64 + self.part
     }
 
     /// The whole steps.
+    #[inline]
     pub fn whole(self) -> u64 {
         self.steps
     }
 
     /// The part of another step.
+    #[inline]
     pub fn part(self) -> f64 {
         self.part
     }

@@ -84,17 +84,20 @@ impl Schedule {
     }
 
     /// Between two samples, in steps.
+    #[inline]
     pub fn period(&self) -> f64 {
         self.period as f64 / (1_u128 << FRACTION) as f64
     }
 
     /// The largest number of commands in transit.
+    #[inline]
     pub fn commands_in_transit(&self) -> usize {
         (self.observation + self.action).div_ceil(self.period) as usize
     }
 
     /// The number of steps between a sample and its command, if both are at the beginning of every
     /// step.
+    #[inline]
     pub fn whole_steps(&self) -> Option<usize> {
         let whole = |time: Time| time.trailing_zeros() >= FRACTION;
         let all = self.period == 1 << FRACTION && whole(self.observation) && whole(self.action);
@@ -103,6 +106,7 @@ impl Schedule {
 
     /// The events within a step, in order, each with its fraction of the step. Commands from before the start arrive as well: they
     /// stand for the initial command.
+    #[inline]
     pub fn events(&self, step: u64) -> impl Iterator<Item = (f64, Event)> {
         let [begin, period, observation, action] =
             [Time::from(step) << FRACTION, self.period, self.observation, self.action]
