@@ -64,14 +64,22 @@ pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, A
                 q: std::array::from_fn::<_, D, _>(|i| request.q[i]),
                 v: std::array::from_fn(|i| request.v[i]),
             };
-            let step = match request.system {
-                // Its dimensions do not depend on each other, so that one is enough.
-                AnySystem::Oscillator(one) if D > 1 => {
-                    Step::of(one, State { q: [start.q[0]], v: [start.v[0]] }, request, stop)?
-                        .in_dimensions()
+            let step = match (request.system, request.stepping) {
+                // Its dimensions do not depend on each other, so that a step in one is enough.
+                (AnySystem::Oscillator(one), Stepping::Method(method)) if D > 1 => {
+                    let first = State { q: [start.q[0]], v: [start.v[0]] };
+                    Step::take(method, one, first, request, stop)?.in_dimensions()
                 }
-                _ if const { D <= 2 } => Step::of(model, start, request, stop)?,
-                _ => return Err(request.system.entry().wrong_dimension(dimension).into()),
+                (_, Stepping::Method(method)) if const { D <= 2 } => {
+                    Step::take(method, model, start, request, stop)?
+                }
+                (_, Stepping::Method(_)) => {
+                    return Err(request.system.entry().wrong_dimension(dimension).into());
+                }
+                (_, Stepping::Exact) => {
+                    let linear = Linearisation::exact(model, &start, request.dt);
+                    Step { linear, evaluations: 0, drift: None }
+                }
             };
             answer(model, &start, step, timing, request)
         },
@@ -96,21 +104,6 @@ impl Step<1> {
 }
 
 impl<const D: usize> Step<D> {
-    fn of(
-        model: impl Model<D>,
-        start: State<f64, D>,
-        request: &Request,
-        stop: &AtomicBool,
-    ) -> Result<Self, AnalyzeError> {
-        match request.stepping {
-            Stepping::Method(method) => Step::take(method, model, start, request, stop),
-            Stepping::Exact => {
-                let linear = Linearisation::exact(model, &start, request.dt);
-                Ok(Step { linear, evaluations: 0, drift: None })
-            }
-        }
-    }
-
     fn take(
         integrator: impl Integrator,
         model: impl Model<D>,

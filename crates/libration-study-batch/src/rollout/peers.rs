@@ -91,7 +91,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("rollouts.json");
         std::fs::write(&path, file.to_string()).expect("a file");
-        let settings = RolloutSettings { peers: Some(path), ..RolloutSettings::default() };
+        let settings = RolloutSettings { peers: Some(path) };
         let config = Config::default().with(settings);
         let stop = AtomicBool::new(false);
         let lab = Lab::new(&config, Effort::Quick, &Silent, &stop);
