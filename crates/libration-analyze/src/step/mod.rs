@@ -1,6 +1,7 @@
 //! Analysis of one step of an integrator, and of the control loop around it.
 
 mod analysis;
+mod checks;
 mod cost;
 mod criteria;
 mod error;
@@ -14,6 +15,7 @@ mod timing;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 pub use analysis::{Analysis, Drift, ModifiedHamiltonian, RequestSummary};
+use checks::{check_exact, check_sizes, check_turn};
 pub use cost::LoopCost;
 pub use criteria::Criteria;
 pub use error::AnalyzeError;
@@ -22,7 +24,6 @@ use libration::analysis::{Linearisation, Spectrum, SymbolicStep, forecast_drift}
 use libration::number::Wide;
 use libration::simulation::{EnergyDrift, Simulator};
 use libration::{AnySystem, Elementary, Integrator, Model, Scalar, State, System, with_system};
-use libration_settings::limits::{MOST_TURN, find_out_of_range};
 pub(crate) use limits::stability_windows;
 pub use limits::{LargestDt, OrderOfWord};
 pub use loop_analysis::{LoopAnalysis, StableLatencies, loop_growth};
@@ -120,42 +121,6 @@ impl<const D: usize> Step<D> {
         };
         simulator.run(1, &mut ()).ok();
         Ok(Step { linear, evaluations: simulator.evaluations(), drift })
-    }
-}
-
-/// Fails if the motion turns by more than [`MOST_TURN`] in an exact step.
-fn check_turn(request: &Request) -> Result<(), AnalyzeError> {
-    let rate = match request.system {
-        _ if request.stepping != Stepping::Exact => return Ok(()),
-        AnySystem::Oscillator(model) => model.omega2.sqrt(),
-        AnySystem::DampedOscillator(model) => model.omega2.sqrt().max(model.gamma),
-        _ => return Ok(()),
-    };
-    let (dt, turn) = (request.dt, rate * request.dt);
-    if turn > MOST_TURN { Err(AnalyzeError::Turn { dt, turn }) } else { Ok(()) }
-}
-
-/// Fails if a parameter or the time step of a loop is too large or too small for the products of floats.
-fn check_sizes(request: &Request) -> Result<(), AnalyzeError> {
-    if request.timing.feedback.is_none() && !request.timing.draws() {
-        return Ok(());
-    }
-    let dt = find_out_of_range([("dt", request.dt)]).map(|(name, value)| (name, value, ""));
-    let parameter = find_out_of_range(request.system.parameters());
-    match dt.or(parameter.map(|(name, value)| (name, value, "0, or "))) {
-        Some((name, value, zero)) => Err(AnalyzeError::Size { name, value, zero }),
-        None => Ok(()),
-    }
-}
-
-/// Fails if the request asks exact steps for a criterion, or for a nonlinear system.
-fn check_exact(request: &Request) -> Result<(), AnalyzeError> {
-    match request.criteria.first() {
-        Some(flag) => Err(AnalyzeError::NoLargest { flag }),
-        None if !request.system.is_linear() => {
-            Err(AnalyzeError::NotLinear { system: request.system.name() })
-        }
-        None => Ok(()),
     }
 }
 

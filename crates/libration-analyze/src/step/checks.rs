@@ -1,0 +1,42 @@
+//! Checks of a request before any work.
+
+use libration::AnySystem;
+use libration_settings::limits::{MOST_TURN, find_out_of_range};
+
+use super::{AnalyzeError, Request, Stepping};
+
+/// Fails if the motion turns by more than [`MOST_TURN`] in an exact step.
+pub(super) fn check_turn(request: &Request) -> Result<(), AnalyzeError> {
+    let rate = match request.system {
+        _ if request.stepping != Stepping::Exact => return Ok(()),
+        AnySystem::Oscillator(model) => model.omega2.sqrt(),
+        AnySystem::DampedOscillator(model) => model.omega2.sqrt().max(model.gamma),
+        _ => return Ok(()),
+    };
+    let (dt, turn) = (request.dt, rate * request.dt);
+    if turn > MOST_TURN { Err(AnalyzeError::Turn { dt, turn }) } else { Ok(()) }
+}
+
+/// Fails if a parameter or the time step of a loop is too large or too small for the products of floats.
+pub(super) fn check_sizes(request: &Request) -> Result<(), AnalyzeError> {
+    if request.timing.feedback.is_none() && !request.timing.draws() {
+        return Ok(());
+    }
+    let dt = find_out_of_range([("dt", request.dt)]).map(|(name, value)| (name, value, ""));
+    let parameter = find_out_of_range(request.system.parameters());
+    match dt.or(parameter.map(|(name, value)| (name, value, "0, or "))) {
+        Some((name, value, zero)) => Err(AnalyzeError::Size { name, value, zero }),
+        None => Ok(()),
+    }
+}
+
+/// Fails if the request asks exact steps for a criterion, or for a nonlinear system.
+pub(super) fn check_exact(request: &Request) -> Result<(), AnalyzeError> {
+    match request.criteria.first() {
+        Some(flag) => Err(AnalyzeError::NoLargest { flag }),
+        None if !request.system.is_linear() => {
+            Err(AnalyzeError::NotLinear { system: request.system.name() })
+        }
+        None => Ok(()),
+    }
+}
