@@ -147,9 +147,9 @@ where
 pub(crate) fn room<'a, T: Element + AnyBitPattern + NoUninit, D: Dimension>(
     array: &'a Bound<'_, PyArray<T, D>>,
 ) -> &'a mut [T] {
-    // SAFETY: every array that comes here is one from `allocate` or `reuse_or_allocate`, so its numbers lie one after the other, in memory that is its own. Whoever
-    // reads it in Python while the engine writes has asked for buffers that are used again, and finds numbers of one step or the
-    // next, as with any array that NumPy writes without the interpreter's lock.
+    // SAFETY: `allocate` or `reuse_or_allocate` made the array, so its numbers are contiguous in memory of its own. A reader in Python
+    // during the write has chosen reused buffers; it reads numbers of one step or the next, as in any array that NumPy writes
+    // without the interpreter's lock.
     unsafe { from_raw_parts_mut(array.data(), array.len()) }
 }
 

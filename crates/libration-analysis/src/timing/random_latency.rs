@@ -74,3 +74,16 @@ impl Plant<'_> {
 fn waiting(latency: &RandomLatency) -> AugmentedState {
     AugmentedState { memory: 0, commands: latency.longest(), acting: latency.splits_steps() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_counts_the_numbers_of_a_step_as_the_augmented_state_does() {
+        for steps in [0.0, 0.5, 1.0, 3.0, 3.25] {
+            let latency = RandomLatency::new(vec![(steps, 0.5), (1.0, 0.5)], 0.1).unwrap();
+            assert_eq!(latency.step_size(), waiting(&latency).size(), "{steps}");
+        }
+    }
+}

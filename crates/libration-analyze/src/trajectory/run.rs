@@ -48,14 +48,14 @@ pub(super) fn run<S: EnsembleFloat>(
     )
 }
 
-/// Degrees of freedom of which each has a simulation of its own.
+/// Largest dimension with a simulation of its own.
 const NARROW: usize = 2;
 
-/// Most degrees of freedom of an oscillator.
+/// Largest dimension of an oscillator in the catalogue.
 const WIDE: usize = 8;
 
-/// The dimension in which a system is simulated. Coordinates of an isotropic oscillator do not depend on each other, so that
-/// zeros beside them change no bit, and six dimensions need one simulation for each float type.
+/// The dimension in which a system is simulated: the largest for an oscillator in 3 to 8 dimensions. Its coordinates do not depend
+/// on each other, so additional zeros change no bit, and six dimensions share one simulation per float type.
 fn compiled_dimension(system: AnySystem, dimension: usize) -> usize {
     match system {
         AnySystem::Oscillator(_) if (NARROW + 1..=WIDE).contains(&dimension) => WIDE,
