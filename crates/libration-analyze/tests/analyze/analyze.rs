@@ -296,19 +296,3 @@ fn a_step_without_a_linearisation_says_what_a_start_must_be() {
     let pendulum = message(&request("pendulum", Method::Rk4, 0.01, &[1e300], &[0.0]));
     assert!(pendulum.contains("--q") && pendulum.contains("rad"), "{pendulum}");
 }
-
-#[test]
-fn the_matrix_of_an_oscillator_in_three_dimensions_has_that_of_one_in_each() {
-    for method in Method::ALL {
-        let of = |q: &[f64], v: &[f64]| {
-            analyze(&request("oscillator", method, 0.1, q, v)).unwrap().update_matrix
-        };
-        let (one, three) = (of(&[1.0], &[0.0]), of(&[1.0, 2.0, 3.0], &[0.0; 3]));
-        for (i, row) in three.iter().enumerate() {
-            for (j, &entry) in row.iter().enumerate() {
-                let wanted = if i % 3 == j % 3 { one[i / 3][j / 3] } else { 0.0 };
-                assert_eq!(entry, wanted, "{method:?} {i} {j}");
-            }
-        }
-    }
-}

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod analyze;
+mod dimensions;
 mod export;
 mod loop_growth;
 mod overflow;

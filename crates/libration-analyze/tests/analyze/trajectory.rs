@@ -12,7 +12,7 @@ use libration_analyze::trajectory::{
 };
 use libration_analyze::{Stepping, Timing};
 
-fn request(system: &str, method: Method, dt: f64, steps: u64) -> Request {
+pub(crate) fn request(system: &str, method: Method, dt: f64, steps: u64) -> Request {
     let system = AnySystem::build(system, &[] as &[(&str, f64)]).unwrap();
     let float = FloatType::F64;
     let (q, v) = (vec![1.0], vec![0.0]);
@@ -281,37 +281,5 @@ fn what_no_ensemble_can_do_is_refused_before_any_work() {
     ] {
         let error = of(ensemble, float);
         assert!(error.contains(told), "{error}");
-    }
-}
-
-/// The positions and velocities of the rows as text, one list for each column; every float type prints all digits that tell two
-/// numbers apart.
-fn coordinates(request: &Request) -> Vec<Vec<String>> {
-    let mut bytes = Vec::new();
-    write(request, Format::Csv, &mut bytes, &AtomicBool::new(false)).unwrap();
-    let text = String::from_utf8(bytes).unwrap();
-    let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|row| row.split(',').collect()).collect();
-    let last = 2 + 2 * request.q.len();
-    let column = |i: usize| rows.iter().map(|row| row[i].to_owned()).collect();
-    (2..last).map(column).collect()
-}
-
-#[test]
-fn each_dimension_of_an_oscillator_moves_as_it_does_alone() {
-    for float in FloatType::ALL {
-        for method in Method::ALL {
-            let base = Request { float, ..request("oscillator", method, 0.01, 40) };
-            let all = Request { q: vec![1.0, -0.3, 0.0], v: vec![0.5, 0.0, 2.0], ..base.clone() };
-            let found = coordinates(&all);
-            for i in 0..3 {
-                let alone =
-                    coordinates(&Request { q: vec![all.q[i]], v: vec![all.v[i]], ..base.clone() });
-                assert_eq!(
-                    [&found[i], &found[3 + i]],
-                    [&alone[0], &alone[1]],
-                    "{method:?} {float:?}"
-                );
-            }
-        }
     }
 }
