@@ -161,6 +161,9 @@ impl Target for pulp::x86::V4 {
 
 /// Work that is compiled once for every instruction set, to be run on one of them.
 pub(crate) trait Targeted {
+    /// Whether it gains from vectors; otherwise it is compiled for the baseline alone.
+    const VECTORISES: bool = true;
+
     /// The result.
     type Output;
 
@@ -177,6 +180,9 @@ impl InstructionSet {
 
     /// Runs `work` on this instruction set, or on the baseline where the processor lacks it.
     pub(crate) fn run<K: Targeted>(self, work: K) -> K::Output {
+        if const { !K::VECTORISES } {
+            return work.on(Baseline);
+        }
         match self {
             #[cfg(target_arch = "x86_64")]
             InstructionSet::Avx512 if let Some(target) = pulp::x86::V4::try_new() => {

@@ -30,11 +30,11 @@ impl Integrator for Method {
 /// A step in a separate function: nine inlined methods per caller would be slow to compile and need a large stack for exact
 /// numbers.
 #[inline(never)]
-fn step_out_of_line<S: Scalar, const D: usize>(
+pub(super) fn step_out_of_line<S: Scalar, const D: usize>(
     method: impl Integrator,
     system: &impl System<S, D>,
     state: State<S, D>,
     dt: S,
 ) -> State<S, D> {
-    method.step(system, state, dt)
+    method.compact_step(system, state, dt)
 }

@@ -12,6 +12,8 @@ pub struct DynSystem<'a, S, const D: usize>(
 );
 
 impl<S: Scalar, const D: usize> System<S, D> for DynSystem<'_, S, D> {
+    const VECTORISES: bool = false;
+
     #[inline]
     fn acceleration(&self, state: &State<S, D>) -> [S; D] {
         (self.0)(state)

@@ -40,6 +40,10 @@ pub trait System<S: Scalar, const D: usize> {
     /// about right; its results do not depend on it.
     const REGISTERS: usize = 16;
 
+    /// Whether loops over many of them can be vectorised. Where not, control loops are compiled for the baseline of the
+    /// architecture alone.
+    const VECTORISES: bool = true;
+
     /// Whether the system dispatches over several systems at run time.
     const DISPATCHES: bool = false;
 

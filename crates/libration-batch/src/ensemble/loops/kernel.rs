@@ -33,9 +33,23 @@ const SCANNED: usize = 8;
 /// The age of no command.
 const NONE: u32 = u32::MAX;
 
-/// Takes the steps of a range with all trajectories of a block.
-pub(super) struct Steps<'b, 'a, T, A, M, K, C, L, N, Sys, const D: usize, const W: usize>
-where
+/// Takes the steps of a range with all trajectories of a block. `WHOLE`: all commands arrive at the beginning of a step,
+/// the same for all; by itself, because the state stays in registers only where no other loop can index it.
+pub(super) struct Steps<
+    'b,
+    'a,
+    T,
+    A,
+    M,
+    K,
+    C,
+    L,
+    N,
+    Sys,
+    const D: usize,
+    const W: usize,
+    const WHOLE: bool,
+> where
     A: Assign<Sys>,
 {
     pub(super) common: &'b Common<'b, T, A, M, K, C, L, N>,
@@ -45,8 +59,8 @@ where
     pub(super) steps: Range<u64>,
 }
 
-impl<T, A, M, K, C, L, N, Sys, const D: usize, const W: usize> WithSimd
-    for Steps<'_, '_, T, A, M, K, C, L, N, Sys, D, W>
+impl<T, A, M, K, C, L, N, Sys, const D: usize, const W: usize, const WHOLE: bool> WithSimd
+    for Steps<'_, '_, T, A, M, K, C, L, N, Sys, D, W, WHOLE>
 where
     T: Float + Pod,
     A: Assign<Sys>,
@@ -163,7 +177,7 @@ where
                         under_command!(l, h);
                     }
                 }
-            } else if const { L::SHARED } && schedule.whole_steps().is_some() {
+            } else if const { WHOLE } {
                 let mut slot = (begin % layout.places as u64) as usize;
                 for step in begin..end {
                     // The oldest command lies where the next will.

@@ -47,6 +47,8 @@ where
     Sys: System<T, D>,
     O: Observer<T, D>,
 {
+    const VECTORISES: bool = Sys::VECTORISES;
+
     type Output = ();
 
     fn on<I: Target>(self, target: I) {
@@ -115,14 +117,28 @@ where
                 Some((every, _)) => (step - step % every).saturating_add(every).min(self.steps.end),
                 None => self.steps.end,
             };
+            let (common, block) = (self.common, &mut block);
             let memory = self.rows.of::<W>(block.first - first);
-            target.run(Steps::<T, A, M, K, C, L, N, Sys, D, W> {
-                common: self.common,
-                block: &mut block,
-                memory,
-                systems,
-                steps: step..next,
-            });
+            let steps = step..next;
+            if const { K::ACTS && L::SHARED }
+                && common.setup.delay.schedule().whole_steps().is_some()
+            {
+                target.run(Steps::<T, A, M, K, C, L, N, Sys, D, W, true> {
+                    common,
+                    block,
+                    memory,
+                    systems,
+                    steps,
+                });
+            } else {
+                target.run(Steps::<T, A, M, K, C, L, N, Sys, D, W, false> {
+                    common,
+                    block,
+                    memory,
+                    systems,
+                    steps,
+                });
+            }
             step = next;
             if let Some((every, observer)) = &mut self.watch
                 && step.is_multiple_of(*every)

@@ -38,7 +38,8 @@ impl<T: Float, const D: usize> Controller<T, D> for StateFeedback<D> {
 
     #[inline(always)]
     fn command(&self, _: &mut [T; 0], &State { q, v }: &State<T, D>, _: T) -> [T; D] {
-        let [kp, kd] = map([self.gains.position, self.gains.velocity], T::from_f64);
-        each(|i| -(kp * (q[i] - T::from_f64(self.target[i]))) - kd * v[i])
+        // The sign belongs to the gain: one operation less, and the same bits.
+        let [kp, kd] = map([-self.gains.position, self.gains.velocity], T::from_f64);
+        each(|i| kp * (q[i] - T::from_f64(self.target[i])) - kd * v[i])
     }
 }
