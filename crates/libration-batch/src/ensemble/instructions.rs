@@ -133,7 +133,13 @@ impl Target for Baseline {
 
     #[inline(always)]
     fn run<K: WithSimd>(self, kernel: K) -> K::Output {
-        Simd::vectorize(pulp::Scalar::new(), kernel)
+        // A function by itself, as on the other targets: inlined, the kernels of all methods and systems would become
+        // one, which takes ten times as long to compile.
+        #[inline(never)]
+        fn run_baseline<K: WithSimd>(kernel: K) -> K::Output {
+            Simd::vectorize(pulp::Scalar::new(), kernel)
+        }
+        run_baseline(kernel)
     }
 }
 
@@ -161,8 +167,8 @@ impl Target for pulp::x86::V4 {
 
 /// Work that is compiled once for every instruction set, to be run on one of them.
 pub(crate) trait Targeted {
-    /// Whether it gains from vectors; otherwise it is compiled for the baseline alone.
-    const VECTORISES: bool = true;
+    /// Whether it is compiled for the baseline alone.
+    const COMPILED_ONCE: bool = false;
 
     /// The result.
     type Output;
@@ -180,7 +186,7 @@ impl InstructionSet {
 
     /// Runs `work` on this instruction set, or on the baseline where the processor lacks it.
     pub(crate) fn run<K: Targeted>(self, work: K) -> K::Output {
-        if const { !K::VECTORISES } {
+        if const { K::COMPILED_ONCE } {
             return work.on(Baseline);
         }
         match self {

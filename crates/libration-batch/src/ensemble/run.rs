@@ -71,6 +71,8 @@ where
     Sys: System<T, D>,
     O: Observer<T, D>,
 {
+    const COMPILED_ONCE: bool = Sys::COMPILED_ONCE;
+
     type Output = ();
 
     fn on<I: Target>(self, target: I) {

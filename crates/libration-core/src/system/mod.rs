@@ -1,6 +1,7 @@
 //! Physical systems `q̈ = a(q, v)`, each written once for every number type.
 
 mod commanded_system;
+mod compiled_once;
 mod damped_oscillator;
 mod driven_oscillator;
 mod duffing;
@@ -14,6 +15,7 @@ mod pendulum;
 use crate::{Elementary, Scalar, State};
 
 pub use commanded_system::CommandedSystem;
+pub use compiled_once::CompiledOnce;
 pub use damped_oscillator::DampedOscillator;
 pub use driven_oscillator::DrivenOscillator;
 pub use duffing::Duffing;
@@ -40,9 +42,9 @@ pub trait System<S: Scalar, const D: usize> {
     /// about right; its results do not depend on it.
     const REGISTERS: usize = 16;
 
-    /// Whether loops over many of them can be vectorised. Where not, control loops are compiled for the baseline of the
-    /// architecture alone.
-    const VECTORISES: bool = true;
+    /// Whether batches are compiled for the baseline of the architecture alone, in place of once for each instruction set:
+    /// the same bits. See [`CompiledOnce`].
+    const COMPILED_ONCE: bool = false;
 
     /// Whether the system dispatches over several systems at run time.
     const DISPATCHES: bool = false;

@@ -5,6 +5,7 @@ use libration::control::clock::Recorded;
 use libration::control::{Feedback, Jitter};
 use libration::ensemble::{All, Loops, Setup};
 use libration::number::Wide;
+use libration::system::CompiledOnce;
 use libration::{Method, State};
 use libration_advise::jitter_measurement;
 use libration_advise::jitter_measurement::Statistics;
@@ -113,7 +114,8 @@ fn replayed(
             State { q: [size * cosine], v: [size * omega * sine] }
         })
         .collect();
-    let setup = Setup::new(All(setting.model), setting.method).clock(Recorded::once(steps));
+    let setup =
+        Setup::new(All(CompiledOnce(setting.model)), setting.method).clock(Recorded::once(steps));
     let mut all = Loops::new(setup, setting.dt, 0, [0.0], &starts, lab.alone()?)?;
     let mut left = steps.len() as u64;
     while left > 0 {

@@ -47,7 +47,7 @@ where
     Sys: System<T, D>,
     O: Observer<T, D>,
 {
-    const VECTORISES: bool = Sys::VECTORISES;
+    const COMPILED_ONCE: bool = Sys::COMPILED_ONCE;
 
     type Output = ();
 
