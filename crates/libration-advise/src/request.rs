@@ -75,7 +75,7 @@ impl Measure {
         match self {
             Measure::Energy => "largest relative error of the energy",
             Measure::Phase => "final error of the phase (rad)",
-            Measure::Trajectory => "largest distance from the true trajectory, over its size",
+            Measure::Trajectory => "largest distance from the true trajectory relative to its size",
             Measure::Cost => "rise of the cost, ΔJ/J₀",
         }
     }

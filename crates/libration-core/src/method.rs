@@ -123,7 +123,7 @@ impl Method {
             Method::SymplecticEulerDriftFirst => "order 1; symplectic; drift then kick",
             Method::VelocityVerlet => "order 2; symplectic, time-reversible; kick, drift, kick",
             Method::TextbookVerlet => {
-                "velocity Verlet as textbooks print it; rounds with a bias; another method where forces depend on velocities"
+                "velocity Verlet in textbook form; its rounding is biased; differs from velocity-verlet if forces depend on velocities"
             }
             Method::Leapfrog => "order 2; symplectic, time-reversible; drift, kick, drift",
             Method::Rk4 => "order 4; classical Runge-Kutta; not symplectic",

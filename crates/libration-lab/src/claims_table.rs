@@ -78,7 +78,8 @@ pub(crate) fn render(results: &Results, chapters: &[Chapter]) -> String {
     format!(
         "<section>\n<h2 id=\"ledger\">Claims of the source report</h2>\n<p class=\"q\">Which claims of the source \
          report are true?</p>\n<p>Each verdict follows from the findings of the row, with the \
-         settings of this run.</p>\n{}<table class=\"ledger\"><thead><tr><th>claim</th><th>statement \
+         settings of this run. The source is the report whose claims and figures the studies reproduce; \
+         § numbers are its sections.</p>\n{}<table class=\"ledger\"><thead><tr><th>claim</th><th>statement \
          of the source</th><th>findings</th><th>verdict</th></tr></thead><tbody>{rows}\
          </tbody></table></div>\n{}{}</section>\n",
         scroll_container("Claims of the source report"),

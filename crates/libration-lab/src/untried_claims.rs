@@ -15,7 +15,7 @@ pub struct UntriedClaim {
     pub because: &'static str,
 }
 
-const PYTHON: &str = "about Python’s own machinery, of which there is none here";
+const PYTHON: &str = "concerns the Python interpreter, which this program does not use";
 
 /// All such claims, of chapters 1 to 6 and 8 to 9.4.
 pub const UNTRIED: &[UntriedClaim] = &[
@@ -23,7 +23,8 @@ pub const UNTRIED: &[UntriedClaim] = &[
         id: "C20",
         source: "3.1, 3.4",
         text: "All integrators step through one interface and can be swapped.",
-        because: "about the source’s own program, which is not at hand; here they do",
+        because: "concerns the program of the source, which is not available; in this program they \
+                  can",
     },
     UntriedClaim {
         id: "C21",
@@ -35,7 +36,7 @@ pub const UNTRIED: &[UntriedClaim] = &[
         id: "C29",
         source: "4.3",
         text: "Time steps, horizon, tolerance and threshold of the experiments were fixed beforehand.",
-        because: "the source gives none of them, so there is nothing to run",
+        because: "the source states none of them, so they cannot be tested",
     },
     UntriedClaim {
         id: "C31",
@@ -48,8 +49,8 @@ pub const UNTRIED: &[UntriedClaim] = &[
         id: "C38",
         source: "5.3",
         text: "Array operations use optimised routines of BLAS.",
-        because: "settled by reading: a product with a number and a sum of arrays are loops of NumPy’s \
-                  own, and no routine of BLAS is called",
+        because: "settled by reading: NumPy computes a product with a scalar and a sum of arrays \
+                  in its own loops, and calls no routine of BLAS",
     },
     UntriedClaim {
         id: "C41",

@@ -138,7 +138,8 @@ pub(super) fn judge(
             Finding::related(id, text, "1", Relation::AtLeast, bar, median, tolerance)
         }
         Some(bar) => Finding::measured(id, text, "1", median).undecided(Undecided::Noisy(format!(
-            "the machine was too noisy: the quartiles of the rounds lie {spread:.2} apart; wanted: {bar}"
+            "the machine was too noisy: the quartiles of the rounds are {spread:.2} apart; target: \
+             {bar}"
         ))),
         None => Finding::measured(id, text, "1", median),
     });
@@ -158,7 +159,7 @@ pub(super) fn aim(
     match bar.filter(|&bar| !cfg!(debug_assertions) && ratio.median < bar) {
         Some(bar) => {
             let finding = Finding::measured(id, text, "1", ratio.median);
-            let reason = format!("not reached; {reason}; wanted: {bar}");
+            let reason = format!("below the target of {bar}: {reason}");
             record.find(finding.undecided(Undecided::Beyond(reason)));
         }
         None => judge(record, id, text, bar, ratio),

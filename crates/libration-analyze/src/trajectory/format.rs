@@ -33,7 +33,7 @@ impl Format {
     /// The description in one line.
     pub const fn summary(self) -> &'static str {
         match self {
-            Format::Csv => "text; floats in the shortest form that is read as the same bits",
+            Format::Csv => "text; floats in the shortest form that round-trips to the same bits",
             Format::Json => {
                 "an object with the request, the rows, and the reason if they end early"
             }

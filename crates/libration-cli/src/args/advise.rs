@@ -17,7 +17,7 @@ use crate::error::Failure;
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES, override_usage = USAGE, args_override_self = true)]
 pub(crate) struct AdviseArgs {
-    /// Request file; it has keys without an option, such as controllers with memory
+    /// Request file; it also has keys without an option, e.g. for PID controllers and observers
     #[arg(long, value_name = "FILE", conflicts_with_all = REQUEST_OPTIONS)]
     pub(crate) config: Option<PathBuf>,
     #[command(flatten)]
@@ -42,7 +42,7 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     latency: Option<LatencyOption>,
-    /// Jitter of the period: gaussian or uniform, and its rms relative to the period (0 to 1), as gaussian:0.05
+    /// Jitter of the period: gaussian or uniform, and its rms relative to the period (0 to 1), e.g. gaussian:0.05
     #[arg(
         long,
         value_name = "LAW:RMS",
@@ -50,10 +50,10 @@ pub(crate) struct AdviseArgs {
         allow_hyphen_values = true
     )]
     jitter: Option<Jitter>,
-    /// File of measured time stamps in place of --jitter, from `measure-jitter --output` or a log
+    /// File of measured time stamps instead of --jitter: from `measure-jitter --output`, or a log
     #[arg(long, value_name = "FILE", conflicts_with_all = ["jitter", "skew"])]
     pub(crate) jitter_file: Option<PathBuf>,
-    /// Relative clock error, as 1e-4; positive: slow, negative: fast
+    /// Relative rate error of the clock, e.g. 1e-4; positive: slow, negative: fast
     #[arg(
         long,
         value_name = "PART",
@@ -81,17 +81,17 @@ pub(crate) struct AdviseArgs {
     /// Largest deviation from --q from which the loop must return, in m or rad
     #[arg(
         long,
-        value_name = "FAR",
+        value_name = "DISTANCE",
         value_parser = number,
         requires = "feedback",
         default_value = "0.1",
         allow_hyphen_values = true
     )]
     deviation: f64,
-    /// Tolerance: energy, phase, trajectory or cost, and its largest error
+    /// Largest error, of one of energy, phase, trajectory or cost, e.g. energy=1e-6
     #[arg(
         long,
-        value_name = "OF=MOST",
+        value_name = "KIND=ERROR",
         value_parser = tolerance,
         default_value = "trajectory=1e-3",
         allow_hyphen_values = true
@@ -138,15 +138,16 @@ libration advise --system <NAME> [OPTIONS]
 
 const EXAMPLES: &str = "\
 Examples:
-  libration advise --system oscillator --set omega2=10 --feedback 10,2 --period 0.01 --latency 0.02 \
-                   --jitter gaussian:0.05 --loss 0.01
+  libration advise --system oscillator --set omega2=10 --feedback 10,2 --period 0.01 \\
+      --latency 0.02 --jitter gaussian:0.05 --loss 0.01
   libration advise --system kepler --tolerance energy=1e-6 --horizon 100
   libration advise --print-config > mine.toml
   libration advise --config mine.toml --jitter-file robot.csv --page budget.html
 
-The limits are those of the loop in exact steps of its period, linearised at --q. All imperfections together are
-also simulated. The exit code is 1 if the loop is unstable with the stated values, if it exceeds the tolerance, or
-if no integrator is accurate enough.";
+The limits are those of the loop linearised at --q, with one exact step of the plant per period.
+A simulation of the loop contains all imperfections at once.
+The exit code is 1 if the loop with the stated values is unstable or exceeds the tolerance, or if no
+integrator is accurate enough.";
 
 /// The value of `--tolerance`.
 #[derive(Clone, Copy, Debug)]
@@ -255,7 +256,7 @@ fn number(text: &str) -> Result<f64, String> {
 
 fn tolerance(text: &str) -> Result<ToleranceArg, String> {
     let rule =
-        "expected energy, phase, trajectory or cost, and a number greater than 0, as energy=1e-6";
+        "expected energy, phase, trajectory or cost, and a number greater than 0, e.g. energy=1e-6";
     let (name, most) = text.split_once('=').ok_or(rule)?;
     let of = Measure::ALL.into_iter().find(|measure| measure.name() == name.trim()).ok_or(rule)?;
     let most = finite(most).filter(|most| *most > 0.0).ok_or(rule)?;

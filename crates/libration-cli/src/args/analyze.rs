@@ -45,18 +45,20 @@ const EXAMPLES: &str = "\
 Examples:
   libration analyze --system oscillator --set omega2=10 --integrator rk4 --dt 0.01
   libration analyze --system oscillator --integrator velocity-verlet --dt 0.01 --max-drift 1e-3
-  libration analyze --system oscillator --set omega2=10 --integrator exact --dt 0.01 \
-                    --feedback 10,2 --latency 0.015 --jitter gaussian:0.1
+  libration analyze --system oscillator --set omega2=10 --integrator exact --dt 0.01 \\
+      --feedback 10,2 --latency 0.015 --jitter gaussian:0.1
   libration analyze --system pendulum --q 2.5 --integrator velocity-verlet --dt 0.05 --json
 
-For a nonlinear system, the matrix and the eigenvalues are those of one step linearised about --q, --v.
-With --feedback the rows form blocks: one step of the plant without feedback, the closed loop, and the
-closed loop with jitter, skew and losses. In JSON, `spectral_radius` is that of the plant and
-`closed_loop_spectral_radius` is that of the loop with its latency.
-The critical latency and the stable latencies between whole steps use λᵈ, as textbooks do. The limit \"of split
-steps\" lets a command that arrives within a step split that step, as the spectral radius of the loop and
-simulations do. The cost is the stationary mean under white noise of the acceleration, of unit intensity:
-over continuous time for exact steps, else over the steps of the integrator, with constant noise in each.
-With --skew half of the clocks are slow by its rms, half are fast. Second moments include latency, jitter
-and losses, for a clock at its nominal rate and a latency of at most 90 steps. The exponent of a typical
-run is not available with a latency or losses.";
+For a nonlinear system, the step is linearised about --q, --v.
+With --feedback there are three blocks of rows: one step of the plant without feedback; the closed
+loop; the closed loop with jitter, skew and losses. In JSON, `spectral_radius` is that of the plant
+and `closed_loop_spectral_radius` that of the loop with its latency.
+
+Critical latency: for a latency of d steps the characteristic polynomial contains λᵈ, also for a
+fractional d. The row \"of split steps\" takes steps as simulations do: a command that arrives
+within a step splits it in two.
+Cost: the stationary mean under white acceleration noise of unit intensity. With `exact` it is the
+mean over continuous time, otherwise over the steps, with constant noise in each step. With --skew
+it is the mean of two clocks, one slow and one fast by the rms.
+Second moments: with latency (at most 90 steps), jitter and losses, for a clock at its nominal rate.
+The Lyapunov exponent (growth of a typical run) is not available with a latency or losses.";

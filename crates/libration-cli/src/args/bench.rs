@@ -42,7 +42,7 @@ pub(crate) struct BenchArgs {
     /// Measure rollouts of environments, relative to a fill of the same memory
     #[arg(long, conflicts_with = "implementation")]
     pub(crate) rollouts: bool,
-    /// Environments × horizon for --rollouts, as 4096x1024 [default: the cases of the report and a swing-up]
+    /// Environments × horizon for --rollouts, e.g. 4096x1024 [default: the cases of the report and a swing-up]
     #[arg(
         long,
         value_name = "NxT",
@@ -71,15 +71,15 @@ pub(crate) struct BenchArgs {
 
 const EXAMPLES: &str = "\
 Examples:
-  libration bench                                  speed of this machine and its limits
+  libration bench                                  speed of simulations and hardware limits
   libration bench --effort standard --json > machine.json
   libration bench --implementation fused,threads --count 1e3,1e5,1e7 --float f32
   libration bench --rollouts --effort standard     rollouts relative to the memory bandwidth
   libration bench --storage --folder /data         data sets relative to the disk
 
 All implementations advance harmonic oscillators by symplectic Euler and give the same bits.
-Rates are medians; spread is the distance between the quartiles of the repetitions.
-The exit code is 1 if a ratio of speeds misses its prediction.";
+Rates are medians over repetitions; spread is their interquartile range.
+The exit code is 1 if a ratio of speeds disagrees with its prediction.";
 
 fn implementations() -> impl TypedValueParser<Value = Implementation> {
     let value = |one: Implementation| PossibleValue::new(one.name()).help(one.summary());
@@ -94,7 +94,7 @@ fn floats() -> impl TypedValueParser<Value = BenchFloat> {
 
 /// Parses `ENVIRONMENTSxHORIZON`.
 fn rollout_case(text: &str) -> Result<RolloutCase, String> {
-    let shape = || "expected environments × horizon, as 4096x1024".to_owned();
+    let shape = || "expected environments × horizon, e.g. 4096x1024".to_owned();
     let (environments, horizon) = text.split_once(['x', '×']).ok_or_else(shape)?;
     let [environments, horizon] = [environments, horizon].map(count);
     let (environments, horizon) = (environments?, horizon?);

@@ -41,11 +41,12 @@ Examples:
   libration measure-jitter
   libration measure-jitter --rate 500 --seconds 60 --load --output robot.csv
   libration measure-jitter --from candump.log
-  libration simulate --system oscillator --integrator velocity-verlet --dt 0.002 --steps 29000 \
-                     --time-stamps robot.csv
+  libration simulate --system oscillator --integrator velocity-verlet --dt 0.002 \\
+      --steps 29000 --time-stamps robot.csv
 
-A thread sleeps until deadlines on a regular grid of the monotonic clock, and records the times of its wake-ups.
-`simulate --time-stamps` replays the time stamps, and so does `[jitter] time_stamps` of a configuration.";
+A thread sleeps until periodic deadlines of the monotonic clock, and records its wake-up times.
+`simulate --time-stamps`, `advise --jitter-file` and the key `[jitter] time_stamps` of `lab`
+replay these times.";
 
 impl MeasureJitterArgs {
     /// Returns the plan of the measurement.

@@ -31,7 +31,7 @@ pub(crate) use simulate::SimulateArgs;
 pub(crate) use system::{StepArgs, SystemArgs};
 pub(crate) use timing::CostArgs;
 
-/// A laboratory for the stability of simulations: predictions of theory and measurements.
+/// Predict and measure the stability of simulations and control loops.
 #[derive(Debug, Parser)]
 #[command(name = "libration", version, propagate_version = true, max_term_width = 100)]
 #[command(after_help = EXAMPLES)]
@@ -60,11 +60,12 @@ Examples:
                                              limits of a control loop
   libration rollout --out data --transitions 1e8
                                              a data set of rollouts, as Parquet
-  libration bench                            speed of this machine
+  libration bench                            speed of simulations on this machine
   libration measure-jitter --rate 500        wake-up times of a loop of 500 Hz
   libration list                             all studies, systems and integrators
 
-Exit codes: 0 success, 1 a failed run or a finding that disagrees, 2 wrong input, 130 interrupted";
+Exit codes: 0 success; 1 failed run, or measurement outside its tolerance; 2 invalid input;
+            130 interrupted";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
@@ -80,7 +81,7 @@ pub(crate) enum Command {
     Rollout(RolloutArgs),
     /// Check the files of a data set, recompute it or repair it
     Verify(VerifyArgs),
-    /// Measure the speed of this machine and its limits
+    /// Measure the speed of simulations on this machine, and its hardware limits
     Bench(BenchArgs),
     /// Measure the jitter of a periodic loop on this machine
     MeasureJitter(MeasureJitterArgs),
@@ -126,9 +127,10 @@ Examples:
   libration lab spectrum drift --out my-report
   libration lab --config mine.toml --effort thorough
 
-The output folder contains report.html, results.json, figures/*.svg and data/*.parquet. They replace those of an
-earlier run when all studies have ended. Until then they are in the subfolder libration-unfinished. An interrupted
-run leaves them there if the output folder contains a complete report.";
+The output folder contains report.html, results.json, figures/*.svg and data/*.parquet.
+During a run the files are in the subfolder libration-unfinished. At the end they replace the files
+of an earlier run. An interrupted run leaves them in that subfolder if the output folder already
+contains a complete report.";
 
 /// Arguments of `list`.
 #[derive(Args, Debug)]

@@ -29,7 +29,7 @@ pub(super) fn coordinates(text: &str) -> Result<Coordinates, String> {
 
 fn coordinate(word: &str) -> Result<f64, String> {
     let word = word.trim();
-    let rule = "expected finite numbers, separated by commas, as 1,-0.5";
+    let rule = "expected finite numbers, separated by commas, e.g. 1,-0.5";
     match word.parse::<f64>() {
         _ if word.is_empty() => Err(format!("a coordinate is missing; {rule}")),
         Ok(x) if limits::COORDINATE.admits(x) => Ok(x),
@@ -40,10 +40,10 @@ fn coordinate(word: &str) -> Result<f64, String> {
 
 /// Parses `KEY=VALUE`. The system determines which keys and values are allowed.
 pub(super) fn assignment(text: &str) -> Result<(String, f64), String> {
-    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE, as omega2=10".to_owned())?;
+    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE, e.g. omega2=10".to_owned())?;
     let (key, value) = (key.trim(), value.trim());
     if key.is_empty() {
-        return Err("the key is missing; expected KEY=VALUE, as omega2=10".into());
+        return Err("the key is missing; expected KEY=VALUE, e.g. omega2=10".into());
     }
     let value = value.parse().map_err(|_| format!("the value `{value}` is not a number"))?;
     Ok((key.to_owned(), value))

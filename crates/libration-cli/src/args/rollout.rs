@@ -18,7 +18,7 @@ pub(crate) struct RolloutArgs {
     /// Output folder of the data set
     #[arg(long, value_name = "DIR", required_unless_present = "print_config")]
     pub(crate) out: Option<PathBuf>,
-    /// Least number of transitions, rounded up to whole steps of all environments [default: that of the settings]
+    /// Minimum number of transitions, rounded up to whole steps of all environments [default: that of the settings]
     #[arg(long, value_name = "N", value_parser = transitions, allow_hyphen_values = true)]
     pub(crate) transitions: Option<u64>,
     /// Format of the files
@@ -46,10 +46,12 @@ Examples:
   libration rollout --config mine.toml --out data --transitions 1e9 --format npy --resume
   libration rollout --config mine.toml --out part-2 --shard 2/3
 
-Parquet: transitions/*.parquet has one row per transition. Npy: one folder per field has tensors [step, environment, …].
-Both: ends/* has the final observation of each episode, and the observation after the last step of a chunk for
-episodes that continue. manifest.jsonl lists the chunks with checksums as soon as they are on the disk. The settings
-determine every byte: a resumed data set equals one without interruption.";
+parquet: transitions/*.parquet has one row per transition.
+npy: one folder per field has tensors [step, environment, …].
+Both: ends/* has the final observation of each episode. For an episode that continues in the next
+chunk, it has the observation after the last step of the chunk.
+manifest.jsonl lists each chunk with checksums as soon as the chunk is on the disk.
+The settings determine every byte: a resumed data set equals one without interruption.";
 
 /// Arguments of `verify`.
 #[derive(Args, Debug)]
@@ -82,7 +84,7 @@ fn shard(text: &str) -> Result<[usize; 2], String> {
     let parts = text.split_once('/').and_then(|(i, n)| Some([i.parse().ok()?, n.parse().ok()?]));
     let parts: Option<[usize; 2]> = parts.filter(|&[i, n]: &[usize; 2]| 1 <= i && i <= n);
     parts.ok_or_else(|| {
-        "expected two whole numbers, the first from 1 to the second, as 2/3".to_owned()
+        "expected two whole numbers, the first from 1 to the second, e.g. 2/3".to_owned()
     })
 }
 

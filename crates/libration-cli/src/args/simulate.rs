@@ -34,10 +34,10 @@ pub(crate) struct SimulateArgs {
         default_value = "1"
     )]
     pub(crate) every: u64,
-    /// Number of trajectories; adds a column `trajectory` (--float f64 or f32)
+    /// Number of trajectories; adds a column `trajectory`; requires --float f64 or f32
     #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
     pub(crate) count: Option<usize>,
-    /// Spread of the starts: 1 - S times the start for the first trajectory, 1 + S times for the last
+    /// Scale the initial states linearly, from 1 - S (first trajectory) to 1 + S (last)
     #[arg(
         long,
         value_name = "S",
@@ -54,7 +54,7 @@ pub(crate) struct SimulateArgs {
     pub(crate) threads: usize,
     #[command(flatten)]
     pub(crate) timing: TimingArgs,
-    /// File of measured time stamps (in s or ns, one per line) that determine the steps, as multiples of --dt
+    /// File of measured time stamps (in s or ns, one per line); their intervals are the lengths of the steps
     #[arg(long, value_name = "FILE")]
     pub(crate) time_stamps: Option<PathBuf>,
     /// Seed of --jitter and --skew
@@ -78,11 +78,13 @@ Examples:
   libration simulate --system oscillator --integrator velocity-verlet --dt 0.01 --steps 2e3 \\
       --feedback 10,2 --latency 0.015 --jitter gaussian:0.1 --count 100 --seed 7 --output loop.csv
 
-The columns are step, t, q0, …, v0, …, energy. If the state overflows, the rows end with a note. With --count,
---feedback, --jitter, --skew or --time-stamps the rows continue, and the note has the number of overflows.
-With --jitter, --skew or --time-stamps, t is the time of an ideal clock. The command is 0 until the first one
-arrives. With --count the first column is trajectory; the bits of each trajectory are independent of --count,
---simd and --threads. The output file appears only when it is complete.";
+The columns are step, t, q0, …, v0, …, energy; with --count the first column is trajectory.
+If the state overflows, the rows end and a note says so. With --count, --feedback, --jitter, --skew
+or --time-stamps the rows continue, and the note states the number of overflows.
+With --jitter, --skew or --time-stamps, t is the true time: the sum of the actual step lengths.
+Until the first command arrives, the command is 0.
+The bits of a trajectory are independent of --count, --simd and --threads.
+The output file appears only when it is complete.";
 
 /// Parses a stride; also as `1e3`.
 fn every(text: &str) -> Result<u64, String> {

@@ -18,7 +18,7 @@ pub(crate) struct SystemArgs {
     /// Name of the system; see `libration list`
     #[arg(long, value_name = "NAME", value_parser = system_names(), hide_possible_values = true)]
     pub(crate) system: String,
-    /// Parameter of the system, as omega2=10; repeatable. m= (kg) requires k= (N/m), and commands are forces
+    /// Parameter of the system, e.g. omega2=10; repeatable. With m= (kg) and k= (N/m), commands are forces
     #[arg(long, value_name = "KEY=VALUE", value_parser = assignment, allow_hyphen_values = true)]
     pub(crate) set: Vec<(String, f64)>,
     /// Initial positions, separated by commas [default: those of the system]

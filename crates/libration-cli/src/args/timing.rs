@@ -11,7 +11,7 @@ pub(crate) struct TimingArgs {
     /// Gains of the feedback −KP·q − KD·v [default: no loop; in s⁻² and s⁻¹, with --set m= in N/m and N·s/m]
     #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
     pub(crate) feedback: Option<Feedback>,
-    /// Latency of a command: 0.015 (in s, at steps of --dt) or 1.5steps, up to 4096 steps [default: 0]
+    /// Latency of a command, e.g. 0.015 (in s) or 1.5steps (of --dt); at most 4096 steps [default: 0]
     #[arg(
         long,
         value_name = "TIME",
@@ -20,10 +20,11 @@ pub(crate) struct TimingArgs {
         allow_hyphen_values = true
     )]
     pub(crate) latency: Option<LatencyOption>,
-    /// Jitter of each step: gaussian or uniform, and its rms relative to --dt, as gaussian:0.1 [default: none]
+    /// Jitter of each step: gaussian or uniform, and its rms relative to --dt, e.g. gaussian:0.1 [default: none]
     #[arg(long, value_name = "LAW:RMS", value_parser = law, allow_hyphen_values = true)]
     pub(crate) jitter: Option<Jitter>,
-    /// Skew of the clocks of an ensemble: gaussian or uniform, and its relative rms, as gaussian:0.01 [default: none]
+    /// Skew (relative rate error) of the clocks of an ensemble: gaussian or uniform, and its rms, e.g. gaussian:0.01
+    /// [default: none]
     #[arg(long, value_name = "LAW:RMS", value_parser = law, allow_hyphen_values = true)]
     pub(crate) skew: Option<Jitter>,
 }
@@ -67,7 +68,7 @@ pub(super) fn feedback(text: &str) -> Result<Feedback, String> {
     let gain = |text| finite(text).filter(|x| x.abs() <= MOST_GAIN);
     let gains = text.split_once(',').and_then(|(kp, kd)| Some((gain(kp)?, gain(kd)?)));
     let (position, velocity) =
-        gains.ok_or("expected two finite numbers of at most 1e50 in size, as 10,2")?;
+        gains.ok_or("expected two finite numbers of at most 1e50 in size, e.g. 10,2")?;
     Ok(Feedback { position, velocity })
 }
 
@@ -77,7 +78,7 @@ fn loss(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn weights(text: &str) -> Result<LqrWeights, String> {
-    let rule = "expected three numbers from 0 to 1e50: weights of the squares of position, velocity and command, as 5,0.5,0";
+    let rule = "expected three numbers from 0 to 1e50: weights of the squares of position, velocity and command, e.g. 5,0.5,0";
     let weight = |text| finite(text).filter(|x| (0.0..=MOST_GAIN).contains(x)).ok_or(rule);
     let [q, v, u]: [&str; 3] = text.split(',').collect::<Vec<_>>().try_into().map_err(|_| rule)?;
     Ok(LqrWeights { position: weight(q)?, velocity: weight(v)?, command: weight(u)? })
@@ -90,12 +91,12 @@ pub(super) fn latency(text: &str) -> Result<LatencyOption, String> {
     };
     let number = finite(number).filter(|&x| x >= 0.0);
     number.map(make).ok_or_else(|| {
-        "expected a finite number of at least 0, as 0.015 (in s) or 1.5steps".to_owned()
+        "expected a finite number of at least 0, e.g. 0.015 (in s) or 1.5steps".to_owned()
     })
 }
 
 pub(super) fn law(text: &str) -> Result<Jitter, String> {
-    let rule = "expected gaussian or uniform, and an rms from 0 to 100, as gaussian:0.1";
+    let rule = "expected gaussian or uniform, and an rms from 0 to 100, e.g. gaussian:0.1";
     let (name, rms) = text.split_once(':').ok_or(rule)?;
     let rms = finite(rms).filter(|x| (0.0..=MOST_RMS).contains(x)).ok_or(rule)?;
     match name {

@@ -119,8 +119,8 @@ fn describe(advice: &Advice) -> String {
     if !advice.integrators.is_empty() {
         let _ = writeln!(
             text,
-            "\n{:<30} {:>12} {:>9} {:>12} {:>12} {:>14}",
-            "integrator", "largest dt/s", "a period", "lost", "with longer", "evaluations/s"
+            "\n{:<30} {:>12} {:>12} {:>12} {:>12} {:>14}",
+            "integrator", "largest dt/s", "steps/period", "error", "next longer", "evaluations/s"
         );
     }
     let shown = |x: Option<f64>| match x {
@@ -131,7 +131,7 @@ fn describe(advice: &Advice) -> String {
     for choice in &advice.integrators {
         let _ = writeln!(
             text,
-            "{:<30} {:>12} {:>9} {:>12} {:>12} {:>14}",
+            "{:<30} {:>12} {:>12} {:>12} {:>12} {:>14}",
             choice.integrator,
             shown(choice.dt),
             choice.substeps.map_or_else(String::new, |count| count.to_string()),
@@ -151,10 +151,10 @@ fn describe(advice: &Advice) -> String {
         let _ = writeln!(text, "runner-up: {why}");
     }
     for float in &advice.floats {
-        let meets = if float.meets { "tolerated" } else { "too much" };
+        let meets = if float.meets { "within" } else { "above" };
         let _ = writeln!(
             text,
-            "in {}: {:.3e} of the {} lost, {meets} (simulated)",
+            "in {}: error {:.3e} of the {}, {meets} the tolerance (simulated)",
             float.float, float.lost, float.of
         );
         if advice.looped.is_none() {

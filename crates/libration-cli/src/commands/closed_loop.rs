@@ -106,7 +106,7 @@ fn describe_growth(
         (false, true) => "not known with losses".into(),
         (false, false) => number(growth.lyapunov_exponent, "a step"),
     };
-    lines.row("a typical run grows", &typical);
+    lines.row("Lyapunov exponent", &typical);
     if timing.skew.is_some() {
         lines.row("", NOMINAL);
     }

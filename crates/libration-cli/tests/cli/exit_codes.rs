@@ -1,4 +1,4 @@
-//! Exit codes: 0 success, 1 a failed run or a finding that disagrees, 2 wrong input, 130 interrupted.
+//! Exit codes: 0 success, 1 failed run or measurement outside its tolerance, 2 invalid input, 130 interrupted.
 
 use std::fs;
 use std::path::Path;

@@ -231,7 +231,7 @@ fn what_cannot_be_is_refused_before_a_folder_is_made() {
         assert!(found.contains(said), "{text}\n{found}");
     }
     let found = refused("", "--shard 3/2");
-    assert!(found.contains("as 2/3"), "{found}");
+    assert!(found.contains("e.g. 2/3"), "{found}");
     let found = refused("", "--shard 2/2");
     assert!(found.contains("at most 1 shards, one per group of environments"), "{found}");
     assert!(refused("", "--transitions 0").contains("from 1 to 1e15"));

@@ -19,9 +19,9 @@ pub(super) fn judge(record: &mut Record) {
     };
     record.judge(ruling, |f| {
         Judgement::conditional(format!(
-            "of {} trajectories none depends on the number of threads, since they share nothing; a sum over \
-             them does, with {} different results of 4, unless its order is fixed, as it is in this \
-             program’s means and variances",
+            "none of {} trajectories depends on the number of threads, since they share nothing. A \
+             sum over them depends on it ({} different results of 4), unless its order is fixed, \
+             as for the means and variances of this program",
             count(super::runs::COUNT as u64),
             times(f[2])
         ))

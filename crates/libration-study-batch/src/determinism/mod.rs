@@ -25,7 +25,7 @@ impl Study for Determinism {
     }
 
     fn question(&self) -> &'static str {
-        "What does a result depend on, to the bit, and what not?"
+        "Which conditions change the bits of a result, and which do not?"
     }
 
     fn source_claims(&self) -> &'static [SourceClaim] {

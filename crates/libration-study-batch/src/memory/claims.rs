@@ -44,7 +44,8 @@ fn examples(record: &mut Record) {
             number(planned / MIB, 3)
         );
         match (product - small.megabytes).abs() < 0.5 {
-            true => Judgement::conditional(because).only("of the product; not of what is listed"),
+            true => Judgement::conditional(because)
+                .only("true of the product, not of the listed fields"),
             false => Judgement::refuted(because),
         }
     });
@@ -53,7 +54,8 @@ fn examples(record: &mut Record) {
     record.judge(Ruling { id: "C53a", source: "6.5", text, findings: &ids }, |f| {
         let at_16 = BYTES * large.transitions as f64;
         let because = format!(
-            "the 16 bytes of its own text make {} MB or {} MiB. {} is what {} bytes make, in MiB: {} MB",
+            "the 16 bytes of the text of the source give {} MB or {} MiB. The number {} follows \
+             from {} bytes, in MiB; that is {} MB",
             number(at_16 / MB, 4),
             number(at_16 / MIB, 4),
             number(f[0].measured / MIB, 4),
@@ -70,8 +72,8 @@ fn growth(record: &mut Record) {
     let text = "Memory grows exponentially.";
     record.judge(Ruling { id: "C54", source: "6.5", text, findings: &ids }, |f| {
         Judgement::refuted(format!(
-            "it is a product: with the power {} of the environments and {} of the horizon, and with both \
-             doubled {} times as large. §9.5 and §9.7 call it linear",
+            "it is a product: it grows with the power {} of the number of environments and {} of \
+             the horizon. If both double, it is {} times as large. §9.5 and §9.7 call it linear",
             number(f[0].measured, 3),
             number(f[1].measured, 3),
             number(f[2].measured, 3)

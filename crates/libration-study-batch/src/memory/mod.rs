@@ -45,7 +45,7 @@ impl Study for Memory {
     }
 
     fn question(&self) -> &'static str {
-        "How much memory do rollouts take, how does it grow, and how soon is it full?"
+        "How much memory do rollouts take, how does it grow, and when is it full?"
     }
 
     fn source_claims(&self) -> &'static [SourceClaim] {

@@ -64,8 +64,8 @@ pub(super) fn measure(
             "layout",
             "plain (10⁶/s)",
             "share of a fill",
-            "past (10⁶/s)",
-            "share of such a fill",
+            "non-temporal (10⁶/s)",
+            "share of a non-temporal fill",
         ],
     );
     for case in RolloutCase::ALL {

@@ -29,8 +29,9 @@ fn design(record: &mut Record) {
     let text = "A batched environment needs no loop in Python at all.";
     record.judge(Ruling { id: "C49", source: "6.2", text, findings: &ids }, |f| {
         let because = format!(
-            "the loop over the steps remains. By its own table it costs {} µs a step whatever the number of \
-             environments, {} % of a step of the smallest batch; here a step of the fewest takes {} µs",
+            "the loop over the steps remains. By the table of the source it costs {} µs per step \
+             for any number of environments, {} % of a step of the smallest batch; here a step of \
+             the smallest batch takes {} µs",
             show(1e6 * f[0].measured),
             number(100.0 * f[1].measured, 2),
             show(1e6 * f[2].measured)
@@ -44,8 +45,9 @@ fn design(record: &mut Record) {
     record.judge(Ruling { id: "C50", source: "6.3, 8.5", text, findings: &ids }, |f| {
         let [interleaved, planes, gain] = [0, 1, 2].map(|i| f[i].measured);
         let because = format!(
-            "it is an array of structures: the next position is {} bytes away, since a velocity lies between \
-             them; in planes it is {}. Here planes are written at {} % of the rate of that, one core, {}",
+            "it is an array of structures: the next position is {} bytes away, since a velocity \
+             lies between them; in planes it is {} bytes away. Planes are written at {} % of the \
+             rate of interleaved components (one core, {})",
             show(interleaved),
             show(planes),
             show(100.0 * gain),
@@ -68,8 +70,8 @@ fn bits(record: &mut Record) {
     record.judge(Ruling { id: "C58", source: "6.6, 9.5", text, findings: &ids }, |f| {
         let (names, all) = changed(f);
         let because = format!(
-            "every bit stays with delays, jitter, noise and variation on, and on many threads, too, which the source \
-             does not try ({names})"
+            "every bit is reproducible with latencies, jitter, noise and random springs, also on \
+             many threads, which the source does not test ({names})"
         );
         Judgement::holds_if(all, because)
     });
@@ -80,7 +82,7 @@ fn bits(record: &mut Record) {
     record.judge(Ruling { id: "C95", source: "10", text, findings: &ids }, |f| {
         let Some((rate, kept)) = f.split_last() else { return Judgement::refuted("") };
         let because = format!(
-            "{} a second on one core at {}, with the same bits however they are made",
+            "{} a second on one core at {}, with the same bits in every variant",
             count((rate.measured / 1e6).round() as u64 * 1_000_000),
             example.title()
         );

@@ -38,7 +38,8 @@ impl Study for Rollout {
     }
 
     fn question(&self) -> &'static str {
-        "How fast are rollouts of many environments, what limits them, and what do their bits depend on?"
+        "How fast are rollouts of many environments, what limits them, and which settings change \
+         their bits?"
     }
 
     fn source_claims(&self) -> &'static [SourceClaim] {

@@ -38,9 +38,10 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.table(record.table("regimes")?, 3);
     page.heading("Layouts and stores");
     page.paragraph(
-        "The structure of arrays of the source is in fact an array of structures: position and velocity of an environment \
-         are adjacent. If the rollout exceeds the caches, stores past the caches avoid the read of each line before it \
-         is overwritten; if it fits, they may be slower. Rates are in millions of transitions per second and relative to \
+        "The structure of arrays of the source is in fact an array of structures: position and \
+         velocity of an environment are adjacent. If the rollout exceeds the caches, non-temporal \
+         stores, past the caches, avoid the read of each line before it is overwritten; if it \
+         fits, they may be slower. Rates are in millions of transitions per second and relative to \
          a fill that writes in the same way.",
     );
     page.table(record.table("layouts")?, 3);
@@ -50,12 +51,13 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
         page.table(missing, 3);
     }
     page.paragraph(
-        "New tensors cause a page fault for every page. A rollout that is reused causes \
-         them once.",
+        "New tensors cause a page fault for every page. Reused tensors cause page faults only in \
+         the first rollout.",
     );
     page.table(record.table("fresh and used tensors")?, 3);
     page.paragraph(
-        "Generalised advantages and returns read a rollout from its last step to the first.",
+        "Generalised advantage estimation (GAE) and returns read a rollout from its last step to \
+         the first.",
     );
     page.table(record.table("advantages")?, 3);
     if let Ok(peers) = record.table("peers") {
@@ -88,7 +90,10 @@ fn answer(record: &Record, page: &mut Page) {
         let all = all.map(|all| format!(", all cores {}·10⁶", number(all / 1e6, 3)));
         let share = value(format!("rollout.{}", example.name()));
         let share = share.map(|share| {
-            format!(" One core reaches {} % of the rate of a fill.", number(100.0 * share, 2))
+            format!(
+                " One core reaches {} % of the rate at which a loop fills the same memory.",
+                number(100.0 * share, 2)
+            )
         });
         sentences.push(format!(
             "{}: {rate} transitions per second on one core{}.{}",

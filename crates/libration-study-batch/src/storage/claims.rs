@@ -26,7 +26,7 @@ pub(super) fn judge(record: &mut Record) {
             number(f[4].measured, 3)
         );
         if f.iter().all(|finding: &&Finding| finding.agrees()) {
-            Judgement::conditional(because).only("as a design: the source gives no number of one")
+            Judgement::conditional(because).only("as a design: the source gives no measurement")
         } else {
             Judgement::refuted(because)
         }

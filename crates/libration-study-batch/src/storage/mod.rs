@@ -30,7 +30,7 @@ impl Study for Storage {
     }
 
     fn question(&self) -> &'static str {
-        "How fast are replay buffers, data sets and checkpoints, and is what they keep what was there?"
+        "How fast are replay buffers, data sets and checkpoints, and do they preserve every byte?"
     }
 
     fn source_claims(&self) -> &'static [SourceClaim] {

@@ -50,9 +50,9 @@ fn answer(record: &Record, page: &mut Page) -> Result<(), RecordError> {
     let kept = record.findings.iter().filter(|f| f.id.starts_with("storage.kept."));
     let (all, same) = kept.fold((0, 0), |(all, same), f| (all + 1, same + usize::from(f.agrees())));
     page.answer = format!(
-        "Data sets: {} transitions per second to this disk, {} % of its rate. A batch of 256 from a \
-         million transitions: {} µs, with priorities and their update {} µs. {same} of {all} changes that must \
-         preserve every byte do so.",
+        "Data sets: {} transitions per second to this disk, {} % of its write rate. A batch of 256 \
+         from a million transitions: {} µs, with priorities and their update {} µs. Threads, \
+         interruptions and shards change no byte in {same} of {all} cases.",
         million(npy),
         number(100.0 * share, 2),
         number(batch, 2),

@@ -35,13 +35,13 @@ fn rates(record: &mut Record) {
     record.judge(Ruling { id: "C01", source: "Abstract, 9.4", text, findings: &ids }, |f| {
         let (passes, fused) = (f[0].measured, f[1].measured);
         let because = format!(
-            "array passes that do what NumPy does reach {}·10⁹ steps a second here where the arrays lie \
-             in a cache. All steps of a block in registers give {}·10⁹ on the same core",
+            "array operations like those of NumPy reach {}·10⁹ steps per second here if the arrays \
+             fit in a cache. Fused steps reach {}·10⁹ on the same core",
             show(passes / BILLION),
             show(fused / BILLION)
         );
         match passes > BILLION {
-            true => Judgement::conditional(because).only("the arrays lie in a cache"),
+            true => Judgement::conditional(because).only("the arrays fit in a cache"),
             false => Judgement::refuted(because),
         }
     });
@@ -50,14 +50,15 @@ fn rates(record: &mut Record) {
     record.judge(Ruling { id: "C37", source: "5.2", text, findings: &ids }, |f| {
         let (passes, lone) = (f[0].measured, f[1].measured);
         let because = format!(
-            "from 1 to 100 trajectories the steps a second of all together, which is what §5.1 calls \
-             throughput, grow with the power {} of their number under array passes, and with the power {} \
-             in the lone loop. Where the power is near one it is passes a second that are constant",
+            "from 1 to 100 trajectories the total rate of steps, the throughput of §5.1, grows \
+             with the power {} of the number of trajectories for array operations, and with the \
+             power {} for the scalar loop. If the power is near one, the rate of passes is \
+             constant",
             show(passes),
             show(lone)
         );
         match passes > 0.5 {
-            true => Judgement::conditional(because).only("passes a second are meant"),
+            true => Judgement::conditional(because).only("the rate of passes is meant"),
             false => Judgement::confirmed(because),
         }
     });
@@ -67,8 +68,9 @@ fn rates(record: &mut Record) {
     record.judge(Ruling { id: "C39", source: "5.3, 5.9", text, findings: &ids }, |f| {
         let (one, many) = (f[0].measured, f[1].measured);
         let because = format!(
-            "over a compiled loop array passes gain a factor of {} for 10⁵ trajectories and {} for one. \
-             Over an interpreted loop the first is larger still, and the second smaller",
+            "array operations are {} times as fast as a compiled loop for 10⁵ trajectories and {} \
+             times for one. Relative to an interpreted loop the first factor is larger, and the \
+             second smaller",
             show(many),
             show(one)
         );
@@ -85,12 +87,12 @@ fn rates(record: &mut Record) {
     record.judge(Ruling { id: "C40", source: "5.4", text, findings: &ids }, |f| {
         let gains = f.iter().map(|f| show(f.measured)).collect::<Vec<_>>().join(", ");
         let because = format!(
-            "results in arrays that are there already, over a new array for each (f64, N = 10³, 10⁵, \
-             10⁶): {gains}. What the source prints is less than that: `v += dt*a` still makes a new array \
-             of `dt*a`"
+            "speed with results in existing arrays, relative to a new array per result (f64, N = \
+             10³, 10⁵, 10⁶): {gains}. The code in the source gains less: `v += dt*a` still \
+             allocates an array for `dt*a`"
         );
         match f.iter().all(|f| f.measured > SUBSTANTIAL) {
-            true => Judgement::conditional(because).only("no array is allocated any more"),
+            true => Judgement::conditional(because).only("no array is allocated at all"),
             false => Judgement::refuted(because),
         }
     });
@@ -100,8 +102,8 @@ fn rates(record: &mut Record) {
     record.judge(Ruling { id: "C42", source: "5.5", text, findings: &ids }, |f| {
         let (passes, fused) = (f[0].measured, f[1].measured);
         let because = format!(
-            "f32 over f64 at N = 10⁶: {} for array passes, {} for fused steps, whose registers hold \
-             twice as many",
+            "speed in f32 relative to f64 at N = 10⁶: {} for array operations, {} for fused steps, \
+             since a register holds twice as many f32",
             show(passes),
             show(fused)
         );
@@ -117,8 +119,8 @@ fn limits(record: &mut Record) {
     record.judge(Ruling { id: "C02", source: "Abstract, 5.1, 5.7", text, findings: &ids }, |f| {
         let gain = f[0].measured;
         let because = format!(
-            "10⁵ trajectories are 0.8 MB in f32, which a cache holds, and on the same memory fused steps \
-             are {} times as fast as array passes",
+            "10⁵ trajectories take 0.8 MB in f32, which fits in a cache. On the same memory fused \
+             steps are {} times as fast as array operations",
             show(gain)
         );
         Judgement::holds_if(gain < SEVERAL, because)
@@ -127,13 +129,14 @@ fn limits(record: &mut Record) {
     let ids = ["throughput.overhead.in-place.f32", at_1e5.as_str()];
     record.judge(Ruling { id: "C36", source: "5.1", text, findings: &ids }, |f| {
         let because = format!(
-            "the overhead is real: up to N = {} a pass costs more than what it holds. But 10⁵ \
-             trajectories lie in a cache; there fused steps gain a factor of {}",
+            "the overhead is real: up to N = {} the fixed cost of a pass exceeds the cost of its \
+             trajectories. But 10⁵ trajectories fit in a cache, where fused steps are {} times as \
+             fast as array operations",
             show(f[0].measured),
             show(f[1].measured)
         );
         match f[1].measured > SEVERAL {
-            true => Judgement::conditional(because).only("of overhead; not of bandwidth, at 10⁵"),
+            true => Judgement::conditional(because).only("of overhead, not of bandwidth at 10⁵"),
             false => Judgement::confirmed(because),
         }
     });
@@ -143,8 +146,8 @@ fn limits(record: &mut Record) {
     record.judge(Ruling { id: "C46", source: "5.7, 8.1", text, findings: &ids }, |f| {
         let (few, many) = (f[0].measured, f[1].measured);
         let because = format!(
-            "without new arrays a step is {} times as fast at N = 10³ and {} times at 10⁶. The source \
-             counts three limits in §5.7 and four in §5.8, where allocation is none",
+            "without new arrays a step is {} times as fast at N = 10³ and {} times at 10⁶. The \
+             source lists three limits in §5.7 and four in §5.8; allocation is not among the four",
             show(few),
             show(many)
         );
@@ -158,9 +161,9 @@ fn limits(record: &mut Record) {
     let text = "Arithmetic intensity is low, so that a faster processor does not help.";
     record.judge(Ruling { id: "C47", source: "5.7, 8.2", text, findings: &ids }, |f| {
         let because = format!(
-            "the intensity is that of a pass, not of the problem: trajectories do not interact, and a \
-             block can take many steps while it is in registers. At N = 10⁶ that is {} times as fast as \
-             a step a pass",
+            "the intensity is that of a pass, not of the problem: trajectories do not interact, \
+             and a block can take many steps while it is in registers. At N = 10⁶ this is {} times \
+             as fast as one step per pass",
             show(f[0].measured)
         );
         match f[0].measured > SUBSTANTIAL {
@@ -188,15 +191,15 @@ fn limits(record: &mut Record) {
     record.judge(Ruling { id: "C82", source: "9.4", text, findings: &ids }, |f| {
         let [lone, few, many] = [0, 1, 2].map(|i| f[i].measured);
         let because = format!(
-            "powers of N with which steps a second grow: the loop {} from 10³ to 10⁵; array passes {} \
-             from 1 to 100 and {} from 10³ to 10⁵. What they are bound by beyond is the traffic of their \
-             own passes",
+            "the rate of steps grows with the power of N: the loop {} from 10³ to 10⁵; array \
+             operations {} from 1 to 100 and {} from 10³ to 10⁵. Beyond that the memory traffic of \
+             their own passes limits them",
             show(lone),
             show(few),
             show(many)
         );
         match lone < 0.5 && few > 0.5 {
-            true => Judgement::conditional(because).only("of its first two parts"),
+            true => Judgement::conditional(because).only("true of the first two parts"),
             false => Judgement::refuted(because),
         }
     });
@@ -210,7 +213,7 @@ fn bandwidth(record: &mut Record) {
         let over = f[0].measured;
         let because = format!(
             "the five array operations of a step access twelve arrays, {} times what the formula \
-             counts. And it is no bandwidth of the memory where a cache holds the arrays",
+             counts. And if the arrays fit in a cache, the result is not a memory bandwidth",
             show(over)
         );
         Judgement::holds_if(over <= 1.0, because)
@@ -230,9 +233,10 @@ fn bandwidth(record: &mut Record) {
             let memory = values.clone().take(2).fold(0.0, f64::max);
             let formula = values.skip(2).fold(0.0, f64::max);
             let because = format!(
-                "the source names no machine. Here loops that only move memory reach {} GB/s on one core, \
-                 and array passes on it at the largest N {} GB/s by its formula, {} of that; {} GB/s by a formula that \
-                 counts a third of the traffic say nothing of a memory",
+                "the source names no machine. Here loops that only move memory reach {} GB/s on \
+                 one core, and array operations at the largest N reach {} GB/s by its formula, a \
+                 share of {}. {} GB/s by a formula that counts a third of the traffic do not \
+                 measure a memory",
                 show(memory),
                 show(formula),
                 show(formula / memory),

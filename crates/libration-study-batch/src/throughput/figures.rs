@@ -26,8 +26,9 @@ fn ink(implementation: Implementation) -> Role {
 pub(super) fn scaling(record: &Record) -> Result<Figure, RecordError> {
     let mut figure = Figure::new("fig-9-7", title(record))
         .caption(
-            "Circles are predicted: the scalar loop by the latency of one trajectory’s arithmetic (it \
-             may begin the next meanwhile), fused steps by independent arithmetic, one step per pass by a loop that moves the same memory. Upright lines: \
+            "Circles are predicted: the scalar loop by the latency of the arithmetic of one \
+             trajectory (the processor may overlap it with the next), fused steps by independent \
+             arithmetic, one step per pass by a loop that moves the same memory. Vertical lines: \
              two arrays fill a cache.",
         )
         .description("Log-log: steps per second against the number of trajectories.")
@@ -164,16 +165,16 @@ pub(super) fn roofline(record: &Record) -> Result<Figure, RecordError> {
     .mark(
         Mark::prediction(x, series.column("in_turn")?)
             .dash(Dash::Solid)
-            .label("one after the other"),
+            .label("without any overlap"),
     );
     Ok(Figure::new(
         "roofline",
         format!("With {most} steps per pass the same memory traffic gives {} times the work", number(gain, 2)),
     )
     .caption(
-        "Symplectic Euler in f32 on one core, on the largest arrays of this run, 1 to 128 steps per pass. The roof \
-         is the lower of measured bandwidth and measured arithmetic; circles: if each waited for the \
-         other.",
+        "Symplectic Euler in f32 on one core, on the largest arrays of this run, 1 to 128 steps \
+         per pass. The roof is the lower of measured bandwidth and measured arithmetic; circles: \
+         the rate without overlap of arithmetic and memory accesses.",
     )
     .description("Log-log: operations per second against operations per byte, below two roofs.")
     .panel(panel))

@@ -41,25 +41,26 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     );
     page.table(record.table("a lone trajectory")?, 3);
     page.paragraph(
-        "With a block of trajectories in registers, the lanes are independent, and \
-         the limit is the number of operations that the processor starts per cycle. The reference of the fused steps \
-         is a loop of independent multiplications and additions in the proportion of the method, \
-         the fastest of several widths.",
+        "With a block of trajectories in registers, the lanes are independent, and the limit is \
+         the number of operations that the processor starts per cycle. The reference of the fused \
+         steps is a loop of independent multiplications and additions, in the same ratio as in the \
+         method; of several block widths the fastest counts.",
     );
     page.table(record.table("fused steps")?, 3);
     page.table(record.table("threads")?, 3);
     page.paragraph(
-        "Clocks, delays and controllers run in the same lanes. A counter-based generator gives a new state every 256 \
-         steps and a sequential one the numbers in between, so that the noise of a trajectory depends only on its number, \
-         the step and the seed. Time of a step relative to one with a fixed clock:",
+        "Clocks, delays and controllers run in the same lanes. Every 256 steps a counter-based \
+         generator seeds a sequential generator, which draws the numbers in between. The noise of \
+         a trajectory depends only on its number, the step and the seed. Time of a step relative \
+         to one with a fixed clock:",
     );
     page.table(record.table("clocks and delays")?, 3);
     page.heading("Memory");
     page.figure(figures::roofline(record)?);
     page.paragraph(
-        "Bandwidths count the bytes that the program reads and writes. A plain store also makes the \
-         processor read the line that it overwrites, which a stream past the caches does not; whether \
-         that is faster differs between processors.",
+        "Bandwidths count the bytes that the program reads and writes. A plain store also makes \
+         the processor read the cache line that it overwrites. A non-temporal store, past the \
+         caches, does not; whether it is faster depends on the processor.",
     );
     page.table(record.table("bandwidth")?, 3);
     page.table(record.table("one step a pass")?, 3);

@@ -17,9 +17,10 @@ pub(super) fn judge(record: &mut Record) {
                 reproducibility, while each environment stays stable.";
     record.judge(Ruling { id: "C65a", source: "7.5", text, findings: &findings }, |f| {
         Judgement::conditional(format!(
-            "phases diverge: at rates of 1 % the mean falls to 1/e in {} steps with Gaussian rates and in {} with \
-             uniform ones. Each trajectory keeps its energy, to {} where its step is below the limit, and runs away \
-             where z(1 + δ) is above 2, as {} did. With a seed all of it repeats to the bit",
+            "phases diverge: at rates of 1 % the mean falls to 1/e in {} steps with Gaussian rates \
+             and in {} with uniform ones. The energy of a trajectory changes by at most {} if its \
+             step is below the limit; {} trajectories with z(1 + δ) above 2 grow without bound. \
+             With a seed the run repeats bit for bit",
             number(f[0].measured, 4),
             number(f[1].measured, 4),
             number(f[2].measured, 2),
@@ -31,8 +32,8 @@ pub(super) fn judge(record: &mut Record) {
     let text = "Jitter and asynchrony destroy reproducibility.";
     record.judge(Ruling { id: "C71", source: "8.4", text, findings: &findings }, |f| {
         Judgement::conditional(format!(
-            "with the same seed {} of eight trajectories differ in any bit, however many run beside them; with \
-             another {} do",
+            "with the same seed {} of eight trajectories differ in any bit, for any number of \
+             other trajectories; with another seed {} differ",
             number(f[0].measured, 1),
             number(f[1].measured, 1)
         ))

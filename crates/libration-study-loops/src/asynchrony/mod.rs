@@ -33,7 +33,7 @@ impl Study for Asynchrony {
     }
 
     fn question(&self) -> &'static str {
-        "How fast do clocks of different rates fall apart?"
+        "How fast do clocks of different rates drift apart?"
     }
 
     fn source_claims(&self) -> &'static [SourceClaim] {

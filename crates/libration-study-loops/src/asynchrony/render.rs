@@ -14,9 +14,10 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
         foreseen("asynchrony.gaussian.steps").zip(foreseen("asynchrony.uniform.steps"))
     {
         page.answer = format!(
-            "At Δt = 10 ms and clock rates with an rms of 1 % the mean of an ensemble falls to 1/e in {} steps for Gaussian \
-             and {} steps for uniform rates (theory); measured: {} and {}. The energy stays bounded. A trajectory is stable if \
-             its own step is.",
+            "At Δt = 10 ms and clock rates with an rms of 1 % the mean of an ensemble falls to 1/e \
+             in {} steps for Gaussian and {} steps for uniform rates (theory); measured: {} and \
+             {}. The energy stays bounded. A trajectory is stable if the time step of its own \
+             clock is stable.",
             number(gaussian, 4),
             number(uniform, 4),
             number(found("asynchrony.gaussian.steps").unwrap_or(f64::NAN), 3),

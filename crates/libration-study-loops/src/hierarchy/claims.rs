@@ -35,8 +35,8 @@ pub(super) fn judge(record: &mut Record, long: u64) {
         let named: Vec<String> = named.collect();
         let holds = orders.iter().filter(|&&order| order).count();
         let because = format!(
-            "measured as the distance from the undisturbed orbit, that is the order in {holds} of {} settings: \
-             the sizes and the horizon decide, of which the source names none",
+            "measured as the distance from the undisturbed orbit, this is the order in {holds} of \
+             {} settings. It depends on the sizes and the horizon, and the source states neither",
             orders.len()
         );
         match holds {

@@ -8,9 +8,11 @@ use super::figures;
 /// Writes the chapter.
 pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
     page.title = "Hierarchy".into();
-    page.answer = "No imperfection is always the largest: the order depends on the sizes and on the horizon. The distance from \
-                   the undisturbed orbit grows exponentially with a late force, as n with different clock rates and as \
-                   √n with jitter. Rounding is smallest only if its unit roundoff is small."
+    page.answer = "No imperfection is always the largest: the order depends on the sizes and on \
+                   the horizon. The distance from the undisturbed orbit grows exponentially with \
+                   the number of steps n under latency of the force, as n with different clock \
+                   rates and as √n with jitter. Rounding has the least effect only if the unit \
+                   roundoff is small."
         .into();
     page.paragraph(
         "The metric is the distance of a disturbed trajectory from the undisturbed one after the same number \
@@ -30,10 +32,11 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.figure(figures::short(record)?.number("9.16"));
     page.figure(figures::long(record)?.number("9.17"));
     page.paragraph(
-        "Predictions: with a late force the orbit grows by the spectral radius of the loop that consists of the \
-         spring. A clock error rotates the orbit by dθ/dΔt times the time error, which after n steps is \
-         n times one error, or √n times the rms of independent errors. The effect of rounding on the phase \
-         depends on the rounding of the parameters; it is measured only.",
+        "Predictions: with a latency of the force the orbit grows by the spectral radius of the \
+         loop that consists of the spring. A clock error rotates the orbit by dθ/dΔt times the \
+         time error, which after n steps is n times one error, or √n times the rms of independent \
+         errors. The effect of rounding on the phase depends on the rounding of the parameters; it \
+         is measured only.",
     );
     page.table(record.table("divergence")?, 3);
     Ok(())

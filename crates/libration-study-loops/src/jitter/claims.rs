@@ -30,8 +30,8 @@ pub(super) fn judge(record: &mut Record, steps: u64) {
     let text = "Under jitter the deterministic trajectory is no longer preserved.";
     record.judge(Ruling { id: "C65", source: "7.4", text, findings: &findings }, |f| {
         Judgement::conditional(format!(
-            "only where nobody keeps the seed: with the same seed {} of eight trajectories differ in any bit, \
-             with another all {}",
+            "only if the seed is lost: with the same seed {} of eight trajectories differ in any \
+             bit, with another seed {} of eight",
             number(f[0].measured, 1),
             number(f[1].measured, 1)
         ))
@@ -46,9 +46,9 @@ fn explodes(record: &Record) -> bool {
 
 fn evidence(f: &[&Finding], steps: &str) -> String {
     format!(
-        "ln E walks at random: 2γN on average, 2√(γN) wide, with γ = σ²z⁴/8 of symplectic Euler and σ²z⁶/32 \
-         of velocity Verlet. At Δt = 1 ms and σ = 10 % ln E stays within {} and {} over {steps} steps, at \
-         0.3 s it has grown by {} and {}",
+        "ln E performs a random walk with mean 2γN and standard deviation 2√(γN), where γ = σ²z⁴/8 \
+         for symplectic Euler and σ²z⁶/32 for velocity Verlet. At Δt = 1 ms and σ = 10 % ln E \
+         stays within {} and {} over {steps} steps, at 0.3 s it has grown by {} and {}",
         number(f[0].measured, 2),
         number(f[1].measured, 2),
         number(f[2].measured, 3),
@@ -61,14 +61,15 @@ fn energy(record: &mut Record, steps: u64) {
         return;
     }
     let steps = count(steps);
-    let short = format!("the number of steps is small beside 1/γ, as {steps} are at Δt = 1 ms");
+    let short = format!("the number of steps is far below 1/γ, e.g. {steps} at Δt = 1 ms");
     let findings = [&STILL[..], &GROWN[..], &COMMUTES[..]].concat();
     let text = "Under jitter energy remains bounded with symplectic methods.";
     record.judge(Ruling { id: "C60", source: "7.4", text, findings: &findings }, |f| {
         Judgement::conditional(format!(
-            "{}. Steps of different lengths keep different ellipses, and to change between them pumps; steps of \
-             RK4 are functions of one matrix and commute: at Δt = 0.1 s and σ = 10 % ln E spreads by {} with RK4, and by \
-             {} with symplectic Euler",
+            "{}. Steps of different lengths preserve different ellipses, and each change of the \
+             ellipse changes the energy. Steps of RK4 are functions of one matrix and commute: at \
+             Δt = 0.1 s and σ = 10 % the deviation of ln E is {} with RK4, and {} with symplectic \
+             Euler",
             evidence(f, &steps),
             number(f[4].measured, 2),
             number(f[5].measured, 2)
@@ -79,7 +80,7 @@ fn energy(record: &mut Record, steps: u64) {
     let text = "Over a long horizon jitter induces phase drift, not an explosion of energy.";
     record.judge(Ruling { id: "C93", source: "9.6", text, findings: &findings }, |f| {
         Judgement::conditional(format!(
-            "{}; phases walk {} and {} rad meanwhile",
+            "{}; phases deviate by {} and {} rad",
             evidence(f, &steps),
             number(f[4].measured, 2),
             number(f[5].measured, 2)
@@ -92,9 +93,9 @@ fn phase(record: &mut Record) {
     let text = "Under jitter phase drift accumulates steadily.";
     record.judge(Ruling { id: "C64", source: "7.4, 9.6", text, findings: &PHASES }, |f| {
         Judgement::refuted(format!(
-            "jitter with mean zero makes a random walk, zσ√n wide: {} and {} rad at the end. Against the time that \
-             has passed there is next to none, {} and {} rad. A drift that is steady needs a clock that is wrong on \
-             average",
+            "with jitter of mean zero the phase performs a random walk with standard deviation \
+             zσ√n: {} and {} rad at the end. Relative to the elapsed time it is only {} and {} \
+             rad. A steady drift requires a clock with a wrong mean rate",
             number(f[0].measured, 3),
             number(f[1].measured, 3),
             number(f[2].measured, 2),

@@ -136,9 +136,9 @@ pub(super) fn resonance(record: &Record) -> Result<Figure, RecordError> {
 pub(super) fn switching(record: &Record) -> Result<Figure, RecordError> {
     let mut panel = Panel::new(Axis::linear("steps"), Axis::log("√(E/E₀)").range(1e-8, 1e8));
     for (name, words, ink) in [
-        ("short", "steps on time", Role::Good),
+        ("short", "steps of nominal length", Role::Good),
         ("long", "steps twice as long", Role::Accent(0)),
-        ("worst", "both, in the worst order", Role::Bad),
+        ("worst", "both lengths, in the worst order", Role::Bad),
     ] {
         let Ok(series) = record.series(&format!("switching-{name}")) else { continue };
         let line = Mark::line(series.column("steps")?, series.column("size")?);
@@ -146,7 +146,10 @@ pub(super) fn switching(record: &Record) -> Result<Figure, RecordError> {
     }
     let panel = Panel { x: panel.x.range(0.0, 400.0), ..panel };
     Ok(Figure::new("jitter-switching", "Instability of two stable step lengths in alternation")
-        .caption("Velocity Verlet at ωΔt = 0.9 with a damper of 0.15 ω, which is sampled once per step; ticks are missed.")
+        .caption(
+            "Velocity Verlet at ωΔt = 0.9 with a damper of 0.15 ω, which is sampled once per step. A \
+             missed tick doubles the length of a step.",
+        )
         .description("Size against steps: two lines fall, the third rises.")
         .panel(panel))
 }

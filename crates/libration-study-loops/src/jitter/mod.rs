@@ -38,7 +38,7 @@ impl Study for Jitter {
     }
 
     fn question(&self) -> &'static str {
-        "What does an uneven clock do?"
+        "What does jitter of the clock do to energy and phase?"
     }
 
     fn source_claims(&self) -> &'static [SourceClaim] {

@@ -28,9 +28,10 @@ fn amplitude(record: &mut Record) {
         Judgement::holds_if(
             grows,
             format!(
-                "with the force one step of 1 ms late the amplitude is {} times as large after 1000 steps, and {} \
-                 times after a million; in time it stays. It grows by ½z²d a step, without end and however \
-                 short the latency: one step late, symplectic Euler is explicit Euler to the bit",
+                "if the force is one step of 1 ms late, the amplitude is {} times as large after \
+                 1000 steps, and {} times after a million; without latency it is constant. It \
+                 grows by ½z²d per step at any latency of d steps: one step late, symplectic Euler \
+                 is explicit Euler, bit for bit",
                 number(short, 5),
                 number(long, 4)
             ),
@@ -57,9 +58,10 @@ fn damping(record: &mut Record) {
             .map(|(factor, d)| format!("{} at {} times the gains", number(*d, 4), number(*factor, 2)))
             .collect();
         let because = format!(
-            "half as late as it may be, the loop loses {} of its amplitude a step in place of {}; the \
-             latency at which it begins to grow is, in steps, {}. Without damping there is no latency that it \
-             bears: it grows by ½z²d a step, whatever the gain, and was seen to grow by {} at one of 1 ms",
+            "at half of the critical latency the loop loses {} of its amplitude per step, without \
+             latency {}. The critical latency in steps is {}. Without damping no latency is \
+             stable: the amplitude grows by ½z²d per step at any gain, by {} in the measurement at \
+             1 ms",
             number(-late, 3),
             number(-in_time, 3),
             told.join(", "),

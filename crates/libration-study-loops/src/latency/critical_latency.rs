@@ -86,8 +86,8 @@ fn table() -> Table {
     let columns = [
         "integrator",
         "critical latency of whole steps, predicted (steps)",
-        "of any part, predicted (steps)",
-        "of any part, measured (steps)",
+        "of split steps, predicted (steps)",
+        "of split steps, measured (steps)",
         "measured (s)",
         "delay margin of the continuous loop (s)",
     ];

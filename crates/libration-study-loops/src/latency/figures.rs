@@ -54,7 +54,7 @@ pub(super) fn long(record: &Record) -> Result<Figure, RecordError> {
     for (i, late) in LATE.into_iter().enumerate() {
         let series = record.series(&format!("force-{late}"))?;
         let steps = series.column("step")?;
-        let label = if late == 0 { "in time".to_owned() } else { format!("{late} late") };
+        let label = if late == 0 { "no latency".to_owned() } else { format!("{late} late") };
         panel = panel
             .mark(
                 Mark::line(steps, series.column("amplitude")?)
@@ -66,8 +66,9 @@ pub(super) fn long(record: &Record) -> Result<Figure, RecordError> {
     Ok(Figure::new("fig-9-15", "Amplitude over a million steps with latencies of the force")
         .number("9.15")
         .caption(
-            "Amplitudes of the source’s oscillator with its force 0, 1, 2, 5 and 10 steps of 1 ms late. Lines: \
-             simulated. Circles: predicted. A latency of one step is explicit Euler, bit by bit.",
+            "Amplitudes of the source’s oscillator with its force 0, 1, 2, 5 and 10 steps of 1 ms \
+             late. Lines: simulated. Circles: predicted. With a latency of one step symplectic \
+             Euler is explicit Euler, bit for bit.",
         )
         .description("Straight lines on a logarithmic axis, steeper for longer latencies.")
         .panel(panel))
@@ -107,15 +108,16 @@ pub(super) fn map(record: &Record, kind: Kind) -> Result<Figure, RecordError> {
         Kind::Step => ("latency-map-step", "Stability by latency and time step"),
     };
     let caption = match kind {
-        Kind::Gain => "Colour: growth per step of simulated loops, a run for each whole latency and gain; blue \
-                       decays. Lines: ρ = 1, from the shipped step. Feedback of the velocity alone, K = (0, K_d), \
-                       ω² = 10 s⁻², Δt = 40 ms. The lobes are latencies of about whole periods: the \
-                       command of the last swing damps as well as that of this one, if it is weak."
+        Kind::Gain => "Colour: growth per step of simulated loops, a run for each whole latency \
+                       and gain; blue decays. Lines: ρ = 1, from the shipped step. Feedback of the \
+                       velocity alone, K = (0, K_d), ω² = 10 s⁻², Δt = 40 ms. In the lobes beyond \
+                       the first the latency is about a whole number of periods: a weak command \
+                       that is late by a period still damps."
             .to_owned(),
         Kind::Step => format!(
-            "Colour: growth per step of simulated loops; blue decays. Solid: ρ = 1, from the shipped step. Dashed: the \
-             delay margin of the continuous loop, {} s. What lies between is the latency that integrator and hold \
-             hide. {}, ω² = 10 s⁻².",
+            "Colour: growth per step of simulated loops; blue decays. Solid: ρ = 1, from the \
+             shipped step. Dashed: the delay margin of the continuous loop, {} s. The difference \
+             is the hidden latency of the integrator and the zero-order hold. {}, ω² = 10 s⁻².",
             number(margin, 5),
             map::gains()
         ),

@@ -30,7 +30,7 @@ impl Study for Latency {
     }
 
     fn question(&self) -> &'static str {
-        "How late may a command be?"
+        "How much latency does a control loop tolerate?"
     }
 
     fn source_claims(&self) -> &'static [SourceClaim] {

@@ -13,9 +13,10 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     let verlet = record.finding("latency.onset.velocity-verlet")?;
     let critical = verlet.measured * super::critical_latency::DT;
     page.answer = format!(
-        "Critical latency of the loop with ω² = 10 s⁻² and K = (10, 2): {}. It is the delay margin of the continuous \
-         loop minus the latency of the integrator, half a step, and follows without simulation. A force with latency makes an \
-         undamped orbit grow at any latency, by ½z²d per step.",
+        "Critical latency of the loop with ω² = 10 s⁻² and K = (10, 2): {}. It is the delay margin \
+         of the continuous loop minus the latency of the integrator, half a step, and follows \
+         without simulation. A force with latency makes an undamped orbit grow at any latency, by \
+         ½z²d per step for a latency of d steps.",
         seconds(critical, 4)
     );
     page.highlights.push(Highlight {
@@ -34,10 +35,11 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.figure(figures::long(record)?);
     page.table(record.table("late forces")?, 6);
     page.paragraph(
-        "A loop with damping is stable up to a critical latency. It follows from the characteristic polynomial of the \
-         shipped step, and bisection on simulated loops confirms it; there a step is split at the arrival of a \
-         command. In the limit of small steps it is the delay margin of the continuous loop. Integrator and hold \
-         reduce it by the hidden latency.",
+        "A loop with damping is stable up to a critical latency. It follows from the \
+         characteristic polynomial of the shipped step, and bisection on simulated loops confirms \
+         it; there a step is split at the arrival of a command. In the limit of small steps it is \
+         the delay margin of the continuous loop. The integrator and the zero-order hold add \
+         latency of their own, the hidden latency, and reduce the critical latency by it.",
     );
     page.table(record.table("critical latencies")?, 8);
     page.table(record.table("hidden latency")?, 6);

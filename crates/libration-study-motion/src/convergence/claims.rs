@@ -57,8 +57,8 @@ pub(super) fn judge(record: &mut Record) {
                     vanish && orders.iter().all(|f| near_its_order(f)),
                     format!(
                         "also on nonlinear systems: the order is 2 within {}, and both defects of \
-                         the Jacobian of a step, taken by duals along the orbit, vanish in 1024 \
-                         bits",
+                         the Jacobian of a step, computed with dual numbers along the orbit, \
+                         vanish in 1024 bits",
                         number(worst, 2)
                     ),
                 )

@@ -41,7 +41,7 @@ impl Study for Convergence<'_> {
     }
 
     fn question(&self) -> &'static str {
-        "Does the error fall with the power of the time step that each method promises?"
+        "Does the error of each method converge with its theoretical order?"
     }
 
     fn source_claims(&self) -> &'static [SourceClaim] {

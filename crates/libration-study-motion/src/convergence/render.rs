@@ -24,7 +24,8 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.table(record.table("orders")?, 4);
     page.paragraph(
         "The exponents are least-squares slopes through the five smallest steps of each line. The \
-         error of one step is of one order higher than that of the orbit, which has 1/Δt steps.",
+         local error of one step is one order higher than the global error of the orbit, since the \
+         number of steps is proportional to 1/Δt.",
     );
     page.figure(errors(record, &systems, "local")?);
     if let Ok(trap) = record.series("trap") {
@@ -107,8 +108,8 @@ fn errors(
         format!("Error of {of} against the time step"),
     )
     .caption(format!(
-        "{} Thin lines: whole slopes through the smallest step. Error in phase space, velocities \
-         in units of 2π/turn.",
+        "{} Thin lines: slopes of integer order through the smallest step. Error in phase space, \
+         velocities in units of 2π/turn.",
         slopes(record, systems, kind, rise)
     ))
     .description(format!("Log-log: the error of {of} against Δt for each method and system."))

@@ -42,8 +42,8 @@ pub(super) fn judge(config: &Config, record: &mut Record) {
     rule(record, ("C26", "3.9, 6.6", text), &["drift.repeat".to_owned()], |f| {
         Judgement::holds_if(
             f[0].measured == 0.0,
-            "on several threads, too. A stronger test, against a plain NumPy script, is among the \
-             tests of the project",
+            "also on several threads. In addition, a test of the project compares the bits with \
+             those of a plain NumPy script",
         )
     });
     portraits(record, &long, config.oscillator.omega());
@@ -104,8 +104,8 @@ fn explicit_euler(record: &mut Record, seen: &[String]) {
     let text = "The amplitude of explicit Euler grows exponentially.";
     rule(record, ("C22", "3.5", text), seen, |f| {
         Judgement::confirmed(format!(
-            "the energy grows by 1 + z² a step: {} of the start after the whole run at the smallest \
-             step at which it shows, as predicted",
+            "each step multiplies the energy by 1 + z². After the whole run its relative drift is \
+             {} at the smallest time step with a visible drift, as predicted",
             number(f[0].measured, 5)
         ))
     });
@@ -123,9 +123,9 @@ fn bounded(record: &mut Record, ids: &impl Fn(Method, &str) -> Vec<String>) {
         let (kept_findings, rest) = f.split_at(kept.len());
         let (band_findings, largest) = rest.split_at(band.len());
         let because = format!(
-            "what its step conserves strays by no more than {}, which is rounding, and the energy \
-             never leaves its band. The band is wide: at the steps tried the energy swings by {} of \
-             itself",
+            "the quadratic form that its step conserves changes by at most {}, which is rounding, \
+             and the energy never leaves its band. The band is wide: at the steps tried the \
+             relative energy drift is up to {}",
             number(greatest(kept_findings), 2),
             listed(largest)
         );
@@ -154,9 +154,10 @@ fn start_matters(record: &mut Record, ids: &impl Fn(Method, &str) -> Vec<String>
         let (kept_findings, rest) = f.split_at(kept.len());
         let (largest, worst) = rest.split_at(largest.len());
         let because = format!(
-            "½(v² + ω²(1 − z²/4)x²) strays by no more than {}, which is rounding, where z < 2. The \
-             start matters, which the source does not say: at the steps tried the energy swings by {} \
-             from the configured start and by {} from the worst",
+            "½(v² + ω²(1 − z²/4)x²) changes by at most {}, which is rounding, where z < 2. The \
+             result depends on the start, which the source does not say: at the steps tried the \
+             relative energy drift is up to {} from the configured start and up to {} from the \
+             worst",
             number(greatest(kept_findings), 2),
             listed(largest),
             listed(worst)
@@ -173,7 +174,7 @@ fn steady_loss(record: &mut Record, seen: &[String]) {
     let text = "The energy of RK4 drifts steadily over long horizons.";
     rule(record, ("C15", "2.11, 3.8, 4.5", text), seen, |f| {
         Judgement::confirmed(format!(
-            "in kind: each step multiplies it by 1 − z⁶/72 + z⁸/576. In size, where it is more than \
+            "each step multiplies the energy by 1 − z⁶/72 + z⁸/576. Where the drift exceeds \
              rounding, it is {} after the run",
             listed(f)
         ))
@@ -223,11 +224,11 @@ fn portraits(record: &mut Record, dts: &[f64], omega: f64) {
     let text = "In phase space explicit Euler spirals out, symplectic Euler traces an ellipse, Verlet \
                 an almost closed orbit, and RK4 spirals slowly.";
     rule(record, ("C34", "4.7", text), &evidence, |f| {
-        let because = "every orbit stays on the curve that its step carries along: exact ellipses for \
-                       the symplectic methods, tilted for Euler, a spiral outwards for explicit Euler \
-                       and one inwards for RK4";
+        let because = "every orbit stays on the invariant curve of its step: exact ellipses for \
+                       the symplectic methods, tilted for Euler, a spiral outwards for explicit \
+                       Euler and one inwards for RK4";
         match only_rounding(f) {
-            false => Judgement::refuted("orbits leave the curves that their steps carry along"),
+            false => Judgement::refuted("orbits leave the invariant curves of their steps"),
             true if missing == 0 => Judgement::confirmed(because),
             true => Judgement::conditional(format!(
                 "below z = 2, the side of the source’s own z = 0.00316: there {because}. At {missing} \

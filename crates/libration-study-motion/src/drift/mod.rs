@@ -38,7 +38,7 @@ impl Study for Drift {
     }
 
     fn question(&self) -> &'static str {
-        "Does the energy stay near its start, and does each method do what theory says it must?"
+        "Does the energy stay near its initial value, and does its drift agree with theory?"
     }
 
     fn source_claims(&self) -> &'static [SourceClaim] {

@@ -37,8 +37,8 @@ pub(super) fn judge(record: &mut Record) {
         rule(record, (claim, source, text), &pair, |f| {
             let crossover = f[2].measured;
             let because = format!(
-                "for the energy it holds only beyond 18/z⁴ steps, {} at this step; the source’s own \
-                 setting, z = {} and a million steps, lies at {} of it; {}",
+                "for the energy it holds only beyond 18/z⁴ steps, {} at this step; the source’s \
+                 own setting, z = {} and a million steps, is only {} of that; {}",
                 number(crossover, 2),
                 number(source_report::OMEGA2.sqrt() * dt, 3),
                 number(source_report::STEPS as f64 / crossover, 2),

@@ -19,10 +19,10 @@ pub(super) fn judge(record: &mut Record) {
         let (counts, times) = (values(evaluations), values(time));
         let list = |x: [f64; 4]| x.map(|x| number(x, 2)).join(", ");
         let because = format!(
-            "force evaluations a step: {}; time: {} ns. Verlet as it stands here evaluates the force \
-             twice, which takes {} times as long as symplectic Euler: it need not, since the last \
-             force of a step is the first of the next. A step is the wrong unit all the same: what \
-             counts is the work for an accuracy",
+            "force evaluations a step: {}; time: {} ns. Verlet evaluates the force twice per step \
+             here, and takes {} times as long as symplectic Euler; once would suffice, since the \
+             last force of a step is the first of the next. But a comparison per step is not \
+             meaningful: the work for a given accuracy is",
             list(counts),
             list(times),
             number(times[2] / times[1], 2)
@@ -33,7 +33,7 @@ pub(super) fn judge(record: &mut Record) {
         match (ordered, times[2] < 1.5 * times[1]) {
             (true, true) => Judgement::confirmed(because),
             (true, false) => Judgement::conditional(because)
-                .only("“slightly” is taken out: Verlet takes up to twice as long"),
+                .only("without “slightly”: Verlet takes up to twice as long"),
             _ => Judgement::refuted(because),
         }
     });

@@ -38,8 +38,8 @@ fn number_of_the_source(f: &[&Finding], printed: f64, digits: f64) -> Judgement 
     let (aligned, late) = (f[0].measured, f[1].measured);
     let prints = |x: f64| (x - printed).abs() <= digits;
     let both = format!(
-        "each state beside the solution at its own time it is {}, beside the solution one step \
-         before {}",
+        "relative to the solution at the same time it is {}, relative to the solution one step \
+         before it is {}",
         number(aligned, 6),
         number(late, 6)
     );
@@ -47,13 +47,13 @@ fn number_of_the_source(f: &[&Finding], printed: f64, digits: f64) -> Judgement 
         (true, _) => Judgement::confirmed(format!("as a root mean square over all steps: {both}")),
         (false, true) => Judgement::conditional(format!(
             "only if states are compared with the solution one step too early: {both}. The source \
-             states neither the step nor the number of steps; this is the one setting at which its \
-             first three numbers come out"
+             states neither the step nor the number of steps; only this setting reproduces its \
+             first three numbers"
         ))
         .only("states are compared with the solution one step earlier"),
         (false, false) => Judgement::not_reproducible(format!(
-            "{both}. No reading of the comparison gives {printed}; the table of slips shows which \
-             errors in an RK4 come near it"
+            "{both}. Neither comparison gives {printed}; the table of mistakes in RK4 shows which \
+             ones come near it"
         )),
     }
 }
@@ -76,10 +76,10 @@ fn final_or_not(record: &mut Record) {
         Judgement::holds_if(
             is_final,
             format!(
-                "the errors after the last step are {}; what is printed {} the root mean square over \
-                 all steps",
+                "the errors after the last step are {}; the printed numbers {} the root mean \
+                 square over all steps",
                 sizes.join(", "),
-                if is_mean { "is" } else { "is not even" }
+                if is_mean { "are" } else { "are not even" }
             ),
         )
     });
@@ -115,8 +115,8 @@ fn ranking(record: &mut Record) {
         Judgement::holds_if(
             (theory - 0.90339).abs() < 0.000005,
             format!(
-                "theory puts RK4’s error at {} in the source’s own way of comparing, {} steps of \
-                 which our RK4 takes as predicted; the source prints 0.90339 and calls it consistent",
+                "by theory the error of RK4 is {} in the comparison of the source, and the RK4 of \
+                 this run agrees over {} steps; the source prints 0.90339 and calls it consistent",
                 number(theory, 3),
                 count(1_000_000)
             ),

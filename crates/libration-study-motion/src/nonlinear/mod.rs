@@ -40,7 +40,7 @@ impl Study for Nonlinear<'_> {
     }
 
     fn question(&self) -> &'static str {
-        "Does what holds for the oscillator hold where forces are not linear?"
+        "Which results for the oscillator hold for nonlinear forces?"
     }
 
     fn settings(&self) -> Option<Section> {

@@ -79,7 +79,7 @@ fn drifts(config: &Config, record: &mut Record) {
         0 => Judgement::refuted(because),
         n if n == f.len() => Judgement::confirmed(because),
         _ => Judgement::conditional(because).only(
-            "where the error of the method is far above its rounding, as of symplectic Euler",
+            "where the error of the method is far above its rounding, e.g. symplectic Euler",
         ),
     };
     let text = "In single precision differences of energy drift are negligible.";
@@ -87,8 +87,8 @@ fn drifts(config: &Config, record: &mut Record) {
         verdict(
             f,
             format!(
-                "the largest drift in f32, in units of what it is without rounding — {}. What is \
-                 negligible is so beside a large error of the method",
+                "ratios of the largest drift in f32 to the drift without rounding: {}. Rounding is \
+                 negligible only relative to a large error of the method",
                 evidence(f)
             ),
         )
@@ -100,9 +100,9 @@ fn drifts(config: &Config, record: &mut Record) {
         verdict(
             f,
             format!(
-                "the ratios are {}. None of these runs diverges: their largest drift is {}. The source’s own \
-                 number, δE ≈ 0.005, is what symplectic Euler swings by at z = 0.01: of its \
-                 methods the one that shows least of its rounding",
+                "the ratios are {}. None of these runs diverges: their largest drift is {}. The \
+                 number of the source, δE ≈ 0.005, is the energy oscillation of symplectic Euler \
+                 at z = 0.01, the method with the least visible rounding",
                 evidence(f),
                 number(largest, 2)
             ),
@@ -112,9 +112,9 @@ fn drifts(config: &Config, record: &mut Record) {
     rule(record, ("C67a", "7.7", text), &settings, |f| {
         let largest = f.iter().map(|f| f.measured).fold(0.0, f64::max);
         let because = format!(
-            "after the whole run none of symplectic Euler, velocity Verlet and RK4 has drifted by more than {} in \
-             f32, most of it by its own error; but {} of {} drifts are rounding for the most part, so nothing is gained there by \
-             a better method or a smaller step",
+            "after the whole run none of symplectic Euler, velocity Verlet and RK4 has drifted by \
+             more than {} in f32, mostly by the error of the method. {} of {} drifts are mostly \
+             rounding; a better method or a smaller step does not reduce these",
             number(largest, 2),
             f.iter().filter(|f| ratio(f) > 2.0).count(),
             f.len()
@@ -122,7 +122,7 @@ fn drifts(config: &Config, record: &mut Record) {
         match f.iter().all(|f| alike(f)) {
             true => Judgement::confirmed(because),
             false => Judgement::conditional(because)
-                .only("where a drift as large as symplectic Euler’s will do"),
+                .only("where a drift as large as that of symplectic Euler is acceptable"),
         }
     });
 }
@@ -136,9 +136,9 @@ fn sufficient(config: &Config, record: &mut Record) {
         let sizes: Vec<String> = f.iter().map(|f| number(f.measured.abs(), 2)).collect();
         let sizes: Vec<&str> = sizes.iter().map(String::as_str).collect();
         Judgement::not_reproducible(format!(
-            "nothing was learned in either precision, so there is nothing to compare. What can be \
-             said: after the whole run of symplectic Euler f32 and f64 are apart by {} rad, which is \
-             below the error of the method itself",
+            "no policy was trained in either precision, so there is nothing to compare. After the \
+             whole run of symplectic Euler f32 and f64 differ by {} rad, less than the error of \
+             the method",
             list(&sizes)
         ))
     });
@@ -161,8 +161,8 @@ fn long_horizon(config: &Config, record: &mut Record) {
         Judgement::holds_if(
             bounded && phases.iter().all(|f| f.measured > 0.0),
             format!(
-                "each step turns by θ − z ≈ z³/24 too far, which makes {} rad of a million; energies \
-                 stay within the band of their step",
+                "each step rotates by θ − z ≈ z³/24 too far, which adds up to {} rad in a million \
+                 steps; energies stay within the band of their step",
                 list(&sizes)
             ),
         )
@@ -175,7 +175,7 @@ fn long_horizon(config: &Config, record: &mut Record) {
         });
         let sizes: Vec<String> = sizes.collect();
         let because = format!(
-            "for velocity Verlet the phase error is {}: it goes as Δt³ a step",
+            "for velocity Verlet the phase error is {}: per step it is proportional to Δt³",
             sizes.join(", ")
         );
         match f.iter().filter(|f| f.measured.abs() >= VISIBLE).count() {
@@ -183,7 +183,7 @@ fn long_horizon(config: &Config, record: &mut Record) {
             n if n == f.len() => Judgement::confirmed(because),
             // n·z³/24 = 0.1 at ω² = 10 and n = 10⁶.
             _ => Judgement::conditional(format!(
-                "{because}; a tenth of a radian takes 4 ms, four times the source’s own step"
+                "{because}. It reaches 0.1 rad at Δt = 4 ms, four times the step of the source"
             ))
             .only("from Δt ≈ 4 ms on"),
         }
@@ -214,7 +214,7 @@ fn dominated(config: &Config, record: &mut Record) {
                        drift δ by δ/2; at the steps tried the first is larger";
         match others.as_slice() {
             [] => Judgement::confirmed(because),
-            others => Judgement::conditional(format!("{because}, but for {}", list(others)))
+            others => Judgement::conditional(format!("{because}, except for {}", list(others)))
                 .only(format!("not for {}", list(others))),
         }
     });
@@ -233,7 +233,7 @@ fn rounded_step(config: &Config, record: &mut Record) {
                 let (at, off) = (seconds(*dt, 3), number(off, 2));
                 let by_step = number(f.predicted.unwrap_or(f64::NAN), 2);
                 let ahead = number(f.measured, 2);
-                format!("{ahead} rad at {at}, where the step of f32, off by {off}, alone makes {by_step}")
+                format!("{ahead} rad at {at} (its rounded step, off by {off}, predicts {by_step})")
             })
             .collect();
         // Their tolerance has the roundings along the orbit too, and may be wider than the law.
@@ -242,7 +242,7 @@ fn rounded_step(config: &Config, record: &mut Record) {
         Judgement::holds_if(
             f.iter().all(|f| f.agrees() && near(f)),
             format!(
-                "runs in f32 are ahead of those in f64 by {}; what is left are roundings along the orbit",
+                "runs in f32 are ahead of those in f64 by {}; the rest is rounding along the orbit",
                 all.join("; ")
             ),
         )

@@ -258,7 +258,7 @@ impl Compared {
     }
 
     fn row(&self) -> Vec<Cell> {
-        let left = || Cell::absent("leaves the range");
+        let left = || Cell::absent("overflows");
         let drift = |run: Option<Run>| run.map_or_else(left, |run| Cell::rounded(run.largest, 4));
         vec![
             self.dt.into(),

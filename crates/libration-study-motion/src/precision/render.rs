@@ -21,10 +21,10 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.figure(figures::bits(record)?);
     page.paragraph(
         "A float type has finitely many states, so every orbit ends in a cycle, and the drift \
-         stops there. This happens after about as many steps as the significand has values, so earlier with \
-         fewer bits. `u` is the unit roundoff. A prediction `closes` means that orbits close within the run, or \
-         that rounding errors are not independent: between neighbouring steps for z² < 16u, and between turns \
-         with few steps.",
+         stops there. This happens after about as many steps as the significand has values, so \
+         earlier with fewer bits. `u` is the unit roundoff. The entry `closes` in place of a \
+         predicted drift means that orbits close within the run, or that rounding errors are not \
+         independent: between neighbouring steps for z² < 16u, and between turns with few steps.",
     );
     page.table(record.table("float types")?, 3);
     page.heading("Biased rounding of the textbook form");
@@ -50,9 +50,9 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     page.heading("State, force and clock");
     page.paragraph(
         "State, force and clock need different precision. The error of a force in f32 is a small \
-         part of that of a state in f32, since a step multiplies the force by Δt. A clock in f32 that \
-         sums its steps is soon late by seconds; the product of a step counter and Δt has no such error \
-         at no cost.",
+         part of that of a state in f32, since a step multiplies the force by Δt. A clock in f32 \
+         that sums its steps is soon late by seconds; a clock that multiplies a step counter by Δt \
+         avoids this error at no cost.",
     );
     page.table(record.table("parts")?, 3);
     page.table(record.table("clocks")?, 9);

@@ -26,7 +26,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         "orbits that repeat",
         "pre-period",
         "period",
-        "largest drift for ever",
+        "largest drift of an endless run",
     ];
     let mut table = Table::new("float types", &columns);
     for (kind, trial) in FLOAT_TYPES.iter().zip(&found) {

@@ -16,7 +16,8 @@ pub(super) fn judge(record: &mut Record) {
             Judgement::holds_if(
                 f[0].measured == 0.0,
                 format!(
-                    "duals through the shipped force give ±i·{} rad/s, with no real part",
+                    "dual numbers in the force of the simulation give ±i·{} rad/s, with no real \
+                     part",
                     number(f[1].measured, 6)
                 ),
             )
@@ -51,8 +52,8 @@ pub(super) fn judge(record: &mut Record) {
             let grown = f[0].measured;
             let because = format!(
                 "symplectic Euler at z = 2 has radius one, and takes x from 1 to {}: the \
-                 eigenvalue −1 is double and has a single eigenvector. It holds for semi-simple \
-                 eigenvalues on the unit circle",
+                 eigenvalue −1 is double and has a single eigenvector. The claim holds if the \
+                 eigenvalues on the unit circle are semi-simple",
                 number(grown, 7)
             );
             Judgement::holds_if(grown <= 10.0, because)
@@ -128,10 +129,10 @@ pub(super) fn judge(record: &mut Record) {
         |f| {
             let (verlet, euler) = (f[0].measured, f[1].measured);
             let because = format!(
-                "stability ends at z = {} for the one and z = {} for the other: they have the same \
-                 eigenvalues. It holds where stability means a tolerance on the energy, since the \
-                 energy of Verlet varies by z²/4 and that of Euler by about z/2. The source names \
-                 no criterion; its own z = 0.00316 is far inside both limits",
+                "stability ends at z = {} for Verlet and at z = {} for Euler: they have the same \
+                 eigenvalues. The claim holds if stability means a tolerance on the energy, since \
+                 the energy of Verlet varies by z²/4 and that of Euler by about z/2. The source \
+                 names no criterion; its own z = 0.00316 is far inside both limits",
                 resolved(f[0]),
                 resolved(f[1])
             );
@@ -165,7 +166,8 @@ pub(super) fn judge(record: &mut Record) {
             Judgement::holds_if(
                 f[0].measured > 0.0,
                 format!(
-                    "up to z = {}. It does not set them apart: RK4’s includes the axis up to {}",
+                    "up to z = {}. This does not distinguish symplectic methods: the region of RK4 \
+                     includes the axis up to {}",
                     resolved(f[0]),
                     resolved(f[1])
                 ),
@@ -179,7 +181,7 @@ pub(super) fn judge(record: &mut Record) {
             text: "The stability region of explicit Euler excludes the imaginary axis.",
             findings: &["spectrum.explicit-euler.imaginary-limit"],
         },
-        |f| Judgement::holds_if(f[0].measured == 0.0, "all of it, but for the origin"),
+        |f| Judgement::holds_if(f[0].measured == 0.0, "all of it, except the origin"),
     );
 }
 
@@ -218,8 +220,8 @@ fn strictly_inside(record: &mut Record) {
                 f[1].measured == 0.0,
                 format!(
                     "velocity Verlet has a radius of one, measured within {}, and is stable up to \
-                     z = {}: with `<` no method that conserves anything would ever be stable. The \
-                     source itself says ≤ in 2.7; and a split step has no function R(z) at all",
+                     z = {}: with `<` no conservative method would be stable. The source itself \
+                     has ≤ in §2.7, and a splitting method has no stability function R(z)",
                     number(f[0].measured.abs(), 2),
                     resolved(f[1])
                 ),

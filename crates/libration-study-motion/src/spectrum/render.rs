@@ -19,12 +19,11 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     let described: Vec<String> = shown
         .iter()
         .map(|&(m, z)| match z {
-            0.0 => format!("{} never", m.title()),
+            0.0 => format!("{} none", m.title()),
             z => format!("{} up to ωΔt = {}", m.title(), number(z, 6)),
         })
         .collect();
-    page.answer =
-        format!("Largest step that keeps an oscillator bounded: {}.", described.join("; "));
+    page.answer = format!("Largest time step with bounded orbits: {}.", described.join("; "));
     if let Some((method, z)) = shown.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
         page.highlights.push(Highlight {
             value: number(*z, 5),
@@ -32,8 +31,9 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
         });
     }
     page.paragraph(
-        "An integrator is generic over its number type. With polynomials in z = ωΔt as numbers, the shipped \
-         steps return their update matrices in exact fractions:",
+        "An integrator is generic over its number type. With polynomials in z = ωΔt as numbers, \
+         the shipped steps (the code that also runs the simulations) return their update matrices \
+         in exact fractions:",
     );
     page.table(record.table("update matrices")?, 6);
     page.paragraph(
@@ -122,10 +122,10 @@ fn pieces(shown: &[(Method, f64)]) -> String {
     };
     let (symplectic, others) = (of(true), of(false));
     if !others.is_empty() {
-        words += &format!(" Part of the imaginary axis is stable for {others}.");
+        words += &format!(" Non-symplectic, stable on part of the imaginary axis: {others}.");
     }
     if !symplectic.is_empty() {
-        words += &format!(" The symplectic methods have ρ = 1 exactly there: {symplectic}.");
+        words += &format!(" Symplectic, with ρ = 1 on part of the imaginary axis: {symplectic}.");
     }
     if shown.iter().any(|&(_, z)| z > 0.0) {
         words += " The bar marks the stable part, measured by simulation.";

@@ -129,8 +129,8 @@ fn by_drift(record: &mut Record, rows: &[(Limit, u64)]) {
         let rk4 =
             if others.is_empty() { String::new() } else { format!("{}, and for ", list(&others)) };
         let because = format!(
-            "Verlet’s step is the largest for {holds}; RK4’s is for {rk4}boundedness without a \
-             tolerance on the energy, up to z = {} against {}{extra}",
+            "Verlet allows the largest step for {holds}; RK4 allows it for {rk4}boundedness \
+             without a tolerance on the energy, up to z = {} against {}{extra}",
             number(bounded[0].measured, 4),
             number(bounded[1].measured, 4)
         );
@@ -149,7 +149,7 @@ fn by_drift(record: &mut Record, rows: &[(Limit, u64)]) {
     record.judge(Ruling { id: "C80", source: "9.3", text, findings: &ids }, |f| depends(f, ""));
     let text = "Velocity Verlet is the most suitable for long conservative runs.";
     record.judge(Ruling { id: "C35", source: "4.8", text, findings: &ids }, |f| {
-        depends(f, ". And it is about the energy: for the orbit itself RK4 is ahead at small steps")
+        depends(f, ". This concerns the energy: in the state RK4 is more accurate at small steps")
     });
     let text = "Methods of higher order may do worse over long horizons.";
     let ids = &ids[..ids.len() - BOUNDED.len()];
@@ -188,19 +188,20 @@ fn stricter(config: &Config, record: &mut Record) {
         };
         let (holds, fails): (Vec<&[Row]>, Vec<&[Row]>) = read.chunks(2).partition(stricter);
         let first = |pairs: &[&[Row]]| list(&pairs.iter().map(|pair| &pair[0]).collect::<Vec<_>>());
-        let than = "than one on the amplitude allows, for each of the four";
+        let than = "than a bound on the amplitude, for each of the four methods";
         match (holds.is_empty(), fails.is_empty()) {
             (_, true) => Judgement::confirmed(format!(
-                "no larger step {than}, at every tolerance and horizon tried. From a tolerance of 1 \
-                 on it would be the same test for velocity Verlet from rest, whose drift cannot \
-                 reach it before z = 2"
+                "it allows no larger step {than}, at every tolerance and horizon tried. With a \
+                 tolerance of 1 or more both tests would be the same for velocity Verlet from \
+                 rest, whose drift stays below 1 up to z = 2"
             )),
             (true, _) => Judgement::refuted(format!(
                 "an {} lets one of the four take a larger step than a tenfold amplitude does",
                 first(&fails).trim_start_matches("an ")
             )),
             _ => Judgement::conditional(format!(
-                "no larger step {than}, for {}; but for {} one of the four takes a larger one",
+                "it allows no larger step {than}, for {}; but for {} one of the four takes a \
+                 larger step",
                 first(&holds),
                 first(&fails)
             ))

@@ -27,7 +27,7 @@ impl Study for Stability {
     }
 
     fn question(&self) -> &'static str {
-        "How large may a time step be, and what does “stable” have to mean for it?"
+        "How large may a time step be, by which definition of “stable”?"
     }
 
     fn source_claims(&self) -> &'static [SourceClaim] {

@@ -56,7 +56,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
         Some(m) => with_method!(*m, |i| examine(m.name(), m.title(), i)),
         None => examine(UNEVEN.0, UNEVEN.1, UNEVEN_THIRDS),
     })?;
-    let columns = ["integrator", "stable for z = ωΔt", "a hasty sweep says: up to"];
+    let columns = ["integrator", "stable for z = ωΔt", "stable up to, by a coarse sweep"];
     let mut table = Table::new("windows", &columns);
     let mut series = [const { Vec::new() }; 3];
     for (i, subject) in subjects.iter().enumerate() {

@@ -21,7 +21,7 @@ fn writes(rate: &RolloutRate) -> &'static str {
 fn way(writes: Writes) -> &'static str {
     match writes {
         Writes::Plain => "plain",
-        Writes::Past => "past the caches",
+        Writes::Past => "non-temporal",
     }
 }
 

@@ -16,8 +16,8 @@ pub(super) fn judge(record: &mut Record) {
     let ids = ["rollout.source.bandwidth", &own];
     let source = |bandwidth: f64| {
         format!(
-            "the fastest row of its table writes {} GB/s, {} % of the {SATURATED} GB/s at which §9.4 has the memory \
-             saturated",
+            "the fastest row of the source’s table writes {} GB/s, {} % of the {SATURATED} GB/s at \
+             which §9.4 calls the memory saturated",
             show(bandwidth),
             number(100.0 * bandwidth / SATURATED, 2)
         )
@@ -26,14 +26,15 @@ pub(super) fn judge(record: &mut Record) {
     record.judge(Ruling { id: "C56", source: "6.7", text, findings: &ids }, |f| {
         let (bandwidth, share) = (f[0].measured, f[1].measured);
         let because = format!(
-            "{}: what it waits for is something else. A fused rollout of {} reaches {} % of a fill of as much \
+            "{}: something else limits it. A fused rollout of {} reaches {} % of a fill of as much \
              memory here",
             source(bandwidth),
             example.title(),
             number(100.0 * share, 2)
         );
         match share > BOUND {
-            true => Judgement::conditional(because).only("steps are fused; not of the source’s own"),
+            true => Judgement::conditional(because)
+                .only("steps are fused; not for the rollouts of the source"),
             false => Judgement::refuted(because),
         }
     });
@@ -42,8 +43,9 @@ pub(super) fn judge(record: &mut Record) {
     record.judge(Ruling { id: "C91", source: "9.5", text, findings: &ids }, |f| {
         let [fall, bandwidth, own] = [0, 1, 2].map(|i| f[i].measured);
         let because = format!(
-            "a wall of memory would make transitions slower. Through its table they become {} times as fast: the cost of a \
-             step is shared by more environments (from the fewest to the most, {} times as fast here); and {}",
+            "a limit of memory would make transitions slower. From the first to the last row of \
+             its table they become {} times as fast, since more environments share the cost of a \
+             step (here {} times, from the fewest to the most environments); and {}",
             show(fall),
             show(own),
             source(bandwidth)
@@ -55,14 +57,14 @@ pub(super) fn judge(record: &mut Record) {
     record.judge(Ruling { id: "C96", source: "10", text, findings: &ids }, |f| {
         let (bandwidth, share) = (f[0].measured, f[1].measured);
         let percent = number(100.0 * share, 2);
-        let nobody = "Steps whose results nobody keeps wait for no memory, as the chapter on throughput shows";
+        let nobody = "Steps without stored results do not wait for memory (chapter on throughput)";
         match share > BOUND {
             true => Judgement::conditional(format!(
                 "{}. It does limit a fused rollout of {}, which reaches {percent} % of a fill. {nobody}",
                 source(bandwidth),
                 example.title()
             ))
-            .only("every step is stored and nothing else costs; not of the source’s own"),
+            .only("every step is stored and nothing else is slow; not for rollouts of the source"),
             false => Judgement::refuted(format!(
                 "{}. A fused rollout of {} reaches no more than {percent} % of a fill. {nobody}",
                 source(bandwidth),

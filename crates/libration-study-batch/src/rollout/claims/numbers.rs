@@ -32,8 +32,8 @@ pub(super) fn judge(record: &mut Record) {
         let steps = TABLE.map(|row| number(1e6 * row.step(), 3)).join(", ");
         let off = number(100.0 * f[0].measured, 2);
         let because = format!(
-            "{steps} µs a step for {} environments are no a + b·N: one of them lies {off} % off the best line. They are \
-             single measurements, which nobody has repeated",
+            "{steps} µs per step for {} environments do not lie on a line a + b·N: one is {off} % \
+             off the best line. They are single measurements without repetition",
             TABLE.map(|row| row.of.environments.to_string()).join(", ")
         );
         Judgement::holds_if(f[0].measured < SMOOTH, because)
@@ -49,9 +49,9 @@ fn example(record: &mut Record) {
     record.judge(Ruling { id: "C55", source: "6.7", text, findings: &ids }, |f| {
         let [shortest, longest] = example_times();
         let because = format!(
-            "0.09 s make {} million; both are rounded from one run only if it took {} to {} s. Table 9.11 has the same \
-             rollout {} times as fast, at {} million, and §9.5 a peak between the two. Here one core makes \
-             {} million",
+            "0.09 s correspond to {} million per second; both rounded numbers fit one run only if \
+             it took {} to {} s. In table 9.11 the same rollout is {} times as fast, at {} \
+             million; §9.5 gives a peak between the two. Here one core reaches {} million",
             show(f[0].predicted.unwrap_or(f64::NAN)),
             number(shortest, 3),
             number(longest, 3),
@@ -85,7 +85,8 @@ fn row(record: &mut Record, row: &Row, id: &str) {
     record.judge(Ruling { id, source: "9.11", text: &text, findings: &ids }, |f| {
         let own: Vec<String> = f[3..].iter().map(|f| show(f.measured / 1e6)).collect();
         let because = format!(
-            "the row agrees with itself if its MB are MiB of 17 bytes for each transition. Here: {} million a second",
+            "the row is consistent if its MB are MiB and a transition has 17 bytes. Here: {} \
+             million per second",
             own.join(" on one core, and on all ")
         );
         Judgement::confirmed(because)
