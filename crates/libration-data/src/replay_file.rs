@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use bytemuck::Pod;
 use libration::Float;
-use libration::replay::{Capacity, Replay, ReplayError};
+use libration::replay::{Capacity, ReplayBuffer, ReplayError};
 use memmap2::MmapMut;
 
 use crate::DataError;
@@ -19,7 +19,7 @@ use crate::lock::lock;
 /// in any order.
 #[derive(Debug)]
 pub struct ReplayFile<T, const O: usize, const D: usize> {
-    replay: Replay<T, O, D>,
+    replay: ReplayBuffer<T, O, D>,
     path: PathBuf,
     /// Locked as long as it is open.
     _file: File,
@@ -42,7 +42,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
             file.try_lock()?;
             fill(&file, bytes)?;
             let map = map(&file)?;
-            let replay = Replay::create(map, capacity).map_err(io::Error::other)?;
+            let replay = ReplayBuffer::create(map, capacity).map_err(io::Error::other)?;
             replay.map().flush()?;
             Ok((file, replay))
         })?;
@@ -58,7 +58,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
         let file = file.map_err(DataError::io("open", path))?;
         lock(&file, path)?;
         let map = map(&file).map_err(DataError::io("map", path))?;
-        let replay = Replay::open(map).map_err(refused(path))?;
+        let replay = ReplayBuffer::open(map).map_err(refused(path))?;
         Ok(ReplayFile { replay, path: path.to_owned(), _file: file })
     }
 
@@ -72,15 +72,15 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
 }
 
 impl<T, const O: usize, const D: usize> Deref for ReplayFile<T, O, D> {
-    type Target = Replay<T, O, D>;
+    type Target = ReplayBuffer<T, O, D>;
 
-    fn deref(&self) -> &Replay<T, O, D> {
+    fn deref(&self) -> &ReplayBuffer<T, O, D> {
         &self.replay
     }
 }
 
 impl<T, const O: usize, const D: usize> DerefMut for ReplayFile<T, O, D> {
-    fn deref_mut(&mut self) -> &mut Replay<T, O, D> {
+    fn deref_mut(&mut self) -> &mut ReplayBuffer<T, O, D> {
         &mut self.replay
     }
 }

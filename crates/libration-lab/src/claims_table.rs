@@ -7,9 +7,9 @@ use libration_report::report::scroll_container;
 use libration_report::text::{escape, render_html};
 use libration_study::{UnjudgedClaim, order};
 
+use crate::claims_without_study::{CLAIMS_WITHOUT_STUDY, ClaimWithoutStudy};
 use crate::results::Results;
 use crate::unjudged_claims::all_claims;
-use crate::untried_claims::{UNTRIED, UntriedClaim};
 
 /// Number of visible findings of a claim; the others are collapsed.
 const SHOWN: usize = 3;
@@ -124,7 +124,7 @@ fn unjudged(results: &Results) -> String {
 
 /// Returns the claims that no study judges, collapsed.
 fn untried() -> String {
-    let entry = |claim: &UntriedClaim| {
+    let entry = |claim: &ClaimWithoutStudy| {
         format!(
             "<li>{} (§ {}): {} Not judged: {}.</li>",
             escape(claim.id),
@@ -133,8 +133,8 @@ fn untried() -> String {
             render_html(claim.because)
         )
     };
-    let entries: String = UNTRIED.iter().map(entry).collect();
-    let count = UNTRIED.len();
+    let entries: String = CLAIMS_WITHOUT_STUDY.iter().map(entry).collect();
+    let count = CLAIMS_WITHOUT_STUDY.len();
     format!(
         "<details><summary>{count} further claims without a verdict, with reasons</summary>\
          <ul>{entries}</ul></details>\n"

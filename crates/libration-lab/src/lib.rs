@@ -1,6 +1,7 @@
 //! The laboratory: runs all studies and writes their report.
 
 mod claims_table;
+pub mod claims_without_study;
 pub mod output;
 pub mod results;
 mod run_manifest;
@@ -8,6 +9,5 @@ mod series;
 pub mod session;
 mod studies;
 mod unjudged_claims;
-pub mod untried_claims;
 
 pub use studies::STUDIES;

@@ -4,7 +4,7 @@ use libration_report::Record;
 use libration_study::{Config, Machine, UnjudgedClaim};
 use serde::Serialize;
 
-use crate::untried_claims::UntriedClaim;
+use crate::claims_without_study::ClaimWithoutStudy;
 
 /// Version of the format of `results.json`.
 pub const SCHEMA: &str = "libration.results/1";
@@ -23,7 +23,7 @@ pub struct Results {
     /// Whether all requested studies are included.
     pub complete: bool,
     /// Claims of the source report that no study judges, with reasons.
-    pub untried: &'static [UntriedClaim],
+    pub untried: &'static [ClaimWithoutStudy],
     /// Claims that studies try, but that none has judged in this run, and why.
     pub unjudged: Vec<UnjudgedClaim>,
     /// The records of the studies that have ended.

@@ -20,7 +20,7 @@ use libration_report::report::Cover;
 use libration_report::{Record, figure, report};
 use libration_study::{Lab, Machine, Study};
 
-use crate::untried_claims::UNTRIED;
+use crate::claims_without_study::CLAIMS_WITHOUT_STUDY;
 
 /// Error of a run that ended early.
 #[derive(Debug, Error)]
@@ -86,7 +86,7 @@ pub fn run(
         config: lab.config.clone(),
         seconds: 0.0,
         complete: false,
-        untried: UNTRIED,
+        untried: CLAIMS_WITHOUT_STUDY,
         unjudged: unjudged(lab.config, &[], &[]),
         studies: Vec::new(),
     };

@@ -6,7 +6,9 @@ use libration::checkpoint::CheckpointError;
 use libration::ensemble::Execution;
 use libration::rl::policy::ActionSequence;
 use libration::rl::{EnvironmentError, Plan, Rollout, StepBuffers};
-use libration_env::environments::{AnyPolicy, Batch, BatchVisitor, EnvironmentSettings};
+use libration_env::environments::{
+    AnyEnvironments, AnyPolicy, EnvironmentSettings, EnvironmentsVisitor,
+};
 
 use crate::array::Number;
 use crate::policy::Policy;
@@ -22,7 +24,7 @@ pub(crate) struct Ends<T> {
     pub(crate) lost: Vec<bool>,
 }
 
-/// A [`Batch`] with any number of observed numbers.
+/// [`AnyEnvironments`] with any number of observed numbers.
 pub(crate) trait DynBatch<T>: Send {
     fn observations(&self) -> usize;
 
@@ -54,7 +56,7 @@ pub(crate) trait DynBatch<T>: Send {
     fn restore(&mut self, state: &[u8]) -> Result<(), CheckpointError>;
 }
 
-impl<T: Number, const O: usize> DynBatch<T> for Box<dyn Batch<T, O>> {
+impl<T: Number, const O: usize> DynBatch<T> for Box<dyn AnyEnvironments<T, O>> {
     fn observations(&self) -> usize {
         O
     }
@@ -139,26 +141,26 @@ pub(crate) use with_batch;
 /// Takes what is visited as it is.
 struct Keep;
 
-impl<T: Number> BatchVisitor<T> for Keep {
+impl<T: Number> EnvironmentsVisitor<T> for Keep {
     type Output = Box<dyn DynBatch<T>>;
 
-    fn visit<const O: usize>(self, all: Box<dyn Batch<T, O>>) -> Self::Output {
+    fn visit<const O: usize>(self, all: Box<dyn AnyEnvironments<T, O>>) -> Self::Output {
         Box::new(all)
     }
 }
 
 impl AnyBatch {
-    /// Returns environments of a recipe.
+    /// Returns environments of these settings.
     pub(crate) fn new(
-        recipe: &EnvironmentSettings,
+        environments: &EnvironmentSettings,
         single: bool,
         len: usize,
         execution: &Execution,
     ) -> Result<Self, EnvironmentError> {
         Ok(if single {
-            AnyBatch::F32(recipe.with([0, len], 0, execution, Keep)?)
+            AnyBatch::F32(environments.with([0, len], 0, execution, Keep)?)
         } else {
-            AnyBatch::F64(recipe.with([0, len], 0, execution, Keep)?)
+            AnyBatch::F64(environments.with([0, len], 0, execution, Keep)?)
         })
     }
 }

@@ -44,12 +44,12 @@ impl Batch {
 
     /// Creates the environments; `buffers` is the number of reused arrays, or 0 for new arrays in every step.
     fn _set_up(&self, py: Python<'_>, settings: Settings, buffers: usize) -> PyResult<()> {
-        let (recipe, execution) = (settings.recipe()?, settings.execution()?);
+        let (environments, execution) = (settings.environments()?, settings.execution()?);
         let len = settings.num_envs;
-        let batch = AnyBatch::new(&recipe, settings.single()?, len, &execution);
+        let batch = AnyBatch::new(&environments, settings.single()?, len, &execution);
         *self.inner.lock(py)? = Some(Inner {
             batch: batch.map_err(Raised::raised)?,
-            episodes: EpisodeStates::new(&recipe, len, buffers),
+            episodes: EpisodeStates::new(&environments, len, buffers),
             process: std::process::id(),
             threads: execution.thread_count(),
         });
@@ -68,7 +68,7 @@ impl Batch {
         let mut guard = slf.get().inner.lock(slf.py())?;
         let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
         episodes.expect_action(slf)?;
-        with_batch!(batch, table => step::take(slf.py(), &mut **table, episodes, actions))
+        with_batch!(batch, environments => step::take(slf.py(), &mut **environments, episodes, actions))
     }
 
     /// Accepts the arguments of a step and does nothing, for benchmarks.
@@ -98,11 +98,11 @@ impl Batch {
         let chosen = |n: usize| seeds[n].filter(|_| mask[n]);
         let first: Vec<Option<u64>> = (0..episodes.len).map(chosen).collect();
         let next: Vec<bool> = (0..episodes.len).map(|n| mask[n] && seeds[n].is_none()).collect();
-        with_batch!(batch, table => {
-            let begun = table.seed(&first).and_then(|()| table.reset(&next));
+        with_batch!(batch, environments => {
+            let begun = environments.seed(&first).and_then(|()| environments.reset(&next));
             begun.map_err(Raised::raised)?;
             episodes.begun(&mask);
-            step::observe(slf.py(), &mut **table, episodes)
+            step::observe(slf.py(), &mut **environments, episodes)
         })
     }
 
@@ -111,7 +111,7 @@ impl Batch {
         let mut guard = slf.get().inner.lock(slf.py())?;
         let Inner { batch, .. } = open(slf, &mut guard)?;
         let which = which.to_vec()?;
-        with_batch!(batch, table => table.end(&which)).map_err(Raised::raised)
+        with_batch!(batch, environments => environments.end(&which)).map_err(Raised::raised)
     }
 
     /// Returns memory for a rollout of `horizon` steps.
@@ -142,32 +142,32 @@ impl Batch {
             episodes.stood(&ended);
         }
         outcome?;
-        with_batch!(batch, table => step::observe_copy(slf.py(), &mut **table, episodes))
+        with_batch!(batch, environments => step::observe_copy(slf.py(), &mut **environments, episodes))
     }
 
     /// Returns positions and velocities, `(num_envs, 2)`.
     fn _states<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         fn states<'py, T: Number>(
             py: Python<'py>,
-            table: &dyn DynBatch<T>,
+            environments: &dyn DynBatch<T>,
             len: usize,
         ) -> PyResult<Bound<'py, PyAny>> {
             let all: Bound<'py, Array<T, 2>> = allocate(py, [len, 2])?;
             for (n, row) in room(&all).chunks_exact_mut(2).enumerate() {
-                row.copy_from_slice(&table.state(n).unwrap_or([T::zero(); 2]));
+                row.copy_from_slice(&environments.state(n).unwrap_or([T::zero(); 2]));
             }
             Ok(all.into_any())
         }
         let mut guard = slf.get().inner.lock(slf.py())?;
         let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
-        with_batch!(batch, table => states(slf.py(), &**table, episodes.len))
+        with_batch!(batch, environments => states(slf.py(), &**environments, episodes.len))
     }
 
     /// Returns the state, for environments with the same settings.
     fn _state<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyBytes>, bool, Vec<u8>)> {
         let mut guard = slf.get().inner.lock(slf.py())?;
         let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
-        let state = with_batch!(batch, table => table.to_bytes());
+        let state = with_batch!(batch, environments => environments.to_bytes());
         Ok((PyBytes::new(slf.py(), &state), episodes.untouched, episodes.standing.clone()))
     }
 
@@ -179,7 +179,7 @@ impl Batch {
         if standing.len() != episodes.len {
             return Err(value_error(format!("a state of {} environments", standing.len())));
         }
-        with_batch!(batch, table => table.restore(&bytes)).map_err(Raised::raised)?;
+        with_batch!(batch, environments => environments.restore(&bytes)).map_err(Raised::raised)?;
         (episodes.untouched, episodes.standing) = (untouched, standing);
         Ok(())
     }
@@ -203,7 +203,7 @@ fn open<'a>(
     if inner.threads > 1 && inner.process != std::process::id() {
         let execution = Execution::serial().threads(inner.threads);
         let execution = execution.map_err(|error| EnvironmentError::from(error).raised())?;
-        with_batch!(&mut inner.batch, table => table.execute(execution));
+        with_batch!(&mut inner.batch, environments => environments.execute(execution));
         inner.process = std::process::id();
     }
     Ok(inner)

@@ -14,11 +14,12 @@ use crate::settings::Settings;
 /// Seconds that so many steps take under actions of zero, in memory that is used again.
 #[pyfunction]
 pub(crate) fn _seconds_of_steps(py: Python<'_>, settings: Settings, steps: usize) -> PyResult<f64> {
-    let (recipe, execution) = (settings.recipe()?, settings.execution()?);
+    let (environments, execution) = (settings.environments()?, settings.execution()?);
     let (len, single) = (settings.num_envs, settings.single()?);
     py.detach(|| {
-        let mut batch = AnyBatch::new(&recipe, single, len, &execution).map_err(Raised::raised)?;
-        with_batch!(&mut batch, table => timed(&mut **table, len, steps))
+        let mut batch =
+            AnyBatch::new(&environments, single, len, &execution).map_err(Raised::raised)?;
+        with_batch!(&mut batch, environments => timed(&mut **environments, len, steps))
     })
 }
 
@@ -32,43 +33,44 @@ pub(crate) fn _seconds_of_rollouts(
     rollouts: usize,
 ) -> PyResult<Vec<f64>> {
     fn each<T: Number>(
-        table: &mut dyn DynBatch<T>,
+        environments: &mut dyn DynBatch<T>,
         acts: &Policy<T>,
         plan: Plan,
         rollouts: usize,
     ) -> Result<Vec<f64>, EnvironmentError> {
-        let mut tensors = table.tensors(plan)?;
+        let mut tensors = environments.tensors(plan)?;
         let seeds: Vec<Option<u64>> = (0..plan.environments as u64).map(Some).collect();
-        table.seed(&seeds)?;
+        environments.seed(&seeds)?;
         let timed = |_| {
             let start = Instant::now();
-            table.fill(acts, &mut *tensors, 0..plan.horizon)?;
+            environments.fill(acts, &mut *tensors, 0..plan.horizon)?;
             Ok(start.elapsed().as_secs_f64())
         };
         (0..rollouts).map(timed).collect()
     }
-    let (recipe, execution) = (settings.recipe()?, settings.execution()?);
+    let (environments, execution) = (settings.environments()?, settings.execution()?);
     let len = settings.num_envs;
-    let batch = AnyBatch::new(&recipe, settings.single()?, len, &execution);
+    let batch = AnyBatch::new(&environments, settings.single()?, len, &execution);
     let plan = Plan::new(horizon, len).truncated();
     let done = match batch.map_err(Raised::raised)? {
-        AnyBatch::F32(mut table) => {
+        AnyBatch::F32(mut environments) => {
             let acts = Policy::new(&policy)?;
-            py.detach(|| each(&mut *table, &acts, plan, rollouts))
+            py.detach(|| each(&mut *environments, &acts, plan, rollouts))
         }
-        AnyBatch::F64(mut table) => {
+        AnyBatch::F64(mut environments) => {
             let acts = Policy::new(&policy)?;
-            py.detach(|| each(&mut *table, &acts, plan, rollouts))
+            py.detach(|| each(&mut *environments, &acts, plan, rollouts))
         }
     };
     done.map_err(Raised::raised)
 }
 
-fn timed<T: Number>(table: &mut dyn DynBatch<T>, len: usize, steps: usize) -> PyResult<f64> {
+fn timed<T: Number>(environments: &mut dyn DynBatch<T>, len: usize, steps: usize) -> PyResult<f64> {
     let seeds: Vec<Option<u64>> = (0..len as u64).map(Some).collect();
-    table.seed(&seeds).map_err(Raised::raised)?;
+    environments.seed(&seeds).map_err(Raised::raised)?;
     let actions = vec![T::zero(); len];
-    let (mut seen, mut reward) = (vec![T::zero(); len * table.observations()], actions.clone());
+    let (mut seen, mut reward) =
+        (vec![T::zero(); len * environments.observations()], actions.clone());
     let (mut terminated, mut truncated) = (vec![0; len], vec![0; len]);
     let start = Instant::now();
     for _ in 0..steps {
@@ -78,7 +80,7 @@ fn timed<T: Number>(table: &mut dyn DynBatch<T>, len: usize, steps: usize) -> Py
             terminated: &mut terminated,
             truncated: &mut truncated,
         };
-        table.act(&actions, to).map_err(Raised::raised)?;
+        environments.act(&actions, to).map_err(Raised::raised)?;
     }
     Ok(start.elapsed().as_secs_f64())
 }

@@ -2,7 +2,7 @@
 
 use bytemuck::cast_slice_mut;
 use libration::ensemble::Execution;
-use libration::replay::{Capacity, Columns, Draw, Lookahead, Replay, ReplayError, Sequences};
+use libration::replay::{Capacity, Columns, Draw, Lookahead, ReplayBuffer, ReplayError, Sequences};
 use libration::rl::{EnvironmentError, Rollout};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -48,7 +48,7 @@ struct SampleRequest {
     correction: Option<f64>,
 }
 
-/// A [`Replay`] of environments that show any number of numbers.
+/// A [`ReplayBuffer`] of environments that show any number of numbers.
 trait Store<T>: Send {
     fn len(&self) -> u64;
 
@@ -70,9 +70,9 @@ trait Store<T>: Send {
     ) -> Result<usize, ReplayError>;
 }
 
-impl<T: Number, const O: usize> Store<T> for Replay<T, O, 1> {
+impl<T: Number, const O: usize> Store<T> for ReplayBuffer<T, O, 1> {
     fn len(&self) -> u64 {
-        Replay::len(self)
+        ReplayBuffer::len(self)
     }
 
     fn insert(&mut self, tensors: &mut dyn Tensors<T>, next: &[T]) -> Result<(), ReplayError> {
@@ -81,7 +81,7 @@ impl<T: Number, const O: usize> Store<T> for Replay<T, O, 1> {
             let name = "numbers that an environment of the rollout shows";
             return Err(EnvironmentError::Shape { name, found, wanted: O }.into());
         };
-        Replay::insert(self, rollout, next, &Execution::serial())
+        ReplayBuffer::insert(self, rollout, next, &Execution::serial())
     }
 
     fn sample<'py>(&self, py: Python<'py>, request: SampleRequest) -> PyResult<Bound<'py, PyDict>> {
@@ -109,7 +109,7 @@ impl<T: Number, const O: usize> Store<T> for Replay<T, O, 1> {
         let serial = Execution::serial();
         let drawn = py.detach(|| match correction {
             Some(beta) => self.sample_prioritised(draw, ahead, beta, &mut columns, &serial),
-            None => Replay::sample(self, draw, ahead, &mut columns, &serial),
+            None => ReplayBuffer::sample(self, draw, ahead, &mut columns, &serial),
         });
         drawn.map_err(Raised::raised)?;
         let all = PyDict::new(py);
@@ -168,13 +168,13 @@ impl<T: Number, const O: usize> Store<T> for Replay<T, O, 1> {
         exponent: f64,
     ) -> Result<usize, ReplayError> {
         let priorities: Vec<T> = priorities.iter().map(|&x| T::from_f64(x)).collect();
-        Replay::update(self, numbers, &priorities, exponent)
+        ReplayBuffer::update(self, numbers, &priorities, exponent)
     }
 }
 
 fn made<T: Number>(observations: usize, capacity: Capacity) -> PyResult<Box<dyn Store<T>>> {
     fn of<T: Number, const O: usize>(capacity: Capacity) -> PyResult<Box<dyn Store<T>>> {
-        let replay = Replay::<T, O, 1>::new(capacity);
+        let replay = ReplayBuffer::<T, O, 1>::new(capacity);
         replay.map(|made| Box::new(made) as Box<dyn Store<T>>).map_err(Raised::raised)
     }
     match observations {

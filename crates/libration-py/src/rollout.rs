@@ -42,8 +42,12 @@ impl Memory {
     /// Allocates a rollout of a batch.
     pub(crate) fn new(batch: &AnyBatch, plan: Plan) -> PyResult<Self> {
         let tensors = match batch {
-            AnyBatch::F32(table) => AnyTensors::F32(table.tensors(plan).map_err(Raised::raised)?),
-            AnyBatch::F64(table) => AnyTensors::F64(table.tensors(plan).map_err(Raised::raised)?),
+            AnyBatch::F32(environments) => {
+                AnyTensors::F32(environments.tensors(plan).map_err(Raised::raised)?)
+            }
+            AnyBatch::F64(environments) => {
+                AnyTensors::F64(environments.tensors(plan).map_err(Raised::raised)?)
+            }
         };
         Ok(Memory { tensors: CheckedMutex::new(tensors) })
     }
@@ -62,11 +66,11 @@ impl Memory {
         substeps: usize,
     ) -> PyResult<(Vec<u8>, PyResult<()>)> {
         match (batch, &mut *self.tensors(py)?) {
-            (AnyBatch::F32(table), AnyTensors::F32(tensors)) => {
-                Ok(filled(py, &mut **table, &Policy::new(policy)?, &mut **tensors, substeps))
+            (AnyBatch::F32(environments), AnyTensors::F32(tensors)) => {
+                Ok(filled(py, &mut **environments, &Policy::new(policy)?, &mut **tensors, substeps))
             }
-            (AnyBatch::F64(table), AnyTensors::F64(tensors)) => {
-                Ok(filled(py, &mut **table, &Policy::new(policy)?, &mut **tensors, substeps))
+            (AnyBatch::F64(environments), AnyTensors::F64(tensors)) => {
+                Ok(filled(py, &mut **environments, &Policy::new(policy)?, &mut **tensors, substeps))
             }
             _ => {
                 Err(value_error("the rollout is of another dtype than the environments".to_owned()))
@@ -78,22 +82,22 @@ impl Memory {
 /// Fills tensors piece by piece. Gives which environments ended with the last step that was taken, and why it was the last.
 fn filled<T: Number>(
     py: Python<'_>,
-    table: &mut dyn DynBatch<T>,
+    environments: &mut dyn DynBatch<T>,
     policy: &Policy<T>,
     tensors: &mut dyn Tensors<T>,
     substeps: usize,
 ) -> (Vec<u8>, PyResult<()>) {
-    let Plan { horizon, environments, .. } = tensors.plan();
-    let first = FIRST / environments.saturating_mul(substeps).max(1);
+    let Plan { horizon, environments: count, .. } = tensors.plan();
+    let first = FIRST / count.saturating_mul(substeps).max(1);
     let mut taken = 0;
     let outcome = run_in_slices(py, horizon as u64, first as u64, |piece| {
         let rows = piece.start as usize..piece.end as usize;
-        py.detach(|| table.fill(policy, tensors, rows)).map_err(Raised::raised)?;
+        py.detach(|| environments.fill(policy, tensors, rows)).map_err(Raised::raised)?;
         taken = piece.end as usize;
         Ok(())
     });
     let [(_, terminated), (_, truncated)] = tensors.flags();
-    let last = taken.saturating_sub(1) * environments..taken * environments;
+    let last = taken.saturating_sub(1) * count..taken * count;
     let flags = terminated[last.clone()].iter().zip(&truncated[last]);
     (flags.map(|(over, cut)| over | cut).collect(), outcome)
 }

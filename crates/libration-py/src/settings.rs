@@ -56,7 +56,7 @@ impl Settings {
         execution.map_err(|error| libration::rl::EnvironmentError::from(error).raised())
     }
 
-    pub(crate) fn recipe(&self) -> PyResult<EnvironmentSettings> {
+    pub(crate) fn environments(&self) -> PyResult<EnvironmentSettings> {
         let method = method(&self.integrator)?;
         let (system, actuation) = system(&self.system)?;
         let system = SingleDofSystem::new(system).ok_or_else(|| {

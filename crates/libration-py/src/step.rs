@@ -52,17 +52,17 @@ const IN_HAND: usize = 2;
 const WORTH_A_LOCK: usize = 512;
 
 impl EpisodeStates {
-    pub(crate) fn new(recipe: &EnvironmentSettings, len: usize, buffers: usize) -> Self {
+    pub(crate) fn new(environments: &EnvironmentSettings, len: usize, buffers: usize) -> Self {
         let rows = if buffers > 0 { buffers } else { IN_HAND };
         EpisodeStates {
             len,
-            autoreset: recipe.autoreset,
+            autoreset: environments.autoreset,
             untouched: true,
             standing: vec![0; len],
             rows: repeat_with(Default::default).take(rows).collect(),
             turn: 0,
             shared: buffers > 0,
-            substeps: recipe.substeps as usize,
+            substeps: environments.substeps as usize,
         }
     }
 
@@ -122,37 +122,37 @@ impl EpisodeStates {
 /// What is seen now, in the array of a step.
 pub(crate) fn observe<'py, T: Number>(
     py: Python<'py>,
-    table: &mut dyn DynBatch<T>,
+    environments: &mut dyn DynBatch<T>,
     episodes: &mut EpisodeStates,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let Row { seen, .. } = episodes.row::<T>(py, table.observations())?;
-    shown(py, table, seen)
+    let Row { seen, .. } = episodes.row::<T>(py, environments.observations())?;
+    shown(py, environments, seen)
 }
 
 /// What is seen now, in an array that no step is written into.
 pub(crate) fn observe_copy<'py, T: Number>(
     py: Python<'py>,
-    table: &mut dyn DynBatch<T>,
+    environments: &mut dyn DynBatch<T>,
     episodes: &EpisodeStates,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let seen = allocate(py, [episodes.len, table.observations()])?;
-    shown(py, table, seen)
+    let seen = allocate(py, [episodes.len, environments.observations()])?;
+    shown(py, environments, seen)
 }
 
 fn shown<'py, T: Number>(
     py: Python<'py>,
-    table: &mut dyn DynBatch<T>,
+    environments: &mut dyn DynBatch<T>,
     seen: Bound<'py, Array<T, 2>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let to = room(&seen);
-    py.detach(|| table.observe(to)).map_err(Raised::raised)?;
+    py.detach(|| environments.observe(to)).map_err(Raised::raised)?;
     Ok(seen.into_any())
 }
 
 /// Takes a step, and says what ended with it.
 pub(crate) fn take<'py, T: Number>(
     py: Python<'py>,
-    table: &mut dyn DynBatch<T>,
+    environments: &mut dyn DynBatch<T>,
     episodes: &mut EpisodeStates,
     given: &Bound<'py, PyAny>,
 ) -> PyResult<Step<'py>> {
@@ -172,7 +172,7 @@ pub(crate) fn take<'py, T: Number>(
             actions[n]
         )));
     }
-    let row = episodes.row::<T>(py, table.observations())?;
+    let row = episodes.row::<T>(py, environments.observations())?;
     let Row { seen, reward, terminated, truncated } = &row;
     // Who uses arrays again may ask for what an array of earlier steps says, and that is written now.
     let copied;
@@ -190,7 +190,7 @@ pub(crate) fn take<'py, T: Number>(
     let (seen, reward) = (room(seen), room(reward));
     let (terminated, truncated) = (bytes_of(terminated), bytes_of(truncated));
     let to = StepBuffers { seen, reward, terminated: &mut *terminated, truncated: &mut *truncated };
-    let act = || table.act(actions, to);
+    let act = || environments.act(actions, to);
     let ends = if episodes.len.saturating_mul(episodes.substeps) > WORTH_A_LOCK {
         py.detach(act)
     } else {
@@ -202,7 +202,7 @@ pub(crate) fn take<'py, T: Number>(
             terminated.iter().zip(&*truncated).map(|(over, cut)| over | cut).collect();
         episodes.stood(&ended);
     }
-    let infos = step_infos(py, &ends, episodes, table.observations())?;
+    let infos = step_infos(py, &ends, episodes, environments.observations())?;
     let Row { seen, reward, terminated, truncated } = row;
     Ok((seen.into_any(), reward.into_any(), terminated.into_any(), truncated.into_any(), infos))
 }

@@ -6,7 +6,7 @@ use super::source::Source;
 use crate::workspace;
 
 /// Modules that may choose instructions.
-const KERNELS: [&str; 2] = ["ensemble", "kernel"];
+const KERNELS: [&str; 2] = ["ensemble/", "rl/horizon"];
 
 /// SIMD in the engine outside the batch kernels.
 pub(super) fn check(source: &Source) -> Vec<Finding> {
@@ -14,7 +14,7 @@ pub(super) fn check(source: &Source) -> Vec<Finding> {
     if !in_engine || KERNELS.iter().any(|module| source.path.contains(module)) {
         return Vec::new();
     }
-    let advice = "choose instructions in a batch kernel (a module `ensemble` or `kernel`); here \
+    let advice = "choose instructions in a batch kernel (`ensemble` or `rl/horizon.rs`); here \
                   write the scalar step, which a loop over lanes turns into vectors";
     source
         .code_lines()

@@ -96,6 +96,11 @@ impl Execution {
     /// longer. With as many parts as threads each has the same one every time, whose memory is near to it;
     /// otherwise whoever is free takes the next.
     pub fn each<P: Send, R: Send>(&self, parts: Vec<P>, work: impl Fn(P) -> R + Sync) -> Vec<R> {
+        self.each_dyn(parts, &work)
+    }
+
+    /// [`each`](Self::each), compiled once for all work on the same parts.
+    fn each_dyn<P: Send, R: Send>(&self, parts: Vec<P>, work: &(dyn Fn(P) -> R + Sync)) -> Vec<R> {
         let Some(pool) = self.pool.as_ref().filter(|_| parts.len() > 1) else {
             return parts.into_iter().map(work).collect();
         };

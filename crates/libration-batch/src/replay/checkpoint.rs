@@ -4,10 +4,10 @@ use bytemuck::Pod;
 use libration_core::Float;
 use memmap2::MmapMut;
 
-use super::{Capacity, Replay, ReplayError};
+use super::{Capacity, ReplayBuffer, ReplayError};
 use crate::checkpoint::{Checkpoint, CheckpointError, Trait};
 
-impl<T: Float + Pod, const O: usize, const D: usize> Checkpoint for Replay<T, O, D> {
+impl<T: Float + Pod, const O: usize, const D: usize> Checkpoint for ReplayBuffer<T, O, D> {
     fn traits(&self) -> Vec<Trait> {
         let Capacity { steps, environments, ends, priorities } = self.capacity;
         vec![

@@ -8,7 +8,7 @@ use libration_core::Float;
 use super::capacity::Fields;
 use super::memory::Marks;
 use super::replay_buffer::{END, NONE, TERMINATED, TRUNCATED};
-use super::{Replay, ReplayError};
+use super::{ReplayBuffer, ReplayError};
 use crate::ensemble::Execution;
 use crate::rl::{Layout, Plan, Rollout};
 
@@ -21,7 +21,7 @@ struct Rows<'a> {
     execution: &'a Execution,
 }
 
-impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
+impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
     /// Inserts a rollout and overwrites the oldest steps. `next` are the observations after its last step: `[n, i]`, as
     /// [`observe`](crate::rl::Environments::observe) writes them.
     ///

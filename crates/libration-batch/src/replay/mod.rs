@@ -1,6 +1,6 @@
 //! Replay buffers: memory of transitions from which a learner draws batches.
 //!
-//! A [`Replay`] stores the last steps of the environments of a [`Rollout`](crate::rl::Rollout), one rollout per insertion. The next
+//! A [`ReplayBuffer`] stores the last steps of the environments of a [`Rollout`](crate::rl::Rollout), one rollout per insertion. The next
 //! observation is in the next row, or stored separately at the end of an episode: each observation is stored once. A [`Batch`] of
 //! transitions, of n-step returns, or [`Sequences`] of steps is sampled uniformly or in proportion to priorities. Seed and number of
 //! a batch determine the sample. All data lie in one piece of memory, which may be a file. If the process dies, completed
@@ -26,7 +26,7 @@ pub use batch::{Batch, Columns};
 pub use capacity::Capacity;
 pub use draw::Draw;
 pub use error::ReplayError;
-pub use replay_buffer::Replay;
+pub use replay_buffer::ReplayBuffer;
 pub use sampling::Lookahead;
 pub use sequences::Sequences;
 pub use sum_tree::SumTree;

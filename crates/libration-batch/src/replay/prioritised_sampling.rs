@@ -9,13 +9,13 @@ use libration_core::control::error::{ensure, ensure_probability};
 use super::memory::Marks;
 use super::power::power;
 use super::replay_buffer::NONE;
-use super::{Columns, Draw, Lookahead, Replay, ReplayError};
+use super::{Columns, Draw, Lookahead, ReplayBuffer, ReplayError};
 use crate::ensemble::Execution;
 
 /// Of so large ones any number of transitions has a finite sum.
 const MOST_WEIGHT: f64 = 1e280;
 
-impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
+impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
     /// Fills a batch with transitions drawn in proportion to their weights, one from each of as many equal parts of the total. Their
     /// importance is `(live·w/total)^−β` for the weight `w`, over the largest of the batch: `correction` is `β`, from 0 to 1.
     ///

@@ -27,7 +27,7 @@ pub(super) const NONE: u8 = 8;
 /// use libration::State;
 /// use libration::ensemble::{All, Execution};
 /// use libration::integrator::VelocityVerlet;
-/// use libration::replay::{Batch, Capacity, Draw, Lookahead, Replay};
+/// use libration::replay::{Batch, Capacity, Draw, Lookahead, ReplayBuffer};
 /// use libration::rl::policy::Random;
 /// use libration::rl::{Environment, Environments, Plan, Rollout};
 /// use libration::rl::{start::FixedStart, task::Regulate};
@@ -41,7 +41,7 @@ pub(super) const NONE: u8 = 8;
 /// let mut all = Environments::new(environment, 64, 7, Execution::serial())?;
 /// let mut rollout = Rollout::new(Plan::new(100, 64).truncated())?;
 ///
-/// let mut replay = Replay::<f32, 2, 1>::new(Capacity::new(10_000, 64))?;
+/// let mut replay = ReplayBuffer::<f32, 2, 1>::new(Capacity::new(10_000, 64))?;
 /// let mut next = vec![0.0; 64 * 2];
 /// for _ in 0..5 {
 ///     all.rollout(Random::between([-1.0], [1.0]), &mut rollout)?;
@@ -56,7 +56,7 @@ pub(super) const NONE: u8 = 8;
 /// # }
 /// ```
 #[derive(Debug)]
-pub struct Replay<T, const O: usize, const D: usize> {
+pub struct ReplayBuffer<T, const O: usize, const D: usize> {
     pub(super) capacity: Capacity,
     /// Environments, and rows.
     pub(super) width: Divisor,
@@ -68,7 +68,7 @@ pub struct Replay<T, const O: usize, const D: usize> {
     number: core::marker::PhantomData<T>,
 }
 
-impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
+impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
     /// An empty buffer in new memory.
     ///
     /// # Errors
@@ -88,12 +88,12 @@ impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
     fn empty(capacity: Capacity, memory: Memory) -> Self {
         let cells = capacity.rows() * capacity.environments;
         let sums = capacity.priorities.then(|| Sums::zero(cells));
-        Replay { sums, ..Self::of(capacity, memory, Marks::NONE) }
+        ReplayBuffer { sums, ..Self::of(capacity, memory, Marks::NONE) }
     }
 
     /// One without sums.
     fn of(capacity: Capacity, memory: Memory, marks: Marks) -> Self {
-        Replay {
+        ReplayBuffer {
             capacity,
             width: Divisor::new(capacity.environments),
             height: Divisor::new(capacity.rows()),

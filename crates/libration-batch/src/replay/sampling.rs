@@ -8,7 +8,7 @@ use libration_core::control::error::ensure_probability;
 
 use super::memory::Marks;
 use super::replay_buffer::{END, NONE, TERMINATED, TRUNCATED};
-use super::{Columns, Draw, Replay, ReplayError};
+use super::{Columns, Draw, ReplayBuffer, ReplayError};
 use crate::ensemble::Execution;
 
 /// The number of steps of a transition of a batch.
@@ -58,7 +58,7 @@ const ATTEMPTS: u32 = 16;
 /// Transitions of a batch that are worth a thread.
 const PIECE: usize = 1 << 14;
 
-impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
+impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
     /// Fills a batch with transitions that are drawn with replacement, each as likely; their weights are 1.
     ///
     /// # Errors

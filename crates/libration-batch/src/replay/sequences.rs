@@ -4,7 +4,7 @@ use bytemuck::Pod;
 use libration_core::Float;
 
 use super::replay_buffer::{END, NONE, TERMINATED, TRUNCATED};
-use super::{Draw, Replay, ReplayError};
+use super::{Draw, ReplayBuffer, ReplayError};
 use crate::ensemble::Execution;
 
 /// Sequences of equal length, allocated once and filled many times: each field is `[i, t]`.
@@ -63,7 +63,7 @@ struct SequenceSlot<'a, T, const O: usize, const D: usize> {
 /// Steps that are worth a thread.
 const PIECE: usize = 1 << 14;
 
-impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
+impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
     /// Samples sequences uniformly with replacement, among those within the buffer that begin with a transition.
     ///
     /// # Errors

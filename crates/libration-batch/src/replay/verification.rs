@@ -5,9 +5,9 @@ use libration_core::Float;
 
 use super::memory::Marks;
 use super::replay_buffer::{END, NONE};
-use super::{Replay, ReplayError};
+use super::{ReplayBuffer, ReplayError};
 
-impl<T: Float + Pod, const O: usize, const D: usize> Replay<T, O, D> {
+impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
     /// Marks transitions before a reset: the process may have died between the end and its mark.
     pub(super) fn mark_parted(&mut self) {
         let parted = |i: u64| {

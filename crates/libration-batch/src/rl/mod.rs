@@ -28,7 +28,7 @@ mod error_scale;
 mod estimates;
 mod fused_step;
 mod history;
-mod kernel;
+mod horizon;
 mod lanes;
 mod observation;
 mod plan;

@@ -11,7 +11,7 @@ use libration_core::control::error::ensure;
 
 use super::block_size::{LANES, TILE};
 use super::error::NOTHING_DRAWN;
-use super::kernel::{Horizon, Share};
+use super::horizon::{Horizon, Share};
 use super::rollout_slice::{RolloutSlice, first_of, rows_of};
 use super::{
     Autoreset, EnvironmentError, Environments, EpisodeEnd, Layout, Plan, Policy, Rollout, Sensor,

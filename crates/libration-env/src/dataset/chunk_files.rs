@@ -200,13 +200,13 @@ impl<T: Number, const O: usize> ChunkRollout<T, O> {
             column("step", "1", Values::U64(step.into())),
             column("environment", "1", Values::U32(environments.into())),
         ];
-        for (i, &(name, unit)) in dataset.recipe.observed().iter().enumerate() {
+        for (i, &(name, unit)) in dataset.environment.observed().iter().enumerate() {
             // One plane after the other, as Parquet is written.
             debug_assert_eq!(rollout.plan().layout, Layout::Planes);
             columns.push(column(name, unit, T::view(&rollout.observation()[i * all..][..all])));
         }
         columns.extend([
-            column("u0", dataset.recipe.units()[2], T::view(rollout.action())),
+            column("u0", dataset.environment.units()[2], T::view(rollout.action())),
             column("reward", "1", T::view(rollout.reward())),
             column("terminated", "1", Values::Bool(rollout.terminated().into())),
             column("truncated", "1", Values::Bool(rollout.truncated().into())),
@@ -239,7 +239,7 @@ impl<T: Number, const O: usize> ChunkRollout<T, O> {
             column("step", "1", Values::U64(steps.into())),
             column("environment", "1", Values::U32(who.into())),
         ];
-        for (k, &(name, unit)) in dataset.recipe.observed().iter().enumerate() {
+        for (k, &(name, unit)) in dataset.environment.observed().iter().enumerate() {
             let seen = finals.iter().map(|end| end.observation[k]);
             let seen = seen.chain(open.iter().map(|&i| self.next[i * O + k])).collect();
             columns.push(column(name, unit, T::column(seen)));

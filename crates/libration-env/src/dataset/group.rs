@@ -7,7 +7,7 @@ use libration_data::Values;
 
 use super::settings::Dataset;
 use crate::environments;
-use crate::environments::{AnyPolicy, Batch, EnvironmentFloat, PolicySettings};
+use crate::environments::{AnyEnvironments, AnyPolicy, EnvironmentFloat, PolicySettings};
 
 /// A float type of data sets.
 pub(super) trait Number: EnvironmentFloat {
@@ -53,7 +53,7 @@ pub(super) trait GroupVisitor {
     /// Runs the operation.
     fn visit<T: Number, const O: usize>(
         self,
-        all: Box<dyn Batch<T, O>>,
+        all: Box<dyn AnyEnvironments<T, O>>,
         actor: AnyPolicy<'static, T, O>,
     ) -> Self::Output;
 }
@@ -88,8 +88,10 @@ impl Dataset {
     ) -> Result<V::Output, EnvironmentError> {
         let visit = WithPolicy(visit, &self.policy);
         match self.float {
-            FloatType::F64 => self.recipe.with::<f64, _>([first, len], self.seed, execution, visit),
-            _ => self.recipe.with::<f32, _>([first, len], self.seed, execution, visit),
+            FloatType::F64 => {
+                self.environment.with::<f64, _>([first, len], self.seed, execution, visit)
+            }
+            _ => self.environment.with::<f32, _>([first, len], self.seed, execution, visit),
         }
     }
 }
@@ -97,10 +99,10 @@ impl Dataset {
 /// An operation with the policy of a data set.
 struct WithPolicy<'a, V>(V, &'a PolicySettings);
 
-impl<T: Number, V: GroupVisitor> environments::BatchVisitor<T> for WithPolicy<'_, V> {
+impl<T: Number, V: GroupVisitor> environments::EnvironmentsVisitor<T> for WithPolicy<'_, V> {
     type Output = V::Output;
 
-    fn visit<const O: usize>(self, all: Box<dyn Batch<T, O>>) -> V::Output {
+    fn visit<const O: usize>(self, all: Box<dyn AnyEnvironments<T, O>>) -> V::Output {
         self.0.visit(all, AnyPolicy::new(self.1))
     }
 }

@@ -7,13 +7,13 @@ use super::episodes::Episodes;
 use super::group::{Group, Number};
 use super::memory_check::not_enough_memory;
 use super::{DataFormat, Dataset, DatasetError};
-use crate::environments::{AnyPolicy, Batch};
+use crate::environments::{AnyEnvironments, AnyPolicy};
 
 /// The rollout of a group, computed chunk by chunk into memory that is used again.
 pub(super) struct GroupRollout<'a, T: Number, const O: usize> {
     pub(super) dataset: &'a Dataset,
     pub(super) group: Group,
-    pub(super) all: Box<dyn Batch<T, O>>,
+    pub(super) all: Box<dyn AnyEnvironments<T, O>>,
     pub(super) actor: AnyPolicy<'static, T, O>,
     format: DataFormat,
     /// The open episodes, for formats that store episodes.
@@ -26,7 +26,7 @@ impl<'a, T: Number, const O: usize> GroupRollout<'a, T, O> {
         dataset: &'a Dataset,
         format: DataFormat,
         group: Group,
-        all: Box<dyn Batch<T, O>>,
+        all: Box<dyn AnyEnvironments<T, O>>,
         actor: AnyPolicy<'static, T, O>,
     ) -> Self {
         let episodes = || Episodes::new(group.first, group.len, dataset.longest());

@@ -25,7 +25,7 @@ impl Dataset {
     /// The settings in a manifest: the keys of the settings file, and those common to all files.
     pub(super) fn settings(&self, format: DataFormat) -> Map<String, Value> {
         // In the order of the tensor.
-        let seen = self.recipe.observed().into_iter();
+        let seen = self.environment.observed().into_iter();
         let seen: Vec<_> = seen.map(|(name, unit)| json!({ "name": name, "unit": unit })).collect();
         let value = json!({
             "schema": SCHEMA,
@@ -46,8 +46,8 @@ impl Dataset {
         let number = |x: f64| if x.is_finite() { json!(x) } else { json!(x.to_string()) };
         let EnvironmentSettings {
             system, actuation, method, dt, substeps, task, start, limit, ..
-        } = &self.recipe;
-        let EnvironmentSettings { delays, noise, .. } = &self.recipe;
+        } = &self.environment;
+        let EnvironmentSettings { delays, noise, .. } = &self.environment;
         let system = system.any();
         let parameters = actuation.parameters(system).into_iter();
         let parameters: Map<String, Value> =

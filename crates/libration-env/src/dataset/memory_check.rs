@@ -7,7 +7,7 @@ use libration_data::parquet_bytes;
 use super::group::{GroupVisitor, Number};
 use super::settings::Chunk;
 use super::{DataFormat, Dataset, DatasetError};
-use crate::environments::{AnyPolicy, Batch};
+use crate::environments::{AnyEnvironments, AnyPolicy};
 
 /// A trial step that checks the memory of the chunks in flight and the policy.
 pub(super) struct TrialStep<'a> {
@@ -51,7 +51,7 @@ impl GroupVisitor for TrialStep<'_> {
 
     fn visit<T: Number, const O: usize>(
         self,
-        mut all: Box<dyn Batch<T, O>>,
+        mut all: Box<dyn AnyEnvironments<T, O>>,
         actor: AnyPolicy<'static, T, O>,
     ) -> Self::Output {
         let Dataset { chunk, steps, .. } = *self.dataset;

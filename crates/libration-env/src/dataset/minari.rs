@@ -111,14 +111,14 @@ fn rows<'a, T: Number, const O: usize>(
         flags[episode.len() - 1] = u8::from(is);
         Values::Bool(flags.into())
     };
-    let units: Vec<_> = dataset.recipe.observed().iter().map(|&(_, unit)| unit).collect();
+    let units: Vec<_> = dataset.environment.observed().iter().map(|&(_, unit)| unit).collect();
     let list = |of| Values::Lists(1, Box::new(of));
     let mut seen =
         column("observations", "1", Values::Lists(O, Box::new(T::view(&episode.observation))));
     seen.unit = units.join(", ").into();
     Table::new(vec![
         seen,
-        column("actions", dataset.recipe.units()[2], list(with_last(&episode.action))),
+        column("actions", dataset.environment.units()[2], list(with_last(&episode.action))),
         column("rewards", "1", with_last(&episode.reward)),
         column("terminations", "1", end(episode.terminated)),
         column("truncations", "1", end(!episode.terminated)),
@@ -127,7 +127,7 @@ fn rows<'a, T: Number, const O: usize>(
 
 /// The metadata file of a data set.
 pub(super) fn metadata(dataset: &Dataset, all: Totals) -> String {
-    let (system, task) = (dataset.recipe.system.any().name(), dataset.recipe.task.name());
+    let (system, task) = (dataset.environment.system.any().name(), dataset.environment.task.name());
     let about = json!({
         "dataset_id": format!("libration/{system}-{task}-v0"),
         "minari_version": VERSION,
@@ -147,10 +147,10 @@ pub(super) fn metadata(dataset: &Dataset, all: Totals) -> String {
 
 /// The bounds of the observations: one for cosines and sines without noise, else infinite.
 fn bounds(dataset: &Dataset) -> Vec<[f64; 2]> {
-    let exact = dataset.recipe.noise.observation.rms() == 0.0;
+    let exact = dataset.environment.noise.observation.rms() == 0.0;
     let circle = |name: &str| exact && (name.starts_with("cos_") || name.starts_with("sin_"));
     let bound = |name| if circle(name) { 1.0 } else { f64::INFINITY };
-    dataset.recipe.observed().iter().map(|&(name, _)| [-bound(name), bound(name)]).collect()
+    dataset.environment.observed().iter().map(|&(name, _)| [-bound(name), bound(name)]).collect()
 }
 
 /// The bounds of the actions.

@@ -11,7 +11,7 @@ use super::group::{Group, GroupVisitor, Number};
 use super::group_rollout::GroupRollout;
 use super::minari::Totals;
 use super::{DataFormat, Dataset, DatasetError, Monitor};
-use crate::environments::{AnyPolicy, Batch};
+use crate::environments::{AnyEnvironments, AnyPolicy};
 
 /// The part of a data set in a folder: its format and groups of environments.
 pub(super) struct DatasetPart<'a> {
@@ -109,7 +109,7 @@ impl GroupVisitor for Recomputation<'_> {
 
     fn visit<T: Number, const O: usize>(
         self,
-        all: Box<dyn Batch<T, O>>,
+        all: Box<dyn AnyEnvironments<T, O>>,
         actor: AnyPolicy<'static, T, O>,
     ) -> Self::Output {
         let Recomputation { dataset, format, group, folder, execution, monitor, lost, .. } = self;

@@ -17,7 +17,7 @@ pub struct Dataset {
     pub(super) environments: usize,
     pub(super) steps: u64,
     pub(super) chunk: Chunk,
-    pub(super) recipe: EnvironmentSettings,
+    pub(super) environment: EnvironmentSettings,
     pub(super) policy: PolicySettings,
 }
 
@@ -52,7 +52,7 @@ impl Default for Dataset {
 impl Dataset {
     /// The caveat about the integrator on the system, if there is one.
     pub fn caveat(&self) -> Option<String> {
-        self.recipe.system.any().caveat(self.recipe.method)
+        self.environment.system.any().caveat(self.environment.method)
     }
 
     /// The same data set with `transitions` transitions, rounded up to whole steps of all environments.

@@ -93,7 +93,7 @@ impl TryFrom<File> for Dataset {
                     as usize,
                 steps: count("chunk.steps", file.chunk.steps, 1..=1_000_000)? as usize,
             },
-            recipe: EnvironmentSettings {
+            environment: EnvironmentSettings {
                 system: lone,
                 actuation,
                 method,

@@ -17,7 +17,7 @@ use super::minari::Totals;
 use super::repair::{DatasetPart, find_broken, repair};
 use super::tables::File;
 use super::{DataFormat, Dataset, DatasetError, Monitor};
-use crate::environments::{AnyPolicy, Batch};
+use crate::environments::{AnyEnvironments, AnyPolicy};
 
 /// Options of a verification beyond the comparison of checksums.
 #[derive(Clone, Copy, Debug, Default)]
@@ -183,7 +183,7 @@ impl GroupVisitor for Compare<'_> {
 
     fn visit<T: Number, const O: usize>(
         self,
-        all: Box<dyn Batch<T, O>>,
+        all: Box<dyn AnyEnvironments<T, O>>,
         actor: AnyPolicy<'static, T, O>,
     ) -> Self::Output {
         let Compare { dataset, format, group, execution, monitor, flaws, .. } = self;

@@ -18,7 +18,7 @@ use super::memory_check::TrialStep;
 use super::minari::Totals;
 use super::repair::{DatasetPart, find_broken, repair};
 use super::{DataFormat, Dataset, DatasetError, Monitor};
-use crate::environments::{AnyPolicy, Batch};
+use crate::environments::{AnyEnvironments, AnyPolicy};
 
 /// A data set to write.
 #[derive(Clone, Debug)]
@@ -118,7 +118,7 @@ impl GroupVisitor for Stream<'_> {
 
     fn visit<T: Number, const O: usize>(
         self,
-        all: Box<dyn Batch<T, O>>,
+        all: Box<dyn AnyEnvironments<T, O>>,
         actor: AnyPolicy<'static, T, O>,
     ) -> Self::Output {
         let Stream { dataset, format, group, from, folder, threads, monitor } = self;

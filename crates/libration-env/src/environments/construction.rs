@@ -10,20 +10,21 @@ use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Environment, EnvironmentError, Environments};
 use libration::{Elementary, Float, State, rl};
 
-use super::system::Plant;
-use super::{Batch, EnvironmentSettings, Task};
+use super::system::EnvironmentSystem;
+use super::{AnyEnvironments, EnvironmentSettings, Task};
 
 /// An operation on environments with any number of observations.
-pub trait BatchVisitor<T> {
+pub trait EnvironmentsVisitor<T> {
     /// The result of the operation.
     type Output;
 
     /// Runs the operation.
-    fn visit<const O: usize>(self, all: Box<dyn Batch<T, O>>) -> Self::Output;
+    fn visit<const O: usize>(self, all: Box<dyn AnyEnvironments<T, O>>) -> Self::Output;
 }
 
 /// Environments of one task, or the error of their settings.
-type BatchResult<T, const O: usize> = Result<Box<dyn Batch<T, O>>, EnvironmentError>;
+type EnvironmentsResult<T, const O: usize> =
+    Result<Box<dyn AnyEnvironments<T, O>>, EnvironmentError>;
 
 /// The first environment and their number, the seed and the execution.
 type Selection<'a> = ([usize; 2], u64, &'a Execution);
@@ -35,40 +36,40 @@ pub trait EnvironmentFloat: Float + Elementary + Pod {
     /// # Errors
     /// If the settings are invalid; likewise below.
     fn regulate(
-        recipe: &EnvironmentSettings,
+        settings: &EnvironmentSettings,
         task: Regulate,
         which: Selection<'_>,
-    ) -> BatchResult<Self, 2>;
+    ) -> EnvironmentsResult<Self, 2>;
 
     /// Environments of the task to swing a pendulum up.
     fn swing_up(
-        recipe: &EnvironmentSettings,
+        settings: &EnvironmentSettings,
         task: SwingUp,
         which: Selection<'_>,
-    ) -> BatchResult<Self, 3>;
+    ) -> EnvironmentsResult<Self, 3>;
 
     /// Environments of the task to track a sine.
     fn track(
-        recipe: &EnvironmentSettings,
+        settings: &EnvironmentSettings,
         task: Track<Sine>,
         which: Selection<'_>,
-    ) -> BatchResult<Self, 4>;
+    ) -> EnvironmentsResult<Self, 4>;
 }
 
 macro_rules! environment_floats {
     ($($float:ident)*) => {$(
         // Not generic, so that it is compiled in this crate.
         impl EnvironmentFloat for $float {
-            fn regulate(recipe: &EnvironmentSettings, task: Regulate, which: Selection<'_>) -> BatchResult<Self, 2> {
-                recipe.build(task, which)
+            fn regulate(settings: &EnvironmentSettings, task: Regulate, which: Selection<'_>) -> EnvironmentsResult<Self, 2> {
+                settings.build(task, which)
             }
 
-            fn swing_up(recipe: &EnvironmentSettings, task: SwingUp, which: Selection<'_>) -> BatchResult<Self, 3> {
-                recipe.build(task, which)
+            fn swing_up(settings: &EnvironmentSettings, task: SwingUp, which: Selection<'_>) -> EnvironmentsResult<Self, 3> {
+                settings.build(task, which)
             }
 
-            fn track(recipe: &EnvironmentSettings, task: Track<Sine>, which: Selection<'_>) -> BatchResult<Self, 4> {
-                recipe.build(task, which)
+            fn track(settings: &EnvironmentSettings, task: Track<Sine>, which: Selection<'_>) -> EnvironmentsResult<Self, 4> {
+                settings.build(task, which)
             }
         }
     )*};
@@ -81,7 +82,7 @@ impl EnvironmentSettings {
     ///
     /// # Errors
     /// If the settings are invalid.
-    pub fn with<T: EnvironmentFloat, V: BatchVisitor<T>>(
+    pub fn with<T: EnvironmentFloat, V: EnvironmentsVisitor<T>>(
         &self,
         [first, len]: [usize; 2],
         seed: u64,
@@ -100,7 +101,7 @@ impl EnvironmentSettings {
         &self,
         task: K,
         ([first, len], seed, execution): Selection<'_>,
-    ) -> BatchResult<T, O> {
+    ) -> EnvironmentsResult<T, O> {
         for (name, value) in self.system.any().parameters() {
             if !T::from_f64(value).is_finite() {
                 let allowed = "small enough for the float type";
@@ -109,7 +110,7 @@ impl EnvironmentSettings {
         }
         let [q, v] = self.start;
         let start = UniformStart(State { q: [q[0]], v: [v[0]] }, State { q: [q[1]], v: [v[1]] });
-        let plant = Plant::<T>::new(self.system);
+        let plant = EnvironmentSystem::<T>::new(self.system);
         let mut world = Environment::new(All(plant), self.method, self.dt, task, start)
             .substeps(self.substeps)
             .autoreset(self.autoreset)

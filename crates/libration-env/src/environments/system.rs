@@ -29,20 +29,20 @@ impl SingleDofSystem {
 
 /// A system with one degree of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Plant<T> {
+pub(super) enum EnvironmentSystem<T> {
     Oscillator(Oscillator<T>),
     Damped(DampedOscillator<T>),
     Pendulum(Pendulum<T>),
     Duffing(Duffing<T>),
 }
 
-impl<T: Elementary> Plant<T> {
+impl<T: Elementary> EnvironmentSystem<T> {
     pub(super) fn new(SingleDofSystem(system): SingleDofSystem) -> Self {
         match system {
-            AnySystem::Oscillator(model) => Plant::Oscillator(Model::<1>::on(&model)),
-            AnySystem::DampedOscillator(model) => Plant::Damped(Model::<1>::on(&model)),
-            AnySystem::Pendulum(model) => Plant::Pendulum(Model::<1>::on(&model)),
-            AnySystem::Duffing(model) => Plant::Duffing(Model::<1>::on(&model)),
+            AnySystem::Oscillator(model) => EnvironmentSystem::Oscillator(Model::<1>::on(&model)),
+            AnySystem::DampedOscillator(model) => EnvironmentSystem::Damped(Model::<1>::on(&model)),
+            AnySystem::Pendulum(model) => EnvironmentSystem::Pendulum(Model::<1>::on(&model)),
+            AnySystem::Duffing(model) => EnvironmentSystem::Duffing(Model::<1>::on(&model)),
             AnySystem::DrivenOscillator(_) | AnySystem::Kepler(_) | AnySystem::HenonHeiles(_) => {
                 unreachable!("nothing makes a lone system of {}", system.name())
             }
@@ -50,26 +50,26 @@ impl<T: Elementary> Plant<T> {
     }
 }
 
-impl<T: Elementary> System<T, 1> for Plant<T> {
+impl<T: Elementary> System<T, 1> for EnvironmentSystem<T> {
     const DISPATCHES: bool = true;
 
     #[inline(always)]
     fn dispatch<W: WithSystem<T, 1>>(&self, with: W) -> W::Output {
         match *self {
-            Plant::Oscillator(system) => with.system(system),
-            Plant::Damped(system) => with.system(system),
-            Plant::Pendulum(system) => with.system(system),
-            Plant::Duffing(system) => with.system(system),
+            EnvironmentSystem::Oscillator(system) => with.system(system),
+            EnvironmentSystem::Damped(system) => with.system(system),
+            EnvironmentSystem::Pendulum(system) => with.system(system),
+            EnvironmentSystem::Duffing(system) => with.system(system),
         }
     }
 
     #[inline]
     fn acceleration(&self, state: &State<T, 1>) -> [T; 1] {
         match self {
-            Plant::Oscillator(system) => system.acceleration(state),
-            Plant::Damped(system) => system.acceleration(state),
-            Plant::Pendulum(system) => system.acceleration(state),
-            Plant::Duffing(system) => system.acceleration(state),
+            EnvironmentSystem::Oscillator(system) => system.acceleration(state),
+            EnvironmentSystem::Damped(system) => system.acceleration(state),
+            EnvironmentSystem::Pendulum(system) => system.acceleration(state),
+            EnvironmentSystem::Duffing(system) => system.acceleration(state),
         }
     }
 }

@@ -78,7 +78,7 @@ fn a_report_on_one_integrator_shows_no_empty_figure_and_no_empty_answer() {
             &[
                 &libration_study_motion::Spectrum,
                 &libration_study_motion::Drift,
-                &libration_study_motion::Nonlinear::CONFIGURED,
+                &libration_study_motion::Nonlinear::FROM_CONFIGURATION,
             ],
         );
         assert!(page.contains(" · 1 integrator · "));

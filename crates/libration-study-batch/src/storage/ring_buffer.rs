@@ -1,6 +1,6 @@
 //! Content of a full replay buffer, and the distribution of draws.
 
-use libration::replay::{Batch, Capacity, Draw, Lookahead, Replay};
+use libration::replay::{Batch, Capacity, Draw, Lookahead, ReplayBuffer};
 use libration::rl::policy::Random;
 use libration::rl::{Environments, Plan, Rollout};
 use libration_report::record::{Finding, Record, Relation, Tolerance};
@@ -21,7 +21,7 @@ const BATCH: usize = 1024;
 const DEVIATIONS: f64 = 5.0;
 
 /// The source's transitions: position and velocity, an action and a reward in `f32`, and a flag.
-type Store = Replay<f32, 2, 1>;
+type Store = ReplayBuffer<f32, 2, 1>;
 const BYTES: usize = 4 * size_of::<f32>() + 1;
 
 /// Inserts, looks, and draws.

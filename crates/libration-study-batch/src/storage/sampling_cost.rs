@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use libration::replay::{Batch, Capacity, Draw, Lookahead, Replay};
+use libration::replay::{Batch, Capacity, Draw, Lookahead, ReplayBuffer};
 use libration::rl::policy::{Constant, Random};
 use libration::rl::{Environments, Plan, Rollout};
 use libration_report::record::{Finding, Record, Series};
@@ -57,8 +57,8 @@ fn times(measurement: &Measurement<'_>, kept: usize) -> Result<[f64; COLUMNS.len
     let mut rollout = Rollout::new(Plan::new(ROLLOUT, ENVIRONMENTS).truncated())?;
     let mut next = vec![0.0; 2 * ENVIRONMENTS];
     let capacity = Capacity::new(kept / ENVIRONMENTS, ENVIRONMENTS);
-    let mut plain = Replay::<f32, 2, 1>::new(capacity)?;
-    let mut weighed = Replay::<f32, 2, 1>::new(capacity.priorities())?;
+    let mut plain = ReplayBuffer::<f32, 2, 1>::new(capacity)?;
+    let mut weighed = ReplayBuffer::<f32, 2, 1>::new(capacity.priorities())?;
     // Twice around: what is written first costs faults of pages.
     for _ in 0..2 * kept / ENVIRONMENTS / ROLLOUT {
         all.rollout(Random::between([-1.0], [1.0]), &mut rollout)?;
@@ -71,7 +71,7 @@ fn times(measurement: &Measurement<'_>, kept: usize) -> Result<[f64; COLUMNS.len
     let mut rollout = Rollout::new(Plan::new(ROLLOUT, ENVIRONMENTS).truncated())?;
     still.rollout(Constant([0.0]), &mut rollout)?;
     still.observe(&mut next)?;
-    let mut inserted = Replay::<f32, 2, 1>::new(capacity)?;
+    let mut inserted = ReplayBuffer::<f32, 2, 1>::new(capacity)?;
     for _ in 0..2 * kept / ENVIRONMENTS / ROLLOUT {
         inserted.insert(&rollout, &next, execution)?;
     }

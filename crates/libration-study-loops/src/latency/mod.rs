@@ -4,6 +4,7 @@ mod claims;
 mod critical_latency;
 mod figures;
 mod late_force;
+mod latency_windows;
 mod loop_simulation;
 mod map;
 mod random_latency;
@@ -11,7 +12,6 @@ mod render;
 mod single_precision;
 mod source_claims;
 mod stability_edge;
-mod stability_window;
 
 use libration_report::Record;
 use libration_report::page::Page;
@@ -42,7 +42,7 @@ impl Study for Latency {
         late_force::measure(lab, &mut record)?;
         single_precision::measure(lab, &mut record)?;
         critical_latency::measure(lab, &mut record)?;
-        stability_window::measure(lab, &mut record)?;
+        latency_windows::measure(lab, &mut record)?;
         map::measure(lab, &mut record)?;
         random_latency::measure(lab, &mut record)?;
         claims::judge(&mut record);

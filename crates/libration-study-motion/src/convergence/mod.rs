@@ -25,7 +25,7 @@ pub struct Convergence<'a> {
 
 impl Convergence<'static> {
     /// Of the systems that the configuration names.
-    pub const CONFIGURED: Self = Convergence { own: &[] };
+    pub const FROM_CONFIGURATION: Self = Convergence { own: &[] };
 }
 
 impl<'a> Convergence<'a> {

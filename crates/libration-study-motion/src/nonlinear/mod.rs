@@ -24,7 +24,7 @@ pub struct Nonlinear<'a> {
 
 impl Nonlinear<'static> {
     /// Of the systems that the configuration names.
-    pub const CONFIGURED: Self = Nonlinear { own: &[] };
+    pub const FROM_CONFIGURATION: Self = Nonlinear { own: &[] };
 }
 
 impl<'a> Nonlinear<'a> {

@@ -6,7 +6,7 @@ use libration::control::Jitter;
 use libration::control::clock::{Correlated, Drifting, Gaussian, Jittered, Skewed, Uniform};
 use libration::ensemble::{All, Execution};
 use libration::integrator::VelocityVerlet;
-use libration::replay::{Batch, Capacity, Draw, Lookahead, Replay};
+use libration::replay::{Batch, Capacity, Draw, Lookahead, ReplayBuffer};
 use libration::rl::policy::{GaussianExploration, Linear};
 use libration::rl::sensor::Noisy;
 use libration::rl::start::UniformStart;
@@ -121,10 +121,10 @@ fn a_state_of_other_environments_or_a_damaged_one_is_refused_and_changes_nothing
 #[test]
 fn a_replay_buffer_goes_on_bit_for_bit() {
     let serial = Execution::serial();
-    let make = || Replay::<f32, 2, 1>::new(Capacity::new(40, COUNT).priorities()).unwrap();
+    let make = || ReplayBuffer::<f32, 2, 1>::new(Capacity::new(40, COUNT).priorities()).unwrap();
     let mut all = Environments::new(world(Autoreset::SameStep), COUNT, 9, serial.clone()).unwrap();
     let (mut whole, mut other) = (make(), make());
-    let mut insert = |into: [Option<&mut Replay<f32, 2, 1>>; 2]| {
+    let mut insert = |into: [Option<&mut ReplayBuffer<f32, 2, 1>>; 2]| {
         let policy = Linear { weights: [[-3.0, 0.5]], bias: [0.25] };
         let mut rollout = Rollout::new(Plan::new(7, COUNT).truncated()).unwrap();
         all.rollout(policy, &mut rollout).unwrap();
@@ -157,6 +157,6 @@ fn a_replay_buffer_goes_on_bit_for_bit() {
     let before = other.to_bytes();
     assert!(other.restore(&damaged).unwrap_err().to_string().contains("damaged"));
     assert!(other.to_bytes() == before);
-    let small = Replay::<f32, 2, 1>::new(Capacity::new(41, COUNT).priorities()).unwrap();
+    let small = ReplayBuffer::<f32, 2, 1>::new(Capacity::new(41, COUNT).priorities()).unwrap();
     assert!(refused(&small, &whole).contains("its number of steps is 41; it must be 40"));
 }

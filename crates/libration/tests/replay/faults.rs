@@ -1,7 +1,7 @@
 //! Errors of a replay buffer, and transitions that it does not store.
 
 use libration::ensemble::Execution;
-use libration::replay::{Batch, Capacity, Draw, Lookahead, Replay, Sequences};
+use libration::replay::{Batch, Capacity, Draw, Lookahead, ReplayBuffer, Sequences};
 use libration::rl::policy::Constant;
 use libration::rl::{Autoreset, Plan, Rollout};
 
@@ -160,7 +160,7 @@ fn a_buffer_of_wider_numbers_and_more_dimensions_keeps_them() {
     all.rollout(Random::between([-1.0; 2], [1.0; 2]), &mut rollout).unwrap();
     let mut next = vec![0.0; 70 * 4];
     all.observe(&mut next).unwrap();
-    let mut replay = Replay::<f64, 4, 2>::new(Capacity::new(120, 70)).unwrap();
+    let mut replay = ReplayBuffer::<f64, 4, 2>::new(Capacity::new(120, 70)).unwrap();
     replay.insert(&rollout, &next, &Execution::serial()).unwrap();
     let mut batch = Batch::new(1000);
     let draw = Draw { seed: 0, number: 0 };

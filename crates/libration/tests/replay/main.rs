@@ -12,7 +12,7 @@ mod sum_tree;
 use libration::State;
 use libration::ensemble::{All, Execution};
 use libration::integrator::SymplecticEuler;
-use libration::replay::{Capacity, Replay};
+use libration::replay::{Capacity, ReplayBuffer};
 use libration::rl::policy::Random;
 use libration::rl::start::UniformStart;
 use libration::rl::task::Regulate;
@@ -27,7 +27,7 @@ const ANYWHERE: UniformStart<1> =
 
 type World =
     Environment<Oscillator<f32>, All<Oscillator<f32>>, SymplecticEuler, Regulate, UniformStart<1>>;
-type Replay21 = Replay<f32, 2, 1>;
+type Replay21 = ReplayBuffer<f32, 2, 1>;
 
 fn environments(autoreset: Autoreset, count: usize) -> Environments<f32, World, 2, 1> {
     let world = Environment::new(All(SPRING), SymplecticEuler, 0.06, TASK, ANYWHERE);

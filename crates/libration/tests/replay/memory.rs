@@ -2,7 +2,7 @@
 
 use libration::ensemble::Execution;
 use libration::random::philox4x32;
-use libration::replay::{Batch, Capacity, Draw, Lookahead, Replay, ReplayError};
+use libration::replay::{Batch, Capacity, Draw, Lookahead, ReplayBuffer, ReplayError};
 use libration::rl::Autoreset;
 use memmap2::MmapMut;
 
@@ -20,7 +20,7 @@ fn mapped(bytes: &[u8]) -> MmapMut {
 
 /// What finds its bytes.
 pub(crate) fn reopened(replay: &Replay21) -> Result<Replay21, ReplayError> {
-    Replay::open(mapped(replay.bytes()))
+    ReplayBuffer::open(mapped(replay.bytes()))
 }
 
 /// A batch of it.
@@ -159,8 +159,8 @@ fn memory_of_something_else_and_damaged_memory_are_refused() {
     ] {
         assert!(found.contains(said), "{found}");
     }
-    let wide = Replay::<f64, 2, 1>::open(mapped(bytes)).map(drop).unwrap_err().to_string();
+    let wide = ReplayBuffer::<f64, 2, 1>::open(mapped(bytes)).map(drop).unwrap_err().to_string();
     assert!(wide.contains("the float type is f32; it must be f64"), "{wide}");
-    let other = Replay::<f32, 3, 1>::open(mapped(bytes)).map(drop).unwrap_err().to_string();
+    let other = ReplayBuffer::<f32, 3, 1>::open(mapped(bytes)).map(drop).unwrap_err().to_string();
     assert!(other.contains("2 numbers seen, 1 done; it must be 3 numbers seen"), "{other}");
 }

@@ -35,21 +35,9 @@ const NONE: u32 = u32::MAX;
 
 /// Takes the steps of a range with all trajectories of a block. `WHOLE`: all commands arrive at the beginning of a step,
 /// the same for all; by itself, because the state stays in registers only where no other loop can index it.
-pub(super) struct Steps<
-    'b,
-    'a,
-    T,
-    A,
-    M,
-    K,
-    C,
-    L,
-    N,
-    Sys,
-    const D: usize,
-    const W: usize,
-    const WHOLE: bool,
-> where
+#[rustfmt::skip]
+pub(super) struct Steps<'b, 'a, T, A, M, K, C, L, N, Sys, const D: usize, const W: usize, const WHOLE: bool>
+where
     A: Assign<Sys>,
 {
     pub(super) common: &'b Common<'b, T, A, M, K, C, L, N>,

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::hint::black_box;
 
 use libration::ensemble::{Buffer, Execution, Pages};
-use libration::replay::{Batch, Capacity, Draw, Lookahead, Replay, ReplayError};
+use libration::replay::{Batch, Capacity, Draw, Lookahead, ReplayBuffer, ReplayError};
 use libration::rl::policy::{Constant, Random};
 use libration::rl::{Environments, Plan, Policy, Rollout, World};
 use libration_study::{Lab, StudyError};
@@ -22,7 +22,7 @@ const INSERTED: [usize; 2] = [4096, 16];
 const DRAWN: usize = 64;
 
 /// The source's transitions.
-type Store = Replay<f32, 2, 1>;
+type Store = ReplayBuffer<f32, 2, 1>;
 
 /// Times them on one core: none of it is worth a second.
 pub(super) fn measure(lab: &Lab<'_>) -> Result<Vec<StorageRate>, StudyError> {

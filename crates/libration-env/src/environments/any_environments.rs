@@ -11,7 +11,7 @@ use libration::{Elementary, Float};
 use super::AnyPolicy;
 
 /// [`Environments`] of any type with `O` observations.
-pub trait Batch<T, const O: usize>: Send + Sync {
+pub trait AnyEnvironments<T, const O: usize>: Send + Sync {
     /// The number of environments.
     fn len(&self) -> usize;
 
@@ -94,7 +94,7 @@ pub trait Batch<T, const O: usize>: Send + Sync {
     fn restore(&mut self, state: &[u8]) -> Result<(), CheckpointError>;
 }
 
-impl<T, E, const O: usize> Batch<T, O> for Environments<T, E, O, 1>
+impl<T, E, const O: usize> AnyEnvironments<T, O> for Environments<T, E, O, 1>
 where
     T: Float + Elementary + Pod,
     E: World<T, O, 1>,
