@@ -1,5 +1,7 @@
 //! The end of an episode.
 
+use core::mem::swap;
+
 /// The end of an episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EpisodeEnd<T, const O: usize> {
@@ -15,4 +17,20 @@ pub struct EpisodeEnd<T, const O: usize> {
     pub length: u64,
     /// Whether the environment was lost: its state, action or reward was not finite.
     pub lost: bool,
+}
+
+impl<T, const O: usize> EpisodeEnd<T, O> {
+    /// The ends of all threads, by step and environment.
+    pub(super) fn in_order(threads: Vec<Vec<Self>>) -> Vec<Self> {
+        let mut all = Vec::new();
+        for mut ends in threads {
+            if all.is_empty() {
+                // With one thread these are all, and nothing is copied.
+                swap(&mut all, &mut ends);
+            }
+            all.append(&mut ends);
+        }
+        all.sort_unstable_by_key(|end| (end.step, end.environment));
+        all
+    }
 }

@@ -1,8 +1,8 @@
 //! The transitions of environments over a horizon, tile by tile.
 
 use bytemuck::Pod;
-use libration_core::Float;
 use libration_core::random::Streams;
+use libration_core::{Float, System};
 use pulp::{Simd, WithSimd};
 
 use super::block::BlockOf;
@@ -50,6 +50,8 @@ where
     E: World<T, O, D>,
     P: Policy<T, O, D>,
 {
+    const COMPILED_ONCE: bool = <E::System as System<T, D>>::COMPILED_ONCE;
+
     type Output = Vec<EpisodeEnd<T, O>>;
 
     fn on<I: Target>(self, target: I) -> Vec<EpisodeEnd<T, O>> {

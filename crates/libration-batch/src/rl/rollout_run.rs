@@ -199,15 +199,7 @@ where
                 writes,
             })
         });
-        let mut finals = Vec::new();
-        for mut ends in each {
-            if finals.is_empty() {
-                // With one thread these are all, and nothing is copied.
-                swap(&mut finals, &mut ends);
-            }
-            finals.append(&mut ends);
-        }
-        finals.sort_unstable_by_key(|end: &EpisodeEnd<T, O>| (end.step, end.environment));
+        let finals = EpisodeEnd::in_order(each);
         self.step = self.step.saturating_add(steps);
         finals
     }

@@ -40,7 +40,8 @@ fn coordinate(word: &str) -> Result<f64, String> {
 
 /// Parses `KEY=VALUE`. The system determines which keys and values are allowed.
 pub(super) fn assignment(text: &str) -> Result<(String, f64), String> {
-    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE, e.g. omega2=10".to_owned())?;
+    let (key, value) =
+        text.split_once('=').ok_or("expected KEY=VALUE, e.g. omega2=10".to_owned())?;
     let (key, value) = (key.trim(), value.trim());
     if key.is_empty() {
         return Err("the key is missing; expected KEY=VALUE, e.g. omega2=10".into());

@@ -167,7 +167,9 @@ fn limits(record: &mut Record) {
             show(f[0].measured)
         );
         match f[0].measured > SUBSTANTIAL {
-            true => Judgement::conditional(because).only("every pass over the memory takes one step"),
+            true => {
+                Judgement::conditional(because).only("every pass over the memory takes one step")
+            }
             false => Judgement::confirmed(because),
         }
     });

@@ -169,7 +169,10 @@ pub(super) fn roofline(record: &Record) -> Result<Figure, RecordError> {
     );
     Ok(Figure::new(
         "roofline",
-        format!("With {most} steps per pass the same memory traffic gives {} times the work", number(gain, 2)),
+        format!(
+            "With {most} steps per pass the same memory traffic gives {} times the work",
+            number(gain, 2)
+        ),
     )
     .caption(
         "Symplectic Euler in f32 on one core, on the largest arrays of this run, 1 to 128 steps \

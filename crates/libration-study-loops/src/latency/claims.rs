@@ -55,7 +55,9 @@ fn damping(record: &mut Record) {
         let told: Vec<String> = FACTORS
             .iter()
             .zip(&onsets)
-            .map(|(factor, d)| format!("{} at {} times the gains", number(*d, 4), number(*factor, 2)))
+            .map(|(factor, d)| {
+                format!("{} at {} times the gains", number(*d, 4), number(*factor, 2))
+            })
             .collect();
         let because = format!(
             "at half of the critical latency the loop loses {} of its amplitude per step, without \

@@ -78,9 +78,8 @@ fn drifts(config: &Config, record: &mut Record) {
     let verdict = |f: &[&Finding], because: String| match f.iter().filter(|f| alike(f)).count() {
         0 => Judgement::refuted(because),
         n if n == f.len() => Judgement::confirmed(because),
-        _ => Judgement::conditional(because).only(
-            "where the error of the method is far above its rounding, e.g. symplectic Euler",
-        ),
+        _ => Judgement::conditional(because)
+            .only("where the error of the method is far above its rounding, e.g. symplectic Euler"),
     };
     let text = "In single precision differences of energy drift are negligible.";
     rule(record, ("C43", "5.5", text), &settings, |f| {

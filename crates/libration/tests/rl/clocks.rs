@@ -9,7 +9,7 @@ use libration::rl::policy::Constant;
 use libration::rl::start::FixedStart;
 use libration::rl::task::Regulate;
 use libration::rl::{Environment, Environments, Plan, Rollout};
-use libration::system::Oscillator;
+use libration::system::{CompiledOnce, Oscillator};
 
 use crate::TASK;
 
@@ -18,8 +18,9 @@ fn steps<C: Clock<f32>>(clock: C, limit: u32, horizon: usize, count: usize) -> V
     let free = Oscillator { omega2: 0.0_f32 };
     let task = Regulate { bound: f64::INFINITY, ..TASK };
     let start = FixedStart(State { q: [0.0], v: [1.0] });
-    let world =
-        Environment::new(All(free), SymplecticEuler, 1.0, task, start).limit(limit).clock(clock);
+    let world = Environment::new(All(CompiledOnce(free)), SymplecticEuler, 1.0, task, start)
+        .limit(limit)
+        .clock(clock);
     let mut all = Environments::new(world, count, 3, Execution::serial()).unwrap();
     let mut rollout = Rollout::<f32, 2, 1>::new(Plan::new(horizon, count).truncated()).unwrap();
     all.rollout(Constant([0.0]), &mut rollout).unwrap();

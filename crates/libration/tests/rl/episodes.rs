@@ -7,6 +7,7 @@ use libration::rl::policy::Constant;
 use libration::rl::start::FixedStart;
 use libration::rl::task::Regulate;
 use libration::rl::{Autoreset, Delays, Environment, Environments, Layout, Plan, Rollout, Task};
+use libration::system::CompiledOnce;
 
 use crate::bits::POLICY;
 use crate::{SPRING, TASK, ideal, perturbed};
@@ -42,7 +43,8 @@ fn what_is_no_longer_finite_is_over_pays_nothing_and_begins_again() {
     // Beyond z = 2 symplectic Euler grows without end.
     let task = Regulate { bound: f64::INFINITY, ..TASK };
     let start = FixedStart(State { q: [1.0], v: [0.0] });
-    let environment = Environment::new(All(SPRING), SymplecticEuler, 1e6, task, start);
+    let environment =
+        Environment::new(All(CompiledOnce(SPRING)), SymplecticEuler, 1e6, task, start);
     let mut all = Environments::new(environment, 3, 0, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(20, 3)).unwrap();
     all.rollout(Constant([0.0]), &mut rollout).unwrap();
@@ -132,7 +134,8 @@ fn what_is_finite_is_not_lost_however_large() {
     // Of no two of these numbers there is a sum in this type.
     let start = FixedStart(State { q: [40_000.0], v: [40_000.0] });
     let still = libration::system::Oscillator { omega2: f16::ZERO };
-    let environment = Environment::new(All(still), SymplecticEuler, 1e-7, Nothing, start);
+    let environment =
+        Environment::new(All(CompiledOnce(still)), SymplecticEuler, 1e-7, Nothing, start);
     let mut all = Environments::new(environment, 64, 0, Execution::serial()).unwrap();
     let mut rollout: Rollout<f16, 2, 1> = Rollout::new(Plan::new(3, 64)).unwrap();
     all.rollout(Constant([0.0]), &mut rollout).unwrap();
