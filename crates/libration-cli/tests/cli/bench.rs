@@ -65,7 +65,7 @@ fn what_cannot_be_timed_is_refused_before_any_work() {
         ("bench --implementation in-place --count 1e15 --float f64", "GB of memory are needed"),
         ("bench --simd sse9", "avx512"),
         ("bench --rollouts --implementation fused", "--implementation"),
-        ("bench --rollouts --case 4096", "as 4096x1024"),
+        ("bench --rollouts --case 4096", "e.g. 4096x1024"),
         ("bench --rollouts --case 0x5", "at least 1"),
         ("bench --rollouts --case 1e9x1e9", "GB of memory are needed"),
         ("bench --case 256x16", "--rollouts"),

@@ -110,7 +110,7 @@ fn every_command_that_takes_an_integrator_says_when_textbook_verlet_is_another_m
     libration(&format!("{simulate} --set gamma=0")).assert().success().stderr(said.clone().not());
     let verlet = simulate.replace("textbook-verlet", "velocity-verlet");
     libration(&verlet).assert().success().stderr(said.clone().not());
-    libration("list --json").assert().success().stdout(contains("another method"));
+    libration("list --json").assert().success().stdout(contains("differs from velocity-verlet"));
     let folder = tempfile::tempdir().unwrap();
     let (config, out) = (folder.path().join("set.toml"), folder.path().join("set"));
     let settings = told("rollout --print-config");
