@@ -10,7 +10,7 @@ use super::control::Control;
 use super::free_motion::FreeMotion;
 use super::integrator_choice::{best_possible, largest_step};
 use super::loop_simulation::{LoopSimulation, MOST_PERIODS};
-use super::loops::Loop;
+use super::loops::{Loop, PlantModel};
 use super::request::{Measure, Request, Tolerance};
 use super::summary::{describe_integrator, describe_loop, loop_warnings};
 use super::{AdviseError, Budget, Throughput};
@@ -73,7 +73,7 @@ fn floats(request: &Request, method: Method, dt: f64, lost: [f64; 2]) -> Vec<Flo
     [f32::NAME, f64::NAME].into_iter().zip(lost).map(of).collect()
 }
 
-impl<M: Model<1>> LoopSimulation<'_, M> {
+impl<M: PlantModel> LoopSimulation<'_, M> {
     /// The errors of the float types with `substeps` steps per period.
     fn floats(
         &self,
@@ -103,7 +103,7 @@ impl<M: Model<1>> LoopSimulation<'_, M> {
 }
 
 /// Adds the largest step of each integrator for a loop, and the float types for the best.
-fn integrators<M: Model<1>>(
+fn integrators<M: PlantModel>(
     work: &Work<'_>,
     one: &Loop<M>,
     request: &Request,
@@ -127,7 +127,7 @@ fn integrators<M: Model<1>>(
 }
 
 /// The advice on a loop.
-pub(super) fn advise_loop<M: Model<1>>(
+pub(super) fn advise_loop<M: PlantModel>(
     work: &Work<'_>,
     model: M,
     control: &Control,
@@ -194,7 +194,7 @@ pub(super) fn advise_loop<M: Model<1>>(
 }
 
 /// The budget of each imperfection of a loop.
-pub(super) fn loop_budgets<M: Model<1>>(
+pub(super) fn loop_budgets<M: PlantModel>(
     work: &Work<'_>,
     model: M,
     control: &Control,

@@ -1,6 +1,5 @@
 //! Budgets of the imperfections of a loop.
 
-use libration::Model;
 use libration::analysis::{CostError, Imperfections, Mode};
 use libration::control::{Feedback, Jitter, Latency};
 use libration_work::Work;
@@ -8,7 +7,7 @@ use serde::Serialize;
 
 use super::control::{Control, Law};
 use super::limits::{Imperfection, Limit};
-use super::loops::{Loop, LoopError};
+use super::loops::{Loop, LoopError, PlantModel};
 use super::motion::describe_motion;
 use super::request::Request;
 use super::stabilising_changes::{NEUTRAL, rounded_down};
@@ -55,7 +54,7 @@ pub struct FirstFailure {
     pub how: String,
 }
 
-impl<M: Model<1>> Loop<M> {
+impl<M: PlantModel> Loop<M> {
     /// Fails if the loop is unstable without imperfections or its numbers are invalid, before any work.
     pub(super) fn check(&self) -> Result<(), AdviseError> {
         self.check_period()?;

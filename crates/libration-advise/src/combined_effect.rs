@@ -1,14 +1,14 @@
 //! The effect of all stated imperfections together, by theory and simulation.
 
+use libration::State;
 use libration::analysis::{CostError, Imperfections, Plant};
 use libration::control::LqrWeights;
-use libration::{Model, State};
 use libration_work::Work;
 
 use super::AdviseError;
 use super::budget::Budget;
 use super::ensemble::{EnsembleResult, EnsembleRun, GROUPS, MEMORIES, MOST_PERIODS};
-use super::loops::{AnyController, Loop, LoopError};
+use super::loops::{AnyController, Loop, LoopError, PlantModel};
 use super::region_of_attraction::RegionOfAttraction;
 use super::request::{Measure, Request, Tolerance};
 
@@ -79,7 +79,7 @@ const COUNT: usize = 256;
 /// Kurtosis of the costs of single loops above which rare outbursts dominate. For a normal law it is 3, for 256 loops 3 ± 0.3.
 const OUTBURSTS: f64 = 6.0;
 
-impl<M: Model<1>> Loop<M> {
+impl<M: PlantModel> Loop<M> {
     /// The effect of all stated imperfections.
     pub(super) fn combined_effect(
         &self,

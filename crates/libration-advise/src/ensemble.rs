@@ -5,12 +5,12 @@ use libration::control::delay::{Order, Packets};
 use libration::control::{Delay, Jitter, Schedule, WhiteNoise};
 use libration::ensemble::{All, EnsembleError, Loops, MeanCost, Setup};
 use libration::integrator::{Exact, Rk4, Substeps};
-use libration::system::DynSystem;
-use libration::{Integrator, Model, State, System};
+use libration::system::CompiledOnce;
+use libration::{Integrator, Model, State};
 use libration_work::Work;
 
 use super::AdviseError;
-use super::loops::Loop;
+use super::loops::{Loop, PlantModel};
 
 /// Seed of all random numbers.
 const SEED: u64 = 8;
@@ -21,7 +21,7 @@ pub(super) const MOST_PERIODS: f64 = 100_000.0;
 /// Number of time constants of the decay after which the start is forgotten.
 pub(super) const MEMORIES: f64 = 20.0;
 
-impl<M: Model<1>> Loop<M> {
+impl<M: PlantModel> Loop<M> {
     /// Runs loops with all stated imperfections; none if the latency is too long for losses.
     pub(super) fn run(
         &self,
@@ -52,15 +52,16 @@ impl<M: Model<1>> Loop<M> {
             None => 1.0 + self.control.jitter.largest(),
         };
         let longest = varied * (1.0 + self.control.skew.abs());
-        match Exact::new(self.model, self.control.period * longest) {
-            Some(exact) => self.run_by(work, run, delay, exact),
-            // Substeps of 0.05 rad with an error of order four of 10⁻⁶.
-            None => {
-                let turn = self.plant().rate() * self.control.period * longest;
-                let count = (turn / 0.05).ceil().clamp(4.0, 256.0) as i32;
-                self.run_by(work, run, delay, Substeps { method: Rk4, count })
-            }
+        // Exact steps are compiled for linear models only.
+        if const { M::LINEAR }
+            && let Some(exact) = Exact::new(self.model, self.control.period * longest)
+        {
+            return self.run_by(work, run, delay, exact);
         }
+        // Substeps of 0.05 rad with an error of order four of 10⁻⁶.
+        let turn = self.plant().rate() * self.control.period * longest;
+        let count = (turn / 0.05).ceil().clamp(4.0, 256.0) as i32;
+        self.run_by(work, run, delay, Substeps { method: Rk4, count })
     }
 
     fn run_by(
@@ -70,7 +71,7 @@ impl<M: Model<1>> Loop<M> {
         delay: impl Delay<f64>,
         method: impl Integrator,
     ) -> Result<EnsembleResult, AdviseError> {
-        let acceleration = |state: &State<f64, 1>| self.model.on::<f64>().acceleration(state);
+        let system = CompiledOnce(self.model.on::<f64>());
         let even = [1.0];
         let recorded = self.control.record.as_deref().unwrap_or(&even);
         let jitter = match self.control.record {
@@ -84,7 +85,7 @@ impl<M: Model<1>> Loop<M> {
             let rates = vec![1.0 + self.control.skew; starts.len()];
             let mut own = recorded.to_vec();
             own.rotate_left(group * recorded.len() / groups);
-            let setup = Setup::new(All(DynSystem(&acceleration)), method)
+            let setup = Setup::new(All(system), method)
                 .controller(self.controller)
                 .clock((Rates(&rates), (Recorded::repeated(&own), Jittered(jitter))))
                 .delay(delay)

@@ -1,10 +1,9 @@
 //! Limits of each imperfection of a loop.
 
-use libration::Model;
 use libration::analysis::{CostError, Imperfections, Plant};
 
 use super::control::Law;
-use super::loops::{Loop, LoopError};
+use super::loops::{Loop, LoopError, PlantModel};
 use super::request::{Measure, Tolerance};
 
 /// A timing imperfection of a loop.
@@ -63,7 +62,7 @@ const LONG: f64 = 32.0;
 /// Number of bisections: to the digits of a float.
 const HALVINGS: u32 = 48;
 
-impl<M: Model<1>> Loop<M> {
+impl<M: PlantModel> Loop<M> {
     /// An imperfection of the given size without others.
     pub(super) fn single(&self, kind: Imperfection, size: f64) -> Result<Imperfections, LoopError> {
         let none = Imperfections::NONE;

@@ -10,7 +10,7 @@ use libration_work::Work;
 
 use super::AdviseError;
 use super::integrator_choice::IntegratorChoice;
-use super::loops::{Loop, LoopError, ORIGIN};
+use super::loops::{Loop, LoopError, ORIGIN, PlantModel};
 use super::request::{Measure, Tolerance};
 
 /// A loop simulated over a horizon.
@@ -29,7 +29,7 @@ const TRUE: u64 = 512;
 /// Largest number of compared periods.
 pub(super) const MOST_PERIODS: u64 = 20_000;
 
-impl<M: Model<1>> LoopSimulation<'_, M> {
+impl<M: PlantModel> LoopSimulation<'_, M> {
     /// The fewest steps per period with which `method` meets the tolerance.
     pub(super) fn choose(
         &self,

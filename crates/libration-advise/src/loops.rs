@@ -120,7 +120,12 @@ pub enum LoopError {
 
 pub(super) const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
 
-impl<M: Model<1>> Loop<M> {
+/// A model of a plant whose simulations may run on several threads.
+pub(super) trait PlantModel: Model<1, On<f64>: Send + Sync> {}
+
+impl<M: Model<1, On<f64>: Send + Sync>> PlantModel for M {}
+
+impl<M: PlantModel> Loop<M> {
     /// The loop of `request` with its designed gains.
     pub(super) fn new(model: M, request: &Request, control: &Control) -> Result<Self, LoopError> {
         let at = request.q[0];

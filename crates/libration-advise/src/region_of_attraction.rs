@@ -5,7 +5,7 @@ use libration_work::Work;
 
 use super::AdviseError;
 use super::ensemble::{EnsembleRun, MEMORIES, MOST_PERIODS};
-use super::loops::Loop;
+use super::loops::{Loop, PlantModel};
 
 /// The distances from which a loop returns to its operating point.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -23,7 +23,7 @@ pub struct RegionOfAttraction {
 /// Number of starts around the operating point.
 const STARTS: usize = 8;
 
-impl<M: Model<1>> Loop<M> {
+impl<M: PlantModel> Loop<M> {
     /// The region of attraction without noise; none if the loop is linear, or decays too slowly to simulate.
     pub(super) fn region_of_attraction(
         &self,

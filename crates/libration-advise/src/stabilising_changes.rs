@@ -1,11 +1,10 @@
 //! Changes that stabilise an unstable loop.
 
-use libration::Model;
 use libration::analysis::{Imperfections, Plant};
 use libration::control::Feedback;
 use serde::Serialize;
 
-use super::loops::Loop;
+use super::loops::{Loop, PlantModel};
 
 /// The smallest single changes that stabilise a loop; none if no change of the kind was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -36,7 +35,7 @@ pub(super) const NEUTRAL: f64 = 1e-12;
 /// Number of bisections of an end, which is printed to six digits.
 const HALVINGS: u32 = 30;
 
-impl<M: Model<1>> Loop<M> {
+impl<M: PlantModel> Loop<M> {
     /// The changes that stabilise the loop with the imperfections `stated`.
     pub(super) fn stabilising_changes(
         &self,

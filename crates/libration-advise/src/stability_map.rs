@@ -1,12 +1,11 @@
 //! Stability maps of a loop.
 
-use libration::Model;
 use libration::analysis::Imperfections;
 use libration_report::figure::Grid;
 use libration_work::Work;
 
 use super::AdviseError;
-use super::loops::{Loop, LoopError};
+use super::loops::{Loop, LoopError, PlantModel};
 
 /// The growth of a loop over latency and gain.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +22,7 @@ const SIZE: [usize; 2] = [48, 32];
 /// Largest latency of the map, in periods, unless more is stated.
 const MOST_PERIODS: f64 = 24.0;
 
-impl<M: Model<1>> Loop<M> {
+impl<M: PlantModel> Loop<M> {
     /// The map of latencies from zero to 1.5 times the limit, and of gains from a quarter to four times.
     pub(super) fn map(
         &self,

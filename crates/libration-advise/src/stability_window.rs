@@ -1,12 +1,11 @@
 //! Stability windows beyond the first limit.
 
-use libration::Model;
 use libration::analysis::{CostError, Imperfections, Plant};
 use serde::Serialize;
 
 use super::control::Law;
 use super::limits::Imperfection;
-use super::loops::{Loop, LoopError};
+use super::loops::{Loop, LoopError, PlantModel};
 use super::request::{Measure, Tolerance};
 
 /// A stability window beyond the first limit that contains the stated size.
@@ -21,7 +20,7 @@ pub struct StabilityWindow {
 /// Relative accuracy of the ends of a window, which are printed to six digits.
 const SHARP: f64 = 1e-7;
 
-impl<M: Model<1>> Loop<M> {
+impl<M: PlantModel> Loop<M> {
     /// The window around the size `stated` of `kind`, if the loop is stable there but not at smaller sizes above its
     /// first limit `first`. A tolerance of the cost must be met as well.
     pub(super) fn stability_window(

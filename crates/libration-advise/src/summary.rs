@@ -1,13 +1,11 @@
 //! Summaries in sentences.
 
-use libration::Model;
-
 use super::advice::{Advice, LoopAdvice, ToleranceAnswer};
 use super::budget::Budget;
 use super::combined_effect::CombinedEffect;
 use super::control::Control;
 use super::loop_simulation::MOST_PERIODS;
-use super::loops::Loop;
+use super::loops::{Loop, PlantModel};
 use super::request::{Measure, Request, Tolerance};
 use super::stability_window::StabilityWindow;
 
@@ -119,7 +117,10 @@ fn capitalise(text: &str) -> String {
 }
 
 /// The warnings about a loop.
-pub(super) fn loop_warnings<M: Model<1>>(one: &Loop<M>, together: &CombinedEffect) -> Vec<String> {
+pub(super) fn loop_warnings<M: PlantModel>(
+    one: &Loop<M>,
+    together: &CombinedEffect,
+) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Some(returns) = &together.returns {
         let [back, all] = returns.of_asked;
