@@ -2,12 +2,12 @@
 
 use libration::control::{Feedback, Jitter};
 use libration::random::{Address, Purpose};
-use libration::{AnySystem, Model, catalog};
+use libration::{AnySystem, catalog};
 
 use libration_analyze::{LatencyOption, Stepping, Timing};
 
 use super::control::{Control, Law};
-use super::loops::Loop;
+use super::loops::{Loop, PlantModel};
 use super::request::{Measure, Request, Tolerance};
 
 /// Number of compared loops.
@@ -135,7 +135,7 @@ fn read(command: &str) -> libration_analyze::Request {
     }
 }
 
-fn compare(model: impl Model<1>, request: &Request) {
+fn compare(model: impl PlantModel, request: &Request) {
     let one = Loop::new(model, request, request.control.as_ref().unwrap()).unwrap();
     let stated = one.stated().unwrap();
     let wanted = one.growth(&one.plant(), &stated).unwrap();

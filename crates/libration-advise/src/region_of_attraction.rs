@@ -1,6 +1,6 @@
 //! The region of attraction of the operating point.
 
-use libration::{Model, State};
+use libration::State;
 use libration_work::Work;
 
 use super::AdviseError;
