@@ -43,7 +43,6 @@ impl<T: Float> Controller<T, 1> for AnyController {
         }
     }
 
-    #[inline(always)]
     fn command(&self, memory: &mut Self::Memory, observed: &State<T, 1>, period: T) -> [T; 1] {
         match self {
             AnyController::Feedback(own) => own.command(&mut [], observed, period),
