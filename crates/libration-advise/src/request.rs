@@ -49,7 +49,7 @@ pub enum Measure {
     Energy,
     /// The final error of the phase, in rad.
     Phase,
-    /// The largest distance from the true trajectory, over its size.
+    /// The largest distance from the true trajectory, relative to its size.
     Trajectory,
     /// The rise of the stationary cost of a loop, `ΔJ/J₀`.
     Cost,

@@ -2,12 +2,12 @@
 
 use libration::control::{Clock, Controller};
 use libration::ensemble::{All, Loops, Setup};
-use libration::system::{CompiledOnce, Oscillator};
+use libration::system::{BaselineOnly, Oscillator};
 use libration::{Integrator, State};
 use libration_study::{Lab, StudyError};
 
 /// A loop of an oscillator. These studies are short, and have many kinds of loops.
-pub(super) type Loop<M, K, C> = Setup<All<CompiledOnce<Oscillator<f64>>>, M, K, C>;
+pub(super) type Loop<M, K, C> = Setup<All<BaselineOnly<Oscillator<f64>>>, M, K, C>;
 
 /// The states of all loops after some steps.
 pub(super) struct Snapshot {

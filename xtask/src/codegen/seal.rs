@@ -19,7 +19,8 @@ pub(super) fn seal() -> Result<String, String> {
     // Without the folder of the engine itself.
     let tree = tree.lines().map(|line| line.split(" (").next().unwrap_or_default().to_owned());
     let manifest = read(&workspace::root().join("Cargo.toml"))?;
-    let profile = manifest.split("\n[").find(|table| table.starts_with("profile.release]"));
+    let profiles = manifest.split("\n[").filter(|table| table.starts_with("profile.release"));
+    let profiles: Vec<String> = profiles.map(str::to_owned).collect();
     let mut paths = Vec::new();
     for name in ["libration-batch", "libration-core"] {
         gather(&workspace::root().join("crates").join(name).join("src"), &mut paths)?;
@@ -27,7 +28,7 @@ pub(super) fn seal() -> Result<String, String> {
     paths.sort();
     let sources = paths.iter().map(|path| Ok(code::of(&read(path)?)));
     let sources = sources.collect::<Result<Vec<String>, String>>()?;
-    let all = tree.chain(profile.map(str::to_owned)).chain(sources);
+    let all = tree.chain(profiles).chain(sources);
     Ok(format!("{HEADER}{}\n{:016x}\n", compiler.trim(), hash(all)))
 }
 

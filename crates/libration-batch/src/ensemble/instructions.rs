@@ -134,7 +134,7 @@ impl Target for Baseline {
     #[inline(always)]
     fn run<K: WithSimd>(self, kernel: K) -> K::Output {
         // A function by itself, as on the other targets: inlined, the kernels of all methods and systems would become
-        // one, which takes ten times as long to compile.
+        // one, which takes eight times as long to compile.
         #[inline(never)]
         fn run_baseline<K: WithSimd>(kernel: K) -> K::Output {
             Simd::vectorize(pulp::Scalar::new(), kernel)
@@ -165,10 +165,10 @@ impl Target for pulp::x86::V4 {
     }
 }
 
-/// Work that is compiled once for every instruction set, to be run on one of them.
+/// Work that is compiled for each instruction set, to be run on one of them.
 pub(crate) trait Targeted {
     /// Whether it is compiled for the baseline alone.
-    const COMPILED_ONCE: bool = false;
+    const BASELINE_ONLY: bool = false;
 
     /// The result.
     type Output;
@@ -184,9 +184,10 @@ impl InstructionSet {
         self.run(Vectorized(work))
     }
 
-    /// Runs `work` on this instruction set, or on the baseline where the processor lacks it.
+    /// Runs `work` on this instruction set, or on the baseline where the processor lacks it or the work is compiled for no
+    /// other.
     pub(crate) fn run<K: Targeted>(self, work: K) -> K::Output {
-        if const { K::COMPILED_ONCE } {
+        if const { K::BASELINE_ONLY } {
             return work.on(Baseline);
         }
         match self {

@@ -71,7 +71,7 @@ where
     Sys: System<T, D>,
     O: Observer<T, D>,
 {
-    const COMPILED_ONCE: bool = Sys::COMPILED_ONCE;
+    const BASELINE_ONLY: bool = Sys::BASELINE_ONLY;
 
     type Output = ();
 

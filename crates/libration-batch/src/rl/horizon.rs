@@ -50,7 +50,7 @@ where
     E: World<T, O, D>,
     P: Policy<T, O, D>,
 {
-    const COMPILED_ONCE: bool = <E::System as System<T, D>>::COMPILED_ONCE;
+    const BASELINE_ONLY: bool = <E::System as System<T, D>>::BASELINE_ONLY;
 
     type Output = Vec<EpisodeEnd<T, O>>;
 

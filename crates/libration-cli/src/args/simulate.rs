@@ -46,7 +46,7 @@ pub(crate) struct SimulateArgs {
         default_value = "0"
     )]
     pub(crate) spread: f64,
-    /// Instruction set of the trajectories [default: LIBRATION_SIMD, or the widest of this processor]
+    /// Instruction set of trajectories without a control loop [default: LIBRATION_SIMD, or the widest of this processor]
     #[arg(long, value_name = "SET", value_parser = simd::instruction_sets(), requires = "count")]
     pub(crate) simd: Option<InstructionSet>,
     /// Number of threads of the trajectories (0: one per core)

@@ -138,7 +138,7 @@ fn describe(advice: &Advice) -> String {
             if choice.lost.is_finite() {
                 format!("{:.3e}", choice.lost)
             } else {
-                "too much".into()
+                "above tolerance".into()
             },
             shown(choice.lost_beyond),
             shown(choice.evaluations)

@@ -12,7 +12,7 @@ pub struct DynSystem<'a, S, const D: usize>(
 );
 
 impl<S: Scalar, const D: usize> System<S, D> for DynSystem<'_, S, D> {
-    const COMPILED_ONCE: bool = true;
+    const BASELINE_ONLY: bool = true;
 
     #[inline]
     fn acceleration(&self, state: &State<S, D>) -> [S; D] {

@@ -1,7 +1,7 @@
 //! Physical systems `q̈ = a(q, v)`, each written once for every number type.
 
+mod baseline_only;
 mod commanded_system;
-mod compiled_once;
 mod damped_oscillator;
 mod driven_oscillator;
 mod duffing;
@@ -14,8 +14,8 @@ mod pendulum;
 
 use crate::{Elementary, Scalar, State};
 
+pub use baseline_only::BaselineOnly;
 pub use commanded_system::CommandedSystem;
-pub use compiled_once::CompiledOnce;
 pub use damped_oscillator::DampedOscillator;
 pub use driven_oscillator::DrivenOscillator;
 pub use duffing::Duffing;
@@ -43,8 +43,8 @@ pub trait System<S: Scalar, const D: usize> {
     const REGISTERS: usize = 16;
 
     /// Whether batches are compiled for the baseline of the architecture alone, in place of once for each instruction set:
-    /// the same bits. See [`CompiledOnce`].
-    const COMPILED_ONCE: bool = false;
+    /// the same bits. See [`BaselineOnly`].
+    const BASELINE_ONLY: bool = false;
 
     /// Whether the system dispatches over several systems at run time.
     const DISPATCHES: bool = false;

@@ -90,7 +90,7 @@ fn findings(findings: &[Finding]) -> String {
 
 fn finding(finding: &Finding) -> String {
     let (class, verdict) = match finding.verdict {
-        Verdict::Agrees if finding.agrees_with_zero() => ("open", "agrees, below tolerance"),
+        Verdict::Agrees if finding.agrees_with_zero() => ("open", "agrees, but 0 would too"),
         Verdict::Agrees => ("ok", "agrees"),
         Verdict::Disagrees => ("bad", "disagrees"),
         Verdict::Measured if finding.undecided.is_some() => ("open", "not judged"),

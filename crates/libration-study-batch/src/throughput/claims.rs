@@ -193,7 +193,7 @@ fn limits(record: &mut Record) {
     record.judge(Ruling { id: "C82", source: "9.4", text, findings: &ids }, |f| {
         let [lone, few, many] = [0, 1, 2].map(|i| f[i].measured);
         let because = format!(
-            "the rate of steps grows with the power of N: the loop {} from 10³ to 10⁵; array \
+            "the rate of steps grows as a power of N, with the exponents: loop {} from 10³ to 10⁵; array \
              operations {} from 1 to 100 and {} from 10³ to 10⁵. Beyond that the memory traffic of \
              their own passes limits them",
             show(lone),

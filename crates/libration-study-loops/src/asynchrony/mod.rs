@@ -14,7 +14,7 @@ use libration::control::Jitter;
 use libration::control::clock::{Gaussian, Jittered, Skewed};
 use libration::ensemble::{All, Setup};
 use libration::integrator::VelocityVerlet;
-use libration::system::{CompiledOnce, Oscillator};
+use libration::system::{BaselineOnly, Oscillator};
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::RecordError;
@@ -92,7 +92,7 @@ fn run(
     at: &[u64],
 ) -> Result<Vec<Snapshot>, StudyError> {
     let clock = (Skewed(clocks.skew), Jittered(Gaussian(clocks.jitter)));
-    let setup = Setup::new(All(CompiledOnce(model)), VelocityVerlet).clock(clock);
+    let setup = Setup::new(All(BaselineOnly(model)), VelocityVerlet).clock(clock);
     run_snapshots(lab, setup, (dt, seed), starts, at)
 }
 

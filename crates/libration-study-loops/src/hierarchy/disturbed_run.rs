@@ -7,7 +7,7 @@ use libration::control::{Clock, Jitter, Latency, Schedule};
 use libration::ensemble::{All, Loops, Setup};
 use libration::integrator::SymplecticEuler;
 use libration::number::{Mantissa, Wide};
-use libration::system::{CompiledOnce, Oscillator};
+use libration::system::{BaselineOnly, Oscillator};
 use libration::{Float, Integrator, State};
 use libration_study::{Lab, StudyError};
 
@@ -98,7 +98,7 @@ fn clocked<C: Clock<f64>>(lab: &Lab<'_>, clock: C, steps: &[u64]) -> Result<Cour
 fn late(lab: &Lab<'_>, latency: f64, steps: &[u64]) -> Result<Course, StudyError> {
     let latency =
         Latency::of_steps(latency).ok_or_else(|| StudyError::Exact("making a latency".into()))?;
-    let setup = Setup::new(All(CompiledOnce(Oscillator { omega2: 0.0 })), SymplecticEuler)
+    let setup = Setup::new(All(BaselineOnly(Oscillator { omega2: 0.0 })), SymplecticEuler)
         .controller(Force(SPRING))
         .delay(Schedule::late(latency));
     let mut course = vec![Vec::with_capacity(COUNT); steps.len()];

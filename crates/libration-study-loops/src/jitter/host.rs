@@ -5,7 +5,7 @@ use libration::control::clock::Recorded;
 use libration::control::{Feedback, Jitter};
 use libration::ensemble::{All, Loops, Setup};
 use libration::number::Wide;
-use libration::system::CompiledOnce;
+use libration::system::BaselineOnly;
 use libration::{Method, State};
 use libration_advise::jitter_measurement;
 use libration_advise::jitter_measurement::Statistics;
@@ -115,7 +115,7 @@ fn replayed(
         })
         .collect();
     let setup =
-        Setup::new(All(CompiledOnce(setting.model)), setting.method).clock(Recorded::once(steps));
+        Setup::new(All(BaselineOnly(setting.model)), setting.method).clock(Recorded::once(steps));
     let mut all = Loops::new(setup, setting.dt, 0, [0.0], &starts, lab.alone()?)?;
     let mut left = steps.len() as u64;
     while left > 0 {

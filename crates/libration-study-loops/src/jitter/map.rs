@@ -6,7 +6,7 @@ use libration::control::controller::StateFeedback;
 use libration::control::{Feedback, Jitter};
 use libration::ensemble::{All, Setup};
 use libration::integrator::VelocityVerlet;
-use libration::system::CompiledOnce;
+use libration::system::BaselineOnly;
 use libration::{Method, State};
 use libration_report::record::{Finding, Record, Relation, Series, Tolerance};
 use libration_study::{Lab, StudyError};
@@ -46,7 +46,7 @@ pub(super) fn damped(
     starts: &[State<f64, 1>],
     at: &[u64],
 ) -> Result<Vec<Snapshot>, StudyError> {
-    let setup = Setup::new(All(CompiledOnce(lab.config.oscillator.system())), VelocityVerlet)
+    let setup = Setup::new(All(BaselineOnly(lab.config.oscillator.system())), VelocityVerlet)
         .controller(StateFeedback::to_origin(damping(lab)))
         .clock(Jittered(Gaussian(rms)));
     run_snapshots(lab, setup, (dt, SEED), starts, at)

@@ -107,9 +107,9 @@ fn free(
 ) -> Result<Vec<super::loop_ensemble::Snapshot>, StudyError> {
     use libration::control::clock::{Gaussian, Jittered};
     use libration::ensemble::{All, Setup};
-    use libration::system::CompiledOnce;
+    use libration::system::BaselineOnly;
     with_jittered!(setting.method, |m| {
-        let setup = Setup::new(All(CompiledOnce(model)), m).clock(Jittered(Gaussian(setting.rms)));
+        let setup = Setup::new(All(BaselineOnly(model)), m).clock(Jittered(Gaussian(setting.rms)));
         super::loop_ensemble::run_snapshots(lab, setup, (setting.dt, SEED), starts, at)
     })
 }

@@ -3,7 +3,7 @@
 use libration::control::clock::{Gaussian, Jittered};
 use libration::ensemble::{All, Setup};
 use libration::integrator::VelocityVerlet;
-use libration::system::CompiledOnce;
+use libration::system::BaselineOnly;
 use libration_report::record::{Finding, Record, Tolerance};
 use libration_study::{Lab, StudyError};
 
@@ -14,7 +14,7 @@ const STEPS: u64 = 10_000;
 
 /// Counts the bits that two runs of one seed differ in, and those of another seed.
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {
-    let setup = Setup::new(All(CompiledOnce(lab.config.oscillator.system())), VelocityVerlet)
+    let setup = Setup::new(All(BaselineOnly(lab.config.oscillator.system())), VelocityVerlet)
         .clock(Jittered(Gaussian(0.05)));
     let dt = 0.1 / lab.config.oscillator.omega();
     let run = |seed: u64, count: usize| {

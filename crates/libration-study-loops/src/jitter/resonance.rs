@@ -6,7 +6,7 @@ use libration::analysis::StepNoise;
 use libration::control::clock::Sinusoidal;
 use libration::ensemble::{All, Setup};
 use libration::integrator::SymplecticEuler;
-use libration::system::CompiledOnce;
+use libration::system::BaselineOnly;
 use libration::{Method, State};
 use libration_report::record::{Finding, Record, Series, Tolerance};
 use libration_study::{Lab, StudyError};
@@ -124,7 +124,7 @@ fn growth(
     let around = (0..8).map(|i| (TAU * f64::from(i) / 16.0).sin_cos());
     let starts: Vec<_> = around.map(|(v, q)| State { q: [q], v: [v * omega] }).collect();
     let clock = Sinusoidal { rms: RMS, rate, phase: 0.0 };
-    let setup = Setup::new(All(CompiledOnce(setting.model)), SymplecticEuler).clock(clock);
+    let setup = Setup::new(All(BaselineOnly(setting.model)), SymplecticEuler).clock(clock);
     let seen = run_snapshots(lab, setup, (setting.dt, SEED), &starts, &[half, 2 * half])?;
     let sizes: Vec<Vec<f64>> = seen.iter().map(|s| s.logarithms(|y| theory.form.at(y))).collect();
     let [middle, end] = &sizes[..] else { return Ok(f64::NAN) };

@@ -5,7 +5,7 @@ use libration::analysis::StepNoise;
 use libration::control::clock::Correlated;
 use libration::ensemble::{All, Setup};
 use libration::integrator::SymplecticEuler;
-use libration::system::CompiledOnce;
+use libration::system::BaselineOnly;
 use libration_report::record::{Finding, Record, Series, Tolerance};
 use libration_study::{Lab, StudyError};
 
@@ -37,7 +37,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
             return Ok(None);
         };
         let clock = Correlated { rms: RMS, correlation };
-        let setup = Setup::new(All(CompiledOnce(setting.model)), SymplecticEuler).clock(clock);
+        let setup = Setup::new(All(BaselineOnly(setting.model)), SymplecticEuler).clock(clock);
         let seen = run_snapshots(lab, setup, (setting.dt, SEED), &starts, &[steps])?;
         let walk = seen.iter().flat_map(|s| s.logarithms(|y| theory.form.at(y)));
         let walk = Sample::of(&walk.map(|x| x / 2.0).collect::<Vec<_>>());

@@ -7,7 +7,7 @@ use libration::control::clock::Recorded;
 use libration::control::controller::StateFeedback;
 use libration::ensemble::{All, Setup};
 use libration::integrator::VelocityVerlet;
-use libration::system::CompiledOnce;
+use libration::system::BaselineOnly;
 use libration_report::record::{Finding, Record, Relation, Series, Tolerance};
 use libration_study::{Lab, StudyError};
 
@@ -45,7 +45,7 @@ pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyErr
     let blocks = 600 / block + 1;
     for (name, order) in &orders {
         let radius = plant.periodic_radius(feedback, order).to_f64();
-        let setup = Setup::new(All(CompiledOnce(model)), VelocityVerlet)
+        let setup = Setup::new(All(BaselineOnly(model)), VelocityVerlet)
             .controller(StateFeedback::to_origin(feedback))
             .clock(Recorded::repeated(order));
         let at: Vec<u64> = (0..=2 * blocks).map(|n| n * block).collect();

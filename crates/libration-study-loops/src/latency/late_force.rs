@@ -7,7 +7,7 @@ use libration::control::{Feedback, Latency, Schedule};
 use libration::ensemble::{All, Loops, Setup};
 use libration::integrator::ExplicitEuler;
 use libration::simulation::{Sample, Simulator};
-use libration::system::{CompiledOnce, Oscillator};
+use libration::system::{BaselineOnly, Oscillator};
 use libration::{Float, Method, State};
 use libration_report::Record;
 use libration_report::notation::{count, plural, seconds};
@@ -157,8 +157,8 @@ fn findings(orbit: &Orbit, record: &mut Record) {
 /// A spring whose force is a command.
 type Late = Loops<
     f64,
-    CompiledOnce<Oscillator<f64>>,
-    All<CompiledOnce<Oscillator<f64>>>,
+    BaselineOnly<Oscillator<f64>>,
+    All<BaselineOnly<Oscillator<f64>>>,
     Method,
     Force<Oscillator<f64>>,
     Fixed,
@@ -168,7 +168,7 @@ type Late = Loops<
 
 /// Symplectic Euler without a force of its own, under one that is late.
 fn late_force(lab: &Lab<'_>, latency: Latency) -> Result<Late, StudyError> {
-    let setup = Setup::new(All(CompiledOnce(FREE)), Method::SymplecticEuler)
+    let setup = Setup::new(All(BaselineOnly(FREE)), Method::SymplecticEuler)
         .controller(Force(SPRING))
         .delay(Schedule::late(latency));
     Ok(Loops::new(setup, DT, 0, [0.0], &[START], lab.alone()?)?)

@@ -5,7 +5,7 @@ use libration::control::controller::StateFeedback;
 use libration::control::{Feedback, Latency, Schedule};
 use libration::ensemble::{All, Loops, Setup};
 use libration::number::Wide;
-use libration::system::{CompiledOnce, Oscillator};
+use libration::system::{BaselineOnly, Oscillator};
 use libration::{Method, Scalar, State};
 use libration_study::{Lab, StudyError};
 
@@ -52,7 +52,7 @@ impl Loop {
     /// `ln ρ` of a step, by a simulation of so many `steps` with a command that is `late` steps late.
     pub(super) fn measured(&self, lab: &Lab<'_>, late: f64, steps: u64) -> Result<f64, StudyError> {
         let Some(latency) = Latency::of_steps(late) else { return Ok(f64::NAN) };
-        let setup = Setup::new(All(CompiledOnce(SPRING)), self.method)
+        let setup = Setup::new(All(BaselineOnly(SPRING)), self.method)
             .controller(StateFeedback::to_origin(self.gains))
             .delay(Schedule::late(latency));
         let mut all = Loops::new(setup, self.dt, 0, [0.0], &[START], lab.alone()?)?;

@@ -6,7 +6,7 @@ use libration::control::RandomLatency;
 use libration::control::controller::StateFeedback;
 use libration::control::delay::Random;
 use libration::ensemble::{All, Loops, Setup};
-use libration::system::CompiledOnce;
+use libration::system::BaselineOnly;
 use libration_report::Record;
 use libration_report::notation::{count, number, seconds};
 use libration_report::record::{Finding, Table, Tolerance};
@@ -84,7 +84,7 @@ fn one(lab: &Lab<'_>, method: Method, hold: f64) -> Result<(Vec<Finding>, [f64; 
     let name = method.name();
     let loops = PARTS * lab.effort.choose(400, 1000, 8000);
     let plant = Plant::new(method, SPRING, ORIGIN, DT);
-    let setup = Setup::new(All(CompiledOnce(SPRING)), method)
+    let setup = Setup::new(All(BaselineOnly(SPRING)), method)
         .controller(StateFeedback::to_origin(GAINS))
         .delay(Random(&latency));
     let starts = vec![START; loops];

@@ -22,7 +22,7 @@ pub(super) fn judge(record: &mut Record) {
             "force evaluations a step: {}; time: {} ns. Verlet evaluates the force twice per step \
              here, and takes {} times as long as symplectic Euler; once would suffice, since the \
              last force of a step is the first of the next. But a comparison per step is not \
-             meaningful: the work for a given accuracy is",
+             meaningful; compare the work for a given accuracy",
             list(counts),
             list(times),
             number(times[2] / times[1], 2)

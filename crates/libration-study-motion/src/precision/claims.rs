@@ -232,7 +232,9 @@ fn rounded_step(config: &Config, record: &mut Record) {
                 let (at, off) = (seconds(*dt, 3), number(off, 2));
                 let by_step = number(f.predicted.unwrap_or(f64::NAN), 2);
                 let ahead = number(f.measured, 2);
-                format!("{ahead} rad at {at} (its rounded step, off by {off}, predicts {by_step})")
+                format!(
+                    "{ahead} rad at {at} (the rounding of this step, {off}, predicts {by_step} rad)"
+                )
             })
             .collect();
         // Their tolerance has the roundings along the orbit too, and may be wider than the law.

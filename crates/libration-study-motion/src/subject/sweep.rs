@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use libration::ensemble::{All, EnsembleError, Execution, Lanes, Observer, PerTrajectory};
-use libration::system::CompiledOnce;
+use libration::system::BaselineOnly;
 use libration::{Ensemble, Hamiltonian, Method, Model, State, with_method};
 
 use super::{Orbits, Problem};
@@ -31,7 +31,7 @@ pub(super) fn first_unstable<M: Model<D>, const D: usize>(
 where
     M::On<f64>: Send + Sync,
 {
-    let system = CompiledOnce(problem.model.on::<f64>());
+    let system = BaselineOnly(problem.model.on::<f64>());
     let bound = Bound::new(problem, &system, orbits, start);
     for (i, dts) in dts.chunks(TOGETHER).enumerate() {
         let watch = |range| BoundObserver::new(range, system, bound);

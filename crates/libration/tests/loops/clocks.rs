@@ -8,12 +8,12 @@ use libration::control::clock::{
 use libration::control::{Clock, Jitter};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::SymplecticEuler;
-use libration::system::{CompiledOnce, Oscillator};
+use libration::system::{BaselineOnly, Oscillator};
 
 /// The steps of some trajectories, in multiples of `Δt`: what moves freely goes as far as time does.
 fn ratios<C: Clock<f64>>(clock: C, trajectories: usize, steps: usize) -> Vec<Vec<f64>> {
     let setup =
-        Setup::new(All(CompiledOnce(Oscillator { omega2: 0.0 })), SymplecticEuler).clock(clock);
+        Setup::new(All(BaselineOnly(Oscillator { omega2: 0.0 })), SymplecticEuler).clock(clock);
     let starts = vec![State { q: [0.0], v: [1.0] }; trajectories];
     let mut all = Loops::new(setup, 1.0, 77, [0.0], &starts, Execution::serial()).unwrap();
     let mut last = vec![0.0; trajectories];
@@ -177,7 +177,7 @@ fn the_halves_of_a_pair_have_nothing_to_do_with_each_other() {
 fn what_begins_again_does_not_begin_alike() {
     let clock = Correlated { rms: 0.1, correlation: 0.9 };
     let setup =
-        Setup::new(All(CompiledOnce(Oscillator { omega2: 0.0 })), SymplecticEuler).clock(clock);
+        Setup::new(All(BaselineOnly(Oscillator { omega2: 0.0 })), SymplecticEuler).clock(clock);
     let start = State { q: [0.0], v: [1.0] };
     let mut all = Loops::new(setup, 1.0, 77, [0.0], &[start; 3], Execution::serial()).unwrap();
     let mut first = Vec::new();

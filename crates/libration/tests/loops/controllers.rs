@@ -5,7 +5,7 @@ use libration::control::controller::{Pid, PidGains, Saturated, StateFeedback};
 use libration::control::{Controller, Feedback};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::Rk4;
-use libration::system::{CompiledOnce, DampedOscillator};
+use libration::system::{BaselineOnly, DampedOscillator};
 
 const GAINS: PidGains<1> = PidGains {
     proportional: 2.0,
@@ -57,7 +57,7 @@ fn the_integral_does_not_wind_up_at_the_limit() {
 #[test]
 fn a_pid_loop_comes_to_rest_on_its_target_in_spite_of_the_spring() {
     let pid = Pid::new(PidGains { filter: 0.02, ..GAINS }).unwrap();
-    let setup = Setup::new(All(CompiledOnce(DampedOscillator { omega2: 2.0, gamma: 0.5 })), Rk4)
+    let setup = Setup::new(All(BaselineOnly(DampedOscillator { omega2: 2.0, gamma: 0.5 })), Rk4)
         .controller(pid);
     let mut all = Loops::new(setup, 0.01, 0, [0.0], &[at(0.0)], Execution::serial()).unwrap();
     all.advance(20_000).unwrap();

@@ -8,7 +8,7 @@ use libration::control::{Controller, Feedback, Jitter, Latency, LqrWeights, Sche
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::Exact;
 use libration::random::{Address, Purpose};
-use libration::system::{CompiledOnce, Oscillator};
+use libration::system::{BaselineOnly, Oscillator};
 use libration::{Integrator, Method, State, with_method};
 
 const MODEL: Oscillator<f64> = Oscillator { omega2: 10.0 };
@@ -40,7 +40,7 @@ fn simulated(
     travels[whole] = 1.0 - loss;
     let packets = Packets::new(&travels, Order::NewestActs).unwrap().longer_by(part).unwrap();
     let rates = vec![1.0 + skew; COUNT];
-    let setup = Setup::new(All(CompiledOnce(MODEL)), method)
+    let setup = Setup::new(All(BaselineOnly(MODEL)), method)
         .controller(controller)
         .clock((Rates(&rates), Jittered(jitter)))
         .delay(packets)
@@ -155,7 +155,7 @@ fn an_exact_loop_with_a_late_command_costs_what_fine_steps_measure() {
         let predicted = plant.cost(&GAINS.into(), &imperfections, weights).unwrap();
         let fine = dt / f64::from(FINE);
         let schedule = Schedule::new(f64::from(FINE), 0.0, late * f64::from(FINE)).unwrap();
-        let setup = Setup::new(All(CompiledOnce(MODEL)), Exact::new::<1>(MODEL, fine).unwrap())
+        let setup = Setup::new(All(BaselineOnly(MODEL)), Exact::new::<1>(MODEL, fine).unwrap())
             .controller(StateFeedback::to_origin(GAINS))
             .delay(schedule)
             .disturbance(WhiteNoise(1.0));

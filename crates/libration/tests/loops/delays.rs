@@ -6,7 +6,7 @@ use libration::control::delay::{Latencies, Order, Packets, Random, RecordedLaten
 use libration::control::{Delay, Feedback, Latency, RandomLatency};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::VelocityVerlet;
-use libration::system::{CompiledOnce, Oscillator};
+use libration::system::{BaselineOnly, Oscillator};
 
 /// The command that acts in the end of each step, on something that moves freely with velocity 1 under a command that
 /// is its own position and too weak to move it: the time at which the command was computed, in steps.
@@ -14,7 +14,7 @@ fn computed_at<L: Delay<f64>>(delay: L, trajectories: usize, steps: usize) -> Ve
     // 2⁻¹⁰⁰: what it moves is lost in rounding.
     let weak = 1.0 / (1_u128 << 100) as f64;
     let feedback = Feedback { position: -weak, velocity: 0.0 };
-    let setup = Setup::new(All(CompiledOnce(Oscillator { omega2: 0.0 })), VelocityVerlet)
+    let setup = Setup::new(All(BaselineOnly(Oscillator { omega2: 0.0 })), VelocityVerlet)
         .controller(StateFeedback::to_origin(feedback))
         .delay(delay);
     let starts = vec![State { q: [0.0], v: [1.0] }; trajectories];
@@ -72,7 +72,7 @@ fn a_latency_of_any_part_splits_the_step_where_the_command_arrives() {
     let to = StateFeedback { gains: Feedback { position: 1.0, ..feedback }, target: [1.0] };
     let latency = Latency::of_steps(0.3).unwrap();
     let setup =
-        Setup::new(All(CompiledOnce(Oscillator { omega2: 0.0 })), VelocityVerlet).controller(to);
+        Setup::new(All(BaselineOnly(Oscillator { omega2: 0.0 })), VelocityVerlet).controller(to);
     let start = [State { q: [0.0], v: [0.0] }];
     let shared = setup.delay(Schedule::late(latency));
     let own = [latency];
@@ -105,8 +105,7 @@ fn a_long_latency_is_kept_in_short_floats() {
     let to = StateFeedback { gains: Feedback { position: 1.0, velocity: 0.0 }, target: [1.0] };
     let long = [7_u32, 127, 257, 259, 300, 1001, 2049, 4096];
     let latencies = long.map(|steps| Latency::of_steps(f64::from(steps)).unwrap());
-    let setup =
-        Setup::new(All(CompiledOnce(Oscillator { omega2: half::bf16::ZERO })), VelocityVerlet);
+    let setup = Setup::new(All(Oscillator { omega2: half::bf16::ZERO }), VelocityVerlet);
     let setup = setup.controller(to).delay(Latencies::of_commands(&latencies));
     let zero = half::bf16::ZERO;
     let starts = [State { q: [zero], v: [zero] }; 8];
@@ -141,7 +140,7 @@ fn a_random_latency_and_a_packet_may_take_a_part_of_a_step() {
     // Free, from rest, under a command of 1 as soon as one arrives.
     let to = StateFeedback { gains: Feedback { position: 1.0, velocity: 0.0 }, target: [1.0] };
     let setup =
-        Setup::new(All(CompiledOnce(Oscillator { omega2: 0.0 })), VelocityVerlet).controller(to);
+        Setup::new(All(BaselineOnly(Oscillator { omega2: 0.0 })), VelocityVerlet).controller(to);
     let table = RandomLatency::new(vec![(0.25, 1.0)], 0.0).unwrap();
     let start = [State { q: [0.0_f64], v: [0.0] }];
     let random = setup.delay(Random(&table));

@@ -6,7 +6,7 @@ use libration::control::delay::Schedule;
 use libration::control::{Feedback, Jitter, Latency};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::{Exact, Rk4, VelocityVerlet};
-use libration::system::{CompiledOnce, Oscillator};
+use libration::system::{BaselineOnly, Oscillator};
 use libration::{Integrator, Method, State};
 use proptest::prelude::*;
 
@@ -24,7 +24,7 @@ fn growth(
 ) -> f64 {
     const STEPS: u32 = 20_000;
     let state = State { q: [1.0], v: [0.3] };
-    let setup = Setup::new(All(CompiledOnce(Oscillator { omega2 })), method)
+    let setup = Setup::new(All(BaselineOnly(Oscillator { omega2 })), method)
         .controller(StateFeedback::to_origin(feedback))
         .delay(Schedule::late(latency));
     let mut all = Loops::new(setup, dt, 0, [0.0], &[state], Execution::serial()).unwrap();

@@ -10,10 +10,10 @@ use libration::control::delay::{Latencies, Order, Packets, RecordedLatencies, Sc
 use libration::control::{Clock, Controller, Delay, Feedback, Jitter, Latency};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::Rk4;
-use libration::system::{CompiledOnce, Oscillator};
+use libration::system::{BaselineOnly, Oscillator};
 
 fn refused<C: Clock<f64>, L: Delay<f64>>(clock: C, delay: L, dt: f64, steps: u64) -> String {
-    let setup = Setup::new(All(CompiledOnce(Oscillator { omega2: 1.0 })), Rk4)
+    let setup = Setup::new(All(BaselineOnly(Oscillator { omega2: 1.0 })), Rk4)
         .controller(StateFeedback::to_origin(Default::default()))
         .clock(clock)
         .delay(delay);
@@ -147,7 +147,7 @@ fn numbers_that_are_no_clock_are_named() {
 /// What is said of a controller, in steps of 0.5 s, and of what acts before its first command.
 fn of_controller(controller: impl Controller<f64, 1>, before: f64) -> String {
     let setup =
-        Setup::new(All(CompiledOnce(Oscillator { omega2: 1.0 })), Rk4).controller(controller);
+        Setup::new(All(BaselineOnly(Oscillator { omega2: 1.0 })), Rk4).controller(controller);
     let starts = [State { q: [1.0], v: [0.0] }];
     let made = Loops::new(setup, 0.5, 0, [before], &starts, Execution::serial());
     made.map(|_| ()).unwrap_err().to_string()
@@ -173,7 +173,7 @@ fn numbers_that_are_no_controller_are_named_also_inside_another() {
         of_controller(fine, f64::NAN),
         "the command before the first is NaN; it must be a finite number"
     );
-    let setup = Setup::new(All(CompiledOnce(Oscillator { omega2: 1.0_f32 })), Rk4)
+    let setup = Setup::new(All(BaselineOnly(Oscillator { omega2: 1.0_f32 })), Rk4)
         .controller(StateFeedback::<1>::to_origin(Feedback { position: 1e39, velocity: 1.0 }));
     let starts = [State { q: [0.0_f32], v: [0.0] }];
     let short = Loops::new(setup, 0.5, 0, [0.0], &starts, Execution::serial()).map(|_| ());

@@ -7,7 +7,7 @@ use libration::control::delay::Random;
 use libration::control::{Feedback, Jitter, RandomLatency};
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::{Rk4, SymplecticEuler, VelocityVerlet};
-use libration::system::{CompiledOnce, Oscillator};
+use libration::system::{BaselineOnly, Oscillator};
 use libration::{Method, State};
 
 const ORIGIN: State<f64, 1> = State { q: [0.0], v: [0.0] };
@@ -61,7 +61,7 @@ fn second_moments_under_jitter_are_within_three_standard_errors_of_theory() {
                 let plant = with!(method, |m| Plant::new(m, SPRING, ORIGIN, 0.1));
                 let [.., wanted] = plant.mean_square(feedback, law).moments(&START, 100);
                 let [found, error] = with!(method, |m| {
-                    let setup = Setup::new(All(CompiledOnce(SPRING)), m)
+                    let setup = Setup::new(All(BaselineOnly(SPRING)), m)
                         .controller(StateFeedback::to_origin(feedback))
                         .clock(Jittered(law));
                     let starts = [START; COUNT];
@@ -97,7 +97,7 @@ fn means_over_asynchronous_clocks_are_within_three_standard_errors_of_theory() {
                 let steps = (plant.dephasing_steps(law).unwrap().to_f64() / 3.0) as u64;
                 let wanted = plant.asynchronous_mean(&START, law, steps).q[0];
                 let [found, error] = with!(method, |m| {
-                    let setup = Setup::new(All(CompiledOnce(SPRING)), m).clock(Skewed(law));
+                    let setup = Setup::new(All(BaselineOnly(SPRING)), m).clock(Skewed(law));
                     let starts = [START; COUNT];
                     let mut all =
                         Loops::new(setup, dt, 8, [0.0], &starts, Execution::serial()).unwrap();
@@ -132,7 +132,7 @@ fn second_moments_under_random_latency_are_within_three_standard_errors_of_theor
                 let plant = with!(method, |m| Plant::new(m, SPRING, ORIGIN, 0.1));
                 let [.., wanted] = plant.moments_late(feedback, &latency, &START, 40);
                 let [found, error] = with!(method, |m| {
-                    let setup = Setup::new(All(CompiledOnce(SPRING)), m)
+                    let setup = Setup::new(All(BaselineOnly(SPRING)), m)
                         .controller(StateFeedback::to_origin(feedback))
                         .delay(Random(&latency));
                     let starts = [START; COUNT];

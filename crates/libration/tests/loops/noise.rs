@@ -6,12 +6,12 @@ use libration::control::clock::{Jittered, Uniform};
 use libration::control::controller::StateFeedback;
 use libration::ensemble::{All, Execution, Loops, Setup};
 use libration::integrator::VelocityVerlet;
-use libration::system::{CompiledOnce, Oscillator};
+use libration::system::{BaselineOnly, Oscillator};
 
 #[test]
 fn a_velocity_takes_up_the_intensity_in_a_second_whatever_the_steps() {
     const COUNT: usize = 20_000;
-    let free = All(CompiledOnce(Oscillator { omega2: 0.0 }));
+    let free = All(BaselineOnly(Oscillator { omega2: 0.0 }));
     let starts = vec![State { q: [0.0], v: [0.0] }; COUNT];
     for (dt, steps, jitter) in [(0.1, 20, 0.0), (0.01, 200, 0.0), (0.1, 20, 0.4)] {
         let setup = Setup::new(free, VelocityVerlet)
@@ -30,7 +30,7 @@ fn a_velocity_takes_up_the_intensity_in_a_second_whatever_the_steps() {
 #[test]
 fn noise_is_beside_the_command_and_of_none_nothing_is_left() {
     let gains = libration::control::Feedback { position: 3.0, velocity: 1.0 };
-    let setup = Setup::new(All(CompiledOnce(Oscillator { omega2: 10.0 })), VelocityVerlet)
+    let setup = Setup::new(All(BaselineOnly(Oscillator { omega2: 10.0 })), VelocityVerlet)
         .controller(StateFeedback::to_origin(gains));
     let starts = [State { q: [1.0], v: [0.0] }; 3];
     let run = |intensity: f64| -> State<f64, 1> {
@@ -51,7 +51,7 @@ fn noise_is_beside_the_command_and_of_none_nothing_is_left() {
 #[test]
 fn noise_that_is_none_is_refused() {
     for bad in [-1.0, f64::NAN, f64::INFINITY] {
-        let setup = Setup::new(All(CompiledOnce(Oscillator { omega2: 10.0 })), VelocityVerlet)
+        let setup = Setup::new(All(BaselineOnly(Oscillator { omega2: 10.0 })), VelocityVerlet)
             .disturbance(WhiteNoise(bad));
         let start = [State { q: [1.0], v: [0.0] }];
         let refused = Loops::new(setup, 0.1, 7, [0.0], &start, Execution::serial());

@@ -9,7 +9,7 @@ use libration::rl::policy::Constant;
 use libration::rl::start::FixedStart;
 use libration::rl::task::Regulate;
 use libration::rl::{Environment, Environments, Plan, Rollout};
-use libration::system::{CompiledOnce, Oscillator};
+use libration::system::{BaselineOnly, Oscillator};
 
 use crate::TASK;
 
@@ -18,7 +18,7 @@ fn steps<C: Clock<f32>>(clock: C, limit: u32, horizon: usize, count: usize) -> V
     let free = Oscillator { omega2: 0.0_f32 };
     let task = Regulate { bound: f64::INFINITY, ..TASK };
     let start = FixedStart(State { q: [0.0], v: [1.0] });
-    let world = Environment::new(All(CompiledOnce(free)), SymplecticEuler, 1.0, task, start)
+    let world = Environment::new(All(BaselineOnly(free)), SymplecticEuler, 1.0, task, start)
         .limit(limit)
         .clock(clock);
     let mut all = Environments::new(world, count, 3, Execution::serial()).unwrap();

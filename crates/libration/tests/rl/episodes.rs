@@ -7,7 +7,7 @@ use libration::rl::policy::Constant;
 use libration::rl::start::FixedStart;
 use libration::rl::task::Regulate;
 use libration::rl::{Autoreset, Delays, Environment, Environments, Layout, Plan, Rollout, Task};
-use libration::system::CompiledOnce;
+use libration::system::BaselineOnly;
 
 use crate::bits::POLICY;
 use crate::{SPRING, TASK, ideal, perturbed};
@@ -44,7 +44,7 @@ fn what_is_no_longer_finite_is_over_pays_nothing_and_begins_again() {
     let task = Regulate { bound: f64::INFINITY, ..TASK };
     let start = FixedStart(State { q: [1.0], v: [0.0] });
     let environment =
-        Environment::new(All(CompiledOnce(SPRING)), SymplecticEuler, 1e6, task, start);
+        Environment::new(All(BaselineOnly(SPRING)), SymplecticEuler, 1e6, task, start);
     let mut all = Environments::new(environment, 3, 0, Execution::serial()).unwrap();
     let mut rollout = Rollout::new(Plan::new(20, 3)).unwrap();
     all.rollout(Constant([0.0]), &mut rollout).unwrap();
@@ -135,7 +135,7 @@ fn what_is_finite_is_not_lost_however_large() {
     let start = FixedStart(State { q: [40_000.0], v: [40_000.0] });
     let still = libration::system::Oscillator { omega2: f16::ZERO };
     let environment =
-        Environment::new(All(CompiledOnce(still)), SymplecticEuler, 1e-7, Nothing, start);
+        Environment::new(All(BaselineOnly(still)), SymplecticEuler, 1e-7, Nothing, start);
     let mut all = Environments::new(environment, 64, 0, Execution::serial()).unwrap();
     let mut rollout: Rollout<f16, 2, 1> = Rollout::new(Plan::new(3, 64)).unwrap();
     all.rollout(Constant([0.0]), &mut rollout).unwrap();

@@ -10,7 +10,7 @@ use libration::rl::task::{Regulate, Task};
 use libration::rl::{
     Environment, Environments, Episode, Layout, Plan, Rollout, Start, StepIndex, Writes,
 };
-use libration::system::{CommandedSystem, CompiledOnce, HenonHeiles};
+use libration::system::{BaselineOnly, CommandedSystem, HenonHeiles};
 use libration::{Float, State};
 
 use crate::executions;
@@ -130,7 +130,7 @@ fn short_floats_know_how_late_it_is() {
     let start =
         UniformStart(State { q: [0.0; 2], v: [0.0; 2] }, State { q: [0.0; 2], v: [0.0; 2] });
     let environment =
-        Environment::new(All(CompiledOnce(system::<f16>())), VelocityVerlet, 0.01, Now, start);
+        Environment::new(All(BaselineOnly(system::<f16>())), VelocityVerlet, 0.01, Now, start);
     let mut all = Environments::new(environment, 64, 0, Default::default()).unwrap();
     // Beyond 2048, an f16 does not hold every number of steps.
     let mut rollout: Rollout<f16, 1, 2> = Rollout::new(Plan::new(3000, 64)).unwrap();

@@ -7,7 +7,7 @@ use libration::rl::policy::Constant;
 use libration::rl::start::FixedStart;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Environment, Environments, Plan, Rollout};
-use libration::system::{CommandedSystem, CompiledOnce, Oscillator, Pendulum};
+use libration::system::{BaselineOnly, CommandedSystem, Oscillator, Pendulum};
 use libration::{Float, State};
 
 #[test]
@@ -47,7 +47,7 @@ fn a_reference_is_seen_and_paid_for_at_the_time_of_the_episode() {
     let (task, start) = (Track { reference, regulate }, FixedStart(State { q: [0.0], v: [0.0] }));
     let system = Oscillator { omega2: 1.0_f64 };
     for autoreset in [Autoreset::SameStep, Autoreset::NextStep, Autoreset::Disabled] {
-        let environment = Environment::new(All(CompiledOnce(system)), Rk4, 0.05, task, start)
+        let environment = Environment::new(All(BaselineOnly(system)), Rk4, 0.05, task, start)
             .substeps(2)
             .limit(11)
             .autoreset(autoreset);
@@ -223,13 +223,8 @@ fn short_and_long_floats_are_environments_too() {
     fn last<T: Float + Pod>(omega2: T, set: InstructionSet) -> Vec<f64> {
         let task = Regulate { position: 1.0, velocity: 0.1, effort: 0.0, bound: 10.0 };
         let start = FixedStart(State { q: [1.0], v: [0.0] });
-        let environment = Environment::new(
-            All(CompiledOnce(Oscillator { omega2 })),
-            SymplecticEuler,
-            0.0625,
-            task,
-            start,
-        );
+        let environment =
+            Environment::new(All(Oscillator { omega2 }), SymplecticEuler, 0.0625, task, start);
         let execution = Execution::serial().instructions(set).unwrap();
         let mut all = Environments::new(environment, 70, 0, execution).unwrap();
         let mut rollout: Rollout<T, 2, 1> = Rollout::new(Plan::new(32, 70)).unwrap();

@@ -1,20 +1,21 @@
-//! Systems whose batches are compiled once.
+//! Systems whose batches are compiled for one instruction set.
 
 use super::{Hamiltonian, System};
 use crate::{Scalar, State};
 
 /// A system whose batches are compiled for the baseline of the architecture alone: the same bits in a third of the code, for
-/// what runs too shortly to gain from wide vectors.
+/// callers in which compile time matters more than wide vectors. Wrap the whole system: inside another one the constant has no
+/// effect. A system that [dispatches](System::DISPATCHES) is called without dispatch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CompiledOnce<Sys>(
+pub struct BaselineOnly<Sys>(
     /// The system.
     pub Sys,
 );
 
-impl<S: Scalar, Sys: System<S, D>, const D: usize> System<S, D> for CompiledOnce<Sys> {
+impl<S: Scalar, Sys: System<S, D>, const D: usize> System<S, D> for BaselineOnly<Sys> {
     const POSITIONAL: bool = Sys::POSITIONAL;
     const REGISTERS: usize = Sys::REGISTERS;
-    const COMPILED_ONCE: bool = true;
+    const BASELINE_ONLY: bool = true;
 
     #[inline(always)]
     fn acceleration(&self, state: &State<S, D>) -> [S; D] {
@@ -22,7 +23,7 @@ impl<S: Scalar, Sys: System<S, D>, const D: usize> System<S, D> for CompiledOnce
     }
 }
 
-impl<S: Scalar, Sys: Hamiltonian<S, D>, const D: usize> Hamiltonian<S, D> for CompiledOnce<Sys> {
+impl<S: Scalar, Sys: Hamiltonian<S, D>, const D: usize> Hamiltonian<S, D> for BaselineOnly<Sys> {
     #[inline(always)]
     fn energy(&self, state: &State<S, D>) -> S {
         self.0.energy(state)
