@@ -148,7 +148,7 @@ impl<M: PlantModel> Loop<M> {
         };
         let end = |limit: Limit| match limit {
             Limit::None => (Some(0.0), 0.0),
-            Limit::At(size) => (Some(scale * size), scale * size),
+            Limit::Value(size) => (Some(scale * size), scale * size),
             Limit::Beyond(size) => (None, scale * size),
         };
         let (stable, tried) = end(self.stable_up_to(&plant, kind)?);

@@ -218,7 +218,7 @@ impl<M: PlantModel> Loop<M> {
         let error = (sum / (count - groups as f64) / count).sqrt();
         let kurtosis = count * squares.iter().map(|x| x * x).sum::<f64>() / (sum * sum);
         let outbursts = kurtosis > OUTBURSTS;
-        let held = self.plant().held();
+        let held = self.plant().with_simulated_noise();
         let weights = LqrWeights { command: 0.0, ..self.weights };
         let predicted = self.cost(&held, stated, weights).map_err(LoopError::from)?;
         Ok(Some(SimulatedCost { loops: COUNT, periods, cost, error, predicted, outbursts }))

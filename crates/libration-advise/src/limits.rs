@@ -42,7 +42,7 @@ pub(super) enum Limit {
     /// The loop is unstable without the imperfection.
     None,
     /// The largest stable size.
-    At(f64),
+    Value(f64),
     /// No limit up to this size, the largest tried.
     Beyond(f64),
 }
@@ -106,7 +106,7 @@ impl<M: PlantModel> Loop<M> {
             let largest = self.largest(kind);
             let critical = plant.split_critical_latency(self.gains());
             return Ok(match critical.filter(|critical| *critical <= largest) {
-                Some(critical) => Limit::At(critical),
+                Some(critical) => Limit::Value(critical),
                 None => Limit::Beyond(largest),
             });
         }
@@ -190,7 +190,7 @@ impl<M: PlantModel> Loop<M> {
                 let middle = 0.5 * (low + high);
                 if at(middle)? { low = middle } else { high = middle }
             }
-            return Ok(Limit::At(low));
+            return Ok(Limit::Value(low));
         }
         Ok(Limit::Beyond(largest))
     }

@@ -125,7 +125,7 @@ impl<M: PlantModel> LoopSimulation<'_, M> {
     fn cost(&self, plant: Plant<'_>) -> Result<f64, LoopError> {
         let one = self.one;
         let late = Imperfections { latency: one.stated_latency()?, ..Imperfections::NONE };
-        Ok(plant.held().cost(&one.linear, &late, one.weights)?)
+        Ok(plant.with_simulated_noise().cost(&one.linear, &late, one.weights)?)
     }
 
     /// Whether the cost is finite; true if the tolerance is of another measure.

@@ -62,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let turn = std::f64::consts::TAU / (5.0 * rest.sin());
     let bead = Problem::new("bead", bead, State { q: [0.9], v: [0.0] }, turn)
         .titled("bead on a hoop")
-        .about(State { q: [rest], v: [0.0] });
+        .with_equilibrium(State { q: [rest], v: [0.0] });
 
     let own: [&dyn Subject; 1] = [&bead];
     let stop = AtomicBool::new(false);

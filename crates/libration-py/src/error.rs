@@ -29,7 +29,7 @@ impl Raised for EnvironmentError {
     fn raised(self) -> PyErr {
         let text = self.to_string();
         match self {
-            EnvironmentError::Room { .. }
+            EnvironmentError::OutOfMemory { .. }
             | EnvironmentError::Ensemble(EnsembleError::Memory(_)) => PyMemoryError::new_err(text),
             EnvironmentError::Ensemble(EnsembleError::Threads { .. }) => {
                 PyRuntimeError::new_err(text)

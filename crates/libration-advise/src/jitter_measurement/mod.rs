@@ -3,7 +3,7 @@
 mod load;
 mod spectrum;
 mod statistics;
-mod wakeups;
+mod wakeup_times;
 
 use std::io;
 use std::path::Path;
@@ -14,7 +14,7 @@ use thiserror::Error;
 
 pub use spectrum::{Band, Spectrum};
 pub use statistics::{Lateness, Quantile, Statistics};
-pub use wakeups::{Plan, Priority, WakeupTimes};
+pub use wakeup_times::{Plan, Priority, WakeupTimes};
 
 /// Largest size of a file of time stamps in bytes: ten million stamps of about 20 bytes.
 const LIMIT: u64 = 1 << 28;

@@ -154,8 +154,8 @@ mod tests {
     #[test]
     fn a_step_of_many_is_the_step_itself_where_it_is_exact() {
         let model = Oscillator { omega2: 10.0 };
-        let whole = Plant::exact(model, ORIGIN, 0.1).held();
-        let many = Plant::exact(model, ORIGIN, 0.1).held().substeps(7);
+        let whole = Plant::exact(model, ORIGIN, 0.1).with_simulated_noise();
+        let many = Plant::exact(model, ORIGIN, 0.1).with_simulated_noise().substeps(7);
         let gains = Feedback { position: 10.0, velocity: 2.0 }.into();
         let weights = whole.energy();
         let cost = |plant: &Plant<'_>| plant.cost(&gains, &Imperfections::NONE, weights).unwrap();

@@ -63,7 +63,7 @@ impl<'a> Plant<'a> {
     }
 
     /// This, with noise and cost as a simulation has them though its steps be exact: see [`Plant::cost`].
-    pub fn held(self) -> Self {
+    pub fn with_simulated_noise(self) -> Self {
         Plant { exact: false, ..self }
     }
 

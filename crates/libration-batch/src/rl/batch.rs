@@ -143,8 +143,8 @@ where
         }
         let history = History::new(delays, substeps, D);
         let count = len.div_ceil(LANES);
-        let blocks = room(count, &block::empty::<T, E, O, D>())?;
-        let past = room(count.saturating_mul(history.len()), &T::zero())?;
+        let blocks = try_fill(count, &block::empty::<T, E, O, D>())?;
+        let past = try_fill(count.saturating_mul(history.len()), &T::zero())?;
         let draws =
             [Purpose::StepTime, Purpose::Observation, Purpose::Action].map(EpisodeStreams::new);
         let step = 0;
@@ -250,7 +250,7 @@ const FURTHEST: f64 = (1_u64 << 53) as f64;
 ///
 /// # Errors
 /// If the memory is insufficient.
-fn room<X: Clone>(count: usize, x: &X) -> Result<Vec<X>, EnsembleError> {
+fn try_fill<X: Clone>(count: usize, x: &X) -> Result<Vec<X>, EnsembleError> {
     let mut all = Vec::new();
     let needed = count as u128 * size_of::<X>() as u128;
     InsufficientMemory::check(needed)?;

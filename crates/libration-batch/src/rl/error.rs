@@ -38,7 +38,7 @@ pub enum EnvironmentError {
         "a rollout of {horizon} steps of {environments} environments takes {bytes} bytes per transition. {room}. {}",
         advice(*bytes, *horizon, *environments, room)
     )]
-    Room {
+    OutOfMemory {
         /// The number of steps.
         horizon: usize,
         /// The number of environments.
@@ -67,9 +67,9 @@ impl From<InsufficientMemory> for EnvironmentError {
 
 impl EnvironmentError {
     /// The memory that is needed and available, if that is the error.
-    pub fn room(&self) -> Option<&InsufficientMemory> {
+    pub fn insufficient_memory(&self) -> Option<&InsufficientMemory> {
         match self {
-            EnvironmentError::Room { room, .. } => Some(room),
+            EnvironmentError::OutOfMemory { room, .. } => Some(room),
             EnvironmentError::Ensemble(EnsembleError::Memory(room)) => Some(room),
             _ => None,
         }

@@ -34,12 +34,12 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
     /// Allocates a rollout.
     ///
     /// # Errors
-    /// [`EnvironmentError::Room`] if there is not so much: with what would fit, and before anything is taken.
+    /// [`EnvironmentError::OutOfMemory`] if there is not so much: with what would fit, and before anything is taken.
     pub fn new(plan: Plan) -> Result<Self, EnvironmentError> {
         let Plan { horizon, environments, .. } = plan;
         let number = size_of::<T>();
         let (needed, bytes) = (plan.bytes(O, D, number), plan.bytes_each(O, D, number));
-        let refused = |room| EnvironmentError::Room { horizon, environments, bytes, room };
+        let refused = |room| EnvironmentError::OutOfMemory { horizon, environments, bytes, room };
         InsufficientMemory::check(needed).map_err(refused)?;
         let all = horizon.checked_mul(environments).filter(|_| horizon <= isize::MAX as usize);
         let all = all.filter(|n| n.checked_mul(O.max(D)).is_some());

@@ -18,7 +18,7 @@ pub enum DatasetError {
     Environment(#[from] EnvironmentError),
     /// There is not enough memory for the chunks in flight.
     #[error("{room} (chunk.steps is {steps}, chunk.environments {environments})")]
-    Room {
+    OutOfMemory {
         /// The needed and the available memory.
         room: InsufficientMemory,
         /// Steps of a chunk.
@@ -97,8 +97,8 @@ impl DatasetError {
     /// The missing memory, if that is the error.
     pub fn missing_memory(&self) -> Option<&InsufficientMemory> {
         match self {
-            DatasetError::Room { room, .. } => Some(room),
-            DatasetError::Environment(error) => error.room(),
+            DatasetError::OutOfMemory { room, .. } => Some(room),
+            DatasetError::Environment(error) => error.insufficient_memory(),
             _ => None,
         }
     }

@@ -43,7 +43,7 @@ impl TrialStep<'_> {
 /// The error of chunks that do not fit into memory.
 pub(super) fn not_enough_memory(dataset: &Dataset, room: InsufficientMemory) -> DatasetError {
     let Chunk { steps, environments } = dataset.chunk;
-    DatasetError::Room { room, steps, environments }
+    DatasetError::OutOfMemory { room, steps, environments }
 }
 
 impl GroupVisitor for TrialStep<'_> {

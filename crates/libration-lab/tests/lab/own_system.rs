@@ -20,7 +20,7 @@ fn a_system_of_ones_own_goes_through_the_same_studies() {
     // A single well, whose orbits are closed; its small oscillations have the frequency √2.
     let well = Duffing { alpha: 2.0, beta: 1.0 };
     let start = State { q: [1.2], v: [0.4] };
-    let problem = Problem::new("my well", well, start, 3.6).about(State::origin());
+    let problem = Problem::new("my well", well, start, 3.6).with_equilibrium(State::origin());
     let own: [&dyn Subject; 1] = [&problem];
     let config = Config { integrators: Method::ALL.to_vec(), ..STUDIES.config() };
     let stop = AtomicBool::new(false);

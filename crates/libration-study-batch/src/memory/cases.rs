@@ -79,7 +79,7 @@ pub(super) fn measure(record: &mut Record) -> Result<(), StudyError> {
 fn allocated_bytes(plan: Plan) -> Result<Option<f64>, StudyError> {
     let rollout = match Rollout::<f32, OBSERVATION, ACTION>::new(plan) {
         Ok(rollout) => rollout,
-        Err(EnvironmentError::Room { .. }) => return Ok(None),
+        Err(EnvironmentError::OutOfMemory { .. }) => return Ok(None),
         Err(error) => return Err(error.into()),
     };
     let numbers = [

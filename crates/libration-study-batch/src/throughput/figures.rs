@@ -10,7 +10,7 @@ use super::scaling::series_name;
 use crate::bench::{BenchFloat, Implementation};
 
 /// The ink of an implementation, the same in every figure.
-fn ink(implementation: Implementation) -> Role {
+fn role_of(implementation: Implementation) -> Role {
     match implementation {
         Implementation::Dynamic => Role::Accent(5),
         Implementation::Scalar => Role::Accent(4),
@@ -47,7 +47,7 @@ pub(super) fn scaling(record: &Record) -> Result<Figure, RecordError> {
             let Ok(series) = record.series(&series_name(implementation, float)) else { continue };
             let counts = series.column("trajectories")?;
             let rates = series.column("steps_per_second")?;
-            let line = Mark::line(counts, rates).role(ink(implementation));
+            let line = Mark::line(counts, rates).role(role_of(implementation));
             panel = panel.mark(line.label(implementation.title()));
             let last = counts.last().copied().unwrap_or(f64::NAN);
             if let Some(rate) = predicted(record, implementation, float, last) {

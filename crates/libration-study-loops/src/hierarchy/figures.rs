@@ -6,7 +6,7 @@ use libration_report::record::{Record, RecordError};
 use super::SHORT;
 use super::imperfection::{Kind, PROFILES};
 
-fn ink(kind: Kind) -> Role {
+fn role_of(kind: Kind) -> Role {
     match kind {
         Kind::Latency => Role::ExplicitEuler,
         Kind::Jitter => Role::SymplecticEuler,
@@ -34,7 +34,7 @@ fn divergences(record: &Record, figure: Figure, last: f64) -> Result<Figure, Rec
             let expected = every(column(&format!("{}_predicted", kind.tag()))?);
             panel = panel.mark(
                 Mark::line(&steps[..shown], column(kind.tag())?)
-                    .role(ink(kind))
+                    .role(role_of(kind))
                     .label(kind.title()),
             );
             if expected.iter().any(|d| !d.is_nan()) {

@@ -57,7 +57,7 @@ fn problem<const D: usize>(
     let (title, turn) = looks(system);
     let problem = Problem::new(system.name(), model, start, turn).titled(title);
     match rests_at_origin(system) {
-        true => Box::new(problem.about(State::origin())),
+        true => Box::new(problem.with_equilibrium(State::origin())),
         false => Box::new(problem),
     }
 }

@@ -58,7 +58,7 @@ impl<M: Model<D>, const D: usize> Problem<M, D> {
 
     /// With a stable equilibrium, about which the step of lost stability is predicted.
     #[must_use]
-    pub fn about(mut self, equilibrium: State<f64, D>) -> Self {
+    pub fn with_equilibrium(mut self, equilibrium: State<f64, D>) -> Self {
         self.equilibrium = Some(equilibrium);
         self
     }

@@ -151,7 +151,8 @@ mod tests {
     fn pendulum() -> Problem<Pendulum<f64>, 1> {
         let turn = std::f64::consts::TAU / 9.81_f64.sqrt();
         let start = State { q: [2.0], v: [0.0] };
-        Problem::new("pendulum", Pendulum { omega2: 9.81 }, start, turn).about(State::origin())
+        Problem::new("pendulum", Pendulum { omega2: 9.81 }, start, turn)
+            .with_equilibrium(State::origin())
     }
 
     /// The verdict over a simulator of one orbit.
