@@ -70,7 +70,7 @@ fn wrong_input_is_named_with_what_is_allowed() {
         ("oscillator", "--q 1,", &["--q", "a coordinate is missing"]),
         ("oscillator", "--v nan", &["--v", "`nan` is not finite"]),
         ("oscillator", "--v -inf", &["--v", "`-inf` is not finite"]),
-        ("oscillator", "--v 1;2", &["--v", "`1;2` is not a number", "as 1,-0.5"]),
+        ("oscillator", "--v 1;2", &["--v", "`1;2` is not a number", "e.g. 1,-0.5"]),
         ("oscillator", "--set k", &["--set", "'k'", "KEY=VALUE"]),
         ("oscillator", "--set =1", &["--set", "the key is missing"]),
         ("oscillator", "--set k=soft", &["--set", "`soft` is not a number"]),
