@@ -15,9 +15,9 @@ fn a_clock_that_was_measured_can_be_replayed_and_advised_with() {
         "measure-jitter",
         "-q",
         "--rate",
-        "500",
+        "100",
         "--seconds",
-        "0.4",
+        "2",
         "--priority",
         "ordinary",
         "--output",
@@ -27,7 +27,7 @@ fn a_clock_that_was_measured_can_be_replayed_and_advised_with() {
     assert_eq!(statistics["intervals"], 199);
     // Whatever the machine did meanwhile, deadlines lie on a grid.
     let mean = statistics["mean"].as_f64().unwrap();
-    assert!((mean / 2e-3 - 1.0).abs() < 0.5, "{mean}");
+    assert!((mean / 1e-2 - 1.0).abs() < 0.5, "{mean}");
     let text = fs::read_to_string(&file).unwrap();
     assert_eq!(text.lines().nth(1), Some("time_ns"));
     assert_eq!(text.lines().count(), 202);
@@ -41,7 +41,7 @@ fn a_clock_that_was_measured_can_be_replayed_and_advised_with() {
         "--integrator",
         "velocity-verlet",
         "--dt",
-        "0.002",
+        "0.01",
         "--steps",
         "199",
         "--every",
@@ -50,7 +50,7 @@ fn a_clock_that_was_measured_can_be_replayed_and_advised_with() {
         path,
     ])
     .success();
-    let words = [&ADVISE[..], &["10,2", "--period", "0.002", "--jitter-file", path]].concat();
+    let words = [&ADVISE[..], &["10,2", "--period", "0.01", "--jitter-file", path]].concat();
     let advised = json(&words);
     let stated = advised["loop"]["budgets"][1]["stated"].as_f64().unwrap();
     assert!((stated - a).abs() < 1e-9, "{stated} {a}");
