@@ -133,8 +133,8 @@ impl Target for Baseline {
 
     #[inline(always)]
     fn run<K: WithSimd>(self, kernel: K) -> K::Output {
-        // A function by itself, as on the other targets: inlined, the kernels of all methods and systems would become
-        // one, which takes eight times as long to compile.
+        // A separate function, as on the other targets: if they were inlined, the kernels of all methods and systems
+        // would be one function, and compile eight times as slowly.
         #[inline(never)]
         fn run_baseline<K: WithSimd>(kernel: K) -> K::Output {
             Simd::vectorize(pulp::Scalar::new(), kernel)

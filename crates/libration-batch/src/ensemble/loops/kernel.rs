@@ -34,7 +34,7 @@ const SCANNED: usize = 8;
 const NONE: u32 = u32::MAX;
 
 /// Takes the steps of a range with all trajectories of a block. `WHOLE`: all commands arrive at the beginning of a step,
-/// the same for all; by itself, because the state stays in registers only where no other loop can index it.
+/// the same for all. It is a separate kernel: next to loops that index the state, the state would be kept in memory.
 #[rustfmt::skip]
 pub(super) struct Steps<'b, 'a, T, A, M, K, C, L, N, Sys, const D: usize, const W: usize, const WHOLE: bool>
 where
