@@ -1,9 +1,10 @@
 //! `cargo xtask ci`: every check in order, up to the first that fails.
 
 use std::fmt::Write;
+use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::{Outcome, codegen, command, dependencies, examples, report, test, tidy};
+use crate::{Outcome, codegen, command, dependencies, examples, python, report, test, tidy};
 
 /// Name and function of a step.
 type Step = (&'static str, fn() -> Outcome);
@@ -24,6 +25,8 @@ const STEPS: [Step; 9] = [
 
 /// Runs the steps and prints how long each took.
 pub(crate) fn run() -> Outcome {
+    // Nothing but the tests needs the packages, which take a while to install: they say what failed.
+    thread::spawn(|| python::interpreter().is_ok());
     let mut durations = Vec::new();
     let mut failure = None;
     for (i, (name, work)) in STEPS.iter().enumerate() {

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, PoisonError};
 
 use crate::{command, workspace};
 
@@ -19,8 +20,12 @@ On Debian and Ubuntu the module `venv` is a package of its own: `apt install pyt
 const NO_PACKAGES: &str = "The packages in tools/requirements.txt could not be installed.
 This happens once and needs a network or a pip that is set up to find them elsewhere.";
 
+/// Held by the thread that makes the environment.
+static MAKING: Mutex<()> = Mutex::new(());
+
 /// The interpreter of the environment, which is made first where it is missing or out of date.
 pub(crate) fn interpreter() -> Result<PathBuf, String> {
+    let _making = MAKING.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = workspace::target().join("python");
     let list = workspace::root().join("tools/requirements.txt");
     let requirements = fs::read_to_string(&list)

@@ -33,12 +33,13 @@ pub(crate) fn built() -> Result<Vec<Suite>, String> {
     Ok(suites)
 }
 
-/// Runs them all, on each core the next when the last is done, and prints what each said when it ends.
+/// Runs them all, some at a time, and prints what each said when it ends.
 ///
 /// # Errors
 /// Names all that failed.
 pub(crate) fn run(suites: Vec<Suite>) -> Outcome {
-    let workers = thread::available_parallelism().map_or(1, usize::from).min(suites.len());
+    // One more than there are cores: some wait for a browser.
+    let workers = (thread::available_parallelism().map_or(1, usize::from) + 1).min(suites.len());
     let (waiting, failures) = (Mutex::new(VecDeque::from(suites)), Mutex::new(Vec::new()));
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
     thread::scope(|scope| {

@@ -1,7 +1,5 @@
 //! Systems relative to an operating point that a constant command holds.
 
-use core::array::from_fn;
-
 use libration::{Elementary, Hamiltonian, Model, Scalar, State, System};
 
 /// A model relative to the operating point `q₀`, with acceleration `a(q + q₀, v) − a(q₀, 0)`.
@@ -20,8 +18,13 @@ pub(super) struct SystemAtOperatingPoint<Sys, S, const D: usize> {
 }
 
 impl<Sys, S: Scalar, const D: usize> SystemAtOperatingPoint<Sys, S, D> {
+    #[inline(always)]
     fn place(&self, state: &State<S, D>) -> State<S, D> {
-        State { q: from_fn(|i| state.q[i] + self.at[i]), v: state.v }
+        let mut placed = *state;
+        for i in 0..D {
+            placed.q[i] = state.q[i] + self.at[i];
+        }
+        placed
     }
 }
 
@@ -32,8 +35,11 @@ impl<Sys: System<S, D>, S: Scalar, const D: usize> System<S, D>
 
     #[inline(always)]
     fn acceleration(&self, state: &State<S, D>) -> [S; D] {
-        let own = self.system.acceleration(&self.place(state));
-        from_fn(|i| own[i] - self.held[i])
+        let mut acceleration = self.system.acceleration(&self.place(state));
+        for (own, held) in acceleration.iter_mut().zip(self.held) {
+            *own = *own - held;
+        }
+        acceleration
     }
 }
 

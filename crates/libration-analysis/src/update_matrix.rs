@@ -56,10 +56,17 @@ impl<S: Scalar, const D: usize> UpdateMatrix<S, D> {
     }
 
     /// The image of `state`.
+    #[inline]
     pub fn apply(&self, state: &State<S, D>) -> State<S, D> {
-        let positions = self.dq.iter().zip(state.q);
-        let velocities = self.dv.iter().zip(state.v);
-        positions.chain(velocities).fold(State::origin(), |sum, (column, x)| sum.plus(x, *column))
+        // A fold over chained iterators was not inlined, and took a third of the time of all studies.
+        let mut image = State::origin();
+        for j in 0..D {
+            image = image.plus(state.q[j], self.dq[j]);
+        }
+        for j in 0..D {
+            image = image.plus(state.v[j], self.dv[j]);
+        }
+        image
     }
 
     /// This map after `first`: the product `self · first`.

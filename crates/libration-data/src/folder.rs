@@ -2,7 +2,7 @@
 
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 
 use crate::bounded_read::read_rest;
 use crate::durable_file::{named, remove_parts, sync_folder};
-use crate::lock::open_locked;
+use crate::lock::LockedFile;
 use crate::manifest::{LIMIT, NAME};
 use crate::{Chunk, DataError, Manifest, Stored, run_on_threads, write_file};
 
@@ -23,7 +23,7 @@ pub struct Folder {
     path: PathBuf,
     manifest: Manifest,
     /// The manifest's file, which is locked.
-    log: File,
+    log: LockedFile,
 }
 
 /// A new file of a chunk: its path and its bytes.
@@ -57,7 +57,7 @@ impl Folder {
                 return Err(DataError::ForeignFile { folder: path.to_owned(), found });
             }
         }
-        let log = open_locked(&name).map_err(|error| match error {
+        let log = LockedFile::open(&name).map_err(|error| match error {
             DataError::Locked(_) => DataError::Locked(path.to_owned()),
             error => error,
         })?;
@@ -138,14 +138,14 @@ impl Folder {
     fn append(&mut self, line: &Value) -> Result<(), DataError> {
         let name = self.path.join(NAME);
         let text = format!("{line}\n");
-        let written = self.log.write_all(text.as_bytes()).and_then(|()| self.log.sync_data());
+        let written = (&*self.log).write_all(text.as_bytes()).and_then(|()| self.log.sync_data());
         written.map_err(DataError::io("write", &name))
     }
 
     /// Truncates the manifest to its complete lines.
     fn cut(&mut self, len: u64) -> Result<(), DataError> {
         let name = self.path.join(NAME);
-        let cut = self.log.set_len(len).and_then(|()| self.log.seek(SeekFrom::End(0)));
+        let cut = self.log.set_len(len).and_then(|()| (&*self.log).seek(SeekFrom::End(0)));
         cut.map(|_| ()).map_err(DataError::io("write", &name))
     }
 }

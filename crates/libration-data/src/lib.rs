@@ -27,7 +27,7 @@ pub use checksum::checksum;
 pub use durable_file::{write_direct, write_file};
 pub use error::{DataError, TableError};
 pub use folder::{Folder, NewFile, ensure_same_settings, write_files};
-pub use lock::open_locked;
+pub use lock::LockedFile;
 pub use manifest::{Chunk, Manifest, Stored};
 pub use npy::{npy_array, write_npy};
 pub use parquet::{parquet_bytes, write_parquet};

@@ -1,30 +1,82 @@
 //! Locks of files for one process at a time.
 
 use std::fs::{File, OpenOptions, TryLockError};
+use std::ops::Deref;
 use std::path::Path;
+use std::process;
 
 use crate::DataError;
 
-/// Opens a file, makes it if there is none, and locks it until it is closed: a process that dies closes it as well.
+/// A file that is locked until this is dropped, or its process dies.
 ///
-/// # Errors
-/// [`DataError::Locked`] if another process has it; [`DataError::Io`] if the system refuses.
-pub fn open_locked(path: &Path) -> Result<File, DataError> {
-    let mut options = OpenOptions::new();
-    options.read(true).write(true).create(true).truncate(false);
-    let file = options.open(path).map_err(DataError::io("write", path))?;
-    lock(&file, path)?;
-    Ok(file)
+/// A process that is being started has a copy of every open file for a moment, and with it the lock: to close the file would
+/// not be enough.
+#[derive(Debug)]
+pub struct LockedFile {
+    file: File,
+    /// A forked process drops a copy of this, but the lock is not its own.
+    owner: u32,
 }
 
-/// Locks an open file.
-///
-/// # Errors
-/// As for [`open_locked`].
-pub(crate) fn lock(file: &File, path: &Path) -> Result<(), DataError> {
-    match file.try_lock() {
-        Ok(()) => Ok(()),
-        Err(TryLockError::WouldBlock) => Err(DataError::Locked(path.to_owned())),
-        Err(TryLockError::Error(error)) => Err(DataError::io("lock", path)(error)),
+impl LockedFile {
+    /// Opens a file, makes it if there is none, and locks it.
+    ///
+    /// # Errors
+    /// [`DataError::Locked`] if another process has it; [`DataError::Io`] if the system refuses.
+    pub fn open(path: &Path) -> Result<Self, DataError> {
+        let mut options = OpenOptions::new();
+        options.read(true).write(true).create(true).truncate(false);
+        LockedFile::lock(options.open(path).map_err(DataError::io("write", path))?, path)
+    }
+
+    /// Locks an open file.
+    ///
+    /// # Errors
+    /// As for [`open`](LockedFile::open).
+    pub(crate) fn lock(file: File, path: &Path) -> Result<Self, DataError> {
+        LockedFile::try_lock(file).map_err(|error| match error {
+            TryLockError::WouldBlock => DataError::Locked(path.to_owned()),
+            TryLockError::Error(error) => DataError::io("lock", path)(error),
+        })
+    }
+
+    /// Locks an open file, of which no path is known yet.
+    pub(crate) fn try_lock(file: File) -> Result<Self, TryLockError> {
+        file.try_lock()?;
+        Ok(LockedFile { file, owner: process::id() })
+    }
+}
+
+impl Deref for LockedFile {
+    type Target = File;
+
+    fn deref(&self) -> &File {
+        &self.file
+    }
+}
+
+impl Drop for LockedFile {
+    fn drop(&mut self) {
+        if process::id() == self.owner {
+            // Closing the file is what remains where this fails.
+            let _ = self.file.unlock();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dropped_lock_is_free_although_a_copy_of_the_file_is_open() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("locked");
+        let first = LockedFile::open(&path).unwrap();
+        // As a process that is being started has one.
+        let _copy = first.try_clone().unwrap();
+        assert!(matches!(LockedFile::open(&path), Err(DataError::Locked(_))));
+        drop(first);
+        LockedFile::open(&path).unwrap();
     }
 }

@@ -12,7 +12,7 @@ use memmap2::MmapMut;
 
 use crate::DataError;
 use crate::durable_file::make;
-use crate::lock::lock;
+use crate::lock::LockedFile;
 
 /// A replay buffer in a memory-mapped file, locked for this process. If the process dies, completed insertions are kept. After a
 /// loss of power, only a buffer that was [flushed](Self::flush) after its last change is intact, because the system writes pages
@@ -22,7 +22,7 @@ pub struct ReplayFile<T, const O: usize, const D: usize> {
     replay: ReplayBuffer<T, O, D>,
     path: PathBuf,
     /// Locked as long as it is open.
-    _file: File,
+    _file: LockedFile,
 }
 
 impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
@@ -39,7 +39,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
         let (file, replay) = make(path, |part| {
             let file =
                 OpenOptions::new().read(true).write(true).create(true).truncate(true).open(part)?;
-            file.try_lock()?;
+            let file = LockedFile::try_lock(file)?;
             fill(&file, bytes)?;
             let map = map(&file)?;
             let replay = ReplayBuffer::create(map, capacity).map_err(io::Error::other)?;
@@ -56,7 +56,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayFile<T, O, D> {
     pub fn open(path: &Path) -> Result<Self, DataError> {
         let file = OpenOptions::new().read(true).write(true).open(path);
         let file = file.map_err(DataError::io("open", path))?;
-        lock(&file, path)?;
+        let file = LockedFile::lock(file, path)?;
         let map = map(&file).map_err(DataError::io("map", path))?;
         let replay = ReplayBuffer::open(map).map_err(refused(path))?;
         Ok(ReplayFile { replay, path: path.to_owned(), _file: file })

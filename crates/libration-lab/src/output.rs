@@ -1,10 +1,10 @@
 //! The output folder of a run.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use libration_data::{DataError, open_locked};
+use libration_data::{DataError, LockedFile};
 use thiserror::Error;
 
 use crate::run_manifest::RunManifest;
@@ -22,7 +22,7 @@ const LOCK: &str = ".libration-lock";
 pub struct Output {
     folder: PathBuf,
     /// Locked while it is open.
-    _lock: File,
+    _lock: LockedFile,
 }
 
 /// The output folder, or a file in it, cannot be written.
@@ -165,9 +165,9 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
 }
 
 /// Locks a folder.
-fn lock(folder: &Path) -> Result<File, OutputError> {
+fn lock(folder: &Path) -> Result<LockedFile, OutputError> {
     let path = folder.join(LOCK);
-    open_locked(&path).map_err(|error| match error {
+    LockedFile::open(&path).map_err(|error| match error {
         DataError::Io { source, .. } => failed(&path)(source),
         _ => {
             let reason = "another run writes there; wait for it, or choose another folder";

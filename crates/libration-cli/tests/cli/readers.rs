@@ -1,4 +1,4 @@
-//! Data sets as other programs read them.
+//! Data sets and the schema of configurations as other programs read them.
 
 use std::path::Path;
 
@@ -147,6 +147,49 @@ for episode, about in zip(data.iterate_episodes(), told, strict=True):
     assert all(action in data.action_space for action in episode.actions)
 assert (covered == 1).all()
 assert {(True, False, False), (False, True, False), (False, False, True)} <= kinds, kinds
+"#;
+    run(&dir, script);
+}
+
+#[test]
+fn the_schema_admits_the_default_and_refuses_what_the_parser_refuses() {
+    let dir = TempDir::new().unwrap();
+    for (flag, file) in [("--schema", "schema.json"), ("--print-config", "default.toml")] {
+        let printed =
+            Command::cargo_bin("libration").unwrap().args(["lab", flag]).output().unwrap();
+        std::fs::write(dir.path().join(file), printed.stdout).unwrap();
+    }
+    let script = r#"
+import copy, json, tomllib, jsonschema
+schema = json.load(open('schema.json'))
+default = tomllib.load(open('default.toml', 'rb'))
+valid = jsonschema.validators.validator_for(schema)(schema).is_valid
+# Fails here if the schema and the configuration have different keys.
+jsonschema.validate(default, schema)
+for path, bad in [
+    ('oscillator/k', 0),
+    ('oscillator/m', '1'),
+    ('drift/dt', []),
+    ('drift/dt', [0.1, 0.1]),
+    ('drift/steps', 0),
+    ('drift/steps', 1_000_000_001),
+    ('convergence/coarsest', 40),
+    ('convergence/systems', []),
+    ('nonlinear/systems', ['keppler']),
+    ('nonlinear/steps', 15),
+    ('nonlinear/turns', 99),
+    ('precision/dt', [0]),
+    ('integrators', ['rk5']),
+    ('effort', 'quik'),
+    ('start', {'x': 1}),
+]:
+    changed = copy.deepcopy(default)
+    *tables, key = path.split('/')
+    table = changed
+    for name in tables:
+        table = table[name]
+    table[key] = bad
+    assert not valid(changed), path
 "#;
     run(&dir, script);
 }
