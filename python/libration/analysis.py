@@ -80,14 +80,14 @@ class Advice(Answer):
 
     holds: bool
     """Whether the loop is stable and within the tolerance with all stated values, and an integrator is accurate enough."""
-    asked: str
+    request: str
     """The request, as a file for ``libration advise --config``."""
     page: str | None
     """An HTML page with a stability map, with ``page=True``."""
 
-    def __init__(self, parts: dict[str, Any], holds: bool, asked: str, page: str | None) -> None:
+    def __init__(self, parts: dict[str, Any], holds: bool, request: str, page: str | None) -> None:
         super().__init__(parts)
-        self.holds, self.asked, self.page = holds, asked, page
+        self.holds, self.request, self.page = holds, request, page
 
     def save(self, path: str | Path) -> None:
         """Write the page to a file.
@@ -236,15 +236,15 @@ def advise(
     if config is not None:
         if given:
             raise TypeError(f"{given[0]} cannot be combined with config")
-        asked = text_of("config", config)
+        request = text_of("config", config)
     elif system is None:
         raise TypeError("system and config are missing; expected one of them")
     else:
-        asked = text_of("config", _request(**keywords))
+        request = text_of("config", _request(**keywords))
     with ProgressDisplay(progress) as display:
         report = (lambda _, __, ___, what, done, total: display.update(done / max(total, 1), what)) if display.enabled else None
-        answer, holds, html_page = _native._advise(asked, bool(page), report)
-    return Advice(json.loads(answer), holds, asked, html_page)
+        answer, holds, html_page = _native._advise(request, bool(page), report)
+    return Advice(json.loads(answer), holds, request, html_page)
 
 
 def _request(
@@ -267,13 +267,13 @@ def _request(
     at, speed = coordinates("q", q), coordinates("v", v)
     origin = [0.0] * len(at or speed or [0.0] * system.dimensions.start)
     start = {"q": at or origin, "v": speed or origin}
-    asked: dict[str, Any] = {"system": {system.name: dict(system.parameters)}, "start": start}
+    request: dict[str, Any] = {"system": {system.name: dict(system.parameters)}, "start": start}
     if horizon is not None:
-        asked["asked"] = {"horizon": number("horizon", horizon, "a number")}
+        request["request"] = {"horizon": number("horizon", horizon, "a number")}
     if tolerance is not None:
         if isinstance(tolerance, str) or not isinstance(tolerance, Sequence) or len(tolerance) != 2:
             raise TypeError(f"tolerance is {tolerance!r}, but it must be a pair like ('energy', 1e-6)")
-        asked["tolerance"] = {tolerance[0]: number("tolerance", tolerance[1], "a number")}
+        request["tolerance"] = {tolerance[0]: number("tolerance", tolerance[1], "a number")}
     loop: dict[str, Any] = {
         name: number(name, value, "a number", lambda _: True)
         for name, value in {
@@ -292,10 +292,10 @@ def _request(
     if jitter is not None:
         loop["law"], loop["jitter"] = law("jitter", jitter) or ("gaussian", 0.0)
     if controller is not None:
-        asked["controller"] = _controller(controller)
+        request["controller"] = _controller(controller)
     if loop:
-        asked["loop"] = loop
-    return asked
+        request["loop"] = loop
+    return request
 
 
 def _controller(controller: Any) -> dict[str, Any]:

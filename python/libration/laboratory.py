@@ -166,7 +166,7 @@ def run_lab(
     OSError
         If the folder cannot be written, or another run uses it.
     """
-    asked = text_of("config", config)
+    config_text = text_of("config", config)
     names = None
     if studies is not None:
         if isinstance(studies, str):
@@ -179,7 +179,7 @@ def run_lab(
     display = ProgressDisplay(progress)
     folder = Path(tempfile.mkdtemp(prefix="libration-") if out is None else out)
     try:
-        found = _run(asked, names, effort, folder, display)
+        found = _run(config_text, names, effort, folder, display)
     except BaseException:
         if out is None:
             shutil.rmtree(folder, ignore_errors=True)
@@ -191,7 +191,7 @@ def run_lab(
 
 
 def _run(
-    asked: str, names: list[str] | None, effort: str | None, folder: Path, display: ProgressDisplay
+    config_text: str, names: list[str] | None, effort: str | None, folder: Path, display: ProgressDisplay
 ) -> tuple[dict[str, Any], Any]:
     with display:
 
@@ -199,5 +199,5 @@ def _run(
             part = (max(number - 1, 0) + done / max(total, 1)) / max(of, 1)
             display.update(part, f"{study} ({number} of {of}): {what}" if what else study)
 
-        found, series = _native._run_lab(asked, names, effort, folder, report if display.enabled else None)
+        found, series = _native._run_lab(config_text, names, effort, folder, report if display.enabled else None)
     return json.loads(found), series

@@ -105,7 +105,7 @@ def test_advice_says_what_a_loop_stands_and_can_be_asked_again_on_the_command_li
     bad = advise(SPRING, (10.0, 2.0), latency=0.2, period=0.05)
     assert not bad.holds
     file = tmp_path / "asked.toml"
-    file.write_text(good.asked)
+    file.write_text(good.request)
     again = advise(config=file)
     assert again["loop"]["budgets"] == good["loop"]["budgets"]
 

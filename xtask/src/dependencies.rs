@@ -1,44 +1,68 @@
-//! `cargo xtask dependencies`: what the engine must never depend on.
+//! `cargo xtask dependencies`: the crates that the engine may depend on.
 
 use crate::{Outcome, command};
 
-const FORBIDDEN: [&str; 4] = ["serde", "libration-data", "libration-lab", "libration-cli"];
+/// The engine, and what it depends on directly.
+const ALLOWED: [&str; 17] = [
+    "libration",
+    "libration-analysis",
+    "libration-batch",
+    "libration-core",
+    "bnum",
+    "bytemuck",
+    "half",
+    "libm",
+    "memmap2",
+    "ndarray",
+    "num-bigint",
+    "num-complex",
+    "num-integer",
+    "pulp",
+    "rayon",
+    "sysinfo",
+    "thiserror",
+];
 
-/// Fails if the engine's dependency tree holds a forbidden crate.
+/// Never in its tree, not even through others.
+const FORBIDDEN: [&str; 1] = ["serde"];
+
+/// Fails if the engine depends on a crate that is not listed.
 pub(crate) fn run() -> Outcome {
-    let tree =
-        command::output(&mut command::cargo("tree --package libration -e normal --prefix none"))?;
-    match forbidden_in(&tree).as_slice() {
+    let tree = |options: &str| {
+        let options = format!("tree --package libration -e normal --prefix none {options}");
+        command::output(&mut command::cargo(&options))
+    };
+    let direct = tree("--depth 2 --no-dedupe --target all")?;
+    let mut found: Vec<&str> = names(&direct).filter(|name| !ALLOWED.contains(name)).collect();
+    let whole = tree("")?;
+    found.extend(names(&whole).filter(|name| FORBIDDEN.contains(name)));
+    match found.as_slice() {
         [] => Ok(()),
         found => Err(format!(
-            "crates/libration depends on {}. Numbers and physics know no formats and no studies: \
-             serialise in crates/libration-data, measure in crates/libration-lab, or switch the feature off that \
-             brings it in (`cargo tree -p libration -i {}` shows the way)",
+            "the engine depends on {}. Numbers and physics know no formats, no settings and no studies: move the code \
+             to the crate above that needs it, switch the feature off that brings the dependency in \
+             (`cargo tree -p libration -i {}` shows the way), or add a crate for computing to `ALLOWED` in \
+             xtask/src/dependencies.rs and say why in the commit",
             found.join(", "),
             found[0],
         )),
     }
 }
 
-/// The forbidden crates among the lines `name version …` of a dependency tree.
-fn forbidden_in(tree: &str) -> Vec<&'static str> {
-    let names: Vec<&str> = tree.lines().filter_map(|line| line.split(' ').next()).collect();
-    FORBIDDEN.into_iter().filter(|name| names.contains(name)).collect()
+/// The names in the lines `name version …` of a dependency tree.
+fn names(tree: &str) -> impl Iterator<Item = &str> {
+    tree.lines().filter_map(|line| line.split(' ').next()).filter(|name| !name.is_empty())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::forbidden_in;
+    use super::{ALLOWED, names};
 
     #[test]
-    fn a_tree_with_serde_or_the_laboratory_is_refused() {
-        assert_eq!(forbidden_in("libration v0.1.0 (…)\nserde v1.0.0\n"), ["serde"]);
-        let lab = "libration v0.1.0 (…)\nlibration-lab v0.1.0 (…)\n";
-        assert_eq!(forbidden_in(lab), ["libration-lab"]);
-    }
-
-    #[test]
-    fn a_tree_of_numbers_passes() {
-        assert!(forbidden_in("libration v0.1.0 (…)\nhalf v2.7.1\nthiserror v2.0.0\n").is_empty());
+    fn a_tree_names_its_crates_and_neither_formats_nor_settings_are_allowed() {
+        let tree =
+            "libration v0.1.0 (…)\nlibration-data v0.1.0 (…)\nhalf v2.7.1\nserde_json v1.0.0 (*)\n";
+        let found: Vec<&str> = names(tree).filter(|name| !ALLOWED.contains(name)).collect();
+        assert_eq!(found, ["libration-data", "serde_json"]);
     }
 }

@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use crate::{Outcome, command};
 
-/// What takes longest is begun first; the others follow as they were built.
+/// The slowest suites, which are started first; the others follow in the order in which they were built.
 const LONG: [&str; 6] = ["lab", "cli", "browser", "advise", "engine", "replay"];
 
 /// Something that is run to its end, and what it is called.

@@ -103,7 +103,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     // All at once: a clock that jitters, frames that are lost, and noise that is small enough for the arm to stay where it is linear.
-    let simulated = looped.together.simulated.ok_or("a simulation")?;
+    let simulated = looped.combined.simulated.ok_or("a simulation")?;
     let late = control.latency / control.period;
     let mut arrives = vec![0.0; late as usize + 1];
     arrives[late as usize] = 1.0 - control.loss;

@@ -48,7 +48,7 @@ pub struct Advice {
     /// Memory and speed of rollouts with it.
     pub throughput: Option<Throughput>,
     /// A command that repeats this advice, with its simulations and measurements.
-    pub again: String,
+    pub repeat_command: String,
     /// The stability map of the loop, if the request asks for it.
     #[serde(skip)]
     pub map: Option<StabilityMap>,
@@ -85,7 +85,7 @@ pub struct LoopAdvice {
     /// The budget of each imperfection.
     pub budgets: Vec<Budget>,
     /// The effect of all stated imperfections together.
-    pub together: CombinedEffect,
+    pub combined: CombinedEffect,
     /// The stated imperfection that fails first.
     pub fails_first: Option<FirstFailure>,
     /// Changes that stabilise the loop, if it is unstable.
@@ -110,7 +110,7 @@ pub struct FloatChoice {
 impl LoopAdvice {
     /// Whether the cost of the loop exceeds a tolerance of the cost.
     pub(super) fn exceeds_tolerated_cost(&self, tolerance: &ToleranceAnswer) -> bool {
-        let rise = self.together.cost_increase;
+        let rise = self.combined.cost_increase;
         tolerance.of == Measure::Cost.name() && rise.is_none_or(|rise| rise > tolerance.most)
     }
 }
@@ -119,9 +119,9 @@ impl Advice {
     /// Whether the loop is stable within the tolerance, and an integrator meets it.
     pub fn holds(&self) -> bool {
         let loop_holds = self.looped.as_ref().is_none_or(|looped| {
-            let together = &looped.together;
-            together.growth < 0.0
-                && !together.is_contradicted()
+            let combined = &looped.combined;
+            combined.growth < 0.0
+                && !combined.is_contradicted()
                 && !looped.exceeds_tolerated_cost(&self.tolerance)
         });
         loop_holds && self.chosen().is_some()
@@ -145,7 +145,7 @@ impl Advice {
             runner_up: None,
             floats: Vec::new(),
             throughput: None,
-            again: request.invocation.clone(),
+            repeat_command: request.invocation.clone(),
             map: None,
         }
     }

@@ -143,9 +143,9 @@ pub(super) fn advise_loop<M: PlantModel>(
     let plant = one.plant();
     let mut advice = Advice::new(request);
     let budgets = one.budgets(work, request)?;
-    let together = one.combined_effect(work, &plant, request, &budgets)?;
+    let combined = one.combined_effect(work, &plant, request, &budgets)?;
     let fails_first = one.fails_first(&budgets)?;
-    let remedies = if together.growth < 0.0 {
+    let remedies = if combined.growth < 0.0 {
         integrators(work, &one, request, &mut advice)?;
         None
     } else {
@@ -154,7 +154,7 @@ pub(super) fn advise_loop<M: PlantModel>(
     };
     let rest = State { q: [request.q[0]], v: [0.0] };
     let [held] = model.on::<f64>().acceleration(&rest);
-    advice.warnings.splice(0..0, loop_warnings(&one, &together));
+    advice.warnings.splice(0..0, loop_warnings(&one, &combined));
     let units = units::of(request.system, request.actuation);
     let looped = LoopAdvice {
         controller: one.describe_controller(),
@@ -169,7 +169,7 @@ pub(super) fn advise_loop<M: PlantModel>(
         period: control.period,
         stated: one.stated()? != Imperfections::NONE || control.record.is_some(),
         budgets,
-        together,
+        combined,
         fails_first,
         remedies,
     };

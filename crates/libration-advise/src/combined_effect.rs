@@ -18,9 +18,9 @@ pub struct CombinedEffect {
     /// The logarithm of the growth factor of second moments per period; below zero the loop is stable.
     pub growth: f64,
     /// The largest common factor of all imperfections with which the loop is stable; none if no limit was found.
-    pub room: Option<f64>,
+    pub margin: Option<f64>,
     /// The largest tried common factor; none without stated imperfections, or if the loop is unstable.
-    pub room_tried: Option<f64>,
+    pub margin_tested: Option<f64>,
     /// The cost of the ideal loop, per second under unit noise.
     pub ideal_cost: f64,
     /// The cost with all imperfections; none if it is infinite.
@@ -30,7 +30,7 @@ pub struct CombinedEffect {
     /// The cost measured by an ensemble; none if the loop is unstable, or decays too slowly to simulate.
     pub simulated: Option<SimulatedCost>,
     /// The region of attraction of a nonlinear plant or a limited command.
-    pub returns: Option<RegionOfAttraction>,
+    pub region_of_attraction: Option<RegionOfAttraction>,
     /// A command that prints growth and cost.
     pub command: String,
 }
@@ -43,7 +43,7 @@ impl CombinedEffect {
 
     /// Whether a simulation contradicts the theory.
     pub fn is_contradicted(&self) -> bool {
-        let returns = self.returns.is_none_or(|r| r.of_asked[0] == r.of_asked[1]);
+        let returns = self.region_of_attraction.is_none_or(|r| r.returned[0] == r.returned[1]);
         !(returns && self.simulated.is_none_or(|s| s.agrees()))
     }
 }
@@ -100,23 +100,24 @@ impl<M: PlantModel> Loop<M> {
         let finite = Some(all).filter(|cost| cost.is_finite());
         let stable = growth < 0.0;
         let simulated = if stable { self.simulated_cost(work, growth, &stated)? } else { None };
-        let returns = if stable { self.region_of_attraction(work, growth)? } else { None };
-        let (room, room_tried) = match stable && stated != Imperfections::NONE {
+        let region_of_attraction =
+            if stable { self.region_of_attraction(work, growth)? } else { None };
+        let (margin, margin_tested) = match stable && stated != Imperfections::NONE {
             true => {
-                let (room, tried) = self.margin(plant, ideal_cost, request.tolerance, &ends)?;
-                (room, Some(tried))
+                let (margin, tried) = self.margin(plant, ideal_cost, request.tolerance, &ends)?;
+                (margin, Some(tried))
             }
             false => (None, None),
         };
         Ok(CombinedEffect {
             growth,
-            room,
-            room_tried,
+            margin,
+            margin_tested,
             ideal_cost,
             cost: finite,
             cost_increase: finite.map(|cost| cost / ideal_cost - 1.0),
             simulated,
-            returns,
+            region_of_attraction,
             command: self.command(&stated, request),
         })
     }

@@ -10,7 +10,7 @@ use serde::Deserialize;
 #[serde(default, deny_unknown_fields)]
 pub(super) struct RequestFile {
     pub(super) tolerance: BTreeMap<String, Number>,
-    pub(super) asked: AskedTable,
+    pub(super) request: RequestTable,
     pub(super) system: BTreeMap<String, BTreeMap<String, Number>>,
     pub(super) start: StartTable,
     pub(super) controller: Option<ControllerTable>,
@@ -20,7 +20,7 @@ pub(super) struct RequestFile {
 
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub(super) struct AskedTable {
+pub(super) struct RequestTable {
     pub(super) horizon: Number,
     pub(super) rollout: [Count; 2],
 }
@@ -108,7 +108,7 @@ impl Default for RequestFile {
     fn default() -> Self {
         RequestFile {
             tolerance: [("trajectory".to_owned(), Number(1e-3))].into(),
-            asked: AskedTable::default(),
+            request: RequestTable::default(),
             system: [("oscillator".to_owned(), [("omega2".to_owned(), Number(10.0))].into())]
                 .into(),
             start: StartTable::default(),
@@ -118,9 +118,9 @@ impl Default for RequestFile {
     }
 }
 
-impl Default for AskedTable {
+impl Default for RequestTable {
     fn default() -> Self {
-        AskedTable { horizon: Number(10.0), rollout: [Count(4096), Count(1024)] }
+        RequestTable { horizon: Number(10.0), rollout: [Count(4096), Count(1024)] }
     }
 }
 

@@ -66,36 +66,37 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
         page.figure(figure(map));
     }
     page.heading("All imperfections together");
-    let together = &looped.together;
-    let mut table = Table::new("together", &["quantity", "value", "method"]);
+    let combined = &looped.combined;
+    let mut table = Table::new("combined", &["quantity", "value", "method"]);
     let mut line = |what: &str, value: Cell, how: &str| {
         table.push([what.into(), value, how.into()]);
     };
     line(
         "growth of second moments per period",
-        Cell::rounded(together.growth.exp_m1(), 4),
+        Cell::rounded(combined.growth.exp_m1(), 4),
         "exact: E[M ⊗ M]",
     );
-    let room =
-        together.room.map_or_else(|| Cell::absent("none found"), |room| Cell::rounded(room, 4));
-    line("largest common factor of all imperfections", room, "exact, in proportion");
+    let margin = combined
+        .margin
+        .map_or_else(|| Cell::absent("none found"), |margin| Cell::rounded(margin, 4));
+    line("largest common factor of all imperfections", margin, "exact, in proportion");
     line(
         "cost of the ideal loop",
-        Cell::rounded(together.ideal_cost, 6),
+        Cell::rounded(combined.ideal_cost, 6),
         "exact: Lyapunov equation",
     );
     let infinite = || Cell::absent("infinite");
     line(
         "cost with all imperfections",
-        together.cost.map_or_else(infinite, |cost| Cell::rounded(cost, 6)),
+        combined.cost.map_or_else(infinite, |cost| Cell::rounded(cost, 6)),
         "exact: Lyapunov equation of the jump system",
     );
     line(
         "ΔJ/J₀",
-        together.cost_increase.map_or_else(infinite, |rise| Cell::rounded(rise, 4)),
+        combined.cost_increase.map_or_else(infinite, |rise| Cell::rounded(rise, 4)),
         "from the two costs",
     );
-    if let Some(simulated) = &together.simulated {
+    if let Some(simulated) = &combined.simulated {
         line(
             "simulated cost without commands, noise constant over a period",
             Cell::rounded(simulated.cost, 6),
@@ -108,16 +109,16 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
         );
         line("predicted cost of this simulation", Cell::rounded(simulated.predicted, 6), "exact");
     }
-    if let Some(returns) = &together.returns {
+    if let Some(returns) = &combined.region_of_attraction {
         line(
             "largest distance of return",
             Cell::rounded(returns.up_to, 4),
             &format!(
                 "simulated up to {}: of {} starts at a distance of {}, {} return",
                 number(returns.tried_up_to, 3),
-                returns.of_asked[1],
-                number(returns.asked, 3),
-                returns.of_asked[0]
+                returns.returned[1],
+                number(returns.deviation, 3),
+                returns.returned[0]
             ),
         );
     }

@@ -11,9 +11,9 @@ use super::loops::{Loop, PlantModel};
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct RegionOfAttraction {
     /// The distance of the request, in m or rad.
-    pub asked: f64,
+    pub deviation: f64,
     /// The number of starts at that distance that return, and of all starts.
-    pub of_asked: [usize; 2],
+    pub returned: [usize; 2],
     /// The largest distance from which all starts return, by bisection.
     pub up_to: f64,
     /// The largest tried distance.
@@ -50,11 +50,11 @@ impl<M: PlantModel> Loop<M> {
             };
             Ok(Some(ran.last.iter().filter(|state| near(state)).count()))
         };
-        let asked = self.control.deviation;
+        let deviation = self.control.deviation;
         // Losses with long latencies cannot be simulated.
-        let Some(count) = back(asked)? else { return Ok(None) };
-        let of_asked = [count, STARTS];
-        let tried_up_to = 4.0 * asked;
+        let Some(count) = back(deviation)? else { return Ok(None) };
+        let returned = [count, STARTS];
+        let tried_up_to = 4.0 * deviation;
         let (mut low, mut high) = (0.0, tried_up_to);
         if back(high)? == Some(STARTS) {
             low = high;
@@ -66,6 +66,6 @@ impl<M: PlantModel> Loop<M> {
             let middle = 0.5 * (low + high);
             if back(middle)? == Some(STARTS) { low = middle } else { high = middle }
         }
-        Ok(Some(RegionOfAttraction { asked, of_asked, up_to: low, tried_up_to }))
+        Ok(Some(RegionOfAttraction { deviation, returned, up_to: low, tried_up_to }))
     }
 }

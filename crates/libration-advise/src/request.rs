@@ -140,10 +140,10 @@ impl Request {
         }
         let time = |x: f64| limits::SIZE.contains(&x);
         let seconds = "from 1e-60 to 1e60 s";
-        ensure("asked.horizon", self.horizon, seconds, time(self.horizon))?;
+        ensure("request.horizon", self.horizon, seconds, time(self.horizon))?;
         for count in self.rollout {
             ensure(
-                "asked.rollout",
+                "request.rollout",
                 count as f64,
                 "from 1 to 1e9",
                 (1..=1_000_000_000).contains(&count),

@@ -41,7 +41,7 @@ pub(super) fn describe_integrator(advice: &Advice, request: &Request) -> String 
 
 /// The stability and cost of a loop in a few sentences.
 pub(super) fn describe_loop(looped: &LoopAdvice, tolerance: &ToleranceAnswer) -> String {
-    let CombinedEffect { growth, room, room_tried, cost_increase, .. } = looped.together;
+    let CombinedEffect { growth, margin, margin_tested, cost_increase, .. } = looped.combined;
     if growth >= 0.0 {
         let remedies = looped.remedies.as_ref();
         return format!(
@@ -51,8 +51,8 @@ pub(super) fn describe_loop(looped: &LoopAdvice, tolerance: &ToleranceAnswer) ->
         );
     }
     let regained = looped.budgets.iter().find_map(|budget| Some((budget, budget.regained?)));
-    let mut text = match (room, room_tried) {
-        _ if looped.together.is_contradicted() => {
+    let mut text = match (margin, margin_tested) {
+        _ if looped.combined.is_contradicted() => {
             "The simulation contradicts the theory of the loop: see the warnings.".to_owned()
         }
         _ if looped.exceeds_tolerated_cost(tolerance) => {
@@ -60,9 +60,9 @@ pub(super) fn describe_loop(looped: &LoopAdvice, tolerance: &ToleranceAnswer) ->
                 .to_owned()
         }
         _ if let Some((budget, window)) = regained => describe_window(budget, window),
-        (Some(room), _) => {
+        (Some(margin), _) => {
             format!(
-                "The loop is stable with the stated imperfections, also if all of them are {room:.3} times as large."
+                "The loop is stable with the stated imperfections, also if all of them are {margin:.3} times as large."
             )
         }
         (None, Some(tried)) => format!(
@@ -119,20 +119,20 @@ fn capitalise(text: &str) -> String {
 /// The warnings about a loop.
 pub(super) fn loop_warnings<M: PlantModel>(
     one: &Loop<M>,
-    together: &CombinedEffect,
+    combined: &CombinedEffect,
 ) -> Vec<String> {
     let mut warnings = Vec::new();
-    if let Some(returns) = &together.returns {
-        let [back, all] = returns.of_asked;
+    if let Some(returns) = &combined.region_of_attraction {
+        let [back, all] = returns.returned;
         if back < all {
             warnings.push(format!(
                 "the simulation contradicts the linearisation: of {all} starts at a distance of {} from the operating point only {back} \
                  return; all return from up to {:.4}",
-                returns.asked, returns.up_to
+                returns.deviation, returns.up_to
             ));
         }
     }
-    if let Some(simulated) = &together.simulated {
+    if let Some(simulated) = &combined.simulated {
         if !simulated.agrees() {
             warnings.push(format!(
                 "the simulation contradicts the theory: the cost is {:.5e} ± {:.1e}, predicted {:.5e}",
@@ -144,8 +144,8 @@ pub(super) fn loop_warnings<M: PlantModel>(
                     .into(),
             );
         }
-    } else if together.growth < 0.0 {
-        let why = match together.is_slow() {
+    } else if combined.growth < 0.0 {
+        let why = match combined.is_slow() {
             true => "it decays too slowly",
             false => "its latency is too long for losses",
         };

@@ -47,14 +47,14 @@ impl Failure {
     }
 
     /// Returns a failure of too little memory: wrong input if this machine can never have it, else a failed run.
-    pub(crate) fn room(room: &InsufficientMemory, message: impl Display) -> Self {
-        if room.is_beyond_machine() { Failure::usage(message) } else { Failure::run(message) }
+    pub(crate) fn out_of_memory(shortage: &InsufficientMemory, message: impl Display) -> Self {
+        if shortage.is_beyond_machine() { Failure::usage(message) } else { Failure::run(message) }
     }
 
     /// Converts an error of an ensemble.
     pub(crate) fn ensemble(error: &EnsembleError) -> Self {
         match error {
-            EnsembleError::Memory(room) => Failure::room(room, error),
+            EnsembleError::Memory(shortage) => Failure::out_of_memory(shortage, error),
             EnsembleError::Threads { threads, .. } if *threads <= MOST_THREADS => {
                 Failure::run(format!("{error}; help: lower --threads"))
             }

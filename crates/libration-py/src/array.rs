@@ -129,9 +129,10 @@ where
     let bytes = shape.iter().try_fold(size_of::<T>(), |bytes, len| bytes.checked_mul(*len));
     let lines = bytes.map(|bytes| bytes.div_ceil(size_of::<Line>()));
     let mut memory = Vec::new();
-    let room = lines.and_then(|lines| memory.try_reserve_exact(lines).ok().map(|()| lines));
-    let lines =
-        room.ok_or_else(|| PyMemoryError::new_err(format!("no room for {shape:?} numbers")))?;
+    let reserved = lines.and_then(|lines| memory.try_reserve_exact(lines).ok().map(|()| lines));
+    let lines = reserved.ok_or_else(|| {
+        PyMemoryError::new_err(format!("not enough memory for {shape:?} numbers"))
+    })?;
     memory.resize(lines, Line([0; 64]));
     let numbers = memory.as_ptr().cast::<T>();
     let owner = PyCapsule::new_with_value(py, memory, c"libration.memory")?;
@@ -144,7 +145,7 @@ where
 
 /// Returns the memory of an array, for writes of the engine.
 #[allow(clippy::mut_from_ref, reason = "a reference to an array is no claim to its numbers")]
-pub(crate) fn room<'a, T: Element + AnyBitPattern + NoUninit, D: Dimension>(
+pub(crate) fn view_mut<'a, T: Element + AnyBitPattern + NoUninit, D: Dimension>(
     array: &'a Bound<'_, PyArray<T, D>>,
 ) -> &'a mut [T] {
     // SAFETY: `allocate` or `reuse_or_allocate` made the array, so its numbers are contiguous in memory of its own. A reader in Python
@@ -156,7 +157,7 @@ pub(crate) fn room<'a, T: Element + AnyBitPattern + NoUninit, D: Dimension>(
 /// Returns the memory of an array of flags, for values 0 and 1.
 #[allow(clippy::mut_from_ref, reason = "as above")]
 pub(crate) fn bytes_of<'a>(array: &'a Bound<'_, Array<bool, 1>>) -> &'a mut [u8] {
-    // SAFETY: as in `room`; a flag is a byte, of which the engine makes nothing but 0 and 1.
+    // SAFETY: as in `view_mut`; a flag is a byte, of which the engine makes nothing but 0 and 1.
     unsafe { from_raw_parts_mut(array.data().cast(), array.len()) }
 }
 

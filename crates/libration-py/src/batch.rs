@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 
 use crate::any_batch::{AnyBatch, DynBatch, with_batch};
-use crate::array::{Array, Number, allocate, room};
+use crate::array::{Array, Number, allocate, view_mut};
 use crate::checked_mutex::{CheckedGuard, CheckedMutex};
 use crate::error::{Raised, value_error};
 use crate::policy::PolicyRequest;
@@ -153,7 +153,7 @@ impl Batch {
             len: usize,
         ) -> PyResult<Bound<'py, PyAny>> {
             let all: Bound<'py, Array<T, 2>> = allocate(py, [len, 2])?;
-            for (n, row) in room(&all).chunks_exact_mut(2).enumerate() {
+            for (n, row) in view_mut(&all).chunks_exact_mut(2).enumerate() {
                 row.copy_from_slice(&environments.state(n).unwrap_or([T::zero(); 2]));
             }
             Ok(all.into_any())

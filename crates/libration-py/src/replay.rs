@@ -8,7 +8,7 @@ use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::array::{Array, Number, allocate, bytes_of, room};
+use crate::array::{Array, Number, allocate, bytes_of, view_mut};
 use crate::checked_mutex::CheckedMutex;
 use crate::error::{Raised, check_memory, value_error};
 use crate::rollout::{AnyTensors, Memory};
@@ -95,15 +95,15 @@ impl<T: Number, const O: usize> Store<T> for ReplayBuffer<T, O, 1> {
         let flags = || allocate::<bool, 1>(py, [len]);
         let (over, cut) = (flags()?, flags()?);
         let mut columns: Columns<'_, T, O, 1> = Columns {
-            number: room(&numbers),
-            observation: cast_slice_mut(room(&seen)),
-            action: cast_slice_mut(room(&actions)),
-            reward: room(&rewards),
-            next_observation: cast_slice_mut(room(&next)),
+            number: view_mut(&numbers),
+            observation: cast_slice_mut(view_mut(&seen)),
+            action: cast_slice_mut(view_mut(&actions)),
+            reward: view_mut(&rewards),
+            next_observation: cast_slice_mut(view_mut(&next)),
             terminated: bytes_of(&over),
             truncated: bytes_of(&cut),
-            discount: room(&discounts),
-            weight: room(&weights),
+            discount: view_mut(&discounts),
+            weight: view_mut(&weights),
         };
         let (draw, ahead) = (Draw { seed, number }, Lookahead { steps, discount: gamma });
         let serial = Execution::serial();

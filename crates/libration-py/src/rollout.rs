@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::any_batch::{AnyBatch, DynBatch};
-use crate::array::{Array, Number, allocate, room, view, view_of_flags};
+use crate::array::{Array, Number, allocate, view, view_mut, view_of_flags};
 use crate::checked_mutex::{CheckedGuard, CheckedMutex};
 use crate::error::{Raised, value_error};
 use crate::policy::{Policy, PolicyRequest};
@@ -140,7 +140,7 @@ impl Memory {
             let ended = tensors.ends();
             let seen: Bound<'py, Array<T, 2>> =
                 allocate(py, [ended.steps.len(), tensors.observations()])?;
-            room(&seen).copy_from_slice(&ended.seen);
+            view_mut(&seen).copy_from_slice(&ended.seen);
             let all = PyDict::new(py);
             all.set_item("steps", PyArray1::from_vec(py, ended.steps))?;
             all.set_item("environments", PyArray1::from_vec(py, ended.environments))?;
@@ -185,7 +185,7 @@ impl Memory {
             let array = |numbers: &[T]| -> PyResult<_> {
                 let array: Bound<'py, Array<T, 2>> =
                     allocate(py, [plan.horizon, plan.environments])?;
-                room(&array).copy_from_slice(numbers);
+                view_mut(&array).copy_from_slice(numbers);
                 Ok(array.into_any())
             };
             Ok([array(found.advantage())?, array(found.returns())?])

@@ -12,7 +12,7 @@ use pyo3::types::PyDict;
 use crate::any_batch::{DynBatch, Ends};
 use crate::array::{
     Array, Number, ReusedArray, allocate, are_finite, bytes_of, contiguous_actions, lies_in,
-    reuse_or_allocate, room,
+    reuse_or_allocate, view_mut,
 };
 use crate::batch::{Batch, raise};
 use crate::error::{Raised, value_error};
@@ -41,7 +41,7 @@ struct Row<'py, T> {
     truncated: Bound<'py, Array<bool, 1>>,
 }
 
-/// What a step gives.
+/// The results of a step.
 pub(crate) type Step<'py> = (Any<'py>, Any<'py>, Any<'py>, Any<'py>, Bound<'py, PyDict>);
 type Any<'py> = Bound<'py, PyAny>;
 
@@ -119,7 +119,7 @@ impl EpisodeStates {
     }
 }
 
-/// What is seen now, in the array of a step.
+/// The current observations, in the array of a step.
 pub(crate) fn observe<'py, T: Number>(
     py: Python<'py>,
     environments: &mut dyn DynBatch<T>,
@@ -129,7 +129,7 @@ pub(crate) fn observe<'py, T: Number>(
     shown(py, environments, seen)
 }
 
-/// What is seen now, in an array that no step is written into.
+/// The current observations, in an array of their own.
 pub(crate) fn observe_copy<'py, T: Number>(
     py: Python<'py>,
     environments: &mut dyn DynBatch<T>,
@@ -144,7 +144,7 @@ fn shown<'py, T: Number>(
     environments: &mut dyn DynBatch<T>,
     seen: Bound<'py, Array<T, 2>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let to = room(&seen);
+    let to = view_mut(&seen);
     py.detach(|| environments.observe(to)).map_err(Raised::raised)?;
     Ok(seen.into_any())
 }
@@ -187,7 +187,7 @@ pub(crate) fn take<'py, T: Number>(
     } else {
         actions
     };
-    let (seen, reward) = (room(seen), room(reward));
+    let (seen, reward) = (view_mut(seen), view_mut(reward));
     let (terminated, truncated) = (bytes_of(terminated), bytes_of(truncated));
     let to = StepBuffers { seen, reward, terminated: &mut *terminated, truncated: &mut *truncated };
     let act = || environments.act(actions, to);
@@ -207,7 +207,7 @@ pub(crate) fn take<'py, T: Number>(
     Ok((seen.into_any(), reward.into_any(), terminated.into_any(), truncated.into_any(), infos))
 }
 
-/// What the dictionary of a step says.
+/// The contents of the dictionary of a step.
 fn step_infos<'py, T: Number>(
     py: Python<'py>,
     ends: &Ends<T>,
@@ -219,7 +219,7 @@ fn step_infos<'py, T: Number>(
         return Ok(PyDict::new(py));
     }
     let seen: Bound<'py, Array<T, 2>> = allocate(py, [ends.environments.len(), observations])?;
-    room(&seen).copy_from_slice(&ends.seen);
+    view_mut(&seen).copy_from_slice(&ends.seen);
     let arguments = (episodes.len, same_step, &ends.environments, seen, &ends.lost);
     Ok(helper(py, &INFOS, "infos")?.call1(arguments)?.cast_into()?)
 }

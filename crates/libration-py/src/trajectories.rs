@@ -6,7 +6,7 @@ use libration::{AnySystem, Method};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::array::{Array, Number, allocate, room};
+use crate::array::{Array, Number, allocate, view_mut};
 use crate::checked_mutex::CheckedMutex;
 use crate::error::{Raised, value_error};
 use crate::request::{self, SystemRequest, method, warn_of};
@@ -111,7 +111,7 @@ impl Trajectories {
             let [len, dimension] = [all.len(), all.dimension()];
             let array = |plane: &dyn Fn(usize) -> Option<&'a [T]>| -> PyResult<_> {
                 let array: Bound<'py, Array<T, 2>> = allocate(py, [len, dimension])?;
-                let to = room(&array);
+                let to = view_mut(&array);
                 for i in 0..dimension {
                     for (n, x) in plane(i).unwrap_or_default().iter().enumerate() {
                         to[n * dimension + i] = *x;

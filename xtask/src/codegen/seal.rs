@@ -11,7 +11,7 @@ const HEADER: &str = "\
 # depends on and how it is compiled, as a number. `codegen` writes this file anew; `ci` reads the kernels where it does not agree.
 ";
 
-/// What the kernels follow from.
+/// The inputs of the compilation of the kernels.
 pub(super) fn seal() -> Result<String, String> {
     let compiler = command::output(command::program("rustc").arg("--version"))?;
     let tree = "tree --package libration-batch -e normal --prefix none";

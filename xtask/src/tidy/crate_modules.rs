@@ -113,7 +113,7 @@ impl<'a> Crate<'a> {
         }
     }
 
-    /// What `path` names in the module `scope`; nothing where it leads out of the crate.
+    /// The item that `path` names in the module `scope`; nothing where it leads out of the crate.
     fn resolve(&self, scope: &[String], path: &[String], imports: usize) -> Option<Place> {
         let imports = imports.checked_sub(1)?;
         let (first, mut rest) = path.split_first()?;

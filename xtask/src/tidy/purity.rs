@@ -47,7 +47,7 @@ pub(super) fn check(source: &Source) -> Vec<Finding> {
         .collect()
 }
 
-/// What the path that begins with `std::` names next: one module, or all in the braces.
+/// The names after `std::` in a path: one module, or all in the braces.
 fn standard_path(code: &str) -> &str {
     let path = &code["std::".len()..];
     let end = if path.starts_with('{') {

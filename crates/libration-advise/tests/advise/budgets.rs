@@ -140,17 +140,17 @@ fn a_clock_that_is_replayed_is_predicted_step_by_step() {
         control.loss = loss;
         request.control = Some(control.with_time_stamps(&stamps).unwrap());
         let found = super::requests::advice(&request).unwrap();
-        let together = &found.looped.as_ref().unwrap().together;
-        assert_eq!(together.growth < 0.0, stands, "{block}: {together:?}");
+        let combined = &found.looped.as_ref().unwrap().combined;
+        assert_eq!(combined.growth < 0.0, stands, "{block}: {combined:?}");
         assert_eq!(found.holds(), stands, "{block}: {}", found.answer);
-        match together.simulated {
+        match combined.simulated {
             Some(simulated) => assert!(simulated.agrees(), "{block} {loss}: {simulated:?}"),
             None => assert!(!stands, "{block}"),
         }
         if loss == 0.0 {
             let clock = Recorded::repeated(&steps);
             let grown = case.growth_by(case.feedback(), clock, 0.0, case.period);
-            assert_eq!(grown < 0.0, stands, "{block}: {grown} {}", together.growth);
+            assert_eq!(grown < 0.0, stands, "{block}: {grown} {}", combined.growth);
         }
     }
 }

@@ -29,9 +29,9 @@ fn what_was_not_tried_is_not_said_to_stand() {
         (control.latency, control.jitter) = (0.075, Jitter::Gaussian(0.05));
     });
     let found = advice(&late).unwrap();
-    let together = &found.looped.as_ref().unwrap().together;
-    let tried = together.room_tried.unwrap();
-    assert!(together.room.is_none() && tried > 1.1 && tried < 2.1, "{together:?}");
+    let combined = &found.looped.as_ref().unwrap().combined;
+    let tried = combined.margin_tested.unwrap();
+    assert!(combined.margin.is_none() && tried > 1.1 && tried < 2.1, "{combined:?}");
     assert!(found.answer.contains("at least"), "{}", found.answer);
 }
 
@@ -51,7 +51,7 @@ fn a_fast_clock_makes_no_command_arrive_sooner() {
     for skew in [0.0, -0.45] {
         let fast = request(0.01, |control| (control.latency, control.skew) = (0.2, skew));
         let found = advice(&fast).unwrap();
-        assert!(found.looped.as_ref().unwrap().together.growth > 0.0, "{}", found.answer);
+        assert!(found.looped.as_ref().unwrap().combined.growth > 0.0, "{}", found.answer);
         assert!(!found.holds());
     }
 }
@@ -71,9 +71,9 @@ fn noise_that_a_limit_would_feel_is_no_contradiction() {
         (control.law, control.latency, control.deviation) = (Law::Pid(gains), 0.01, 0.02);
     });
     let found = advice(&weak).unwrap();
-    let together = &found.looped.as_ref().unwrap().together;
-    assert_eq!(together.returns.unwrap().of_asked, [8, 8]);
-    assert!(together.simulated.unwrap().agrees() && found.holds(), "{together:?}");
+    let combined = &found.looped.as_ref().unwrap().combined;
+    assert_eq!(combined.region_of_attraction.unwrap().returned, [8, 8]);
+    assert!(combined.simulated.unwrap().agrees() && found.holds(), "{combined:?}");
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn rare_outbursts_are_told_and_no_contradiction() {
     // The limit of losses is 0.7032.
     let lossy = request(0.05, |control| control.loss = 0.68);
     let found = advice(&lossy).unwrap();
-    let simulated = found.looped.as_ref().unwrap().together.simulated.unwrap();
+    let simulated = found.looped.as_ref().unwrap().combined.simulated.unwrap();
     assert!(simulated.outbursts && simulated.agrees(), "{simulated:?}");
     assert!(found.warnings.iter().any(|text| text.contains("rare outbursts")));
     assert!(found.holds(), "{}", found.answer);
@@ -92,8 +92,11 @@ fn what_is_lost_on_a_long_way_is_not_said_to_be_simulated() {
     let mut far = request(0.001, |control| (control.latency, control.loss) = (0.05, 0.01));
     (far.system, far.q) = (AnySystem::Pendulum(Pendulum { omega2: 9.81 }), vec![0.5]);
     let found = advice(&far).unwrap();
-    let together = &found.looped.as_ref().unwrap().together;
-    assert!(together.simulated.is_none() && together.returns.is_none(), "{together:?}");
+    let combined = &found.looped.as_ref().unwrap().combined;
+    assert!(
+        combined.simulated.is_none() && combined.region_of_attraction.is_none(),
+        "{combined:?}"
+    );
     assert!(found.warnings[0].contains("too long for losses"), "{:?}", found.warnings);
     assert!(found.holds(), "{}", found.answer);
 }

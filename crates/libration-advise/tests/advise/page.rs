@@ -13,7 +13,7 @@ period = 0.02
 latency = 0.03
 [tolerance]
 cost = 0.5
-[asked]
+[request]
 horizon = 2.0
 rollout = [64, 64]
 ";
@@ -44,6 +44,6 @@ fn a_tolerated_cost_ends_a_budget_before_stability_does() {
     // At that latency the cost has risen by just so much.
     let again = ASKED.replace("latency = 0.03", &format!("latency = {tolerated}"));
     let at = advice(&advise::parse(&again, "again.toml").unwrap()).unwrap();
-    let rise = at.looped.unwrap().together.cost_increase.unwrap();
+    let rise = at.looped.unwrap().combined.cost_increase.unwrap();
     assert!((rise - 0.5).abs() < 1e-9, "{rise}");
 }

@@ -32,7 +32,7 @@ fn a_loop_that_stands_all_that_is_stated_is_simulated_as_predicted() {
     }
     let found = advice(&request).unwrap();
     let looped = found.looped.as_ref().unwrap();
-    let simulated = looped.together.simulated.unwrap();
+    let simulated = looped.combined.simulated.unwrap();
     let off = (simulated.cost - simulated.predicted) / simulated.error;
     assert!(off.abs() < 3.0 && simulated.error < 0.02 * simulated.cost, "{simulated:?}");
     assert!(found.warnings.is_empty(), "{:?}", found.warnings);
@@ -41,7 +41,7 @@ fn a_loop_that_stands_all_that_is_stated_is_simulated_as_predicted() {
     assert_eq!(failing.kind, Imperfection::Latency);
     assert!((0.5..1.2).contains(&failing.frequency.unwrap()), "{failing:?}");
     // All of it together leaves less room than the worst alone.
-    let room = looped.together.room.unwrap();
+    let room = looped.combined.margin.unwrap();
     assert!(room > 1.0 && room < 1.0 / failing.used, "{room} {failing:?}");
 }
 
@@ -73,7 +73,7 @@ fn a_linearisation_that_a_simulation_contradicts_is_told_loudly() {
     assert!(!near.warnings.iter().any(|w| w.contains("contradicts")), "{:?}", near.warnings);
     let far = advice(&request(1.0)).unwrap();
     assert!(far.warnings[0].contains("contradicts the linearisation"), "{:?}", far.warnings);
-    let returns = far.looped.unwrap().together.returns.unwrap();
+    let returns = far.looped.unwrap().combined.region_of_attraction.unwrap();
     assert!(returns.up_to > 0.1 && returns.up_to < 1.0, "{returns:?}");
 }
 

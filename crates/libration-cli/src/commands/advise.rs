@@ -114,7 +114,7 @@ fn describe(advice: &Advice) -> String {
         let _ = writeln!(text, "warning: {warning}");
     }
     if let Some(looped) = &advice.looped {
-        describe_loop(looped, &advice.again, &mut text);
+        describe_loop(looped, &advice.repeat_command, &mut text);
     }
     if !advice.integrators.is_empty() {
         let _ = writeln!(
@@ -172,7 +172,7 @@ fn describe(advice: &Advice) -> String {
             t.bytes as f64 / 1e6
         );
     }
-    let _ = writeln!(text, "repeat with: {}", advice.again);
+    let _ = writeln!(text, "repeat with: {}", advice.repeat_command);
     text
 }
 
@@ -216,35 +216,35 @@ fn describe_loop(looped: &LoopAdvice, again: &str, text: &mut String) {
     for budget in looped.budgets.iter().filter(|budget| budget.command != own) {
         let _ = writeln!(text, "  {}", budget.command);
     }
-    let together = &looped.together;
+    let combined = &looped.combined;
     let _ = writeln!(
         text,
         "\nall imperfections together: second moments change by {:+.4e} per period (exact)",
-        together.growth.exp_m1()
+        combined.growth.exp_m1()
     );
-    if let Some(cost) = together.cost {
+    if let Some(cost) = combined.cost {
         let _ = writeln!(
             text,
             "cost under unit noise: {cost:.6e}, without imperfections {:.6e} (exact: Lyapunov equation)",
-            together.ideal_cost
+            combined.ideal_cost
         );
     }
-    if together.command != own {
-        let _ = writeln!(text, "  {}", together.command);
+    if combined.command != own {
+        let _ = writeln!(text, "  {}", combined.command);
     }
-    if let Some(s) = &together.simulated {
+    if let Some(s) = &combined.simulated {
         let _ = writeln!(
             text,
             "cost of {} simulated loops, {} periods, constant noise in each period, without the cost of commands: {:.5e} ± {:.1e}, predicted {:.5e}",
             s.loops, s.periods, s.cost, s.error, s.predicted
         );
     }
-    if let Some(r) = &together.returns {
-        let [back, all] = r.of_asked;
+    if let Some(r) = &combined.region_of_attraction {
+        let [back, all] = r.returned;
         let _ = writeln!(
             text,
             "{back} of {all} loops return from a deviation of {}; all return from {}{:.4} (simulated)",
-            r.asked,
+            r.deviation,
             if r.up_to < r.tried_up_to { "up to " } else { "as far as was tried, " },
             r.up_to
         );

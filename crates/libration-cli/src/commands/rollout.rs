@@ -127,8 +127,8 @@ fn threads(threads: usize) -> Result<Execution, Failure> {
 /// Converts an error: wrong input is known before any work, all other errors occur during the run.
 fn failed(error: DatasetError, folder: &Path) -> Failure {
     use libration_env::dataset::DataError;
-    if let Some(room) = error.missing_memory() {
-        return Failure::room(room, &error);
+    if let Some(shortage) = error.missing_memory() {
+        return Failure::out_of_memory(shortage, &error);
     }
     match error {
         error if is_unusable(&error, folder) => Failure::usage(error),

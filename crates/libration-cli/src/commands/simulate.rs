@@ -195,8 +195,8 @@ impl Monitor for Watcher {
 
 /// Converts an error of a request or of its run.
 fn failure(error: TrajectoryError) -> Failure {
-    if let Some(room) = error.missing_memory() {
-        return Failure::room(room, &error);
+    if let Some(shortage) = error.missing_memory() {
+        return Failure::out_of_memory(shortage, &error);
     }
     match error {
         TrajectoryError::Ensemble(error) => Failure::ensemble(&error),

@@ -126,20 +126,20 @@ fn commands_say_again_what_was_said_of_all_together() {
     ];
     let words = [&ADVISE[..], &rest].concat();
     let found = json(&words);
-    let together = &found["loop"]["together"];
+    let combined = &found["loop"]["combined"];
     let command = together["command"].as_str().unwrap();
     let again: Vec<&str> = command.split(' ').skip(1).collect();
     let shown = json(&again);
     let [said, shown] = [&together["cost"], &shown["cost"]].map(|x| x.as_f64().unwrap());
     assert!((said / shown - 1.0).abs() < 1e-10, "{said} {shown} by {command}");
-    assert_eq!(found["again"].as_str().unwrap(), format!("libration {}", words.join(" ")));
+    assert_eq!(found["repeat_command"].as_str().unwrap(), format!("libration {}", words.join(" ")));
 }
 
 #[test]
 fn a_command_names_files_as_a_shell_takes_them() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("my loop.toml");
-    fs::write(&file, "[start]\nq = [1.0]\n[asked]\nhorizon = 1.0\n").unwrap();
+    fs::write(&file, "[start]\nq = [1.0]\n[request]\nhorizon = 1.0\n").unwrap();
     let path = file.to_str().unwrap();
     let found = json(&[
         "advise",
@@ -149,14 +149,17 @@ fn a_command_names_files_as_a_shell_takes_them() {
         "--page",
         folder.path().join("p.html").to_str().unwrap(),
     ]);
-    assert_eq!(found["again"].as_str().unwrap(), format!("libration advise -q --config '{path}'"));
+    assert_eq!(
+        found["repeat_command"].as_str().unwrap(),
+        format!("libration advise -q --config '{path}'")
+    );
     // Flags say what else is wrong with a loop than the file does; without a loop they cannot.
     libration(&["advise", "-q", "--config", path, "--loss", "0.1"])
         .code(2)
         .stderr(predicate::str::contains("--loss is given, but there is no loop"));
     fs::write(
         &file,
-        "[asked]\nhorizon = 1.0\n[controller.observer]\ngains = [10, 2]\ncorrection = [0.1, 1]\n",
+        "[request]\nhorizon = 1.0\n[controller.observer]\ngains = [10, 2]\ncorrection = [0.1, 1]\n",
     )
     .unwrap();
     let found = json(&["advise", "-q", "--config", path]);
@@ -167,7 +170,7 @@ fn a_command_names_files_as_a_shell_takes_them() {
     // At the limit, where the last digit decides whether it stands.
     let shown = libration(&[&["advise", "-q", "--config", path, "--latency"], &at[..]].concat());
     let there: Value = serde_json::from_slice(&shown.get_output().stdout).unwrap();
-    let growth = there["loop"]["together"]["growth"].as_f64().unwrap();
+    let growth = there["loop"]["combined"]["growth"].as_f64().unwrap();
     assert!(growth.abs() < 1e-6, "{growth} by {command}");
 }
 

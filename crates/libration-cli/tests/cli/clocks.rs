@@ -55,7 +55,7 @@ fn a_clock_that_was_measured_can_be_replayed_and_advised_with() {
     let stated = advised["loop"]["budgets"][1]["stated"].as_f64().unwrap();
     assert!((stated - a).abs() < 1e-9, "{stated} {a}");
     // What only that record shows is asked again with it.
-    for command in [&advised["again"], &advised["loop"]["together"]["command"]] {
+    for command in [&advised["repeat_command"], &advised["loop"]["combined"]["command"]] {
         assert!(command.as_str().unwrap().contains("--jitter-file"), "{command}");
     }
 }

@@ -12,7 +12,7 @@ pub fn odd(word: u32) -> f32 {
     (((word as i32) >> 7) | 1) as f32
 }
 
-/// What makes [`uniform`] of [`odd`]: a power of two, so that it may as well be a factor of something else.
+/// The factor from [`odd`] to [`uniform`]: a power of two, so that other factors can absorb it.
 pub const UNIT: f32 = 1.0 / (1 << 24) as f32;
 
 /// More than any [`normal`] number has in size: `√(48 ln 2)` and its rounding.

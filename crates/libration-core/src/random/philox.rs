@@ -25,7 +25,7 @@ const ROUNDS: usize = 10;
 /// The multipliers of a round.
 const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];
 
-/// What is added to the key after a round: the golden ratio and √3 − 1, as fractions of 2³².
+/// The increments of the key after each round: the golden ratio and √3 − 1, as fractions of 2³².
 const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
 
 #[inline(always)]

@@ -1,4 +1,4 @@
-//! What it takes to measure speed: a stopwatch, loops that are bound by one thing alone, and the
+//! Measurement of speed: a stopwatch, loops that are bound by one thing alone, and the
 //! same simulation written in seven ways.
 
 mod arithmetic;

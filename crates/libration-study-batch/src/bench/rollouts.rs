@@ -48,7 +48,7 @@ pub struct RolloutCase {
     pub horizon: usize,
 }
 
-/// What the last caches of most machines hold: 1024 × 512 transitions of the source's case, and some more.
+/// Transitions that fit the last caches of most machines: 1024 × 512 transitions of the source's case, and some more.
 const CACHED: usize = 12 << 20;
 
 impl RolloutCase {

@@ -132,7 +132,7 @@ fn timed(
     Ok(())
 }
 
-/// What is written as it suits the machine, over the fill that it is measured by.
+/// Writes in the order that suits the machine, relative to a fill of the same memory.
 fn compare(record: &mut Record, case: RolloutCase, execution: &Execution, rates: &[Rates]) {
     let at = |writes| if writes == Writes::Past { 2 } else { 0 };
     let (own, by) = (suited(case.bytes()), case.against());

@@ -15,7 +15,7 @@ type Number = f32;
 /// Three arrays together are this many times as large as the last cache.
 const FAR: u64 = 6;
 
-/// What the arrays of a measurement take together, in bytes: larger than the last cache, if the effort and
+/// The size of all arrays of a measurement, in bytes: larger than the last cache, if the effort and
 /// the memory allow.
 pub(super) fn footprint(measurement: &Measurement<'_>) -> u64 {
     let last = Machine::detect().caches.last().map_or(32 << 20, |cache| cache.bytes);

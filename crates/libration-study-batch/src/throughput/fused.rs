@@ -31,7 +31,7 @@ fn bar(method: Method, set: InstructionSet) -> Option<f64> {
     }
 }
 
-/// What a step of a method needs, and the loop that does as much with independent operands.
+/// The operations of a step of a method, and the loop that does as much with independent operands.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Peak {
     mix: Mix,

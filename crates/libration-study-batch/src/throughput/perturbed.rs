@@ -26,7 +26,7 @@ const CLOCK: f64 = 4.0;
 /// The same for a step under a command that is a whole step late.
 const DELAY: f64 = 3.0;
 
-/// What is raced: what it is called in findings and in words, and the most that it may cost.
+/// A measured case: its name in findings and in sentences, and its largest allowed cost.
 const CONTESTANTS: [(&str, &str, Option<f64>); 4] = [
     ("asynchrony", "a clock rate for each trajectory", Some(CLOCK)),
     ("jitter", "uniform jitter", Some(CLOCK)),

@@ -89,7 +89,7 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
     Ok(())
 }
 
-/// What fused steps reach, and against what: numbers of one table each.
+/// The speed of fused steps and of their references: numbers of one table each.
 fn answer(record: &Record, page: &mut Page) {
     let value = |id: &str| record.finding(id).ok().map(|f| f.measured);
     let mut sentences = Vec::new();

@@ -56,7 +56,7 @@ struct Run {
     elapsed: Vec<Sample>,
     /// After one step, in theory: each grows with the root of the number of steps.
     predicted: [f64; 2],
-    /// What the second derivative of the angle adds to that, as a deviation.
+    /// The contribution of the second derivative of the angle to that, as a deviation.
     bend: f64,
 }
 

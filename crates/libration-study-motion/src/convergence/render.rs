@@ -122,7 +122,7 @@ fn errors(
     Ok(figure)
 }
 
-/// What the fitted orders say of the lines: theory promises nothing where forces depend on velocities.
+/// A sentence on the fitted orders of the lines: theory promises nothing where forces depend on velocities.
 fn slopes(record: &Record, systems: &[(String, String)], kind: &str, rise: &str) -> String {
     let end = format!(".{kind}-order");
     let orders = || record.findings.iter().filter(|f| f.id.ends_with(&end));

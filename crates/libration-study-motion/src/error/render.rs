@@ -146,7 +146,7 @@ fn steps(record: &Record) -> Result<Figure, RecordError> {
         .panel(panel))
 }
 
-/// What is worth showing: an error below rounding is none, and one beyond a thousand amplitudes has
+/// The errors worth showing: an error below rounding is none, and one beyond a thousand amplitudes has
 /// left the figure.
 fn shown(values: &[f64]) -> Vec<f64> {
     values.iter().map(|&y| if (1e-16..1e3).contains(&y) { y } else { f64::NAN }).collect()

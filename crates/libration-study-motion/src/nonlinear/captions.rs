@@ -21,7 +21,7 @@ pub(super) fn rates(record: &Record) -> Option<String> {
     (!rates.is_empty()).then(|| list(&rates))
 }
 
-/// What the runs showed of each method’s growth: that it stays in a band, climbs, or takes up as
+/// The measured behaviour of each method’s growth: that it stays in a band, climbs, or takes up as
 /// much energy as there was.
 pub(super) fn growths(record: &Record) -> Result<String, RecordError> {
     let of = |m: Method| {

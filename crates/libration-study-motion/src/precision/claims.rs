@@ -219,7 +219,7 @@ fn dominated(config: &Config, record: &mut Record) {
     });
 }
 
-/// What a time step that is a little off does to the phase: rounding it to `f32` makes it so.
+/// The phase error of a time step that is rounded to `f32`.
 fn rounded_step(config: &Config, record: &mut Record) {
     let settings = found(config, record, &[Method::VelocityVerlet], "ahead");
     let text = "A time step that is off by a part ε of itself changes the phase by ε of the time.";

@@ -1,4 +1,4 @@
-//! What a step of one lane consists of.
+//! One step of one lane.
 
 use libration_core::control::{Clock, Memory};
 use libration_core::random::Streams;

@@ -1,4 +1,4 @@
-//! What loops remember.
+//! The memory of loops between steps.
 
 use core::mem::take;
 

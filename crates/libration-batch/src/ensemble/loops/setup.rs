@@ -1,4 +1,4 @@
-//! What loops are made of.
+//! The parts of control loops.
 
 use libration_core::Float;
 use libration_core::control::clock::Fixed;

@@ -1,4 +1,4 @@
-//! What trajectories cost.
+//! The mean cost of trajectories.
 
 use core::ops::Range;
 

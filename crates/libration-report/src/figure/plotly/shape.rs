@@ -26,7 +26,7 @@ pub(super) fn rule(mark: &Mark, across: Across, at: f64, n: Number) -> Value {
     }
 }
 
-/// What is seen through a picture where it has no value.
+/// The background of a picture where it has no value.
 pub(super) fn blank(grid: &Grid, placed: &PanelLayout<'_>, n: Number) -> Option<Value> {
     let (x, y) = (edges(&grid.x, placed.panel.x.scale), edges(&grid.y, placed.panel.y.scale));
     Some(json!({"type": "rect", "layer": "below", "xref": n.key("x"), "yref": n.key("y"),

@@ -127,7 +127,7 @@ pub(super) fn edged(traces: Vec<Value>) -> Vec<Value> {
     out
 }
 
-/// What is read where the reader points: enough digits to compare, and the unit.
+/// The text beside the pointer: enough digits to compare, and the unit.
 fn hover(mark: &Mark, x: String, y: String) -> String {
     let name = mark.label.as_deref().map(|label| format!("<b>{}</b><br>", text::html(label)));
     let name = name.unwrap_or_default();
