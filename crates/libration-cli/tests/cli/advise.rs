@@ -127,10 +127,10 @@ fn commands_say_again_what_was_said_of_all_together() {
     let words = [&ADVISE[..], &rest].concat();
     let found = json(&words);
     let combined = &found["loop"]["combined"];
-    let command = together["command"].as_str().unwrap();
+    let command = combined["command"].as_str().unwrap();
     let again: Vec<&str> = command.split(' ').skip(1).collect();
     let shown = json(&again);
-    let [said, shown] = [&together["cost"], &shown["cost"]].map(|x| x.as_f64().unwrap());
+    let [said, shown] = [&combined["cost"], &shown["cost"]].map(|x| x.as_f64().unwrap());
     assert!((said / shown - 1.0).abs() < 1e-10, "{said} {shown} by {command}");
     assert_eq!(found["repeat_command"].as_str().unwrap(), format!("libration {}", words.join(" ")));
 }
