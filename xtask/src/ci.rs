@@ -26,7 +26,7 @@ const STEPS: [Step; 9] = [
 /// Runs the steps and prints how long each took.
 pub(crate) fn run() -> Outcome {
     // Nothing but the tests needs the packages, which take a while to install: they say what failed.
-    thread::spawn(|| python::interpreter().is_ok());
+    let packages = thread::spawn(|| python::interpreter().is_ok());
     let mut durations = Vec::new();
     let mut failure = None;
     for (i, (name, work)) in STEPS.iter().enumerate() {
@@ -41,6 +41,8 @@ pub(crate) fn run() -> Outcome {
             break;
         }
     }
+    // Not to be left half installed; the tests have told what is wrong with them.
+    let _ = packages.join();
     print!("\n{}", summary(&STEPS.map(|(name, _)| name), &durations, failure.is_some()));
     failure.map_or(Ok(()), Err)
 }

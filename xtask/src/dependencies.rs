@@ -24,7 +24,7 @@ const ALLOWED: [&str; 17] = [
 ];
 
 /// Never in its tree, not even through others.
-const FORBIDDEN: [&str; 1] = ["serde"];
+const FORBIDDEN: [&str; 2] = ["serde", "serde_core"];
 
 /// Fails if the engine depends on a crate that is not listed, or the tests of the wheel would compile a crate once more.
 pub(crate) fn run() -> Outcome {
@@ -62,13 +62,17 @@ fn only_in<'a>(tree: &'a str, other: &str) -> Vec<&'a str> {
 /// Fails if the engine depends on a crate that is not listed.
 fn engine() -> Outcome {
     let tree = |options: &str| {
-        let options = format!("tree --package libration -e normal --prefix none {options}");
+        let options = format!(
+            "tree --package libration -e normal --prefix none --all-features --target all {options}"
+        );
         command::output(&mut command::cargo(&options))
     };
-    let direct = tree("--depth 2 --no-dedupe --target all")?;
+    let direct = tree("--depth 2 --no-dedupe")?;
     let mut found: Vec<&str> = names(&direct).filter(|name| !ALLOWED.contains(name)).collect();
     let whole = tree("")?;
     found.extend(names(&whole).filter(|name| FORBIDDEN.contains(name)));
+    found.sort_unstable();
+    found.dedup();
     match found.as_slice() {
         [] => Ok(()),
         found => Err(format!(

@@ -9,14 +9,14 @@ use crate::{Outcome, command, workspace};
 /// Folders of examples that run without arguments.
 const PLAIN: [&str; 2] = ["examples", "crates/libration/examples"];
 
-/// Examples of the laboratory that write a page into the file named by their first argument.
+/// Examples of other crates that write a page into the file named by their first argument.
 const DRAWING: [&str; 2] = ["gallery", "robot_joint"];
 
 /// Examples of the laboratory that study something at the effort of their own configuration and
 /// report into the folder named by their second argument.
 const STUDYING: [&str; 1] = ["own_system"];
 
-/// Examples of the laboratory that follow what is advised, with an argument that makes them short enough.
+/// Examples of advice that follow it, with an argument that makes them short enough.
 const ADVISING: [(&str, &str); 2] = [("satellite", "30"), ("stiff_spring", "")];
 
 /// Builds all examples of the workspace, then runs them.
@@ -33,7 +33,6 @@ pub(crate) fn run() -> Outcome {
     }
     let scratch = Scratch::new("examples")?;
     let folder = workspace::root().join("crates/libration-lab/examples");
-    let drawing = examples_in(&folder);
     for name in STUDYING {
         println!("example {name}");
         let config = folder.join(format!("{name}.toml"));
@@ -48,7 +47,7 @@ pub(crate) fn run() -> Outcome {
         let mut example = command::program(built(name));
         command::run(example.args(Some(argument).filter(|argument| !argument.is_empty())))?;
     }
-    for name in drawing.iter().filter(|name| DRAWING.contains(&name.as_str())) {
+    for name in DRAWING {
         println!("example {name}");
         let page = scratch.path().join(format!("{name}.html"));
         command::run(command::program(built(name)).arg(page))?;

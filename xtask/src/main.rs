@@ -48,7 +48,7 @@ const TASKS: [Task; 10] = [
     },
     Task {
         name: "dependencies",
-        summary: "the engine depends on neither serde nor the laboratory",
+        summary: "the engine depends on listed crates only, and tests compile none twice",
         action: Action::Plain(dependencies::run),
     },
     Task {

@@ -20,7 +20,7 @@ pub struct CombinedEffect {
     /// The largest common factor of all imperfections with which the loop is stable; none if no limit was found.
     pub margin: Option<f64>,
     /// The largest tried common factor; none without stated imperfections, or if the loop is unstable.
-    pub margin_tested: Option<f64>,
+    pub margin_tried_up_to: Option<f64>,
     /// The cost of the ideal loop, per second under unit noise.
     pub ideal_cost: f64,
     /// The cost with all imperfections; none if it is infinite.
@@ -102,7 +102,7 @@ impl<M: PlantModel> Loop<M> {
         let simulated = if stable { self.simulated_cost(work, growth, &stated)? } else { None };
         let region_of_attraction =
             if stable { self.region_of_attraction(work, growth)? } else { None };
-        let (margin, margin_tested) = match stable && stated != Imperfections::NONE {
+        let (margin, margin_tried_up_to) = match stable && stated != Imperfections::NONE {
             true => {
                 let (margin, tried) = self.margin(plant, ideal_cost, request.tolerance, &ends)?;
                 (margin, Some(tried))
@@ -112,7 +112,7 @@ impl<M: PlantModel> Loop<M> {
         Ok(CombinedEffect {
             growth,
             margin,
-            margin_tested,
+            margin_tried_up_to,
             ideal_cost,
             cost: finite,
             cost_increase: finite.map(|cost| cost / ideal_cost - 1.0),

@@ -41,7 +41,7 @@ pub(super) fn describe_integrator(advice: &Advice, request: &Request) -> String 
 
 /// The stability and cost of a loop in a few sentences.
 pub(super) fn describe_loop(looped: &LoopAdvice, tolerance: &ToleranceAnswer) -> String {
-    let CombinedEffect { growth, margin, margin_tested, cost_increase, .. } = looped.combined;
+    let CombinedEffect { growth, margin, margin_tried_up_to, cost_increase, .. } = looped.combined;
     if growth >= 0.0 {
         let remedies = looped.remedies.as_ref();
         return format!(
@@ -51,7 +51,7 @@ pub(super) fn describe_loop(looped: &LoopAdvice, tolerance: &ToleranceAnswer) ->
         );
     }
     let regained = looped.budgets.iter().find_map(|budget| Some((budget, budget.regained?)));
-    let mut text = match (margin, margin_tested) {
+    let mut text = match (margin, margin_tried_up_to) {
         _ if looped.combined.is_contradicted() => {
             "The simulation contradicts the theory of the loop: see the warnings.".to_owned()
         }

@@ -7,7 +7,7 @@ use std::process;
 
 use crate::DataError;
 
-/// A file that is locked until this is dropped, or its process dies.
+/// A file that is locked until this is dropped, or until its process and all that it forked have ended.
 ///
 /// A process that is being started has a copy of every open file for a moment, and with it the lock: to close the file would
 /// not be enough.
@@ -22,7 +22,7 @@ impl LockedFile {
     /// Opens a file, makes it if there is none, and locks it.
     ///
     /// # Errors
-    /// [`DataError::Locked`] if another process has it; [`DataError::Io`] if the system refuses.
+    /// [`DataError::Locked`] if it is locked, by this process or another; [`DataError::Io`] if the system refuses.
     pub fn open(path: &Path) -> Result<Self, DataError> {
         let mut options = OpenOptions::new();
         options.read(true).write(true).create(true).truncate(false);

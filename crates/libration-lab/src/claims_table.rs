@@ -84,7 +84,7 @@ pub(crate) fn render(results: &Results, chapters: &[Chapter]) -> String {
          </tbody></table></div>\n{}{}</section>\n",
         scroll_container("Claims of the source report"),
         unjudged(results),
-        untried()
+        claims_without_study()
     )
 }
 
@@ -123,7 +123,7 @@ fn unjudged(results: &Results) -> String {
 }
 
 /// Returns the claims that no study judges, collapsed.
-fn untried() -> String {
+fn claims_without_study() -> String {
     let entry = |claim: &ClaimWithoutStudy| {
         format!(
             "<li>{} (§ {}): {} Not judged: {}.</li>",

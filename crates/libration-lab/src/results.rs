@@ -23,7 +23,7 @@ pub struct Results {
     /// Whether all requested studies are included.
     pub complete: bool,
     /// Claims of the source report that no study judges, with reasons.
-    pub untried: &'static [ClaimWithoutStudy],
+    pub claims_without_study: &'static [ClaimWithoutStudy],
     /// Claims that studies try, but that none has judged in this run, and why.
     pub unjudged: Vec<UnjudgedClaim>,
     /// The records of the studies that have ended.

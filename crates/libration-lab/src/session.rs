@@ -86,7 +86,7 @@ pub fn run(
         config: lab.config.clone(),
         seconds: 0.0,
         complete: false,
-        untried: CLAIMS_WITHOUT_STUDY,
+        claims_without_study: CLAIMS_WITHOUT_STUDY,
         unjudged: unjudged(lab.config, &[], &[]),
         studies: Vec::new(),
     };

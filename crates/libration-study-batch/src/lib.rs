@@ -16,4 +16,4 @@ pub use determinism::Determinism;
 pub use memory::Memory;
 pub use rollout::{Rollout, RolloutSettings};
 pub use storage::{Storage, StorageSettings};
-pub use throughput::{Throughput, ThroughputSettings};
+pub use throughput::{Rate, Throughput, ThroughputSettings, Wanted, ladder};

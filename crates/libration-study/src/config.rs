@@ -70,8 +70,8 @@ impl Config {
         self.check_names(known)?;
         self.oscillator.check()?;
         self.start.check(self.oscillator)?;
-        if let Some(asked) = self.simd.filter(|set| !set.is_available()) {
-            let message = EnsembleError::Instructions { asked }.to_string();
+        if let Some(requested) = self.simd.filter(|set| !set.is_available()) {
+            let message = EnsembleError::Instructions { requested }.to_string();
             return Err(Fault::new("simd", message));
         }
         self.settings.check()

@@ -1,30 +1,33 @@
 //! A study stands alone: it can be read, changed and taken out without any other.
 
+use std::collections::BTreeSet;
+
 use super::code::{line_of, words};
 use super::crate_file::File;
 use super::crate_modules::{self, Crate};
 use super::finding::Finding;
 use super::source::Source;
 
-/// Names that a study takes from another study of its crate, or passes on from it.
+/// Names that a study, or a module that studies share, takes from another study of its crate, or passes on from it.
 pub(super) fn check(sources: &[Source]) -> Vec<Finding> {
     crate_modules::crates(sources).iter().flat_map(crossings).collect()
 }
 
 fn crossings(within: &Crate<'_>) -> Vec<Finding> {
-    let studies: Vec<&File<'_>> = within.files.iter().filter(|file| is_study(file)).collect();
-    let study = |file: usize| studies.iter().find(|study| study.is_above(&within.files[file]));
+    let tops = within.files.iter().filter(|file| implements_study(file));
+    let studies: BTreeSet<&str> = tops.filter_map(top).collect();
+    let study = |file: usize| top(&within.files[file]).filter(|top| studies.contains(top));
     let mut findings = Vec::new();
     for taken in within.uses() {
-        let (Some(own), Some(other)) = (study(taken.from), study(taken.to)) else { continue };
-        if own.module != other.module {
-            let file = &within.files[taken.from];
+        let file = &within.files[taken.from];
+        // The root names all studies.
+        let (Some(own), Some(other)) = (top(file), study(taken.to)) else { continue };
+        if own != other {
+            let kind = if studies.contains(own) { "study" } else { "shared module" };
             let advice = format!(
-                "the study `{}` takes `{}` from the study `{}`: move what both need to a module \
+                "the {kind} `{own}` takes `{}` from the study `{other}`: move what both need to a module \
                  that is no study, or to crates/libration-study",
-                own.module.join("::"),
                 taken.name,
-                other.module.join("::"),
             );
             findings.push(Finding::new(
                 &file.source.path,
@@ -36,10 +39,14 @@ fn crossings(within: &Crate<'_>) -> Vec<Finding> {
     findings
 }
 
-/// Whether a file is the top of a folder that holds a study.
-fn is_study(file: &File<'_>) -> bool {
+/// The module of the root that a file belongs to; none for the root.
+fn top<'a>(file: &'a File<'_>) -> Option<&'a str> {
+    file.module.first().map(String::as_str)
+}
+
+fn implements_study(file: &File<'_>) -> bool {
     let implements = |at: usize| file.code[at + "Study".len()..].starts_with(" for ");
-    file.name().ends_with("/mod.rs") && words(&file.code, "Study").any(implements)
+    words(&file.code, "Study").any(implements)
 }
 
 #[cfg(test)]
@@ -50,11 +57,18 @@ mod tests {
 
     /// The lines of the findings in `text`, a file of the study `drift`.
     fn lines(text: &str) -> Vec<usize> {
+        lines_of("drift/part", text)
+    }
+
+    fn lines_of(name: &str, text: &str) -> Vec<usize> {
         let crates = "crates/libration-study-motion/src";
         let sources = [
-            ("lib", "mod drift; mod error; mod subject; pub use error::It as Error;"),
+            (
+                "lib",
+                "mod alone; mod drift; mod error; mod shared; mod subject; pub use error::It as Error;",
+            ),
             ("drift/mod", STUDY),
-            ("drift/part", text),
+            (name, text),
             ("error/mod", STUDY),
             ("error/part", "pub fn f() {}"),
             ("subject/mod", "pub struct Subject; pub fn f() {}"),
@@ -75,6 +89,13 @@ mod tests {
         ] {
             assert_eq!(lines(&format!("\n{text}")), [2], "{text}");
         }
+    }
+
+    #[test]
+    fn a_study_in_one_file_and_a_shared_module_may_not_take_from_a_study_either() {
+        let uses = "\nuse crate::error::It;";
+        assert_eq!(lines_of("alone", &format!("{uses} impl crate::Study for Alone {{}}")), [2]);
+        assert_eq!(lines_of("shared", uses), [2]);
     }
 
     #[test]

@@ -30,7 +30,7 @@ fn what_was_not_tried_is_not_said_to_stand() {
     });
     let found = advice(&late).unwrap();
     let combined = &found.looped.as_ref().unwrap().combined;
-    let tried = combined.margin_tested.unwrap();
+    let tried = combined.margin_tried_up_to.unwrap();
     assert!(combined.margin.is_none() && tried > 1.1 && tried < 2.1, "{combined:?}");
     assert!(found.answer.contains("at least"), "{}", found.answer);
 }

@@ -12,10 +12,10 @@ pub enum EnsembleError {
     #[error(transparent)]
     Memory(#[from] InsufficientMemory),
     /// The processor lacks the instruction set.
-    #[error("this processor has no {}, only {}", asked.name(), available())]
+    #[error("this processor has no {}, only {}", requested.name(), available())]
     Instructions {
         /// The requested instruction set.
-        asked: InstructionSet,
+        requested: InstructionSet,
     },
     /// The system did not give the threads.
     #[error("cannot start {threads} threads: {reason}")]
@@ -46,12 +46,12 @@ pub enum EnsembleError {
         dt: f64,
     },
     /// The record is shorter than the run.
-    #[error("the record of a clock or a delay has {known} steps; the run requires {asked}")]
+    #[error("the record of a clock or a delay has {known} steps; the run requires {requested}")]
     Record {
         /// The steps of the record.
         known: u64,
         /// The steps of the run.
-        asked: u64,
+        requested: u64,
     },
     /// The number of substeps is 0.
     #[error("there are 0 substeps; there must be at least 1")]

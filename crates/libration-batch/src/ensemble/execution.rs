@@ -75,7 +75,7 @@ impl Execution {
     /// [`EnsembleError::Instructions`] if this processor lacks it.
     pub fn instructions(self, instructions: InstructionSet) -> Result<Self, EnsembleError> {
         if !instructions.is_available() {
-            return Err(EnsembleError::Instructions { asked: instructions });
+            return Err(EnsembleError::Instructions { requested: instructions });
         }
         Ok(Execution { instructions, ..self })
     }

@@ -40,13 +40,13 @@ const SHORT: u64 = 2;
 /// registers the planes of a block fill those that the step leaves, with 16 they live in the nearest
 /// cache.
 const fn width<I: Target, T, const D: usize>(carries: bool, taken: usize) -> usize {
-    let (planes, room) = match (carries, I::REGISTERS >= 32) {
+    let (planes, registers) = match (carries, I::REGISTERS >= 32) {
         (false, true) => (2 * D, I::REGISTERS.saturating_sub(taken)),
         (true, true) => (3 * D, I::REGISTERS.saturating_sub(taken)),
         (false, false) => (2 * D, 48),
         (true, false) => (3 * D, 40),
     };
-    let vectors = room / planes;
+    let vectors = registers / planes;
     // Where there are several dimensions, they are as good as several blocks.
     let least = (2 * FEW).div_ceil(if D > 2 { D } else { 2 });
     widest::<I, T>(if vectors > least { vectors } else { least }, &WIDTHS)

@@ -19,14 +19,14 @@ pub enum ReplayError {
         name: &'static str,
     },
     /// An insertion exceeds the capacity.
-    #[error("{name}: {found} in one insertion; the capacity is {room}")]
+    #[error("{name}: {found} in one insertion; the capacity is {capacity}")]
     Capacity {
         /// The name of the capacity.
         name: &'static str,
         /// The number in the insertion.
         found: usize,
         /// The capacity.
-        room: usize,
+        capacity: usize,
     },
     /// The buffer has no transitions.
     #[error("the replay buffer has no {0} to draw from; insert a rollout first")]

@@ -42,8 +42,12 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
         ReplayError::shape("environments of the rollout", environments, n)?;
         ReplayError::shape("numbers seen after the last step", next.len(), n.saturating_mul(O))?;
         if horizon > self.capacity.steps {
-            let room = self.capacity.steps;
-            return Err(ReplayError::Capacity { name: "steps of a rollout", found: horizon, room });
+            let capacity = self.capacity.steps;
+            return Err(ReplayError::Capacity {
+                name: "steps of a rollout",
+                found: horizon,
+                capacity,
+            });
         }
         if horizon == 0 {
             return Ok(());
@@ -103,7 +107,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
             return Err(ReplayError::Capacity {
                 name: "ends of episodes",
                 found: ends,
-                room: capacity.ends,
+                capacity: capacity.ends,
             });
         }
         let end = head.checked_add(steps as u64).filter(|end| {
@@ -112,7 +116,7 @@ impl<T: Float + Pod, const O: usize, const D: usize> ReplayBuffer<T, O, D> {
         let end = end.ok_or(ReplayError::Capacity {
             name: "numbers of transitions",
             found: usize::MAX,
-            room: usize::MAX / 4,
+            capacity: usize::MAX / 4,
         })?;
         let first = (there.end + ends as u64).saturating_sub(capacity.ends as u64);
         let crowded = if first > there.first { self.step_of_end(first - 1) + 1 } else { 0 };

@@ -93,8 +93,8 @@ impl Memory {
     ) -> Result<Self, ReplayError> {
         let fields = capacity.fields(numbers, size_of::<T>())?;
         if map.len() < fields.len {
-            let (found, room) = (fields.len, map.len());
-            return Err(ReplayError::Capacity { name: "bytes", found, room });
+            let (found, capacity) = (fields.len, map.len());
+            return Err(ReplayError::Capacity { name: "bytes", found, capacity });
         }
         let mut memory = Memory { map, fields, sequence: 0 };
         memory.commit(Marks::NONE);

@@ -35,8 +35,8 @@ pub enum EnvironmentError {
     },
     /// The memory is insufficient for the rollout.
     #[error(
-        "a rollout of {horizon} steps of {environments} environments takes {bytes} bytes per transition. {room}. {}",
-        advice(*bytes, *horizon, *environments, room)
+        "a rollout of {horizon} steps of {environments} environments takes {bytes} bytes per transition. {shortage}. {}",
+        advice(*bytes, *horizon, *environments, shortage)
     )]
     OutOfMemory {
         /// The number of steps.
@@ -46,7 +46,7 @@ pub enum EnvironmentError {
         /// Bytes of a transition.
         bytes: usize,
         /// The memory that is needed and available.
-        room: InsufficientMemory,
+        shortage: InsufficientMemory,
     },
     /// Clock rates per environment are combined with seeds per environment.
     #[error(
@@ -69,8 +69,8 @@ impl EnvironmentError {
     /// The memory that is needed and available, if that is the error.
     pub fn insufficient_memory(&self) -> Option<&InsufficientMemory> {
         match self {
-            EnvironmentError::OutOfMemory { room, .. } => Some(room),
-            EnvironmentError::Ensemble(EnsembleError::Memory(room)) => Some(room),
+            EnvironmentError::OutOfMemory { shortage, .. } => Some(shortage),
+            EnvironmentError::Ensemble(EnsembleError::Memory(shortage)) => Some(shortage),
             _ => None,
         }
     }
@@ -99,8 +99,13 @@ impl EnvironmentError {
 pub(super) const NOTHING_DRAWN: &str = "0 unless `DRAWS` is true";
 
 /// The sizes that fit into the memory.
-fn advice(bytes: usize, horizon: usize, environments: usize, room: &InsufficientMemory) -> String {
-    let Some(available) = room.available else {
+fn advice(
+    bytes: usize,
+    horizon: usize,
+    environments: usize,
+    shortage: &InsufficientMemory,
+) -> String {
+    let Some(available) = shortage.available else {
         return "Run the horizon in several parts".to_owned();
     };
     let fit = |by: usize| available / (bytes as u64).saturating_mul(by as u64).max(1);

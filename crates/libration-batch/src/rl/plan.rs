@@ -104,15 +104,15 @@ impl Plan {
         action: usize,
         number: usize,
     ) -> [(&'static str, usize); 7] {
-        let room = |asked: bool, bytes| if asked { bytes } else { 0 };
+        let part = |recorded: bool, bytes| if recorded { bytes } else { 0 };
         [
             ("observation", observation.saturating_mul(number)),
             ("action", action.saturating_mul(number)),
             ("reward", number),
             ("terminated", 1),
-            ("truncated", room(self.truncated, 1)),
-            ("log_probability", room(self.log_probability, number)),
-            ("value", room(self.value, number)),
+            ("truncated", part(self.truncated, 1)),
+            ("log_probability", part(self.log_probability, number)),
+            ("value", part(self.value, number)),
         ]
     }
 

@@ -39,12 +39,13 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
         let Plan { horizon, environments, .. } = plan;
         let number = size_of::<T>();
         let (needed, bytes) = (plan.bytes(O, D, number), plan.bytes_each(O, D, number));
-        let refused = |room| EnvironmentError::OutOfMemory { horizon, environments, bytes, room };
+        let refused =
+            |shortage| EnvironmentError::OutOfMemory { horizon, environments, bytes, shortage };
         InsufficientMemory::check(needed).map_err(refused)?;
         let all = horizon.checked_mul(environments).filter(|_| horizon <= isize::MAX as usize);
         let all = all.filter(|n| n.checked_mul(O.max(D)).is_some());
         let all = all.ok_or_else(|| refused(InsufficientMemory { needed, available: None }))?;
-        let room = |asked| if asked { all } else { 0 };
+        let part = |recorded| if recorded { all } else { 0 };
         let numbers = |count| Buffer::new(count, Pages::Huge);
         let flags = |count| Buffer::new(count, Pages::Huge);
         Ok(Rollout {
@@ -53,9 +54,9 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
             action: numbers(all * D)?,
             reward: numbers(all)?,
             terminated: flags(all)?,
-            truncated: flags(room(plan.truncated))?,
-            log_probability: numbers(room(plan.log_probability))?,
-            value: numbers(room(plan.value))?,
+            truncated: flags(part(plan.truncated))?,
+            log_probability: numbers(part(plan.log_probability))?,
+            value: numbers(part(plan.value))?,
             finals: Vec::new(),
             idle: Vec::new(),
             pauses: false,

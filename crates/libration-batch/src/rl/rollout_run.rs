@@ -72,7 +72,7 @@ where
             return Err(EnvironmentError::Field { why, field });
         }
         // So many ends the limit makes, and to gather them takes as much again. To ask the system costs as long as a short rollout: it
-        // is asked where they are more than what the plan was asked for.
+        // is requested where they are more than what the plan was requested for.
         let cuts = parts.limit.map_or(0, |l| len as u128 * (rows.len() as u128 / u128::from(l)));
         let needed = cuts.saturating_mul(2 * size_of::<EpisodeEnd<T, O>>() as u128);
         if needed > plan.bytes(O, D, size_of::<T>()) {
@@ -139,9 +139,10 @@ where
         let words = policy.words() as f64;
         ensure("random words of the policy", words, NOTHING_DRAWN, |n| P::DRAWS || n == 0.0)?;
         let parts = self.world.parts();
-        let asked = self.step.saturating_add(steps as u64).saturating_mul(parts.substeps.into());
-        if let Some(known) = parts.clock.steps().filter(|&known| known < asked) {
-            return Err(EnsembleError::Record { known, asked }.into());
+        let requested =
+            self.step.saturating_add(steps as u64).saturating_mul(parts.substeps.into());
+        if let Some(known) = parts.clock.steps().filter(|&known| known < requested) {
+            return Err(EnsembleError::Record { known, requested }.into());
         }
         Ok(())
     }

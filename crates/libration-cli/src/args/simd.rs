@@ -36,8 +36,8 @@ pub(crate) fn instruction_set(
         _ => None,
     };
     match set {
-        Some(asked) if !asked.is_available() => {
-            Err(Failure::usage(EnsembleError::Instructions { asked }))
+        Some(requested) if !requested.is_available() => {
+            Err(Failure::usage(EnsembleError::Instructions { requested }))
         }
         set => Ok(set),
     }

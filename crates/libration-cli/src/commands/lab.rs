@@ -144,7 +144,7 @@ mod tests {
             config: STUDIES.config(),
             seconds: 13.0,
             complete: true,
-            untried: &[],
+            claims_without_study: &[],
             unjudged: Vec::new(),
             studies: vec![first, second],
         }

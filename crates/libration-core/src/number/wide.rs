@@ -19,7 +19,7 @@ const BITS: u32 = U1024::BITS;
 type Guarded = Uint<144>;
 const GUARD: u32 = Guarded::BITS - BITS - 1;
 
-/// Bits that a division takes at once.
+/// Bits of the divisors that take the short way.
 const DIGIT: u32 = 64;
 
 /// Exponents stay within `±LIMIT`, so that the sum of two of them fits its type.

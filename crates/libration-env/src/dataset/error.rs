@@ -17,10 +17,10 @@ pub enum DatasetError {
     #[error(transparent)]
     Environment(#[from] EnvironmentError),
     /// There is not enough memory for the chunks in flight.
-    #[error("{room} (chunk.steps is {steps}, chunk.environments {environments})")]
+    #[error("{shortage} (chunk.steps is {steps}, chunk.environments {environments})")]
     OutOfMemory {
         /// The needed and the available memory.
-        room: InsufficientMemory,
+        shortage: InsufficientMemory,
         /// Steps of a chunk.
         steps: usize,
         /// Environments of a chunk.
@@ -97,7 +97,7 @@ impl DatasetError {
     /// The missing memory, if that is the error.
     pub fn missing_memory(&self) -> Option<&InsufficientMemory> {
         match self {
-            DatasetError::OutOfMemory { room, .. } => Some(room),
+            DatasetError::OutOfMemory { shortage, .. } => Some(shortage),
             DatasetError::Environment(error) => error.insufficient_memory(),
             _ => None,
         }

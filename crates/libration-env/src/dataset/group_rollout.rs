@@ -61,7 +61,7 @@ impl<'a, T: Number, const O: usize> GroupRollout<'a, T, O> {
         self.all.observe(&mut done.next)?;
         if let Some(episodes) = &mut self.episodes {
             let ended = episodes.take(first, &done.rollout);
-            done.episodes = ended.map_err(|room| not_enough_memory(self.dataset, room))?;
+            done.episodes = ended.map_err(|shortage| not_enough_memory(self.dataset, shortage))?;
             if self.all.step() == steps {
                 done.episodes.extend(episodes.cut(&done.next));
             }

@@ -41,9 +41,9 @@ impl TrialStep<'_> {
 }
 
 /// The error of chunks that do not fit into memory.
-pub(super) fn not_enough_memory(dataset: &Dataset, room: InsufficientMemory) -> DatasetError {
+pub(super) fn not_enough_memory(dataset: &Dataset, shortage: InsufficientMemory) -> DatasetError {
     let Chunk { steps, environments } = dataset.chunk;
-    DatasetError::OutOfMemory { room, steps, environments }
+    DatasetError::OutOfMemory { shortage, steps, environments }
 }
 
 impl GroupVisitor for TrialStep<'_> {
@@ -58,7 +58,8 @@ impl GroupVisitor for TrialStep<'_> {
         let horizon = steps.min(chunk.steps as u64) as usize;
         let plan = Plan::new(horizon, all.len()).truncated();
         let needed = self.bytes(plan.transitions() as u64, plan.bytes(O, 1, size_of::<T>()));
-        InsufficientMemory::check(needed).map_err(|room| not_enough_memory(self.dataset, room))?;
+        InsufficientMemory::check(needed)
+            .map_err(|shortage| not_enough_memory(self.dataset, shortage))?;
         let mut rollout = Rollout::new(Plan::new(1, all.len()).truncated())?;
         Ok(all.rollout(actor, &mut rollout)?)
     }

@@ -56,7 +56,7 @@ fn a_claim_that_cannot_be_judged_is_listed_with_the_reason() {
     // Judged, not judged and never tried: each of the source's claims is in one of the lists.
     let judged = results["studies"].as_array().unwrap().iter();
     let judged = judged.flat_map(|study| study["claims"].as_array().unwrap());
-    let lists = judged.chain(unjudged).chain(results["untried"].as_array().unwrap());
+    let lists = judged.chain(unjudged).chain(results["claims_without_study"].as_array().unwrap());
     let ids: Vec<&str> = lists.map(|claim| claim["id"].as_str().unwrap()).collect();
     assert_eq!((ids.len(), ids.iter().collect::<HashSet<_>>().len()), (101, 101), "{ids:?}");
 }

@@ -7,7 +7,8 @@ use libration_lab::STUDIES;
 use libration_report::Record;
 use libration_report::record::Verdict;
 use libration_study::{Effort, Lab, Silent};
-use libration_study_batch::bench::{BenchFloat, Implementation, Wanted, ladder};
+use libration_study_batch::bench::{BenchFloat, Implementation};
+use libration_study_batch::{Wanted, ladder};
 
 use crate::default_run::{measured, records};
 

@@ -17,9 +17,6 @@ mod stopwatch;
 mod storage;
 mod task;
 
-pub use crate::throughput::Rate;
-pub use crate::throughput::Wanted;
-pub use crate::throughput::ladder;
 pub(crate) use arithmetic::{Mix, widths};
 pub(crate) use chain::{CHAIN_LINKS, Chain, Link};
 pub(crate) use faults::{PAGE, count_faults};

@@ -61,6 +61,9 @@ proptest! {
         prop_assert!(agrees(a - b, &x.sub(&y, 2200, ToEven), 1024));
         prop_assert!(agrees(a * b, &x.mul(&y, 2200, ToEven), 1024));
         prop_assert!(agrees(a / b, &x.div(&y, P, ToEven), 1022));
+        // The divisor is short, as those of fractions are.
+        let short = Wide::from_f64(b.to_f64());
+        prop_assert!(agrees(a / short, &x.div(&oracle(short), P, ToEven), 1022));
         prop_assert!(agrees(b.recip(), &y.reciprocal(P, ToEven), 1022));
         prop_assert!(agrees(a.abs().sqrt(), &x.abs().sqrt(P, ToEven), 1022));
         prop_assert_eq!(a.partial_cmp(&b), x.partial_cmp(&y));

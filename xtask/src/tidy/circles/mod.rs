@@ -17,9 +17,44 @@ const LARGEST: usize = 2;
 /// The names that one file takes from another, by the indices of both.
 type Edges = BTreeMap<(usize, usize), BTreeSet<String>>;
 
-/// Circles of more than two files of a crate, at the first file of each.
+/// Circles of more than two files of a crate, or of more than two modules of its root, at the first file of each.
 pub(super) fn check(sources: &[Source]) -> Vec<Finding> {
-    crate_modules::crates(sources).iter().flat_map(circles).collect()
+    let crates = crate_modules::crates(sources);
+    let found = |within: &Crate<'_>| match circles(within) {
+        // A circle of files is told once.
+        files if files.is_empty() => circles_of_modules(within),
+        files => files,
+    };
+    crates.iter().flat_map(found).collect()
+}
+
+/// Circles of modules of the root, whichever of their files use each other.
+fn circles_of_modules(within: &Crate<'_>) -> Vec<Finding> {
+    let top = |file: usize| within.files[file].module.first();
+    let mut modules: Vec<&String> = (0..within.files.len()).filter_map(top).collect();
+    modules.sort_unstable();
+    modules.dedup();
+    let mut graph = vec![Vec::new(); modules.len()];
+    for taken in within.uses() {
+        let (Some(from), Some(to)) = (top(taken.from), top(taken.to)) else { continue };
+        let place = |module| modules.binary_search(&module);
+        if let (true, Ok(from), Ok(to)) = (from != to, place(from), place(to)) {
+            graph[from].push(to);
+        }
+    }
+    let circles =
+        components::components(&graph).into_iter().filter(|circle| circle.len() > LARGEST);
+    circles
+        .filter_map(|circle| {
+            let names: Vec<&str> = circle.iter().map(|&module| modules[module].as_str()).collect();
+            let first = within.files.iter().find(|file| file.module.first() == Some(modules[circle[0]]))?;
+            let advice = format!(
+                "the modules {} use each other in a circle: move the type that they share down into a module of its own",
+                names.join(", ")
+            );
+            Some(Finding::new(&first.source.path, 1, advice))
+        })
+        .collect()
 }
 
 fn circles(within: &Crate<'_>) -> Vec<Finding> {
@@ -84,6 +119,25 @@ mod tests {
         assert_eq!(finding.place(), ("crates/a/src/a.rs", 1));
         let edges = "\n    a.rs -> b.rs: B, g\n    b.rs -> c.rs: C\n    c.rs -> a.rs: a";
         assert!(finding.to_string().ends_with(edges), "{finding}");
+    }
+
+    #[test]
+    fn a_circle_of_three_folders_is_found_though_no_files_form_one() {
+        let files = [
+            ("lib", "mod a; mod b; mod c;"),
+            ("a/mod", "mod one; mod two;"),
+            ("a/one", "use crate::b::two::F; pub struct F;"),
+            ("a/two", "pub struct F;"),
+            ("b/mod", "mod one; pub mod two;"),
+            ("b/one", "pub use crate::c::two::F;"),
+            ("b/two", "pub struct F;"),
+            ("c/mod", "mod one; pub mod two;"),
+            ("c/one", "use crate::a::two::F;"),
+            ("c/two", "pub struct F;"),
+        ];
+        let found = findings(&files);
+        let [finding] = found.as_slice() else { panic!("{found:?}") };
+        assert!(finding.to_string().contains("the modules a, b, c use each other"), "{finding}");
     }
 
     #[test]

@@ -191,7 +191,7 @@ where
         let setup = &self.setup;
         for known in [setup.clock.steps(), setup.delay.steps()].into_iter().flatten() {
             if range.end > known {
-                return Err(EnsembleError::Record { known, asked: range.end });
+                return Err(EnsembleError::Record { known, requested: range.end });
             }
         }
         let common = Common { setup, layout: self.layout, dt: self.dt, seed: self.seed };

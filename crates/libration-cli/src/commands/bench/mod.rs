@@ -10,7 +10,8 @@ use std::path::Path;
 use libration_env::dataset::DatasetError;
 use libration_report::record::{Finding, Record, Relation, Table, Undecided, Verdict};
 use libration_study::{Config, Effort, Lab, Machine, Study, StudyError};
-use libration_study_batch::bench::{BenchFloat, Rate, RolloutCase, Wanted};
+use libration_study_batch::bench::{BenchFloat, RolloutCase};
+use libration_study_batch::{Rate, Wanted};
 use libration_study_batch::{Throughput, bench};
 use serde_json::{Value, json};
 
@@ -59,7 +60,7 @@ pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), Failure> {
         records.push(record);
         text
     } else {
-        let rates = bench::ladder(&lab, &wanted);
+        let rates = libration_study_batch::ladder(&lab, &wanted);
         reporter.clear();
         let rates = rates.map_err(|error| failure(error, None))?;
         if args.json { rates_json(&rates) } else { rates_text(&rates) }
