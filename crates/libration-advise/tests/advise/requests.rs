@@ -106,3 +106,18 @@ fn what_cannot_be_advised_on_is_refused_before_any_work() {
     let many = free(oscillator, &[1.0; 3], &[0.0; 3], Measure::Energy, 0.1, 10.0);
     assert!(told(&many).contains("3 degrees of freedom"));
 }
+
+#[test]
+fn requests_of_the_examples_are_valid() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
+    let paths = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let requests: Vec<_> =
+        paths.filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
+    assert_eq!(requests.len(), 3);
+    for path in requests {
+        let text = std::fs::read_to_string(&path).unwrap();
+        if let Err(error) = advise::parse(&text, "request.toml") {
+            panic!("{}: {error}", path.display());
+        }
+    }
+}
