@@ -9,7 +9,7 @@ use crate::bit_comparison;
 
 /// Writes the chapter.
 pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
-    page.title = "ReplayBuffer, data sets, checkpoints".into();
+    page.title = "Replay buffers, data sets, checkpoints".into();
     answer(record, page)?;
     page.paragraph(
         "A replay buffer has the latest transitions in memory; a data set has more transitions than memory. \
