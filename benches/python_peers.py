@@ -85,12 +85,12 @@ def rows():
     robots, horizon = libration.Environments("Oscillator", MANY), 1024
     robots.reset(seed=0)
     policy = Linear([-2.0, 0.0])
-    told = policy._told(2)
+    request = policy._request(2)
     rounds = []
     for _ in range(ROUNDS):
         out = robots.rollout(policy, horizon)
         python = min(once(lambda: robots.rollout(policy, horizon, out=out)) for _ in range(3))
-        rust = min(_native._seconds_of_rollouts(robots._settings, told, horizon, 4)[1:])
+        rust = min(_native._seconds_of_rollouts(robots._settings, request, horizon, 4)[1:])
         rounds.append((python, rust))
     ratios = statistics.quantiles([rust / python for python, rust in rounds], n=4)
     medians = [statistics.median(column) for column in zip(*rounds)]
