@@ -257,7 +257,7 @@ impl Div for Wide {
         }
         let negative = self.negative != other.negative;
         let exponent = self.exponent - other.exponent - i64::from(BITS);
-        // Of a divisor with 64 bits only those count: the same quotient, in a sixteenth of the time.
+        // Zeros below the divisor's 64 bits cancel against those of the dividend: the same quotient from a shorter division.
         if other.significand.trailing_zeros() >= BITS - DIGIT {
             let dividend = self.significand.as_::<Guarded>() << DIGIT;
             let divisor = (other.significand >> (BITS - DIGIT)).as_::<Guarded>();

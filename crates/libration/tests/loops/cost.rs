@@ -146,7 +146,7 @@ fn controllers_that_remember_cost_what_is_predicted_in_five_settings() {
 
 #[test]
 fn an_exact_loop_with_a_late_command_costs_what_fine_steps_measure() {
-    // Fine steps of noise that is held, against noise that is white: second moments differ by (ωh)²/12 and less.
+    // Fine steps of noise that is held, against noise that is white: second moments differ by (ωh)²/12 and less, here 1.3·10⁻⁴.
     const FINE: u32 = 8;
     for (dt, late) in [(0.1, 0.0), (0.1, 0.5), (0.05, 2.0)] {
         let plant = Plant::exact(MODEL, ORIGIN, dt);
