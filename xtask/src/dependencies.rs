@@ -3,11 +3,12 @@
 use crate::{Outcome, command};
 
 /// The engine, and what it depends on directly.
-const ALLOWED: [&str; 17] = [
+const ALLOWED: [&str; 18] = [
     "libration",
     "libration-analysis",
     "libration-batch",
     "libration-core",
+    "libration-linear",
     "bnum",
     "bytemuck",
     "half",

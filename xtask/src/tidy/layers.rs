@@ -4,8 +4,9 @@ use super::finding::Finding;
 use super::source::Source;
 
 /// The crates of each floor, the lowest first.
-const FLOORS: [&[&str]; 11] = [
+const FLOORS: [&[&str]; 12] = [
     &["libration-core"],
+    &["libration-linear"],
     &["libration-analysis", "libration-batch"],
     &["libration"],
     &["libration-data", REPORT, "libration-work"],
@@ -19,7 +20,7 @@ const FLOORS: [&[&str]; 11] = [
 ];
 
 /// The floor of the engine's front; the rest of the engine is below.
-const FRONT: usize = 2;
+const FRONT: usize = 3;
 
 /// Records, findings, figures and pages.
 const REPORT: &str = "libration-report";

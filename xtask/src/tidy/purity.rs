@@ -81,7 +81,13 @@ mod tests {
 
     #[test]
     fn every_crate_of_the_engine_is_covered() {
-        for name in ["libration", "libration-analysis", "libration-batch", "libration-core"] {
+        for name in [
+            "libration",
+            "libration-analysis",
+            "libration-batch",
+            "libration-core",
+            "libration-linear",
+        ] {
             for file in ["lib.rs", "a/b.rs"] {
                 assert_eq!(lines(&format!("crates/{name}/src/{file}"), "use std::fs;"), [1]);
             }

@@ -1,15 +1,10 @@
 //! The stationary cost of a loop under noise.
 
-use libration_core::Scalar;
 use libration_core::control::LqrWeights;
-use libration_core::number::Wide;
+use libration_linear::{Averages, MOST_TURN, RandomStages, Stage};
 
-use super::augmented_state::AugmentedState;
-use super::dense_matrix::Matrix;
 use super::imperfections::{MOST_RANDOM, MOST_REPEATED};
-use super::jitter::{Averages, MOST_TURN};
-use super::random_stages::RandomStages;
-use super::stage::{Stage, StageOptions};
+use super::stages::Stages;
 use super::{CostError, Imperfections, LinearController, Plant};
 
 impl Plant<'_> {
@@ -42,7 +37,7 @@ impl Plant<'_> {
         if !drawn.is_stable() {
             return Ok(f64::INFINITY);
         }
-        let moments = drawn.moments(noise(&stages));
+        let moments = drawn.moments(Stage::mean_noise(&stages));
         let (mut cost, mut length) = (0.0, 0.0);
         for stage in &stages {
             cost += stage.weight * stage.expected(&moments);
@@ -85,33 +80,30 @@ impl Plant<'_> {
         imperfections: &Imperfections,
         weights: Option<LqrWeights>,
     ) -> Result<Vec<Stage>, CostError> {
-        let Imperfections { latency, jitter, skew, loss } = *imperfections;
-        let waiting = self.waiting(controller, imperfections, weights)?;
+        let Imperfections { jitter, skew, loss, .. } = *imperfections;
+        let periods = self.periods(controller, imperfections, weights)?;
         let turn = 2.0 * self.turn(jitter) * (1.0 + skew);
-        let options = StageOptions { waiting, controller, latency, weights };
-        let one = Wide::one();
-        let dt = self.dt * (one + Wide::from_f64(skew));
+        let dt = self.dt.to_f64() * (1.0 + skew);
         // One step, where all are alike: second moments of a large loop would take minutes.
         let nodes = if jitter.rms() > 0.0 { jitter.nodes(turn) } else { vec![(1.0, 0.0)] };
         let mut stages = Vec::new();
         for (weight, epsilon) in nodes {
-            let h = dt * (one + Wide::from_f64(epsilon));
             let arrives = [(1.0 - loss, false), (loss, true)];
             for (share, lost) in arrives.into_iter().filter(|(share, _)| *share > 0.0) {
-                stages.push(self.stage(options, weight * share, h, lost));
+                stages.push(periods.stage(weight * share, dt * (1.0 + epsilon), lost));
             }
         }
         Ok(stages)
     }
 
-    /// The augmented state of the loop, after all numbers are checked.
-    pub(super) fn waiting(
-        &self,
+    /// The periods of the loop, after all numbers are checked.
+    pub(super) fn periods<'p>(
+        &'p self,
         controller: &LinearController,
         imperfections: &Imperfections,
         weights: Option<LqrWeights>,
-    ) -> Result<AugmentedState, CostError> {
-        let Imperfections { latency, jitter, skew, loss } = *imperfections;
+    ) -> Result<Stages<'p>, CostError> {
+        let Imperfections { jitter, skew, loss, .. } = *imperfections;
         if let Some(LqrWeights { position, velocity, command }) = weights {
             let all = [("position", position), ("velocity", velocity), ("command", command)];
             if let Some((of, weight)) = all.into_iter().find(|(_, x)| !(x.is_finite() && *x >= 0.0))
@@ -125,12 +117,8 @@ impl Plant<'_> {
         if !(skew.is_finite() && skew > -1.0) {
             return Err(CostError::Skew(skew));
         }
-        let waiting = AugmentedState {
-            memory: controller.remembers(),
-            commands: latency.whole() as usize,
-            acting: latency.part() > 0.0 || loss > 0.0,
-        };
-        let size = waiting.size();
+        let periods = Stages::new(self, controller, imperfections, weights);
+        let size = periods.size();
         let most = if imperfections.repeat() { MOST_REPEATED } else { MOST_RANDOM };
         if size > most {
             return Err(CostError::Size { size });
@@ -139,20 +127,8 @@ impl Plant<'_> {
         if turn.is_nan() || turn > MOST_TURN {
             return Err(CostError::Turn);
         }
-        Ok(waiting)
+        Ok(periods)
     }
-}
-
-/// The covariance of what noise adds in a step.
-fn noise(stages: &[Stage]) -> Matrix {
-    let n = stages.first().map_or(0, |stage| stage.step.len());
-    let mut noise = vec![vec![0.0; n]; n];
-    for stage in stages {
-        for (row, added) in noise.iter_mut().zip(&stage.noise) {
-            row.iter_mut().zip(added).for_each(|(x, added)| *x += stage.weight * added);
-        }
-    }
-    noise
 }
 
 #[cfg(test)]

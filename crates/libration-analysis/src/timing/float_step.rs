@@ -1,60 +1,36 @@
-//! Steps of a plant in `f64`, with one command or with a change of commands.
+//! Steps of a plant in `f64`, whole or split.
 
 use libration_core::number::Wide;
 use libration_core::{Scalar, State};
+use libration_linear::{HeldStep, Matrix};
 
-use super::dense_matrix::exponential;
-use super::latency::SplitStep;
 use super::{Plant, ZohStep};
 
-/// `y' = Φy + γ_old·u_old + γ_new·u_new`.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FloatSplitStep {
-    pub(super) phi: [[f64; 2]; 2],
-    pub(super) old: [f64; 2],
-    pub(super) new: [f64; 2],
-}
-
-/// `y' = Φy + γu`.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FloatStep {
-    pub(super) phi: [[f64; 2]; 2],
-    pub(super) gamma: [f64; 2],
-}
-
 impl Plant<'_> {
-    /// A step of `dt` seconds.
-    pub(super) fn whole(&self, dt: Wide) -> FloatStep {
-        if !self.flows {
-            let ZohStep { phi, gamma } = (self.step)(dt);
-            let phi = [0, 1].map(|i| [0, 1].map(|j| phi.entry(i, j).to_f64()));
-            return FloatStep { phi, gamma: numbers(&gamma) };
-        }
-        // The exponential in 1024 bits takes a thousand times as long, and hundreds of lengths may be asked for.
-        let h = dt.to_f64();
-        let [aq, av] = [0, 1].map(|j| h * self.generator.entry(1, j).to_f64());
-        let power = exponential(vec![vec![0.0, h, 0.0], vec![aq, av, h], vec![0.0; 3]]);
-        let phi = [0, 1].map(|i| [0, 1].map(|j| power[i][j]));
-        FloatStep { phi, gamma: [power[0][2], power[1][2]] }
+    /// `A` and `B` of the plant, `ẏ = Ay + Bu` with `y = (q, v)`.
+    pub(super) fn matrices(&self) -> [Matrix; 2] {
+        let [aq, av] = [0, 1].map(|j| self.generator.entry(1, j).to_f64());
+        let a = Matrix::from_fn(2, 2, |i, j| [[0.0, 1.0], [aq, av]][i][j]);
+        [a, Matrix::from_fn(2, 1, |i, _| [0.0, 1.0][i])]
     }
 
-    /// A step of `dt` seconds that splits after a part of it.
-    pub(super) fn split_in_floats(&self, part: f64, dt: Wide) -> FloatSplitStep {
-        if !self.flows {
-            let SplitStep { phi, old, new } = self.split(part, dt);
-            let phi = [0, 1].map(|i| [0, 1].map(|j| phi.entry(i, j).to_f64()));
-            return FloatSplitStep { phi, old: numbers(&old), new: numbers(&new) };
+    /// A step of `seconds`, from one phase to another.
+    pub(super) fn float_step(&self, seconds: f64, [from, to]: [f64; 2]) -> HeldStep {
+        if self.flows {
+            // The exponential in 1024 bits takes a thousand times as long, and hundreds of lengths may be used.
+            let [a, b] = self.matrices();
+            return HeldStep::exact(&a, &b, (to - from) * seconds);
         }
-        if part == 0.0 {
-            let FloatStep { phi, gamma } = self.whole(dt);
-            return FloatSplitStep { phi, old: [0.0; 2], new: gamma };
+        let dt = Wide::from_f64(seconds);
+        let ZohStep { phi, gamma } = match (from == 0.0, to == 1.0) {
+            (true, true) => (self.step)(dt),
+            (true, false) => self.before(to, dt),
+            _ => self.after(from, dt),
+        };
+        HeldStep {
+            phi: Matrix::from_fn(2, 2, |i, j| phi.entry(i, j).to_f64()),
+            gamma: Matrix::from_fn(2, 1, |i, _| numbers(&gamma)[i]),
         }
-        let first = dt * Wide::from_f64(part);
-        let (before, after) = (self.whole(first), self.whole(dt - first));
-        let apply = |x: [f64; 2]| after.phi.map(|row| row[0] * x[0] + row[1] * x[1]);
-        let columns = [0, 1].map(|j| apply([before.phi[0][j], before.phi[1][j]]));
-        let phi = [0, 1].map(|i| [0, 1].map(|j| columns[j][i]));
-        FloatSplitStep { phi, old: apply(before.gamma), new: after.gamma }
     }
 }
 
@@ -66,6 +42,7 @@ fn numbers(state: &State<Wide, 1>) -> [f64; 2] {
 mod tests {
     use libration_core::system::DampedOscillator;
 
+    use super::super::latency::SplitStep;
     use super::super::sample::ORIGIN;
     use super::*;
 
@@ -74,23 +51,24 @@ mod tests {
         for (omega2, gamma) in [(10.0, 0.3), (-4.0, 0.0), (0.0, 2.0), (400.0, -1.0)] {
             let plant = Plant::exact(DampedOscillator { omega2, gamma }, ORIGIN, 0.1);
             for part in [0.0, 0.3] {
-                let dt = Wide::from_f64(0.13);
-                let (found, wanted) = (plant.split_in_floats(part, dt), plant.split(part, dt));
-                let size = wanted
-                    .phi
-                    .rows()
-                    .concat()
-                    .into_iter()
-                    .fold(1.0, |size: f64, x| size.max(x.to_f64().abs()));
+                let SplitStep { phi, old, new } = plant.split(part, Wide::from_f64(0.13));
+                let after = plant.float_step(0.13, [part, 1.0]);
+                let found = match part {
+                    0.0 => after.clone(),
+                    _ => plant.float_step(0.13, [0.0, part]).then(&after),
+                };
+                let wide = |i: usize, j: usize| phi.entry(i, j).to_f64();
+                let wanted = Matrix::from_fn(2, 2, wide);
+                let size = wanted.largest().max(1.0);
+                // Six squarings, of each of two steps, double what rounding leaves.
+                let close = |x: f64, y: f64| (x - y).abs() < 3e-14 * size;
+                for (x, y) in found.phi.entries().iter().zip(wanted.entries()) {
+                    assert!(close(*x, *y), "{omega2} {gamma} {part}: {x} {y}");
+                }
                 for i in 0..2 {
-                    for j in 0..2 {
-                        let off = found.phi[i][j] - wanted.phi.entry(i, j).to_f64();
-                        // Six squarings, of each of two steps, double what rounding leaves.
-                        assert!(off.abs() < 3e-14 * size, "{omega2} {gamma} {part}: {off}");
-                    }
-                    let old = found.old[i] - numbers(&wanted.old)[i];
-                    let new = found.new[i] - numbers(&wanted.new)[i];
-                    assert!(old.abs() < 3e-14 * size && new.abs() < 3e-14 * size);
+                    let [old, new] = [&old, &new].map(|gamma| numbers(gamma)[i]);
+                    assert!(close(after.gamma[(i, 0)], new));
+                    assert!(close(found.gamma[(i, 0)], old + new));
                 }
             }
         }

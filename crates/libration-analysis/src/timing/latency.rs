@@ -28,24 +28,32 @@ impl Plant<'_> {
         }
     }
 
-    /// What comes before a part of a step of `dt` seconds, and what after. Of steps on a grid only the one splits in which that is.
-    fn pieces(&self, part: f64, dt: Wide) -> (ZohStep, ZohStep) {
+    /// What comes before a part of a step of `dt` seconds. Of steps on a grid only the one splits in which the part ends.
+    pub(super) fn before(&self, part: f64, dt: Wide) -> ZohStep {
+        let Some((count, fine)) = &self.grid else { return (self.step)(dt * Wide::from_f64(part)) };
+        let places = part * *count as f64;
+        let (whole, rest) = (places.trunc(), places.fract());
+        let h = dt / Wide::from_f64(*count as f64);
+        let first = repeated(&fine(h), whole as u64);
+        match rest == 0.0 {
+            true => first,
+            false => first.then(&fine(h * Wide::from_f64(rest))),
+        }
+    }
+
+    /// What comes after it.
+    pub(super) fn after(&self, part: f64, dt: Wide) -> ZohStep {
         let Some((count, fine)) = &self.grid else {
-            let part = dt * Wide::from_f64(part);
-            return ((self.step)(part), (self.step)(dt - part));
+            return (self.step)(dt - dt * Wide::from_f64(part));
         };
         let places = part * *count as f64;
         let (whole, rest) = (places.trunc(), places.fract());
         let h = dt / Wide::from_f64(*count as f64);
-        let one = fine(h);
-        let first = repeated(&one, whole as u64);
-        if rest == 0.0 {
-            return (first, repeated(&one, count - whole as u64));
+        let left = count - whole as u64;
+        match rest == 0.0 {
+            true => repeated(&fine(h), left),
+            false => fine(h - h * Wide::from_f64(rest)).then(&repeated(&fine(h), left - 1)),
         }
-        let cut = h * Wide::from_f64(rest);
-        let before = first.then(&fine(cut));
-        let after = fine(h - cut).then(&repeated(&one, count - whole as u64 - 1));
-        (before, after)
     }
 
     /// A step of `dt` seconds that splits after a part of it.
@@ -54,7 +62,7 @@ impl Plant<'_> {
             let ZohStep { phi, gamma } = (self.step)(dt);
             return SplitStep { phi, old: State::origin(), new: gamma };
         }
-        let (before, after) = self.pieces(part, dt);
+        let [before, after] = [self.before(part, dt), self.after(part, dt)];
         SplitStep {
             phi: after.phi.after(&before.phi),
             old: after.phi.apply(&before.gamma),

@@ -2,6 +2,7 @@
 
 use libration_core::State;
 use libration_core::control::{Controller, Feedback, Memory};
+use libration_linear::{DiscreteController, Matrix};
 use thiserror::Error;
 
 /// `m' = A·m + B·y` and `u = C·m + D·y`: what a controller makes of its memory `m` and of the state `y = (q, v)` that it sees, near the
@@ -113,15 +114,14 @@ impl LinearController {
         LinearController { command, ..self.clone() }
     }
 
-    /// Writes what the command is made of into the row of a step, whose coordinates begin with `q`, `v` and the memory.
-    pub(super) fn command_row(&self, row: &mut [f64]) {
-        row[..self.command.len()].copy_from_slice(&self.command);
-    }
-
-    /// The rows of the memory after the command.
-    pub(super) fn memory_rows(&self, rows: &mut [Vec<f64>]) {
-        for (to, row) in rows.iter_mut().zip(&self.memory) {
-            to[..row.len()].copy_from_slice(row);
+    /// The controller in state space, with the measurements `q` and `v`.
+    pub(super) fn discrete(&self) -> DiscreteController {
+        let m = self.memory.len();
+        DiscreteController {
+            a: Matrix::from_fn(m, m, |i, j| self.memory[i][2 + j]),
+            b: Matrix::from_fn(m, 2, |i, j| self.memory[i][j]),
+            c: Matrix::from_fn(1, m, |_, j| self.command[2 + j]),
+            d: Matrix::from_fn(1, 2, |_, j| self.command[j]),
         }
     }
 }

@@ -5,12 +5,11 @@ use core::f64::consts::{PI, TAU};
 use libration_core::Scalar;
 use libration_core::control::{Feedback, Jitter};
 use libration_core::number::Wide;
+use libration_linear::{Averages, MOST_TURN, solve};
 use num_complex::Complex;
 
 use super::Plant;
 use super::circular_coordinates::{CircularCoordinates, Matrix, norm};
-use super::jitter::{Averages, MOST_TURN};
-use super::linear::solved;
 use crate::QuadraticForm;
 
 /// Fewest and most harmonics of the density of directions that are kept.
@@ -115,6 +114,6 @@ fn mean_growth(steps: &[(f64, Matrix)]) -> f64 {
         }
         row[i] -= Complex::ONE;
     }
-    let means = solved(rows, |x: Complex<f64>| x.norm());
+    let means = solve(rows, |x: Complex<f64>| x.norm());
     means.iter().enumerate().map(|(j, f)| (coefficient(&growth, order(j)) * f).re).sum()
 }

@@ -3,9 +3,9 @@
 use libration_core::control::{Feedback, Jitter};
 use libration_core::number::Wide;
 use libration_core::{Scalar, State};
+use libration_linear::{Averages, MOST_TURN};
 
 use super::Plant;
-use super::jitter::{Averages, MOST_TURN};
 use crate::eigenvalues::largest_root;
 
 /// The growth of second moments under random step times.

@@ -3,19 +3,15 @@
 //! The plant has one degree of freedom. A command `u = −K_p q − K_d v` is computed from the state at the
 //! beginning of a step, arrives later, and is held until the next one arrives.
 
-mod augmented_state;
 mod circular_coordinates;
 mod cost;
 mod delay_polynomial;
-mod dense_matrix;
 mod float_step;
 mod hidden_latency;
 mod imperfections;
-mod jitter;
 mod jitter_margin;
 mod latency;
 mod latency_windows;
-mod linear;
 mod linear_controller;
 mod lqr;
 mod lyapunov;
@@ -26,15 +22,13 @@ mod observer;
 mod periodic;
 mod plant;
 mod random_latency;
-mod random_stages;
 mod recorded_schedule;
 mod resonance;
 mod riccati;
 #[cfg(test)]
 mod sample;
 mod skew;
-mod stage;
-mod step_integrals;
+mod stages;
 mod switching;
 mod zoh_step;
 

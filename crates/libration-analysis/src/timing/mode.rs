@@ -2,8 +2,8 @@
 
 use libration_core::Scalar;
 use libration_core::number::Wide;
+use libration_linear::log_spectral_radius;
 
-use super::dense_matrix::{Matrix, log_spectral_radius};
 use super::{CostError, Imperfections, LinearController, Plant};
 use crate::Complex;
 use crate::eigenvalues::{characteristic_polynomial, roots};
@@ -33,8 +33,9 @@ impl Plant<'_> {
             let (radius, angle) = (root.abs().to_f64(), root.arg().to_f64());
             (radius >= 1.0 && angle >= 0.0).then_some(Mode { radius, angle })
         };
-        let wide = |row: &Vec<f64>| row.iter().map(|&x| Wide::from_f64(x)).collect();
-        let step: Vec<Vec<Wide>> = stages[0].step.iter().map(wide).collect();
+        let matrix = &stages[0].step;
+        let wide = |i| matrix.row(i).iter().map(|&x| Wide::from_f64(x)).collect();
+        let step: Vec<Vec<Wide>> = (0..matrix.rows()).map(wide).collect();
         let all = roots(&characteristic_polynomial(&step));
         let mut modes: Vec<Mode> = all.into_iter().filter_map(mode).collect();
         modes.sort_by(|a, b| b.radius.total_cmp(&a.radius));
@@ -58,18 +59,18 @@ impl Plant<'_> {
         let alone = Imperfections { jitter: none.jitter, loss: 0.0, ..*imperfections };
         let stages = self.stages(controller, &alone, None)?;
         let step = &stages[0].step;
-        let mut state: Vec<f64> = (0..step.len()).map(|i| 1.0 / (1.0 + i as f64)).collect();
+        let mut state: Vec<f64> = (0..step.rows()).map(|i| 1.0 / (1.0 + i as f64)).collect();
         for _ in 0..STEPS {
-            state = moved(step, &state);
+            state = step.apply(&state);
             let size = state.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
             if size == 0.0 {
                 return Ok(Mode { radius: 0.0, angle: 0.0 });
             }
             state.iter_mut().for_each(|x| *x /= size);
         }
-        let next = moved(step, &state);
-        let last = moved(step, &next);
-        let radius = log_spectral_radius(step.clone()).exp();
+        let next = step.apply(&state);
+        let last = step.apply(&next);
+        let radius = log_spectral_radius(step).exp();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let (xx, xy, yy) = (dot(&state, &state), dot(&state, &next), dot(&next, &next));
         // Of a pair λ² = 2ρ cos θ·λ − ρ²; of one that is real all three lie on a line.
@@ -81,10 +82,6 @@ impl Plant<'_> {
         let angle = (trace / (2.0 * radius)).clamp(-1.0, 1.0).acos();
         Ok(Mode { radius, angle })
     }
-}
-
-fn moved(step: &Matrix, state: &[f64]) -> Vec<f64> {
-    step.iter().map(|row| row.iter().zip(state).map(|(a, x)| a * x).sum()).collect()
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! Design of a steady-state Kalman observer.
 
-use libration_core::control::{LqrWeights, StateObserver};
+use libration_core::control::StateObserver;
 use libration_core::number::Wide;
 use libration_core::{Scalar, State};
+use libration_linear::{Matrix, StepIntegrals};
 
 use super::riccati::riccati;
 use super::{LqrError, Plant, ZohStep};
@@ -59,14 +60,14 @@ impl Plant<'_> {
 
     /// The covariance of what noise of unit intensity adds in a step.
     fn noise_of(&self, gain: [f64; 2]) -> [[f64; 2]; 2] {
-        let dt = self.dt.to_f64();
-        match self.exact {
-            true => {
-                let nothing = LqrWeights { position: 0.0, velocity: 0.0, command: 0.0 };
-                self.step_integrals(nothing, dt).noise
-            }
-            false => Plant::held_noise(gain, dt),
+        let h = self.dt.to_f64();
+        if !self.exact {
+            // A constant acceleration of variance 1/h.
+            return gain.map(|a| gain.map(|b| a * b / h));
         }
+        let ([a, b], intensity) = (self.matrices(), Matrix::diagonal(&[0.0, 1.0]));
+        let noise = StepIntegrals::new(&a, &b, &intensity, &Matrix::zeros(3, 3), h).noise;
+        [0, 1].map(|i| [0, 1].map(|j| noise[(i, j)]))
     }
 }
 
@@ -116,8 +117,7 @@ mod tests {
         let plant = Plant::exact(MODEL, ORIGIN, 0.05);
         let best = plant.observer(NOISE).unwrap();
         // The covariance of what is foretold, by plain iteration: P ← Φ(1 − LC)P(1 − LC)ᵀΦᵀ + ΦLrLᵀΦᵀ + W.
-        let weights = LqrWeights { position: 0.0, velocity: 0.0, command: 0.0 };
-        let noise = plant.step_integrals(weights, 0.05).noise;
+        let noise = plant.noise_of([0.0; 2]);
         let off = |correction: [f64; 2]| {
             let mut p = [[0.0; 2]; 2];
             for _ in 0..2000 {

@@ -2,9 +2,9 @@
 
 use libration_core::State;
 use libration_core::control::{Feedback, Latency, RandomLatency};
+use libration_linear::{Arrival, Matrix, Transit, log_spectral_radius, symmetric_square};
 
-use super::augmented_state::AugmentedState;
-use super::dense_matrix::{Matrix, log_spectral_radius, product, symmetric_square, transpose};
+use super::stages::Stages;
 use super::{LinearController, Plant};
 
 impl Plant<'_> {
@@ -18,13 +18,12 @@ impl Plant<'_> {
     pub fn mean_square_late(&self, feedback: Feedback, latency: &RandomLatency) -> f64 {
         let steps = self.steps_late(feedback, latency);
         let squares: Vec<Matrix> = steps.iter().map(symmetric_square).collect();
-        let (m, size) = (steps.len(), squares[0].len());
-        let entry = |row: usize, column: usize| {
+        let (m, size) = (steps.len(), squares[0].rows());
+        let all = Matrix::from_fn(m * size, m * size, |row, column| {
             let ((j, r), (i, c)) = ((row / size, row % size), (column / size, column % size));
-            latency.follows(i, j) * squares[i][r][c]
-        };
-        let all = (0..m * size).map(|r| (0..m * size).map(|c| entry(r, c)).collect()).collect();
-        log_spectral_radius(all).exp()
+            latency.follows(i, j) * squares[i][(r, c)]
+        });
+        log_spectral_radius(&all).exp()
     }
 
     /// `E[q²]`, `E[qv]` and `E[v²]` after so many steps of that loop from `state`, where nothing acts before the first
@@ -37,42 +36,39 @@ impl Plant<'_> {
         steps: u64,
     ) -> [f64; 3] {
         let maps = self.steps_late(feedback, latency);
-        let n = maps[0].len();
-        let start: Vec<f64> =
-            (0..n).map(|i| [state.q[0], state.v[0]].get(i).copied().unwrap_or(0.0)).collect();
+        let n = maps[0].rows();
+        let start = |i: usize| [state.q[0], state.v[0]].get(i).copied().unwrap_or(0.0);
         // E[yyᵀ; the latency is the i-th].
-        let of = |p: f64| start.iter().map(|a| start.iter().map(|b| p * a * b).collect()).collect();
+        let of = |p: f64| Matrix::from_fn(n, n, |i, j| p * start(i) * start(j));
         let mut moments: Vec<Matrix> = latency.table().iter().map(|&(_, p)| of(p)).collect();
         for _ in 0..steps {
-            let moved: Vec<Matrix> = maps
-                .iter()
-                .zip(&moments)
-                .map(|(map, moment)| transpose(&product(map, &transpose(&product(map, moment)))))
-                .collect();
-            let entry = |j: usize, r: usize, c: usize| -> f64 {
-                moved.iter().enumerate().map(|(i, m)| latency.follows(i, j) * m[r][c]).sum()
-            };
-            moments = (0..maps.len())
-                .map(|j| (0..n).map(|r| (0..n).map(|c| entry(j, r, c)).collect()).collect())
-                .collect();
+            let moved: Vec<Matrix> =
+                maps.iter().zip(&moments).map(|(map, moment)| map.congruence(moment)).collect();
+            for (j, moment) in moments.iter_mut().enumerate() {
+                *moment = Matrix::zeros(n, n);
+                for (i, moved) in moved.iter().enumerate() {
+                    moment.add_scaled(latency.follows(i, j), moved);
+                }
+            }
         }
-        [(0, 0), (0, 1), (1, 1)].map(|(r, c)| moments.iter().map(|moment| moment[r][c]).sum())
+        [(0, 0), (0, 1), (1, 1)].map(|place| moments.iter().map(|moment| moment[place]).sum())
     }
 
     /// The step with each latency of the table.
     fn steps_late(&self, feedback: Feedback, latency: &RandomLatency) -> Vec<Matrix> {
-        let controller = LinearController::from(feedback);
-        let of = |&(late, _): &(Latency, f64)| {
-            let step = self.split_in_floats(late.part(), self.dt);
-            waiting(latency).step(&step, &controller, Some(late.whole() as usize))
+        let controller = LinearController::from(feedback).discrete();
+        let periods = Stages::in_transit(self, controller, transit(latency), Latency::NONE, None);
+        let dt = self.dt.to_f64();
+        let step = |&(latency, _): &(Latency, f64)| {
+            periods.arriving(1.0, dt, Arrival { latency, lost: false }).step
         };
-        latency.table().iter().map(of).collect()
+        latency.table().iter().map(step).collect()
     }
 }
 
-/// The augmented state.
-fn waiting(latency: &RandomLatency) -> AugmentedState {
-    AugmentedState { memory: 0, commands: latency.longest(), acting: latency.splits_steps() }
+/// The room for commands.
+fn transit(latency: &RandomLatency) -> Transit {
+    Transit { count: latency.longest(), acts_on: latency.splits_steps() }
 }
 
 #[cfg(test)]
@@ -83,7 +79,8 @@ mod tests {
     fn a_table_counts_the_numbers_of_a_step_as_the_augmented_state_does() {
         for steps in [0.0, 0.5, 1.0, 3.0, 3.25] {
             let latency = RandomLatency::new(vec![(steps, 0.5), (1.0, 0.5)], 0.1).unwrap();
-            assert_eq!(latency.step_size(), waiting(&latency).size(), "{steps}");
+            let Transit { count, acts_on } = transit(&latency);
+            assert_eq!(latency.step_size(), 2 + count + usize::from(acts_on), "{steps}");
         }
     }
 }

@@ -2,14 +2,10 @@
 
 use std::collections::HashMap;
 
-use libration_core::Scalar;
 use libration_core::control::{Jitter, LqrWeights};
-use libration_core::number::Wide;
+use libration_linear::{Matrix, Stage, log_spectral_radius, mean_square, solve_stein};
 
-use super::dense_matrix::{Matrix, log_spectral_radius, product, scale, transpose};
 use super::imperfections::{MOST_RANDOM, MOST_RECORDED};
-use super::random_stages::solve_stein;
-use super::stage::{Stage, StageOptions, mean_square};
 use super::{CostError, Imperfections, LinearController, Plant};
 
 /// Steps are rounded to such a part of a period: those of a clock are not known better, and thousands of them are few then.
@@ -63,29 +59,28 @@ impl Plant<'_> {
         }
         // What holds for all steps is checked where they are all alike.
         let even = Imperfections { jitter: Jitter::Gaussian(0.0), ..*imperfections };
-        let waiting = self.waiting(controller, &even, weights)?;
-        let Imperfections { latency, skew, loss, .. } = even;
+        let periods = self.periods(controller, &even, weights)?;
+        let Imperfections { skew, loss, .. } = even;
         let most = if loss > 0.0 { MOST_RECORDED } else { MOST_RANDOM };
-        if waiting.size() > most {
-            return Err(CostError::Size { size: waiting.size() });
+        if periods.size() > most {
+            return Err(CostError::Size { size: periods.size() });
         }
-        let options = StageOptions { waiting, controller, latency, weights };
-        let dt = self.dt * (Wide::one() + Wide::from_f64(skew));
+        let dt = self.dt.to_f64() * (1.0 + skew);
         let mut kinds = Vec::new();
         let mut known = HashMap::new();
         let kind = |step: &f64| {
             let parts = (step / PART).round();
             *known.entry(parts.to_bits()).or_insert_with(|| {
-                let h = dt * Wide::from_f64(parts * PART);
+                let h = dt * (parts * PART);
                 let arrives = [(1.0 - loss, false), (loss, true)].into_iter();
                 let arrives = arrives.filter(|(share, _)| *share > 0.0);
-                let stage = |(share, lost)| self.stage(options, share, h, lost);
+                let stage = |(share, lost)| periods.stage(share, h, lost);
                 kinds.push(arrives.map(stage).collect());
                 kinds.len() - 1
             })
         };
         let order = steps.iter().map(kind).collect();
-        Ok(RecordedSchedule { size: waiting.size(), order, kinds, draws: loss > 0.0 })
+        Ok(RecordedSchedule { size: periods.size(), order, kinds, draws: loss > 0.0 })
     }
 }
 
@@ -113,19 +108,22 @@ impl RecordedSchedule {
             false => stages[0].step.clone(),
         };
         // Most entries are zero, of steps that hand commands on.
-        let sparse = |row: &Vec<f64>| -> Vec<(usize, f64)> {
-            row.iter().copied().enumerate().filter(|(_, x)| *x != 0.0).collect()
+        let sparse = |matrix: Matrix| -> Vec<Vec<(usize, f64)>> {
+            let entries = |i| matrix.row(i).iter().copied().enumerate();
+            let row = |i| entries(i).filter(|(_, x)| *x != 0.0).collect();
+            (0..matrix.rows()).map(row).collect()
         };
         let kinds: Vec<Vec<Vec<(usize, f64)>>> =
-            self.kinds.iter().map(|stages| of(stages).iter().map(sparse).collect()).collect();
-        let mut all = unit(kinds[0].len());
+            self.kinds.iter().map(|stages| sparse(of(stages))).collect();
+        let mut all = Matrix::identity(kinds[0].len());
         let mut next = all.clone();
         let mut logarithm = 0.0;
         for &kind in &self.order {
-            for (row, entries) in next.iter_mut().zip(&kinds[kind]) {
+            for (i, entries) in kinds[kind].iter().enumerate() {
+                let row = next.row_mut(i);
                 row.fill(0.0);
                 for (column, entry) in entries {
-                    row.iter_mut().zip(&all[*column]).for_each(|(x, y)| *x += entry * y);
+                    row.iter_mut().zip(all.row(*column)).for_each(|(x, y)| *x += entry * y);
                 }
             }
             core::mem::swap(&mut all, &mut next);
@@ -137,7 +135,7 @@ impl RecordedSchedule {
     fn growth(&self) -> f64 {
         let (product, logarithm) = self.product();
         let power = if self.draws { 1.0 } else { 2.0 };
-        power * (log_spectral_radius(product) + logarithm) / self.order.len() as f64
+        power * (log_spectral_radius(&product) + logarithm) / self.order.len() as f64
     }
 
     fn cost(&self) -> f64 {
@@ -145,7 +143,7 @@ impl RecordedSchedule {
         if growth.is_nan() || growth >= 0.0 {
             return f64::INFINITY;
         }
-        let mut moments = vec![vec![0.0; self.size]; self.size];
+        let mut moments = Matrix::zeros(self.size, self.size);
         let pass = |moments: &mut Matrix| {
             let (mut cost, mut length) = (0.0, 0.0);
             for stages in self.steps() {
@@ -155,9 +153,7 @@ impl RecordedSchedule {
                 }
                 *moments = moved(stages, moments);
                 for stage in stages {
-                    for (row, added) in moments.iter_mut().zip(&stage.noise) {
-                        row.iter_mut().zip(added).for_each(|(x, y)| *x += stage.weight * y);
-                    }
+                    moments.add_scaled(stage.weight, &stage.noise);
                 }
             }
             cost / length
@@ -171,37 +167,28 @@ impl RecordedSchedule {
                 pass(&mut moments);
             }
         } else {
-            let (mut all, logarithm) = self.product();
-            all.iter_mut().flatten().for_each(|x| *x *= logarithm.exp());
-            moments = solve_stein(&all, vec![moments]).remove(0);
+            let (all, logarithm) = self.product();
+            moments = solve_stein(&all.scaled(logarithm.exp()), vec![moments]).remove(0);
         }
         pass(&mut moments)
     }
 }
 
-fn unit(n: usize) -> Matrix {
-    (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect()
-}
-
 /// Divides by the largest size of an entry, whose logarithm it returns.
 fn normalise(matrix: &mut Matrix) -> f64 {
-    let largest = |most: f64, x: &f64| if x.abs() > most || x.is_nan() { x.abs() } else { most };
-    let norm = matrix.iter().flatten().fold(0.0, largest);
+    let norm = matrix.largest();
     if norm == 0.0 {
         return f64::NEG_INFINITY;
     }
-    scale(matrix, norm);
+    matrix.normalise(norm);
     norm.ln()
 }
 
-/// `E[M P Mᵀ]`; of steps that mostly hand commands on, products from the left are the cheap ones.
+/// `E[M P Mᵀ]`.
 fn moved(stages: &[Stage], moments: &Matrix) -> Matrix {
-    let mut sum = vec![vec![0.0; moments.len()]; moments.len()];
+    let mut sum = Matrix::zeros(moments.rows(), moments.rows());
     for stage in stages {
-        let one = product(&stage.step, &transpose(&product(&stage.step, moments)));
-        for (row, one) in sum.iter_mut().zip(one) {
-            row.iter_mut().zip(one).for_each(|(x, y)| *x += stage.weight * y);
-        }
+        sum.add_scaled(stage.weight, &stage.step.congruence(moments));
     }
     sum
 }
@@ -270,7 +257,7 @@ mod tests {
         let (late, record) = (late(1.0, 0.3), [1.5, 0.5, 1.25]);
         let found = plant.recorded_growth(&gains, &late, &record).unwrap();
         // Three steps after each other, each as a law of its own that draws nothing but the loss.
-        let mut moments = unit(4);
+        let mut moments = Matrix::identity(4);
         let mut logarithms = vec![0.0];
         for i in 0..30_000 {
             let skew = record[i % 3] - 1.0;

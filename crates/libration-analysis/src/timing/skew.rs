@@ -3,9 +3,9 @@
 use libration_core::control::Jitter;
 use libration_core::number::Wide;
 use libration_core::{Elementary, Scalar, State};
+use libration_linear::Averages;
 
 use super::Plant;
-use super::jitter::Averages;
 
 impl Plant<'_> {
     /// After how many steps the mean over an ensemble, whose time steps are `Δt(1 + δ)` with one `δ` after `law` for

@@ -5,7 +5,7 @@ use libration_core::number::Wide;
 use libration_core::{Elementary, Scalar};
 
 /// Means over a law of step times.
-pub(super) trait Averages {
+pub trait Averages {
     /// `E[1], E[ε], E[ε²], …`, where `ε` is no less than −1.
     fn moments(self) -> Box<dyn Iterator<Item = Wide>>;
 
@@ -108,7 +108,7 @@ fn gaussian_above(rms: Wide) -> impl Iterator<Item = Wide> {
 const SERIES: usize = 400;
 
 /// Radians by which what is averaged turns within a standard deviation, beyond which more nodes are too many.
-pub(super) const MOST_TURN: f64 = 4096.0;
+pub const MOST_TURN: f64 = 4096.0;
 
 /// Gauss's quadrature with 24 nodes on pieces of an interval, of at most two deviations, or so many that what turns does so by 10 radians.
 fn pieces(

@@ -2,8 +2,8 @@
 
 use core::ops::{Div, Mul, Sub};
 
-/// The solution of linear equations, by elimination with the pivot that is largest in `size`; the right side is the last column.
-pub(super) fn solved<T>(mut rows: Vec<Vec<T>>, size: impl Fn(T) -> f64) -> Vec<T>
+/// The solution of linear equations, by elimination with the pivot of the largest `size`. The right side is the last column.
+pub fn solve<T>(mut rows: Vec<Vec<T>>, size: impl Fn(T) -> f64) -> Vec<T>
 where
     T: Copy + Sub<Output = T> + Mul<Output = T> + Div<Output = T>,
 {
@@ -35,6 +35,6 @@ mod tests {
         // y + z = 5, x − z = −2, 2x + y = 4 at (1, 2, 3).
         let rows =
             vec![vec![0.0, 1.0, 1.0, 5.0], vec![1.0, 0.0, -1.0, -2.0], vec![2.0, 1.0, 0.0, 4.0]];
-        assert_eq!(solved(rows, f64::abs), [1.0, 2.0, 3.0]);
+        assert_eq!(solve(rows, f64::abs), [1.0, 2.0, 3.0]);
     }
 }
