@@ -3,29 +3,43 @@
 //! A period of a loop is a matrix on its state: the states of the plant, the memory of the controller, and all commands and
 //! measurements in transit. Everything is in `f64`.
 
+mod channel_part;
 mod controller;
+mod design;
+mod eigenvalues;
 mod exponential;
 mod held_step;
 mod jitter;
 mod layout;
 mod linear_equations;
+mod linear_loop;
 mod matrix;
 mod period;
+mod plant;
+mod plant_modes;
 mod random_stages;
+mod riccati;
 mod spectral_radius;
 mod stage;
 mod stein;
 mod step_integrals;
 
+pub use channel_part::{ChannelPart, ChannelPartError};
 pub use controller::DiscreteController;
+pub use design::{CostWeights, DesignError};
+pub use eigenvalues::{eigenvalues, eigenvector};
 pub use exponential::exponential;
 pub use held_step::HeldStep;
 pub use jitter::{Averages, MOST_TURN};
 pub use layout::{Layout, Transit};
-pub use linear_equations::solve;
+pub use linear_equations::{solve, solve_matrix};
+pub use linear_loop::{LinearLoop, LinearLoopError, LoopTiming, Stationary};
 pub use matrix::Matrix;
 pub use period::{Arrival, Dynamics, Period, SplitStep};
+pub use plant::{LinearPlant, MOST_STATES, PlantError, Signal};
+pub use plant_modes::PlantMode;
 pub use random_stages::RandomStages;
+pub use riccati::{RegulatorProblem, RegulatorSolution};
 pub use spectral_radius::{is_schur_stable, log_spectral_radius};
 pub use stage::{Stage, mean_square};
 pub use stein::{solve_stein, symmetric_square};

@@ -2,6 +2,8 @@
 
 use core::ops::{Div, Mul, Sub};
 
+use crate::Matrix;
+
 /// The solution of linear equations, by elimination with the pivot of the largest `size`. The right side is the last column.
 pub fn solve<T>(mut rows: Vec<Vec<T>>, size: impl Fn(T) -> f64) -> Vec<T>
 where
@@ -26,6 +28,35 @@ where
     solution
 }
 
+/// The solution of `AX = B`, by elimination with partial pivoting; none if `A` is singular.
+pub fn solve_matrix(a: &Matrix, b: &Matrix) -> Option<Matrix> {
+    let n = a.rows();
+    let (mut a, mut x) = (a.clone(), b.clone());
+    for k in 0..n {
+        let largest = (k..n).max_by(|&i, &j| a[(i, k)].abs().total_cmp(&a[(j, k)].abs()))?;
+        a.swap_rows(k, largest);
+        x.swap_rows(k, largest);
+        if a[(k, k)] == 0.0 || !a[(k, k)].is_finite() {
+            return None;
+        }
+        for i in k + 1..n {
+            let factor = a[(i, k)] / a[(k, k)];
+            if factor != 0.0 {
+                a.subtract_row(i, factor, k, k);
+                x.subtract_row(i, factor, k, 0);
+            }
+        }
+    }
+    for k in (0..n).rev() {
+        for j in k + 1..n {
+            x.subtract_row(k, a[(k, j)], j, 0);
+        }
+        let pivot = a[(k, k)];
+        x.row_mut(k).iter_mut().for_each(|x| *x /= pivot);
+    }
+    x.is_finite().then_some(x)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -36,5 +67,14 @@ mod tests {
         let rows =
             vec![vec![0.0, 1.0, 1.0, 5.0], vec![1.0, 0.0, -1.0, -2.0], vec![2.0, 1.0, 0.0, 4.0]];
         assert_eq!(solve(rows, f64::abs), [1.0, 2.0, 3.0]);
+    }
+
+    #[test]
+    fn a_matrix_equation_is_solved_and_a_singular_one_is_not() {
+        let a = Matrix::from_rows(&[[0.0, 2.0], [1.0, 1.0]]).unwrap();
+        let x = solve_matrix(&a, &Matrix::identity(2)).unwrap();
+        assert_eq!(x.entries(), [-0.5, 1.0, 0.5, 0.0]);
+        let singular = Matrix::from_rows(&[[1.0, 2.0], [2.0, 4.0]]).unwrap();
+        assert_eq!(solve_matrix(&singular, &x), None);
     }
 }

@@ -113,6 +113,22 @@ impl Matrix {
         }
     }
 
+    /// Exchanges two rows.
+    pub(crate) fn swap_rows(&mut self, i: usize, j: usize) {
+        if i != j {
+            for k in 0..self.columns {
+                self.entries.swap(i * self.columns + k, j * self.columns + k);
+            }
+        }
+    }
+
+    /// Subtracts `factor` times row `other` from row `i`, from column `from` on.
+    pub(crate) fn subtract_row(&mut self, i: usize, factor: f64, other: usize, from: usize) {
+        for k in from..self.columns {
+            self.entries[i * self.columns + k] -= factor * self.entries[other * self.columns + k];
+        }
+    }
+
     /// `self · other · selfᵀ`, for a symmetric `other`.
     pub fn congruence(&self, other: &Matrix) -> Self {
         self * &(self * other).transposed()

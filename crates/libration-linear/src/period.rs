@@ -21,11 +21,12 @@ pub enum Dynamics<'a> {
     },
     /// Steps of any kind. The state at the beginning of a period counts for all of it, as in a simulation.
     Stepped {
-        /// The step. The last columns of its `Γ` are the effect of noise that is held through a period of `h` seconds, of
-        /// variance `1/h`.
+        /// The step. The last columns of its `Γ` are the effect of noise that is held through a period.
         step: SplitStep<'a>,
         /// The number of noises.
         noises: usize,
+        /// The variance of each: `1/h` of white noise that is held for `h` seconds.
+        variance: f64,
     },
 }
 
@@ -104,9 +105,7 @@ impl Period<'_> {
         let (control, noise) = self.control(arrivals);
         course.pass(&control);
         course.add((0, 0), &noise);
-        if let Dynamics::Stepped { noises, .. } = self.dynamics {
-            // A period of length zero moves nothing.
-            let variance = if seconds > 0.0 { seconds.recip() } else { 0.0 };
+        if let Dynamics::Stepped { noises, variance, .. } = self.dynamics {
             let first = layout.noises().start;
             course.add((first, first), &Matrix::identity(noises).scaled(variance));
         }

@@ -68,7 +68,11 @@ impl<'p> Stages<'p> {
         };
         let dynamics = match self.plant.exact {
             true => Dynamics::Exact { a: &self.a, b: &self.b, noise: &noise },
-            false => Dynamics::Stepped { step: &step, noises: 1 },
+            // A period of length zero moves nothing.
+            false => {
+                let variance = if seconds > 0.0 { seconds.recip() } else { 0.0 };
+                Dynamics::Stepped { step: &step, noises: 1, variance }
+            }
         };
         let [c, d] = [Matrix::identity(2), Matrix::zeros(2, 1)];
         let period = Period {

@@ -1,0 +1,313 @@
+//! Eigenvalues of real matrices.
+//!
+//! A library would take longer to compile than all of this crate's dependants: `faer` adds a hundred seconds of processor time for
+//! this one function.
+
+use num_complex::Complex64;
+
+use crate::Matrix;
+
+/// All eigenvalues of a square matrix, pairs next to each other; none if an entry is infinite or NaN, or the iteration does not
+/// settle.
+///
+/// Balancing (B. N. Parlett, C. Reinsch, *Balancing a matrix for calculation of eigenvalues and eigenvectors*, Numerische Mathematik
+/// 13, 1969), reduction to Hessenberg form by reflections, and Francis' implicit double shifts (G. H. Golub, C. F. Van Loan, *Matrix
+/// Computations*, 4th ed., sections 7.4 and 7.5).
+pub fn eigenvalues(matrix: &Matrix) -> Option<Vec<Complex64>> {
+    if !matrix.is_finite() {
+        return None;
+    }
+    let mut h = matrix.clone();
+    balance(&mut h);
+    reduce_to_hessenberg(&mut h);
+    solve_hessenberg(&mut h)
+}
+
+/// Scales rows and columns by powers of two until their norms are alike, which rounds nothing.
+fn balance(a: &mut Matrix) {
+    let n = a.rows();
+    // Each pass halves what is left at least; far fewer are needed.
+    for _ in 0..64 {
+        let mut settled = true;
+        for i in 0..n {
+            let others = || (0..n).filter(|&j| j != i);
+            let column: f64 = others().map(|j| a[(j, i)].abs()).sum();
+            let row: f64 = others().map(|j| a[(i, j)].abs()).sum();
+            if column == 0.0 || row == 0.0 {
+                continue;
+            }
+            let factor = (0.5 * (row / column).log2()).round().clamp(-500.0, 500.0).exp2();
+            if column * factor + row / factor < 0.95 * (column + row) {
+                settled = false;
+                for j in 0..n {
+                    a[(i, j)] /= factor;
+                    a[(j, i)] *= factor;
+                }
+            }
+        }
+        if settled {
+            break;
+        }
+    }
+}
+
+/// Reflects columns and rows until nothing is left below the first subdiagonal.
+fn reduce_to_hessenberg(a: &mut Matrix) {
+    let n = a.rows();
+    for k in 0..n.saturating_sub(2) {
+        let column: Vec<f64> = (k + 1..n).map(|i| a[(i, k)]).collect();
+        let Some(reflection) = Reflection::onto_first(&column) else { continue };
+        reflection.reflect_rows(a, k + 1, k..n);
+        reflection.reflect_columns(a, k + 1, 0..n);
+        (k + 2..n).for_each(|i| a[(i, k)] = 0.0);
+    }
+}
+
+/// `1 − τvvᵀ`.
+struct Reflection {
+    v: Vec<f64>,
+    tau: f64,
+}
+
+impl Reflection {
+    /// That which takes `x` to a multiple of the first unit vector; none of a zero vector.
+    fn onto_first(x: &[f64]) -> Option<Self> {
+        let largest = x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        if largest == 0.0 || !largest.is_finite() {
+            return None;
+        }
+        let mut v: Vec<f64> = x.iter().map(|x| x / largest).collect();
+        let norm = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        v[0] += norm.copysign(v[0]);
+        let square: f64 = v.iter().map(|x| x * x).sum();
+        Some(Reflection { v, tau: 2.0 / square })
+    }
+
+    /// Reflects the rows from `first` on, in these columns.
+    fn reflect_rows(&self, a: &mut Matrix, first: usize, columns: core::ops::Range<usize>) {
+        for j in columns {
+            let along: f64 = self.v.iter().enumerate().map(|(i, v)| v * a[(first + i, j)]).sum();
+            for (i, v) in self.v.iter().enumerate() {
+                a[(first + i, j)] -= self.tau * along * v;
+            }
+        }
+    }
+
+    /// Reflects the columns from `first` on, in these rows.
+    fn reflect_columns(&self, a: &mut Matrix, first: usize, rows: core::ops::Range<usize>) {
+        for i in rows {
+            let row = &mut a.row_mut(i)[first..first + self.v.len()];
+            let along: f64 = row.iter().zip(&self.v).map(|(x, v)| x * v).sum();
+            row.iter_mut().zip(&self.v).for_each(|(x, v)| *x -= self.tau * along * v);
+        }
+    }
+}
+
+/// Iterations for one eigenvalue; it takes two or three.
+const MOST: usize = 60;
+
+/// The eigenvalues of a Hessenberg matrix, by double shifts, of which the last rows split off one by one or in pairs.
+fn solve_hessenberg(h: &mut Matrix) -> Option<Vec<Complex64>> {
+    let mut values = Vec::with_capacity(h.rows());
+    let size = h.row_sum_norm();
+    let mut end = h.rows();
+    let mut iterations = 0;
+    while end > 0 {
+        // The last block that no zero below the diagonal divides.
+        let negligible = |k: usize| {
+            let beside = h[(k, k)].abs() + h[(k - 1, k - 1)].abs();
+            let beside = if beside == 0.0 { size } else { beside };
+            h[(k, k - 1)].abs() <= f64::EPSILON * beside
+        };
+        let begin = (1..end).rev().find(|&k| negligible(k)).unwrap_or(0);
+        match end - begin {
+            1 => values.push(Complex64::from(h[(begin, begin)])),
+            2 => values.extend(pair(h, begin)),
+            _ if iterations == MOST => return None,
+            _ => {
+                iterations += 1;
+                sweep(h, begin..end, iterations);
+                continue;
+            }
+        }
+        end = begin;
+        iterations = 0;
+    }
+    Some(values)
+}
+
+/// The eigenvalues of the block of two rows that begins at `k`.
+fn pair(h: &Matrix, k: usize) -> [Complex64; 2] {
+    let [a, b, c, d] = [h[(k, k)], h[(k, k + 1)], h[(k + 1, k)], h[(k + 1, k + 1)]];
+    let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));
+    let square = half * half + b * c;
+    if square < 0.0 {
+        let im = (-square).sqrt();
+        return [Complex64::new(mean, im), Complex64::new(mean, -im)];
+    }
+    // The larger first; the smaller follows from the product, without cancellation.
+    let far = mean + square.sqrt().copysign(mean);
+    let product = a * d - b * c;
+    let near = if far == 0.0 { 0.0 } else { product / far };
+    [Complex64::from(far), Complex64::from(near)]
+}
+
+/// An implicit double shift on a block.
+fn sweep(h: &mut Matrix, block: core::ops::Range<usize>, iterations: usize) {
+    let (begin, end) = (block.start, block.end);
+    let n = end - 1;
+    let (mut sum, mut product) = (
+        h[(n - 1, n - 1)] + h[(n, n)],
+        h[(n - 1, n - 1)] * h[(n, n)] - h[(n - 1, n)] * h[(n, n - 1)],
+    );
+    if iterations.is_multiple_of(10) {
+        // A shift that breaks circles.
+        let size = h[(n, n - 1)].abs() + h[(n - 1, n - 2)].abs();
+        (sum, product) = (1.5 * size, size * size);
+    }
+    // The first column of (H − a)(H − b).
+    let [h00, h10] = [h[(begin, begin)], h[(begin + 1, begin)]];
+    let mut x = vec![
+        h00 * h00 + h[(begin, begin + 1)] * h10 - sum * h00 + product,
+        h10 * (h00 + h[(begin + 1, begin + 1)] - sum),
+        h10 * h[(begin + 2, begin + 1)],
+    ];
+    for k in begin..n {
+        if k > begin {
+            x = (k..(k + 3).min(end)).map(|i| h[(i, k - 1)]).collect();
+        } else if end - k < 3 {
+            x.truncate(end - k);
+        }
+        let Some(reflection) = Reflection::onto_first(&x) else { continue };
+        let left = if k > begin { k - 1 } else { k };
+        reflection.reflect_rows(h, k, left..end);
+        reflection.reflect_columns(h, k, begin..(k + 4).min(end));
+        if k > begin {
+            (k + 1..(k + 3).min(end)).for_each(|i| h[(i, k - 1)] = 0.0);
+        }
+    }
+}
+
+/// The right eigenvector of a simple eigenvalue, of largest entry 1; none if the matrix has an entry that is infinite or NaN.
+///
+/// By inverse iteration.
+pub fn eigenvector(matrix: &Matrix, value: Complex64) -> Option<Vec<Complex64>> {
+    let n = matrix.rows();
+    let size = matrix.row_sum_norm().max(f64::MIN_POSITIVE);
+    // Off the eigenvalue by a rounding, so that the equations have a solution.
+    let near = value + Complex64::new(1.0, 1.0) * (size * 4.0 * f64::EPSILON);
+    let mut vector: Vec<Complex64> =
+        (0..n).map(|i| Complex64::from(1.0 / (1.0 + i as f64))).collect();
+    for _ in 0..3 {
+        let row = |i: usize| -> Vec<Complex64> {
+            let entry = |j: usize| {
+                let own = if i == j { near } else { Complex64::ZERO };
+                Complex64::from(matrix[(i, j)]) - own
+            };
+            (0..n).map(entry).chain([vector[i]]).collect()
+        };
+        let rows = (0..n).map(row).collect();
+        vector = crate::solve(rows, |x: Complex64| x.norm());
+        let largest = vector.iter().copied().max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+        if !(largest.norm().is_finite() && largest.norm() > 0.0) {
+            return None;
+        }
+        vector.iter_mut().for_each(|x| *x /= largest);
+    }
+    Some(vector)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sorted(matrix: &Matrix) -> Vec<Complex64> {
+        let mut values = eigenvalues(matrix).unwrap();
+        values.sort_by(|a, b| a.re.total_cmp(&b.re).then(a.im.total_cmp(&b.im)));
+        values
+    }
+
+    /// The companion matrix of the polynomial with these roots.
+    fn companion(roots: &[f64]) -> Matrix {
+        let mut coefficients = vec![1.0];
+        for root in roots {
+            coefficients.push(0.0);
+            for i in (1..coefficients.len()).rev() {
+                coefficients[i] -= root * coefficients[i - 1];
+            }
+        }
+        Matrix::from_fn(roots.len(), roots.len(), |i, j| match (i, j) {
+            (0, j) => -coefficients[j + 1],
+            (i, j) => f64::from(u8::from(i == j + 1)),
+        })
+    }
+
+    #[test]
+    fn roots_of_polynomials_are_found() {
+        let wanted: Vec<f64> = (1..=8).map(f64::from).collect();
+        for (found, wanted) in sorted(&companion(&wanted)).into_iter().zip(wanted) {
+            // The roots of Wilkinson's polynomial of degree 8 have conditions up to 10⁴.
+            assert!((found - wanted).norm() < 1e-10, "{found} {wanted}");
+        }
+    }
+
+    #[test]
+    fn matrices_that_trap_plain_iterations_are_solved() {
+        // A permutation, whose eigenvalues are roots of unity, and one on which a well-known library never ends.
+        let turn = Matrix::from_fn(5, 5, |i, j| f64::from(u8::from((i + 1) % 5 == j)));
+        for found in eigenvalues(&turn).unwrap() {
+            assert!((found.norm() - 1.0).abs() < 1e-14, "{found}");
+            assert!((found.powi(5) - 1.0).norm() < 1e-13, "{found}");
+        }
+        let hard =
+            Matrix::from_rows(&[[1.0, 1.0, 0.0], [-1.0, 1.0, -1.0], [0.0, 1.0, 1.0]]).unwrap();
+        let mut found = eigenvalues(&hard).unwrap();
+        found.sort_by(|a, b| a.im.total_cmp(&b.im));
+        // (1 − λ)((1 − λ)² + 2).
+        let root = 2.0_f64.sqrt();
+        for (found, wanted) in found.into_iter().zip([-root, 0.0, root]) {
+            assert!((found - Complex64::new(1.0, wanted)).norm() < 1e-14, "{found}");
+        }
+    }
+
+    #[test]
+    fn badly_scaled_matrices_are_balanced_first() {
+        let scales = [1e-9, 1.0, 1e6, 1e12];
+        let plain = companion(&[-1.0, -2.0, -3.0, -4.0]);
+        let bad = Matrix::from_fn(4, 4, |i, j| plain[(i, j)] * scales[i] / scales[j]);
+        for (found, wanted) in sorted(&bad).into_iter().zip([-4.0, -3.0, -2.0, -1.0]) {
+            assert!((found - wanted).norm() < 1e-11, "{found} {wanted}");
+        }
+    }
+
+    #[test]
+    fn eigenvectors_solve_their_equation() {
+        let a = Matrix::from_fn(6, 6, |i, j| ((i * 7 + j * 3) % 11) as f64 - 5.0);
+        for value in eigenvalues(&a).unwrap() {
+            let x = eigenvector(&a, value).unwrap();
+            for i in 0..6 {
+                let moved: Complex64 = a.row(i).iter().zip(&x).map(|(a, x)| *a * x).sum();
+                // Roundings of a matrix of norm 30.
+                assert!((moved - value * x[i]).norm() < 1e-12, "{value} {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn sums_and_products_of_eigenvalues_are_trace_and_determinant() {
+        let mut state = 1_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 33) as f64 / (1_u64 << 31) as f64 - 0.5
+        };
+        for n in [1, 2, 3, 10, 40, 90] {
+            let mut a = Matrix::zeros(n, n);
+            a.entries_mut().iter_mut().for_each(|x| *x = next());
+            let values = eigenvalues(&a).unwrap();
+            let [sum, square] =
+                [1, 2].map(|power| values.iter().map(|x| x.powi(power)).sum::<Complex64>());
+            assert!((sum - a.trace()).norm() < 1e-12, "{n}");
+            assert!((square - (&a * &a).trace()).norm() < 1e-11, "{n}");
+        }
+    }
+}

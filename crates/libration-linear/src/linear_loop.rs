@@ -1,0 +1,384 @@
+//! Loops around linear plants.
+
+use libration_core::control::{Jitter, Latency};
+use num_complex::Complex64;
+use thiserror::Error;
+
+use crate::{
+    Arrival, Averages, DiscreteController, Dynamics, HeldStep, Layout, LinearPlant, MOST_TURN,
+    Matrix, Period, RandomStages, Stage, Transit, eigenvalues,
+};
+
+/// A loop: a linear plant, and a controller that runs once per period.
+#[derive(Clone, Debug)]
+pub struct LinearLoop {
+    plant: LinearPlant,
+    controller: DiscreteController,
+    period: f64,
+    cost: Matrix,
+    output_noise: Vec<f64>,
+    /// The eigenvalues of the plant, in 1/s.
+    motions: Vec<Complex64>,
+}
+
+/// The timing of a loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopTiming {
+    /// The latency of each input, in periods.
+    pub input_latency: Vec<Latency>,
+    /// The latency of each output, in periods.
+    pub output_latency: Vec<Latency>,
+    /// The law of the lengths of periods, each drawn independently.
+    pub jitter: Jitter,
+    /// The part by which all periods are longer than they should be.
+    pub skew: f64,
+    /// The probability that the commands of a period are lost, independently; those that act are held.
+    pub loss: f64,
+}
+
+impl LoopTiming {
+    /// Perfect timing of a loop with so many inputs and outputs.
+    pub fn ideal(inputs: usize, outputs: usize) -> Self {
+        LoopTiming {
+            input_latency: vec![Latency::NONE; inputs],
+            output_latency: vec![Latency::NONE; outputs],
+            jitter: Jitter::Gaussian(0.0),
+            skew: 0.0,
+            loss: 0.0,
+        }
+    }
+
+    /// Whether all periods are the same.
+    pub fn repeats(&self) -> bool {
+        self.jitter.rms() == 0.0 && self.loss == 0.0
+    }
+}
+
+/// Error of a loop around a linear plant.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum LinearLoopError {
+    /// The controller does not fit the plant.
+    #[error("the controller has {given} {of}; expected {expected}, the {side} of the plant")]
+    Channels {
+        /// `commands` or `measurements`.
+        of: &'static str,
+        /// Their number.
+        given: usize,
+        /// The expected number.
+        expected: usize,
+        /// `inputs` or `outputs`.
+        side: &'static str,
+    },
+    /// A matrix of the controller or the cost has the wrong shape, or entries that are not finite.
+    #[error("`{0}` has the wrong shape, or an entry that is not finite")]
+    Matrix(&'static str),
+    /// The period is invalid.
+    #[error("the period is {0} s; expected a finite number above 0")]
+    Period(f64),
+    /// The plant is sampled with another period.
+    #[error(
+        "the period is {period} s, but the plant is sampled every {sampled} s; expected the same"
+    )]
+    Sampled {
+        /// The period of the loop.
+        period: f64,
+        /// The sampling period of the plant.
+        sampled: f64,
+    },
+    /// The plant is sampled, and time between samples is not defined.
+    #[error(
+        "the plant is sampled: {0} is not defined between its samples; help: give the plant in continuous time"
+    )]
+    BetweenSamples(&'static str),
+    /// There is not one latency for each channel.
+    #[error("{given} latencies of {count} {of}; expected one for each")]
+    Latencies {
+        /// `inputs` or `outputs`.
+        of: &'static str,
+        /// The number of latencies.
+        given: usize,
+        /// The number of channels.
+        count: usize,
+    },
+    /// The probability of a loss is invalid.
+    #[error("the probability that commands are lost is {0}; expected at least 0 and below 1")]
+    Loss(f64),
+    /// Periods would not be above zero.
+    #[error("the skew is {0}; expected a number above −1")]
+    Skew(f64),
+    /// The loop is too large.
+    #[error(
+        "the loop has {size} states with all commands and measurements in transit; expected at most {most}"
+    )]
+    Size {
+        /// The number of states.
+        size: usize,
+        /// The most with this timing.
+        most: usize,
+    },
+    /// The plant moves too far in a period.
+    #[error("the plant turns by more than 2048 rad in a standard deviation of the jitter")]
+    Turn,
+}
+
+/// Most states of a loop whose periods are drawn.
+const MOST_RANDOM: usize = 150;
+
+/// Most states of a loop whose periods are all the same.
+const MOST_REPEATED: usize = 300;
+
+/// Decay within a period after which a motion no longer counts, `−ln` of a rounding.
+const FORGOTTEN: f64 = 37.0;
+
+impl LinearLoop {
+    /// A loop with a period of `period` seconds. Its cost per second is the form `cost` of states and inputs, under the noise of the
+    /// plant and measurement noise of the variances `output_noise`.
+    ///
+    /// # Errors
+    /// [`LinearLoopError`]: numbers that do not fit each other.
+    pub fn new(
+        plant: LinearPlant,
+        controller: DiscreteController,
+        period: f64,
+        cost: Matrix,
+        output_noise: Vec<f64>,
+    ) -> Result<Self, LinearLoopError> {
+        let (n, m, p) = (plant.states.len(), plant.inputs.len(), plant.outputs.len());
+        for (of, given, expected, side) in [
+            ("commands", controller.commands(), m, "inputs"),
+            ("measurements", controller.measurements(), p, "outputs"),
+        ] {
+            if given != expected {
+                return Err(LinearLoopError::Channels { of, given, expected, side });
+            }
+        }
+        let memory = controller.memory();
+        let DiscreteController { a, b, c, d } = &controller;
+        for (name, matrix, shape) in [
+            ("controller A", a, [memory, memory]),
+            ("controller B", b, [memory, p]),
+            ("controller C", c, [m, memory]),
+            ("controller D", d, [m, p]),
+            ("cost", &cost, [n + m, n + m]),
+        ] {
+            if [matrix.rows(), matrix.columns()] != shape || !matrix.is_finite() {
+                return Err(LinearLoopError::Matrix(name));
+            }
+        }
+        let variance = |x: &f64| x.is_finite() && *x >= 0.0;
+        if output_noise.len() != p || !output_noise.iter().all(variance) {
+            return Err(LinearLoopError::Matrix("output noise"));
+        }
+        if !(period.is_finite() && period > 0.0) {
+            return Err(LinearLoopError::Period(period));
+        }
+        if let Some(sampled) = plant.sampling_period
+            && (sampled / period - 1.0).abs() > 1e-9
+        {
+            return Err(LinearLoopError::Sampled { period, sampled });
+        }
+        let motions = match plant.sampling_period {
+            None => eigenvalues(&plant.a).unwrap_or_default(),
+            Some(_) => Vec::new(),
+        };
+        Ok(LinearLoop { plant, controller, period, cost, output_noise, motions })
+    }
+
+    /// The plant.
+    pub fn plant(&self) -> &LinearPlant {
+        &self.plant
+    }
+
+    /// The controller.
+    pub fn controller(&self) -> &DiscreteController {
+        &self.controller
+    }
+
+    /// The period, in s.
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// Perfect timing.
+    pub fn ideal(&self) -> LoopTiming {
+        LoopTiming::ideal(self.plant.inputs.len(), self.plant.outputs.len())
+    }
+
+    /// The loop with another controller of the same size.
+    ///
+    /// # Errors
+    /// As for [`LinearLoop::new`].
+    pub fn with_controller(&self, controller: DiscreteController) -> Result<Self, LinearLoopError> {
+        let LinearLoop { plant, period, cost, output_noise, .. } = self.clone();
+        LinearLoop::new(plant, controller, period, cost, output_noise)
+    }
+
+    /// The fastest motion of the plant that lasts for a period, in rad/s.
+    pub fn rate(&self) -> f64 {
+        let lasts = |motion: &&Complex64| motion.re * self.period > -FORGOTTEN;
+        self.motions.iter().filter(lasts).map(|motion| motion.norm()).fold(0.0, f64::max)
+    }
+
+    /// The number of states of the loop: those of plant and controller, and all commands and measurements in transit.
+    ///
+    /// # Errors
+    /// [`LinearLoopError`]: an invalid timing.
+    pub fn size(&self, timing: &LoopTiming) -> Result<usize, LinearLoopError> {
+        Ok(self.layout(timing)?.size())
+    }
+
+    /// The matrix of a period of mean length without losses, and the names of the states of the loop.
+    ///
+    /// # Errors
+    /// [`LinearLoopError`]: an invalid timing.
+    pub fn period_matrix(&self, timing: &LoopTiming) -> Result<Matrix, LinearLoopError> {
+        let even = LoopTiming { jitter: timing.jitter.with_rms(0.0), loss: 0.0, ..timing.clone() };
+        Ok(self.stages(&even, false)?.remove(0).step)
+    }
+
+    /// The logarithm of the factor by which second moments grow in a period; below zero the loop is stable in the mean square.
+    ///
+    /// # Errors
+    /// [`LinearLoopError`]: an invalid timing, or a loop that is too large.
+    pub fn growth(&self, timing: &LoopTiming) -> Result<f64, LinearLoopError> {
+        Ok(RandomStages::new(&self.stages(timing, false)?).growth())
+    }
+
+    /// Whether second moments decay.
+    ///
+    /// # Errors
+    /// As for [`LinearLoop::growth`].
+    pub fn is_stable(&self, timing: &LoopTiming) -> Result<bool, LinearLoopError> {
+        Ok(RandomStages::new(&self.stages(timing, false)?).is_stable())
+    }
+
+    /// The stationary cost and moments; none if second moments grow.
+    ///
+    /// Second moments `P` of the loop solve `P = E[M P Mᵀ] + W` with the matrix `M` of a period and what noise adds in it, `W`. Noise
+    /// and cost are integrals over continuous time (B. Lincoln, A. Cervin, *Jitterbug: a tool for analysis of real-time control
+    /// performance*, IEEE Conference on Decision and Control 2002); of a sampled plant they are sums over its samples.
+    ///
+    /// # Errors
+    /// As for [`LinearLoop::growth`].
+    pub fn stationary(&self, timing: &LoopTiming) -> Result<Option<Stationary>, LinearLoopError> {
+        let stages = self.stages(timing, true)?;
+        let random = RandomStages::new(&stages);
+        if !random.is_stable() {
+            return Ok(None);
+        }
+        let moments = random.moments(Stage::mean_noise(&stages));
+        let (mut cost, mut length) = (0.0, 0.0);
+        for stage in &stages {
+            cost += stage.weight * stage.expected(&moments);
+            length += stage.weight * stage.length;
+        }
+        let cost = cost / length;
+        // Beyond the edge of stability, by less than the growth can show, a form turns negative.
+        let n = self.plant.states.len();
+        let deviations = (0..n).map(|i| moments[(i, i)].max(0.0).sqrt()).collect();
+        Ok((cost >= 0.0).then_some(Stationary { cost, deviations }))
+    }
+
+    /// The periods that the loop may have.
+    fn stages(&self, timing: &LoopTiming, with_cost: bool) -> Result<Vec<Stage>, LinearLoopError> {
+        let layout = self.layout(timing)?;
+        let LoopTiming { jitter, skew, loss, .. } = *timing;
+        let turn = 2.0 * self.rate() * self.period * jitter.rms() * (1.0 + skew);
+        if turn.is_nan() || turn > MOST_TURN {
+            return Err(LinearLoopError::Turn);
+        }
+        let LinearPlant { a, b, c, d, g, sampling_period, .. } = &self.plant;
+        let noise = g.congruence(&Matrix::identity(g.columns()));
+        let (n, m) = (a.rows(), b.columns());
+        let sampled = |_: f64, _: [f64; 2]| {
+            let mut gamma = Matrix::zeros(n, m + g.columns());
+            gamma.set_block((0, 0), b);
+            gamma.set_block((0, m), g);
+            HeldStep { phi: a.clone(), gamma }
+        };
+        let dynamics = match sampling_period {
+            None => Dynamics::Exact { a, b, noise: &noise },
+            Some(_) => Dynamics::Stepped { step: &sampled, noises: g.columns(), variance: 1.0 },
+        };
+        let period = Period {
+            dynamics,
+            outputs: [c, d],
+            controller: &self.controller,
+            layout: &layout,
+            output_latency: &timing.output_latency,
+            output_noise: &self.output_noise,
+            cost: with_cost.then_some(&self.cost),
+        };
+        let nodes = if jitter.rms() > 0.0 { jitter.nodes(turn) } else { vec![(1.0, 0.0)] };
+        let mut stages = Vec::new();
+        for (weight, epsilon) in nodes {
+            let seconds = self.period * (1.0 + skew) * (1.0 + epsilon);
+            for (share, lost) in [(1.0 - loss, false), (loss, true)] {
+                let arrival = |&latency: &Latency| Arrival { latency, lost };
+                let arrivals: Vec<Arrival> = timing.input_latency.iter().map(arrival).collect();
+                if share > 0.0 {
+                    stages.push(period.stage(weight * share, seconds, &arrivals));
+                }
+            }
+        }
+        Ok(stages)
+    }
+
+    /// The coordinates of the loop, after all numbers of the timing are checked.
+    fn layout(&self, timing: &LoopTiming) -> Result<Layout, LinearLoopError> {
+        let LoopTiming { input_latency, output_latency, jitter, skew, loss } = timing;
+        let (m, p) = (self.plant.inputs.len(), self.plant.outputs.len());
+        for (of, given, count) in
+            [("inputs", input_latency.len(), m), ("outputs", output_latency.len(), p)]
+        {
+            if given != count {
+                return Err(LinearLoopError::Latencies { of, given, count });
+            }
+        }
+        if !(0.0..1.0).contains(loss) {
+            return Err(LinearLoopError::Loss(*loss));
+        }
+        if !(skew.is_finite() && *skew > -1.0) {
+            return Err(LinearLoopError::Skew(*skew));
+        }
+        let mut noises = 0;
+        if self.plant.sampling_period.is_some() {
+            let split = |latency: &Latency| latency.part() > 0.0;
+            if input_latency.iter().chain(output_latency).any(split) {
+                return Err(LinearLoopError::BetweenSamples("a latency of a part of a period"));
+            }
+            if jitter.rms() > 0.0 || *skew != 0.0 {
+                return Err(LinearLoopError::BetweenSamples("another period"));
+            }
+            noises = self.plant.g.columns();
+        }
+        let direct = |i: usize| (0..p).any(|j| self.plant.d[(j, i)] != 0.0);
+        let inputs: Vec<Transit> = input_latency
+            .iter()
+            .enumerate()
+            .map(|(i, latency)| {
+                let transit = Transit::of_commands(*latency, *loss > 0.0);
+                // An output that is measured at the beginning of a period sees the command that acts.
+                Transit { acts_on: transit.acts_on || direct(i), ..transit }
+            })
+            .collect();
+        let outputs: Vec<Transit> =
+            output_latency.iter().map(|latency| Transit::of_measurements(*latency)).collect();
+        let sizes = [self.plant.states.len(), self.controller.memory(), noises];
+        let layout = Layout::new(sizes, &inputs, &outputs);
+        let most = if timing.repeats() { MOST_REPEATED } else { MOST_RANDOM };
+        match layout.size() > most {
+            true => Err(LinearLoopError::Size { size: layout.size(), most }),
+            false => Ok(layout),
+        }
+    }
+}
+
+/// The stationary behaviour of a loop under noise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stationary {
+    /// The cost per second; of a sampled plant per sample.
+    pub cost: f64,
+    /// The standard deviation of each state of the plant at the beginning of a period.
+    pub deviations: Vec<f64>,
+}
