@@ -1,12 +1,11 @@
 //! Loops around linear plants.
 
-use libration_core::control::{Jitter, Latency};
+use libration_core::control::Latency;
 use num_complex::Complex64;
-use thiserror::Error;
 
 use crate::{
-    Arrival, Averages, DiscreteController, Dynamics, HeldStep, Layout, LinearPlant, MOST_TURN,
-    Matrix, Period, RandomStages, Stage, Transit, eigenvalues,
+    Arrival, Averages, DiscreteController, Dynamics, HeldStep, Layout, LinearLoopError,
+    LinearPlant, LoopTiming, MOST_TURN, Matrix, Period, RandomStages, Stage, Transit, eigenvalues,
 };
 
 /// A loop: a linear plant, and a controller that runs once per period.
@@ -21,108 +20,8 @@ pub struct LinearLoop {
     motions: Vec<Complex64>,
 }
 
-/// The timing of a loop.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoopTiming {
-    /// The latency of each input, in periods.
-    pub input_latency: Vec<Latency>,
-    /// The latency of each output, in periods.
-    pub output_latency: Vec<Latency>,
-    /// The law of the lengths of periods, each drawn independently.
-    pub jitter: Jitter,
-    /// The part by which all periods are longer than they should be.
-    pub skew: f64,
-    /// The probability that the commands of a period are lost, independently; those that act are held.
-    pub loss: f64,
-}
-
-impl LoopTiming {
-    /// Perfect timing of a loop with so many inputs and outputs.
-    pub fn ideal(inputs: usize, outputs: usize) -> Self {
-        LoopTiming {
-            input_latency: vec![Latency::NONE; inputs],
-            output_latency: vec![Latency::NONE; outputs],
-            jitter: Jitter::Gaussian(0.0),
-            skew: 0.0,
-            loss: 0.0,
-        }
-    }
-
-    /// Whether all periods are the same.
-    pub fn repeats(&self) -> bool {
-        self.jitter.rms() == 0.0 && self.loss == 0.0
-    }
-}
-
-/// Error of a loop around a linear plant.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum LinearLoopError {
-    /// The controller does not fit the plant.
-    #[error("the controller has {given} {of}; expected {expected}, the {side} of the plant")]
-    Channels {
-        /// `commands` or `measurements`.
-        of: &'static str,
-        /// Their number.
-        given: usize,
-        /// The expected number.
-        expected: usize,
-        /// `inputs` or `outputs`.
-        side: &'static str,
-    },
-    /// A matrix of the controller or the cost has the wrong shape, or entries that are not finite.
-    #[error("`{0}` has the wrong shape, or an entry that is not finite")]
-    Matrix(&'static str),
-    /// The period is invalid.
-    #[error("the period is {0} s; expected a finite number above 0")]
-    Period(f64),
-    /// The plant is sampled with another period.
-    #[error(
-        "the period is {period} s, but the plant is sampled every {sampled} s; expected the same"
-    )]
-    Sampled {
-        /// The period of the loop.
-        period: f64,
-        /// The sampling period of the plant.
-        sampled: f64,
-    },
-    /// The plant is sampled, and time between samples is not defined.
-    #[error(
-        "the plant is sampled: {0} is not defined between its samples; help: give the plant in continuous time"
-    )]
-    BetweenSamples(&'static str),
-    /// There is not one latency for each channel.
-    #[error("{given} latencies of {count} {of}; expected one for each")]
-    Latencies {
-        /// `inputs` or `outputs`.
-        of: &'static str,
-        /// The number of latencies.
-        given: usize,
-        /// The number of channels.
-        count: usize,
-    },
-    /// The probability of a loss is invalid.
-    #[error("the probability that commands are lost is {0}; expected at least 0 and below 1")]
-    Loss(f64),
-    /// Periods would not be above zero.
-    #[error("the skew is {0}; expected a number above −1")]
-    Skew(f64),
-    /// The loop is too large.
-    #[error(
-        "the loop has {size} states with all commands and measurements in transit; expected at most {most}"
-    )]
-    Size {
-        /// The number of states.
-        size: usize,
-        /// The most with this timing.
-        most: usize,
-    },
-    /// The plant moves too far in a period.
-    #[error("the plant turns by more than 2048 rad in a standard deviation of the jitter")]
-    Turn,
-}
-
 /// Most states of a loop whose periods are drawn.
-const MOST_RANDOM: usize = 150;
+pub(crate) const MOST_RANDOM: usize = 150;
 
 /// Most states of a loop whose periods are all the same.
 const MOST_REPEATED: usize = 300;
@@ -281,12 +180,24 @@ impl LinearLoop {
 
     /// The periods that the loop may have.
     fn stages(&self, timing: &LoopTiming, with_cost: bool) -> Result<Vec<Stage>, LinearLoopError> {
-        let layout = self.layout(timing)?;
-        let LoopTiming { jitter, skew, loss, .. } = *timing;
+        let LoopTiming { jitter, skew, .. } = *timing;
         let turn = 2.0 * self.rate() * self.period * jitter.rms() * (1.0 + skew);
         if turn.is_nan() || turn > MOST_TURN {
             return Err(LinearLoopError::Turn);
         }
+        let nodes = if jitter.rms() > 0.0 { jitter.nodes(turn) } else { vec![(1.0, 0.0)] };
+        self.stages_of(timing, &nodes, with_cost)
+    }
+
+    /// The periods whose lengths deviate from their mean by these parts, with these probabilities.
+    pub(crate) fn stages_of(
+        &self,
+        timing: &LoopTiming,
+        nodes: &[(f64, f64)],
+        with_cost: bool,
+    ) -> Result<Vec<Stage>, LinearLoopError> {
+        let layout = self.layout(timing)?;
+        let LoopTiming { skew, loss, .. } = *timing;
         let LinearPlant { a, b, c, d, g, sampling_period, .. } = &self.plant;
         let noise = g.congruence(&Matrix::identity(g.columns()));
         let (n, m) = (a.rows(), b.columns());
@@ -309,9 +220,8 @@ impl LinearLoop {
             output_noise: &self.output_noise,
             cost: with_cost.then_some(&self.cost),
         };
-        let nodes = if jitter.rms() > 0.0 { jitter.nodes(turn) } else { vec![(1.0, 0.0)] };
         let mut stages = Vec::new();
-        for (weight, epsilon) in nodes {
+        for &(weight, epsilon) in nodes {
             let seconds = self.period * (1.0 + skew) * (1.0 + epsilon);
             for (share, lost) in [(1.0 - loss, false), (loss, true)] {
                 let arrival = |&latency: &Latency| Arrival { latency, lost };

@@ -116,7 +116,7 @@ mod tests {
         let (kv, ka) = (3.02, 0.642);
         let a = [[0.0, 1.0], [0.0, -kv / ka]];
         let (_, gain) = wpilib(a, [0.0, 1.0 / ka], [1.0, 0.2], 0.25, 0.005);
-        let wanted = [1.996_001_778_653_728_7, 0.511_821_283_510_927_26];
+        let wanted = [1.996_001_778_653_728_7, 0.511_821_283_510_927_3];
         for (found, wanted) in gain.entries().iter().zip(wanted) {
             // Ten digits, as that test has it.
             assert!((found - wanted).abs() < 1e-10, "{found} {wanted}");

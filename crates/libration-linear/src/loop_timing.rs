@@ -1,0 +1,36 @@
+//! The timing of a loop.
+
+use libration_core::control::{Jitter, Latency};
+
+/// The timing of a loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopTiming {
+    /// The latency of each input, in periods.
+    pub input_latency: Vec<Latency>,
+    /// The latency of each output, in periods.
+    pub output_latency: Vec<Latency>,
+    /// The law of the lengths of periods, each drawn independently.
+    pub jitter: Jitter,
+    /// The part by which all periods are longer than they should be.
+    pub skew: f64,
+    /// The probability that the commands of a period are lost, independently; those that act are held.
+    pub loss: f64,
+}
+
+impl LoopTiming {
+    /// Perfect timing of a loop with so many inputs and outputs.
+    pub fn ideal(inputs: usize, outputs: usize) -> Self {
+        LoopTiming {
+            input_latency: vec![Latency::NONE; inputs],
+            output_latency: vec![Latency::NONE; outputs],
+            jitter: Jitter::Gaussian(0.0),
+            skew: 0.0,
+            loss: 0.0,
+        }
+    }
+
+    /// Whether all periods are the same.
+    pub fn repeats(&self) -> bool {
+        self.jitter.rms() == 0.0 && self.loss == 0.0
+    }
+}
