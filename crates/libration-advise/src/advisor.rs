@@ -10,7 +10,7 @@ use super::control::Control;
 use super::free_motion::FreeMotion;
 use super::integrator_choice::{best_possible, largest_step};
 use super::loop_simulation::{LoopSimulation, MOST_PERIODS};
-use super::loops::{Loop, PlantModel};
+use super::loops::{Loop, LoopError, PlantModel};
 use super::request::{Measure, Request, Tolerance};
 use super::summary::{describe_integrator, describe_loop, loop_warnings};
 use super::{AdviseError, Budget, Throughput};
@@ -140,17 +140,18 @@ pub(super) fn advise_loop<M: PlantModel>(
     }
     let one = Loop::new(model, request, control)?;
     one.check()?;
-    let plant = one.plant();
+    let one = one.with_crossings();
     let mut advice = Advice::new(request);
     let budgets = one.budgets(work, request)?;
-    let combined = one.combined_effect(work, &plant, request, &budgets)?;
-    let fails_first = one.fails_first(&budgets)?;
+    let combined = one.combined_effect(work, request, &budgets)?;
+    let fails_first =
+        one.timed.fails_first(&one.timed.subjects(false), &budgets).map_err(LoopError::from)?;
     let remedies = if combined.growth < 0.0 {
         integrators(work, &one, request, &mut advice)?;
         None
     } else {
         // No integrator follows a growing motion for long.
-        Some(one.stabilising_changes(&plant, &one.stated()?))
+        Some(one.stabilising_changes(&one.timed.stated().map_err(LoopError::from)?))
     };
     let rest = State { q: [request.q[0]], v: [0.0] };
     let [held] = model.on::<f64>().acceleration(&rest);
@@ -187,7 +188,7 @@ pub(super) fn advise_loop<M: PlantModel>(
     }
     advice.finish(request, answer);
     if request.map {
-        advice.map = Some(one.map(work, looped.budgets[0].stable_up_to)?);
+        advice.map = Some(one.timed.map(work, looped.budgets[0].stable_up_to)?);
     }
     advice.looped = Some(looped);
     Ok(advice)
@@ -202,5 +203,5 @@ pub(super) fn loop_budgets<M: PlantModel>(
 ) -> Result<Vec<Budget>, AdviseError> {
     let one = Loop::new(model, request, control)?;
     one.check()?;
-    one.budgets(work, request)
+    one.with_crossings().budgets(work, request)
 }

@@ -137,8 +137,8 @@ fn read(command: &str) -> libration_analyze::Request {
 
 fn compare(model: impl PlantModel, request: &Request) {
     let one = Loop::new(model, request, request.control.as_ref().unwrap()).unwrap();
-    let stated = one.stated().unwrap();
-    let wanted = one.growth(&one.plant(), &stated).unwrap();
+    let stated = one.timed.stated().unwrap();
+    let wanted = one.timed.growth(&stated).unwrap();
     let command = one.command(&stated, request);
     let growth = libration_analyze::loop_growth(&read(&command)).unwrap().unwrap();
     let found = growth.mean_square_growth.unwrap();

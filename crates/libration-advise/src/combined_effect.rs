@@ -3,6 +3,7 @@
 use libration::State;
 use libration::analysis::{CostError, Imperfections, Plant};
 use libration::control::LqrWeights;
+use libration::linear::{LinearLoopError, LoopTiming};
 use libration_work::Work;
 
 use super::AdviseError;
@@ -11,6 +12,7 @@ use super::ensemble::{EnsembleResult, EnsembleRun, GROUPS, MEMORIES, MOST_PERIOD
 use super::loops::{AnyController, Loop, LoopError, PlantModel};
 use super::region_of_attraction::RegionOfAttraction;
 use super::request::{Measure, Request, Tolerance};
+use super::timed_loop::{StatedTiming, TimedLoop};
 
 /// The effect of all stated imperfections together.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -79,24 +81,86 @@ const COUNT: usize = 256;
 /// Kurtosis of the costs of single loops above which rare outbursts dominate. For a normal law it is 3, for 256 loops 3 ± 0.3.
 const OUTBURSTS: f64 = 6.0;
 
+impl TimedLoop {
+    /// The largest common factor of all imperfections within stability and tolerance, and the largest tried factor: up to 16, or
+    /// until the loop is too large to analyse.
+    pub(super) fn margin(
+        &self,
+        ideal_cost: f64,
+        tolerance: Tolerance,
+        ends: &[f64],
+    ) -> Result<(Option<f64>, f64), LinearLoopError> {
+        const MOST: f64 = 16.0;
+        let holds = |share: f64| -> Result<bool, LinearLoopError> {
+            let imperfections = self.scaled(share)?;
+            if imperfections.loss >= 1.0 {
+                return Ok(false);
+            }
+            Ok(match tolerance {
+                Tolerance { of: Measure::Cost, most } => {
+                    self.cost(&imperfections)? <= (1.0 + most) * ideal_cost
+                }
+                _ => self.decays(&imperfections)?,
+            })
+        };
+        // Trials with a record are expensive.
+        let (ratio, halvings) = if self.timing.record.is_some() { (1.5, 20) } else { (1.125, 40) };
+        let narrowed =
+            |mut low: f64, mut high: f64| -> Result<(Option<f64>, f64), LinearLoopError> {
+                for _ in 0..halvings {
+                    let middle = 0.5 * (low + high);
+                    if holds(middle)? { low = middle } else { high = middle }
+                }
+                Ok((Some(low), low))
+            };
+        if !holds(1.0)? {
+            return narrowed(0.0, 1.0);
+        }
+        // The tried factors include the limits of the budgets; the plant turns by a part of a radian between them.
+        let StatedTiming { input_latency, output_latency, .. } = &self.timing;
+        let longest = input_latency.iter().chain(output_latency).copied().fold(0.0, f64::max);
+        let turn = (longest * self.rate()).max(f64::MIN_POSITIVE);
+        let step = (0.25 / turn).max((MOST - 1.0) / 128.0);
+        let mut low = 1.0;
+        while low < MOST {
+            let high = (low * ratio).min(low + step).min(MOST);
+            let high = ends.iter().copied().filter(|end| *end > low).fold(high, f64::min);
+            // A clock a thousand times as fast is invalid.
+            if 1.0 + high * self.timing.skew < 1e-3 {
+                return Ok((None, low));
+            }
+            match holds(high) {
+                Ok(true) => low = high,
+                Ok(false) => return narrowed(low, high),
+                Err(
+                    LinearLoopError::Size { .. }
+                    | LinearLoopError::Turn
+                    | LinearLoopError::Latency { .. },
+                ) => return Ok((None, low)),
+                Err(error) => return Err(error),
+            }
+        }
+        Ok((None, low))
+    }
+}
+
 impl<M: PlantModel> Loop<M> {
     /// The effect of all stated imperfections.
     pub(super) fn combined_effect(
         &self,
         work: &Work<'_>,
-        plant: &Plant<'_>,
         request: &Request,
         budgets: &[Budget],
     ) -> Result<CombinedEffect, AdviseError> {
         // Slightly beyond each limit.
         let ends = budgets.iter().filter_map(|budget| budget.used.filter(|used| *used > 0.0));
         let ends: Vec<f64> = ends.map(|used| (1.0 + 1e-6) / used).collect();
+        let timed = &self.timed;
+        let timing = timed.stated().map_err(LoopError::from)?;
         let stated = self.stated()?;
-        let growth = self.growth(plant, &stated).map_err(LoopError::from)?;
-        let cost = |imperfections: &Imperfections| {
-            self.cost(plant, imperfections, self.weights).map_err(LoopError::from)
-        };
-        let (ideal_cost, all) = (cost(&Imperfections::NONE)?, cost(&stated)?);
+        let growth = timed.growth(&timing).map_err(LoopError::from)?;
+        let cost = |timing: &LoopTiming| timed.cost(timing).map_err(LoopError::from);
+        let (ideal_cost, all) = (cost(&timed.ideal())?, cost(&timing)?);
         let finite = Some(all).filter(|cost| cost.is_finite());
         let stable = growth < 0.0;
         let simulated = if stable { self.simulated_cost(work, growth, &stated)? } else { None };
@@ -104,7 +168,8 @@ impl<M: PlantModel> Loop<M> {
             if stable { self.region_of_attraction(work, growth)? } else { None };
         let (margin, margin_tried_up_to) = match stable && stated != Imperfections::NONE {
             true => {
-                let (margin, tried) = self.margin(plant, ideal_cost, request.tolerance, &ends)?;
+                let (margin, tried) =
+                    timed.margin(ideal_cost, request.tolerance, &ends).map_err(LoopError::from)?;
                 (margin, Some(tried))
             }
             false => (None, None),
@@ -118,66 +183,8 @@ impl<M: PlantModel> Loop<M> {
             cost_increase: finite.map(|cost| cost / ideal_cost - 1.0),
             simulated,
             region_of_attraction,
-            command: self.command(&stated, request),
+            command: self.command(&timing, request),
         })
-    }
-
-    /// The largest common factor of all imperfections within stability and tolerance, and the largest tried factor: up to 16, or
-    /// until the loop is too large to analyse.
-    fn margin(
-        &self,
-        plant: &Plant<'_>,
-        ideal_cost: f64,
-        tolerance: Tolerance,
-        ends: &[f64],
-    ) -> Result<(Option<f64>, f64), AdviseError> {
-        const MOST: f64 = 16.0;
-        let holds = |share: f64| -> Result<bool, LoopError> {
-            let imperfections = self.scaled(share)?;
-            if imperfections.loss >= 1.0 {
-                return Ok(false);
-            }
-            Ok(match tolerance {
-                Tolerance { of: Measure::Cost, most } => {
-                    self.cost(plant, &imperfections, self.weights)? <= (1.0 + most) * ideal_cost
-                }
-                _ => self.decays(plant, &imperfections)?,
-            })
-        };
-        // Trials with a record are expensive.
-        let (ratio, halvings) = if self.control.record.is_some() { (1.5, 20) } else { (1.125, 40) };
-        let narrowed = |mut low: f64, mut high: f64| -> Result<(Option<f64>, f64), AdviseError> {
-            for _ in 0..halvings {
-                let middle = 0.5 * (low + high);
-                if holds(middle)? { low = middle } else { high = middle }
-            }
-            Ok((Some(low), low))
-        };
-        if !holds(1.0)? {
-            return narrowed(0.0, 1.0);
-        }
-        // The tried factors include the limits of the budgets; the plant turns by a part of a radian between them.
-        let turn = (self.control.latency * plant.rate()).max(f64::MIN_POSITIVE);
-        let step = (0.25 / turn).max((MOST - 1.0) / 128.0);
-        let mut low = 1.0;
-        while low < MOST {
-            let high = (low * ratio).min(low + step).min(MOST);
-            let high = ends.iter().copied().filter(|end| *end > low).fold(high, f64::min);
-            // A clock a thousand times as fast is invalid.
-            if 1.0 + high * self.control.skew < 1e-3 {
-                return Ok((None, low));
-            }
-            match holds(high) {
-                Ok(true) => low = high,
-                Ok(false) => return narrowed(low, high),
-                Err(
-                    LoopError::Cost(CostError::Size { .. } | CostError::Turn)
-                    | LoopError::Latency { .. },
-                ) => return Ok((None, low)),
-                Err(error) => return Err(error.into()),
-            }
-        }
-        Ok((None, low))
     }
 
     /// The cost of an ensemble under noise.
@@ -221,16 +228,30 @@ impl<M: PlantModel> Loop<M> {
         let outbursts = kurtosis > OUTBURSTS;
         let held = self.plant().with_simulated_noise();
         let weights = LqrWeights { command: 0.0, ..self.weights };
-        let predicted = self.cost(&held, stated, weights).map_err(LoopError::from)?;
+        let predicted = self.simulated_prediction(&held, stated, weights)?;
         Ok(Some(SimulatedCost { loops: COUNT, periods, cost, error, predicted, outbursts }))
+    }
+
+    /// The cost of the loop in steps whose noise is held through a period.
+    fn simulated_prediction(
+        &self,
+        plant: &Plant<'_>,
+        stated: &Imperfections,
+        weights: LqrWeights,
+    ) -> Result<f64, LoopError> {
+        let cost = match self.timed.replayed(stated.jitter.rms()) {
+            Some(steps) => plant.recorded_cost(&self.linear, stated, &steps, weights),
+            None => plant.cost(&self.linear, stated, weights),
+        };
+        cost.map_err(|error: CostError| error.into())
     }
 
     /// The intensity of noise that moves the plant by 1 % of the deviation and uses at most 10 % of the command limit.
     fn small_noise(&self) -> Result<f64, AdviseError> {
-        let stated = self.stated()?;
+        let stated = self.timed.stated().map_err(LoopError::from)?;
         let square = |position, command| {
             let weights = LqrWeights { position, velocity: 0.0, command };
-            self.cost(&self.plant(), &stated, weights).map_err(LoopError::from)
+            self.cost(&stated, weights)
         };
         let moves = (0.01 * self.control.deviation).powi(2) / square(1.0, 0.0)?;
         Ok(match self.controller {

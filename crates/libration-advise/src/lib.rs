@@ -14,6 +14,8 @@ mod free_motion;
 mod integrator_choice;
 pub mod jitter_measurement;
 mod limits;
+mod loop_check;
+mod loop_command;
 mod loop_simulation;
 mod loops;
 mod motion;
@@ -27,6 +29,7 @@ mod stability_map;
 mod stability_window;
 mod summary;
 mod throughput;
+mod timed_loop;
 
 use std::ops::RangeInclusive;
 

@@ -1,10 +1,9 @@
 //! Limits of each imperfection of a loop.
 
-use libration::analysis::{CostError, Imperfections, Plant};
+use libration::linear::{LinearLoopError, LoopTiming};
 
-use super::control::Law;
-use super::loops::{Loop, LoopError, PlantModel};
 use super::request::{Measure, Tolerance};
+use super::timed_loop::{Subject, TimedLoop};
 
 /// A timing imperfection of a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -12,6 +11,8 @@ use super::request::{Measure, Tolerance};
 pub enum Imperfection {
     /// Latency of commands, in periods of the loop.
     Latency,
+    /// Latency of measurements, in periods of the loop.
+    OutputLatency,
     /// Independent jitter of sample times, as relative rms.
     Jitter,
     /// Relative error of the period, to the stated side: slow or fast.
@@ -21,14 +22,11 @@ pub enum Imperfection {
 }
 
 impl Imperfection {
-    /// All imperfections.
-    pub const ALL: [Imperfection; 4] =
-        [Imperfection::Latency, Imperfection::Jitter, Imperfection::Skew, Imperfection::Loss];
-
     /// The name in output.
     pub fn name(self) -> &'static str {
         match self {
             Imperfection::Latency => "latency",
+            Imperfection::OutputLatency => "output latency",
             Imperfection::Jitter => "jitter",
             Imperfection::Skew => "clock",
             Imperfection::Loss => "lost commands",
@@ -62,102 +60,79 @@ const LONG: f64 = 32.0;
 /// Number of bisections: to the digits of a float.
 const HALVINGS: u32 = 48;
 
-impl<M: PlantModel> Loop<M> {
-    /// An imperfection of the given size without others.
-    pub(super) fn single(&self, kind: Imperfection, size: f64) -> Result<Imperfections, LoopError> {
-        let none = Imperfections::NONE;
-        Ok(match kind {
-            Imperfection::Latency => Imperfections { latency: self.latency(size)?, ..none },
-            Imperfection::Jitter => {
-                Imperfections { jitter: self.control.jitter.with_rms(size), ..none }
-            }
-            // To the stated side; a slow clock if none is stated.
-            Imperfection::Skew => {
-                Imperfections { skew: size.abs().copysign(self.control.skew), ..none }
-            }
-            Imperfection::Loss => Imperfections { loss: size, ..none },
-        })
-    }
-
+impl TimedLoop {
     /// The largest tried size.
-    pub(super) fn largest(&self, kind: Imperfection) -> f64 {
-        match kind {
+    pub(super) fn largest(&self, subject: Subject) -> f64 {
+        let stated = self.stated_size(subject);
+        match subject.kind {
             // The stated size and some more.
-            Imperfection::Latency => {
-                let stated = self.control.latency / self.control.period;
+            Imperfection::Latency | Imperfection::OutputLatency => {
+                let stated = stated / self.period();
                 (1.5 * stated).clamp(MOST_PERIODS, TRIED_PERIODS.max(stated))
             }
             // Above it, most steps of a Gaussian law are zero or twice too long. A record may exceed it.
-            Imperfection::Jitter => (2.0 * self.control.jitter.rms()).max(1.0),
-            Imperfection::Skew if self.control.skew < 0.0 => 0.999,
+            Imperfection::Jitter => (2.0 * stated).max(1.0),
+            Imperfection::Skew if stated < 0.0 => 0.999,
             Imperfection::Skew => 8.0,
             Imperfection::Loss => 1.0 - 1e-9,
         }
     }
 
     /// The largest size with which the loop is stable, in the mean square for random imperfections.
-    pub(super) fn stable_up_to(
-        &self,
-        plant: &Plant<'_>,
-        kind: Imperfection,
-    ) -> Result<Limit, LoopError> {
-        // For state feedback the crossings of the unit circle are known.
-        if let (Imperfection::Latency, Law::Pd(_) | Law::Lqr(_)) = (kind, self.control.law) {
-            let largest = self.largest(kind);
-            let critical = plant.split_critical_latency(self.gains());
-            return Ok(match critical.filter(|critical| *critical <= largest) {
+    pub(super) fn stable_up_to(&self, subject: Subject) -> Result<Limit, LinearLoopError> {
+        if let (Imperfection::Latency, Some(crossings)) = (subject.kind, &self.crossings) {
+            let largest = self.largest(subject);
+            return Ok(match crossings.critical.filter(|critical| *critical <= largest) {
                 Some(critical) => Limit::Value(critical),
                 None => Limit::Beyond(largest),
             });
         }
-        self.holds_up_to(kind, |with| self.decays(plant, with))
+        self.holds_up_to(subject, |with| self.decays(with))
     }
 
     /// The largest size with a tolerated cost; none without a tolerance of the cost.
     pub(super) fn tolerated_up_to(
         &self,
-        plant: &Plant<'_>,
-        kind: Imperfection,
+        subject: Subject,
         tolerance: Tolerance,
-    ) -> Result<Option<Limit>, LoopError> {
+    ) -> Result<Option<Limit>, LinearLoopError> {
         if tolerance.of != Measure::Cost {
             return Ok(None);
         }
-        let ideal = self.cost(plant, &Imperfections::NONE, self.weights)?;
-        let limit = self.holds_up_to(kind, |with| {
-            Ok(self.cost(plant, with, self.weights)? <= (1.0 + tolerance.most) * ideal)
-        })?;
+        let ideal = self.cost(&self.ideal())?;
+        let limit = self
+            .holds_up_to(subject, |with| Ok(self.cost(with)? <= (1.0 + tolerance.most) * ideal))?;
         Ok(Some(limit))
     }
 
     /// The tried sizes in rising order, including the stated one.
     pub(super) fn tried_sizes(
         &self,
-        kind: Imperfection,
+        subject: Subject,
         largest: f64,
-    ) -> Result<Vec<f64>, LoopError> {
+    ) -> Result<Vec<f64>, LinearLoopError> {
         // The plant turns by a part of a radian between two sizes: most windows of instability are wider.
         const PART: f64 = 0.25;
-        let turn = self.plant().rate() * self.control.period;
+        let turn = self.rate() * self.period();
         let even = |count: u32| (1..=count).map(move |i| largest * f64::from(i) / f64::from(count));
         let fine = ((turn * largest / PART).ceil() as u32).clamp(TRIED, 32 * TRIED);
-        let mut sizes: Vec<f64> = match kind {
+        let mut sizes: Vec<f64> = match subject.kind {
             Imperfection::Skew => even(fine).collect(),
             // Each trial passes through the whole record.
-            Imperfection::Jitter if self.control.record.is_some() => even(TRIED / 4).collect(),
+            Imperfection::Jitter if self.timing.record.is_some() => even(TRIED / 4).collect(),
             Imperfection::Jitter | Imperfection::Loss => even(TRIED).collect(),
             // Quarters of a period, then whole ones.
-            Imperfection::Latency => {
+            Imperfection::Latency | Imperfection::OutputLatency => {
                 let step = |at: f64| (PART / turn).clamp(0.01, if at < 8.0 { 0.25 } else { 1.0 });
                 let next = |at: &f64| Some(at + step(*at)).filter(|next| *next < largest);
                 core::iter::successors(Some(step(0.0)), next).chain([largest]).collect()
             }
         };
-        let stated = match kind {
-            Imperfection::Latency => self.stated_latency()?.steps(),
-            Imperfection::Jitter => self.control.jitter.rms(),
-            Imperfection::Skew => self.control.skew.abs(),
-            Imperfection::Loss => self.control.loss,
+        let stated = match (subject.kind, self.stated_size(subject)) {
+            (Imperfection::Latency | Imperfection::OutputLatency, seconds) => {
+                self.latency(seconds / self.period())?.steps()
+            }
+            (_, size) => size.abs(),
         };
         sizes.extend(Some(stated).filter(|size| (0.0..largest).contains(size)));
         sizes.sort_by(f64::total_cmp);
@@ -166,25 +141,26 @@ impl<M: PlantModel> Loop<M> {
 
     fn holds_up_to(
         &self,
-        kind: Imperfection,
-        holds: impl Fn(&Imperfections) -> Result<bool, CostError>,
-    ) -> Result<Limit, LoopError> {
-        let at = |size: f64| -> Result<bool, LoopError> { Ok(holds(&self.single(kind, size)?)?) };
+        subject: Subject,
+        holds: impl Fn(&LoopTiming) -> Result<bool, LinearLoopError>,
+    ) -> Result<Limit, LinearLoopError> {
+        let at = |size: f64| holds(&self.single(subject, size)?);
+        let late = matches!(subject.kind, Imperfection::Latency | Imperfection::OutputLatency);
         if !at(0.0)? {
             return Ok(Limit::None);
         }
-        let largest = self.largest(kind);
+        let largest = self.largest(subject);
         let mut low = 0.0;
-        for size in self.tried_sizes(kind, largest)? {
+        for size in self.tried_sizes(subject, largest)? {
             if at(size)? {
                 low = size;
                 continue;
             }
             let mut high = size;
-            let replays = kind == Imperfection::Jitter && self.control.record.is_some();
+            let replays = subject.kind == Imperfection::Jitter && self.timing.record.is_some();
             for _ in 0..if replays { HALVINGS / 2 } else { HALVINGS } {
                 // Long queues are costly.
-                if kind == Imperfection::Latency && high > LONG && high - low < 1e-9 * high {
+                if late && high > LONG && high - low < 1e-9 * high {
                     break;
                 }
                 let middle = 0.5 * (low + high);

@@ -4,6 +4,7 @@ use bytemuck::Pod;
 use libration::analysis::{Imperfections, Plant};
 use libration::control::{Latency, Schedule};
 use libration::ensemble::{All, Loops, Setup};
+use libration::linear::LinearLoopError;
 use libration::system::DynSystem;
 use libration::{Float, Method, Model, State, System};
 use libration_work::Work;
@@ -145,7 +146,8 @@ impl<M: PlantModel> LoopSimulation<'_, M> {
         let acceleration = |state: &State<S, 1>| model.on::<S>().acceleration(state);
         let latency = one.stated_latency()?.steps();
         let schedule = Schedule::new(substeps as f64, 0.0, latency * substeps as f64);
-        let schedule = schedule.map_err(|_| LoopError::Latency { steps: latency })?;
+        let wrong = LoopError::from(LinearLoopError::Latency { periods: latency });
+        let schedule = schedule.map_err(|_| wrong)?;
         let setup = Setup::new(All(DynSystem(&acceleration)), method)
             .controller(one.controller)
             .delay(schedule);

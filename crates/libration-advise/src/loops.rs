@@ -3,6 +3,7 @@
 use libration::analysis::{CostError, Imperfections, LinearController, LqrError, NotLinear, Plant};
 use libration::control::controller::{Luenberger, Pid, PidGains, StateFeedback};
 use libration::control::{ControlError, Controller, Feedback, Latency, LqrWeights};
+use libration::linear::{LinearLoop, LinearLoopError, LoopTiming, Matrix};
 use libration::{Float, Model, State, System};
 use libration_settings::units;
 use libration_settings::units::Units;
@@ -10,6 +11,7 @@ use libration_settings::units::Units;
 use super::control::{Control, Correction, Law, Regulator};
 use super::operating_point::ModelAtOperatingPoint;
 use super::request::Request;
+use super::timed_loop::{LatencyCrossings, StatedTiming, TimedLoop};
 
 /// A controller chosen at run time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +75,7 @@ pub(super) struct Loop<M> {
     pub(super) model: ModelAtOperatingPoint<M, 1>,
     pub(super) controller: AnyController,
     pub(super) linear: LinearController,
+    pub(super) timed: TimedLoop,
     pub(super) control: Control,
     pub(super) weights: LqrWeights,
     /// The mass that a command of the request moves, in kg; the other numbers are per unit mass.
@@ -95,6 +98,9 @@ pub enum LoopError {
     /// The loop is too large, or a number of its timing is invalid.
     #[error(transparent)]
     Cost(#[from] CostError),
+    /// As for [`LoopError::Cost`].
+    #[error(transparent)]
+    Linear(#[from] LinearLoopError),
     /// The limit of the command is too low.
     #[error(
         "the operating point requires a command of {held} {unit}, but the limit is {most} {unit}"
@@ -106,15 +112,6 @@ pub enum LoopError {
         held: f64,
         /// The unit of both.
         unit: &'static str,
-    },
-    /// The latency is invalid.
-    #[error(
-        "the latency is {steps} periods of the loop; it must be at least 0 and at most {} periods",
-        Latency::MOST_STEPS
-    )]
-    Latency {
-        /// In periods.
-        steps: f64,
     },
 }
 
@@ -163,18 +160,31 @@ impl<M: PlantModel> Loop<M> {
         let linear = controller.linear(control.period)?;
         let weights = control.weights.map(|weights| weights.per_mass(mass));
         let weights = weights.unwrap_or_else(|| plant.energy());
-        Ok(Loop { model, controller, linear, control: control.clone(), weights, mass, units })
+        let timed = timed(&plant, &linear, control, weights)?;
+        let control = control.clone();
+        Ok(Loop { model, controller, linear, timed, control, weights, mass, units })
     }
 
-    /// The same loop with all gains of its linear map times `factor`.
-    pub(super) fn amplified(&self, factor: f64) -> Self {
-        Loop { linear: self.linear.amplified(factor), control: self.control.clone(), ..*self }
+    /// This, with all latencies at which it is stable, which are known for state feedback.
+    pub(super) fn with_crossings(mut self) -> Self {
+        if let AnyController::Feedback(own) = self.controller {
+            let plant = self.plant();
+            let windows = plant.latency_windows(own.gains).stable.into_iter();
+            let crossings = LatencyCrossings {
+                critical: plant.split_critical_latency(own.gains),
+                ends: windows.flat_map(|(from, to)| [Some(from), to]).flatten().collect(),
+            };
+            drop(plant);
+            self.timed.crossings = Some(crossings);
+        }
+        self
     }
 
-    /// The same loop with another period.
-    pub(super) fn with_period(&self, period: f64) -> Result<Self, NotLinear> {
+    /// The theory of the same loop with another period.
+    pub(super) fn with_period(&self, period: f64) -> Result<TimedLoop, LoopError> {
+        let linear = self.controller.linear(period)?;
         let control = Control { period, ..self.control.clone() };
-        Ok(Loop { linear: self.controller.linear(period)?, control, ..*self })
+        Ok(timed(&Plant::exact(self.model, ORIGIN, period), &linear, &control, self.weights)?)
     }
 
     /// The plant in exact steps of a period, linearised.
@@ -184,74 +194,50 @@ impl<M: PlantModel> Loop<M> {
 
     /// The stated imperfections.
     pub(super) fn stated(&self) -> Result<Imperfections, LoopError> {
-        self.scaled(1.0)
+        let LoopTiming { input_latency, jitter, skew, loss, .. } = self.timed.stated()?;
+        Ok(Imperfections { latency: input_latency[0], jitter, skew, loss })
     }
 
-    /// The stated imperfections times `share`.
-    pub(super) fn scaled(&self, share: f64) -> Result<Imperfections, LoopError> {
-        let Control { latency, period, jitter, skew, loss, .. } = self.control;
-        // A slow clock has fewer periods per second.
-        let periods = share * latency / (period * (1.0 + share * skew));
-        Ok(Imperfections {
-            latency: self.latency(periods)?,
-            jitter: jitter.with_rms(share * jitter.rms()),
-            skew: share * skew,
-            loss: share * loss,
-        })
-    }
-
-    /// The steps of the record with deviations scaled to `rms`; none without a record or without jitter. Negative steps are set
-    /// to zero, as for a law.
-    fn replayed(&self, rms: f64) -> Option<Vec<f64>> {
-        let record = self.control.record.as_ref().filter(|_| rms > 0.0)?;
-        let share = rms / self.control.jitter.rms();
-        Some(record.iter().map(|step| (1.0 + share * (step - 1.0)).max(0.0)).collect())
-    }
-
-    /// The growth rate of second moments per period, under the law of steps or the record.
-    pub(super) fn growth(&self, plant: &Plant<'_>, with: &Imperfections) -> Result<f64, CostError> {
-        match self.replayed(with.jitter.rms()) {
-            Some(steps) => plant.recorded_growth(&self.linear, with, &steps),
-            None => plant.mean_square_growth(&self.linear, with),
-        }
-    }
-
-    /// Whether second moments decay.
-    pub(super) fn decays(
-        &self,
-        plant: &Plant<'_>,
-        with: &Imperfections,
-    ) -> Result<bool, CostError> {
-        match self.replayed(with.jitter.rms()) {
-            Some(steps) => Ok(plant.recorded_growth(&self.linear, with, &steps)? < 0.0),
-            None => plant.mean_square_stable(&self.linear, with),
-        }
-    }
-
-    /// The stationary cost of the loop.
-    pub(super) fn cost(
-        &self,
-        plant: &Plant<'_>,
-        with: &Imperfections,
-        weights: LqrWeights,
-    ) -> Result<f64, CostError> {
-        match self.replayed(with.jitter.rms()) {
-            Some(steps) => plant.recorded_cost(&self.linear, with, &steps, weights),
-            None => plant.cost(&self.linear, with, weights),
-        }
+    /// The stationary cost with these weights; infinite where second moments grow.
+    pub(super) fn cost(&self, with: &LoopTiming, weights: LqrWeights) -> Result<f64, LoopError> {
+        let linear = self.timed.linear.with_cost(form(weights))?;
+        Ok(TimedLoop { linear, ..self.timed.clone() }.cost(with)?)
     }
 
     /// The stated latency for an even clock.
     pub(super) fn stated_latency(&self) -> Result<Latency, LoopError> {
-        self.latency(self.control.latency / self.control.period)
+        Ok(self.timed.latency(self.control.latency / self.control.period)?)
     }
+}
 
-    /// The latency of `periods` periods.
-    pub(super) fn latency(&self, periods: f64) -> Result<Latency, LoopError> {
-        // The same conversion from seconds as elsewhere.
-        let period = self.control.period;
-        Latency::of_seconds(periods * period, period).ok_or(LoopError::Latency { steps: periods })
-    }
+/// The theory of a loop around a linearised plant.
+fn timed(
+    plant: &Plant<'_>,
+    controller: &LinearController,
+    control: &Control,
+    weights: LqrWeights,
+) -> Result<TimedLoop, LinearLoopError> {
+    let linear = LinearLoop::new(
+        plant.linear(),
+        controller.discrete(),
+        control.period,
+        form(weights),
+        vec![0.0; 2],
+    )?;
+    let Control { latency, jitter, skew, loss, .. } = *control;
+    let timing = StatedTiming {
+        input_latency: vec![latency],
+        output_latency: vec![0.0; 2],
+        jitter,
+        skew,
+        loss,
+        record: control.record.clone(),
+    };
+    Ok(TimedLoop { linear, timing, crossings: None })
+}
+
+fn form(LqrWeights { position, velocity, command }: LqrWeights) -> Matrix {
+    Matrix::diagonal(&[position, velocity, command])
 }
 
 impl<M> Loop<M> {

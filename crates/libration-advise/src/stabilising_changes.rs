@@ -1,10 +1,11 @@
 //! Changes that stabilise an unstable loop.
 
-use libration::analysis::{Imperfections, Plant};
-use libration::control::Feedback;
+use libration::control::{Feedback, Latency};
+use libration::linear::LoopTiming;
 use serde::Serialize;
 
 use super::loops::{Loop, PlantModel};
+use super::timed_loop::TimedLoop;
 
 /// The smallest single changes that stabilise a loop; none if no change of the kind was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -35,17 +36,13 @@ pub(super) const NEUTRAL: f64 = 1e-12;
 /// Number of bisections of an end, which is printed to six digits.
 const HALVINGS: u32 = 30;
 
-impl<M: PlantModel> Loop<M> {
+impl TimedLoop {
     /// The changes that stabilise the loop with the imperfections `stated`.
-    pub(super) fn stabilising_changes(
-        &self,
-        plant: &Plant<'_>,
-        stated: &Imperfections,
-    ) -> StabilisingChanges {
+    pub(super) fn stabilising_changes(&self, stated: &LoopTiming) -> StabilisingChanges {
         let amplified = |factor: f64| -> bool {
-            let amplified = self.amplified(factor);
+            let Ok(amplified) = self.amplified(factor) else { return false };
             // The ideal loop must be stable too.
-            amplified.settles(plant, stated) && amplified.settles(plant, &Imperfections::NONE)
+            amplified.settles(stated) && amplified.settles(&self.ideal())
         };
         let octaves = |count: i32, sign: f64| {
             let factor = move |i: i32| (sign * f64::from(i) / f64::from(PER_OCTAVE)).exp2();
@@ -55,15 +52,21 @@ impl<M: PlantModel> Loop<M> {
         let gain_factor = change(1.0, octaves(down, -1.0), amplified)
             .or_else(|| change(1.0, octaves(up, 1.0), amplified))
             .map(|[_, stable]| stable);
-        let step = self.control.period * (1.0 + stated.skew);
-        let late = step * stated.latency.steps();
-        let with = |latency: f64| -> bool {
-            let Ok(latency) = self.latency(latency / step) else { return false };
-            self.settles(plant, &Imperfections { latency, ..*stated })
+        let step = self.period() * (1.0 + stated.skew);
+        let channels = || stated.input_latency.iter().chain(&stated.output_latency);
+        let longest = channels().map(|latency| latency.steps()).fold(0.0, f64::max);
+        // All latencies in proportion; the longest is told.
+        let with = |seconds: f64| -> bool {
+            let share = seconds / (step * longest);
+            let shorter = |latency: &Latency| self.latency(share * latency.steps());
+            let all = |channels: &[Latency]| channels.iter().map(shorter).collect::<Result<_, _>>();
+            let latencies = (all(&stated.input_latency), all(&stated.output_latency));
+            let (Ok(input_latency), Ok(output_latency)) = latencies else { return false };
+            self.settles(&LoopTiming { input_latency, output_latency, ..stated.clone() })
         };
         // From below: a separate stability window is no remedy.
-        let shares = (1..=SHARES).map(|i| late * f64::from(i) / f64::from(SHARES));
-        let latency = match late > 0.0 && with(0.0) {
+        let shares = (1..=SHARES).map(|i| step * longest * f64::from(i) / f64::from(SHARES));
+        let latency = match longest > 0.0 && with(0.0) {
             true => change(0.0, shares, |latency| !with(latency)).map(|[stable, _]| stable),
             false => None,
         };
@@ -71,26 +74,32 @@ impl<M: PlantModel> Loop<M> {
             let few = (4..8).map(|digits| rounded(end, digits, end > 1.0));
             few.into_iter().find(|factor| amplified(*factor)).unwrap_or(end)
         });
-        let gains = shown_factor.map(|factor| {
-            let Feedback { position, velocity } = self.given_gains();
-            [factor * position, factor * velocity]
-        });
-        StabilisingChanges { gain_factor, shown_factor, gains, latency }
+        StabilisingChanges { gain_factor, shown_factor, gains: None, latency }
     }
 
     /// Whether second moments decay by more than rounding; false if the loop is too large to analyse.
-    pub(super) fn settles(&self, plant: &Plant<'_>, with: &Imperfections) -> bool {
-        self.decays(plant, with) == Ok(true)
-            && self.growth(plant, with).is_ok_and(|growth| growth < -NEUTRAL)
+    pub(super) fn settles(&self, with: &LoopTiming) -> bool {
+        self.decays(with) == Ok(true) && self.growth(with).is_ok_and(|growth| growth < -NEUTRAL)
+    }
+}
+
+impl<M: PlantModel> Loop<M> {
+    /// The changes that stabilise the loop with the imperfections `stated`, with the gains in the units of the request.
+    pub(super) fn stabilising_changes(&self, stated: &LoopTiming) -> StabilisingChanges {
+        let changes = self.timed.stabilising_changes(stated);
+        let gains = changes.shown_factor.map(|factor| {
+            let Feedback { position, velocity } = self.given_gains();
+            [factor * position, factor * velocity]
+        });
+        StabilisingChanges { gains, ..changes }
     }
 
     /// The longest shorter period with which the loop and the ideal loop are stable.
     pub(super) fn stable_period(&self) -> Option<f64> {
         let stable = |period: f64| -> bool {
             let Ok(other) = self.with_period(period) else { return false };
-            let plant = other.plant();
-            other.stated().is_ok_and(|stated| other.settles(&plant, &stated))
-                && other.settles(&plant, &Imperfections::NONE)
+            other.stated().is_ok_and(|stated| other.settles(&stated))
+                && other.settles(&other.ideal())
         };
         let period = self.control.period;
         let shorter = (1..=SHARES).map(|i| period * (-f64::from(i) / 4.0).exp2());
@@ -137,11 +146,12 @@ pub(super) fn rounded_down(x: f64) -> f64 {
 impl StabilisingChanges {
     /// The changes in a sentence.
     pub(super) fn sentence(&self, gain_units: [&str; 2]) -> String {
-        let gains = self.shown_factor.zip(self.gains).map(|(factor, [position, velocity])| {
-            format!(
+        let gains = self.shown_factor.map(|factor| match self.gains {
+            Some([position, velocity]) => format!(
                 "all gains times {factor} (K_p = {position:.6} {}, K_d = {velocity:.6} {})",
                 gain_units[0], gain_units[1]
-            )
+            ),
+            None => format!("all gains times {factor}"),
         });
         let latency =
             self.latency.map(|latency| format!("a latency of at most {} s", rounded_down(latency)));

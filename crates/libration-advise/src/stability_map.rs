@@ -1,11 +1,12 @@
 //! Stability maps of a loop.
 
-use libration::analysis::Imperfections;
 use libration_report::figure::Grid;
 use libration_work::Work;
 
 use super::AdviseError;
-use super::loops::{Loop, LoopError, PlantModel};
+use super::limits::Imperfection;
+use super::loops::LoopError;
+use super::timed_loop::{Subject, TimedLoop};
 
 /// The growth of a loop over latency and gain.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,15 +23,16 @@ const SIZE: [usize; 2] = [48, 32];
 /// Largest latency of the map, in periods, unless more is stated.
 const MOST_PERIODS: f64 = 24.0;
 
-impl<M: PlantModel> Loop<M> {
+impl TimedLoop {
     /// The map of latencies from zero to 1.5 times the limit, and of gains from a quarter to four times.
     pub(super) fn map(
         &self,
         work: &Work<'_>,
         limit: Option<f64>,
     ) -> Result<StabilityMap, AdviseError> {
-        let period = self.control.period;
-        let stated = self.control.latency;
+        let period = self.period();
+        let subject = Subject { kind: Imperfection::Latency, channel: None };
+        let stated = self.stated_size(subject);
         let reach = limit.unwrap_or(8.0 * period).max(1.2 * stated).max(0.5 * period);
         let reach = (1.5 * reach).min(MOST_PERIODS * period).max(1.2 * stated);
         // Long queues are expensive: every second line suffices.
@@ -40,12 +42,10 @@ impl<M: PlantModel> Loop<M> {
         let x: Vec<f64> = (0..columns).map(|i| reach * even(i, columns)).collect();
         let y: Vec<f64> = (0..rows).map(|i| 4.0_f64.powf(2.0 * even(i, rows) - 1.0)).collect();
         let lines = work.sweep("the map of stability", &y, |&factor| {
-            let linear = self.linear.amplified(factor);
-            let plant = self.plant();
+            let scaled = self.amplified(factor).map_err(LoopError::from)?;
             let at = |latency: &f64| -> Result<f64, LoopError> {
-                let latency = self.latency(latency / period)?;
-                let late = Imperfections { latency, ..Imperfections::NONE };
-                Ok(plant.mean_square_growth(&linear, &late)? / 2.0)
+                let late = scaled.single(subject, latency / period)?;
+                Ok(scaled.growth(&late)? / 2.0)
             };
             Ok::<_, AdviseError>(x.iter().map(at).collect::<Result<Vec<f64>, LoopError>>()?)
         })?;

@@ -5,7 +5,8 @@ use num_complex::Complex64;
 
 use crate::{
     Arrival, Averages, DiscreteController, Dynamics, HeldStep, Layout, LinearLoopError,
-    LinearPlant, LoopTiming, MOST_TURN, Matrix, Period, RandomStages, Stage, Transit, eigenvalues,
+    LinearPlant, LoopTiming, MOST_TURN, Matrix, Period, RandomStages, Stage, Stationary, Transit,
+    eigenvalues,
 };
 
 /// A loop: a linear plant, and a controller that runs once per period.
@@ -21,7 +22,7 @@ pub struct LinearLoop {
 }
 
 /// Most states of a loop whose periods are drawn.
-pub(crate) const MOST_RANDOM: usize = 150;
+pub(crate) const MOST_RANDOM: usize = 100;
 
 /// Most states of a loop whose periods are all the same.
 const MOST_REPEATED: usize = 300;
@@ -112,13 +113,22 @@ impl LinearLoop {
         LinearLoop::new(plant, controller, period, cost, output_noise)
     }
 
+    /// The loop with another cost rate, a form of states and inputs.
+    ///
+    /// # Errors
+    /// As for [`LinearLoop::new`].
+    pub fn with_cost(&self, cost: Matrix) -> Result<Self, LinearLoopError> {
+        let LinearLoop { plant, controller, period, output_noise, .. } = self.clone();
+        LinearLoop::new(plant, controller, period, cost, output_noise)
+    }
+
     /// The fastest motion of the plant that lasts for a period, in rad/s.
     pub fn rate(&self) -> f64 {
         let lasts = |motion: &&Complex64| motion.re * self.period > -FORGOTTEN;
         self.motions.iter().filter(lasts).map(|motion| motion.norm()).fold(0.0, f64::max)
     }
 
-    /// The number of states of the loop: those of plant and controller, and all commands and measurements in transit.
+    /// The number of states: those of plant and controller, and all commands and measurements in transit.
     ///
     /// # Errors
     /// [`LinearLoopError`]: an invalid timing.
@@ -126,7 +136,7 @@ impl LinearLoop {
         Ok(self.layout(timing)?.size())
     }
 
-    /// The matrix of a period of mean length without losses, and the names of the states of the loop.
+    /// The matrix of a period of mean length without losses.
     ///
     /// # Errors
     /// [`LinearLoopError`]: an invalid timing.
@@ -172,9 +182,9 @@ impl LinearLoop {
             length += stage.weight * stage.length;
         }
         let cost = cost / length;
-        // Beyond the edge of stability, by less than the growth can show, a form turns negative.
         let n = self.plant.states.len();
         let deviations = (0..n).map(|i| moments[(i, i)].max(0.0).sqrt()).collect();
+        // Beyond the edge of stability, by less than the growth can show, a form turns negative.
         Ok((cost >= 0.0).then_some(Stationary { cost, deviations }))
     }
 
@@ -282,13 +292,4 @@ impl LinearLoop {
             false => Ok(layout),
         }
     }
-}
-
-/// The stationary behaviour of a loop under noise.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Stationary {
-    /// The cost per second; of a sampled plant per sample.
-    pub cost: f64,
-    /// The standard deviation of each state of the plant at the beginning of a period.
-    pub deviations: Vec<f64>,
 }

@@ -1,5 +1,6 @@
 //! Errors of loops around linear plants.
 
+use libration_core::control::Latency;
 use thiserror::Error;
 
 /// Error of a loop around a linear plant.
@@ -47,6 +48,15 @@ pub enum LinearLoopError {
         given: usize,
         /// The number of channels.
         count: usize,
+    },
+    /// A latency is invalid.
+    #[error(
+        "the latency is {periods} periods of the loop; it must be at least 0 and at most {} periods",
+        Latency::MOST_STEPS
+    )]
+    Latency {
+        /// In periods.
+        periods: f64,
     },
     /// The probability of a loss is invalid.
     #[error("the probability that commands are lost is {0}; expected at least 0 and below 1")]

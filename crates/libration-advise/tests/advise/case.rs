@@ -108,6 +108,7 @@ impl Case {
             Imperfection::Jitter => Imperfections { jitter: Jitter::Uniform(size), ..none },
             Imperfection::Skew => Imperfections { skew: size, ..none },
             Imperfection::Loss => Imperfections { loss: size, ..none },
+            Imperfection::OutputLatency => unreachable!("the loops of the catalogue have none"),
         };
         let model = Oscillator { omega2: self.omega2 };
         let plant = Plant::exact(model, State { q: [0.0], v: [0.0] }, self.period);

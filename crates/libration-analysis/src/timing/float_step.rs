@@ -2,7 +2,7 @@
 
 use libration_core::number::Wide;
 use libration_core::{Scalar, State};
-use libration_linear::{HeldStep, Matrix};
+use libration_linear::{HeldStep, LinearPlant, Matrix, Signal};
 
 use super::{Plant, ZohStep};
 
@@ -12,6 +12,23 @@ impl Plant<'_> {
         let [aq, av] = [0, 1].map(|j| self.generator.entry(1, j).to_f64());
         let a = Matrix::from_fn(2, 2, |i, j| [[0.0, 1.0], [aq, av]][i][j]);
         [a, Matrix::from_fn(2, 1, |i, _| [0.0, 1.0][i])]
+    }
+
+    /// The plant in matrices, with the states and outputs `q` and `v`, the input `u`, and noise that accelerates it.
+    pub fn linear(&self) -> LinearPlant {
+        let [a, b] = self.matrices();
+        let signals = |names: &[&str]| names.iter().map(|name| Signal::new(name, "")).collect();
+        LinearPlant {
+            a,
+            g: b.clone(),
+            b,
+            c: Matrix::identity(2),
+            d: Matrix::zeros(2, 1),
+            sampling_period: None,
+            states: signals(&["q", "v"]),
+            inputs: signals(&["u"]),
+            outputs: signals(&["q", "v"]),
+        }
     }
 
     /// A step of `seconds`, from one phase to another.

@@ -115,7 +115,7 @@ impl LinearController {
     }
 
     /// The controller in state space, with the measurements `q` and `v`.
-    pub(super) fn discrete(&self) -> DiscreteController {
+    pub fn discrete(&self) -> DiscreteController {
         let m = self.memory.len();
         DiscreteController {
             a: Matrix::from_fn(m, m, |i, j| self.memory[i][2 + j]),

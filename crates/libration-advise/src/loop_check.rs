@@ -1,0 +1,79 @@
+//! Checks of a loop before any work, and its budgets.
+
+use libration::control::Feedback;
+use libration::linear::{LinearLoopError, LoopTiming};
+use libration_work::Work;
+
+use super::budget::Budget;
+use super::loops::{Loop, LoopError, PlantModel};
+use super::request::Request;
+use super::stabilising_changes::rounded_down;
+use super::{AdviseError, TURN};
+
+impl<M: PlantModel> Loop<M> {
+    /// Fails if the loop is unstable without imperfections or its numbers are invalid, before any work.
+    pub(super) fn check(&self) -> Result<(), AdviseError> {
+        self.check_period()?;
+        let (timed, none) = (&self.timed, self.timed.ideal());
+        let stated = timed.stated().map_err(LoopError::from)?;
+        if let Err(error) = timed.decays(&stated) {
+            // A loop that is too large with jitter or losses may be analysed without them.
+            let input_latency = stated.input_latency.clone();
+            let late = LoopTiming { input_latency, ..none };
+            if timed.linear.is_stable(&late) == Ok(false) {
+                return Err(AdviseError::LatencyTooLong(self.control.latency));
+            }
+            if let LinearLoopError::Size { .. } = error {
+                let (name, value) = ("loop.latency", self.control.latency);
+                let allowed = "at most 290 periods, 90 with jitter or losses, and 20 with a record and losses";
+                return Err(AdviseError::Value { name, value, allowed });
+            }
+            return Err(LoopError::from(error).into());
+        }
+        let gains = [self.units.gains[0], self.units.gains[1]];
+        let Some(modes) = timed.unstable_modes().map_err(LoopError::from)? else { return Ok(()) };
+        if timed.settles(&stated) {
+            let remedies = self.stabilising_changes(&none).sentence(gains);
+            let help = format!(
+                "it is stable with the stated imperfections, but only in a stability window that less latency leaves: do not rely on it. Without the latency: {remedies}"
+            );
+            return Err(AdviseError::Unstable { modes, help });
+        }
+        let remedies = self.stabilising_changes(&stated);
+        let shorter = self.stable_period().map_or_else(String::new, |period| {
+            format!(" It is stable with a period of {} s.", rounded_down(period))
+        });
+        let help = format!("{}{shorter}", remedies.sentence(gains));
+        Err(AdviseError::Unstable { modes, help })
+    }
+
+    /// Fails if the period is too short or too long for the motions of the loop.
+    fn check_period(&self) -> Result<(), AdviseError> {
+        let Feedback { position, velocity } = self.gains();
+        let plant = self.plant().rate();
+        let fastest = plant.max(position.abs().sqrt()).max(velocity.abs());
+        if fastest == 0.0 {
+            // Without motion every period is valid.
+            return Ok(());
+        }
+        let period = self.control.period;
+        let (least, most) = (TURN.start() / fastest, TURN.end() / plant);
+        if period >= least && period <= most {
+            return Ok(());
+        }
+        let allowed = match most.is_finite() {
+            true => format!("{least:.3e} to {most:.3e} s"),
+            false => format!("at least {least:.3e} s"),
+        };
+        Err(AdviseError::Period { period, allowed })
+    }
+
+    pub(super) fn budgets(
+        &self,
+        work: &Work<'_>,
+        request: &Request,
+    ) -> Result<Vec<Budget>, AdviseError> {
+        let command = |timing: &LoopTiming| self.command(timing, request);
+        self.timed.budgets(work, &self.timed.subjects(false), request.tolerance, &command)
+    }
+}

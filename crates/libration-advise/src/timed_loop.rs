@@ -1,0 +1,217 @@
+//! A linear loop with its stated timing: growth, cost and modes.
+
+use libration::control::{Jitter, Latency};
+use libration::linear::{LinearLoop, LinearLoopError, LoopMode, LoopTiming};
+
+use super::limits::Imperfection;
+
+/// The timing that a request states.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct StatedTiming {
+    /// The latency of each input, in s.
+    pub(super) input_latency: Vec<f64>,
+    /// The latency of each output, in s.
+    pub(super) output_latency: Vec<f64>,
+    /// The law of the lengths of periods, with its relative rms.
+    pub(super) jitter: Jitter,
+    /// The relative error of the period: positive for a slow clock, negative for a fast one.
+    pub(super) skew: f64,
+    /// The probability that a command is lost.
+    pub(super) loss: f64,
+    /// Recorded steps, as multiples of their mean. They replace the law of `jitter`, which has their rms.
+    pub(super) record: Option<Vec<f64>>,
+}
+
+/// The latencies at which a loop is stable, from the crossings of the unit circle.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LatencyCrossings {
+    /// The smallest unstable latency in periods; none if there is none.
+    pub(super) critical: Option<f64>,
+    /// The ends of the windows of stable latencies, in periods.
+    pub(super) ends: Vec<f64>,
+}
+
+/// A linear loop with its stated timing.
+#[derive(Clone, Debug)]
+pub(super) struct TimedLoop {
+    pub(super) linear: LinearLoop,
+    pub(super) timing: StatedTiming,
+    /// What is known of the latency of the only input.
+    pub(super) crossings: Option<LatencyCrossings>,
+}
+
+/// An imperfection, of one channel or of all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Subject {
+    pub(super) kind: Imperfection,
+    /// The input or output; none for all.
+    pub(super) channel: Option<usize>,
+}
+
+/// Most outputs whose latencies have a budget each.
+const MOST_OUTPUTS: usize = 8;
+
+impl TimedLoop {
+    /// The imperfections that have a budget. Outputs without a stated latency have none if the plant is known by position and velocity
+    /// alone.
+    pub(super) fn subjects(&self, with_outputs: bool) -> Vec<Subject> {
+        let of = |kind| Subject { kind, channel: None };
+        let each = |kind, count: usize| {
+            (0..count).map(move |i| Subject { kind, channel: Some(i) }).collect::<Vec<_>>()
+        };
+        let StatedTiming { input_latency, output_latency, .. } = &self.timing;
+        let mut subjects = match input_latency.len() {
+            1 => vec![of(Imperfection::Latency)],
+            count => each(Imperfection::Latency, count),
+        };
+        if with_outputs {
+            match output_latency.len() {
+                1 => subjects.push(of(Imperfection::OutputLatency)),
+                count if count <= MOST_OUTPUTS => {
+                    subjects.extend(each(Imperfection::OutputLatency, count));
+                }
+                _ => subjects.push(of(Imperfection::OutputLatency)),
+            }
+        }
+        if self.linear.plant().sampling_period.is_none() {
+            subjects.extend([Imperfection::Jitter, Imperfection::Skew].map(of));
+        }
+        subjects.push(of(Imperfection::Loss));
+        subjects
+    }
+
+    /// The period, in s.
+    pub(super) fn period(&self) -> f64 {
+        self.linear.period()
+    }
+
+    /// No imperfections.
+    pub(super) fn ideal(&self) -> LoopTiming {
+        self.linear.ideal()
+    }
+
+    /// The stated imperfections.
+    pub(super) fn stated(&self) -> Result<LoopTiming, LinearLoopError> {
+        self.scaled(1.0)
+    }
+
+    /// The stated imperfections times `share`.
+    pub(super) fn scaled(&self, share: f64) -> Result<LoopTiming, LinearLoopError> {
+        let StatedTiming { input_latency, output_latency, jitter, skew, loss, .. } = &self.timing;
+        // A slow clock has fewer periods per second.
+        let step = self.period() * (1.0 + share * skew);
+        let late = |seconds: &f64| self.latency(share * seconds / step);
+        Ok(LoopTiming {
+            input_latency: input_latency.iter().map(late).collect::<Result<_, _>>()?,
+            output_latency: output_latency.iter().map(late).collect::<Result<_, _>>()?,
+            jitter: jitter.with_rms(share * jitter.rms()),
+            skew: share * skew,
+            loss: share * loss,
+        })
+    }
+
+    /// An imperfection of the given size without others.
+    pub(super) fn single(
+        &self,
+        subject: Subject,
+        size: f64,
+    ) -> Result<LoopTiming, LinearLoopError> {
+        let mut timing = self.ideal();
+        match subject.kind {
+            Imperfection::Latency => self.delay(&mut timing.input_latency, subject, size)?,
+            Imperfection::OutputLatency => self.delay(&mut timing.output_latency, subject, size)?,
+            Imperfection::Jitter => timing.jitter = self.timing.jitter.with_rms(size),
+            // To the stated side; a slow clock if none is stated.
+            Imperfection::Skew => timing.skew = size.abs().copysign(self.timing.skew),
+            Imperfection::Loss => timing.loss = size,
+        }
+        Ok(timing)
+    }
+
+    fn delay(
+        &self,
+        channels: &mut [Latency],
+        subject: Subject,
+        periods: f64,
+    ) -> Result<(), LinearLoopError> {
+        let latency = self.latency(periods)?;
+        match subject.channel {
+            Some(i) => channels[i] = latency,
+            None => channels.fill(latency),
+        }
+        Ok(())
+    }
+
+    /// The stated size of an imperfection: in s for a latency.
+    pub(super) fn stated_size(&self, subject: Subject) -> f64 {
+        let StatedTiming { input_latency, output_latency, jitter, skew, loss, .. } = &self.timing;
+        let late = |channels: &[f64]| match subject.channel {
+            Some(i) => channels[i],
+            None => channels.iter().copied().fold(0.0, f64::max),
+        };
+        match subject.kind {
+            Imperfection::Latency => late(input_latency),
+            Imperfection::OutputLatency => late(output_latency),
+            Imperfection::Jitter => jitter.rms(),
+            Imperfection::Skew => *skew,
+            Imperfection::Loss => *loss,
+        }
+    }
+
+    /// The latency of `periods` periods.
+    pub(super) fn latency(&self, periods: f64) -> Result<Latency, LinearLoopError> {
+        // The same conversion from seconds as elsewhere.
+        let period = self.period();
+        Latency::of_seconds(periods * period, period).ok_or(LinearLoopError::Latency { periods })
+    }
+
+    /// The steps of the record with deviations scaled to `rms`; none without a record or without jitter. Negative steps are set
+    /// to zero, as for a law.
+    pub(super) fn replayed(&self, rms: f64) -> Option<Vec<f64>> {
+        let record = self.timing.record.as_ref().filter(|_| rms > 0.0)?;
+        let share = rms / self.timing.jitter.rms();
+        Some(record.iter().map(|step| (1.0 + share * (step - 1.0)).max(0.0)).collect())
+    }
+
+    /// The growth rate of second moments per period, under the law of steps or the record.
+    pub(super) fn growth(&self, with: &LoopTiming) -> Result<f64, LinearLoopError> {
+        match self.replayed(with.jitter.rms()) {
+            Some(steps) => self.linear.recorded_growth(with, &steps),
+            None => self.linear.growth(with),
+        }
+    }
+
+    /// Whether second moments decay.
+    pub(super) fn decays(&self, with: &LoopTiming) -> Result<bool, LinearLoopError> {
+        match self.replayed(with.jitter.rms()) {
+            Some(steps) => Ok(self.linear.recorded_growth(with, &steps)? < 0.0),
+            None => self.linear.is_stable(with),
+        }
+    }
+
+    /// The stationary cost of the loop; infinite where second moments grow.
+    pub(super) fn cost(&self, with: &LoopTiming) -> Result<f64, LinearLoopError> {
+        match self.replayed(with.jitter.rms()) {
+            Some(steps) => self.linear.recorded_cost(with, &steps),
+            None => Ok(self.linear.stationary(with)?.map_or(f64::INFINITY, |found| found.cost)),
+        }
+    }
+
+    /// The mode that decays last.
+    pub(super) fn slowest_mode(&self, with: &LoopTiming) -> Result<LoopMode, LinearLoopError> {
+        let none = LoopMode { radius: 0.0, angle: 0.0, states: Vec::new() };
+        Ok(self.linear.modes(with, 1)?.into_iter().next().unwrap_or(none))
+    }
+
+    /// The same loop with all gains times `factor`.
+    pub(super) fn amplified(&self, factor: f64) -> Result<Self, LinearLoopError> {
+        let controller = self.linear.controller().amplified(factor);
+        let linear = self.linear.with_controller(controller)?;
+        Ok(TimedLoop { linear, timing: self.timing.clone(), crossings: None })
+    }
+
+    /// The fastest motion of the plant, in rad/s.
+    pub(super) fn rate(&self) -> f64 {
+        self.linear.rate()
+    }
+}

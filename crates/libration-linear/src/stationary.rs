@@ -1,0 +1,10 @@
+//! The stationary behaviour of a loop under noise.
+
+/// The stationary behaviour of a loop under noise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stationary {
+    /// The cost per second; of a sampled plant per sample.
+    pub cost: f64,
+    /// The standard deviation of each state of the plant at the beginning of a period.
+    pub deviations: Vec<f64>,
+}
