@@ -5,6 +5,7 @@
 mod budgets;
 mod case;
 mod edges;
+mod linear_reference;
 mod page;
 mod requests;
 mod steps;

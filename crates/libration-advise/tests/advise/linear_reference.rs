@@ -1,0 +1,85 @@
+//! Loops around linear plants against a program in NumPy and SciPy that was written from their definition alone.
+
+use libration::control::{Jitter, Latency};
+use libration::linear::{
+    DiscreteController, LinearLoop, LinearPlant, LoopTiming, Matrix, log_spectral_radius,
+};
+use serde_json::Value;
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(number).collect()
+}
+
+fn matrix(value: &Value, columns: usize) -> Matrix {
+    let rows: Vec<Vec<f64>> = value.as_array().unwrap().iter().map(numbers).collect();
+    match rows.is_empty() {
+        true => Matrix::zeros(0, columns),
+        false => Matrix::from_rows(&rows).unwrap(),
+    }
+}
+
+/// The loop of a case, and its timing.
+fn read(case: &Value) -> (LinearLoop, LoopTiming) {
+    let of = |name: &str| matrix(&case[name], 0);
+    let plant = LinearPlant::new(of("a"), of("b"), of("c"), of("d")).unwrap();
+    let plant = plant.with_noise(of("g")).unwrap();
+    let (n, m, p) = (plant.states.len(), plant.inputs.len(), plant.outputs.len());
+    let own = &case["controller"];
+    let memory = own["a"].as_array().unwrap().len();
+    let controller = DiscreteController {
+        a: matrix(&own["a"], 0),
+        b: matrix(&own["b"], p),
+        c: matrix(&own["c"], memory),
+        d: matrix(&own["d"], p),
+    };
+    let mut cost = Matrix::zeros(n + m, n + m);
+    cost.set_block((0, 0), &of("state_weights"));
+    cost.set_block((n, n), &of("input_weights"));
+    let period = number(&case["period"]);
+    let linear =
+        LinearLoop::new(plant, controller, period, cost, numbers(&case["output_noise"])).unwrap();
+    let late = |name: &str| -> Vec<Latency> {
+        numbers(&case[name]).into_iter().map(|steps| Latency::of_steps(steps).unwrap()).collect()
+    };
+    let rms = number(&case["jitter"]);
+    let timing = LoopTiming {
+        input_latency: late("input_latency"),
+        output_latency: late("output_latency"),
+        jitter: match case["law"].as_str().unwrap() {
+            "uniform" => Jitter::Uniform(rms),
+            _ => Jitter::Gaussian(rms),
+        },
+        skew: number(&case["skew"]),
+        loss: number(&case["loss"]),
+    };
+    (linear, timing)
+}
+
+#[test]
+fn radius_growth_cost_and_deviations_are_those_of_a_program_from_the_definition() {
+    let reference: Value =
+        serde_json::from_str(include_str!("../reference/linear_loops.json")).unwrap();
+    let cases = reference["cases"].as_array().unwrap();
+    assert_eq!(cases.len(), 60);
+    for (i, case) in cases.iter().enumerate() {
+        let (linear, timing) = read(case);
+        let close = |found: f64, wanted: f64, what: &str| {
+            let off = (found - wanted).abs() / wanted.abs().max(1e-3);
+            assert!(off < 1e-8, "{i} {what}: {found} {wanted}, {off:e}");
+        };
+        let radius = log_spectral_radius(&linear.period_matrix(&timing).unwrap()).exp();
+        close(radius, number(&case["spectral_radius"]), "radius");
+        close(linear.growth(&timing).unwrap(), number(&case["growth"]), "growth");
+        let found = linear.stationary(&timing).unwrap();
+        assert_eq!(found.is_none(), case["cost"].is_null(), "{i}");
+        let Some(found) = found else { continue };
+        close(found.cost, number(&case["cost"]), "cost");
+        for (found, wanted) in found.deviations.into_iter().zip(numbers(&case["deviations"])) {
+            close(found, wanted, "deviation");
+        }
+    }
+}
