@@ -17,15 +17,11 @@ pub struct LinearLoop {
     period: f64,
     cost: Matrix,
     output_noise: Vec<f64>,
+    /// Whether the noise of the plant is held through each period.
+    holds_noise: bool,
     /// The eigenvalues of the plant, in 1/s.
     motions: Vec<Complex64>,
 }
-
-/// Most states of a loop whose periods are drawn.
-pub(crate) const MOST_RANDOM: usize = 100;
-
-/// Most states of a loop whose periods are all the same.
-const MOST_REPEATED: usize = 300;
 
 /// Decay within a period after which a motion no longer counts, `−ln` of a rounding.
 const FORGOTTEN: f64 = 37.0;
@@ -81,7 +77,28 @@ impl LinearLoop {
             None => eigenvalues(&plant.a).unwrap_or_default(),
             Some(_) => Vec::new(),
         };
-        Ok(LinearLoop { plant, controller, period, cost, output_noise, motions })
+        Ok(LinearLoop {
+            plant,
+            controller,
+            period,
+            cost,
+            output_noise,
+            holds_noise: false,
+            motions,
+        })
+    }
+
+    /// Whether the noise of the plant is held through each period.
+    pub(crate) fn holds_noise(&self) -> bool {
+        self.holds_noise
+    }
+
+    pub(crate) fn cost(&self) -> &Matrix {
+        &self.cost
+    }
+
+    pub(crate) fn output_noise(&self) -> &[f64] {
+        &self.output_noise
     }
 
     /// The plant.
@@ -120,6 +137,12 @@ impl LinearLoop {
     pub fn with_cost(&self, cost: Matrix) -> Result<Self, LinearLoopError> {
         let LinearLoop { plant, controller, period, output_noise, .. } = self.clone();
         LinearLoop::new(plant, controller, period, cost, output_noise)
+    }
+
+    /// The loop with noise of the plant that is held through each period, and with the cost of the states at the beginning of each
+    /// period: what a simulation measures.
+    pub fn with_held_noise(&self) -> Self {
+        LinearLoop { holds_noise: true, ..self.clone() }
     }
 
     /// The fastest motion of the plant that lasts for a period, in rad/s.
@@ -211,15 +234,17 @@ impl LinearLoop {
         let LinearPlant { a, b, c, d, g, sampling_period, .. } = &self.plant;
         let noise = g.congruence(&Matrix::identity(g.columns()));
         let (n, m) = (a.rows(), b.columns());
-        let sampled = |_: f64, _: [f64; 2]| {
-            let mut gamma = Matrix::zeros(n, m + g.columns());
-            gamma.set_block((0, 0), b);
-            gamma.set_block((0, m), g);
-            HeldStep { phi: a.clone(), gamma }
+        let mut driven = Matrix::zeros(n, m + g.columns());
+        driven.set_block((0, 0), b);
+        driven.set_block((0, m), g);
+        let step = |seconds: f64, [from, to]: [f64; 2]| match sampling_period {
+            None => HeldStep::exact(a, &driven, (to - from) * seconds),
+            Some(_) => HeldStep { phi: a.clone(), gamma: driven.clone() },
         };
-        let dynamics = match sampling_period {
-            None => Dynamics::Exact { a, b, noise: &noise },
-            Some(_) => Dynamics::Stepped { step: &sampled, noises: g.columns(), variance: 1.0 },
+        let (noises, white) = (g.columns(), sampling_period.is_none());
+        let dynamics = match white && !self.holds_noise {
+            true => Dynamics::Exact { a, b, noise: &noise },
+            false => Dynamics::Stepped { step: &step, noises, white },
         };
         let period = Period {
             dynamics,
@@ -242,54 +267,5 @@ impl LinearLoop {
             }
         }
         Ok(stages)
-    }
-
-    /// The coordinates of the loop, after all numbers of the timing are checked.
-    fn layout(&self, timing: &LoopTiming) -> Result<Layout, LinearLoopError> {
-        let LoopTiming { input_latency, output_latency, jitter, skew, loss } = timing;
-        let (m, p) = (self.plant.inputs.len(), self.plant.outputs.len());
-        for (of, given, count) in
-            [("inputs", input_latency.len(), m), ("outputs", output_latency.len(), p)]
-        {
-            if given != count {
-                return Err(LinearLoopError::Latencies { of, given, count });
-            }
-        }
-        if !(0.0..1.0).contains(loss) {
-            return Err(LinearLoopError::Loss(*loss));
-        }
-        if !(skew.is_finite() && *skew > -1.0) {
-            return Err(LinearLoopError::Skew(*skew));
-        }
-        let mut noises = 0;
-        if self.plant.sampling_period.is_some() {
-            let split = |latency: &Latency| latency.part() > 0.0;
-            if input_latency.iter().chain(output_latency).any(split) {
-                return Err(LinearLoopError::BetweenSamples("a latency of a part of a period"));
-            }
-            if jitter.rms() > 0.0 || *skew != 0.0 {
-                return Err(LinearLoopError::BetweenSamples("another period"));
-            }
-            noises = self.plant.g.columns();
-        }
-        let direct = |i: usize| (0..p).any(|j| self.plant.d[(j, i)] != 0.0);
-        let inputs: Vec<Transit> = input_latency
-            .iter()
-            .enumerate()
-            .map(|(i, latency)| {
-                let transit = Transit::of_commands(*latency, *loss > 0.0);
-                // An output that is measured at the beginning of a period sees the command that acts.
-                Transit { acts_on: transit.acts_on || direct(i), ..transit }
-            })
-            .collect();
-        let outputs: Vec<Transit> =
-            output_latency.iter().map(|latency| Transit::of_measurements(*latency)).collect();
-        let sizes = [self.plant.states.len(), self.controller.memory(), noises];
-        let layout = Layout::new(sizes, &inputs, &outputs);
-        let most = if timing.repeats() { MOST_REPEATED } else { MOST_RANDOM };
-        match layout.size() > most {
-            true => Err(LinearLoopError::Size { size: layout.size(), most }),
-            false => Ok(layout),
-        }
     }
 }

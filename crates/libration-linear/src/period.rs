@@ -2,33 +2,7 @@
 
 use libration_core::control::Latency;
 
-use crate::{DiscreteController, HeldStep, Layout, Matrix, Stage, StepIntegrals};
-
-/// A step of so many seconds, from one phase to another, each from 0 to 1.
-pub type SplitStep<'a> = &'a dyn Fn(f64, [f64; 2]) -> HeldStep;
-
-/// The motion of a plant under held commands.
-#[derive(Clone, Copy)]
-pub enum Dynamics<'a> {
-    /// Exact steps of `ẋ = Ax + Bu` with white noise. The cost is an integral over continuous time.
-    Exact {
-        /// States × states.
-        a: &'a Matrix,
-        /// States × inputs.
-        b: &'a Matrix,
-        /// The intensity of the noise, states × states.
-        noise: &'a Matrix,
-    },
-    /// Steps of any kind. The state at the beginning of a period counts for all of it, as in a simulation.
-    Stepped {
-        /// The step. The last columns of its `Γ` are the effect of noise that is held through a period.
-        step: SplitStep<'a>,
-        /// The number of noises.
-        noises: usize,
-        /// The variance of each: `1/h` of white noise that is held for `h` seconds.
-        variance: f64,
-    },
-}
+use crate::{DiscreteController, Dynamics, HeldStep, Layout, Matrix, Stage, StepIntegrals};
 
 /// The command that takes over in a period at an input.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,7 +79,13 @@ impl Period<'_> {
         let (control, noise) = self.control(arrivals);
         course.pass(&control);
         course.add((0, 0), &noise);
-        if let Dynamics::Stepped { noises, variance, .. } = self.dynamics {
+        if let Dynamics::Stepped { noises, white, .. } = self.dynamics {
+            let variance = match white {
+                false => 1.0,
+                true if seconds > 0.0 => seconds.recip(),
+                // A period of length zero moves nothing.
+                true => 0.0,
+            };
             let first = layout.noises().start;
             course.add((first, first), &Matrix::identity(noises).scaled(variance));
         }

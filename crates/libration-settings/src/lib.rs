@@ -9,6 +9,7 @@ mod file;
 pub mod initial_value_problem;
 mod instruction_set;
 pub mod limits;
+pub mod linear_loop;
 pub mod optional_path;
 pub mod suggestions;
 pub mod units;

@@ -68,11 +68,7 @@ impl<'p> Stages<'p> {
         };
         let dynamics = match self.plant.exact {
             true => Dynamics::Exact { a: &self.a, b: &self.b, noise: &noise },
-            // A period of length zero moves nothing.
-            false => {
-                let variance = if seconds > 0.0 { seconds.recip() } else { 0.0 };
-                Dynamics::Stepped { step: &step, noises: 1, variance }
-            }
+            false => Dynamics::Stepped { step: &step, noises: 1, white: true },
         };
         let [c, d] = [Matrix::identity(2), Matrix::zeros(2, 1)];
         let period = Period {

@@ -1,0 +1,199 @@
+//! Simulation of loops, event by event.
+
+use std::collections::VecDeque;
+
+use libration_core::control::{Jitter, Latency};
+use libration_core::random::{Address, Purpose};
+
+use crate::{LinearLoop, LoopTiming, Matrix};
+
+/// A simulation of a loop with a timing, under noise that is held through each period.
+///
+/// It knows nothing of period matrices: states move by Taylor's series of the equations of motion, and commands and measurements
+/// wait in queues.
+#[derive(Clone, Copy, Debug)]
+pub struct Simulation<'a> {
+    /// The loop.
+    pub linear: &'a LinearLoop,
+    /// Its timing.
+    pub timing: &'a LoopTiming,
+    /// Lengths of periods relative to their mean, over and over, in place of the jitter.
+    pub record: Option<&'a [f64]>,
+    /// The seed of all random numbers.
+    pub seed: u64,
+}
+
+/// One loop.
+struct Trajectory<'a> {
+    simulation: Simulation<'a>,
+    number: u64,
+    step: u64,
+    x: Vec<f64>,
+    memory: Vec<f64>,
+    /// The latest command first.
+    commands: VecDeque<Vec<f64>>,
+    acting: Vec<f64>,
+    /// Of each output its measurements, the latest first.
+    measured: Vec<VecDeque<f64>>,
+    counted: u64,
+    cost: f64,
+}
+
+impl Simulation<'_> {
+    /// The mean cost rate of loop `number` over `periods` periods, after `before` periods from rest, with the states at the beginning
+    /// of each period: that of [`LinearLoop::with_held_noise`].
+    pub fn mean_cost(&self, number: u64, before: u64, periods: u64) -> f64 {
+        let plant = self.linear.plant();
+        let longest = |latencies: &[Latency]| {
+            latencies.iter().map(|latency| latency.whole() as usize + 1).max().unwrap_or(1)
+        };
+        let (n, m) = (plant.states.len(), plant.inputs.len());
+        let waiting = |latency: &Latency| VecDeque::from(vec![0.0; latency.whole() as usize + 2]);
+        let mut one = Trajectory {
+            simulation: *self,
+            number,
+            step: 0,
+            x: vec![0.0; n],
+            memory: vec![0.0; self.linear.controller().memory()],
+            commands: vec![vec![0.0; m]; longest(&self.timing.input_latency)].into(),
+            acting: vec![0.0; m],
+            measured: self.timing.output_latency.iter().map(waiting).collect(),
+            counted: 0,
+            cost: 0.0,
+        };
+        (0..before).for_each(|_| one.advance());
+        (one.counted, one.cost) = (0, 0.0);
+        (0..periods).for_each(|_| one.advance());
+        one.cost / one.counted as f64
+    }
+}
+
+impl Trajectory<'_> {
+    fn address(&self, purpose: Purpose, step: u64) -> Address {
+        Address { seed: self.simulation.seed, trajectory: self.number, step, purpose }
+    }
+
+    /// `count` normal deviates.
+    fn deviates(&self, purpose: Purpose, count: usize) -> Vec<f64> {
+        let pairs = count.div_ceil(2) as u64;
+        let draw = |k| self.address(purpose, self.step * pairs + k).gaussian();
+        let mut all: Vec<f64> = (0..pairs).flat_map(draw).collect();
+        all.truncate(count);
+        all
+    }
+
+    /// The length of this period in s.
+    fn length(&self) -> f64 {
+        let Simulation { linear, timing, record, .. } = self.simulation;
+        let relative = match (record, timing.jitter) {
+            (Some(record), _) => record[((self.step + self.number) % record.len() as u64) as usize],
+            (None, Jitter::Gaussian(rms)) => {
+                1.0 + rms * self.address(Purpose::StepTime, self.step).gaussian()[0]
+            }
+            (None, Jitter::Uniform(rms)) => {
+                let [u, _] = self.address(Purpose::StepTime, self.step).uniform();
+                1.0 + rms * 3.0_f64.sqrt() * (2.0 * u - 1.0)
+            }
+        };
+        linear.period() * (1.0 + timing.skew) * relative.max(0.0)
+    }
+
+    fn output(&self, j: usize, noise: f64) -> f64 {
+        let plant = self.simulation.linear.plant();
+        let dot = |row: &[f64], x: &[f64]| row.iter().zip(x).map(|(a, b)| a * b).sum::<f64>();
+        dot(plant.c.row(j), &self.x) + dot(plant.d.row(j), &self.acting) + noise
+    }
+
+    fn measure(&mut self, j: usize, noise: f64) {
+        let value = self.output(j, noise);
+        self.measured[j].push_front(value);
+        self.measured[j].pop_back();
+    }
+
+    fn advance(&mut self) {
+        let Simulation { linear, timing, .. } = self.simulation;
+        let LoopTiming { input_latency, output_latency, loss, .. } = timing;
+        let (plant, controller) = (linear.plant(), linear.controller());
+        let seconds = self.length();
+        let lost = *loss > 0.0 && self.address(Purpose::Latency, self.step).uniform()[0] < *loss;
+        let noise = self.deviates(Purpose::Observation, output_latency.len());
+        let noise: Vec<f64> = noise
+            .iter()
+            .zip(linear.output_noise())
+            .map(|(x, variance)| x * variance.sqrt())
+            .collect();
+        // Those of this moment come in at once.
+        let mut seen = Vec::with_capacity(output_latency.len());
+        for (j, latency) in output_latency.iter().enumerate() {
+            if latency.part() == 0.0 {
+                self.measure(j, noise[j]);
+            }
+            seen.push(self.measured[j][latency.whole() as usize]);
+        }
+        let add = |a: Vec<f64>, b: Vec<f64>| a.into_iter().zip(b).map(|(a, b)| a + b).collect();
+        let command = add(controller.c.apply(&self.memory), controller.d.apply(&seen));
+        self.memory = add(controller.a.apply(&self.memory), controller.b.apply(&seen));
+        self.commands.push_front(command);
+        self.commands.pop_back();
+        let held: Vec<f64> = {
+            let sampled = plant.sampling_period.is_some();
+            let size = if sampled || seconds == 0.0 { 1.0 } else { seconds.sqrt().recip() };
+            let draws = self.deviates(Purpose::Disturbance, plant.g.columns());
+            plant.g.apply(&draws.iter().map(|x| size * x).collect::<Vec<_>>())
+        };
+        let sampled_at = |latency: &Latency| (latency.part() > 0.0).then(|| 1.0 - latency.part());
+        let mut phases: Vec<f64> = input_latency.iter().map(|latency| latency.part()).collect();
+        phases.extend(output_latency.iter().filter_map(sampled_at));
+        phases.extend([0.0, 1.0]);
+        phases.sort_by(f64::total_cmp);
+        phases.dedup();
+        let start = self.x.clone();
+        for (k, &phase) in phases.iter().enumerate() {
+            for (j, latency) in output_latency.iter().enumerate() {
+                if sampled_at(latency) == Some(phase) {
+                    self.measure(j, noise[j]);
+                }
+            }
+            for (i, latency) in input_latency.iter().enumerate() {
+                if latency.part() == phase && !lost {
+                    self.acting[i] = self.commands[latency.whole() as usize][i];
+                }
+            }
+            let Some(&next) = phases.get(k + 1) else { break };
+            let counted: Vec<f64> = start.iter().chain(&self.acting).copied().collect();
+            self.cost += (next - phase) * form(linear.cost(), &counted);
+            match plant.sampling_period {
+                Some(_) => {
+                    let moved: Vec<f64> = add(plant.a.apply(&self.x), plant.b.apply(&self.acting));
+                    self.x = add(moved, held.clone());
+                }
+                None => {
+                    let push: Vec<f64> = add(plant.b.apply(&self.acting), held.clone());
+                    flow(&plant.a, &mut self.x, &push, (next - phase) * seconds);
+                }
+            }
+        }
+        self.counted += 1;
+        self.step += 1;
+    }
+}
+
+fn form(form: &Matrix, x: &[f64]) -> f64 {
+    form.apply(x).iter().zip(x).map(|(a, b)| a * b).sum()
+}
+
+/// `ẋ = Ax + push` for so many seconds, by Taylor's series of short steps.
+fn flow(a: &Matrix, x: &mut [f64], push: &[f64], seconds: f64) {
+    let parts = (a.row_sum_norm() * seconds).ceil().max(1.0);
+    let h = seconds / parts;
+    for _ in 0..parts as u64 {
+        let mut term: Vec<f64> = a.apply(x).iter().zip(push).map(|(x, y)| h * (x + y)).collect();
+        for k in 2..30 {
+            x.iter_mut().zip(&term).for_each(|(x, y)| *x += y);
+            if term.iter().zip(x.iter()).all(|(y, x)| y.abs() <= 1e-17 * x.abs()) {
+                break;
+            }
+            term = a.apply(&term).iter().map(|y| y * h / f64::from(k)).collect();
+        }
+    }
+}

@@ -1,0 +1,316 @@
+//! Tables of controllers of linear plants.
+
+use libration::analysis::LinearController;
+use libration::control::controller::{Pid, PidGains};
+use libration::linear::{CostWeights, DesignError, DiscreteController, LinearPlant, Matrix};
+use serde::Deserialize;
+
+use super::part_table::find;
+use super::plant_table::{Rows, matrix};
+use crate::{Fault, Number};
+
+/// A controller: one of the tables `[controller.…]`.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(rename_all = "kebab-case")]
+pub enum LinearControllerTable {
+    /// `u = −K x` with the gain `K`, inputs × states.
+    StateFeedback(StateFeedbackTable),
+    /// The linear-quadratic regulator of the state.
+    Lqr(WeightsTable),
+    /// The regulator of a state that a Kalman filter estimates from the outputs.
+    Lqg(LqgTable),
+    /// `m' = A m + B y` and `u = C m + D y`.
+    StateSpace(StateSpaceTable),
+    /// PID controllers, each from an output to an input.
+    Pid(Vec<PidTable>),
+}
+
+/// State feedback.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct StateFeedbackTable {
+    gain: Rows,
+}
+
+/// Weights of a regulator: a matrix, or its diagonal.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct WeightsTable {
+    /// Of the states.
+    pub states: Weights,
+    /// Of the inputs.
+    pub inputs: Weights,
+}
+
+/// Weights of a regulator and noise of the measurements.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct LqgTable {
+    states: Weights,
+    inputs: Weights,
+    /// The covariance of the noise of a sample, or its diagonal.
+    measurement: Weights,
+}
+
+/// A controller in state space.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct StateSpaceTable {
+    #[serde(default)]
+    a: Rows,
+    #[serde(default)]
+    b: Rows,
+    #[serde(default)]
+    c: Rows,
+    d: Rows,
+}
+
+/// A PID controller from an output to an input, which holds the output at zero.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct PidTable {
+    output: String,
+    input: String,
+    proportional: Number,
+    #[serde(default = "zero")]
+    integral: Number,
+    #[serde(default = "zero")]
+    derivative: Number,
+    #[serde(default = "zero")]
+    filter: Number,
+}
+
+fn zero() -> Number {
+    Number(0.0)
+}
+
+/// A symmetric matrix, or its diagonal.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(untagged)]
+pub enum Weights {
+    /// The diagonal.
+    Diagonal(Vec<Number>),
+    /// All rows.
+    Matrix(Rows),
+}
+
+impl Weights {
+    /// The matrix.
+    ///
+    /// # Errors
+    /// [`Fault`]: rows of different lengths.
+    pub fn matrix(&self, key: &'static str) -> Result<Matrix, Fault> {
+        match self {
+            Weights::Diagonal(entries) => {
+                Ok(Matrix::diagonal(&entries.iter().map(|x| x.0).collect::<Vec<_>>()))
+            }
+            Weights::Matrix(rows) => matrix(key, rows),
+        }
+    }
+}
+
+/// A controller and what its design knows.
+#[derive(Clone, Debug)]
+pub struct Design {
+    /// The plant with the outputs that the controller measures.
+    pub plant: LinearPlant,
+    /// The controller.
+    pub controller: DiscreteController,
+    /// The weights of the design.
+    pub weights: Option<CostWeights>,
+    /// The gain of the state or its estimate.
+    pub gain: Option<Matrix>,
+    /// The gain of the estimator.
+    pub filter: Option<Matrix>,
+    /// The variances of the measurements.
+    pub measurement: Vec<f64>,
+    /// The controller in words.
+    pub description: String,
+}
+
+impl LinearControllerTable {
+    /// The controller of `plant` with a period of `period` seconds. Feedback of the state measures all states, the others measure the
+    /// outputs.
+    ///
+    /// # Errors
+    /// [`Fault`]: matrices that do not fit, or a design that fails.
+    pub fn design(&self, plant: &LinearPlant, period: f64) -> Result<Design, Fault> {
+        match self {
+            LinearControllerTable::StateFeedback(table) => {
+                let gain = matrix("controller.state-feedback.gain", &table.gain)?;
+                let shape = [plant.inputs.len(), plant.states.len()];
+                if [gain.rows(), gain.columns()] != shape {
+                    let [m, n] = shape;
+                    let message = format!(
+                        "`gain` is {} × {}; expected {m} × {n}: inputs × states",
+                        gain.rows(),
+                        gain.columns()
+                    );
+                    return Err(Fault::new("controller.state-feedback.gain", message));
+                }
+                Ok(state_feedback(plant, gain, None, "state feedback"))
+            }
+            LinearControllerTable::Lqr(WeightsTable { states, inputs }) => {
+                let weights = CostWeights {
+                    states: states.matrix("controller.lqr.states")?,
+                    inputs: inputs.matrix("controller.lqr.inputs")?,
+                };
+                let solution = plant.design_regulator(&weights, period);
+                let gain = solution.map_err(|error| design_fault("controller.lqr", &error))?.gain;
+                Ok(state_feedback(plant, gain, Some(weights), "LQR, designed"))
+            }
+            LinearControllerTable::Lqg(LqgTable { states, inputs, measurement }) => {
+                let weights = CostWeights {
+                    states: states.matrix("controller.lqg.states")?,
+                    inputs: inputs.matrix("controller.lqg.inputs")?,
+                };
+                let noise = measurement.matrix("controller.lqg.measurement")?;
+                let wrong = |error: DesignError| design_fault("controller.lqg", &error);
+                let gain = plant.design_regulator(&weights, period).map_err(wrong)?.gain;
+                let filter = plant.design_filter(&noise, period).map_err(wrong)?;
+                Ok(Design {
+                    plant: plant.clone(),
+                    controller: plant.estimated_feedback(&gain, &filter, period),
+                    weights: Some(weights),
+                    gain: Some(gain),
+                    filter: Some(filter),
+                    measurement: (0..noise.rows()).map(|j| noise[(j, j)]).collect(),
+                    description:
+                        "LQG, designed: a regulator of a state that a Kalman filter estimates"
+                            .into(),
+                })
+            }
+            LinearControllerTable::StateSpace(table) => table.design(plant),
+            LinearControllerTable::Pid(tables) => pid(tables, plant, period),
+        }
+    }
+}
+
+fn state_feedback(
+    plant: &LinearPlant,
+    gain: Matrix,
+    weights: Option<CostWeights>,
+    kind: &str,
+) -> Design {
+    Design {
+        plant: plant.clone().with_all_states_measured(),
+        controller: DiscreteController::gain(gain.scaled(-1.0)),
+        weights,
+        gain: Some(gain),
+        filter: None,
+        measurement: vec![0.0; plant.states.len()],
+        description: kind.to_owned(),
+    }
+}
+
+impl StateSpaceTable {
+    fn design(&self, plant: &LinearPlant) -> Result<Design, Fault> {
+        let (m, p, memory) = (plant.inputs.len(), plant.outputs.len(), self.a.len());
+        let of = |key: &'static str, name: &str, rows: &Rows, shape: [usize; 2], side: &str| {
+            let found = match rows.is_empty() {
+                true => Matrix::zeros(shape[0], shape[1]),
+                false => matrix(key, rows)?,
+            };
+            match [found.rows(), found.columns()] == shape {
+                true => Ok(found),
+                false => {
+                    let (rows, columns) = (found.rows(), found.columns());
+                    let [wanted, of_each] = shape;
+                    let message = format!(
+                        "`{name}` is {rows} × {columns}; expected {wanted} × {of_each}: {side}"
+                    );
+                    Err(Fault::new(key, message))
+                }
+            }
+        };
+        let square = "memory × memory";
+        let controller = DiscreteController {
+            a: of("controller.state-space.a", "a", &self.a, [memory; 2], square)?,
+            b: of("controller.state-space.b", "b", &self.b, [memory, p], "memory × outputs")?,
+            c: of("controller.state-space.c", "c", &self.c, [m, memory], "inputs × memory")?,
+            d: of("controller.state-space.d", "d", &self.d, [m, p], "inputs × outputs")?,
+        };
+        Ok(by_outputs(plant, controller, format!("a controller of {memory} states")))
+    }
+}
+
+fn by_outputs(plant: &LinearPlant, controller: DiscreteController, description: String) -> Design {
+    Design {
+        plant: plant.clone(),
+        controller,
+        weights: None,
+        gain: None,
+        filter: None,
+        measurement: vec![0.0; plant.outputs.len()],
+        description,
+    }
+}
+
+fn pid(tables: &[PidTable], plant: &LinearPlant, period: f64) -> Result<Design, Fault> {
+    let wrong = |message: String| Fault::new("controller.pid", message);
+    if tables.is_empty() {
+        return Err(wrong("there is no PID controller; expected at least one".into()));
+    }
+    let (m, p) = (plant.inputs.len(), plant.outputs.len());
+    let mut parts = Vec::new();
+    let mut description = Vec::new();
+    for table in tables {
+        let key = |fault: Fault| Fault { key: "controller.pid", ..fault };
+        let output = find("outputs", &table.output, &plant.outputs).map_err(key)?;
+        let input = find("inputs", &table.input, &plant.inputs).map_err(key)?;
+        let gains = PidGains {
+            proportional: table.proportional.0,
+            integral: table.integral.0,
+            derivative: table.derivative.0,
+            filter: table.filter.0,
+            most: f64::INFINITY,
+            tracking: 1.0,
+            target: [0.0],
+        };
+        let pid = Pid::<1>::new(gains).map_err(|error| wrong(error.to_string()))?;
+        let linear =
+            LinearController::of(&pid, period).map_err(|error| wrong(error.to_string()))?;
+        parts.push((output, input, linear.discrete()));
+        description.push(format!(
+            "from `{}` to `{}` K_p = {}, K_i = {}, K_d = {}, filter {} s",
+            table.output,
+            table.input,
+            table.proportional.0,
+            table.integral.0,
+            table.derivative.0,
+            table.filter.0
+        ));
+    }
+    let memory = parts.iter().map(|(_, _, own)| own.memory()).sum();
+    let mut controller = DiscreteController {
+        a: Matrix::zeros(memory, memory),
+        b: Matrix::zeros(memory, p),
+        c: Matrix::zeros(m, memory),
+        d: Matrix::zeros(m, p),
+    };
+    let mut first = 0;
+    for (output, input, own) in parts {
+        let count = own.memory();
+        controller.a.set_block((first, first), &own.a);
+        // The first measurement of a PID controller is the position.
+        controller.b.set_block((first, output), &own.b.block((0, 0), (count, 1)));
+        controller.c.set_block((input, first), &own.c);
+        controller.d[(input, output)] += own.d[(0, 0)];
+        first += count;
+    }
+    Ok(by_outputs(plant, controller, format!("PID {}", description.join("; "))))
+}
+
+fn design_fault(table: &'static str, error: &DesignError) -> Fault {
+    let key = match (table, error) {
+        ("controller.lqr", DesignError::Weight { what: "state weights", .. }) => {
+            "controller.lqr.states"
+        }
+        ("controller.lqr", DesignError::Weight { .. }) => "controller.lqr.inputs",
+        (_, DesignError::Weight { what: "state weights", .. }) => "controller.lqg.states",
+        (_, DesignError::Weight { what: "measurement noise", .. }) => "controller.lqg.measurement",
+        (_, DesignError::Weight { .. }) => "controller.lqg.inputs",
+        _ => table,
+    };
+    Fault::new(key, error.to_string())
+}

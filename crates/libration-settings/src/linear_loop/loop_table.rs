@@ -1,0 +1,88 @@
+//! The table of a loop around a linear plant.
+
+use serde::Deserialize;
+
+use super::controller_table::{Weights, WeightsTable};
+use crate::{Fault, Number};
+
+/// The table `[loop]` of a loop around a linear plant.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct LinearLoopTable {
+    /// The sampling period, in s.
+    pub period: Number,
+    /// The latency of all inputs, or of each, in s.
+    pub latency: Channels,
+    /// The latency of all outputs, or of each, in s.
+    pub output_latency: Channels,
+    /// The relative rms of the period.
+    pub jitter: Number,
+    /// The law of the period: `gaussian` or `uniform`.
+    pub law: String,
+    /// The relative error of the period: positive for a slow clock.
+    pub skew: Number,
+    /// The probability that the commands of a period are lost.
+    pub loss: Number,
+    /// The path of time stamps that replace jitter and skew.
+    pub time_stamps: String,
+    /// The weights of the cost (default: those of the design, or the squares of the outputs).
+    pub cost: Option<WeightsTable>,
+    /// The variances of the noise of the measurements (default: those of the design, or zero).
+    pub measurement_noise: Option<Weights>,
+}
+
+/// One number for all channels, or one for each.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(untagged)]
+pub enum Channels {
+    /// For all.
+    All(Number),
+    /// For each.
+    Each(Vec<Number>),
+}
+
+impl Default for LinearLoopTable {
+    fn default() -> Self {
+        LinearLoopTable {
+            period: Number(0.01),
+            latency: Channels::All(Number(0.0)),
+            output_latency: Channels::All(Number(0.0)),
+            jitter: Number(0.0),
+            law: "gaussian".into(),
+            skew: Number(0.0),
+            loss: Number(0.0),
+            time_stamps: String::new(),
+            cost: None,
+            measurement_noise: None,
+        }
+    }
+}
+
+impl Channels {
+    /// A number for each of `count` channels, which are `of`.
+    ///
+    /// # Errors
+    /// [`Fault`]: a wrong number of values, or one that is not finite or below zero.
+    pub fn each(&self, key: &'static str, of: &str, count: usize) -> Result<Vec<f64>, Fault> {
+        let values: Vec<f64> = match self {
+            Channels::All(Number(value)) => vec![*value; count],
+            Channels::Each(values) => values.iter().map(|x| x.0).collect(),
+        };
+        let name = key.rsplit('.').next().unwrap_or(key);
+        if values.len() != count {
+            let given = values.len();
+            let message = format!(
+                "`{name}` has {given} values; expected one, or one for each of {count} {of}"
+            );
+            return Err(Fault::new(key, message));
+        }
+        match values.iter().position(|x| !(x.is_finite() && *x >= 0.0)) {
+            None => Ok(values),
+            Some(i) => {
+                let message =
+                    format!("`{name}` is {:?}; expected a finite number of at least 0", values[i]);
+                Err(Fault::at(key, i, message))
+            }
+        }
+    }
+}
