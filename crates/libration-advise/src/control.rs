@@ -41,14 +41,23 @@ impl Control {
     /// If the time stamps are invalid.
     pub fn with_time_stamps(self, stamps: &[f64]) -> Result<Self, RecordedError> {
         let (steps, mean) = Recorded::steps_between(stamps)?;
-        let square = steps.iter().map(|step| (step - 1.0).powi(2)).sum::<f64>();
-        let rms = (square / steps.len() as f64).sqrt();
-        let skew = mean / self.period - 1.0;
-        let skew = if skew.abs() < ON_TIME { 0.0 } else { skew };
-        // Steps that differ by rounding only are even.
-        let (rms, record) = if rms < EVEN { (0.0, None) } else { (rms, Some(steps)) };
+        let skew = skew_of(mean, self.period);
+        let (rms, record) = uneven(steps);
         Ok(Control { jitter: self.jitter.with_rms(rms), record, skew, ..self })
     }
+}
+
+/// The skew of a clock with this mean interval, in s.
+pub(super) fn skew_of(mean: f64, period: f64) -> f64 {
+    let skew = mean / period - 1.0;
+    if skew.abs() < ON_TIME { 0.0 } else { skew }
+}
+
+/// The rms of relative steps, and the steps themselves if they differ by more than rounding.
+pub(super) fn uneven(steps: Vec<f64>) -> (f64, Option<Vec<f64>>) {
+    let square = steps.iter().map(|step| (step - 1.0).powi(2)).sum::<f64>();
+    let rms = (square / steps.len() as f64).sqrt();
+    if rms < EVEN { (0.0, None) } else { (rms, Some(steps)) }
 }
 
 /// A control law.

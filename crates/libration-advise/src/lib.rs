@@ -14,6 +14,7 @@ mod free_motion;
 mod integrator_choice;
 pub mod jitter_measurement;
 mod limits;
+pub mod linear;
 mod loop_check;
 mod loop_command;
 mod loop_simulation;

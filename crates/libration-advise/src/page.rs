@@ -53,7 +53,7 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
         ["imperfection", "stated", "stable up to", "tolerated up to", "used (%)", "unit", "method"];
     let mut table = Table::new("budget", &columns);
     for budget in &looped.budgets {
-        table.push(row(budget));
+        table.push(budget_row(budget));
     }
     page.table(&table, 4);
     page.paragraph(
@@ -125,7 +125,8 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
     page.table(&table, 4);
 }
 
-fn row(budget: &Budget) -> [Cell; 7] {
+/// The row of a budget in its table.
+pub(super) fn budget_row(budget: &Budget) -> [Cell; 7] {
     let beyond = format!("above {}", number(budget.tried_up_to, 3));
     let limit = |limit: Option<f64>| limit.map_or_else(|| Cell::absent(beyond.clone()), Cell::from);
     [
@@ -143,7 +144,8 @@ fn row(budget: &Budget) -> [Cell; 7] {
     ]
 }
 
-fn figure(map: &StabilityMap) -> Figure {
+/// The stability map as a figure.
+pub(super) fn figure(map: &StabilityMap) -> Figure {
     let grid = map.growth.clone();
     // The colours saturate at three times the mean growth.
     let sizes = grid.z.iter().filter(|z| z.is_finite()).map(|z| z.abs());

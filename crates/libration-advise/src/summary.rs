@@ -92,13 +92,16 @@ pub(super) fn describe_loop(looped: &LoopAdvice, tolerance: &ToleranceAnswer) ->
 }
 
 /// A share in percent with significant digits.
-fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     if percent < 0.01 { format!("{percent:.2e}") } else { format!("{percent:.3}") }
 }
 
 /// A loop that is stable only in a separate window, in words.
-fn describe_window(budget: &Budget, StabilityWindow { from, to }: StabilityWindow) -> String {
+pub(super) fn describe_window(
+    budget: &Budget,
+    StabilityWindow { from, to }: StabilityWindow,
+) -> String {
     let (kind, unit) = (budget.kind.name(), budget.unit);
     let limit = budget.stable_up_to.unwrap_or(0.0);
     let end = match to {
@@ -111,7 +114,7 @@ fn describe_window(budget: &Budget, StabilityWindow { from, to }: StabilityWindo
     )
 }
 
-fn capitalise(text: &str) -> String {
+pub(super) fn capitalise(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

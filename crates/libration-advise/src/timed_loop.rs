@@ -210,6 +210,11 @@ impl TimedLoop {
         Ok(TimedLoop { linear, timing: self.timing.clone(), crossings: None })
     }
 
+    /// The same loop with noise that is held through each period, as simulated.
+    pub(super) fn with_held_noise(&self) -> Self {
+        TimedLoop { linear: self.linear.with_held_noise(), ..self.clone() }
+    }
+
     /// The fastest motion of the plant, in rad/s.
     pub(super) fn rate(&self) -> f64 {
         self.linear.rate()

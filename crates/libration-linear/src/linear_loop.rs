@@ -4,9 +4,8 @@ use libration_core::control::Latency;
 use num_complex::Complex64;
 
 use crate::{
-    Arrival, Averages, DiscreteController, Dynamics, HeldStep, Layout, LinearLoopError,
-    LinearPlant, LoopTiming, MOST_TURN, Matrix, Period, RandomStages, Stage, Stationary, Transit,
-    eigenvalues,
+    Arrival, Averages, DiscreteController, Dynamics, HeldStep, LinearLoopError, LinearPlant,
+    LoopTiming, MOST_TURN, Matrix, Period, RandomStages, Stage, Stationary, eigenvalues,
 };
 
 /// A loop: a linear plant, and a controller that runs once per period.

@@ -91,12 +91,14 @@ impl Period<'_> {
         }
         let phases = self.phases(arrivals);
         for (k, &phase) in phases.iter().enumerate() {
-            for j in (0..layout.outputs()).filter(|&j| self.sampled_at(j) == phase && phase > 0.0) {
+            for j in
+                (0..layout.outputs()).filter(|&j| phase > 0.0 && same(self.sampled_at(j), phase))
+            {
                 course.pass(&self.sample(j));
                 let first = layout.measurements(j).start;
                 course.add((first, first), &Matrix::diagonal(&[self.output_noise[j]]));
             }
-            let takes = |arrival: &Arrival| !arrival.lost && arrival.latency.part() == phase;
+            let takes = |arrival: &Arrival| !arrival.lost && same(arrival.latency.part(), phase);
             for (i, _) in arrivals.iter().enumerate().filter(|(_, arrival)| takes(arrival)) {
                 let mut take = Matrix::identity(working);
                 take[(layout.acting(i), layout.acting(i))] = 0.0;
@@ -119,9 +121,7 @@ impl Period<'_> {
         let takes = arrivals.iter().map(|arrival| arrival.latency.part());
         let samples = (0..self.layout.outputs()).map(|j| self.sampled_at(j));
         let mut phases: Vec<f64> = takes.chain(samples).chain([0.0, 1.0]).collect();
-        phases.sort_by(f64::total_cmp);
-        phases.dedup();
-        phases
+        merged(phases)
     }
 
     /// The phase at which output `j` is measured.
@@ -265,6 +265,22 @@ impl Period<'_> {
             course.add((0, 0), &added);
         }
     }
+}
+
+/// Whether two phases differ by rounding only: then a measurement comes before a command.
+pub(crate) fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() < 1e-12
+}
+
+/// Phases in order, each once.
+pub(crate) fn merged(mut phases: Vec<f64>) -> Vec<f64> {
+    phases.sort_by(f64::total_cmp);
+    // The first stays: 0 in place of what rounding leaves of it.
+    phases.dedup_by(|later, earlier| same(*later, *earlier));
+    if let Some(last) = phases.last_mut().filter(|last| same(**last, 1.0)) {
+        *last = 1.0;
+    }
+    phases
 }
 
 /// The rows of what is in transit move on by one, and `row` is the new first.

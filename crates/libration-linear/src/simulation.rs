@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use libration_core::control::{Jitter, Latency};
 use libration_core::random::{Address, Purpose};
 
+use crate::period::{merged, same};
 use crate::{LinearLoop, LoopTiming, Matrix};
 
 /// A simulation of a loop with a timing, under noise that is held through each period.
@@ -145,17 +146,16 @@ impl Trajectory<'_> {
         let mut phases: Vec<f64> = input_latency.iter().map(|latency| latency.part()).collect();
         phases.extend(output_latency.iter().filter_map(sampled_at));
         phases.extend([0.0, 1.0]);
-        phases.sort_by(f64::total_cmp);
-        phases.dedup();
+        let phases = merged(phases);
         let start = self.x.clone();
         for (k, &phase) in phases.iter().enumerate() {
             for (j, latency) in output_latency.iter().enumerate() {
-                if sampled_at(latency) == Some(phase) {
+                if sampled_at(latency).is_some_and(|at| same(at, phase)) {
                     self.measure(j, noise[j]);
                 }
             }
             for (i, latency) in input_latency.iter().enumerate() {
-                if latency.part() == phase && !lost {
+                if same(latency.part(), phase) && !lost {
                     self.acting[i] = self.commands[latency.whole() as usize][i];
                 }
             }

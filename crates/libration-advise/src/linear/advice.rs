@@ -1,0 +1,151 @@
+//! The results of advice on loops around linear plants.
+
+use libration::linear::{Matrix, PlantMode, Signal};
+use serde::{Serialize, Serializer};
+
+use super::ChainLink;
+use crate::budget::{Budget, FirstFailure};
+use crate::combined_effect::SimulatedCost;
+use crate::stabilising_changes::StabilisingChanges;
+use crate::stability_map::StabilityMap;
+
+/// The advice on a loop around a linear plant; the fields are the keys of `advise --json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct LinearAdvice {
+    /// The answer in a few sentences.
+    pub answer: String,
+    /// The warnings, most urgent first.
+    pub warnings: Vec<String>,
+    /// The states of the plant, those of lags and filters last.
+    pub states: Vec<SignalName>,
+    /// Its inputs.
+    pub inputs: Vec<SignalName>,
+    /// The measurements of the controller.
+    pub outputs: Vec<SignalName>,
+    /// The modes of the plant, the one that grows fastest first.
+    pub plant_modes: Vec<Mode>,
+    /// The controller in words.
+    pub controller: String,
+    /// The gain of `u = −K x`, inputs × states; none of other controllers.
+    #[serde(serialize_with = "rows")]
+    pub gain: Option<Matrix>,
+    /// The gain of the estimator, states × outputs; none of other controllers.
+    #[serde(serialize_with = "rows")]
+    pub filter: Option<Matrix>,
+    /// The controller in state space.
+    pub controller_matrices: ControllerMatrices,
+    /// The sampling period, in s.
+    pub period: f64,
+    /// The sizes of each imperfection with which the loop is stable without others.
+    pub budgets: Vec<Budget>,
+    /// The imperfection that fails first; none without stated imperfections.
+    pub fails_first: Option<FirstFailure>,
+    /// Each part of the latency by name.
+    pub chain: Vec<ChainLink>,
+    /// The logarithm of the growth factor of second moments per period with all stated imperfections; below zero the loop is stable.
+    pub growth: f64,
+    /// The largest common factor of all imperfections with which the loop is stable; none if no limit was found.
+    pub margin: Option<f64>,
+    /// The largest tried common factor; none without stated imperfections, or if the loop is unstable.
+    pub margin_tried_up_to: Option<f64>,
+    /// The cost of the ideal loop, per second under the noise of the plant and its measurements.
+    pub ideal_cost: f64,
+    /// The cost with all imperfections; none if it is infinite.
+    pub cost: Option<f64>,
+    /// `ΔJ/J₀`.
+    pub cost_increase: Option<f64>,
+    /// The largest tolerated `ΔJ/J₀`, if there is one.
+    pub cost_tolerance: Option<f64>,
+    /// The standard deviation of each state under noise.
+    pub deviations: Vec<Deviation>,
+    /// The cost measured by a simulation; none if the loop is unstable, or decays too slowly to simulate.
+    pub simulated: Option<SimulatedCost>,
+    /// Changes that stabilise an unstable loop; none if it is stable.
+    pub remedies: Option<StabilisingChanges>,
+    /// A command that repeats this advice.
+    pub repeat_command: String,
+    /// The stability map, if the request asks for it.
+    #[serde(skip)]
+    pub map: Option<StabilityMap>,
+}
+
+/// The name and unit of a signal.
+#[derive(Clone, Debug, Serialize)]
+pub struct SignalName {
+    /// The name.
+    pub name: String,
+    /// The unit; empty if it is unknown.
+    pub unit: String,
+}
+
+impl From<&Signal> for SignalName {
+    fn from(signal: &Signal) -> Self {
+        SignalName { name: signal.name.clone(), unit: signal.unit.clone() }
+    }
+}
+
+/// A mode of the plant.
+#[derive(Clone, Debug, Serialize)]
+pub struct Mode {
+    /// The growth rate in 1/s; below zero the mode decays.
+    pub growth_rate: f64,
+    /// The frequency in Hz; 0 without oscillation.
+    pub frequency: f64,
+    /// The states that move most, with their sizes relative to the largest.
+    pub states: Vec<(String, f64)>,
+}
+
+impl From<PlantMode> for Mode {
+    fn from(PlantMode { growth_rate, frequency, states }: PlantMode) -> Self {
+        Mode { growth_rate, frequency, states }
+    }
+}
+
+/// `m' = A m + B y` and `u = C m + D y`, row by row.
+#[derive(Clone, Debug, Serialize)]
+pub struct ControllerMatrices {
+    /// Memory × memory.
+    pub a: Vec<Vec<f64>>,
+    /// Memory × outputs.
+    pub b: Vec<Vec<f64>>,
+    /// Inputs × memory.
+    pub c: Vec<Vec<f64>>,
+    /// Inputs × outputs.
+    pub d: Vec<Vec<f64>>,
+}
+
+/// The standard deviation of a state at the beginning of a period.
+#[derive(Clone, Debug, Serialize)]
+pub struct Deviation {
+    /// The state.
+    pub state: String,
+    /// Its unit.
+    pub unit: String,
+    /// In the ideal loop.
+    pub ideal: f64,
+    /// With all imperfections; none if it grows without end, or the clock is a record.
+    pub stated: Option<f64>,
+}
+
+impl LinearAdvice {
+    /// Whether the loop is stable with the stated imperfections, its cost is tolerated and the simulation agrees.
+    pub fn holds(&self) -> bool {
+        let agrees = self.simulated.is_none_or(|simulated| simulated.agrees());
+        self.growth < 0.0 && !self.exceeds_tolerated_cost() && agrees
+    }
+
+    /// Whether the cost exceeds its tolerance.
+    pub(super) fn exceeds_tolerated_cost(&self) -> bool {
+        let Some(most) = self.cost_tolerance else { return false };
+        self.cost_increase.is_none_or(|increase| increase > most)
+    }
+}
+
+/// A matrix row by row.
+pub(super) fn rows_of(matrix: &Matrix) -> Vec<Vec<f64>> {
+    (0..matrix.rows()).map(|i| matrix.row(i).to_vec()).collect()
+}
+
+fn rows<S: Serializer>(matrix: &Option<Matrix>, serializer: S) -> Result<S::Ok, S::Error> {
+    matrix.as_ref().map(rows_of).serialize(serializer)
+}

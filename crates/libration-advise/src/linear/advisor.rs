@@ -1,0 +1,120 @@
+//! Advice on loops around linear plants.
+
+use libration_work::Work;
+
+use super::advice::{ControllerMatrices, rows_of};
+use super::{Deviation, LinearAdvice, LinearRequest, SignalName};
+use crate::loops::LoopError;
+use crate::request::{Measure, Tolerance};
+use crate::{AdviseError, limits::Imperfection};
+
+/// Advises on a loop around a linear plant.
+///
+/// # Errors
+/// [`AdviseError`]; errors of the request are returned before any work.
+pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, AdviseError> {
+    let timed = &request.timed;
+    let stated = timed.stated().map_err(LoopError::from)?;
+    let ideal = timed.ideal();
+    if let Some(modes) = timed.unstable_modes().map_err(LoopError::from)? {
+        let help = timed.stabilising_changes(&ideal).sentence(["", ""]);
+        return Err(AdviseError::Unstable { modes, help });
+    }
+    let tolerance = match request.cost_tolerance {
+        Some(most) => Tolerance { of: Measure::Cost, most },
+        None => Tolerance { of: Measure::Trajectory, most: 1.0 },
+    };
+    let subjects = timed.subjects(true);
+    let command = |_: &_| format!("{} --json", request.invocation);
+    let budgets = timed.budgets(work, &subjects, tolerance, &command)?;
+    let fails_first = timed.fails_first(&subjects, &budgets).map_err(LoopError::from)?;
+    let growth = timed.growth(&stated).map_err(LoopError::from)?;
+    let stable = growth < 0.0;
+    let ideal_cost = timed.cost(&ideal).map_err(LoopError::from)?;
+    let cost = match stable {
+        true => timed.cost(&stated).map_err(LoopError::from)?,
+        false => f64::INFINITY,
+    };
+    let cost = Some(cost).filter(|cost| cost.is_finite());
+    let ends = budgets.iter().filter_map(|budget| budget.used.filter(|used| *used > 0.0));
+    let ends: Vec<f64> = ends.map(|used| (1.0 + 1e-6) / used).collect();
+    let (margin, margin_tried_up_to) = match stable && stated != ideal {
+        true => {
+            let found = timed.margin(ideal_cost, tolerance, &ends).map_err(LoopError::from)?;
+            (found.0, Some(found.1))
+        }
+        false => (None, None),
+    };
+    let simulated = if stable { request.simulated_cost(work, growth)? } else { None };
+    let remedies = (!stable).then(|| timed.stabilising_changes(&stated));
+    let map = match request.map && request.timed.linear.plant().inputs.len() == 1 {
+        true => {
+            let limit = budgets.iter().find(|budget| budget.kind == Imperfection::Latency);
+            Some(timed.map(work, limit.and_then(|budget| budget.stable_up_to))?)
+        }
+        false => None,
+    };
+    let plant = timed.linear.plant();
+    let names = |signals: &[_]| signals.iter().map(SignalName::from).collect();
+    let own = timed.linear.controller();
+    let mut advice = LinearAdvice {
+        answer: String::new(),
+        warnings: Vec::new(),
+        states: names(&plant.states),
+        inputs: names(&plant.inputs),
+        outputs: names(&plant.outputs),
+        plant_modes: request.plant.modes().into_iter().map(Into::into).collect(),
+        controller: request.design.description.clone(),
+        gain: request.design.gain.clone(),
+        filter: request.design.filter.clone(),
+        controller_matrices: ControllerMatrices {
+            a: rows_of(&own.a),
+            b: rows_of(&own.b),
+            c: rows_of(&own.c),
+            d: rows_of(&own.d),
+        },
+        period: timed.period(),
+        chain: request.latency_chain(&budgets),
+        budgets,
+        fails_first,
+        growth,
+        margin,
+        margin_tried_up_to,
+        ideal_cost,
+        cost,
+        cost_increase: cost.map(|cost| cost / ideal_cost - 1.0),
+        cost_tolerance: request.cost_tolerance,
+        deviations: request.deviations(stable)?,
+        simulated,
+        remedies,
+        repeat_command: request.invocation.clone(),
+        map,
+    };
+    advice.warnings = advice.warnings_of(request);
+    advice.answer = advice.summary();
+    Ok(advice)
+}
+
+impl LinearRequest {
+    /// The standard deviations of the states under noise.
+    fn deviations(&self, stable: bool) -> Result<Vec<Deviation>, AdviseError> {
+        let timed = &self.timed;
+        let known = stable && timed.timing.record.is_none();
+        let stated = match known {
+            true => {
+                let stated = timed.stated().map_err(LoopError::from)?;
+                timed.linear.stationary(&stated).map_err(LoopError::from)?
+            }
+            false => None,
+        };
+        let ideal = timed.linear.stationary(&timed.ideal()).map_err(LoopError::from)?;
+        let ideal = ideal.map(|ideal| ideal.deviations).unwrap_or_default();
+        let row = |(i, (signal, ideal)): (usize, (&libration::linear::Signal, f64))| Deviation {
+            state: signal.name.clone(),
+            unit: signal.unit.clone(),
+            ideal,
+            stated: stated.as_ref().map(|stated| stated.deviations[i]),
+        };
+        Ok(timed.linear.plant().states.iter().zip(ideal).enumerate().map(row).collect())
+    }
+}

@@ -1,0 +1,105 @@
+//! The latency of a loop, part by part.
+
+use core::f64::consts::TAU;
+
+use serde::Serialize;
+
+use super::LinearRequest;
+use crate::budget::Budget;
+use crate::limits::Imperfection;
+
+/// A part of the latency of a loop.
+#[derive(Clone, Debug, Serialize)]
+pub struct ChainLink {
+    /// The name of the part.
+    pub part: String,
+    /// The input or output in which it stands.
+    pub channel: String,
+    /// The delay at low frequencies, in s.
+    pub delay: f64,
+    /// The phase in degrees at the frequency at which the loop oscillates at its limit of latency; none without oscillation.
+    pub phase: Option<f64>,
+    /// The delay over the latency that the channel still tolerates, with lags, filters and hold as they are; none without a limit.
+    pub share: Option<f64>,
+}
+
+impl LinearRequest {
+    /// All parts, from the outputs to the inputs.
+    pub(super) fn latency_chain(&self, budgets: &[Budget]) -> Vec<ChainLink> {
+        let plant = self.timed.linear.plant();
+        let mut chain = Vec::new();
+        for (j, output) in plant.outputs.iter().enumerate() {
+            let limit = limit(budgets, Imperfection::OutputLatency, &output.name);
+            let frequency = self.frequency(Imperfection::OutputLatency, j, limit);
+            self.add_parts(&mut chain, &output.name, None, Some(j), frequency, limit);
+            let late = self.timed.timing.output_latency[j];
+            add_delay(&mut chain, "measurement", &output.name, late, frequency, limit);
+        }
+        for (i, input) in plant.inputs.iter().enumerate() {
+            let limit = limit(budgets, Imperfection::Latency, &input.name);
+            let frequency = self.frequency(Imperfection::Latency, i, limit);
+            let late = self.timed.timing.input_latency[i];
+            add_delay(&mut chain, "command", &input.name, late, frequency, limit);
+            let half = self.timed.period() / 2.0;
+            add_delay(&mut chain, "hold (half a period)", &input.name, half, frequency, limit);
+            self.add_parts(&mut chain, &input.name, Some(i), None, frequency, limit);
+        }
+        chain
+    }
+
+    fn add_parts(
+        &self,
+        chain: &mut Vec<ChainLink>,
+        channel: &str,
+        input: Option<usize>,
+        output: Option<usize>,
+        frequency: Option<f64>,
+        limit: Option<f64>,
+    ) {
+        for part in self.parts.iter().filter(|part| part.input == input && part.output == output) {
+            let delay = part.part.delay();
+            chain.push(ChainLink {
+                part: part.name.clone(),
+                channel: channel.to_owned(),
+                delay,
+                phase: frequency.map(|f| part.part.phase(TAU * f).to_degrees()),
+                share: limit.map(|limit| delay / limit),
+            });
+        }
+    }
+
+    /// The frequency in Hz at which the loop oscillates at its limit of the latency of a channel.
+    fn frequency(&self, kind: Imperfection, channel: usize, limit: Option<f64>) -> Option<f64> {
+        let subject = crate::timed_loop::Subject { kind, channel: Some(channel) };
+        let at = self.timed.single(subject, limit? / self.timed.period()).ok()?;
+        let mode = self.timed.slowest_mode(&at).ok()?;
+        (mode.angle > 0.0).then(|| mode.angle / (TAU * self.timed.period()))
+    }
+}
+
+/// The largest stable latency of a channel, if it has a budget.
+fn limit(budgets: &[Budget], kind: Imperfection, channel: &str) -> Option<f64> {
+    let own = |budget: &&Budget| {
+        budget.kind == kind && budget.channel.as_deref().is_none_or(|name| name == channel)
+    };
+    budgets.iter().find(own)?.stable_up_to.filter(|limit| *limit > 0.0)
+}
+
+fn add_delay(
+    chain: &mut Vec<ChainLink>,
+    part: &str,
+    channel: &str,
+    delay: f64,
+    frequency: Option<f64>,
+    limit: Option<f64>,
+) {
+    if delay > 0.0 {
+        chain.push(ChainLink {
+            part: part.to_owned(),
+            channel: channel.to_owned(),
+            delay,
+            phase: frequency.map(|f| -360.0 * f * delay),
+            share: limit.map(|limit| delay / limit),
+        });
+    }
+}

@@ -1,0 +1,15 @@
+//! Advice for loops around linear plants of any size.
+
+mod advice;
+mod advisor;
+mod latency_chain;
+mod page;
+mod request;
+mod simulated_cost;
+mod summary;
+
+pub use advice::{ControllerMatrices, Deviation, LinearAdvice, SignalName};
+pub use advisor::advise;
+pub use latency_chain::ChainLink;
+pub use page::page;
+pub use request::{LinearRequest, RequestFile, is_linear, parse};

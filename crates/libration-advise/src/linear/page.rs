@@ -1,0 +1,163 @@
+//! Advice on loops around linear plants as an HTML page.
+
+use libration_report::notation::number;
+use libration_report::page::Page;
+use libration_report::record::{Cell, Table};
+use libration_report::report;
+
+use super::LinearAdvice;
+use crate::page::{budget_row, figure};
+
+/// The advice as an HTML page.
+pub fn page(advice: &LinearAdvice) -> String {
+    let mut page = Page { title: "Budget of a control loop".into(), ..Page::default() };
+    page.answer.clone_from(&advice.answer);
+    for warning in &advice.warnings {
+        page.note(format!("Warning: {warning}."));
+    }
+    budgets(&mut page, advice);
+    chain(&mut page, advice);
+    together(&mut page, advice);
+    plant(&mut page, advice);
+    let names = |signals: &[super::SignalName]| {
+        signals.iter().map(|signal| signal.name.as_str()).collect::<Vec<_>>().join(", ")
+    };
+    let sub = format!(
+        "{} states · inputs {} · measured {} · {} s · `libration advise`",
+        advice.states.len(),
+        names(&advice.inputs),
+        names(&advice.outputs),
+        number(advice.period, 4),
+    );
+    report::render_page(&page, &sub)
+}
+
+fn budgets(page: &mut Page, advice: &LinearAdvice) {
+    page.heading("Budget of each imperfection");
+    page.paragraph(format!(
+        "{}; sampled every {} s. At a limit the loop becomes unstable (in the mean square for random imperfections), or its cost exceeds \
+         the tolerance, while all else is perfect.",
+        advice.controller,
+        number(advice.period, 4),
+    ));
+    let columns = [
+        "imperfection",
+        "channel",
+        "stated",
+        "stable up to",
+        "tolerated up to",
+        "used (%)",
+        "unit",
+        "method",
+    ];
+    let mut table = Table::new("budget", &columns);
+    for budget in &advice.budgets {
+        let [kind, rest @ ..] = budget_row(budget);
+        let channel = budget.channel.clone().map_or_else(|| Cell::absent("all"), Cell::from);
+        let [stated, stable, tolerated, used, unit, how] = rest;
+        table.push([kind, channel, stated, stable, tolerated, used, unit, how]);
+    }
+    page.table(&table, 4);
+    if let Some(map) = &advice.map {
+        page.figure(figure(map));
+    }
+}
+
+fn chain(page: &mut Page, advice: &LinearAdvice) {
+    if advice.chain.is_empty() {
+        return;
+    }
+    page.heading("Where does the latency come from?");
+    page.paragraph(
+        "Each part delays the loop by its delay at low frequencies. The phase is that at the frequency at which the loop oscillates when \
+         the latency of the channel reaches its limit. The share is the delay over that limit.",
+    );
+    let columns = ["part", "channel", "delay (s)", "phase (°)", "share of the limit (%)"];
+    let mut table = Table::new("latency-chain", &columns);
+    for link in &advice.chain {
+        let known = |x: Option<f64>| x.map_or_else(|| Cell::absent(""), |x| Cell::rounded(x, 4));
+        table.push([
+            link.part.clone().into(),
+            link.channel.clone().into(),
+            Cell::rounded(link.delay, 4),
+            known(link.phase),
+            known(link.share.map(|share| 100.0 * share)),
+        ]);
+    }
+    page.table(&table, 4);
+}
+
+fn together(page: &mut Page, advice: &LinearAdvice) {
+    page.heading("All imperfections together");
+    let mut table = Table::new("combined", &["quantity", "value", "method"]);
+    let infinite = || Cell::absent("infinite");
+    let rounded = |x: Option<f64>, digits| x.map_or_else(infinite, |x| Cell::rounded(x, digits));
+    let margin = advice.margin.map_or_else(|| Cell::absent("none found"), |x| Cell::rounded(x, 4));
+    let lines = [
+        (
+            "growth of second moments per period",
+            Cell::rounded(advice.growth.exp_m1(), 4),
+            "exact: E[M ⊗ M]",
+        ),
+        ("largest common factor of all imperfections", margin, "exact, in proportion"),
+        ("cost of the ideal loop", Cell::rounded(advice.ideal_cost, 6), "exact: Lyapunov equation"),
+        (
+            "cost with all imperfections",
+            rounded(advice.cost, 6),
+            "exact: Lyapunov equation of the jump system",
+        ),
+        ("ΔJ/J₀", rounded(advice.cost_increase, 4), "from the two costs"),
+    ];
+    for (what, value, how) in lines {
+        table.push([what.into(), value, how.into()]);
+    }
+    if let Some(simulated) = &advice.simulated {
+        let how = format!(
+            "± {}, simulated event by event: {} loops, {} periods",
+            number(simulated.error, 2),
+            simulated.loops,
+            simulated.periods
+        );
+        let value = Cell::rounded(simulated.cost, 6);
+        table.push(["simulated cost, noise constant over a period".into(), value, how.into()]);
+        let value = Cell::rounded(simulated.predicted, 6);
+        table.push(["predicted cost of this simulation".into(), value, "exact".into()]);
+    }
+    page.table(&table, 4);
+    page.heading("Deviations under noise");
+    let columns = ["state", "unit", "ideal loop (rms)", "with all imperfections (rms)"];
+    let mut table = Table::new("deviations", &columns);
+    for deviation in &advice.deviations {
+        table.push([
+            deviation.state.clone().into(),
+            deviation.unit.clone().into(),
+            Cell::rounded(deviation.ideal, 4),
+            deviation.stated.map_or_else(|| Cell::absent("unknown"), |x| Cell::rounded(x, 4)),
+        ]);
+    }
+    page.table(&table, 4);
+}
+
+fn plant(page: &mut Page, advice: &LinearAdvice) {
+    page.heading("The plant");
+    let columns = ["mode in", "growth rate (1/s)", "frequency (Hz)"];
+    let mut table = Table::new("plant-modes", &columns);
+    for mode in &advice.plant_modes {
+        let names: Vec<&str> = mode.states.iter().map(|(name, _)| name.as_str()).collect();
+        table.push([
+            names.join(", ").into(),
+            Cell::rounded(mode.growth_rate, 4),
+            Cell::rounded(mode.frequency, 4),
+        ]);
+    }
+    page.table(&table, 4);
+    if let Some(gain) = &advice.gain {
+        let row = |i: usize| -> String {
+            let numbers: Vec<String> = gain.row(i).iter().map(|x| format!("{x:.8e}")).collect();
+            format!("[{}]", numbers.join(", "))
+        };
+        let rows: Vec<String> = (0..gain.rows()).map(row).collect();
+        page.paragraph(format!("The gain of the state, to paste: `[{}]`", rows.join(", ")));
+    }
+    page.paragraph(format!("Command that repeats this advice: `{}`", advice.repeat_command));
+}

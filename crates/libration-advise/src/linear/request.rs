@@ -1,0 +1,236 @@
+//! Requests for advice on loops around linear plants.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use libration::control::Jitter;
+use libration::control::clock::Recorded;
+use libration::linear::{CostWeights, LinearLoop, LinearPlant, Matrix};
+use libration_settings::linear_loop::{
+    Design, LinearControllerTable, LinearLoopTable, Part, PartTable, PlantTable,
+};
+use libration_settings::{Document, Fault, Number, SettingsError, suggestions};
+use serde::Deserialize;
+
+use crate::control::{skew_of, uneven};
+use crate::jitter_measurement;
+use crate::timed_loop::{StatedTiming, TimedLoop};
+
+/// A request file for a loop around a linear plant.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(default, deny_unknown_fields)]
+pub struct RequestFile {
+    /// The plant.
+    pub system: SystemTable,
+    /// Lags and filters.
+    pub part: Vec<PartTable>,
+    /// The controller.
+    pub controller: Option<LinearControllerTable>,
+    /// The loop and its timing.
+    #[serde(rename = "loop")]
+    pub looped: LinearLoopTable,
+    /// A tolerance of the cost.
+    pub tolerance: BTreeMap<String, Number>,
+}
+
+/// The table `[system]` of a request file.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct SystemTable {
+    /// The plant.
+    #[serde(default)]
+    pub linear: PlantTable,
+}
+
+/// A loop around a linear plant, designed, with its timing.
+#[derive(Clone, Debug)]
+pub struct LinearRequest {
+    /// The plant without lags and filters.
+    pub(super) plant: LinearPlant,
+    pub(super) parts: Vec<Part>,
+    pub(super) design: Design,
+    pub(super) timed: TimedLoop,
+    /// The largest rise of the cost, `ΔJ/J₀`.
+    pub(super) cost_tolerance: Option<f64>,
+    /// Whether to compute a stability map.
+    pub map: bool,
+    /// The command line that repeats the request, without options of output.
+    pub invocation: String,
+}
+
+/// Whether a request file describes a linear plant.
+pub fn is_linear(text: &str) -> bool {
+    let table: Option<toml::Table> = text.parse().ok();
+    let system = table.as_ref().and_then(|table| table.get("system"));
+    system.and_then(|system| system.get("linear")).is_some()
+}
+
+/// Parses a request; `file_name` is the name in messages.
+///
+/// # Errors
+/// [`SettingsError`] with the position of the error.
+pub fn parse(text: &str, file_name: &str) -> Result<LinearRequest, SettingsError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let document = Document::parse(text, file_name)?;
+    let file: RequestFile = toml::from_str(text).map_err(|error| document.explain(&error))?;
+    let request = LinearRequest::new(file).map_err(|fault| document.locate(fault))?;
+    Ok(LinearRequest { invocation: format!("libration advise --config {file_name}"), ..request })
+}
+
+impl LinearRequest {
+    /// The loop that a file describes.
+    ///
+    /// # Errors
+    /// [`Fault`]: an invalid value, or a design that fails.
+    pub fn new(file: RequestFile) -> Result<Self, Fault> {
+        let plant = file.system.linear.plant()?;
+        let Some(controller) = file.controller else {
+            let message = "there is no controller; expected a table, as [controller.lqr]";
+            return Err(Fault::new("controller", message));
+        };
+        let Number(period) = file.looped.period;
+        if !(period.is_finite() && period > 0.0) {
+            let message = format!("`period` is {period:?}; expected a finite number above 0");
+            return Err(Fault::new("loop.period", message));
+        }
+        let design = controller.design(&plant, period)?;
+        let parts = file.part.iter().map(|table| table.part(&design.plant));
+        let parts = parts.collect::<Result<Vec<Part>, Fault>>()?;
+        let mut whole = design.plant.clone();
+        for part in &parts {
+            whole = part.applied(&whole)?;
+        }
+        let weights = weights(&file.looped, &design, &plant)?;
+        weights.check(&plant).map_err(|error| Fault::new("loop.cost", error.to_string()))?;
+        let noise = match &file.looped.measurement_noise {
+            Some(variances) => {
+                let matrix = variances.matrix("loop.measurement-noise")?;
+                (0..matrix.rows()).map(|j| matrix[(j, j)]).collect()
+            }
+            None => design.measurement.clone(),
+        };
+        let form = padded(&weights, plant.states.len(), whole.states.len());
+        let timing = timing(&file.looped, &design.plant)?;
+        let linear = LinearLoop::new(whole, design.controller.clone(), period, form, noise);
+        let linear = linear.map_err(|error| Fault::new("loop", error.to_string()))?;
+        let timed = TimedLoop { linear, timing, crossings: None };
+        let stated = timed.stated().and_then(|stated| timed.linear.size(&stated));
+        stated.map_err(|error| Fault::new("loop", error.to_string()))?;
+        let cost_tolerance = tolerance(file.tolerance)?;
+        let invocation = "libration advise --config FILE".into();
+        Ok(LinearRequest { plant, parts, design, timed, cost_tolerance, map: false, invocation })
+    }
+
+    /// The same loop with recorded time stamps in s; their mean interval determines the skew.
+    ///
+    /// # Errors
+    /// The error in words.
+    pub fn with_time_stamps(mut self, stamps: &[f64]) -> Result<Self, String> {
+        let timing = &mut self.timed.timing;
+        let period = self.timed.linear.period();
+        replay(timing, stamps, period)?;
+        Ok(self)
+    }
+}
+
+fn replay(timing: &mut StatedTiming, stamps: &[f64], period: f64) -> Result<(), String> {
+    let (steps, mean) = Recorded::steps_between(stamps).map_err(|error| error.to_string())?;
+    let (rms, record) = uneven(steps);
+    timing.skew = skew_of(mean, period);
+    timing.jitter = timing.jitter.with_rms(rms);
+    timing.record = record;
+    Ok(())
+}
+
+/// The weights of the cost: those of the file, of the design, or the squares of the outputs.
+fn weights(
+    table: &LinearLoopTable,
+    design: &Design,
+    plant: &LinearPlant,
+) -> Result<CostWeights, Fault> {
+    if let Some(own) = &table.cost {
+        return Ok(CostWeights {
+            states: own.states.matrix("loop.cost.states")?,
+            inputs: own.inputs.matrix("loop.cost.inputs")?,
+        });
+    }
+    if let Some(weights) = &design.weights {
+        return Ok(weights.clone());
+    }
+    let m = plant.inputs.len();
+    // Of inputs a part that rounding does not lose, so that the form is that of a regulator.
+    let states = &plant.c.transposed() * &plant.c;
+    let size = states.largest().max(f64::MIN_POSITIVE);
+    Ok(CostWeights { states, inputs: Matrix::identity(m).scaled(1e-12 * size) })
+}
+
+/// The form of states and inputs, with states that cost nothing between them.
+fn padded(weights: &CostWeights, states: usize, all: usize) -> Matrix {
+    let size = all + weights.inputs.rows();
+    let mut form = Matrix::zeros(size, size);
+    form.set_block((0, 0), &weights.states.block((0, 0), (states, states)));
+    form.set_block((all, all), &weights.inputs);
+    form
+}
+
+fn timing(table: &LinearLoopTable, plant: &LinearPlant) -> Result<StatedTiming, Fault> {
+    let jitter = match &*table.law {
+        "gaussian" => Jitter::Gaussian(table.jitter.0),
+        "uniform" => Jitter::Uniform(table.jitter.0),
+        other => {
+            let fault = Fault::new("loop.law", format!("unknown law `{other}`"));
+            return Err(fault.help(suggestions::suggest("laws", other, ["gaussian", "uniform"])));
+        }
+    };
+    let ensure = |key: &'static str, name: &str, value: f64, allowed: &str, holds: bool| match holds
+    {
+        true => Ok(()),
+        false => Err(Fault::new(key, format!("`{name}` is {value:?}; expected {allowed}"))),
+    };
+    let rms = table.jitter.0;
+    ensure("loop.jitter", "jitter", rms, "a relative rms from 0 to 1", (0.0..=1.0).contains(&rms))?;
+    let skew = table.skew.0;
+    ensure("loop.skew", "skew", skew, "above -1 and below 8", skew > -1.0 && skew < 8.0)?;
+    let loss = table.loss.0;
+    let allowed = "a probability of at least 0 and below 1";
+    ensure("loop.loss", "loss", loss, allowed, (0.0..1.0).contains(&loss))?;
+    let (m, p) = (plant.inputs.len(), plant.outputs.len());
+    let mut timing = StatedTiming {
+        input_latency: table.latency.each("loop.latency", "inputs", m)?,
+        output_latency: table.output_latency.each("loop.output-latency", "outputs", p)?,
+        jitter,
+        skew,
+        loss,
+        record: None,
+    };
+    if !table.time_stamps.is_empty() {
+        if skew != 0.0 {
+            let message = "`skew` is given, but `time-stamps` determine the skew";
+            return Err(Fault::new("loop.skew", message));
+        }
+        let path = &table.time_stamps;
+        let wrong =
+            |why: String| Fault::new("loop.time-stamps", format!("cannot use `{path}`: {why}"));
+        let stamps = jitter_measurement::read_time_stamps(Path::new(path)).map_err(wrong)?;
+        replay(&mut timing, &stamps, table.period.0).map_err(wrong)?;
+    }
+    Ok(timing)
+}
+
+fn tolerance(table: BTreeMap<String, Number>) -> Result<Option<f64>, Fault> {
+    match table.into_iter().collect::<Vec<_>>()[..] {
+        [] => Ok(None),
+        [(ref name, Number(most))] if name == "cost" && most.is_finite() && most > 0.0 => {
+            Ok(Some(most))
+        }
+        [(ref name, Number(most))] if name == "cost" => {
+            let message = format!("`cost` is {most:?}; expected a finite number above 0");
+            Err(Fault::new("tolerance.cost", message))
+        }
+        _ => {
+            let message =
+                "a loop around a linear plant has no tolerance but `cost`, the largest rise ΔJ/J₀";
+            Err(Fault::new("tolerance", message))
+        }
+    }
+}

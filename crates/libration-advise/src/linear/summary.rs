@@ -1,0 +1,86 @@
+//! The answer on a loop around a linear plant, in sentences.
+
+use super::{LinearAdvice, LinearRequest};
+use crate::summary::{capitalise, describe_window, percent};
+
+impl LinearAdvice {
+    /// The answer in a few sentences.
+    pub(super) fn summary(&self) -> String {
+        if self.growth >= 0.0 {
+            let remedies = self.remedies.as_ref().map(|remedies| remedies.sentence(["", ""]));
+            return format!(
+                "The loop is unstable with the stated imperfections: its second moments grow by {} % per period. {}",
+                percent(self.growth.exp_m1()),
+                remedies.unwrap_or_default()
+            );
+        }
+        let regained = self.budgets.iter().find_map(|budget| Some((budget, budget.regained?)));
+        let mut text = match (self.margin, self.margin_tried_up_to) {
+            _ if self.simulated.is_some_and(|simulated| !simulated.agrees()) => {
+                "The simulation contradicts the theory of the loop: see the warnings.".to_owned()
+            }
+            _ if self.exceeds_tolerated_cost() => {
+                "The loop is stable with the stated imperfections, but its cost exceeds the tolerance."
+                    .to_owned()
+            }
+            _ if let Some((budget, window)) = regained => describe_window(budget, window),
+            (Some(margin), _) => format!(
+                "The loop is stable with the stated imperfections, also if all of them are {margin:.3} times as large."
+            ),
+            (None, Some(tried)) => format!(
+                "The loop is stable with the stated imperfections, also if all of them are at least {tried:.3} times as large, the most that was tried."
+            ),
+            (None, None) => {
+                "The loop is stable. The request states no imperfections.".to_owned()
+            }
+        };
+        if let Some(failing) = &self.fails_first {
+            let shape = match &failing.states[..] {
+                [] => String::new(),
+                states => {
+                    let names: Vec<&str> = states.iter().map(|(name, _)| name.as_str()).collect();
+                    format!(", most of all in {}", names.join(", "))
+                }
+            };
+            let of =
+                failing.channel.as_ref().map_or_else(String::new, |name| format!(" of {name}"));
+            text += &format!(
+                " {}{of} fails first, with {:.1} % of its budget used; {}{shape}.",
+                capitalise(failing.kind.name()),
+                100.0 * failing.used,
+                failing.how
+            );
+        }
+        if let Some(increase) = self.cost_increase.filter(|_| self.margin_tried_up_to.is_some()) {
+            text +=
+                &format!(" Its cost is {:.3} % above that of the ideal loop.", 100.0 * increase);
+        }
+        text
+    }
+
+    /// The warnings, most urgent first.
+    pub(super) fn warnings_of(&self, request: &LinearRequest) -> Vec<String> {
+        let mut warnings = Vec::new();
+        match &self.simulated {
+            Some(simulated) if !simulated.agrees() => warnings.push(format!(
+                "the simulation contradicts the theory: the cost is {:.5e} ± {:.1e}, predicted {:.5e}",
+                simulated.cost, simulated.error, simulated.predicted
+            )),
+            Some(simulated) if simulated.outbursts => warnings.push(
+                "rare outbursts dominate the cost: a simulation has too few of them, and a typical run costs less"
+                    .into(),
+            ),
+            None if self.growth < 0.0 => warnings.push(
+                "the loop was not simulated because it decays too slowly: the results follow from theory alone".into(),
+            ),
+            _ => {}
+        }
+        let turn = request.timed.rate() * self.period;
+        if turn > 1.0 {
+            warnings.push(format!(
+                "the fastest motion of the plant turns by {turn:.2} rad per period: the loop samples it sparsely"
+            ));
+        }
+        warnings
+    }
+}
