@@ -23,6 +23,7 @@ mod matrix;
 mod period;
 mod plant;
 mod plant_modes;
+mod plant_rate;
 mod random_stages;
 mod recorded_loop;
 mod recorded_schedule;

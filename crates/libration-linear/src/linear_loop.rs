@@ -22,9 +22,6 @@ pub struct LinearLoop {
     motions: Vec<Complex64>,
 }
 
-/// Decay within a period after which a motion no longer counts, `−ln` of a rounding.
-const FORGOTTEN: f64 = 37.0;
-
 impl LinearLoop {
     /// A loop with a period of `period` seconds. Its cost per second is the form `cost` of states and inputs, under the noise of the
     /// plant and measurement noise of the variances `output_noise`.
@@ -87,6 +84,11 @@ impl LinearLoop {
         })
     }
 
+    /// The eigenvalues of the plant, in 1/s.
+    pub(crate) fn motions(&self) -> &[Complex64] {
+        &self.motions
+    }
+
     /// Whether the noise of the plant is held through each period.
     pub(crate) fn holds_noise(&self) -> bool {
         self.holds_noise
@@ -142,12 +144,6 @@ impl LinearLoop {
     /// period: what a simulation measures.
     pub fn with_held_noise(&self) -> Self {
         LinearLoop { holds_noise: true, ..self.clone() }
-    }
-
-    /// The fastest motion of the plant that lasts for a period, in rad/s.
-    pub fn rate(&self) -> f64 {
-        let lasts = |motion: &&Complex64| motion.re * self.period > -FORGOTTEN;
-        self.motions.iter().filter(lasts).map(|motion| motion.norm()).fold(0.0, f64::max)
     }
 
     /// The number of states: those of plant and controller, and all commands and measurements in transit.
@@ -213,7 +209,7 @@ impl LinearLoop {
     /// The periods that the loop may have.
     fn stages(&self, timing: &LoopTiming, with_cost: bool) -> Result<Vec<Stage>, LinearLoopError> {
         let LoopTiming { jitter, skew, .. } = *timing;
-        let turn = 2.0 * self.rate() * self.period * jitter.rms() * (1.0 + skew);
+        let turn = 2.0 * self.smooth_rate() * self.period * jitter.rms() * (1.0 + skew);
         if turn.is_nan() || turn > MOST_TURN {
             return Err(LinearLoopError::Turn);
         }

@@ -60,3 +60,52 @@ impl LinearLoop {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{DiscreteController, LinearPlant, Matrix, log_spectral_radius};
+
+    /// Two springs in a row, with all states measured.
+    fn two_springs() -> LinearLoop {
+        let mass = Matrix::diagonal(&[1.0, 0.5]);
+        let stiffness = Matrix::from_rows(&[[30.0, -10.0], [-10.0, 10.0]]).unwrap();
+        let damping = Matrix::diagonal(&[0.2, 0.1]);
+        let force = Matrix::identity(2);
+        let names = crate::Signal::numbered("q", 2);
+        let plant = LinearPlant::mechanical([&mass, &damping, &stiffness], &force, &names).unwrap();
+        let plant = plant.with_all_states_measured();
+        let gain = Matrix::from_fn(2, 4, |i, j| -0.7 * ((i + 2 * j) % 3) as f64);
+        let controller = DiscreteController::gain(gain);
+        LinearLoop::new(plant, controller, 0.05, Matrix::identity(6), vec![1e-4; 4]).unwrap()
+    }
+
+    #[test]
+    fn a_latency_that_rounding_keeps_from_a_whole_number_is_that_number() {
+        let linear = two_springs();
+        let at = |steps: f64| {
+            let latency = Latency::of_steps(steps).unwrap();
+            let mut all = Vec::new();
+            for i in 0..6 {
+                let mut timing = linear.ideal();
+                let channels = timing.input_latency.iter_mut().chain(&mut timing.output_latency);
+                if let Some(channel) = channels.into_iter().nth(i) {
+                    *channel = latency;
+                }
+                let radius = log_spectral_radius(&linear.period_matrix(&timing).unwrap());
+                let cost = linear.stationary(&timing).unwrap().map_or(0.0, |found| found.cost);
+                all.push((radius, cost));
+            }
+            all
+        };
+        for whole in [1.0, 3.0, 7.0] {
+            for off in [-1e-14, 1e-14, -1e-9, 1e-9] {
+                for (near, exact) in at(whole * (1.0 + off)).into_iter().zip(at(whole)) {
+                    // Both change by less than a hundred times what the latency does.
+                    assert!((near.0 - exact.0).abs() < 1e-6, "{whole} {off}: {near:?} {exact:?}");
+                    assert!((near.1 - exact.1).abs() < 1e-6 * exact.1.max(1.0), "{whole} {off}");
+                }
+            }
+        }
+    }
+}

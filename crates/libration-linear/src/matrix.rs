@@ -18,8 +18,12 @@ impl Matrix {
 
     /// A matrix with these entries.
     pub fn from_fn(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
-        let entry = &entry;
-        let entries = (0..rows).flat_map(|i| (0..columns).map(move |j| entry(i, j))).collect();
+        let mut entries = Vec::with_capacity(rows * columns);
+        for i in 0..rows {
+            for j in 0..columns {
+                entries.push(entry(i, j));
+            }
+        }
         Matrix { rows, columns, entries }
     }
 
@@ -33,7 +37,9 @@ impl Matrix {
 
     /// The identity of size `n`.
     pub fn identity(n: usize) -> Self {
-        Self::from_fn(n, n, |i, j| f64::from(u8::from(i == j)))
+        let mut identity = Matrix::zeros(n, n);
+        (0..n).for_each(|i| identity[(i, i)] = 1.0);
+        identity
     }
 
     /// A square matrix with these entries on its diagonal, and zeros elsewhere.

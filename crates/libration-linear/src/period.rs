@@ -91,9 +91,8 @@ impl Period<'_> {
         }
         let phases = self.phases(arrivals);
         for (k, &phase) in phases.iter().enumerate() {
-            for j in
-                (0..layout.outputs()).filter(|&j| phase > 0.0 && same(self.sampled_at(j), phase))
-            {
+            let sampled = |&j: &usize| self.sampled_at(j).is_some_and(|at| same(at, phase));
+            for j in (0..layout.outputs()).filter(sampled) {
                 course.pass(&self.sample(j));
                 let first = layout.measurements(j).start;
                 course.add((first, first), &Matrix::diagonal(&[self.output_noise[j]]));
@@ -119,17 +118,15 @@ impl Period<'_> {
     /// The phases at which something happens, from 0 to 1.
     fn phases(&self, arrivals: &[Arrival]) -> Vec<f64> {
         let takes = arrivals.iter().map(|arrival| arrival.latency.part());
-        let samples = (0..self.layout.outputs()).map(|j| self.sampled_at(j));
-        let mut phases: Vec<f64> = takes.chain(samples).chain([0.0, 1.0]).collect();
+        let samples = (0..self.layout.outputs()).filter_map(|j| self.sampled_at(j));
+        let phases: Vec<f64> = takes.chain(samples).chain([0.0, 1.0]).collect();
         merged(phases)
     }
 
-    /// The phase at which output `j` is measured.
-    fn sampled_at(&self, j: usize) -> f64 {
-        match self.output_latency[j].part() {
-            0.0 => 0.0,
-            part => 1.0 - part,
-        }
+    /// The phase at which output `j` is measured, if that is within the period.
+    fn sampled_at(&self, j: usize) -> Option<f64> {
+        let part = self.output_latency[j].part();
+        (part > 0.0).then_some(1.0 - part)
     }
 
     /// What output `j` is made of, over the working coordinates.
@@ -185,7 +182,7 @@ impl Period<'_> {
             let row = made(controller.a.row(k), controller.b.row(k));
             map.row_mut(place).copy_from_slice(&row);
         }
-        for j in (0..outputs).filter(|&j| self.sampled_at(j) == 0.0) {
+        for j in (0..outputs).filter(|&j| self.sampled_at(j).is_none()) {
             shift(&mut map, layout.measurements(j), &fresh(j));
         }
         for (i, arrival) in arrivals.iter().enumerate() {

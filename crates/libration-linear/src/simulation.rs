@@ -101,7 +101,6 @@ impl Trajectory<'_> {
 
     fn output(&self, j: usize, noise: f64) -> f64 {
         let plant = self.simulation.linear.plant();
-        let dot = |row: &[f64], x: &[f64]| row.iter().zip(x).map(|(a, b)| a * b).sum::<f64>();
         dot(plant.c.row(j), &self.x) + dot(plant.d.row(j), &self.acting) + noise
     }
 
@@ -184,16 +183,26 @@ fn form(form: &Matrix, x: &[f64]) -> f64 {
 
 /// `ẋ = Ax + push` for so many seconds, by Taylor's series of short steps.
 fn flow(a: &Matrix, x: &mut [f64], push: &[f64], seconds: f64) {
+    let n = x.len();
     let parts = (a.row_sum_norm() * seconds).ceil().max(1.0);
     let h = seconds / parts;
+    let (mut term, mut next) = (vec![0.0; n], vec![0.0; n]);
     for _ in 0..parts as u64 {
-        let mut term: Vec<f64> = a.apply(x).iter().zip(push).map(|(x, y)| h * (x + y)).collect();
+        for i in 0..n {
+            term[i] = h * (dot(a.row(i), x) + push[i]);
+        }
         for k in 2..30 {
             x.iter_mut().zip(&term).for_each(|(x, y)| *x += y);
             if term.iter().zip(x.iter()).all(|(y, x)| y.abs() <= 1e-17 * x.abs()) {
                 break;
             }
-            term = a.apply(&term).iter().map(|y| y * h / f64::from(k)).collect();
+            let share = h / f64::from(k);
+            next.iter_mut().enumerate().for_each(|(i, x)| *x = share * dot(a.row(i), &term));
+            core::mem::swap(&mut term, &mut next);
         }
     }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

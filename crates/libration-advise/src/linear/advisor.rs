@@ -90,7 +90,7 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         repeat_command: request.invocation.clone(),
         map,
     };
-    advice.warnings = advice.warnings_of(request);
+    advice.warnings = advice.warnings_of();
     advice.answer = advice.summary();
     Ok(advice)
 }

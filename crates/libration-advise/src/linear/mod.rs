@@ -12,4 +12,4 @@ pub use advice::{ControllerMatrices, Deviation, LinearAdvice, SignalName};
 pub use advisor::advise;
 pub use latency_chain::ChainLink;
 pub use page::page;
-pub use request::{LinearRequest, RequestFile, is_linear, parse};
+pub use request::{LinearRequest, RequestFile, is_linear, parse, parse_changed};

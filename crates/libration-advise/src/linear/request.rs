@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use libration::control::Jitter;
-use libration::control::clock::Recorded;
+use libration::control::clock::{Recorded, RecordedError};
 use libration::linear::{CostWeights, LinearLoop, LinearPlant, Matrix};
 use libration_settings::linear_loop::{
     Design, LinearControllerTable, LinearLoopTable, Part, PartTable, PlantTable,
@@ -70,9 +70,23 @@ pub fn is_linear(text: &str) -> bool {
 /// # Errors
 /// [`SettingsError`] with the position of the error.
 pub fn parse(text: &str, file_name: &str) -> Result<LinearRequest, SettingsError> {
+    parse_changed(text, file_name, |_| ())
+}
+
+/// Parses a request that `change` changes, as options of a command do.
+///
+/// # Errors
+/// As for [`parse`].
+pub fn parse_changed(
+    text: &str,
+    file_name: &str,
+    change: impl FnOnce(&mut RequestFile),
+) -> Result<LinearRequest, SettingsError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let document = Document::parse(text, file_name)?;
-    let file: RequestFile = toml::from_str(text).map_err(|error| document.explain(&error))?;
+    let file: Result<RequestFile, _> = toml::from_str(text);
+    let mut file = file.map_err(|error| document.explain(&error))?;
+    change(&mut file);
     let request = LinearRequest::new(file).map_err(|fault| document.locate(fault))?;
     Ok(LinearRequest { invocation: format!("libration advise --config {file_name}"), ..request })
 }
@@ -124,8 +138,8 @@ impl LinearRequest {
     /// The same loop with recorded time stamps in s; their mean interval determines the skew.
     ///
     /// # Errors
-    /// The error in words.
-    pub fn with_time_stamps(mut self, stamps: &[f64]) -> Result<Self, String> {
+    /// [`RecordedError`]: invalid time stamps.
+    pub fn with_time_stamps(mut self, stamps: &[f64]) -> Result<Self, RecordedError> {
         let timing = &mut self.timed.timing;
         let period = self.timed.linear.period();
         replay(timing, stamps, period)?;
@@ -133,8 +147,8 @@ impl LinearRequest {
     }
 }
 
-fn replay(timing: &mut StatedTiming, stamps: &[f64], period: f64) -> Result<(), String> {
-    let (steps, mean) = Recorded::steps_between(stamps).map_err(|error| error.to_string())?;
+fn replay(timing: &mut StatedTiming, stamps: &[f64], period: f64) -> Result<(), RecordedError> {
+    let (steps, mean) = Recorded::steps_between(stamps)?;
     let (rms, record) = uneven(steps);
     timing.skew = skew_of(mean, period);
     timing.jitter = timing.jitter.with_rms(rms);
@@ -212,7 +226,7 @@ fn timing(table: &LinearLoopTable, plant: &LinearPlant) -> Result<StatedTiming, 
         let wrong =
             |why: String| Fault::new("loop.time-stamps", format!("cannot use `{path}`: {why}"));
         let stamps = jitter_measurement::read_time_stamps(Path::new(path)).map_err(wrong)?;
-        replay(&mut timing, &stamps, table.period.0).map_err(wrong)?;
+        replay(&mut timing, &stamps, table.period.0).map_err(|error| wrong(error.to_string()))?;
     }
     Ok(timing)
 }

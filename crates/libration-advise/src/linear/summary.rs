@@ -1,6 +1,6 @@
 //! The answer on a loop around a linear plant, in sentences.
 
-use super::{LinearAdvice, LinearRequest};
+use super::LinearAdvice;
 use crate::summary::{capitalise, describe_window, percent};
 
 impl LinearAdvice {
@@ -59,7 +59,7 @@ impl LinearAdvice {
     }
 
     /// The warnings, most urgent first.
-    pub(super) fn warnings_of(&self, request: &LinearRequest) -> Vec<String> {
+    pub(super) fn warnings_of(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         match &self.simulated {
             Some(simulated) if !simulated.agrees() => warnings.push(format!(
@@ -75,10 +75,11 @@ impl LinearAdvice {
             ),
             _ => {}
         }
-        let turn = request.timed.rate() * self.period;
+        let fastest = self.plant_modes.iter().map(|mode| mode.frequency).fold(0.0, f64::max);
+        let turn = core::f64::consts::TAU * fastest * self.period;
         if turn > 1.0 {
             warnings.push(format!(
-                "the fastest motion of the plant turns by {turn:.2} rad per period: the loop samples it sparsely"
+                "the fastest oscillation of the plant turns by {turn:.2} rad per period: the loop samples it sparsely"
             ));
         }
         warnings

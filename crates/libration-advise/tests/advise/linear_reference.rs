@@ -1,4 +1,4 @@
-//! Loops around linear plants against a program in NumPy and SciPy that was written from their definition alone.
+//! Loops around linear plants against `tools/linear_loop_reference.py`, which was written from their definition alone.
 
 use libration::control::{Jitter, Latency};
 use libration::linear::{

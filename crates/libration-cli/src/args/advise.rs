@@ -9,8 +9,8 @@ use libration_advise::{Control, Law, Measure, Request, Tolerance};
 use libration_analyze::LatencyOption;
 use libration_settings::initial_value_problem::InitialValueProblem;
 
-use super::SystemArgs;
 use super::timing::{feedback, finite, latency, law, weights};
+use super::{LinearArgs, SystemArgs};
 use crate::error::Failure;
 
 /// Arguments of `advise`.
@@ -22,6 +22,8 @@ pub(crate) struct AdviseArgs {
     pub(crate) config: Option<PathBuf>,
     #[command(flatten)]
     system: Option<SystemArgs>,
+    #[command(flatten)]
+    pub(crate) linear: LinearArgs,
     /// Gains of the feedback −KP·q − KD·v [default: no loop; in s⁻² and s⁻¹, with --set m= in N/m and N·s/m]
     #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
     feedback: Option<Feedback>,
@@ -33,15 +35,17 @@ pub(crate) struct AdviseArgs {
         default_value = "0.01",
         allow_hyphen_values = true
     )]
-    period: f64,
-    /// Latency of a command: 0.015 (in s) or 1.5steps (of --period) [default: 0]
+    pub(super) period: f64,
+    /// Latency of a command: 0.015 (in s) or 1.5steps (of --period); with --plant also one for each input, e.g. 0.003,0.01
+    /// [default: 0]
     #[arg(
         long,
         value_name = "TIME",
         value_parser = latency,
+        value_delimiter = ',',
         allow_hyphen_values = true
     )]
-    latency: Option<LatencyOption>,
+    pub(super) latency: Vec<LatencyOption>,
     /// Jitter of the period: gaussian or uniform, and its rms relative to the period (0 to 1), e.g. gaussian:0.05
     #[arg(
         long,
@@ -49,7 +53,7 @@ pub(crate) struct AdviseArgs {
         value_parser = law,
         allow_hyphen_values = true
     )]
-    jitter: Option<Jitter>,
+    pub(super) jitter: Option<Jitter>,
     /// File of measured time stamps instead of --jitter: from `measure-jitter --output`, or a log
     #[arg(long, value_name = "FILE", conflicts_with_all = ["jitter", "skew"])]
     pub(crate) jitter_file: Option<PathBuf>,
@@ -60,7 +64,7 @@ pub(crate) struct AdviseArgs {
         value_parser = number,
         allow_hyphen_values = true
     )]
-    skew: Option<f64>,
+    pub(super) skew: Option<f64>,
     /// Probability that a command is lost (0 to below 1)
     #[arg(
         long,
@@ -68,7 +72,7 @@ pub(crate) struct AdviseArgs {
         value_parser = number,
         allow_hyphen_values = true
     )]
-    loss: Option<f64>,
+    pub(super) loss: Option<f64>,
     /// Weights of the mean cost QQ·q² + VV·v² + UU·u² under noise [default: the energy, ½(ω²q² + v²)]
     #[arg(
         long,
@@ -118,7 +122,10 @@ pub(crate) struct AdviseArgs {
 }
 
 /// Options that conflict with a request file.
-const REQUEST_OPTIONS: [&str; 10] = [
+const REQUEST_OPTIONS: [&str; 13] = [
+    "plant",
+    "lqr",
+    "gain",
     "system",
     "set",
     "q",
@@ -133,6 +140,7 @@ const REQUEST_OPTIONS: [&str; 10] = [
 
 const USAGE: &str = "\
 libration advise --system <NAME> [OPTIONS]
+       libration advise --plant <FILE> --lqr <STATES/INPUTS> [OPTIONS]
        libration advise --config <FILE> [OPTIONS]
        libration advise --print-config";
 
@@ -141,6 +149,7 @@ Examples:
   libration advise --system oscillator --set omega2=10 --feedback 10,2 --period 0.01 \\
       --latency 0.02 --jitter gaussian:0.05 --loss 0.01
   libration advise --system kepler --tolerance energy=1e-6 --horizon 100
+  libration advise --plant drive.toml --lqr 10,1,0,0/0.1 --latency 0.003 --output-latency 0.001
   libration advise --print-config > mine.toml
   libration advise --config mine.toml --jitter-file robot.csv --page budget.html
 
@@ -158,7 +167,7 @@ impl AdviseArgs {
     pub(crate) fn request(&self) -> Result<Request, Failure> {
         let Some(system) = &self.system else {
             return Err(Failure::usage(
-                "no request is given; expected --config FILE, or --system NAME and its options",
+                "no request is given; expected --config FILE, --system NAME or --plant FILE, and their options",
             ));
         };
         let InitialValueProblem { system, actuation, q, mut v } = {
@@ -202,7 +211,7 @@ impl AdviseArgs {
     pub(crate) fn with_timing(&self, mut request: Request) -> Result<Request, Failure> {
         let Some(control) = &mut request.control else {
             let given = [
-                (self.latency.is_some(), "latency"),
+                (!self.latency.is_empty(), "latency"),
                 (self.jitter.is_some(), "jitter"),
                 (self.skew.is_some(), "skew"),
                 (self.loss.is_some(), "loss"),
@@ -214,10 +223,15 @@ impl AdviseArgs {
                 None => Ok(request),
             };
         };
-        control.latency = match self.latency {
-            Some(LatencyOption::Seconds(seconds)) => seconds,
-            Some(LatencyOption::Steps(steps)) => steps * control.period,
-            None => control.latency,
+        control.latency = match self.latency[..] {
+            [] => control.latency,
+            [latency] => seconds(latency, control.period),
+            _ => {
+                return Err(Failure::usage(format!(
+                    "--latency has {} values, but the loop has one input; expected one value",
+                    self.latency.len()
+                )));
+            }
         };
         match (self.jitter, &control.record) {
             (Some(jitter), Some(_)) => {
@@ -234,6 +248,14 @@ impl AdviseArgs {
         control.skew = self.skew.unwrap_or(control.skew);
         control.loss = self.loss.unwrap_or(control.loss);
         Ok(request)
+    }
+}
+
+/// A latency in s.
+pub(super) fn seconds(latency: LatencyOption, period: f64) -> f64 {
+    match latency {
+        LatencyOption::Seconds(seconds) => seconds,
+        LatencyOption::Steps(steps) => steps * period,
     }
 }
 

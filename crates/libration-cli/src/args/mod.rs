@@ -3,6 +3,7 @@
 mod advise;
 mod analyze;
 mod bench;
+mod linear;
 mod measure_jitter;
 mod number;
 mod rollout;
@@ -25,6 +26,7 @@ use crate::error::Failure;
 pub(crate) use advise::AdviseArgs;
 pub(crate) use analyze::AnalyzeArgs;
 pub(crate) use bench::BenchArgs;
+pub(crate) use linear::LinearArgs;
 pub(crate) use measure_jitter::MeasureJitterArgs;
 pub(crate) use rollout::{RolloutArgs, VerifyArgs};
 pub(crate) use simulate::SimulateArgs;

@@ -20,6 +20,9 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
     if args.print_config {
         return Ok(terminal::print(advise::DEFAULT)?);
     }
+    if let Some(request) = super::advise_linear::load_request(args)? {
+        return super::advise_linear::run(args, request, quiet);
+    }
     let request = load_request(args)?;
     let unwritable = |path: &Path, error: &std::io::Error| {
         format!("cannot write `{}` (--page): {error}", path.display())
@@ -68,7 +71,7 @@ fn load_request(args: &AdviseArgs) -> Result<Request, Failure> {
     Ok(request)
 }
 
-fn failure(error: AdviseError) -> Failure {
+pub(super) fn failure(error: AdviseError) -> Failure {
     match error {
         AdviseError::Interrupted(error) => Failure::Interrupted(error.to_string()),
         AdviseError::Value { name, value, allowed } => {
@@ -86,7 +89,7 @@ fn failure(error: AdviseError) -> Failure {
 }
 
 /// Returns the command line that repeats this request, without `--json` and `--page`.
-fn command_line() -> String {
+pub(super) fn command_line() -> String {
     let mut words = vec!["libration".to_owned()];
     let mut given = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
     while let Some(word) = given.next() {

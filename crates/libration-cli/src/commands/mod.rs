@@ -1,6 +1,7 @@
 //! One module for each subcommand.
 
 mod advise;
+mod advise_linear;
 mod analyze;
 mod bench;
 mod closed_loop;

@@ -1,11 +1,9 @@
 //! Tables of controllers of linear plants.
 
-use libration::analysis::LinearController;
-use libration::control::controller::{Pid, PidGains};
 use libration::linear::{CostWeights, DesignError, DiscreteController, LinearPlant, Matrix};
 use serde::Deserialize;
 
-use super::part_table::find;
+use super::pid_table::{PidTable, pid};
 use super::plant_table::{Rows, matrix};
 use crate::{Fault, Number};
 
@@ -29,7 +27,8 @@ pub enum LinearControllerTable {
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct StateFeedbackTable {
-    gain: Rows,
+    /// The gain, inputs × states.
+    pub gain: Rows,
 }
 
 /// Weights of a regulator: a matrix, or its diagonal.
@@ -63,25 +62,6 @@ pub struct StateSpaceTable {
     #[serde(default)]
     c: Rows,
     d: Rows,
-}
-
-/// A PID controller from an output to an input, which holds the output at zero.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
-pub struct PidTable {
-    output: String,
-    input: String,
-    proportional: Number,
-    #[serde(default = "zero")]
-    integral: Number,
-    #[serde(default = "zero")]
-    derivative: Number,
-    #[serde(default = "zero")]
-    filter: Number,
-}
-
-fn zero() -> Number {
-    Number(0.0)
 }
 
 /// A symmetric matrix, or its diagonal.
@@ -234,7 +214,11 @@ impl StateSpaceTable {
     }
 }
 
-fn by_outputs(plant: &LinearPlant, controller: DiscreteController, description: String) -> Design {
+pub(super) fn by_outputs(
+    plant: &LinearPlant,
+    controller: DiscreteController,
+    description: String,
+) -> Design {
     Design {
         plant: plant.clone(),
         controller,
@@ -244,61 +228,6 @@ fn by_outputs(plant: &LinearPlant, controller: DiscreteController, description: 
         measurement: vec![0.0; plant.outputs.len()],
         description,
     }
-}
-
-fn pid(tables: &[PidTable], plant: &LinearPlant, period: f64) -> Result<Design, Fault> {
-    let wrong = |message: String| Fault::new("controller.pid", message);
-    if tables.is_empty() {
-        return Err(wrong("there is no PID controller; expected at least one".into()));
-    }
-    let (m, p) = (plant.inputs.len(), plant.outputs.len());
-    let mut parts = Vec::new();
-    let mut description = Vec::new();
-    for table in tables {
-        let key = |fault: Fault| Fault { key: "controller.pid", ..fault };
-        let output = find("outputs", &table.output, &plant.outputs).map_err(key)?;
-        let input = find("inputs", &table.input, &plant.inputs).map_err(key)?;
-        let gains = PidGains {
-            proportional: table.proportional.0,
-            integral: table.integral.0,
-            derivative: table.derivative.0,
-            filter: table.filter.0,
-            most: f64::INFINITY,
-            tracking: 1.0,
-            target: [0.0],
-        };
-        let pid = Pid::<1>::new(gains).map_err(|error| wrong(error.to_string()))?;
-        let linear =
-            LinearController::of(&pid, period).map_err(|error| wrong(error.to_string()))?;
-        parts.push((output, input, linear.discrete()));
-        description.push(format!(
-            "from `{}` to `{}` K_p = {}, K_i = {}, K_d = {}, filter {} s",
-            table.output,
-            table.input,
-            table.proportional.0,
-            table.integral.0,
-            table.derivative.0,
-            table.filter.0
-        ));
-    }
-    let memory = parts.iter().map(|(_, _, own)| own.memory()).sum();
-    let mut controller = DiscreteController {
-        a: Matrix::zeros(memory, memory),
-        b: Matrix::zeros(memory, p),
-        c: Matrix::zeros(m, memory),
-        d: Matrix::zeros(m, p),
-    };
-    let mut first = 0;
-    for (output, input, own) in parts {
-        let count = own.memory();
-        controller.a.set_block((first, first), &own.a);
-        // The first measurement of a PID controller is the position.
-        controller.b.set_block((first, output), &own.b.block((0, 0), (count, 1)));
-        controller.c.set_block((input, first), &own.c);
-        controller.d[(input, output)] += own.d[(0, 0)];
-        first += count;
-    }
-    Ok(by_outputs(plant, controller, format!("PID {}", description.join("; "))))
 }
 
 fn design_fault(table: &'static str, error: &DesignError) -> Fault {

@@ -3,11 +3,14 @@
 mod controller_table;
 mod loop_table;
 mod part_table;
+mod pid_table;
 mod plant_file;
 mod plant_table;
 
-pub use controller_table::{Design, LinearControllerTable};
-pub use loop_table::LinearLoopTable;
+pub use controller_table::{
+    Design, LinearControllerTable, StateFeedbackTable, Weights, WeightsTable,
+};
+pub use loop_table::{Channels, LinearLoopTable};
 pub use part_table::{Part, PartTable};
 pub use plant_file::read as read_plant;
 pub use plant_table::{PlantTable, Polynomials, Rows};

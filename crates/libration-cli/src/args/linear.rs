@@ -1,0 +1,127 @@
+//! Arguments of loops around linear plants.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use libration::control::Jitter;
+use libration_advise::linear::{LinearRequest, RequestFile};
+use libration_analyze::LatencyOption;
+use libration_settings::linear_loop::{
+    Channels, LinearControllerTable, LinearLoopTable, Rows, StateFeedbackTable, Weights,
+    WeightsTable, read_plant,
+};
+use libration_settings::{Fault, Number};
+
+use super::AdviseArgs;
+use super::advise::seconds;
+use super::timing::{finite, latency};
+use crate::error::Failure;
+
+/// Arguments of a loop around a linear plant.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct LinearArgs {
+    /// File of a linear plant ẋ = Ax + Bu, y = Cx + Du: .toml, .json, .csv or .npz, with matrices a, b, c, d
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["system", "feedback"])]
+    pub(crate) plant: Option<PathBuf>,
+    /// Design a linear-quadratic regulator with these weights of the squares of states and inputs, e.g. 10,1/0.1
+    #[arg(long, value_name = "STATES/INPUTS", value_parser = lqr, requires = "plant", conflicts_with = "gain")]
+    lqr: Option<WeightsTable>,
+    /// Gain K of the state feedback u = −Kx, rows (inputs) separated by semicolons, e.g. "10,2;0,1"
+    #[arg(long, value_name = "ROWS", value_parser = rows, requires = "plant", allow_hyphen_values = true)]
+    gain: Option<Gain>,
+    /// Latency of the measurements of a linear plant: of all, or of each [default: 0]
+    #[arg(long, value_name = "TIME", value_parser = latency, value_delimiter = ',', allow_hyphen_values = true)]
+    output_latency: Vec<LatencyOption>,
+}
+
+/// The value of `--gain`.
+#[derive(Clone, Debug)]
+struct Gain(Rows);
+
+impl AdviseArgs {
+    /// Returns the request for a loop around the plant of `--plant`, if it is given.
+    pub(crate) fn linear_request(&self) -> Option<Result<LinearRequest, Failure>> {
+        let path = self.linear.plant.as_ref()?;
+        Some(self.linear_request_of(path))
+    }
+
+    fn linear_request_of(&self, path: &std::path::Path) -> Result<LinearRequest, Failure> {
+        let plant = read_plant(path).map_err(|why| {
+            Failure::usage(format!("cannot use `{}` (--plant): {why}", path.display()))
+        })?;
+        let controller = match (&self.linear.lqr, &self.linear.gain) {
+            (Some(weights), _) => LinearControllerTable::Lqr(weights.clone()),
+            (None, Some(Gain(gain))) => {
+                LinearControllerTable::StateFeedback(StateFeedbackTable { gain: gain.clone() })
+            }
+            (None, None) => {
+                return Err(Failure::usage(
+                    "--plant is given without a controller; expected --lqr or --gain, or a file with --config",
+                ));
+            }
+        };
+        let mut looped = LinearLoopTable { period: Number(self.period), ..Default::default() };
+        self.set_timing(&mut looped);
+        let mut file = RequestFile { controller: Some(controller), looped, ..Default::default() };
+        file.system.linear = plant;
+        LinearRequest::new(file).map_err(|fault| Failure::usage(named(&fault)))
+    }
+
+    /// Puts the timing options in place of those of a table.
+    pub(crate) fn set_timing(&self, looped: &mut LinearLoopTable) {
+        let period = looped.period.0;
+        let channels = |latencies: &[LatencyOption]| match latencies {
+            [one] => Channels::All(Number(seconds(*one, period))),
+            all => Channels::Each(all.iter().map(|one| Number(seconds(*one, period))).collect()),
+        };
+        if !self.latency.is_empty() {
+            looped.latency = channels(&self.latency);
+        }
+        if !self.linear.output_latency.is_empty() {
+            looped.output_latency = channels(&self.linear.output_latency);
+        }
+        if let Some(jitter) = self.jitter {
+            let law = if let Jitter::Uniform(_) = jitter { "uniform" } else { "gaussian" };
+            (looped.jitter, looped.law) = (Number(jitter.rms()), law.into());
+            looped.time_stamps.clear();
+        }
+        looped.skew = self.skew.map_or(looped.skew, Number);
+        looped.loss = self.loss.map_or(looped.loss, Number);
+    }
+}
+
+/// A fault with the option that causes it.
+fn named(fault: &Fault) -> String {
+    let option = match fault.key {
+        "loop.latency" => "--latency: ",
+        "loop.output-latency" => "--output-latency: ",
+        "loop.period" => "--period: ",
+        "loop.jitter" => "--jitter: ",
+        "loop.skew" => "--skew: ",
+        "loop.loss" => "--loss: ",
+        key if key.starts_with("controller.lqr") => "--lqr: ",
+        key if key.starts_with("controller.state-feedback") => "--gain: ",
+        key if key.starts_with("system") => "--plant: ",
+        _ => "",
+    };
+    format!("{option}{fault}")
+}
+
+fn numbers(text: &str) -> Option<Vec<Number>> {
+    text.split(',').map(|number| finite(number.trim()).map(Number)).collect()
+}
+
+fn lqr(text: &str) -> Result<WeightsTable, String> {
+    let rule =
+        "expected the weights of all states, a slash, and those of all inputs, e.g. 10,1/0.1";
+    let (states, inputs) = text.split_once('/').ok_or(rule)?;
+    let states = Weights::Diagonal(numbers(states).ok_or(rule)?);
+    Ok(WeightsTable { states, inputs: Weights::Diagonal(numbers(inputs).ok_or(rule)?) })
+}
+
+fn rows(text: &str) -> Result<Gain, String> {
+    let rule =
+        "expected numbers separated by commas, and rows separated by semicolons, e.g. \"10,2;0,1\"";
+    let rows: Option<Rows> = text.split(';').map(numbers).collect();
+    Ok(Gain(rows.ok_or(rule)?))
+}

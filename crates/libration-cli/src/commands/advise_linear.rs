@@ -1,0 +1,170 @@
+//! `libration advise` for loops around linear plants.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+
+use libration_advise::Budget;
+use libration_advise::linear::{self, LinearAdvice, LinearRequest};
+use libration_work::Work;
+
+use super::advise::{command_line, failure};
+use super::{config_file, time_stamps};
+use crate::args::AdviseArgs;
+use crate::error::Failure;
+use crate::output_file::OutputFile;
+use crate::progress::Reporter;
+use crate::{interrupt, terminal};
+
+/// Returns the request of the file or of the options, if it is about a linear plant.
+pub(super) fn load_request(args: &AdviseArgs) -> Result<Option<LinearRequest>, Failure> {
+    let request = match (&args.config, args.linear_request()) {
+        (_, Some(request)) => Some(request?),
+        (Some(path), None) => config_file::read(path, |text, name| {
+            let change = |file: &mut linear::RequestFile| args.set_timing(&mut file.looped);
+            match linear::is_linear(text) {
+                true => linear::parse_changed(text, name, change).map(Some),
+                false => Ok(None),
+            }
+        })?,
+        (None, None) => None,
+    };
+    let Some(mut request) = request else { return Ok(None) };
+    request.map = args.page.is_some();
+    request.invocation = command_line();
+    if let Some(path) = &args.jitter_file {
+        request =
+            time_stamps::read(path, "--jitter-file", |stamps| request.with_time_stamps(&stamps))?;
+    }
+    Ok(Some(request))
+}
+
+/// Computes the limits of a loop around a linear plant and prints them.
+pub(super) fn run(args: &AdviseArgs, request: LinearRequest, quiet: bool) -> Result<(), Failure> {
+    let stop = interrupt::listen();
+    // Before any work.
+    let file = args.page.as_deref().map(|path| {
+        let unwritable =
+            |error: &std::io::Error| format!("cannot write `{}` (--page): {error}", path.display());
+        match OutputFile::create(path) {
+            Ok(file) => Ok((unwritable, file)),
+            Err(error) => Err(Failure::usage(unwritable(&error))),
+        }
+    });
+    let file = file.transpose()?;
+    let reporter = Reporter::new(quiet);
+    let advice = linear::advise(&Work::new(&reporter, stop), &request);
+    reporter.clear();
+    let advice = advice.map_err(failure)?;
+    let text = match args.json {
+        true => serde_json::to_string_pretty(&advice).map_err(Failure::run)? + "\n",
+        false => describe(&advice),
+    };
+    terminal::print(&text)?;
+    if let Some((unwritable, mut file)) = file {
+        let written = file.write_all(linear::page(&advice).as_bytes()).and_then(|()| file.keep());
+        written.map_err(|error| Failure::run(unwritable(&error)))?;
+    }
+    if advice.holds() { Ok(()) } else { Err(Failure::Disagreement) }
+}
+
+/// Returns the answer as text.
+fn describe(advice: &LinearAdvice) -> String {
+    let mut text = format!("{}\n", advice.answer);
+    for warning in &advice.warnings {
+        let _ = writeln!(text, "warning: {warning}");
+    }
+    let _ = writeln!(text, "\n{}; a sample every {} s", advice.controller, advice.period);
+    if let Some(gain) = &advice.gain {
+        for i in 0..gain.rows() {
+            let row: Vec<String> = gain.row(i).iter().map(|x| format!("{x:.6}")).collect();
+            let _ = writeln!(text, "  {} = -[{}] x", advice.inputs[i].name, row.join(", "));
+        }
+    }
+    budgets(advice, &mut text);
+    if !advice.chain.is_empty() {
+        let _ = writeln!(
+            text,
+            "\n{:<24} {:<16} {:>12} {:>10} {:>16}",
+            "part of the latency", "channel", "delay/s", "phase/deg", "share of limit"
+        );
+    }
+    for link in &advice.chain {
+        let _ = writeln!(
+            text,
+            "{:<24} {:<16} {:>12.6} {:>10} {:>16}",
+            link.part,
+            link.channel,
+            link.delay,
+            link.phase.map_or_else(String::new, |phase| format!("{phase:.2}")),
+            link.share.map_or_else(String::new, |share| format!("{:.1} %", 100.0 * share)),
+        );
+    }
+    let _ = writeln!(
+        text,
+        "\nall imperfections together: second moments change by {:+.4e} per period (exact)",
+        advice.growth.exp_m1()
+    );
+    if let Some(cost) = advice.cost {
+        let _ = writeln!(
+            text,
+            "cost under noise: {cost:.6e}, without imperfections {:.6e} (exact: Lyapunov equation)",
+            advice.ideal_cost
+        );
+    }
+    if let Some(s) = &advice.simulated {
+        let _ = writeln!(
+            text,
+            "cost of {} simulated loops, {} periods, constant noise in each period: {:.5e} ± {:.1e}, predicted {:.5e}",
+            s.loops, s.periods, s.cost, s.error, s.predicted
+        );
+    }
+    let _ = writeln!(
+        text,
+        "\n{:<24} {:<10} {:>14} {:>20}",
+        "deviation (rms)", "unit", "ideal", "with imperfections"
+    );
+    for deviation in &advice.deviations {
+        let _ = writeln!(
+            text,
+            "{:<24} {:<10} {:>14.6e} {:>20}",
+            deviation.state,
+            deviation.unit,
+            deviation.ideal,
+            deviation.stated.map_or_else(|| "unknown".to_owned(), |x| format!("{x:.6e}")),
+        );
+    }
+    let _ = writeln!(text, "repeat with: {}", advice.repeat_command);
+    text
+}
+
+/// Appends the budget of each imperfection.
+fn budgets(advice: &LinearAdvice, text: &mut String) {
+    let _ = writeln!(
+        text,
+        "\n{:<32} {:>12} {:>14} {:>14} {:>8}  {:<17} how",
+        "alone", "stated", "stable up to", "tolerated", "used", "unit"
+    );
+    let of = |budget: &Budget, limit: Option<f64>| match limit {
+        Some(limit) => format!("{limit:.6}"),
+        None => format!("above {:.3}", budget.tried_up_to),
+    };
+    for budget in &advice.budgets {
+        let channel =
+            budget.channel.as_ref().map_or_else(String::new, |name| format!(" of {name}"));
+        let _ = writeln!(
+            text,
+            "{:<32} {:>12.6} {:>14} {:>14} {:>8}  {:<17} {}",
+            format!("{}{channel}", budget.kind.name()),
+            budget.stated,
+            of(budget, budget.stable_up_to),
+            budget.tolerated_up_to.map_or_else(String::new, |limit| of(budget, limit)),
+            match (budget.used, budget.regained) {
+                (_, Some(_)) => "regained".to_owned(),
+                (Some(used), None) => format!("{:.1} %", 100.0 * used),
+                (None, None) => String::new(),
+            },
+            budget.unit,
+            budget.how
+        );
+    }
+}
