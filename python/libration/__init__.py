@@ -16,6 +16,7 @@ from .analysis import Advice, Analysis, advise, analyze
 from .ensemble import Ensemble
 from .environments import Environments
 from .laboratory import STUDIES, Finding, Results, run_lab
+from .linear import LQG, Butterworth2, Lag, LinearPlant, StateFeedback, StateSpace
 from .perturbations import LQR, PD, PID, Gaussian, Observer, Steps, Uniform
 from .replay import ReplayBuffer
 from .rollout import Rollout
@@ -25,13 +26,17 @@ from .systems import INTEGRATORS, SYSTEMS, CustomSystem, System
 __all__ = [
     "Advice",
     "Analysis",
+    "Butterworth2",
     "CustomSystem",
     "Ensemble",
     "Environments",
     "Finding",
     "Gaussian",
     "INTEGRATORS",
+    "LQG",
     "LQR",
+    "Lag",
+    "LinearPlant",
     "Observer",
     "PD",
     "PID",
@@ -40,6 +45,8 @@ __all__ = [
     "Rollout",
     "STUDIES",
     "SYSTEMS",
+    "StateFeedback",
+    "StateSpace",
     "Steps",
     "System",
     "Trajectory",

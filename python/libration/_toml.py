@@ -58,6 +58,8 @@ def _value(key: str, value: Any) -> str:
         value = value.tolist()
         if not isinstance(value, list):
             return _value(key, value)
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{_string(str(name))} = {_value(str(name), entry)}' for name, entry in value.items())}}}"
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(_value(key, entry) for entry in value)}]"
     raise TypeError(f"{key} must be a number, a string, a list or a dictionary, not {type(value).__name__}")

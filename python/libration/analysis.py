@@ -13,6 +13,7 @@ from ._keywords import check_keywords
 from ._progress import Progress, ProgressDisplay
 from ._settings import number
 from ._toml import text_of
+from .linear import linear_request, plant_of
 from .perturbations import LQR, PD, PID, Controller, Observer, law, numbers
 from .perturbations import latency as _latency
 from .systems import CustomSystem, System, known
@@ -169,17 +170,19 @@ def _of_catalogue(system: Any) -> System:
 
 @check_keywords
 def advise(
-    system: str | System | None = None,
-    controller: Controller | Sequence[float] | None = None,
+    system: Any = None,
+    controller: Any = None,
     *,
     q: Any = None,
     v: Any = None,
     period: float | None = None,
     latency: Any = None,
+    output_latency: Any = None,
     jitter: Any = None,
     skew: float | None = None,
     loss: float | None = None,
-    cost_weights: Sequence[float] | None = None,
+    cost_weights: Any = None,
+    measurement_noise: Any = None,
     deviation: float | None = None,
     tolerance: tuple[str, float] | None = None,
     horizon: float | None = None,
@@ -192,21 +195,25 @@ def advise(
     Parameters
     ----------
     system:
-        A name or a :class:`~libration.System`.
+        A name or a :class:`~libration.System`; or a linear plant: a :class:`~libration.LinearPlant`, or any object with ``A``,
+        ``B``, ``C``, ``D`` and ``dt``, as ``control.ss`` and ``scipy.signal.StateSpace`` make them.
     controller:
         Gains of position and velocity, in s⁻² and s⁻¹ (in N/m and N·s/m for a system with ``m`` and ``k``),
         :class:`~libration.PD`, :class:`~libration.PID`, :class:`~libration.LQR` or
-        :class:`~libration.Observer` (default: no loop).
+        :class:`~libration.Observer` (default: no loop). Of a linear plant ``LQR(Q, R)``, :class:`~libration.LQG`,
+        :class:`~libration.StateFeedback`, :class:`~libration.StateSpace`, or a list of ``(output, input, PID)``.
     q, v:
         Start of a simulation, or operating point of a loop (default: the origin).
     period:
         Sample period in s (default: 0.01).
     latency, jitter, skew, loss:
         Imperfections of the loop: latency in s or :class:`~libration.Steps`, distribution of the sample period, relative clock error
-        (positive: slow), probability that a command is lost.
+        (positive: slow), probability that a command is lost. Of a linear plant ``latency`` may have a value for each input.
+    output_latency, measurement_noise:
+        Of a linear plant: latency of the measurements in s, and variances of their noise; for all, or for each output.
     cost_weights, deviation, tolerance, horizon:
         Weights of position², velocity² and command² in the cost; largest deviation from which the loop must return, in m or rad;
-        tolerance of ``energy``, ``phase``, ``trajectory`` or ``cost``, as ``("energy", 1e-6)``; duration in s.
+        of a linear plant a pair, weights of states and inputs; tolerance of ``energy``, ``phase``, ``trajectory`` or ``cost``, as ``("energy", 1e-6)``; duration in s.
     config:
         A dictionary or the path of a request file, in place of all parameters above.
     page:
@@ -224,10 +231,12 @@ def advise(
         "v": v,
         "period": period,
         "latency": latency,
+        "output_latency": output_latency,
         "jitter": jitter,
         "skew": skew,
         "loss": loss,
         "cost_weights": cost_weights,
+        "measurement_noise": measurement_noise,
         "deviation": deviation,
         "tolerance": tolerance,
         "horizon": horizon,
@@ -239,7 +248,15 @@ def advise(
         request = text_of("config", config)
     elif system is None:
         raise TypeError("system and config are missing; expected one of them")
+    elif (plant := plant_of(system)) is not None:
+        for name in ("q", "v", "deviation", "horizon"):
+            if keywords[name] is not None:
+                raise TypeError(f"{name} cannot be combined with a linear plant")
+        request = text_of("config", linear_request(plant, controller, keywords))
     else:
+        for name in ("output_latency", "measurement_noise"):
+            if keywords.pop(name) is not None:
+                raise TypeError(f"{name} requires a linear plant")
         request = text_of("config", _request(**keywords))
     with ProgressDisplay(progress) as display:
         report = (lambda _, __, ___, what, done, total: display.update(done / max(total, 1), what)) if display.enabled else None

@@ -61,13 +61,16 @@ class PID:
 
 @dataclass(frozen=True)
 class LQR:
-    """LQR controller, from weights of position², velocity² and command².
+    """LQR controller, from weights of position², velocity² and command²; of a linear plant ``LQR(Q, R)``.
 
     The design minimises the weighted sum over the samples. The cost of :func:`advise` is the mean over continuous time. Both have the
     same minimum only in the limit of short periods.
     """
 
     weights: Sequence[float]
+    """Weights of position², velocity² and command²; with ``inputs`` those of the states, a matrix or its diagonal."""
+    inputs: Any = None
+    """Weights of the inputs of a linear plant, a matrix or its diagonal."""
 
 
 @dataclass(frozen=True)

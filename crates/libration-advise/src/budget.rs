@@ -73,7 +73,11 @@ impl TimedLoop {
         let growing = modes.iter().filter(|mode| mode.radius >= 1.0).count();
         modes.truncate(growing.max(1));
         let describe = |mode: &LoopMode| {
-            let how = describe_motion(mode.angle, self.period()).1;
+            let mut how = describe_motion(mode.angle, self.period()).1;
+            if self.names_states {
+                let names: Vec<&str> = mode.states.iter().map(|(name, _)| name.as_str()).collect();
+                how += &format!(", most of all in {}", names.join(", "));
+            }
             match mode.radius - 1.0 {
                 neutral if neutral < NEUTRAL => "a motion neither grows nor decays".into(),
                 small if small < 1e-3 => {

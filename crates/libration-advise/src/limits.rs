@@ -123,7 +123,10 @@ impl TimedLoop {
             Imperfection::Jitter | Imperfection::Loss => even(TRIED).collect(),
             // Quarters of a period, then whole ones.
             Imperfection::Latency | Imperfection::OutputLatency => {
-                let step = |at: f64| (PART / turn).clamp(0.01, if at < 8.0 { 0.25 } else { 1.0 });
+                let step = |at: f64| match self.is_sampled() {
+                    true => 1.0,
+                    false => (PART / turn).clamp(0.01, if at < 8.0 { 0.25 } else { 1.0 }),
+                };
                 let next = |at: &f64| Some(at + step(*at)).filter(|next| *next < largest);
                 core::iter::successors(Some(step(0.0)), next).chain([largest]).collect()
             }
@@ -155,6 +158,9 @@ impl TimedLoop {
             if at(size)? {
                 low = size;
                 continue;
+            }
+            if late && self.is_sampled() {
+                return Ok(Limit::Value(low));
             }
             let mut high = size;
             let replays = subject.kind == Imperfection::Jitter && self.timing.record.is_some();

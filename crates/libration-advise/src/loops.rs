@@ -233,7 +233,7 @@ fn timed(
         loss,
         record: control.record.clone(),
     };
-    Ok(TimedLoop { linear, timing, crossings: None })
+    Ok(TimedLoop { linear, timing, names_states: false, crossings: None })
 }
 
 fn form(LqrWeights { position, velocity, command }: LqrWeights) -> Matrix {

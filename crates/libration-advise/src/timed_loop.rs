@@ -36,6 +36,8 @@ pub(super) struct LatencyCrossings {
 pub(super) struct TimedLoop {
     pub(super) linear: LinearLoop,
     pub(super) timing: StatedTiming,
+    /// Whether the states of the plant have names of their own.
+    pub(super) names_states: bool,
     /// What is known of the latency of the only input.
     pub(super) crossings: Option<LatencyCrossings>,
 }
@@ -73,7 +75,7 @@ impl TimedLoop {
                 _ => subjects.push(of(Imperfection::OutputLatency)),
             }
         }
-        if self.linear.plant().sampling_period.is_none() {
+        if !self.is_sampled() {
             subjects.extend([Imperfection::Jitter, Imperfection::Skew].map(of));
         }
         subjects.push(of(Imperfection::Loss));
@@ -100,7 +102,10 @@ impl TimedLoop {
         let StatedTiming { input_latency, output_latency, jitter, skew, loss, .. } = &self.timing;
         // A slow clock has fewer periods per second.
         let step = self.period() * (1.0 + share * skew);
-        let late = |seconds: &f64| self.latency(share * seconds / step);
+        let late = |seconds: &f64| match share == 1.0 {
+            true => self.exact_latency(seconds / step),
+            false => self.latency(share * seconds / step),
+        };
         Ok(LoopTiming {
             input_latency: input_latency.iter().map(late).collect::<Result<_, _>>()?,
             output_latency: output_latency.iter().map(late).collect::<Result<_, _>>()?,
@@ -158,8 +163,21 @@ impl TimedLoop {
         }
     }
 
-    /// The latency of `periods` periods.
+    /// Whether the plant is sampled, so that latencies are whole periods.
+    pub(super) fn is_sampled(&self) -> bool {
+        self.linear.plant().sampling_period.is_some()
+    }
+
+    /// The latency of `periods` periods; of a sampled plant that of the whole ones.
     pub(super) fn latency(&self, periods: f64) -> Result<Latency, LinearLoopError> {
+        let exact = self.exact_latency(periods)?;
+        match self.is_sampled() {
+            true => self.exact_latency(exact.whole() as f64),
+            false => Ok(exact),
+        }
+    }
+
+    fn exact_latency(&self, periods: f64) -> Result<Latency, LinearLoopError> {
         // The same conversion from seconds as elsewhere.
         let period = self.period();
         Latency::of_seconds(periods * period, period).ok_or(LinearLoopError::Latency { periods })
@@ -207,7 +225,7 @@ impl TimedLoop {
     pub(super) fn amplified(&self, factor: f64) -> Result<Self, LinearLoopError> {
         let controller = self.linear.controller().amplified(factor);
         let linear = self.linear.with_controller(controller)?;
-        Ok(TimedLoop { linear, timing: self.timing.clone(), crossings: None })
+        Ok(TimedLoop { linear, crossings: None, ..self.clone() })
     }
 
     /// The same loop with noise that is held through each period, as simulated.

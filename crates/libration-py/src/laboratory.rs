@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use libration_advise as advise;
+use libration_advise::linear;
 use libration_lab::output::Output;
 use libration_lab::{STUDIES, session};
 use libration_study::{Effort, Lab, Progress, Study};
@@ -68,6 +69,9 @@ pub(crate) fn _advise(
     page: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, bool, Option<String>)> {
+    if linear::is_linear(config) {
+        return advise_linear(py, config, page, progress);
+    }
     let mut request = advise::parse(config, "config.toml").map_err(Raised::raised)?;
     request.map = page;
     let state = ProgressState::default();
@@ -79,6 +83,26 @@ pub(crate) fn _advise(
     let advice = advice.map_err(Raised::raised)?;
     let json = serde_json::to_string(&advice).map_err(|error| value_error(error.to_string()))?;
     Ok((json, advice.holds(), page.then(|| advise::page(&advice))))
+}
+
+/// Advises on a loop around a linear plant.
+fn advise_linear(
+    py: Python<'_>,
+    config: &str,
+    page: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(String, bool, Option<String>)> {
+    let mut request = linear::parse(config, "config.toml").map_err(Raised::raised)?;
+    request.map = page;
+    let state = ProgressState::default();
+    let advice = run_in_background(
+        py,
+        |stop| linear::advise(&Work::new(&state, stop), &request),
+        |py| state.report(py, progress.as_ref()),
+    )?;
+    let advice = advice.map_err(Raised::raised)?;
+    let json = serde_json::to_string(&advice).map_err(|error| value_error(error.to_string()))?;
+    Ok((json, advice.holds(), page.then(|| linear::page(&advice))))
 }
 
 /// A series: its study, its name and its columns, each with its unit.

@@ -1,0 +1,247 @@
+"""Linear plants of any size, and controllers of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .perturbations import LQR, PID, Steps, law
+from ._settings import number
+
+__all__ = ["LQG", "Butterworth2", "Lag", "LinearPlant", "StateFeedback", "StateSpace"]
+
+
+@dataclass(frozen=True)
+class Lag:
+    """First-order lag before an input or behind an output, with a time constant in s."""
+
+    seconds: float
+    input: str | int | None = None
+    """The name or number of the input; exactly one of ``input`` and ``output`` is required."""
+    output: str | int | None = None
+    name: str | None = None
+
+
+@dataclass(frozen=True)
+class Butterworth2:
+    """Second-order Butterworth filter before an input or behind an output, with a cutoff frequency in Hz."""
+
+    hertz: float
+    input: str | int | None = None
+    """The name or number of the input; exactly one of ``input`` and ``output`` is required."""
+    output: str | int | None = None
+    name: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class LinearPlant:
+    """A linear plant ``ẋ = Ax + Bu + Gw``, ``y = Cx + Du`` with white noise ``w`` of unit intensity.
+
+    :func:`advise` also takes any object with ``A``, ``B``, ``C``, ``D`` and ``dt`` in its place, as ``control.ss`` and
+    ``scipy.signal.StateSpace`` make them.
+    """
+
+    A: ArrayLike
+    """States × states."""
+    B: ArrayLike
+    """States × inputs."""
+    C: ArrayLike | None = None
+    """Outputs × states (default: all states)."""
+    D: ArrayLike | None = None
+    """Outputs × inputs (default: zero)."""
+    G: ArrayLike | None = None
+    """States × noises (default: noise enters where the inputs do)."""
+    dt: float | None = None
+    """The period in s of a plant whose matrices are those of a step (default: continuous time)."""
+    states: Sequence[str] | None = None
+    """Names of the states, with units in parentheses: ``"angle (rad)"``."""
+    inputs: Sequence[str] | None = None
+    outputs: Sequence[str] | None = None
+    parts: Sequence[Lag | Butterworth2] = field(default=())
+    """Lags and filters of the channels."""
+
+
+@dataclass(frozen=True, eq=False)
+class StateFeedback:
+    """Feedback ``u = -gain @ x`` of all states, inputs × states."""
+
+    gain: ArrayLike
+
+
+@dataclass(frozen=True, eq=False)
+class LQG:
+    """The regulator of a state that a Kalman filter estimates from the outputs, both designed for continuous time."""
+
+    states: ArrayLike
+    """Weights of the states, a matrix or its diagonal."""
+    inputs: ArrayLike
+    """Weights of the inputs, a matrix or its diagonal."""
+    measurement: ArrayLike
+    """Covariance of the noise of each sample, a matrix or its diagonal."""
+
+
+@dataclass(frozen=True, eq=False)
+class StateSpace:
+    """A discrete controller ``m' = A m + B y``, ``u = C m + D y``, once per period."""
+
+    A: ArrayLike
+    B: ArrayLike
+    C: ArrayLike
+    D: ArrayLike
+
+
+def plant_of(system: Any) -> LinearPlant | None:
+    """Return a linear plant for an object with the matrices of one; None for others."""
+    if isinstance(system, LinearPlant):
+        return system
+    if not all(hasattr(system, name) for name in "ABCD") and hasattr(system, "to_ss"):
+        system = system.to_ss()
+    if not all(hasattr(system, name) for name in "ABCD"):
+        return None
+    dt = getattr(system, "dt", None)
+    if dt is True:
+        raise ValueError("system.dt is True, a period that is not given; expected a number of seconds, or 0 for continuous time")
+
+    def labels(name: str) -> list[str] | None:
+        found = getattr(system, name, None)
+        return [str(label) for label in found] if found is not None else None
+
+    return LinearPlant(
+        system.A,
+        system.B,
+        system.C,
+        system.D,
+        dt=float(dt) if dt else None,
+        states=labels("state_labels"),
+        inputs=labels("input_labels"),
+        outputs=labels("output_labels"),
+    )
+
+
+def matrix(name: str, value: ArrayLike) -> list[list[float]]:
+    """Return a matrix row by row; numbers and vectors are rows."""
+    rows = np.atleast_2d(_array(name, value))
+    if rows.ndim != 2:
+        raise ValueError(f"{name} has shape {np.shape(value)}; expected a matrix")
+    return rows.tolist()
+
+
+def _array(name: str, value: ArrayLike) -> np.ndarray:
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} has dtype {array.dtype}; expected real numbers")
+    array = array.astype(np.float64)
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} has an entry that is not finite; expected finite numbers")
+    return array
+
+
+def _weights(name: str, value: ArrayLike) -> list[Any]:
+    """Return a matrix row by row, or its diagonal."""
+    array = np.atleast_1d(_array(name, value))
+    if array.ndim > 2:
+        raise ValueError(f"{name} has shape {array.shape}; expected a matrix or its diagonal")
+    return array.tolist()
+
+
+def linear_request(plant: LinearPlant, controller: Any, timing: dict[str, Any]) -> dict[str, Any]:
+    """Return the request for a loop around a linear plant as the content of a request file."""
+    table: dict[str, Any] = {"a": matrix("A", plant.A)}
+    b = _array("B", plant.B)
+    # A vector is the column of the only input.
+    table["b"] = matrix("B", b[:, np.newaxis] if b.ndim == 1 else b)
+    for key, value in (("c", plant.C), ("d", plant.D)):
+        if value is not None:
+            table[key] = matrix(key.upper(), value)
+    if plant.G is not None:
+        g = _array("G", plant.G)
+        table["g"] = matrix("G", g[:, np.newaxis] if g.ndim == 1 else g)
+    for key, names in (("states", plant.states), ("inputs", plant.inputs), ("outputs", plant.outputs)):
+        if names is not None:
+            table[key] = [str(name) for name in names]
+    if plant.dt is not None:
+        table["sampling-period"] = number("dt", plant.dt, "a number of seconds")
+    if controller is None:
+        raise TypeError("controller is missing; expected LQR, LQG, StateFeedback, StateSpace or a list of PID for a linear plant")
+    request: dict[str, Any] = {"system": {"linear": table}, "controller": _controller(controller)}
+    if plant.parts:
+        request["part"] = [_part(part, plant) for part in plant.parts]
+    request["loop"] = _loop(timing)
+    if timing["tolerance"] is not None:
+        kind, most = timing["tolerance"]
+        request["tolerance"] = {kind: number("tolerance", most, "a number")}
+    return request
+
+
+def _part(part: Lag | Butterworth2, plant: LinearPlant) -> dict[str, Any]:
+    key, value = ("lag", part.seconds) if isinstance(part, Lag) else ("butterworth2", part.hertz)
+    table: dict[str, Any] = {key: number(key, value, "a number")}
+    if part.name is not None:
+        table["name"] = part.name
+    for side, letter, names in (("input", "u", plant.inputs), ("output", "y", plant.outputs)):
+        channel = getattr(part, side)
+        if isinstance(channel, int):
+            named = str(names[channel]).rpartition(" (")[0] or str(names[channel]) if names is not None else f"{letter}{channel + 1}"
+            table[side] = named
+        elif channel is not None:
+            table[side] = channel
+    return table
+
+
+def _controller(controller: Any) -> dict[str, Any]:
+    if isinstance(controller, StateFeedback):
+        return {"state-feedback": {"gain": matrix("gain", controller.gain)}}
+    if isinstance(controller, LQR):
+        if controller.inputs is None:
+            raise ValueError("LQR has one argument; expected LQR(Q, R), weights of states and inputs, for a linear plant")
+        states, inputs = _weights("Q", controller.weights), _weights("R", controller.inputs)
+        return {"lqr": {"states": states, "inputs": inputs}}
+    if isinstance(controller, LQG):
+        names = ("states", "inputs", "measurement")
+        return {"lqg": {name: _weights(name, getattr(controller, name)) for name in names}}
+    if isinstance(controller, StateSpace):
+        empty = not np.size(controller.A)
+        table = {} if empty else {key: matrix(key.upper(), getattr(controller, key.upper())) for key in "abc"}
+        return {"state-space": {**table, "d": matrix("D", controller.D)}}
+    if isinstance(controller, Sequence) and controller and all(isinstance(one, tuple) for one in controller):
+        return {"pid": [_pid(*one) for one in controller]}
+    raise TypeError(
+        f"controller is {controller!r:.60}; expected LQR(Q, R), LQG, StateFeedback, StateSpace, or a list of (output, input, PID)"
+    )
+
+
+def _pid(output: str, input: str, gains: PID) -> dict[str, Any]:
+    names = ("proportional", "integral", "derivative", "filter")
+    table: dict[str, Any] = {name: number(name, getattr(gains, name), "a number") for name in names}
+    return {"output": output, "input": input, **table}
+
+
+def _loop(timing: dict[str, Any]) -> dict[str, Any]:
+    loop: dict[str, Any] = {}
+    for name in ("period", "skew", "loss"):
+        if timing[name] is not None:
+            loop[name] = number(name, timing[name], "a number", lambda _: True)
+    period = loop.get("period", 0.01)
+
+    def seconds(name: str, value: Any) -> float:
+        if isinstance(value, Steps):
+            return number(name, value.number, "finite and at least 0") * period
+        return number(name, value, "finite and at least 0")
+
+    for name in ("latency", "output_latency"):
+        value = timing[name]
+        if value is None:
+            continue
+        several = isinstance(value, (list, tuple)) or np.ndim(value) == 1
+        loop[name.replace("_", "-")] = [seconds(name, one) for one in value] if several else seconds(name, value)
+    if timing["jitter"] is not None:
+        loop["law"], loop["jitter"] = law("jitter", timing["jitter"]) or ("gaussian", 0.0)
+    if timing["cost_weights"] is not None:
+        states, inputs = timing["cost_weights"]
+        loop["cost"] = {"states": _weights("cost_weights", states), "inputs": _weights("cost_weights", inputs)}
+    if timing["measurement_noise"] is not None:
+        loop["measurement-noise"] = _weights("measurement_noise", timing["measurement_noise"])
+    return loop
