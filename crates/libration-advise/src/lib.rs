@@ -134,6 +134,9 @@ pub enum AdviseError {
     /// The loop is invalid.
     #[error(transparent)]
     Loop(#[from] LoopError),
+    /// There is no redesign for the request.
+    #[error("no redesign is possible: {0}")]
+    Redesign(&'static str),
     /// The simulation of loops failed.
     #[error(transparent)]
     Ensemble(#[from] EnsembleError),

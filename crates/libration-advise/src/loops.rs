@@ -3,7 +3,7 @@
 use libration::analysis::{CostError, Imperfections, LinearController, LqrError, NotLinear, Plant};
 use libration::control::controller::{Luenberger, Pid, PidGains, StateFeedback};
 use libration::control::{ControlError, Controller, Feedback, Latency, LqrWeights};
-use libration::linear::{LinearLoop, LinearLoopError, LoopTiming, Matrix};
+use libration::linear::{DesignError, LinearLoop, LinearLoopError, LoopTiming, Matrix};
 use libration::{Float, Model, State, System};
 use libration_settings::units;
 use libration_settings::units::Units;
@@ -98,6 +98,9 @@ pub enum LoopError {
     /// The loop is too large, or a number of its timing is invalid.
     #[error(transparent)]
     Cost(#[from] CostError),
+    /// The redesign failed.
+    #[error(transparent)]
+    Design(#[from] DesignError),
     /// As for [`LoopError::Cost`].
     #[error(transparent)]
     Linear(#[from] LinearLoopError),

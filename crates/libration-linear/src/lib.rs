@@ -27,6 +27,7 @@ mod plant_rate;
 mod random_stages;
 mod recorded_loop;
 mod recorded_schedule;
+mod redesign;
 mod riccati;
 mod simulation;
 mod spectral_radius;

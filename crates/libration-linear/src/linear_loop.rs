@@ -94,7 +94,8 @@ impl LinearLoop {
         self.holds_noise
     }
 
-    pub(crate) fn cost(&self) -> &Matrix {
+    /// The cost rate as a form of states and inputs.
+    pub fn cost_form(&self) -> &Matrix {
         &self.cost
     }
 

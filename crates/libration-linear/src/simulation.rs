@@ -160,7 +160,7 @@ impl Trajectory<'_> {
             }
             let Some(&next) = phases.get(k + 1) else { break };
             let counted: Vec<f64> = start.iter().chain(&self.acting).copied().collect();
-            self.cost += (next - phase) * form(linear.cost(), &counted);
+            self.cost += (next - phase) * form(linear.cost_form(), &counted);
             match plant.sampling_period {
                 Some(_) => {
                     let moved: Vec<f64> = add(plant.a.apply(&self.x), plant.b.apply(&self.acting));

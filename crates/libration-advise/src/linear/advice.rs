@@ -3,7 +3,7 @@
 use libration::linear::{Matrix, PlantMode, Signal};
 use serde::{Serialize, Serializer};
 
-use super::ChainLink;
+use super::{ChainLink, Redesign};
 use crate::budget::{Budget, FirstFailure};
 use crate::combined_effect::SimulatedCost;
 use crate::stabilising_changes::StabilisingChanges;
@@ -62,6 +62,8 @@ pub struct LinearAdvice {
     pub simulated: Option<SimulatedCost>,
     /// Changes that stabilise an unstable loop; none if it is stable.
     pub remedies: Option<StabilisingChanges>,
+    /// The regulator for the stated latency, if the request asks for it.
+    pub redesign: Option<Redesign>,
     /// A command that repeats this advice.
     pub repeat_command: String,
     /// The stability map, if the request asks for it.

@@ -16,6 +16,9 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
     let timed = &request.timed;
     let stated = timed.stated().map_err(LoopError::from)?;
     let ideal = timed.ideal();
+    if let Some(why) = request.redesign_obstacle().filter(|_| request.redesign) {
+        return Err(AdviseError::Redesign(why));
+    }
     if let Some(modes) = timed.unstable_modes().map_err(LoopError::from)? {
         let help = timed.stabilising_changes(&ideal).sentence(["", ""]);
         return Err(AdviseError::Unstable { modes, help });
@@ -54,6 +57,10 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         }
         false => None,
     };
+    let redesign = match request.redesign {
+        true => Some(request.redesigned(work, tolerance, cost)?),
+        false => None,
+    };
     let plant = timed.linear.plant();
     let names = |signals: &[_]| signals.iter().map(SignalName::from).collect();
     let own = timed.linear.controller();
@@ -87,6 +94,7 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         deviations: request.deviations(stable)?,
         simulated,
         remedies,
+        redesign,
         repeat_command: request.invocation.clone(),
         map,
     };

@@ -54,6 +54,8 @@ pub struct LinearRequest {
     pub(super) cost_tolerance: Option<f64>,
     /// Whether to compute a stability map.
     pub map: bool,
+    /// Whether to design a regulator for the stated latency.
+    pub redesign: bool,
     /// The command line that repeats the request, without options of output.
     pub invocation: String,
 }
@@ -132,7 +134,16 @@ impl LinearRequest {
         stated.map_err(|error| Fault::new("loop", error.to_string()))?;
         let cost_tolerance = tolerance(file.tolerance)?;
         let invocation = "libration advise --config FILE".into();
-        Ok(LinearRequest { plant, parts, design, timed, cost_tolerance, map: false, invocation })
+        Ok(LinearRequest {
+            plant,
+            parts,
+            design,
+            timed,
+            cost_tolerance,
+            map: false,
+            redesign: false,
+            invocation,
+        })
     }
 
     /// The same loop with recorded time stamps in s; their mean interval determines the skew.

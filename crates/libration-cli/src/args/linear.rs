@@ -32,6 +32,9 @@ pub(crate) struct LinearArgs {
     /// Latency of the measurements of a linear plant: of all, or of each [default: 0]
     #[arg(long, value_name = "TIME", value_parser = latency, value_delimiter = ',', allow_hyphen_values = true)]
     output_latency: Vec<LatencyOption>,
+    /// Design the regulator for the stated latency: feedback of the states and of the commands under way
+    #[arg(long)]
+    pub(crate) redesign: bool,
 }
 
 /// The value of `--gain`.

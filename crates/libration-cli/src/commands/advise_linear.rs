@@ -30,6 +30,7 @@ pub(super) fn load_request(args: &AdviseArgs) -> Result<Option<LinearRequest>, F
     };
     let Some(mut request) = request else { return Ok(None) };
     request.map = args.page.is_some();
+    request.redesign = args.linear.redesign;
     request.invocation = command_line();
     if let Some(path) = &args.jitter_file {
         request =
@@ -99,6 +100,7 @@ fn describe(advice: &LinearAdvice) -> String {
             link.share.map_or_else(String::new, |share| format!("{:.1} %", 100.0 * share)),
         );
     }
+    redesign(advice, &mut text);
     let _ = writeln!(
         text,
         "\nall imperfections together: second moments change by {:+.4e} per period (exact)",
@@ -135,6 +137,39 @@ fn describe(advice: &LinearAdvice) -> String {
     }
     let _ = writeln!(text, "repeat with: {}", advice.repeat_command);
     text
+}
+
+/// Appends the regulator for the stated latency.
+fn redesign(advice: &LinearAdvice, text: &mut String) {
+    let Some(redesign) = &advice.redesign else { return };
+    let _ = writeln!(text, "\nredesigned for this latency: u = C m + D x, m' = A m + B x");
+    let own = &redesign.controller_matrices;
+    for (name, rows) in [("A", &own.a), ("B", &own.b), ("C", &own.c), ("D", &own.d)] {
+        let _ = writeln!(text, "  {name} = {rows:?}");
+    }
+    let shown = |x: Option<f64>| x.map_or_else(|| "infinite".to_owned(), |x| format!("{x:.6e}"));
+    let _ = writeln!(
+        text,
+        "  cost with all imperfections {}, with the given controller {}",
+        shown(redesign.cost),
+        shown(advice.cost)
+    );
+    let limit = |budget: &Budget| match budget.stable_up_to {
+        Some(limit) => format!("{limit:.6}"),
+        None => format!("above {:.3}", budget.tried_up_to),
+    };
+    for (before, after) in advice.budgets.iter().zip(&redesign.budgets) {
+        let channel =
+            before.channel.as_ref().map_or_else(String::new, |name| format!(" of {name}"));
+        let _ = writeln!(
+            text,
+            "  {:<32} stable up to {:>12} {}, with the given controller {}",
+            format!("{}{channel}", before.kind.name()),
+            limit(after),
+            before.unit,
+            limit(before)
+        );
+    }
 }
 
 /// Appends the budget of each imperfection.
