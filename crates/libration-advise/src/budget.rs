@@ -61,11 +61,16 @@ pub struct FirstFailure {
     pub how: String,
 }
 
+/// Growth of second moments per period that is no more than rounding, in a loop of several states.
+const ROUNDING: f64 = 1e-11;
+
 impl TimedLoop {
     /// The motions that do not decay without imperfections, in words; none if the loop is stable.
     pub(super) fn unstable_modes(&self) -> Result<Option<Vec<String>>, LinearLoopError> {
         let none = self.ideal();
-        if self.linear.is_stable(&none)? {
+        // An integrator that nothing drives is a motion that rounding makes decay.
+        let decays = !self.names_states || self.linear.growth(&none)? < -ROUNDING;
+        if decays && self.linear.is_stable(&none)? {
             return Ok(None);
         }
         let mut modes = self.linear.modes(&none, usize::MAX)?;
@@ -73,17 +78,23 @@ impl TimedLoop {
         let growing = modes.iter().filter(|mode| mode.radius >= 1.0).count();
         modes.truncate(growing.max(1));
         let describe = |mode: &LoopMode| {
-            let mut how = describe_motion(mode.angle, self.period()).1;
-            if self.names_states {
-                let names: Vec<&str> = mode.states.iter().map(|(name, _)| name.as_str()).collect();
-                how += &format!(", most of all in {}", names.join(", "));
-            }
+            let how = describe_motion(mode.angle, self.period()).1;
+            let names: Vec<&str> = mode.states.iter().map(|(name, _)| name.as_str()).collect();
+            let shape = match self.names_states && !names.is_empty() {
+                true => format!(", most of all in {}", names.join(", ")),
+                false => String::new(),
+            };
             match mode.radius - 1.0 {
-                neutral if neutral < NEUTRAL => "a motion neither grows nor decays".into(),
+                neutral if neutral < NEUTRAL => format!("a motion neither grows nor decays{shape}"),
                 small if small < 1e-3 => {
-                    format!("a motion grows by the factor 1 + {small:.2e} per period ({how})")
+                    format!(
+                        "a motion grows by the factor 1 + {small:.2e} per period ({how}{shape})"
+                    )
                 }
-                _ => format!("a motion grows by the factor {:.6} per period ({how})", mode.radius),
+                _ => {
+                    let radius = mode.radius;
+                    format!("a motion grows by the factor {radius:.6} per period ({how}{shape})")
+                }
             }
         };
         Ok(Some(modes.iter().map(describe).collect()))

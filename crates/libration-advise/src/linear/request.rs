@@ -5,7 +5,7 @@ use std::path::Path;
 
 use libration::control::Jitter;
 use libration::control::clock::{Recorded, RecordedError};
-use libration::linear::{CostWeights, LinearLoop, LinearPlant, Matrix};
+use libration::linear::{CostWeights, LinearLoop, LinearLoopError, LinearPlant, Matrix};
 use libration_settings::linear_loop::{
     Design, LinearControllerTable, LinearLoopTable, Part, PartTable, PlantTable,
 };
@@ -131,7 +131,13 @@ impl LinearRequest {
         let linear = linear.map_err(|error| Fault::new("loop", error.to_string()))?;
         let timed = TimedLoop { linear, timing, names_states: true, crossings: None };
         let stated = timed.stated().and_then(|stated| timed.linear.size(&stated));
-        stated.map_err(|error| Fault::new("loop", error.to_string()))?;
+        stated.map_err(|error| {
+            let key = match error {
+                LinearLoopError::Latency { .. } | LinearLoopError::Size { .. } => "loop.latency",
+                _ => "loop",
+            };
+            Fault::new(key, error.to_string())
+        })?;
         let cost_tolerance = tolerance(file.tolerance)?;
         let invocation = "libration advise --config FILE".into();
         Ok(LinearRequest {

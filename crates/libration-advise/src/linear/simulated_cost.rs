@@ -39,7 +39,7 @@ impl LinearRequest {
         let linear = &self.timed.linear;
         let simulation = Simulation { linear, timing: &timing, record, seed: SEED };
         let before = memory.ceil() as u64;
-        let periods = (10.0 * memory).clamp(1000.0, MOST_PERIODS) as u64;
+        let periods = (4.0 * memory).clamp(1000.0, 0.5 * MOST_PERIODS) as u64;
         let numbers: Vec<u64> = (0..COUNT).collect();
         let costs = work.sweep("simulated loops", &numbers, |&number| {
             Ok::<f64, AdviseError>(simulation.mean_cost(number, before, periods))

@@ -14,6 +14,7 @@ mod interrupt;
 #[cfg(unix)]
 mod kills;
 mod lab;
+mod linear;
 #[cfg(unix)]
 mod long_files;
 #[cfg(target_os = "linux")]
