@@ -62,7 +62,7 @@ def _analyze(
     step: Mapping[str, Any], looped: Mapping[str, Any], options: Mapping[str, Any]
 ) -> str: ...
 def _advise(
-    config: str, page: bool, progress: Callable[[str, int, int, str, int, int], Any] | None
+    config: str, page: bool, redesign: bool, progress: Callable[[str, int, int, str, int, int], Any] | None
 ) -> tuple[str, bool, str | None]: ...
 def _run_lab(
     config: str,

@@ -188,6 +188,7 @@ def advise(
     horizon: float | None = None,
     config: Any = None,
     page: bool = False,
+    redesign: bool = False,
     progress: Progress = None,
 ) -> Advice:
     """Return the limits of a loop or a simulation, as ``libration advise`` prints them.
@@ -218,6 +219,8 @@ def advise(
         A dictionary or the path of a request file, in place of all parameters above.
     page:
         Whether to add an HTML page with a stability map, which takes longer.
+    redesign:
+        Whether to design the regulator for the stated latency, of a linear plant with an :class:`~libration.LQR`.
 
     Raises
     ------
@@ -260,7 +263,7 @@ def advise(
         request = text_of("config", _request(**keywords))
     with ProgressDisplay(progress) as display:
         report = (lambda _, __, ___, what, done, total: display.update(done / max(total, 1), what)) if display.enabled else None
-        answer, holds, html_page = _native._advise(request, bool(page), report)
+        answer, holds, html_page = _native._advise(request, bool(page), bool(redesign), report)
     return Advice(json.loads(answer), holds, request, html_page)
 
 

@@ -168,7 +168,10 @@ def linear_request(plant: LinearPlant, controller: Any, timing: dict[str, Any]) 
         raise TypeError("controller is missing; expected LQR, LQG, StateFeedback, StateSpace or a list of PID for a linear plant")
     request: dict[str, Any] = {"system": {"linear": table}, "controller": _controller(controller)}
     if plant.parts:
-        request["part"] = [_part(part, plant) for part in plant.parts]
+        # Feedback of the state measures the states.
+        of_states = isinstance(controller, (LQR, StateFeedback)) or plant.C is None
+        measured = ("x", plant.states) if of_states else ("y", plant.outputs)
+        request["part"] = [_part(part, ("u", plant.inputs), measured) for part in plant.parts]
     request["loop"] = _loop(timing)
     if timing["tolerance"] is not None:
         kind, most = timing["tolerance"]
@@ -176,16 +179,15 @@ def linear_request(plant: LinearPlant, controller: Any, timing: dict[str, Any]) 
     return request
 
 
-def _part(part: Lag | Butterworth2, plant: LinearPlant) -> dict[str, Any]:
+def _part(part: Lag | Butterworth2, inputs: tuple[str, Any], outputs: tuple[str, Any]) -> dict[str, Any]:
     key, value = ("lag", part.seconds) if isinstance(part, Lag) else ("butterworth2", part.hertz)
     table: dict[str, Any] = {key: number(key, value, "a number")}
     if part.name is not None:
         table["name"] = part.name
-    for side, letter, names in (("input", "u", plant.inputs), ("output", "y", plant.outputs)):
-        channel = getattr(part, side)
+    for side, channel, (letter, names) in (("input", part.input, inputs), ("output", part.output, outputs)):
         if isinstance(channel, int):
-            named = str(names[channel]).rpartition(" (")[0] or str(names[channel]) if names is not None else f"{letter}{channel + 1}"
-            table[side] = named
+            # A name may have a unit in parentheses.
+            table[side] = f"{letter}{channel + 1}" if names is None else str(names[channel]).partition("(")[0].strip()
         elif channel is not None:
             table[side] = channel
     return table

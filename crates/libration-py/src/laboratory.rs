@@ -67,10 +67,14 @@ pub(crate) fn _advise(
     py: Python<'_>,
     config: &str,
     page: bool,
+    redesign: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, bool, Option<String>)> {
     if linear::is_linear(config) {
-        return advise_linear(py, config, page, progress);
+        return advise_linear(py, config, [page, redesign], progress);
+    }
+    if redesign {
+        return Err(value_error("redesign requires a linear plant".to_owned()));
     }
     let mut request = advise::parse(config, "config.toml").map_err(Raised::raised)?;
     request.map = page;
@@ -89,11 +93,11 @@ pub(crate) fn _advise(
 fn advise_linear(
     py: Python<'_>,
     config: &str,
-    page: bool,
+    [page, redesign]: [bool; 2],
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, bool, Option<String>)> {
     let mut request = linear::parse(config, "config.toml").map_err(Raised::raised)?;
-    request.map = page;
+    (request.map, request.redesign) = (page, redesign);
     let state = ProgressState::default();
     let advice = run_in_background(
         py,

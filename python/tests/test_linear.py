@@ -1,0 +1,140 @@
+"""Loops around linear plants from Python."""
+
+import json
+import types
+
+import numpy as np
+import pytest
+
+import libration
+from libration import LQG, LQR, PD, PID, Butterworth2, Lag, LinearPlant, StateFeedback, StateSpace, Steps, advise
+
+A, B = np.array([[0.0, 1.0], [4.0, -0.2]]), np.array([[0.0, 0.0], [1.0, 0.5]])
+PENDULUM = LinearPlant(A, B[:, 0], states=["angle (rad)", "rate (rad/s)"], inputs=["torque (N m)"])
+
+
+def limit(advice, kind, channel=None):
+    (found,) = [b for b in advice["budgets"] if b["kind"] == kind and b.get("channel") == channel]
+    return found["stable_up_to"]
+
+
+def test_an_object_with_matrices_is_a_plant_and_its_labels_are_names():
+    system = types.SimpleNamespace(
+        A=A, B=B, C=[[1.0, 0.0]], D=np.zeros((1, 2)), dt=0, state_labels=["angle", "rate"], input_labels=["left", "right"]
+    )
+    advice = advise(
+        system, LQR(np.diag([10, 1]), np.diag([1, 0.1])), latency=[0.003, 0.010], output_latency=0.02, jitter=0.05
+    )
+    assert advice.holds and "is stable" in advice.answer
+    # Feedback of the state measures the states.
+    assert [signal["name"] for signal in advice["outputs"]] == ["angle", "rate"]
+    assert limit(advice, "latency", "right") > 0.1
+    assert limit(advice, "output-latency", "rate") > 0.02
+    # The request is a file that gives the same answer.
+    repeated = json.loads(libration._native._advise(advice.request, False, False, None)[0])
+    assert repeated["budgets"] == advice["budgets"]
+
+
+def test_the_gain_is_that_of_the_riccati_equation_of_the_sampled_plant():
+    advice = advise(PENDULUM, LQR([10, 1], [0.1]), period=0.05)
+    gain = np.array(advice["gain"])
+    # Value iteration, with weights that are integrated by Simpson's rule over many short steps.
+    n, h, parts = 2, 0.05, 200
+    whole = np.zeros((3, 3))
+    whole[:2, :2], whole[:2, 2] = A, B[:, 0]
+
+    def flow(t):
+        term, total = np.eye(3), np.eye(3)
+        for k in range(1, 25):
+            term = term @ whole * t / k
+            total = total + term
+        return total
+
+    weight = np.diag([10, 1, 0.1])
+    simpson = [1 if k in (0, parts) else 4 if k % 2 else 2 for k in range(parts + 1)]
+    cost = sum(w * flow(h * k / parts).T @ weight @ flow(h * k / parts) for k, w in enumerate(simpson)) * h / parts / 3
+    phi, gamma = flow(h)[:n, :n], flow(h)[:n, n:]
+    x = np.zeros((n, n))
+    for _ in range(3000):
+        k = np.linalg.solve(cost[n:, n:] + gamma.T @ x @ gamma, gamma.T @ x @ phi + cost[n:, :n])
+        x = cost[:n, :n] + phi.T @ x @ phi - (phi.T @ x @ gamma + cost[:n, n:]) @ k
+    assert gain == pytest.approx(k, rel=1e-10)
+
+
+def test_every_controller_of_a_linear_plant_is_taken():
+    measured = LinearPlant(A, B[:, 0], [[1.0, 0.0]], inputs=["u"], outputs=["y"])
+    for controller in (
+        LQG([10, 1], [0.1], [1e-4]),
+        StateFeedback([[20.0, 5.0]]),
+        StateSpace(np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0)), [[-20.0]]),
+        [("y", "u", PID(20.0, 1.0, 5.0, 0.01))],
+    ):
+        plant = LinearPlant(A - 3 * np.eye(2), B[:, 0], [[1.0, 0.0]], inputs=["u"], outputs=["y"])
+        if not isinstance(controller, StateSpace):
+            plant = measured
+        advice = advise(plant, controller, latency=Steps(1.5), loss=0.01)
+        assert advice.growth < 0 and limit(advice, "latency") > 0.015, controller
+
+
+def test_lags_shorten_what_latency_is_left_and_stand_in_the_chain():
+    free = limit(advise(PENDULUM, StateFeedback([[20.0, 5.0]])), "latency")
+    parts = [Lag(0.02, input="torque", name="motor"), Butterworth2(20.0, output=1)]
+    late = advise(LinearPlant(A, B[:, 0], states=PENDULUM.states, inputs=PENDULUM.inputs, parts=parts), StateFeedback([[20.0, 5.0]]))
+    assert limit(late, "latency") < free - 0.02
+    chain = {link["part"]: link["delay"] for link in late["chain"]}
+    assert chain["motor"] == 0.02
+    # √2/(2πf), as the guide of PX4 has it.
+    assert chain["butterworth2 of rate"] == pytest.approx(np.sqrt(2) / (2 * np.pi * 20), rel=1e-12)
+
+
+def test_a_sampled_plant_keeps_its_step():
+    phi, gamma = np.array([[1.0, 0.01], [0.04, 0.998]]), np.array([[5e-5], [0.01]])
+    system = types.SimpleNamespace(A=phi, B=gamma, C=np.eye(2), D=np.zeros((2, 1)), dt=0.01)
+    advice = advise(system, StateFeedback([[20.0, 5.0]]), latency=0.02, loss=0.1)
+    assert advice.holds and {b["kind"] for b in advice["budgets"]} == {"latency", "output-latency", "loss"}
+    # Commands that wait for d periods, by plain eigenvalues.
+    stable = []
+    for d in range(40):
+        whole = np.zeros((2 + d, 2 + d))
+        whole[:2, :2] = phi
+        command = np.zeros((1, 2 + d))
+        command[0, :2] = [-20.0, -5.0]
+        if d == 0:
+            whole[:2] += gamma @ command
+        else:
+            whole[:2, 1 + d] += gamma[:, 0]
+            whole[2] = command
+            for i in range(3, 2 + d):
+                whole[i, i - 1] = 1.0
+        stable.append(abs(np.linalg.eigvals(whole)).max() < 1)
+    assert limit(advice, "latency") == pytest.approx(0.01 * (stable.index(False) - 1), rel=1e-12)
+    with pytest.raises(ValueError, match="between its samples"):
+        advise(system, StateFeedback([[20.0, 5.0]]), latency=0.015)
+
+
+def test_a_redesign_is_cheaper_with_the_latency_it_is_made_for():
+    advice = advise(PENDULUM, LQR([10, 1], [0.1]), period=0.05, latency=0.08, redesign=True)
+    assert advice["redesign"]["cost"] < advice["cost"]
+    with pytest.raises(ValueError, match="redesign requires a linear plant"):
+        advise("oscillator", PD(10.0, 2.0), redesign=True)
+
+
+def test_bad_input_is_refused_by_name():
+    for controller, keywords, error, wanted in (
+        (None, {}, TypeError, "controller is missing"),
+        (LQR([1, 1, 1], [1]), {}, ValueError, "is 3 × 3; expected 2 × 2"),
+        (LQR([1, 1, 1]), {}, ValueError, "expected LQR\\(Q, R\\)"),
+        (LQR([1, np.nan], [1]), {}, ValueError, "Q has an entry that is not finite"),
+        (StateFeedback([[1.0]]), {}, ValueError, "`gain` is 1 × 1; expected 1 × 2"),
+        (StateFeedback([[20.0, 5.0]]), {"latency": [1, 2]}, ValueError, "2 values; expected one"),
+        (StateFeedback([[20.0, 5.0]]), {"q": [1.0]}, TypeError, "q cannot be combined with a linear plant"),
+        (StateFeedback([[20.0, 5.0]]), {"latency": -1.0}, ValueError, "expected a finite number of at least 0"),
+        (StateFeedback([[0.0, 0.0]]), {}, ValueError, "a motion grows"),
+        (PID(1.0, 0.0, 0.0), {}, TypeError, "expected LQR"),
+    ):
+        with pytest.raises(error, match=wanted):
+            advise(PENDULUM, controller, **keywords)
+    with pytest.raises(ValueError, match="dt is True"):
+        advise(types.SimpleNamespace(A=A, B=B, C=A, D=B, dt=True), LQR([1, 1], [1, 1]))
+    with pytest.raises(TypeError, match="output_latency requires a linear plant"):
+        advise("oscillator", PD(10.0, 2.0), output_latency=0.1)
