@@ -100,7 +100,7 @@ pub(crate) struct AdviseArgs {
         default_value = "trajectory=1e-3",
         allow_hyphen_values = true
     )]
-    tolerance: ToleranceArg,
+    pub(super) tolerance: ToleranceArg,
     /// Duration over which --tolerance holds, in s
     #[arg(
         long,
@@ -160,7 +160,7 @@ integrator is accurate enough.";
 
 /// The value of `--tolerance`.
 #[derive(Clone, Copy, Debug)]
-struct ToleranceArg(Tolerance);
+pub(super) struct ToleranceArg(pub(super) Tolerance);
 
 impl AdviseArgs {
     /// Returns the request that the options describe.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use libration::control::Jitter;
 use libration_advise::linear::{LinearRequest, RequestFile};
+use libration_advise::{Measure, Tolerance};
 use libration_analyze::LatencyOption;
 use libration_settings::linear_loop::{
     Channels, LinearControllerTable, LinearLoopTable, Rows, StateFeedbackTable, Weights,
@@ -20,8 +21,8 @@ use crate::error::Failure;
 /// Arguments of a loop around a linear plant.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct LinearArgs {
-    /// File of a linear plant ẋ = Ax + Bu, y = Cx + Du: .toml, .json, .csv or .npz, with matrices a, b, c, d
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["system", "feedback"])]
+    /// File of a linear plant ẋ = Ax + Bu, y = Cx + Du: .toml, .json or .csv, with matrices a, b, c, d
+    #[arg(long, value_name = "FILE", conflicts_with_all = NOT_LINEAR)]
     pub(crate) plant: Option<PathBuf>,
     /// Design a linear-quadratic regulator with these weights of the squares of states and inputs, e.g. 10,1/0.1
     #[arg(long, value_name = "STATES/INPUTS", value_parser = lqr, requires = "plant", conflicts_with = "gain")]
@@ -36,6 +37,10 @@ pub(crate) struct LinearArgs {
     #[arg(long)]
     pub(crate) redesign: bool,
 }
+
+/// Options that are about systems of the catalogue.
+const NOT_LINEAR: [&str; 8] =
+    ["system", "set", "q", "v", "feedback", "cost_weights", "deviation", "horizon"];
 
 /// The value of `--gain`.
 #[derive(Clone, Debug)]
@@ -67,7 +72,39 @@ impl AdviseArgs {
         self.set_timing(&mut looped);
         let mut file = RequestFile { controller: Some(controller), looped, ..Default::default() };
         file.system.linear = plant;
+        if let Some((name, most)) = self.linear_tolerance()? {
+            file.tolerance.insert(name.to_owned(), Number(most));
+        }
         LinearRequest::new(file).map_err(|fault| Failure::usage(named(&fault)))
+    }
+
+    /// Fails if an option requires a linear plant, for a request that has none.
+    pub(crate) fn ensure_no_linear_options(&self) -> Result<(), Failure> {
+        let LinearArgs { output_latency, redesign, .. } = &self.linear;
+        for (given, name) in
+            [(!output_latency.is_empty(), "output-latency"), (*redesign, "redesign")]
+        {
+            if given {
+                return Err(Failure::usage(format!(
+                    "--{name} is given, but the plant is a system of the catalogue; expected --plant, or [system.linear] in the file"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// The tolerance of a loop around a linear plant: none, or that of the cost.
+    fn linear_tolerance(&self) -> Result<Option<(&'static str, f64)>, Failure> {
+        let Tolerance { of, most } = self.tolerance.0;
+        match of {
+            Measure::Cost => Ok(Some((of.name(), most))),
+            // The default.
+            Measure::Trajectory if most == 1e-3 => Ok(None),
+            of => Err(Failure::usage(format!(
+                "--tolerance is {}, but a loop around a linear plant has a tolerance of the cost only, e.g. cost=0.1",
+                of.name()
+            ))),
+        }
     }
 
     /// Puts the timing options in place of those of a table.

@@ -52,6 +52,7 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
 
 /// Returns the request of the file or of the options.
 fn load_request(args: &AdviseArgs) -> Result<Request, Failure> {
+    args.ensure_no_linear_options()?;
     let mut request = match &args.config {
         Some(path) => args.with_timing(config_file::read(path, advise::parse)?)?,
         None => args.request()?,

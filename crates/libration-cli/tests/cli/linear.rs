@@ -194,6 +194,17 @@ fn plants_and_controllers_that_do_not_fit_are_usage_errors_that_name_the_key() {
     let plant = plant.to_str().unwrap();
     let words = ["advise", "--plant", plant, "--lqr", "1/1"];
     libration(&words).code(2).stderr(predicate::str::contains("line 1: `one` is no number"));
+    let oscillator = ["advise", "--system", "oscillator", "--feedback", "10,2"];
+    for (rest, wanted) in [
+        (&["--output-latency", "0.1"][..], "--output-latency is given, but the plant is a system"),
+        (&["--redesign"], "--redesign is given, but the plant is a system"),
+        (&["--plant", plant], "cannot be used with"),
+    ] {
+        libration(&[&oscillator, rest].concat()).code(2).stderr(predicate::str::contains(wanted));
+    }
+    libration(&["advise", "--plant", plant, "--horizon", "3"])
+        .code(2)
+        .stderr(predicate::str::contains("cannot be used with"));
     libration(&["advise", "--plant", plant])
         .code(2)
         .stderr(predicate::str::contains("`one` is no number"));

@@ -10,7 +10,7 @@ use crate::{Document, Number};
 /// Reads a plant from a file.
 ///
 /// `.toml` and `.json` have the keys of `[system.linear]`. A line of a `.csv` file has the name of a matrix and the numbers of one of
-/// its rows. `.npz` files of NumPy have an array for each matrix, under its name.
+/// its rows.
 ///
 /// # Errors
 /// The error in words.
