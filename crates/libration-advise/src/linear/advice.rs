@@ -42,6 +42,8 @@ pub struct LinearAdvice {
     pub fails_first: Option<FirstFailure>,
     /// Each part of the latency by name.
     pub chain: Vec<ChainLink>,
+    /// Gain and phase margins at each input, with the stated latencies; empty if the loop is unstable with them.
+    pub margins: Vec<InputMargins>,
     /// The logarithm of the growth factor of second moments per period with all stated imperfections; below zero the loop is stable.
     pub growth: f64,
     /// The largest common factor of all imperfections with which the loop is stable; none if no limit was found.
@@ -69,6 +71,21 @@ pub struct LinearAdvice {
     /// The stability map, if the request asks for it.
     #[serde(skip)]
     pub map: Option<StabilityMap>,
+}
+
+/// The margins of the loop that is opened at one input, with all others closed.
+#[derive(Clone, Debug, Serialize)]
+pub struct InputMargins {
+    /// The input.
+    pub input: String,
+    /// The smallest factor above 1 of its commands at which the loop loses stability; none if there is none.
+    pub gain_up: Option<f64>,
+    /// The largest factor below 1; none if there is none.
+    pub gain_down: Option<f64>,
+    /// The phase margin in degrees; none if the gain never passes 1.
+    pub phase: Option<f64>,
+    /// The frequency of the phase margin in Hz.
+    pub crossover: Option<f64>,
 }
 
 /// The name and unit of a signal.

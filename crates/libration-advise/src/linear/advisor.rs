@@ -1,9 +1,10 @@
 //! Advice on loops around linear plants.
 
+use libration::linear::{LoopTiming, Signal, StabilityMargins};
 use libration_work::Work;
 
 use super::advice::{ControllerMatrices, rows_of};
-use super::{Deviation, LinearAdvice, LinearRequest, SignalName};
+use super::{Deviation, InputMargins, LinearAdvice, LinearRequest, SignalName};
 use crate::loops::LoopError;
 use crate::request::{Measure, Tolerance};
 use crate::{AdviseError, limits::Imperfection};
@@ -82,6 +83,7 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         },
         period: timed.period(),
         chain: request.latency_chain(&budgets),
+        margins: request.margins(&stated)?,
         budgets,
         fails_first,
         growth,
@@ -104,6 +106,22 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
 }
 
 impl LinearRequest {
+    /// The gain and phase margins at each input.
+    fn margins(&self, stated: &LoopTiming) -> Result<Vec<InputMargins>, AdviseError> {
+        let even = LoopTiming { loss: 0.0, jitter: stated.jitter.with_rms(0.0), ..stated.clone() };
+        let linear = &self.timed.linear;
+        if !linear.is_stable(&even).map_err(LoopError::from)? {
+            return Ok(Vec::new());
+        }
+        let of = |(i, input): (usize, &Signal)| {
+            let found = linear.stability_margins(&even, i).map_err(LoopError::from)?;
+            let StabilityMargins { gain_up, gain_down, phase, crossover } = found;
+            let (input, phase) = (input.name.clone(), phase.map(f64::to_degrees));
+            Ok(InputMargins { input, gain_up, gain_down, phase, crossover })
+        };
+        linear.plant().inputs.iter().enumerate().map(of).collect()
+    }
+
     /// The standard deviations of the states under noise.
     fn deviations(&self, stable: bool) -> Result<Vec<Deviation>, AdviseError> {
         let timed = &self.timed;
@@ -117,7 +135,7 @@ impl LinearRequest {
         };
         let ideal = timed.linear.stationary(&timed.ideal()).map_err(LoopError::from)?;
         let ideal = ideal.map(|ideal| ideal.deviations).unwrap_or_default();
-        let row = |(i, (signal, ideal)): (usize, (&libration::linear::Signal, f64))| Deviation {
+        let row = |(i, (signal, ideal)): (usize, (&Signal, f64))| Deviation {
             state: signal.name.clone(),
             unit: signal.unit.clone(),
             ideal,

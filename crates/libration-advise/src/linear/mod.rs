@@ -9,7 +9,7 @@ mod request;
 mod simulated_cost;
 mod summary;
 
-pub use advice::{ControllerMatrices, Deviation, LinearAdvice, SignalName};
+pub use advice::{ControllerMatrices, Deviation, InputMargins, LinearAdvice, SignalName};
 pub use advisor::advise;
 pub use latency_chain::ChainLink;
 pub use page::page;

@@ -18,6 +18,7 @@ pub fn page(advice: &LinearAdvice) -> String {
     budgets(&mut page, advice);
     chain(&mut page, advice);
     redesign(&mut page, advice);
+    margins(&mut page, advice);
     together(&mut page, advice);
     plant(&mut page, advice);
     let names = |signals: &[super::SignalName]| {
@@ -83,6 +84,30 @@ fn chain(page: &mut Page, advice: &LinearAdvice) {
             Cell::rounded(link.delay, 4),
             known(link.phase),
             known(link.share.map(|share| 100.0 * share)),
+        ]);
+    }
+    page.table(&table, 4);
+}
+
+fn margins(page: &mut Page, advice: &LinearAdvice) {
+    if advice.margins.is_empty() {
+        return;
+    }
+    page.heading("Gain and phase margins");
+    page.paragraph(
+        "Of the loop opened at one input, with the stated latencies and all other inputs closed.",
+    );
+    let columns = ["input", "least gain", "most gain", "phase margin (°)", "crossover (Hz)"];
+    let mut table = Table::new("margins", &columns);
+    for margins in &advice.margins {
+        let known =
+            |x: Option<f64>| x.map_or_else(|| Cell::absent("none"), |x| Cell::rounded(x, 4));
+        table.push([
+            margins.input.clone().into(),
+            known(margins.gain_down),
+            known(margins.gain_up),
+            known(margins.phase),
+            known(margins.crossover),
         ]);
     }
     page.table(&table, 4);

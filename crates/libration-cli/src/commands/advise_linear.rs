@@ -100,6 +100,20 @@ fn describe(advice: &LinearAdvice) -> String {
             link.share.map_or_else(String::new, |share| format!("{:.1} %", 100.0 * share)),
         );
     }
+    for margins in &advice.margins {
+        let known = |x: Option<f64>, unit: &str| {
+            x.map_or_else(|| "none".to_owned(), |x| format!("{x:.4}{unit}"))
+        };
+        let _ = writeln!(
+            text,
+            "\nmargins at {}: gain from {} to {}, phase {} at {}",
+            margins.input,
+            known(margins.gain_down, ""),
+            known(margins.gain_up, ""),
+            known(margins.phase, " deg"),
+            known(margins.crossover, " Hz"),
+        );
+    }
     redesign(advice, &mut text);
     let _ = writeln!(
         text,
