@@ -3,7 +3,9 @@
 use libration::analysis::{CostError, Imperfections, LinearController, LqrError, NotLinear, Plant};
 use libration::control::controller::{Luenberger, Pid, PidGains, StateFeedback};
 use libration::control::{ControlError, Controller, Feedback, Latency, LqrWeights};
-use libration::linear::{DesignError, LinearLoop, LinearLoopError, LoopTiming, Matrix};
+use libration::linear::{
+    DesignError, LinearLoop, LinearLoopError, LoopTiming, Matrix, MissingCommand,
+};
 use libration::{Float, Model, State, System};
 use libration_settings::units;
 use libration_settings::units::Units;
@@ -234,6 +236,7 @@ fn timed(
         jitter,
         skew,
         loss,
+        missing: MissingCommand::Hold,
         record: control.record.clone(),
     };
     Ok(TimedLoop { linear, timing, names_states: false, crossings: None })

@@ -1,7 +1,7 @@
 //! A linear loop with its stated timing: growth, cost and modes.
 
 use libration::control::{Jitter, Latency};
-use libration::linear::{LinearLoop, LinearLoopError, LoopMode, LoopTiming};
+use libration::linear::{LinearLoop, LinearLoopError, LoopMode, LoopTiming, MissingCommand};
 
 use super::limits::Imperfection;
 
@@ -18,6 +18,8 @@ pub(super) struct StatedTiming {
     pub(super) skew: f64,
     /// The probability that a command is lost.
     pub(super) loss: f64,
+    /// What acts where a command is missing.
+    pub(super) missing: MissingCommand,
     /// Recorded steps, as multiples of their mean. They replace the law of `jitter`, which has their rms.
     pub(super) record: Option<Vec<f64>>,
 }
@@ -99,7 +101,8 @@ impl TimedLoop {
 
     /// The stated imperfections times `share`.
     pub(super) fn scaled(&self, share: f64) -> Result<LoopTiming, LinearLoopError> {
-        let StatedTiming { input_latency, output_latency, jitter, skew, loss, .. } = &self.timing;
+        let StatedTiming { input_latency, output_latency, jitter, skew, loss, missing, .. } =
+            &self.timing;
         // A slow clock has fewer periods per second.
         let step = self.period() * (1.0 + share * skew);
         let late = |seconds: &f64| match share == 1.0 {
@@ -112,6 +115,7 @@ impl TimedLoop {
             jitter: jitter.with_rms(share * jitter.rms()),
             skew: share * skew,
             loss: share * loss,
+            missing: *missing,
         })
     }
 
@@ -121,7 +125,7 @@ impl TimedLoop {
         subject: Subject,
         size: f64,
     ) -> Result<LoopTiming, LinearLoopError> {
-        let mut timing = self.ideal();
+        let mut timing = LoopTiming { missing: self.timing.missing, ..self.ideal() };
         match subject.kind {
             Imperfection::Latency => self.delay(&mut timing.input_latency, subject, size)?,
             Imperfection::OutputLatency => self.delay(&mut timing.output_latency, subject, size)?,

@@ -52,7 +52,7 @@ pub use linear_equations::{solve, solve_matrix};
 pub use linear_loop::LinearLoop;
 pub use linear_loop_error::LinearLoopError;
 pub use loop_mode::LoopMode;
-pub use loop_timing::LoopTiming;
+pub use loop_timing::{LoopTiming, MissingCommand};
 pub use matrix::Matrix;
 pub use period::{Arrival, Period};
 pub use plant::{LinearPlant, MOST_STATES, PlantError, Signal};

@@ -226,7 +226,7 @@ impl LinearLoop {
         with_cost: bool,
     ) -> Result<Vec<Stage>, LinearLoopError> {
         let layout = self.layout(timing)?;
-        let LoopTiming { skew, loss, .. } = *timing;
+        let LoopTiming { skew, loss, missing, .. } = *timing;
         let LinearPlant { a, b, c, d, g, sampling_period, .. } = &self.plant;
         let noise = g.congruence(&Matrix::identity(g.columns()));
         let (n, m) = (a.rows(), b.columns());
@@ -254,7 +254,7 @@ impl LinearLoop {
         let mut stages = Vec::new();
         for &(weight, epsilon) in nodes {
             let seconds = self.period * (1.0 + skew) * (1.0 + epsilon);
-            for (share, lost) in [(1.0 - loss, false), (loss, true)] {
+            for (share, lost) in [(1.0 - loss, None), (loss, Some(missing))] {
                 let arrival = |&latency: &Latency| Arrival { latency, lost };
                 let arrivals: Vec<Arrival> = timing.input_latency.iter().map(arrival).collect();
                 if share > 0.0 {

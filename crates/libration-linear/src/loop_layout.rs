@@ -13,7 +13,7 @@ const MOST_REPEATED: usize = 300;
 impl LinearLoop {
     /// The coordinates of the loop, after all numbers of the timing are checked.
     pub(crate) fn layout(&self, timing: &LoopTiming) -> Result<Layout, LinearLoopError> {
-        let LoopTiming { input_latency, output_latency, jitter, skew, loss } = timing;
+        let LoopTiming { input_latency, output_latency, jitter, skew, loss, .. } = timing;
         let (m, p) = (self.plant().inputs.len(), self.plant().outputs.len());
         for (of, given, count) in
             [("inputs", input_latency.len(), m), ("outputs", output_latency.len(), p)]

@@ -13,8 +13,20 @@ pub struct LoopTiming {
     pub jitter: Jitter,
     /// The part by which all periods are longer than they should be.
     pub skew: f64,
-    /// The probability that the commands of a period are lost, independently; those that act are held.
+    /// The probability that the commands of a period are lost, independently.
     pub loss: f64,
+    /// What acts where a command is missing.
+    pub missing: MissingCommand,
+}
+
+/// What acts in place of a command that is lost, until the next one takes over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MissingCommand {
+    /// The command that acts already.
+    #[default]
+    Hold,
+    /// None: zero.
+    Zero,
 }
 
 impl LoopTiming {
@@ -26,7 +38,16 @@ impl LoopTiming {
             jitter: Jitter::Gaussian(0.0),
             skew: 0.0,
             loss: 0.0,
+            missing: MissingCommand::Hold,
         }
+    }
+
+    /// Whether nothing is wrong with the timing.
+    pub fn is_ideal(&self) -> bool {
+        let late = |latency: &Latency| *latency != Latency::NONE;
+        self.repeats()
+            && self.skew == 0.0
+            && !self.input_latency.iter().chain(&self.output_latency).any(late)
     }
 
     /// Whether all periods are the same.

@@ -2,15 +2,17 @@
 
 use libration_core::control::Latency;
 
-use crate::{DiscreteController, Dynamics, HeldStep, Layout, Matrix, Stage, StepIntegrals};
+use crate::{
+    DiscreteController, Dynamics, HeldStep, Layout, Matrix, MissingCommand, Stage, StepIntegrals,
+};
 
 /// The command that takes over in a period at an input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival {
     /// Its latency. The step splits where it arrives, also if it is lost.
     pub latency: Latency,
-    /// Whether it is lost, and the command that acts is held.
-    pub lost: bool,
+    /// Whether it is lost, and what acts in its place.
+    pub lost: Option<MissingCommand>,
 }
 
 /// All that the periods of a loop have in common.
@@ -97,11 +99,15 @@ impl Period<'_> {
                 let first = layout.measurements(j).start;
                 course.add((first, first), &Matrix::diagonal(&[self.output_noise[j]]));
             }
-            let takes = |arrival: &Arrival| !arrival.lost && same(arrival.latency.part(), phase);
-            for (i, _) in arrivals.iter().enumerate().filter(|(_, arrival)| takes(arrival)) {
+            let takes = |arrival: &Arrival| {
+                arrival.lost != Some(MissingCommand::Hold) && same(arrival.latency.part(), phase)
+            };
+            for (i, arrival) in arrivals.iter().enumerate().filter(|(_, arrival)| takes(arrival)) {
                 let mut take = Matrix::identity(working);
                 take[(layout.acting(i), layout.acting(i))] = 0.0;
-                take[(layout.acting(i), layout.arriving(i))] = 1.0;
+                if arrival.lost.is_none() {
+                    take[(layout.acting(i), layout.arriving(i))] = 1.0;
+                }
                 course.pass(&take);
             }
             if let Some(&next) = phases.get(k + 1) {

@@ -105,7 +105,7 @@ impl LinearPlant {
             cost: Some(cost),
         };
         let arrivals: Vec<Arrival> =
-            latency.iter().map(|&latency| Arrival { latency, lost: false }).collect();
+            latency.iter().map(|&latency| Arrival { latency, lost: None }).collect();
         let stage = whole.stage(1.0, period, &arrivals);
         let size = layout.size();
         let kept: Vec<usize> = (0..n).chain(n + m..size).collect();

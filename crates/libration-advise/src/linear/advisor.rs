@@ -42,7 +42,7 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
     let cost = Some(cost).filter(|cost| cost.is_finite());
     let ends = budgets.iter().filter_map(|budget| budget.used.filter(|used| *used > 0.0));
     let ends: Vec<f64> = ends.map(|used| (1.0 + 1e-6) / used).collect();
-    let (margin, margin_tried_up_to) = match stable && stated != ideal {
+    let (margin, margin_tried_up_to) = match stable && !stated.is_ideal() {
         true => {
             let found = timed.margin(ideal_cost, tolerance, &ends).map_err(LoopError::from)?;
             (found.0, Some(found.1))

@@ -5,7 +5,9 @@ use std::path::Path;
 
 use libration::control::Jitter;
 use libration::control::clock::{Recorded, RecordedError};
-use libration::linear::{CostWeights, LinearLoop, LinearLoopError, LinearPlant, Matrix};
+use libration::linear::{
+    CostWeights, LinearLoop, LinearLoopError, LinearPlant, Matrix, MissingCommand,
+};
 use libration_settings::linear_loop::{
     Design, LinearControllerTable, LinearLoopTable, Part, PartTable, PlantTable,
 };
@@ -213,6 +215,14 @@ fn timing(table: &LinearLoopTable, plant: &LinearPlant) -> Result<StatedTiming, 
             return Err(fault.help(suggestions::suggest("laws", other, ["gaussian", "uniform"])));
         }
     };
+    let missing = match &*table.missing {
+        "hold" => MissingCommand::Hold,
+        "zero" => MissingCommand::Zero,
+        other => {
+            let fault = Fault::new("loop.missing", format!("unknown value `{other}` of `missing`"));
+            return Err(fault.help(suggestions::suggest("values", other, ["hold", "zero"])));
+        }
+    };
     let ensure = |key: &'static str, name: &str, value: f64, allowed: &str, holds: bool| match holds
     {
         true => Ok(()),
@@ -232,6 +242,7 @@ fn timing(table: &LinearLoopTable, plant: &LinearPlant) -> Result<StatedTiming, 
         jitter,
         skew,
         loss,
+        missing,
         record: None,
     };
     if !table.time_stamps.is_empty() {

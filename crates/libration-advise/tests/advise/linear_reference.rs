@@ -2,7 +2,8 @@
 
 use libration::control::{Jitter, Latency};
 use libration::linear::{
-    DiscreteController, LinearLoop, LinearPlant, LoopTiming, Matrix, log_spectral_radius,
+    DiscreteController, LinearLoop, LinearPlant, LoopTiming, Matrix, MissingCommand,
+    log_spectral_radius,
 };
 use serde_json::Value;
 
@@ -55,6 +56,7 @@ fn read(case: &Value) -> (LinearLoop, LoopTiming) {
         },
         skew: number(&case["skew"]),
         loss: number(&case["loss"]),
+        missing: MissingCommand::Hold,
     };
     (linear, timing)
 }

@@ -60,7 +60,7 @@ impl Plant<'_> {
         let periods = Stages::in_transit(self, controller, transit(latency), Latency::NONE, None);
         let dt = self.dt.to_f64();
         let step = |&(latency, _): &(Latency, f64)| {
-            periods.arriving(1.0, dt, Arrival { latency, lost: false }).step
+            periods.arriving(1.0, dt, Arrival { latency, lost: None }).step
         };
         latency.table().iter().map(step).collect()
     }

@@ -2,7 +2,8 @@
 
 use libration_core::control::{Latency, LqrWeights};
 use libration_linear::{
-    Arrival, DiscreteController, Dynamics, HeldStep, Layout, Matrix, Period, Stage, Transit,
+    Arrival, DiscreteController, Dynamics, HeldStep, Layout, Matrix, MissingCommand, Period, Stage,
+    Transit,
 };
 
 use super::{Imperfections, LinearController, Plant};
@@ -56,7 +57,11 @@ impl<'p> Stages<'p> {
 
     /// A period of `seconds`, in which the command arrives or is lost.
     pub(super) fn stage(&self, weight: f64, seconds: f64, lost: bool) -> Stage {
-        self.arriving(weight, seconds, Arrival { latency: self.latency, lost })
+        self.arriving(
+            weight,
+            seconds,
+            Arrival { latency: self.latency, lost: lost.then_some(MissingCommand::Hold) },
+        )
     }
 
     pub(super) fn arriving(&self, weight: f64, seconds: f64, arrival: Arrival) -> Stage {

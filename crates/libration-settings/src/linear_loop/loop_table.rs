@@ -23,6 +23,8 @@ pub struct LinearLoopTable {
     pub skew: Number,
     /// The probability that the commands of a period are lost.
     pub loss: Number,
+    /// What acts where a command is missing: `hold`, the command that acts already, or `zero`.
+    pub missing: String,
     /// The path of time stamps that replace jitter and skew.
     pub time_stamps: String,
     /// The weights of the cost (default: those of the design, or the squares of the outputs).
@@ -51,6 +53,7 @@ impl Default for LinearLoopTable {
             law: "gaussian".into(),
             skew: Number(0.0),
             loss: Number(0.0),
+            missing: "hold".into(),
             time_stamps: String::new(),
             cost: None,
             measurement_noise: None,
