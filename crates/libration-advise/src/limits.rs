@@ -57,6 +57,9 @@ const TRIED: u32 = 64;
 /// Latency in periods above which nine digits suffice.
 const LONG: f64 = 32.0;
 
+/// Whole periods on both sides of which latencies are tried, of a plant with a direct path.
+const WHOLE: u32 = 64;
+
 /// Number of bisections: to the digits of a float.
 const HALVINGS: u32 = 48;
 
@@ -116,6 +119,7 @@ impl TimedLoop {
         let turn = self.rate() * self.period();
         let even = |count: u32| (1..=count).map(move |i| largest * f64::from(i) / f64::from(count));
         let fine = ((turn * largest / PART).ceil() as u32).clamp(TRIED, 32 * TRIED);
+        let late = matches!(subject.kind, Imperfection::Latency | Imperfection::OutputLatency);
         let mut sizes: Vec<f64> = match subject.kind {
             Imperfection::Skew => even(fine).collect(),
             // Each trial passes through the whole record.
@@ -123,9 +127,12 @@ impl TimedLoop {
             Imperfection::Jitter | Imperfection::Loss => even(TRIED).collect(),
             // Quarters of a period, then whole ones.
             Imperfection::Latency | Imperfection::OutputLatency => {
-                let step = |at: f64| match self.is_sampled() {
-                    true => 1.0,
-                    false => (PART / turn).clamp(0.01, if at < 8.0 { 0.25 } else { 1.0 }),
+                let direct = self.linear.plant().d.largest() > 0.0 && !self.is_sampled();
+                let step = |at: f64| match (self.is_sampled(), direct) {
+                    (true, _) => 1.0,
+                    // A direct path shows commands that take over at whole periods: windows beside these may be narrow.
+                    (_, true) => (PART / turn).clamp(0.01, if at < 8.0 { 0.02 } else { 0.25 }),
+                    _ => (PART / turn).clamp(0.01, if at < 8.0 { 0.25 } else { 1.0 }),
                 };
                 let next = |at: &f64| Some(at + step(*at)).filter(|next| *next < largest);
                 core::iter::successors(Some(step(0.0)), next).chain([largest]).collect()
@@ -137,6 +144,10 @@ impl TimedLoop {
             }
             (_, size) => size.abs(),
         };
+        if late && self.linear.plant().d.largest() > 0.0 && !self.is_sampled() {
+            let whole = (1..=WHOLE).map(f64::from).filter(|whole| *whole + 1e-9 < largest);
+            sizes.extend(whole.flat_map(|whole| [whole - 1e-9, whole, whole + 1e-9]));
+        }
         sizes.extend(Some(stated).filter(|size| (0.0..largest).contains(size)));
         sizes.sort_by(f64::total_cmp);
         Ok(sizes)
@@ -155,9 +166,15 @@ impl TimedLoop {
         let largest = self.largest(subject);
         let mut low = 0.0;
         for size in self.tried_sizes(subject, largest)? {
-            if at(size)? {
-                low = size;
-                continue;
+            match at(size) {
+                Ok(true) => {
+                    low = size;
+                    continue;
+                }
+                Ok(false) => {}
+                // The rest is too large to analyse.
+                Err(LinearLoopError::Size { .. }) if low > 0.0 => return Ok(Limit::Beyond(low)),
+                Err(error) => return Err(error),
             }
             if late && self.is_sampled() {
                 return Ok(Limit::Value(low));

@@ -6,6 +6,7 @@
 mod channel_part;
 mod controller;
 mod design;
+mod deviations;
 mod dynamics;
 mod eigenvalues;
 mod eigenvector;

@@ -1,5 +1,6 @@
 //! Second moments of a loop with random stages.
 
+use crate::deviations::Deviations;
 use crate::{Matrix, Stage, is_schur_stable, log_spectral_radius, solve, solve_stein};
 
 /// The steps of a loop, each drawn for itself: their mean, and in which few rows and how far each is off.
@@ -13,9 +14,15 @@ pub struct RandomStages {
     mean: Matrix,
     /// Rows in which steps differ.
     rows: Vec<usize>,
-    /// The deviations of these rows from the mean, with probabilities.
-    off: Vec<(f64, Matrix)>,
+    /// The deviations of these rows from the mean.
+    off: Deviations,
 }
+
+/// Most rows that are drawn, up to which the map of the numbers of `S` is written out.
+const WRITTEN_OUT: usize = 6;
+
+/// Most iterations of that map, where it is not.
+const ITERATIONS: usize = 2000;
 
 impl RandomStages {
     /// The mean and deviations of all possible steps.
@@ -34,8 +41,9 @@ impl RandomStages {
                 stage.step[(rows[k], j)] - mean[(rows[k], j)]
             })
         };
-        let off = stages.iter().map(|stage| (stage.weight, of(stage))).collect();
-        RandomStages { mean, rows, off }
+        let off: Vec<(f64, Matrix)> =
+            stages.iter().map(|stage| (stage.weight, of(stage))).collect();
+        RandomStages { mean, rows, off: Deviations::new(&off) }
     }
 
     /// The logarithm of the factor by which second moments grow in a step.
@@ -61,14 +69,70 @@ impl RandomStages {
 
     /// Whether second moments decay.
     pub fn is_stable(&self) -> bool {
-        is_schur_stable(&self.mean)
-            && (self.rows.is_empty() || is_schur_stable(&self.feedback(&self.mean)))
+        if !is_schur_stable(&self.mean) || self.rows.is_empty() {
+            return is_schur_stable(&self.mean);
+        }
+        match self.rows.len() <= WRITTEN_OUT {
+            true => is_schur_stable(&self.feedback(&self.mean)),
+            false => self.iterated(&self.mean, true) < 0.0,
+        }
     }
 
     /// Of all that is drawn: the logarithm of the factor with which it comes back, of moments that are divided by `e^λ` a step.
     fn returned(&self, lambda: f64) -> f64 {
         let mean = self.mean.scaled((-0.5 * lambda).exp());
-        log_spectral_radius(&self.feedback(&mean)) - lambda
+        let grows = match self.rows.len() <= WRITTEN_OUT {
+            true => log_spectral_radius(&self.feedback(&mean)),
+            false => self.iterated(&mean, false),
+        };
+        grows - lambda
+    }
+
+    /// What the covariance `S` of what is drawn comes back as.
+    fn returned_spread(&self, mean: &Matrix, spread: &Matrix) -> Matrix {
+        self.off.spread(&solve_stein(mean, vec![self.placed(spread)]).remove(0))
+    }
+
+    /// `E S Eᵀ`: the numbers of `S` in the rows that are drawn.
+    fn placed(&self, spread: &Matrix) -> Matrix {
+        let n = self.mean.rows();
+        let mut placed = Matrix::zeros(n, n);
+        for (a, &i) in self.rows.iter().enumerate() {
+            for (b, &j) in self.rows.iter().enumerate() {
+                placed[(i, j)] = spread[(a, b)];
+            }
+        }
+        placed
+    }
+
+    /// The logarithm of the spectral radius of the map of `S`, by iteration; if only its sign matters, ended as soon as that is known.
+    ///
+    /// The map takes positive definite matrices to such, so that the largest eigenvalue is positive and alone (M. G. Krein, M. A.
+    /// Rutman, American Mathematical Society Translations 26, 1950).
+    fn iterated(&self, mean: &Matrix, sign_only: bool) -> f64 {
+        let mut spread = Matrix::identity(self.rows.len());
+        let (mut ratio, mut change) = (f64::NAN, f64::INFINITY);
+        for _ in 0..ITERATIONS {
+            let next = self.returned_spread(mean, &spread);
+            let grown = next.trace() / spread.trace();
+            if !grown.is_finite() {
+                return f64::INFINITY;
+            }
+            if grown == 0.0 {
+                return f64::NEG_INFINITY;
+            }
+            let moved = (grown - ratio).abs();
+            // What is still to come, of a sequence that settles in equal ratios.
+            let pace = (moved / change).clamp(0.0, 0.999);
+            let rest = moved * pace / (1.0 - pace);
+            (ratio, change) = (grown, moved);
+            spread = next.scaled(next.trace().recip());
+            let settled = moved <= 1e-14 * grown || rest <= 1e-13 * grown;
+            if settled || sign_only && 10.0 * rest < (grown - 1.0).abs() {
+                break;
+            }
+        }
+        ratio.ln()
     }
 
     /// The stationary second moments under `noise`. They are meaningless for an unstable loop.
@@ -78,6 +142,19 @@ impl RandomStages {
             return moments;
         }
         // S = S₀ + T S.
+        if self.rows.len() > WRITTEN_OUT {
+            let mut sum = self.off.spread(&moments);
+            let mut more = sum.clone();
+            for _ in 0..ITERATIONS {
+                more = self.returned_spread(&self.mean, &more);
+                sum.add_scaled(1.0, &more);
+                if more.largest() <= 1e-15 * sum.largest() {
+                    break;
+                }
+            }
+            moments.add_scaled(1.0, &solve_stein(&self.mean, vec![self.placed(&sum)])[0]);
+            return moments;
+        }
         let known = self.seen(&moments);
         let feedback = self.feedback(&self.mean);
         let equation = |(i, known): (usize, f64)| -> Vec<f64> {
@@ -119,15 +196,8 @@ impl RandomStages {
 
     /// `E[Δ P Δᵀ]`, pair by pair.
     fn seen(&self, moments: &Matrix) -> Vec<f64> {
-        let mut sums = vec![0.0; self.pairs().count()];
-        for (weight, off) in &self.off {
-            let moved = off * moments;
-            for (sum, (a, b)) in sums.iter_mut().zip(self.pairs()) {
-                *sum +=
-                    weight * moved.row(a).iter().zip(off.row(b)).map(|(x, y)| x * y).sum::<f64>();
-            }
-        }
-        sums
+        let spread = self.off.spread(moments);
+        self.pairs().map(|pair| spread[pair]).collect()
     }
 }
 
@@ -153,4 +223,49 @@ fn root(f: impl Fn(f64) -> f64, mut low: (f64, f64), mut high: (f64, f64)) -> f6
         rose = Some(rises);
     }
     high.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mean_square;
+
+    /// Steps of `n` coordinates, all of which are drawn.
+    fn stages(n: usize, size: f64) -> Vec<Stage> {
+        let noise = Matrix::zeros(n, n);
+        let at = |k: usize| {
+            let epsilon = 0.3 * (k as f64 - 2.0);
+            let step = Matrix::from_fn(n, n, |i, j| {
+                let place = ((3 * i + 5 * j) % 11) as f64 - 5.0;
+                let own = if i == j { size } else { 0.0 };
+                own + 0.04 * place + 0.05 * epsilon * ((i + 2 * j) as f64).cos()
+            });
+            let (noise, cost) = (noise.clone(), noise.clone());
+            Stage { weight: 0.2, step, noise, cost, constant: 0.0, length: 1.0 }
+        };
+        (0..5).map(at).collect()
+    }
+
+    #[test]
+    fn where_many_rows_are_drawn_growth_and_moments_are_those_of_the_whole_operator() {
+        for (n, size, stable) in [(8, 0.5, true), (8, 0.9, false), (12, 0.4, true)] {
+            let stages = stages(n, size);
+            let random = RandomStages::new(&stages);
+            assert!(random.rows.len() == n && n > WRITTEN_OUT);
+            let wanted = log_spectral_radius(&mean_square(&stages));
+            let found = random.growth();
+            assert!((found - wanted).abs() < 1e-10, "{n} {size}: {found} {wanted}");
+            assert_eq!((random.is_stable(), wanted < 0.0), (stable, stable), "{n} {size}");
+            if stable {
+                let noise = Matrix::identity(n);
+                let moments = random.moments(noise.clone());
+                let mut right = noise;
+                for stage in &stages {
+                    right.add_scaled(stage.weight, &stage.step.congruence(&moments));
+                }
+                right.add_scaled(-1.0, &moments);
+                assert!(right.largest() < 1e-12 * moments.largest(), "{n}: {}", right.largest());
+            }
+        }
+    }
 }

@@ -129,6 +129,29 @@ fn examples_hold_and_their_pages_name_their_channels() {
 }
 
 #[test]
+fn narrow_windows_beside_whole_periods_are_seen_where_a_direct_path_opens_them() {
+    let folder = tempfile::tempdir().unwrap();
+    // Found by a program that was written apart, from the definition of the loop: 0.7713 periods, though 0.8 to 9 are stable in part.
+    let text = "\
+[system.linear]
+a = [[-0.68]]
+b = [[1]]
+c = [[1]]
+d = [[-0.78]]
+[controller.state-space]
+d = [[1.02]]
+[loop]
+period = 1.0
+";
+    let path = written(&folder, "direct.toml", text);
+    let advice = json(&["advise", "--config", path.to_str().unwrap()]);
+    for kind in ["latency", "output-latency"] {
+        let found = limit(&advice, kind, None).unwrap();
+        assert!((found - 0.77128).abs() < 1e-5, "{kind}: {found}");
+    }
+}
+
+#[test]
 fn a_redesign_costs_less_with_the_latency_it_is_made_for() {
     let advice = json(&["advise", "--config", &example("magnetic_bearing.toml"), "--redesign"]);
     let redesign = &advice["redesign"];
