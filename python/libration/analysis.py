@@ -77,7 +77,10 @@ class Analysis(Answer):
 
 
 class Advice(Answer):
-    """Limits of a loop or a simulation, with the keys of ``libration advise --json``, ``loop`` among them."""
+    """Limits of a loop or a simulation, with the keys of ``libration advise --json``.
+
+    The keys for systems of the catalogue are in ``docs/advise.md``, those for linear plants in ``docs/plants.md``.
+    """
 
     holds: bool
     """Whether the loop is stable and within the tolerance with all stated values, and an integrator is accurate enough."""

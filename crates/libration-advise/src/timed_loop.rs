@@ -56,8 +56,7 @@ pub(super) struct Subject {
 const MOST_OUTPUTS: usize = 8;
 
 impl TimedLoop {
-    /// The imperfections that have a budget. Outputs without a stated latency have none if the plant is known by position and velocity
-    /// alone.
+    /// The imperfections that have a budget, with those of the outputs or without.
     pub(super) fn subjects(&self, with_outputs: bool) -> Vec<Subject> {
         let of = |kind| Subject { kind, channel: None };
         let each = |kind, count: usize| {

@@ -3,8 +3,8 @@
 use thiserror::Error;
 
 use crate::{
-    DiscreteController, HeldStep, LinearPlant, Matrix, PlantMode, RegulatorProblem,
-    RegulatorSolution, StepIntegrals, eigenvalues,
+    DiscreteController, Discretisation, LinearPlant, Matrix, PlantMode, RegulatorProblem,
+    RegulatorSolution, StepIntegrals, eigenvalues, is_schur_stable,
 };
 
 /// Error of a design.
@@ -102,10 +102,10 @@ fn semidefinite(
 
 impl LinearPlant {
     /// A step of `period` seconds under held inputs; of a sampled plant its own step.
-    pub fn step(&self, period: f64) -> HeldStep {
+    pub fn step(&self, period: f64) -> Discretisation {
         match self.sampling_period {
-            None => HeldStep::exact(&self.a, &self.b, period),
-            Some(_) => HeldStep { phi: self.a.clone(), gamma: self.b.clone() },
+            None => Discretisation::exact(&self.a, &self.b, period),
+            Some(_) => Discretisation { phi: self.a.clone(), gamma: self.b.clone() },
         }
     }
 
@@ -135,7 +135,8 @@ impl LinearPlant {
             return Err(DesignError::Unreachable(mode));
         }
         let problem = self.regulator_problem(weights, period);
-        let stable = |solution: &RegulatorSolution| is_stable(&problem.closed(&solution.gain));
+        let stable =
+            |solution: &RegulatorSolution| is_schur_stable(&problem.closed(&solution.gain));
         let solution = problem.solve().filter(stable);
         solution.ok_or_else(|| match self.mode_without_cost(&weights.states) {
             Some(mode) => DesignError::Unseen(mode),
@@ -145,7 +146,7 @@ impl LinearPlant {
 
     /// The regulator problem in steps of `period` seconds, with the cost rate integrated over each step.
     pub fn regulator_problem(&self, weights: &CostWeights, period: f64) -> RegulatorProblem {
-        let HeldStep { phi, gamma } = self.step(period);
+        let Discretisation { phi, gamma } = self.step(period);
         let (n, m) = (self.states.len(), self.inputs.len());
         let cost = match self.sampling_period {
             Some(_) => weights.form(),
@@ -173,7 +174,7 @@ impl LinearPlant {
         if let Some(mode) = self.unobservable_mode() {
             return Err(DesignError::Unobservable(mode));
         }
-        let HeldStep { phi, .. } = self.step(period);
+        let Discretisation { phi, .. } = self.step(period);
         // The dual of the regulator: X is the covariance of the predicted state.
         let problem = RegulatorProblem {
             a: phi.transposed(),
@@ -182,7 +183,8 @@ impl LinearPlant {
             s: Matrix::zeros(self.states.len(), self.outputs.len()),
             r: noise.clone(),
         };
-        let stable = |solution: &RegulatorSolution| is_stable(&problem.closed(&solution.gain));
+        let stable =
+            |solution: &RegulatorSolution| is_schur_stable(&problem.closed(&solution.gain));
         let solution = problem.solve().filter(stable);
         let covariance = solution.ok_or(DesignError::Unsettled("filter"))?.cost;
         let moved = &self.c * &covariance;
@@ -201,7 +203,7 @@ impl LinearPlant {
         filter: &Matrix,
         period: f64,
     ) -> DiscreteController {
-        let HeldStep { phi, gamma } = self.step(period);
+        let Discretisation { phi, gamma } = self.step(period);
         let (n, m) = (self.states.len(), self.inputs.len());
         let direct = if self.d.largest() > 0.0 { m } else { 0 };
         // x̂ over the memory and the measurement.
@@ -229,10 +231,6 @@ impl LinearPlant {
         }
         DiscreteController { a, b, c, d }
     }
-}
-
-fn is_stable(matrix: &Matrix) -> bool {
-    crate::is_schur_stable(matrix)
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! The motion of a plant within a period.
 
-use crate::{HeldStep, Matrix};
+use crate::{Discretisation, Matrix};
 
 /// A step of so many seconds, from one phase to another, each from 0 to 1.
-pub type SplitStep<'a> = &'a dyn Fn(f64, [f64; 2]) -> HeldStep;
+pub type SplitStep<'a> = &'a dyn Fn(f64, [f64; 2]) -> Discretisation;
 
 /// The motion of a plant under held commands.
 #[derive(Clone, Copy)]

@@ -1,7 +1,6 @@
 //! Eigenvalues of real matrices.
 //!
-//! A library would take longer to compile than all of this crate's dependants: `faer` adds a hundred seconds of processor time for
-//! this one function.
+//! Our own, because `faer` would add a hundred seconds of processor time to a build for this one function (DESIGN.md).
 
 use num_complex::Complex64;
 

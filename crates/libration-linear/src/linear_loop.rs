@@ -4,7 +4,7 @@ use libration_core::control::Latency;
 use num_complex::Complex64;
 
 use crate::{
-    Arrival, Averages, DiscreteController, Dynamics, HeldStep, LinearLoopError, LinearPlant,
+    Arrival, Averages, DiscreteController, Discretisation, Dynamics, LinearLoopError, LinearPlant,
     LoopTiming, MOST_TURN, Matrix, Period, RandomStages, Stage, Stationary, eigenvalues,
 };
 
@@ -234,8 +234,8 @@ impl LinearLoop {
         driven.set_block((0, 0), b);
         driven.set_block((0, m), g);
         let step = |seconds: f64, [from, to]: [f64; 2]| match sampling_period {
-            None => HeldStep::exact(a, &driven, (to - from) * seconds),
-            Some(_) => HeldStep { phi: a.clone(), gamma: driven.clone() },
+            None => Discretisation::exact(a, &driven, (to - from) * seconds),
+            Some(_) => Discretisation { phi: a.clone(), gamma: driven.clone() },
         };
         let (noises, white) = (g.columns(), sampling_period.is_none());
         let dynamics = match white && !self.holds_noise {

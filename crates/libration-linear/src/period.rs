@@ -3,7 +3,8 @@
 use libration_core::control::Latency;
 
 use crate::{
-    DiscreteController, Dynamics, HeldStep, Layout, Matrix, MissingCommand, Stage, StepIntegrals,
+    DiscreteController, Discretisation, Dynamics, Layout, Matrix, MissingCommand, Stage,
+    StepIntegrals,
 };
 
 /// The command that takes over in a period at an input.
@@ -215,7 +216,7 @@ impl Period<'_> {
         let (n, inputs) = (layout.states(), layout.inputs());
         let part = phases[1] - phases[0];
         let step = match self.dynamics {
-            Dynamics::Exact { a, b, .. } => HeldStep::exact(a, b, part * seconds),
+            Dynamics::Exact { a, b, .. } => Discretisation::exact(a, b, part * seconds),
             Dynamics::Stepped { step, .. } => step(seconds, phases),
         };
         let acting = (0..inputs).map(|i| layout.acting(i));

@@ -55,8 +55,8 @@ impl LinearPlant {
         self.hidden_mode(&self.a.transposed(), &self.c.transposed())
     }
 
-    /// A mode that does not decay and that noise does not excite does not matter; one that the cost `q` of states, a form, does not
-    /// see keeps the feedback of least cost from stabilising it.
+    /// A mode that does not decay and that the cost `q`, a form of states, does not see. The feedback of least cost does not stabilise
+    /// it.
     pub fn mode_without_cost(&self, q: &Matrix) -> Option<PlantMode> {
         self.hidden_mode(&self.a.transposed(), q)
     }

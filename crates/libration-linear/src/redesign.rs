@@ -12,7 +12,7 @@ impl LinearPlant {
     /// measured without latency, and of the commands under way. The cost rate is the form `cost` of states and inputs.
     ///
     /// The commands under way are states of a larger plant, for which the regulator is designed: exactly, also for parts of a period
-    /// (K. J. Åström, B. Wittenmark, *Computer-Controlled Systems*, 3rd ed., 1997, section 3.2).
+    /// (K. J. Åström, B. Wittenmark, *Computer-Controlled Systems*, 3rd ed., 1997).
     ///
     /// # Errors
     /// [`DesignError::Unsettled`]: no feedback stabilises the plant in steps of this period, or the loop of least cost is too close to

@@ -121,7 +121,7 @@ fn symmetrise(matrix: &mut Matrix) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::HeldStep;
+    use crate::Discretisation;
 
     /// A regulator as WPILib designs it: exact steps, and weights `1/q²` and `1/r²` of a sum.
     fn wpilib(
@@ -133,7 +133,7 @@ mod tests {
     ) -> (RegulatorProblem, Matrix) {
         let a = Matrix::from_rows(&a).unwrap();
         let b = Matrix::from_fn(2, 1, |i, _| b[i]);
-        let HeldStep { phi, gamma } = HeldStep::exact(&a, &b, h);
+        let Discretisation { phi, gamma } = Discretisation::exact(&a, &b, h);
         let problem = RegulatorProblem {
             a: phi,
             b: gamma,

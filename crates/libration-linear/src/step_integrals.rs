@@ -70,7 +70,7 @@ impl StepIntegrals {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::HeldStep;
+    use crate::Discretisation;
 
     /// An oscillator with `q̈ = −omega2·q − gamma·q̇ + u`.
     fn oscillator(omega2: f64, gamma: f64) -> (Matrix, Matrix) {
@@ -127,8 +127,8 @@ mod tests {
                 _ => 2.0,
             } * h
                 / (3.0 * f64::from(PARTS));
-            let HeldStep { phi, gamma } =
-                HeldStep::exact(&a, &b, h * f64::from(k) / f64::from(PARTS));
+            let Discretisation { phi, gamma } =
+                Discretisation::exact(&a, &b, h * f64::from(k) / f64::from(PARTS));
             let moved = phi.apply(&start[..2]);
             let [q, v] = [0, 1].map(|i| moved[i] + 3.0 * gamma[(i, 0)]);
             cost += weight * (5.0 * q * q + 0.5 * v * v + 0.2 * 9.0);

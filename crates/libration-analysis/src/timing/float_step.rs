@@ -2,7 +2,7 @@
 
 use libration_core::number::Wide;
 use libration_core::{Scalar, State};
-use libration_linear::{HeldStep, LinearPlant, Matrix, Signal};
+use libration_linear::{Discretisation, LinearPlant, Matrix, Signal};
 
 use super::{Plant, ZohStep};
 
@@ -32,11 +32,11 @@ impl Plant<'_> {
     }
 
     /// A step of `seconds`, from one phase to another.
-    pub(super) fn float_step(&self, seconds: f64, [from, to]: [f64; 2]) -> HeldStep {
+    pub(super) fn float_step(&self, seconds: f64, [from, to]: [f64; 2]) -> Discretisation {
         if self.flows {
             // The exponential in 1024 bits takes a thousand times as long, and hundreds of lengths may be used.
             let [a, b] = self.matrices();
-            return HeldStep::exact(&a, &b, (to - from) * seconds);
+            return Discretisation::exact(&a, &b, (to - from) * seconds);
         }
         let dt = Wide::from_f64(seconds);
         let ZohStep { phi, gamma } = match (from == 0.0, to == 1.0) {
@@ -44,7 +44,7 @@ impl Plant<'_> {
             (true, false) => self.before(to, dt),
             _ => self.after(from, dt),
         };
-        HeldStep {
+        Discretisation {
             phi: Matrix::from_fn(2, 2, |i, j| phi.entry(i, j).to_f64()),
             gamma: Matrix::from_fn(2, 1, |i, _| numbers(&gamma)[i]),
         }

@@ -2,8 +2,8 @@
 
 use libration_core::control::{Latency, LqrWeights};
 use libration_linear::{
-    Arrival, DiscreteController, Dynamics, HeldStep, Layout, Matrix, MissingCommand, Period, Stage,
-    Transit,
+    Arrival, DiscreteController, Discretisation, Dynamics, Layout, Matrix, MissingCommand, Period,
+    Stage, Transit,
 };
 
 use super::{Imperfections, LinearController, Plant};
@@ -68,8 +68,8 @@ impl<'p> Stages<'p> {
         // White noise of unit intensity accelerates the plant.
         let noise = Matrix::diagonal(&[0.0, 1.0]);
         let step = |seconds, phases| {
-            let HeldStep { phi, gamma } = self.plant.float_step(seconds, phases);
-            HeldStep { phi, gamma: Matrix::from_fn(2, 2, |i, _| gamma[(i, 0)]) }
+            let Discretisation { phi, gamma } = self.plant.float_step(seconds, phases);
+            Discretisation { phi, gamma: Matrix::from_fn(2, 2, |i, _| gamma[(i, 0)]) }
         };
         let dynamics = match self.plant.exact {
             true => Dynamics::Exact { a: &self.a, b: &self.b, noise: &noise },
