@@ -43,6 +43,38 @@ pub struct Budget {
     pub command: String,
 }
 
+impl Budget {
+    /// The imperfection with its channel, in words.
+    pub fn name(&self) -> String {
+        with_channel(self.kind, self.channel.as_deref())
+    }
+
+    /// A limit in words: the size, or the largest tried one.
+    pub fn limit(&self, limit: Option<f64>) -> String {
+        match limit {
+            Some(limit) => format!("{limit:.6}"),
+            None => format!("above {:.3}", self.tried_up_to),
+        }
+    }
+
+    /// The used part in words.
+    pub fn used_in_percent(&self) -> String {
+        match (self.used, self.regained) {
+            (_, Some(_)) => "regained".to_owned(),
+            (Some(used), None) => format!("{:.1} %", 100.0 * used),
+            (None, None) => String::new(),
+        }
+    }
+}
+
+/// An imperfection with its channel, in words.
+pub(super) fn with_channel(kind: Imperfection, channel: Option<&str>) -> String {
+    match channel {
+        Some(channel) => format!("{} of {channel}", kind.name()),
+        None => kind.name().to_owned(),
+    }
+}
+
 /// The imperfection that fails first.
 #[derive(Clone, Debug, Serialize)]
 pub struct FirstFailure {

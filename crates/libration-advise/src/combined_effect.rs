@@ -51,6 +51,24 @@ impl CombinedEffect {
 }
 
 impl SimulatedCost {
+    /// The cost of loops, of which equal parts in this order are groups with a mean each.
+    pub(super) fn new(costs: &[f64], groups: usize, periods: u64, predicted: f64) -> Self {
+        let count = costs.len() as f64;
+        let cost = costs.iter().sum::<f64>() / count;
+        let squares: Vec<f64> = costs
+            .chunks(costs.len() / groups)
+            .flat_map(|group| {
+                let mean = group.iter().sum::<f64>() / group.len() as f64;
+                group.iter().map(move |x| (x - mean).powi(2))
+            })
+            .collect();
+        let sum: f64 = squares.iter().sum();
+        let error = (sum / (count - groups as f64) / count).sqrt();
+        let kurtosis = count * squares.iter().map(|x| x * x).sum::<f64>() / (sum * sum);
+        let outbursts = kurtosis > OUTBURSTS;
+        SimulatedCost { loops: costs.len(), periods, cost, error, predicted, outbursts }
+    }
+
     /// Whether the cost agrees with the prediction to four standard errors. With rare outbursts it may be smaller.
     pub fn agrees(&self) -> bool {
         let above = self.cost - self.predicted;
@@ -78,7 +96,8 @@ pub struct SimulatedCost {
 /// Number of simulated loops.
 const COUNT: usize = 256;
 
-/// Kurtosis of the costs of single loops above which rare outbursts dominate. For a normal law it is 3, for 256 loops 3 ± 0.3.
+/// Kurtosis of the costs of single loops above which rare outbursts dominate. For a normal law it is 3: for 256 loops 3 ± 0.3,
+/// for 64 loops 3 ± 0.6.
 const OUTBURSTS: f64 = 6.0;
 
 impl TimedLoop {
@@ -88,9 +107,12 @@ impl TimedLoop {
         &self,
         ideal_cost: f64,
         tolerance: Tolerance,
-        ends: &[f64],
+        budgets: &[Budget],
     ) -> Result<(Option<f64>, f64), LinearLoopError> {
         const MOST: f64 = 16.0;
+        // Slightly beyond each limit.
+        let ends = budgets.iter().filter_map(|budget| budget.used.filter(|used| *used > 0.0));
+        let ends: Vec<f64> = ends.map(|used| (1.0 + 1e-6) / used).collect();
         let holds = |share: f64| -> Result<bool, LinearLoopError> {
             let imperfections = self.scaled(share)?;
             if imperfections.loss >= 1.0 {
@@ -152,9 +174,6 @@ impl<M: PlantModel> Loop<M> {
         request: &Request,
         budgets: &[Budget],
     ) -> Result<CombinedEffect, AdviseError> {
-        // Slightly beyond each limit.
-        let ends = budgets.iter().filter_map(|budget| budget.used.filter(|used| *used > 0.0));
-        let ends: Vec<f64> = ends.map(|used| (1.0 + 1e-6) / used).collect();
         let timed = &self.timed;
         let timing = timed.stated().map_err(LoopError::from)?;
         let stated = self.stated()?;
@@ -168,8 +187,9 @@ impl<M: PlantModel> Loop<M> {
             if stable { self.region_of_attraction(work, growth)? } else { None };
         let (margin, margin_tried_up_to) = match stable && stated != Imperfections::NONE {
             true => {
-                let (margin, tried) =
-                    timed.margin(ideal_cost, request.tolerance, &ends).map_err(LoopError::from)?;
+                let (margin, tried) = timed
+                    .margin(ideal_cost, request.tolerance, budgets)
+                    .map_err(LoopError::from)?;
                 (margin, Some(tried))
             }
             false => (None, None),
@@ -211,25 +231,12 @@ impl<M: PlantModel> Loop<M> {
         let run = EnsembleRun { before, periods, starts: &starts, intensity };
         let Some(EnsembleResult { costs, .. }) = self.run(work, run)? else { return Ok(None) };
         let costs: Vec<f64> = costs.into_iter().map(|cost| cost / intensity).collect();
-        let count = costs.len() as f64;
-        let cost = costs.iter().sum::<f64>() / count;
         // Loops that begin at the same place of a record have a common mean.
         let groups = if self.control.record.is_some() { GROUPS } else { 1 };
-        let squares: Vec<f64> = costs
-            .chunks(COUNT / groups)
-            .flat_map(|group| {
-                let mean = group.iter().sum::<f64>() / group.len() as f64;
-                group.iter().map(move |x| (x - mean).powi(2))
-            })
-            .collect();
-        let sum: f64 = squares.iter().sum();
-        let error = (sum / (count - groups as f64) / count).sqrt();
-        let kurtosis = count * squares.iter().map(|x| x * x).sum::<f64>() / (sum * sum);
-        let outbursts = kurtosis > OUTBURSTS;
         let held = self.plant().with_simulated_noise();
         let weights = LqrWeights { command: 0.0, ..self.weights };
         let predicted = self.simulated_prediction(&held, stated, weights)?;
-        Ok(Some(SimulatedCost { loops: COUNT, periods, cost, error, predicted, outbursts }))
+        Ok(Some(SimulatedCost::new(&costs, groups, periods, predicted)))
     }
 
     /// The cost of the loop in steps whose noise is held through a period.

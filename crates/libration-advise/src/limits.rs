@@ -119,7 +119,7 @@ impl TimedLoop {
         let turn = self.rate() * self.period();
         let even = |count: u32| (1..=count).map(move |i| largest * f64::from(i) / f64::from(count));
         let fine = ((turn * largest / PART).ceil() as u32).clamp(TRIED, 32 * TRIED);
-        let late = matches!(subject.kind, Imperfection::Latency | Imperfection::OutputLatency);
+        let late = subject.is_latency();
         let mut sizes: Vec<f64> = match subject.kind {
             Imperfection::Skew => even(fine).collect(),
             // Each trial passes through the whole record.
@@ -138,11 +138,9 @@ impl TimedLoop {
                 core::iter::successors(Some(step(0.0)), next).chain([largest]).collect()
             }
         };
-        let stated = match (subject.kind, self.stated_size(subject)) {
-            (Imperfection::Latency | Imperfection::OutputLatency, seconds) => {
-                self.latency(seconds / self.period())?.steps()
-            }
-            (_, size) => size.abs(),
+        let stated = match (late, self.stated_size(subject)) {
+            (true, seconds) => self.latency(seconds / self.period())?.steps(),
+            (false, size) => size.abs(),
         };
         if late && self.linear.plant().d.largest() > 0.0 && !self.is_sampled() {
             let whole = (1..=WHOLE).map(f64::from).filter(|whole| *whole + 1e-9 < largest);
@@ -159,7 +157,7 @@ impl TimedLoop {
         holds: impl Fn(&LoopTiming) -> Result<bool, LinearLoopError>,
     ) -> Result<Limit, LinearLoopError> {
         let at = |size: f64| holds(&self.single(subject, size)?);
-        let late = matches!(subject.kind, Imperfection::Latency | Imperfection::OutputLatency);
+        let late = subject.is_latency();
         if !at(0.0)? {
             return Ok(Limit::None);
         }

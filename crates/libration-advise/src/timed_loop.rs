@@ -52,6 +52,13 @@ pub(super) struct Subject {
     pub(super) channel: Option<usize>,
 }
 
+impl Subject {
+    /// Whether it is a latency, whose sizes are in periods.
+    pub(super) fn is_latency(self) -> bool {
+        matches!(self.kind, Imperfection::Latency | Imperfection::OutputLatency)
+    }
+}
+
 /// Most outputs whose latencies have a budget each.
 const MOST_OUTPUTS: usize = 8;
 

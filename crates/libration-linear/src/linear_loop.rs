@@ -128,8 +128,9 @@ impl LinearLoop {
     /// # Errors
     /// As for [`LinearLoop::new`].
     pub fn with_controller(&self, controller: DiscreteController) -> Result<Self, LinearLoopError> {
-        let LinearLoop { plant, period, cost, output_noise, .. } = self.clone();
-        LinearLoop::new(plant, controller, period, cost, output_noise)
+        let LinearLoop { plant, period, cost, output_noise, holds_noise, .. } = self.clone();
+        let other = LinearLoop::new(plant, controller, period, cost, output_noise)?;
+        Ok(LinearLoop { holds_noise, ..other })
     }
 
     /// The loop with another cost rate, a form of states and inputs.
@@ -137,8 +138,9 @@ impl LinearLoop {
     /// # Errors
     /// As for [`LinearLoop::new`].
     pub fn with_cost(&self, cost: Matrix) -> Result<Self, LinearLoopError> {
-        let LinearLoop { plant, controller, period, output_noise, .. } = self.clone();
-        LinearLoop::new(plant, controller, period, cost, output_noise)
+        let LinearLoop { plant, controller, period, output_noise, holds_noise, .. } = self.clone();
+        let other = LinearLoop::new(plant, controller, period, cost, output_noise)?;
+        Ok(LinearLoop { holds_noise, ..other })
     }
 
     /// The loop with noise of the plant that is held through each period, and with the cost of the states at the beginning of each

@@ -69,13 +69,12 @@ impl RandomStages {
 
     /// Whether second moments decay.
     pub fn is_stable(&self) -> bool {
-        if !is_schur_stable(&self.mean) || self.rows.is_empty() {
-            return is_schur_stable(&self.mean);
-        }
-        match self.rows.len() <= WRITTEN_OUT {
-            true => is_schur_stable(&self.feedback(&self.mean)),
-            false => self.iterated(&self.mean, true) < 0.0,
-        }
+        let drawn_decays = || match self.rows.len() {
+            0 => true,
+            1..=WRITTEN_OUT => is_schur_stable(&self.feedback(&self.mean)),
+            _ => self.iterated(&self.mean, true) < 0.0,
+        };
+        is_schur_stable(&self.mean) && drawn_decays()
     }
 
     /// Of all that is drawn: the logarithm of the factor with which it comes back, of moments that are divided by `e^λ` a step.
@@ -105,10 +104,11 @@ impl RandomStages {
         placed
     }
 
-    /// The logarithm of the spectral radius of the map of `S`, by iteration; if only its sign matters, ended as soon as that is known.
+    /// The logarithm of the spectral radius of the map of `S`, by iteration; if only its sign matters, ended where ten times the estimated
+    /// rest does not change it.
     ///
-    /// The map takes positive definite matrices to such, so that the largest eigenvalue is positive and alone (M. G. Krein, M. A.
-    /// Rutman, American Mathematical Society Translations 26, 1950).
+    /// The map takes positive semidefinite matrices to such, so that its spectral radius is an eigenvalue (M. G. Krein, M. A. Rutman,
+    /// American Mathematical Society Translations 26, 1950). The rest is that of a sequence that settles in equal ratios.
     fn iterated(&self, mean: &Matrix, sign_only: bool) -> f64 {
         let mut spread = Matrix::identity(self.rows.len());
         let (mut ratio, mut change) = (f64::NAN, f64::INFINITY);
@@ -122,7 +122,6 @@ impl RandomStages {
                 return f64::NEG_INFINITY;
             }
             let moved = (grown - ratio).abs();
-            // What is still to come, of a sequence that settles in equal ratios.
             let pace = (moved / change).clamp(0.0, 0.999);
             let rest = moved * pace / (1.0 - pace);
             (ratio, change) = (grown, moved);
@@ -135,7 +134,8 @@ impl RandomStages {
         ratio.ln()
     }
 
-    /// The stationary second moments under `noise`. They are meaningless for an unstable loop.
+    /// The stationary second moments under `noise`. They are meaningless for an unstable loop, and too small for one with many rows that
+    /// are drawn and that needs more than [`ITERATIONS`] to forget.
     pub fn moments(&self, noise: Matrix) -> Matrix {
         let mut moments = solve_stein(&self.mean, vec![noise]).remove(0);
         if self.rows.is_empty() {

@@ -1,6 +1,6 @@
 //! The results of advice on loops around linear plants.
 
-use libration::linear::{Matrix, PlantMode, Signal};
+use libration::linear::{DiscreteController, Matrix, PlantMode, Signal};
 use serde::{Serialize, Serializer};
 
 use super::{ChainLink, Redesign};
@@ -133,6 +133,13 @@ pub struct ControllerMatrices {
     pub d: Vec<Vec<f64>>,
 }
 
+impl From<&DiscreteController> for ControllerMatrices {
+    fn from(DiscreteController { a, b, c, d }: &DiscreteController) -> Self {
+        let [a, b, c, d] = [a, b, c, d].map(rows_of);
+        ControllerMatrices { a, b, c, d }
+    }
+}
+
 /// The standard deviation of a state at the beginning of a period.
 #[derive(Clone, Debug, Serialize)]
 pub struct Deviation {
@@ -161,7 +168,7 @@ impl LinearAdvice {
 }
 
 /// A matrix row by row.
-pub(super) fn rows_of(matrix: &Matrix) -> Vec<Vec<f64>> {
+fn rows_of(matrix: &Matrix) -> Vec<Vec<f64>> {
     (0..matrix.rows()).map(|i| matrix.row(i).to_vec()).collect()
 }
 

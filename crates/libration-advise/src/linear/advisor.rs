@@ -3,7 +3,6 @@
 use libration::linear::{LoopTiming, Signal, StabilityMargins};
 use libration_work::Work;
 
-use super::advice::{ControllerMatrices, rows_of};
 use super::{Deviation, InputMargins, LinearAdvice, LinearRequest, SignalName};
 use crate::loops::LoopError;
 use crate::request::{Measure, Tolerance};
@@ -40,11 +39,9 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         false => f64::INFINITY,
     };
     let cost = Some(cost).filter(|cost| cost.is_finite());
-    let ends = budgets.iter().filter_map(|budget| budget.used.filter(|used| *used > 0.0));
-    let ends: Vec<f64> = ends.map(|used| (1.0 + 1e-6) / used).collect();
     let (margin, margin_tried_up_to) = match stable && !stated.is_ideal() {
         true => {
-            let found = timed.margin(ideal_cost, tolerance, &ends).map_err(LoopError::from)?;
+            let found = timed.margin(ideal_cost, tolerance, &budgets).map_err(LoopError::from)?;
             (found.0, Some(found.1))
         }
         false => (None, None),
@@ -64,7 +61,6 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
     };
     let plant = timed.linear.plant();
     let names = |signals: &[_]| signals.iter().map(SignalName::from).collect();
-    let own = timed.linear.controller();
     let mut advice = LinearAdvice {
         answer: String::new(),
         warnings: Vec::new(),
@@ -75,12 +71,7 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         controller: request.design.description.clone(),
         gain: request.design.gain.clone(),
         filter: request.design.filter.clone(),
-        controller_matrices: ControllerMatrices {
-            a: rows_of(&own.a),
-            b: rows_of(&own.b),
-            c: rows_of(&own.c),
-            d: rows_of(&own.d),
-        },
+        controller_matrices: timed.linear.controller().into(),
         period: timed.period(),
         chain: request.latency_chain(&budgets),
         margins: request.margins(&stated)?,

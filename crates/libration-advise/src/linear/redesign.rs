@@ -4,7 +4,7 @@ use libration_work::Work;
 use serde::Serialize;
 
 use super::LinearRequest;
-use super::advice::{ControllerMatrices, rows_of};
+use super::advice::ControllerMatrices;
 use crate::AdviseError;
 use crate::budget::Budget;
 use crate::loops::LoopError;
@@ -75,14 +75,8 @@ impl LinearRequest {
             // It needs its latency.
             false => Vec::new(),
         };
-        let own = after.linear.controller();
         Ok(Redesign {
-            controller_matrices: ControllerMatrices {
-                a: rows_of(&own.a),
-                b: rows_of(&own.b),
-                c: rows_of(&own.c),
-                d: rows_of(&own.d),
-            },
+            controller_matrices: after.linear.controller().into(),
             growth,
             cost,
             cost_ratio: cost_before.zip(cost).map(|(before, after)| before / after),

@@ -6,6 +6,7 @@ use libration_work::Work;
 use super::LinearRequest;
 use crate::AdviseError;
 use crate::combined_effect::SimulatedCost;
+use crate::ensemble::MEMORIES;
 use crate::loops::LoopError;
 
 /// Number of simulated loops.
@@ -14,14 +15,8 @@ const COUNT: u64 = 64;
 /// Seed of all random numbers.
 const SEED: u64 = 30;
 
-/// Number of time constants of the decay after which the start is forgotten.
-const MEMORIES: f64 = 20.0;
-
 /// Largest number of simulated periods of a loop.
 const MOST_PERIODS: f64 = 20_000.0;
-
-/// Kurtosis of the costs of single loops above which rare outbursts dominate. For a normal law it is 3, for 64 loops 3 ± 0.6.
-const OUTBURSTS: f64 = 6.0;
 
 impl LinearRequest {
     /// The cost of loops with all stated imperfections under noise that is held through each period; none if they decay too slowly.
@@ -44,20 +39,8 @@ impl LinearRequest {
         let costs = work.sweep("simulated loops", &numbers, |&number| {
             Ok::<f64, AdviseError>(simulation.mean_cost(number, before, periods))
         })?;
-        let count = costs.len() as f64;
-        let cost = costs.iter().sum::<f64>() / count;
-        let squares: Vec<f64> = costs.iter().map(|x| (x - cost).powi(2)).collect();
-        let sum: f64 = squares.iter().sum();
-        let kurtosis = count * squares.iter().map(|x| x * x).sum::<f64>() / (sum * sum);
         let held = self.timed.with_held_noise();
         let predicted = held.cost(&timing).map_err(LoopError::from)?;
-        Ok(Some(SimulatedCost {
-            loops: COUNT as usize,
-            periods,
-            cost,
-            error: (sum / (count - 1.0) / count).sqrt(),
-            predicted,
-            outbursts: kurtosis > OUTBURSTS,
-        }))
+        Ok(Some(SimulatedCost::new(&costs, 1, periods, predicted)))
     }
 }

@@ -1,6 +1,7 @@
 //! The answer on a loop around a linear plant, in sentences.
 
 use super::LinearAdvice;
+use crate::budget::with_channel;
 use crate::summary::{capitalise, describe_window, percent};
 
 impl LinearAdvice {
@@ -42,11 +43,9 @@ impl LinearAdvice {
                     format!(", most of all in {}", names.join(", "))
                 }
             };
-            let of =
-                failing.channel.as_ref().map_or_else(String::new, |name| format!(" of {name}"));
             text += &format!(
-                " {}{of} fails first, with {:.1} % of its budget used; {}{shape}.",
-                capitalise(failing.kind.name()),
+                " {} fails first, with {:.1} % of its budget used; {}{shape}.",
+                capitalise(&with_channel(failing.kind, failing.channel.as_deref())),
                 100.0 * failing.used,
                 failing.how
             );

@@ -5,8 +5,9 @@ use std::io::Write as _;
 use std::path::Path;
 
 use libration_advise as advise;
-use libration_advise::{Advice, AdviseError, Budget, LoopAdvice, Request};
+use libration_advise::{Advice, AdviseError, LoopAdvice, Request};
 use libration_work::Work;
+use serde::Serialize;
 
 use super::{config_file, time_stamps};
 use crate::args::AdviseArgs;
@@ -24,6 +25,19 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
         return super::advise_linear::run(args, request, quiet);
     }
     let request = load_request(args)?;
+    let compute = |work: &Work<'_>| advise::advise(work, &request);
+    deliver(args, quiet, compute, describe, advise::page, Advice::holds)
+}
+
+/// Computes advice, prints it as text or JSON, and writes its page if the options ask for one.
+pub(super) fn deliver<A: Serialize>(
+    args: &AdviseArgs,
+    quiet: bool,
+    compute: impl FnOnce(&Work<'_>) -> Result<A, AdviseError>,
+    describe: impl Fn(&A) -> String,
+    page: impl Fn(&A) -> String,
+    holds: impl Fn(&A) -> bool,
+) -> Result<(), Failure> {
     let unwritable = |path: &Path, error: &std::io::Error| {
         format!("cannot write `{}` (--page): {error}", path.display())
     };
@@ -35,7 +49,7 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
     });
     let file = file.transpose()?;
     let reporter = Reporter::new(quiet);
-    let advice = advise::advise(&Work::new(&reporter, stop), &request);
+    let advice = compute(&Work::new(&reporter, stop));
     reporter.clear();
     let advice = advice.map_err(failure)?;
     let text = match args.json {
@@ -44,10 +58,10 @@ pub(crate) fn run(args: &AdviseArgs, quiet: bool) -> Result<(), Failure> {
     };
     terminal::print(&text)?;
     if let Some((path, mut file)) = file {
-        let written = file.write_all(advise::page(&advice).as_bytes()).and_then(|()| file.keep());
+        let written = file.write_all(page(&advice).as_bytes()).and_then(|()| file.keep());
         written.map_err(|error| Failure::run(unwritable(path, &error)))?;
     }
-    if advice.holds() { Ok(()) } else { Err(Failure::Disagreement) }
+    if holds(&advice) { Ok(()) } else { Err(Failure::Disagreement) }
 }
 
 /// Returns the request of the file or of the options.
@@ -72,7 +86,7 @@ fn load_request(args: &AdviseArgs) -> Result<Request, Failure> {
     Ok(request)
 }
 
-pub(super) fn failure(error: AdviseError) -> Failure {
+fn failure(error: AdviseError) -> Failure {
     match error {
         AdviseError::Interrupted(error) => Failure::Interrupted(error.to_string()),
         AdviseError::Value { name, value, allowed } => {
@@ -195,23 +209,15 @@ fn describe_loop(looped: &LoopAdvice, again: &str, text: &mut String) {
         "\n{:<14} {:>12} {:>14} {:>14} {:>8}  {:<17} how",
         "alone", "stated", "stable up to", "tolerated", "used", "unit"
     );
-    let of = |budget: &Budget, limit: Option<f64>| match limit {
-        Some(limit) => format!("{limit:.6}"),
-        None => format!("above {:.3}", budget.tried_up_to),
-    };
     for budget in &looped.budgets {
         let _ = writeln!(
             text,
             "{:<14} {:>12.6} {:>14} {:>14} {:>8}  {:<17} {}",
             budget.kind.name(),
             budget.stated,
-            of(budget, budget.stable_up_to),
-            budget.tolerated_up_to.map_or_else(String::new, |limit| of(budget, limit)),
-            match (budget.used, budget.regained) {
-                (_, Some(_)) => "regained".to_owned(),
-                (Some(used), None) => format!("{:.1} %", 100.0 * used),
-                (None, None) => String::new(),
-            },
+            budget.limit(budget.stable_up_to),
+            budget.tolerated_up_to.map_or_else(String::new, |limit| budget.limit(limit)),
+            budget.used_in_percent(),
             budget.unit,
             budget.how
         );

@@ -1,19 +1,14 @@
 //! `libration advise` for loops around linear plants.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 
-use libration_advise::Budget;
 use libration_advise::linear::{self, LinearAdvice, LinearRequest};
 use libration_work::Work;
 
-use super::advise::{command_line, failure};
+use super::advise::{command_line, deliver};
 use super::{config_file, time_stamps};
 use crate::args::AdviseArgs;
 use crate::error::Failure;
-use crate::output_file::OutputFile;
-use crate::progress::Reporter;
-use crate::{interrupt, terminal};
 
 /// Returns the request of the file or of the options, if it is about a linear plant.
 pub(super) fn load_request(args: &AdviseArgs) -> Result<Option<LinearRequest>, Failure> {
@@ -41,31 +36,8 @@ pub(super) fn load_request(args: &AdviseArgs) -> Result<Option<LinearRequest>, F
 
 /// Computes the limits of a loop around a linear plant and prints them.
 pub(super) fn run(args: &AdviseArgs, request: LinearRequest, quiet: bool) -> Result<(), Failure> {
-    let stop = interrupt::listen();
-    // Before any work.
-    let file = args.page.as_deref().map(|path| {
-        let unwritable =
-            |error: &std::io::Error| format!("cannot write `{}` (--page): {error}", path.display());
-        match OutputFile::create(path) {
-            Ok(file) => Ok((unwritable, file)),
-            Err(error) => Err(Failure::usage(unwritable(&error))),
-        }
-    });
-    let file = file.transpose()?;
-    let reporter = Reporter::new(quiet);
-    let advice = linear::advise(&Work::new(&reporter, stop), &request);
-    reporter.clear();
-    let advice = advice.map_err(failure)?;
-    let text = match args.json {
-        true => serde_json::to_string_pretty(&advice).map_err(Failure::run)? + "\n",
-        false => describe(&advice),
-    };
-    terminal::print(&text)?;
-    if let Some((unwritable, mut file)) = file {
-        let written = file.write_all(linear::page(&advice).as_bytes()).and_then(|()| file.keep());
-        written.map_err(|error| Failure::run(unwritable(&error)))?;
-    }
-    if advice.holds() { Ok(()) } else { Err(Failure::Disagreement) }
+    let compute = |work: &Work<'_>| linear::advise(work, &request);
+    deliver(args, quiet, compute, describe, linear::page, LinearAdvice::holds)
 }
 
 /// Returns the answer as text.
@@ -168,20 +140,14 @@ fn redesign(advice: &LinearAdvice, text: &mut String) {
         shown(redesign.cost),
         shown(advice.cost)
     );
-    let limit = |budget: &Budget| match budget.stable_up_to {
-        Some(limit) => format!("{limit:.6}"),
-        None => format!("above {:.3}", budget.tried_up_to),
-    };
     for (before, after) in advice.budgets.iter().zip(&redesign.budgets) {
-        let channel =
-            before.channel.as_ref().map_or_else(String::new, |name| format!(" of {name}"));
         let _ = writeln!(
             text,
             "  {:<32} stable up to {:>12} {}, with the given controller {}",
-            format!("{}{channel}", before.kind.name()),
-            limit(after),
+            before.name(),
+            after.limit(after.stable_up_to),
             before.unit,
-            limit(before)
+            before.limit(before.stable_up_to)
         );
     }
 }
@@ -193,25 +159,15 @@ fn budgets(advice: &LinearAdvice, text: &mut String) {
         "\n{:<32} {:>12} {:>14} {:>14} {:>8}  {:<17} how",
         "alone", "stated", "stable up to", "tolerated", "used", "unit"
     );
-    let of = |budget: &Budget, limit: Option<f64>| match limit {
-        Some(limit) => format!("{limit:.6}"),
-        None => format!("above {:.3}", budget.tried_up_to),
-    };
     for budget in &advice.budgets {
-        let channel =
-            budget.channel.as_ref().map_or_else(String::new, |name| format!(" of {name}"));
         let _ = writeln!(
             text,
             "{:<32} {:>12.6} {:>14} {:>14} {:>8}  {:<17} {}",
-            format!("{}{channel}", budget.kind.name()),
+            budget.name(),
             budget.stated,
-            of(budget, budget.stable_up_to),
-            budget.tolerated_up_to.map_or_else(String::new, |limit| of(budget, limit)),
-            match (budget.used, budget.regained) {
-                (_, Some(_)) => "regained".to_owned(),
-                (Some(used), None) => format!("{:.1} %", 100.0 * used),
-                (None, None) => String::new(),
-            },
+            budget.limit(budget.stable_up_to),
+            budget.tolerated_up_to.map_or_else(String::new, |limit| budget.limit(limit)),
+            budget.used_in_percent(),
             budget.unit,
             budget.how
         );
