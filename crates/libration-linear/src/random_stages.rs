@@ -135,7 +135,7 @@ impl RandomStages {
     }
 
     /// The stationary second moments under `noise`. They are meaningless for an unstable loop, and too small for one with many rows that
-    /// are drawn and that needs more than [`ITERATIONS`] to forget.
+    /// are drawn and that needs more than 2000 periods to forget.
     pub fn moments(&self, noise: Matrix) -> Matrix {
         let mut moments = solve_stein(&self.mean, vec![noise]).remove(0);
         if self.rows.is_empty() {
