@@ -140,7 +140,7 @@ pub(super) fn advise_loop<M: PlantModel>(
     }
     let one = Loop::new(model, request, control)?;
     one.check()?;
-    let one = one.with_crossings();
+    let one = one.with_critical_latency();
     let mut advice = Advice::new(request);
     let budgets = one.budgets(work, request)?;
     let combined = one.combined_effect(work, request, &budgets)?;
@@ -203,5 +203,5 @@ pub(super) fn loop_budgets<M: PlantModel>(
 ) -> Result<Vec<Budget>, AdviseError> {
     let one = Loop::new(model, request, control)?;
     one.check()?;
-    one.with_crossings().budgets(work, request)
+    one.with_critical_latency().budgets(work, request)
 }

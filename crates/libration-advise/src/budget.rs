@@ -37,6 +37,9 @@ pub struct Budget {
     /// The separate stability window beyond the limit that contains the stated size.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub regained: Option<StabilityWindow>,
+    /// The angle in rad per period by which the loop turns at its limit of a latency; none without oscillation.
+    #[serde(skip)]
+    pub crossing_angle: Option<f64>,
     /// The method of the result.
     pub how: &'static str,
     /// A command that reproduces it.
@@ -164,14 +167,15 @@ impl TimedLoop {
             Limit::Value(size) => (Some(scale * size), scale * size),
             Limit::Beyond(size) => (None, scale * size),
         };
-        let (stable, tried) = end(self.stable_up_to(subject)?);
+        let windows = self.latency_windows(subject)?;
+        let (stable, tried) = end(self.stable_up_to(subject, windows.as_deref())?);
         let tolerated = self.tolerated_up_to(subject, tolerance)?.map(|limit| end(limit).0);
         let smaller = |a: f64, b: f64| if a.abs() < b.abs() { a } else { b };
         let limit = [stable, tolerated.flatten()].into_iter().flatten().reduce(smaller);
         let regained = match limit {
             Some(first) => {
                 let sizes = [first, stated].map(|size| size / scale);
-                self.stability_window(subject, sizes, tolerance)?
+                self.stability_window(subject, sizes, tolerance, windows.as_deref())?
             }
             None => None,
         };
@@ -179,6 +183,13 @@ impl TimedLoop {
             from: scale * from,
             to: to.map(|to| scale * to),
         });
+        let crossing = match (&windows, stable) {
+            (Some(windows), _) => windows.first().and_then(|window| window.angle),
+            (None, Some(limit)) if subject.is_latency() && limit > 0.0 => {
+                Some(self.slowest_mode(&self.single(subject, limit / scale)?)?.angle)
+            }
+            _ => None,
+        };
         Ok(Budget {
             kind: subject.kind,
             channel: self.channel_name(subject),
@@ -191,6 +202,7 @@ impl TimedLoop {
                 .filter(|&limit| limit != 0.0 && regained.is_none())
                 .map(|limit| stated / limit),
             regained,
+            crossing_angle: crossing.filter(|angle| *angle > 0.0),
             how: match subject.kind {
                 Imperfection::Latency | Imperfection::OutputLatency | Imperfection::Skew => {
                     "exact: the spectral radius passes 1"

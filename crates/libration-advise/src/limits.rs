@@ -1,6 +1,6 @@
 //! Limits of each imperfection of a loop.
 
-use libration::linear::{LinearLoopError, LoopTiming};
+use libration::linear::{LatencyWindow, LinearLoopError, LoopTiming};
 
 use super::request::{Measure, Tolerance};
 use super::timed_loop::{Subject, TimedLoop};
@@ -82,15 +82,29 @@ impl TimedLoop {
     }
 
     /// The largest size with which the loop is stable, in the mean square for random imperfections.
-    pub(super) fn stable_up_to(&self, subject: Subject) -> Result<Limit, LinearLoopError> {
-        if let (Imperfection::Latency, Some(crossings)) = (subject.kind, &self.crossings) {
-            let largest = self.largest(subject);
-            return Ok(match crossings.critical.filter(|critical| *critical <= largest) {
-                Some(critical) => Limit::Value(critical),
-                None => Limit::Beyond(largest),
-            });
+    pub(super) fn stable_up_to(
+        &self,
+        subject: Subject,
+        windows: Option<&[LatencyWindow]>,
+    ) -> Result<Limit, LinearLoopError> {
+        let largest = self.largest(subject);
+        let within = |end: Option<f64>| match end.filter(|end| *end <= largest) {
+            Some(end) => Limit::Value(end),
+            None => Limit::Beyond(largest),
+        };
+        if let (Imperfection::Latency, Some(critical)) = (subject.kind, self.critical_latency) {
+            return Ok(within(critical.0));
         }
-        self.holds_up_to(subject, |with| self.decays(with))
+        let Some(windows) = windows else {
+            return self.holds_up_to(subject, |with| self.decays(with));
+        };
+        if !self.decays(&self.ideal())? {
+            return Ok(Limit::None);
+        }
+        Ok(match windows.first() {
+            Some(first) if first.from == 0.0 => within(first.to),
+            _ => Limit::Value(0.0),
+        })
     }
 
     /// The largest size with a tolerated cost; none without a tolerance of the cost.

@@ -13,7 +13,7 @@ use libration_settings::units::Units;
 use super::control::{Control, Correction, Law, Regulator};
 use super::operating_point::ModelAtOperatingPoint;
 use super::request::Request;
-use super::timed_loop::{LatencyCrossings, StatedTiming, TimedLoop};
+use super::timed_loop::{CriticalLatency, StatedTiming, TimedLoop};
 
 /// A controller chosen at run time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -170,17 +170,11 @@ impl<M: PlantModel> Loop<M> {
         Ok(Loop { model, controller, linear, timed, control, weights, mass, units })
     }
 
-    /// This, with all latencies at which it is stable, which are known for state feedback.
-    pub(super) fn with_crossings(mut self) -> Self {
+    /// This, with its exact critical latency, which is known for state feedback.
+    pub(super) fn with_critical_latency(mut self) -> Self {
         if let AnyController::Feedback(own) = self.controller {
-            let plant = self.plant();
-            let windows = plant.latency_windows(own.gains).stable.into_iter();
-            let crossings = LatencyCrossings {
-                critical: plant.split_critical_latency(own.gains),
-                ends: windows.flat_map(|(from, to)| [Some(from), to]).flatten().collect(),
-            };
-            drop(plant);
-            self.timed.crossings = Some(crossings);
+            let critical = self.plant().split_critical_latency(own.gains);
+            self.timed.critical_latency = Some(CriticalLatency(critical));
         }
         self
     }
@@ -239,7 +233,7 @@ fn timed(
         missing: MissingCommand::Hold,
         record: control.record.clone(),
     };
-    Ok(TimedLoop { linear, timing, names_states: false, crossings: None })
+    Ok(TimedLoop { linear, timing, names_states: false, critical_latency: None })
 }
 
 fn form(LqrWeights { position, velocity, command }: LqrWeights) -> Matrix {

@@ -1,9 +1,8 @@
 //! Stability windows beyond the first limit.
 
-use libration::linear::LinearLoopError;
+use libration::linear::{LatencyWindow, LinearLoopError};
 use serde::Serialize;
 
-use super::limits::Imperfection;
 use super::request::{Measure, Tolerance};
 use super::timed_loop::{Subject, TimedLoop};
 
@@ -21,12 +20,13 @@ const SHARP: f64 = 1e-7;
 
 impl TimedLoop {
     /// The window around the size `stated` of `subject`, if the loop is stable there but not at smaller sizes above its
-    /// first limit `first`. A tolerance of the cost must be met as well.
+    /// first limit `first`. A tolerance of the cost must be met as well. `latencies` are the windows of a latency, if they are known.
     pub(super) fn stability_window(
         &self,
         subject: Subject,
         [first, stated]: [f64; 2],
         tolerance: Tolerance,
+        latencies: Option<&[LatencyWindow]>,
     ) -> Result<Option<StabilityWindow>, LinearLoopError> {
         if stated <= first {
             return Ok(None);
@@ -35,6 +35,13 @@ impl TimedLoop {
             Tolerance { of: Measure::Cost, most } => Some((1.0 + most) * self.cost(&self.ideal())?),
             _ => None,
         };
+        if let (Some(windows), None) = (latencies, cost_limit) {
+            let around = |window: &&LatencyWindow| {
+                window.from <= stated && window.to.is_none_or(|to| stated <= to)
+            };
+            let around = windows.iter().filter(|window| window.from > 0.0).find(around);
+            return Ok(around.map(|&LatencyWindow { from, to, .. }| StabilityWindow { from, to }));
+        }
         let holds = |size: f64| -> Result<bool, LinearLoopError> {
             let with = self.single(subject, size)?;
             match cost_limit {
@@ -52,13 +59,7 @@ impl TimedLoop {
             }
             Ok(inside)
         };
-        let sizes = match (subject.kind, &self.crossings) {
-            // The textbook's windows are those of simulations at whole periods.
-            (Imperfection::Latency, Some(crossings)) => {
-                crossings.ends.iter().flat_map(|end| [end.floor(), end.ceil()]).collect()
-            }
-            _ => self.tried_sizes(subject, self.largest(subject))?,
-        };
+        let sizes = self.tried_sizes(subject, self.largest(subject))?;
         // Where no smaller size on the grid fails, the gap is narrow and lies at the first limit.
         let (mut inside, mut below) = (stated, first * (1.0 + 1e-9));
         for &size in sizes.iter().rev().filter(|&&size| first < size && size < stated) {

@@ -1,7 +1,9 @@
 //! A linear loop with its stated timing: growth, cost and modes.
 
 use libration::control::{Jitter, Latency};
-use libration::linear::{LinearLoop, LinearLoopError, LoopMode, LoopTiming, MissingCommand};
+use libration::linear::{
+    Channel, LatencyWindow, LinearLoop, LinearLoopError, LoopMode, LoopTiming, MissingCommand,
+};
 
 use super::limits::Imperfection;
 
@@ -24,14 +26,9 @@ pub(super) struct StatedTiming {
     pub(super) record: Option<Vec<f64>>,
 }
 
-/// The latencies at which a loop is stable, from the crossings of the unit circle.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct LatencyCrossings {
-    /// The smallest unstable latency in periods; none if there is none.
-    pub(super) critical: Option<f64>,
-    /// The ends of the windows of stable latencies, in periods.
-    pub(super) ends: Vec<f64>,
-}
+/// The smallest unstable latency of the only input in periods, in 1024 bits; none if there is none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct CriticalLatency(pub(super) Option<f64>);
 
 /// A linear loop with its stated timing.
 #[derive(Clone, Debug)]
@@ -40,8 +37,8 @@ pub(super) struct TimedLoop {
     pub(super) timing: StatedTiming,
     /// Whether the states of the plant have names of their own.
     pub(super) names_states: bool,
-    /// What is known of the latency of the only input.
-    pub(super) crossings: Option<LatencyCrossings>,
+    /// The critical latency, where it is known exactly.
+    pub(super) critical_latency: Option<CriticalLatency>,
 }
 
 /// An imperfection, of one channel or of all.
@@ -143,6 +140,24 @@ impl TimedLoop {
         Ok(timing)
     }
 
+    /// The windows of stable latencies of a channel, in periods; none for other imperfections, or for all channels of several at once.
+    pub(super) fn latency_windows(
+        &self,
+        subject: Subject,
+    ) -> Result<Option<Vec<LatencyWindow>>, LinearLoopError> {
+        let only = |count: usize| subject.channel.or_else(|| (count == 1).then_some(0));
+        let StatedTiming { input_latency, output_latency, .. } = &self.timing;
+        let channel = match subject.kind {
+            Imperfection::Latency => only(input_latency.len()).map(Channel::Input),
+            Imperfection::OutputLatency => only(output_latency.len()).map(Channel::Output),
+            _ => None,
+        };
+        let Some(channel) = channel else { return Ok(None) };
+        let stated = self.stated_size(subject) / self.period();
+        let sizes = [stated, self.largest(subject)];
+        self.linear.latency_windows(&self.ideal(), channel, sizes).map(Some)
+    }
+
     fn delay(
         &self,
         channels: &mut [Latency],
@@ -235,7 +250,7 @@ impl TimedLoop {
     pub(super) fn amplified(&self, factor: f64) -> Result<Self, LinearLoopError> {
         let controller = self.linear.controller().amplified(factor);
         let linear = self.linear.with_controller(controller)?;
-        Ok(TimedLoop { linear, crossings: None, ..self.clone() })
+        Ok(TimedLoop { linear, critical_latency: None, ..self.clone() })
     }
 
     /// The same loop with noise that is held through each period, as simulated.

@@ -5,100 +5,24 @@
 use num_complex::Complex64;
 
 use crate::Matrix;
+use crate::hessenberg::{HessenbergForm, Reflection};
 
 /// All eigenvalues of a square matrix, pairs next to each other; none if an entry is infinite or NaN, or the iteration does not
 /// settle.
 ///
-/// Balancing (B. N. Parlett, C. Reinsch, *Balancing a matrix for calculation of eigenvalues and eigenvectors*, Numerische Mathematik
-/// 13, 1969), reduction to Hessenberg form by reflections, and Francis' implicit double shifts (G. H. Golub, C. F. Van Loan, *Matrix
-/// Computations*, 4th ed., sections 7.4 and 7.5).
+/// Of the balanced Hessenberg form, by Francis' implicit double shifts (G. H. Golub, C. F. Van Loan, *Matrix Computations*, 4th ed.,
+/// section 7.5).
 pub fn eigenvalues(matrix: &Matrix) -> Option<Vec<Complex64>> {
     if !matrix.is_finite() {
         return None;
     }
-    let mut h = matrix.clone();
-    balance(&mut h);
-    reduce_to_hessenberg(&mut h);
-    solve_hessenberg(&mut h)
+    HessenbergForm::new(matrix).eigenvalues()
 }
 
-/// Scales rows and columns by powers of two until their norms are alike, which rounds nothing.
-fn balance(a: &mut Matrix) {
-    let n = a.rows();
-    // Each pass halves what is left at least; far fewer are needed.
-    for _ in 0..64 {
-        let mut settled = true;
-        for i in 0..n {
-            let others = || (0..n).filter(|&j| j != i);
-            let column: f64 = others().map(|j| a[(j, i)].abs()).sum();
-            let row: f64 = others().map(|j| a[(i, j)].abs()).sum();
-            if column == 0.0 || row == 0.0 {
-                continue;
-            }
-            let factor = (0.5 * (row / column).log2()).round().clamp(-500.0, 500.0).exp2();
-            if column * factor + row / factor < 0.95 * (column + row) {
-                settled = false;
-                for j in 0..n {
-                    a[(i, j)] /= factor;
-                    a[(j, i)] *= factor;
-                }
-            }
-        }
-        if settled {
-            break;
-        }
-    }
-}
-
-/// Reflects columns and rows until nothing is left below the first subdiagonal.
-fn reduce_to_hessenberg(a: &mut Matrix) {
-    let n = a.rows();
-    for k in 0..n.saturating_sub(2) {
-        let column: Vec<f64> = (k + 1..n).map(|i| a[(i, k)]).collect();
-        let Some(reflection) = Reflection::onto_first(&column) else { continue };
-        reflection.reflect_rows(a, k + 1, k..n);
-        reflection.reflect_columns(a, k + 1, 0..n);
-        (k + 2..n).for_each(|i| a[(i, k)] = 0.0);
-    }
-}
-
-/// `1 − τvvᵀ`.
-struct Reflection {
-    v: Vec<f64>,
-    tau: f64,
-}
-
-impl Reflection {
-    /// That which takes `x` to a multiple of the first unit vector; none of a zero vector.
-    fn onto_first(x: &[f64]) -> Option<Self> {
-        let largest = x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        if largest == 0.0 || !largest.is_finite() {
-            return None;
-        }
-        let mut v: Vec<f64> = x.iter().map(|x| x / largest).collect();
-        let norm = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        v[0] += norm.copysign(v[0]);
-        let square: f64 = v.iter().map(|x| x * x).sum();
-        Some(Reflection { v, tau: 2.0 / square })
-    }
-
-    /// Reflects the rows from `first` on, in these columns.
-    fn reflect_rows(&self, a: &mut Matrix, first: usize, columns: core::ops::Range<usize>) {
-        for j in columns {
-            let along: f64 = self.v.iter().enumerate().map(|(i, v)| v * a[(first + i, j)]).sum();
-            for (i, v) in self.v.iter().enumerate() {
-                a[(first + i, j)] -= self.tau * along * v;
-            }
-        }
-    }
-
-    /// Reflects the columns from `first` on, in these rows.
-    fn reflect_columns(&self, a: &mut Matrix, first: usize, rows: core::ops::Range<usize>) {
-        for i in rows {
-            let row = &mut a.row_mut(i)[first..first + self.v.len()];
-            let along: f64 = row.iter().zip(&self.v).map(|(x, v)| x * v).sum();
-            row.iter_mut().zip(&self.v).for_each(|(x, v)| *x -= self.tau * along * v);
-        }
+impl HessenbergForm {
+    /// All eigenvalues, pairs next to each other.
+    pub(crate) fn eigenvalues(&self) -> Option<Vec<Complex64>> {
+        solve_hessenberg(&mut self.h.clone())
     }
 }
 

@@ -27,17 +27,18 @@ impl LinearRequest {
     /// All parts, from the outputs to the inputs.
     pub(super) fn latency_chain(&self, budgets: &[Budget]) -> Vec<ChainLink> {
         let plant = self.timed.linear.plant();
+        let frequency = |angle: f64| angle / (TAU * self.timed.period());
         let mut chain = Vec::new();
         for (j, output) in plant.outputs.iter().enumerate() {
-            let limit = limit(budgets, Imperfection::OutputLatency, &output.name);
-            let frequency = self.frequency(Imperfection::OutputLatency, j, limit);
+            let (limit, angle) = limit(budgets, Imperfection::OutputLatency, &output.name);
+            let frequency = angle.map(frequency);
             self.add_parts(&mut chain, &output.name, None, Some(j), frequency, limit);
             let late = self.timed.timing.output_latency[j];
             add_delay(&mut chain, "measurement", &output.name, late, frequency, limit);
         }
         for (i, input) in plant.inputs.iter().enumerate() {
-            let limit = limit(budgets, Imperfection::Latency, &input.name);
-            let frequency = self.frequency(Imperfection::Latency, i, limit);
+            let (limit, angle) = limit(budgets, Imperfection::Latency, &input.name);
+            let frequency = angle.map(frequency);
             let late = self.timed.timing.input_latency[i];
             add_delay(&mut chain, "command", &input.name, late, frequency, limit);
             let half = self.timed.period() / 2.0;
@@ -67,22 +68,18 @@ impl LinearRequest {
             });
         }
     }
-
-    /// The frequency in Hz at which the loop oscillates at its limit of the latency of a channel.
-    fn frequency(&self, kind: Imperfection, channel: usize, limit: Option<f64>) -> Option<f64> {
-        let subject = crate::timed_loop::Subject { kind, channel: Some(channel) };
-        let at = self.timed.single(subject, limit? / self.timed.period()).ok()?;
-        let mode = self.timed.slowest_mode(&at).ok()?;
-        (mode.angle > 0.0).then(|| mode.angle / (TAU * self.timed.period()))
-    }
 }
 
-/// The largest stable latency of a channel, if it has a budget.
-fn limit(budgets: &[Budget], kind: Imperfection, channel: &str) -> Option<f64> {
+/// The largest stable latency of a channel in s, and the angle per period by which the loop turns there.
+fn limit(budgets: &[Budget], kind: Imperfection, channel: &str) -> (Option<f64>, Option<f64>) {
     let own = |budget: &&Budget| {
         budget.kind == kind && budget.channel.as_deref().is_none_or(|name| name == channel)
     };
-    budgets.iter().find(own)?.stable_up_to.filter(|limit| *limit > 0.0)
+    let Some(budget) = budgets.iter().find(own) else { return (None, None) };
+    match budget.stable_up_to.filter(|limit| *limit > 0.0) {
+        Some(limit) => (Some(limit), budget.crossing_angle),
+        None => (None, None),
+    }
 }
 
 fn add_delay(

@@ -131,7 +131,7 @@ impl LinearRequest {
         let timing = timing(&file.looped, &design.plant)?;
         let linear = LinearLoop::new(whole, design.controller.clone(), period, form, noise);
         let linear = linear.map_err(|error| Fault::new("loop", error.to_string()))?;
-        let timed = TimedLoop { linear, timing, names_states: true, crossings: None };
+        let timed = TimedLoop { linear, timing, names_states: true, critical_latency: None };
         let stated = timed.stated().and_then(|stated| timed.linear.size(&stated));
         stated.map_err(|error| {
             let key = match error {
