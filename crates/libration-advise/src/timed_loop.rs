@@ -154,6 +154,12 @@ impl TimedLoop {
         };
         let Some(channel) = channel else { return Ok(None) };
         let stated = self.stated_size(subject) / self.period();
+        if self
+            .critical_latency
+            .is_some_and(|CriticalLatency(end)| end.is_none_or(|end| stated < end))
+        {
+            return Ok(None);
+        }
         let sizes = [stated, self.largest(subject)];
         self.linear.latency_windows(&self.ideal(), channel, sizes).map(Some)
     }

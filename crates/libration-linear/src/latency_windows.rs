@@ -25,6 +25,15 @@ struct Crossing {
     latency: f64,
     /// Its angle; none where the loop jumps.
     angle: Option<f64>,
+    /// By how much the number of eigenvalues outside the unit circle grows; none if it is unknown.
+    more: Option<i64>,
+}
+
+impl Crossing {
+    /// Where the loop jumps, or nothing is known but that its eigenvalues change.
+    fn jump(latency: f64) -> Self {
+        Crossing { latency, angle: None, more: None }
+    }
 }
 
 /// Where a part of a period ends, as the largest below 1.
@@ -82,42 +91,48 @@ impl Search<'_> {
     fn windows(&self, until: f64, most: f64) -> Result<Vec<LatencyWindow>, LinearLoopError> {
         let mut windows: Vec<LatencyWindow> = Vec::new();
         let mut begun: Option<f64> = None;
-        let mut from = Crossing { latency: 0.0, angle: None };
+        let mut from = Crossing::jump(0.0);
+        // The number of eigenvalues outside before `from`, while it follows from the crossings.
+        let mut outside: Option<i64> = None;
         for whole in 0..most.ceil() as u64 {
             let mut ends = self.crossings(whole)?;
             let next = (whole + 1) as f64;
             if self.jumps || next >= most {
-                ends.push(Crossing { latency: next.min(most), angle: None });
+                ends.push(Crossing::jump(next.min(most)));
             }
             for end in ends.into_iter().filter(|end| end.latency <= most) {
-                for (part_end, stable) in self.intervals(from.latency, end)? {
-                    match (stable, begun) {
-                        (true, None) => begun = Some(from.latency),
-                        (false, Some(begin)) => {
+                let expected = outside.zip(from.more).map(|(before, more)| before + more);
+                // In an unstable interval the crossings are enough.
+                let parts = match expected {
+                    Some(expected @ 1..) => vec![(end, expected)],
+                    _ => self.intervals(from.latency, end)?,
+                };
+                for (part_end, count) in parts {
+                    match (count, begun) {
+                        (0, None) => begun = Some(from.latency),
+                        (1.., Some(begin)) => {
                             let to = Some(from.latency);
                             windows.push(LatencyWindow { from: begin, to, angle: from.angle });
                             begun = None;
                         }
                         _ => {}
                     }
-                    if begun.is_none() && !stable && from.latency >= until {
+                    if count > 0 && from.latency >= until {
                         return Ok(windows);
                     }
-                    from = part_end;
+                    (from, outside) = (part_end, Some(count));
                 }
             }
+            // Counted anew from time to time.
+            outside = outside.filter(|_| whole % 8 != 7);
         }
         windows.extend(begun.map(|from| LatencyWindow { from, to: None, angle: None }));
         Ok(windows)
     }
 
-    /// An interval without crossings, and whether the loop is stable in it. Where the numbers of eigenvalues outside differ at its ends,
+    /// An interval without crossings, and the number of eigenvalues outside the unit circle in it. Where these differ at its ends,
     /// a crossing was missed, and the interval has two parts.
-    fn intervals(
-        &self,
-        from: f64,
-        end: Crossing,
-    ) -> Result<Vec<(Crossing, bool)>, LinearLoopError> {
+    fn intervals(&self, from: f64, end: Crossing) -> Result<Vec<(Crossing, i64)>, LinearLoopError> {
         let width = end.latency - from;
         if width <= 1e-12 * end.latency.max(1.0) {
             return Ok(Vec::new());
@@ -125,14 +140,13 @@ impl Search<'_> {
         let [mut low, mut high] = [from + BESIDE * width, end.latency - BESIDE * width];
         let [first, last] = [self.unstable_at(low)?, self.unstable_at(high)?];
         if first == last {
-            return Ok(vec![(end, first == 0)]);
+            return Ok(vec![(end, first)]);
         }
         for _ in 0..40 {
             let middle = 0.5 * (low + high);
             if self.unstable_at(middle)? == first { low = middle } else { high = middle }
         }
-        let missed = Crossing { latency: low, angle: None };
-        Ok(vec![(missed, first == 0), (end, last == 0)])
+        Ok(vec![(Crossing::jump(low), first), (end, last)])
     }
 
     /// The windows of a plant that is sampled: from one whole latency to another.
@@ -212,7 +226,7 @@ impl Search<'_> {
         let error = |response: &PartResponse, angle: f64| -> Complex64 {
             Complex64::from_polar(1.0, k * angle) - self.grid.value(response, angle)
         };
-        let mut moved = f64::INFINITY;
+        let (mut moved, mut outward) = (f64::INFINITY, 0.0);
         for _ in 0..30 {
             let response = self.grid.open.response(part)?;
             let now = error(&response, angle);
@@ -222,6 +236,8 @@ impl Search<'_> {
             let step = 1e-7 * angle.max(1e-3);
             let by_angle =
                 (error(&response, angle + step) - error(&response, angle - step)) / (2.0 * step);
+            // Of `z = e^(iθ + ρ)`, with `θ − iρ` in place of the angle.
+            outward = (by_part / by_angle).im;
             let determinant = by_part.re * by_angle.im - by_part.im * by_angle.re;
             let d_part = -(now.re * by_angle.im - now.im * by_angle.re) / determinant;
             let d_angle = -(by_part.re * now.im - by_part.im * now.re) / determinant;
@@ -243,7 +259,14 @@ impl Search<'_> {
         let left = error(&response, angle).norm();
         let holds = left < 1e-7 && (-1e-12..=PI + 1e-7).contains(&angle);
         let angle = angle.clamp(0.0, PI);
-        Ok(holds.then_some(Crossing { latency: k + part.clamp(0.0, WHOLE), angle: Some(angle) }))
+        let real = !(1e-9..=PI - 1e-9).contains(&angle);
+        let count = if real { 1 } else { 2 };
+        let more = match outward {
+            0.0 => None,
+            outward => Some(if outward > 0.0 { count } else { -count }),
+        };
+        let latency = k + part.clamp(0.0, WHOLE);
+        Ok(holds.then_some(Crossing { latency, angle: Some(angle), more }))
     }
 
     /// The number of eigenvalues outside the unit circle with a latency.
