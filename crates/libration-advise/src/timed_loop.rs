@@ -131,6 +131,9 @@ impl TimedLoop {
         let mut timing = LoopTiming { missing: self.timing.missing, ..self.ideal() };
         match subject.kind {
             Imperfection::Latency => self.delay(&mut timing.input_latency, subject, size)?,
+            Imperfection::OutputLatency if self.delays_commands_instead(subject) => {
+                self.delay(&mut timing.input_latency, subject, size)?;
+            }
             Imperfection::OutputLatency => self.delay(&mut timing.output_latency, subject, size)?,
             Imperfection::Jitter => timing.jitter = self.timing.jitter.with_rms(size),
             // To the stated side; a slow clock if none is stated.
@@ -149,7 +152,10 @@ impl TimedLoop {
         let StatedTiming { input_latency, output_latency, .. } = &self.timing;
         let channel = match subject.kind {
             Imperfection::Latency => only(input_latency.len()).map(Channel::Input),
-            Imperfection::OutputLatency => only(output_latency.len()).map(Channel::Output),
+            Imperfection::OutputLatency => match self.delays_commands_instead(subject) {
+                true => only(input_latency.len()).map(Channel::Input),
+                false => only(output_latency.len()).map(Channel::Output),
+            },
             _ => None,
         };
         let Some(channel) = channel else { return Ok(None) };
@@ -162,6 +168,14 @@ impl TimedLoop {
         }
         let sizes = [stated, self.largest(subject)];
         self.linear.latency_windows(&self.ideal(), channel, sizes).map(Some)
+    }
+
+    /// Whether measurements of all outputs that are late may be replaced by commands to all inputs that are late: without a direct path
+    /// only the time from sample to command matters, and there are fewer inputs.
+    fn delays_commands_instead(&self, subject: Subject) -> bool {
+        let StatedTiming { input_latency, output_latency, .. } = &self.timing;
+        let fewer = input_latency.len() < output_latency.len();
+        subject.channel.is_none() && fewer && self.linear.plant().d.largest() == 0.0
     }
 
     fn delay(

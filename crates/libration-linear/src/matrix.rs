@@ -208,8 +208,24 @@ impl Mul for &Matrix {
         let mut product = Matrix::zeros(self.rows, other.columns);
         for i in 0..self.rows {
             let row = &mut product.entries[i * other.columns..(i + 1) * other.columns];
-            for (k, &factor) in self.row(i).iter().enumerate().filter(|(_, x)| **x != 0.0) {
-                row.iter_mut().zip(other.row(k)).for_each(|(x, y)| *x += factor * y);
+            let factors = self.row(i).chunks(4).enumerate();
+            for (k, factors) in factors.filter(|(_, four)| four.iter().any(|x| *x != 0.0)) {
+                let own = |i: usize| &other.row(4 * k + i)[..row.len()];
+                match *factors {
+                    // Four at once keep each sum in a register, in the order of one after the other.
+                    [a, b, c, d] => {
+                        let [p, q, r, s] = [own(0), own(1), own(2), own(3)];
+                        for (j, x) in row.iter_mut().enumerate() {
+                            *x = *x + a * p[j] + b * q[j] + c * r[j] + d * s[j];
+                        }
+                    }
+                    _ => {
+                        for (i, factor) in factors.iter().enumerate() {
+                            let other = other.row(4 * k + i);
+                            row.iter_mut().zip(other).for_each(|(x, y)| *x += factor * y);
+                        }
+                    }
+                }
             }
         }
         product

@@ -188,16 +188,17 @@ fn form(form: &Matrix, x: &[f64]) -> f64 {
 /// `ẋ = Ax + push` for so many seconds, by Taylor's series of short steps.
 fn flow(a: &Matrix, x: &mut [f64], push: &[f64], seconds: f64) {
     let n = x.len();
-    let parts = (a.row_sum_norm() * seconds).ceil().max(1.0);
+    // Terms reach e⁴ at most before they fall: two digits.
+    let parts = (0.25 * a.row_sum_norm() * seconds).ceil().max(1.0);
     let h = seconds / parts;
     let (mut term, mut next) = (vec![0.0; n], vec![0.0; n]);
     for _ in 0..parts as u64 {
         for i in 0..n {
             term[i] = h * (dot(a.row(i), x) + push[i]);
         }
-        for k in 2..30 {
+        for k in 2..40 {
             x.iter_mut().zip(&term).for_each(|(x, y)| *x += y);
-            if term.iter().zip(x.iter()).all(|(y, x)| y.abs() <= 1e-17 * x.abs()) {
+            if term.iter().zip(x.iter()).all(|(y, x)| y.abs() <= 1e-14 * x.abs()) {
                 break;
             }
             let share = h / f64::from(k);
@@ -207,8 +208,17 @@ fn flow(a: &Matrix, x: &mut [f64], push: &[f64], seconds: f64) {
     }
 }
 
+/// Four sums beside each other, which do not wait for each other.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    let (fours, others) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let mut sums = [0.0; 4];
+    for (a, b) in fours.0.iter().zip(others.0) {
+        for k in 0..4 {
+            sums[k] += a[k] * b[k];
+        }
+    }
+    let rest: f64 = fours.1.iter().zip(others.1).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 #[cfg(test)]
