@@ -12,6 +12,12 @@ use crate::loops::LoopError;
 /// Number of simulated loops.
 const COUNT: u64 = 64;
 
+/// Multiplications, about one per nanosecond, beyond which half as many loops take half as many measured periods.
+const MANY: f64 = 4e9;
+
+/// Terms of a series that moves the plant through a period.
+const TERMS: f64 = 20.0;
+
 /// Seed of all random numbers.
 const SEED: u64 = 30;
 
@@ -35,7 +41,11 @@ impl LinearRequest {
         let simulation = Simulation { linear, timing: &timing, record, seed: SEED };
         let before = memory.ceil() as u64;
         let periods = (4.0 * memory).clamp(1000.0, 0.5 * MOST_PERIODS) as u64;
-        let numbers: Vec<u64> = (0..COUNT).collect();
+        let size = linear.plant().states.len() as f64;
+        let work_of_all = COUNT as f64 * (before + periods) as f64 * TERMS * size * size;
+        let half = if work_of_all > MANY { 2 } else { 1 };
+        let periods = periods / half;
+        let numbers: Vec<u64> = (0..COUNT / half).collect();
         let costs = work.sweep("simulated loops", &numbers, |&number| {
             Ok::<f64, AdviseError>(simulation.mean_cost(number, before, periods))
         })?;
