@@ -43,4 +43,19 @@ impl DiscreteController {
         let [c, d] = [&self.c, &self.d].map(|m| m.scaled(factor));
         DiscreteController { c, d, ..self.clone() }
     }
+    /// This controller, whose commands are the measurements of `next` in the same period.
+    pub fn then(&self, next: &DiscreteController) -> Self {
+        let (own, more) = (self.memory(), next.memory());
+        let mut a = Matrix::zeros(own + more, own + more);
+        a.set_block((0, 0), &self.a);
+        a.set_block((own, 0), &(&next.b * &self.c));
+        a.set_block((own, own), &next.a);
+        let mut b = Matrix::zeros(own + more, self.measurements());
+        b.set_block((0, 0), &self.b);
+        b.set_block((own, 0), &(&next.b * &self.d));
+        let mut c = Matrix::zeros(next.commands(), own + more);
+        c.set_block((0, 0), &(&next.d * &self.c));
+        c.set_block((0, own), &next.c);
+        DiscreteController { a, b, c, d: &next.d * &self.d }
+    }
 }

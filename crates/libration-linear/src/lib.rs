@@ -3,11 +3,14 @@
 //! A period of a loop is a matrix on its state: the states of the plant, the memory of the controller, and all commands and
 //! measurements in transit. Everything is in `f64`.
 
+mod cascade;
 mod channel_part;
 mod controller;
 mod crossing_curves;
+mod controller_schedule;
 mod design;
 mod deviations;
+mod discrete_filter;
 mod discretisation;
 mod dynamics;
 mod eigenvalue_count;
@@ -21,6 +24,7 @@ mod layout;
 mod linear_equations;
 mod linear_loop;
 mod linear_loop_error;
+mod loop_growth;
 mod loop_layout;
 mod loop_mode;
 mod loop_timing;
@@ -30,6 +34,8 @@ mod period;
 mod plant;
 mod plant_modes;
 mod plant_rate;
+mod random_period;
+mod random_schedule;
 mod random_stages;
 mod recorded_loop;
 mod recorded_schedule;
@@ -44,9 +50,12 @@ mod stein;
 mod step_integrals;
 mod transfer_function;
 
+pub use cascade::{Cascade, CascadeError};
 pub use channel_part::{ChannelPart, ChannelPartError};
 pub use controller::DiscreteController;
+pub use controller_schedule::ControllerSchedule;
 pub use design::{CostWeights, DesignError};
+pub use discrete_filter::{DiscreteFilter, DiscreteFilterError};
 pub use discretisation::Discretisation;
 pub use dynamics::{Dynamics, SplitStep};
 pub use eigenvalues::eigenvalues;

@@ -4,15 +4,15 @@ use libration_core::control::Latency;
 use num_complex::Complex64;
 
 use crate::{
-    Arrival, Averages, DiscreteController, Discretisation, Dynamics, LinearLoopError, LinearPlant,
-    LoopTiming, MOST_TURN, Matrix, Period, RandomStages, Stage, Stationary, eigenvalues,
+    Arrival, Averages, ControllerSchedule, DiscreteController, Discretisation, Dynamics,
+    LinearLoopError, LinearPlant, LoopTiming, MOST_TURN, Matrix, Period, Stage, eigenvalues,
 };
 
-/// A loop: a linear plant, and a controller that runs once per period.
+/// A loop: a linear plant, and a controller that runs once per period, or a schedule of them.
 #[derive(Clone, Debug)]
 pub struct LinearLoop {
     plant: LinearPlant,
-    controller: DiscreteController,
+    controllers: ControllerSchedule,
     period: f64,
     cost: Matrix,
     output_noise: Vec<f64>,
@@ -30,32 +30,18 @@ impl LinearLoop {
     /// [`LinearLoopError`]: numbers that do not fit each other.
     pub fn new(
         plant: LinearPlant,
-        controller: DiscreteController,
+        controllers: impl Into<ControllerSchedule>,
         period: f64,
         cost: Matrix,
         output_noise: Vec<f64>,
     ) -> Result<Self, LinearLoopError> {
+        let controllers = controllers.into();
         let (n, m, p) = (plant.states.len(), plant.inputs.len(), plant.outputs.len());
-        for (of, given, expected, side) in [
-            ("commands", controller.commands(), m, "inputs"),
-            ("measurements", controller.measurements(), p, "outputs"),
-        ] {
-            if given != expected {
-                return Err(LinearLoopError::Channels { of, given, expected, side });
-            }
+        for controller in controllers.kinds() {
+            fits(controller, [m, p])?;
         }
-        let memory = controller.memory();
-        let DiscreteController { a, b, c, d } = &controller;
-        for (name, matrix, shape) in [
-            ("controller A", a, [memory, memory]),
-            ("controller B", b, [memory, p]),
-            ("controller C", c, [m, memory]),
-            ("controller D", d, [m, p]),
-            ("cost", &cost, [n + m, n + m]),
-        ] {
-            if [matrix.rows(), matrix.columns()] != shape || !matrix.is_finite() {
-                return Err(LinearLoopError::Matrix(name));
-            }
+        if [cost.rows(), cost.columns()] != [n + m; 2] || !cost.is_finite() {
+            return Err(LinearLoopError::Matrix("cost"));
         }
         let variance = |x: &f64| x.is_finite() && *x >= 0.0;
         if output_noise.len() != p || !output_noise.iter().all(variance) {
@@ -75,7 +61,7 @@ impl LinearLoop {
         };
         Ok(LinearLoop {
             plant,
-            controller,
+            controllers,
             period,
             cost,
             output_noise,
@@ -108,9 +94,14 @@ impl LinearLoop {
         &self.plant
     }
 
-    /// The controller.
+    /// The controller; of a schedule that of its first period.
     pub fn controller(&self) -> &DiscreteController {
-        &self.controller
+        self.controllers.at(0)
+    }
+
+    /// The controllers of all periods.
+    pub fn controllers(&self) -> &ControllerSchedule {
+        &self.controllers
     }
 
     /// The period, in s.
@@ -123,13 +114,16 @@ impl LinearLoop {
         LoopTiming::ideal(self.plant.inputs.len(), self.plant.outputs.len())
     }
 
-    /// The loop with another controller of the same size.
+    /// The loop with another controller, or another schedule of them.
     ///
     /// # Errors
     /// As for [`LinearLoop::new`].
-    pub fn with_controller(&self, controller: DiscreteController) -> Result<Self, LinearLoopError> {
+    pub fn with_controller(
+        &self,
+        controllers: impl Into<ControllerSchedule>,
+    ) -> Result<Self, LinearLoopError> {
         let LinearLoop { plant, period, cost, output_noise, holds_noise, .. } = self.clone();
-        let other = LinearLoop::new(plant, controller, period, cost, output_noise)?;
+        let other = LinearLoop::new(plant, controllers, period, cost, output_noise)?;
         Ok(LinearLoop { holds_noise, ..other })
     }
 
@@ -138,8 +132,8 @@ impl LinearLoop {
     /// # Errors
     /// As for [`LinearLoop::new`].
     pub fn with_cost(&self, cost: Matrix) -> Result<Self, LinearLoopError> {
-        let LinearLoop { plant, controller, period, output_noise, holds_noise, .. } = self.clone();
-        let other = LinearLoop::new(plant, controller, period, cost, output_noise)?;
+        let LinearLoop { plant, controllers, period, output_noise, holds_noise, .. } = self.clone();
+        let other = LinearLoop::new(plant, controllers, period, cost, output_noise)?;
         Ok(LinearLoop { holds_noise, ..other })
     }
 
@@ -157,72 +151,26 @@ impl LinearLoop {
         Ok(self.layout(timing)?.size())
     }
 
-    /// The matrix of a period of mean length without losses.
-    ///
-    /// # Errors
-    /// [`LinearLoopError`]: an invalid timing.
-    pub fn period_matrix(&self, timing: &LoopTiming) -> Result<Matrix, LinearLoopError> {
-        let even = LoopTiming { jitter: timing.jitter.with_rms(0.0), loss: 0.0, ..timing.clone() };
-        Ok(self.stages(&even, false)?.remove(0).step)
-    }
-
-    /// The logarithm of the factor by which second moments grow in a period; below zero the loop is stable in the mean square.
-    ///
-    /// # Errors
-    /// [`LinearLoopError`]: an invalid timing, or a loop that is too large.
-    pub fn growth(&self, timing: &LoopTiming) -> Result<f64, LinearLoopError> {
-        Ok(RandomStages::new(&self.stages(timing, false)?).growth())
-    }
-
-    /// Whether second moments decay.
-    ///
-    /// # Errors
-    /// As for [`LinearLoop::growth`].
-    pub fn is_stable(&self, timing: &LoopTiming) -> Result<bool, LinearLoopError> {
-        Ok(RandomStages::new(&self.stages(timing, false)?).is_stable())
-    }
-
-    /// The stationary cost and moments; none if second moments grow.
-    ///
-    /// Second moments `P` of the loop solve `P = E[M P Mᵀ] + W` with the matrix `M` of a period and what noise adds in it, `W`. Noise
-    /// and cost are integrals over continuous time (B. Lincoln, A. Cervin, *Jitterbug: a tool for analysis of real-time control
-    /// performance*, IEEE Conference on Decision and Control 2002); of a sampled plant they are sums over its samples.
-    ///
-    /// # Errors
-    /// As for [`LinearLoop::growth`].
-    pub fn stationary(&self, timing: &LoopTiming) -> Result<Option<Stationary>, LinearLoopError> {
-        let stages = self.stages(timing, true)?;
-        let random = RandomStages::new(&stages);
-        if !random.is_stable() {
-            return Ok(None);
-        }
-        let moments = random.moments(Stage::mean_noise(&stages));
-        let (mut cost, mut length) = (0.0, 0.0);
-        for stage in &stages {
-            cost += stage.weight * stage.expected(&moments);
-            length += stage.weight * stage.length;
-        }
-        let cost = cost / length;
-        let n = self.plant.states.len();
-        let deviations = (0..n).map(|i| moments[(i, i)].max(0.0).sqrt()).collect();
-        // Beyond the edge of stability, by less than the growth can show, a form turns negative.
-        Ok((cost >= 0.0).then_some(Stationary { cost, deviations }))
-    }
-
-    /// The periods that the loop may have.
-    fn stages(&self, timing: &LoopTiming, with_cost: bool) -> Result<Vec<Stage>, LinearLoopError> {
+    /// The periods that the loop may have, with each of its controllers.
+    pub(crate) fn stages(
+        &self,
+        timing: &LoopTiming,
+        with_cost: bool,
+    ) -> Result<Vec<Vec<Stage>>, LinearLoopError> {
         let LoopTiming { jitter, skew, .. } = *timing;
         let turn = 2.0 * self.smooth_rate() * self.period * jitter.rms() * (1.0 + skew);
         if turn.is_nan() || turn > MOST_TURN {
             return Err(LinearLoopError::Turn);
         }
         let nodes = if jitter.rms() > 0.0 { jitter.nodes(turn) } else { vec![(1.0, 0.0)] };
-        self.stages_of(timing, &nodes, with_cost)
+        let of = |controller| self.stages_of(controller, timing, &nodes, with_cost);
+        self.controllers.kinds().iter().map(of).collect()
     }
 
-    /// The periods whose lengths deviate from their mean by these parts, with these probabilities.
+    /// The periods of a controller whose lengths deviate from their mean by these parts, with these probabilities.
     pub(crate) fn stages_of(
         &self,
+        controller: &DiscreteController,
         timing: &LoopTiming,
         nodes: &[(f64, f64)],
         with_cost: bool,
@@ -247,7 +195,7 @@ impl LinearLoop {
         let period = Period {
             dynamics,
             outputs: [c, d],
-            controller: &self.controller,
+            controller,
             layout: &layout,
             output_latency: &timing.output_latency,
             output_noise: &self.output_noise,
@@ -266,4 +214,29 @@ impl LinearLoop {
         }
         Ok(stages)
     }
+}
+
+/// Fails if a controller does not fit so many inputs and outputs.
+fn fits(controller: &DiscreteController, [m, p]: [usize; 2]) -> Result<(), LinearLoopError> {
+    for (of, given, expected, side) in [
+        ("commands", controller.commands(), m, "inputs"),
+        ("measurements", controller.measurements(), p, "outputs"),
+    ] {
+        if given != expected {
+            return Err(LinearLoopError::Channels { of, given, expected, side });
+        }
+    }
+    let memory = controller.memory();
+    let DiscreteController { a, b, c, d } = controller;
+    for (name, matrix, shape) in [
+        ("controller A", a, [memory, memory]),
+        ("controller B", b, [memory, p]),
+        ("controller C", c, [m, memory]),
+        ("controller D", d, [m, p]),
+    ] {
+        if [matrix.rows(), matrix.columns()] != shape || !matrix.is_finite() {
+            return Err(LinearLoopError::Matrix(name));
+        }
+    }
+    Ok(())
 }

@@ -79,6 +79,16 @@ pub enum LinearLoopError {
         "a period of the record is {0} mean periods long; expected finite numbers of at least 0, and one of them above 0"
     )]
     Record(f64),
+    /// A statement that requires one controller for all periods.
+    #[error(
+        "{what} require the same controller in all periods; this loop repeats a schedule of {periods} periods"
+    )]
+    Schedule {
+        /// What requires it.
+        what: &'static str,
+        /// The periods of the schedule.
+        periods: usize,
+    },
     /// The plant moves too far in a period.
     #[error("the plant turns by more than 2048 rad in a standard deviation of the jitter")]
     Turn,

@@ -1,7 +1,8 @@
 //! Second moments of a loop with random stages.
 
-use crate::deviations::Deviations;
-use crate::{Matrix, Stage, is_schur_stable, log_spectral_radius, solve, solve_stein};
+use crate::random_period::RandomPeriod;
+use crate::random_schedule::RandomSchedule;
+use crate::{Matrix, Stage, is_schur_stable, log_spectral_radius, solve};
 
 /// The steps of a loop, each drawn for itself: their mean, and in which few rows and how far each is off.
 ///
@@ -10,16 +11,17 @@ use crate::{Matrix, Stage, is_schur_stable, log_spectral_radius, solve, solve_st
 /// however many commands wait, and what comes of it is again some `S`: second moments decay if those of `M̄` do and those numbers
 /// become less (J. C. Willems and G. L. Blankenship, *Frequency domain stability criteria for stochastic systems*, IEEE
 /// Transactions on Automatic Control 16, 1971).
+///
+/// Where periods follow a schedule, each has its own `M̄`, `Δ` and `S`, and `P` goes from period to period once round.
 pub struct RandomStages {
-    mean: Matrix,
-    /// Rows in which steps differ.
-    rows: Vec<usize>,
-    /// The deviations of these rows from the mean.
-    off: Deviations,
+    schedule: RandomSchedule,
 }
 
 /// Most rows that are drawn, up to which the map of the numbers of `S` is written out.
 const WRITTEN_OUT: usize = 6;
+
+/// Most numbers of `S` of a schedule, up to which their map is written out.
+const NUMBERS: usize = 128;
 
 /// Most iterations of that map, where it is not.
 const ITERATIONS: usize = 2000;
@@ -27,29 +29,26 @@ const ITERATIONS: usize = 2000;
 impl RandomStages {
     /// The mean and deviations of all possible steps.
     pub fn new(stages: &[Stage]) -> Self {
-        // What all have in common, and to that the mean of what they have not: rows that do not differ are kept bit for bit.
-        let mut mean = stages.first().map_or(Matrix::zeros(0, 0), |stage| stage.step.clone());
-        let differs = |i: &usize| stages.iter().any(|stage| stage.step.row(*i) != mean.row(*i));
-        let rows: Vec<usize> = (0..mean.rows()).filter(differs).collect();
-        for &i in &rows {
-            for (j, x) in mean.row_mut(i).iter_mut().enumerate() {
-                *x = stages.iter().map(|stage| stage.weight * stage.step[(i, j)]).sum();
-            }
-        }
-        let of = |stage: &Stage| {
-            Matrix::from_fn(rows.len(), mean.columns(), |k, j| {
-                stage.step[(rows[k], j)] - mean[(rows[k], j)]
-            })
-        };
-        let off: Vec<(f64, Matrix)> =
-            stages.iter().map(|stage| (stage.weight, of(stage))).collect();
-        RandomStages { mean, rows, off: Deviations::new(&off) }
+        RandomStages::of_schedule(&[stages.to_vec()], &[0])
     }
 
-    /// The logarithm of the factor by which second moments grow in a step.
+    /// The same of periods of several kinds, which follow each other in this order over and over.
+    pub fn of_schedule(kinds: &[Vec<Stage>], order: &[usize]) -> Self {
+        let kinds = kinds.iter().map(|stages| RandomPeriod::new(stages)).collect();
+        RandomStages { schedule: RandomSchedule { kinds, order: order.to_vec() } }
+    }
+
+    fn is_written_out(&self) -> bool {
+        self.schedule.kinds.iter().all(|period| period.rows.len() <= WRITTEN_OUT)
+            && self.schedule.numbers() <= NUMBERS
+    }
+
+    /// The logarithm of the factor by which second moments grow in a step; of a schedule the mean.
     pub fn growth(&self) -> f64 {
-        let least = 2.0 * log_spectral_radius(&self.mean);
-        if self.rows.is_empty() || least.is_nan() {
+        let (all, logarithm) = self.schedule.product(&self.schedule.means(1.0));
+        let least =
+            2.0 * (log_spectral_radius(&all) + logarithm) / self.schedule.order.len() as f64;
+        if self.schedule.numbers() == 0 || least.is_nan() {
             return least;
         }
         // Moments that grow by λ a step and are divided by that stay as they are: what is drawn comes back as itself.
@@ -69,39 +68,23 @@ impl RandomStages {
 
     /// Whether second moments decay.
     pub fn is_stable(&self) -> bool {
-        let drawn_decays = || match self.rows.len() {
+        let means = self.schedule.means(1.0);
+        let drawn_decays = || match self.schedule.numbers() {
             0 => true,
-            1..=WRITTEN_OUT => is_schur_stable(&self.feedback(&self.mean)),
-            _ => self.iterated(&self.mean, true) < 0.0,
+            _ if self.is_written_out() => is_schur_stable(&self.schedule.feedback(&means)),
+            _ => self.iterated(&means, true) < 0.0,
         };
-        is_schur_stable(&self.mean) && drawn_decays()
+        is_schur_stable(&self.schedule.round(&means)) && drawn_decays()
     }
 
     /// Of all that is drawn: the logarithm of the factor with which it comes back, of moments that are divided by `e^λ` a step.
     fn returned(&self, lambda: f64) -> f64 {
-        let mean = self.mean.scaled((-0.5 * lambda).exp());
-        let grows = match self.rows.len() <= WRITTEN_OUT {
-            true => log_spectral_radius(&self.feedback(&mean)),
-            false => self.iterated(&mean, false),
+        let means = self.schedule.means((-0.5 * lambda).exp());
+        let grows = match self.is_written_out() {
+            true => log_spectral_radius(&self.schedule.feedback(&means)),
+            false => self.iterated(&means, false),
         };
         grows - lambda
-    }
-
-    /// What the covariance `S` of what is drawn comes back as.
-    fn returned_spread(&self, mean: &Matrix, spread: &Matrix) -> Matrix {
-        self.off.spread(&solve_stein(mean, vec![self.placed(spread)]).remove(0))
-    }
-
-    /// `E S Eᵀ`: the numbers of `S` in the rows that are drawn.
-    fn placed(&self, spread: &Matrix) -> Matrix {
-        let n = self.mean.rows();
-        let mut placed = Matrix::zeros(n, n);
-        for (a, &i) in self.rows.iter().enumerate() {
-            for (b, &j) in self.rows.iter().enumerate() {
-                placed[(i, j)] = spread[(a, b)];
-            }
-        }
-        placed
     }
 
     /// The logarithm of the spectral radius of the map of `S`, by iteration; if only its sign matters, ended where ten times the estimated
@@ -109,12 +92,15 @@ impl RandomStages {
     ///
     /// The map takes positive semidefinite matrices to such, so that its spectral radius is an eigenvalue (M. G. Krein, M. A. Rutman,
     /// American Mathematical Society Translations 26, 1950). The rest is that of a sequence that settles in equal ratios.
-    fn iterated(&self, mean: &Matrix, sign_only: bool) -> f64 {
-        let mut spread = Matrix::identity(self.rows.len());
+    fn iterated(&self, means: &[Matrix], sign_only: bool) -> f64 {
+        let mut spreads: Vec<Matrix> =
+            self.schedule.periods().map(|period| Matrix::identity(period.rows.len())).collect();
+        let trace = |spreads: &[Matrix]| spreads.iter().map(Matrix::trace).sum::<f64>();
         let (mut ratio, mut change) = (f64::NAN, f64::INFINITY);
         for _ in 0..ITERATIONS {
-            let next = self.returned_spread(mean, &spread);
-            let grown = next.trace() / spread.trace();
+            let next = self.schedule.returned_spread(means, &spreads);
+            let size = trace(&next);
+            let grown = size / trace(&spreads);
             if !grown.is_finite() {
                 return f64::INFINITY;
             }
@@ -125,7 +111,7 @@ impl RandomStages {
             let pace = (moved / change).clamp(0.0, 0.999);
             let rest = moved * pace / (1.0 - pace);
             (ratio, change) = (grown, moved);
-            spread = next.scaled(next.trace().recip());
+            spreads = next.iter().map(|spread| spread.scaled(size.recip())).collect();
             let settled = moved <= 1e-14 * grown || rest <= 1e-13 * grown;
             if settled || sign_only && 10.0 * rest < (grown - 1.0).abs() {
                 break;
@@ -137,26 +123,37 @@ impl RandomStages {
     /// The stationary second moments under `noise`. They are meaningless for an unstable loop, and too small for one with many rows that
     /// are drawn and that needs more than 2000 periods to forget.
     pub fn moments(&self, noise: Matrix) -> Matrix {
-        let mut moments = solve_stein(&self.mean, vec![noise]).remove(0);
-        if self.rows.is_empty() {
+        self.moments_by_period(&[noise]).remove(0)
+    }
+
+    /// The same at the beginning of each period of a schedule, whose kinds of periods have these noises.
+    pub fn moments_by_period(&self, noises: &[Matrix]) -> Vec<Matrix> {
+        let means = self.schedule.means(1.0);
+        let inflow = self.schedule.order.iter().map(|&kind| Some(noises[kind].clone())).collect();
+        let mut moments = self.schedule.carried(&means, &[inflow]).remove(0);
+        if self.schedule.numbers() == 0 {
             return moments;
         }
         // S = S₀ + T S.
-        if self.rows.len() > WRITTEN_OUT {
-            let mut sum = self.off.spread(&moments);
-            let mut more = sum.clone();
+        if !self.is_written_out() {
+            let spreads = self.schedule.periods().zip(&moments).map(|(period, p)| period.spread(p));
+            let mut sums: Vec<Matrix> = spreads.collect();
+            let mut more = sums.clone();
+            let largest = |all: &[Matrix]| all.iter().map(Matrix::largest).fold(0.0, f64::max);
             for _ in 0..ITERATIONS {
-                more = self.returned_spread(&self.mean, &more);
-                sum.add_scaled(1.0, &more);
-                if more.largest() <= 1e-15 * sum.largest() {
+                more = self.schedule.returned_spread(&means, &more);
+                add(&mut sums, 1.0, &more);
+                if largest(&more) <= 1e-15 * largest(&sums) {
                     break;
                 }
             }
-            moments.add_scaled(1.0, &solve_stein(&self.mean, vec![self.placed(&sum)])[0]);
+            let inflow =
+                self.schedule.periods().zip(&sums).map(|(period, s)| Some(period.placed(s)));
+            add(&mut moments, 1.0, &self.schedule.carried(&means, &[inflow.collect()])[0]);
             return moments;
         }
-        let known = self.seen(&moments);
-        let feedback = self.feedback(&self.mean);
+        let known = self.schedule.seen(&moments);
+        let feedback = self.schedule.feedback(&means);
         let equation = |(i, known): (usize, f64)| -> Vec<f64> {
             let mut row: Vec<f64> = feedback.row(i).iter().map(|x| -x).collect();
             row[i] += 1.0;
@@ -164,41 +161,15 @@ impl RandomStages {
             row
         };
         let equations = known.into_iter().enumerate().map(equation).collect();
-        for (part, size) in self.added(&self.mean).iter().zip(solve(equations, f64::abs)) {
-            moments.add_scaled(size, part);
+        for (part, size) in self.schedule.added(&means).iter().zip(solve(equations, f64::abs)) {
+            add(&mut moments, size, part);
         }
         moments
     }
+}
 
-    /// Pairs of rows that are drawn.
-    fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let count = self.rows.len();
-        (0..count).flat_map(move |a| (a..count).map(move |b| (a, b)))
-    }
-
-    /// The second moments of a unit of each number of `S`.
-    fn added(&self, mean: &Matrix) -> Vec<Matrix> {
-        let n = mean.rows();
-        let unit = |(a, b): (usize, usize)| {
-            let (i, j) = (self.rows[a], self.rows[b]);
-            let mut unit = Matrix::zeros(n, n);
-            (unit[(i, j)], unit[(j, i)]) = (1.0, 1.0);
-            unit
-        };
-        solve_stein(mean, self.pairs().map(unit).collect())
-    }
-
-    /// The map of the numbers of `S`, row by row.
-    fn feedback(&self, mean: &Matrix) -> Matrix {
-        let columns: Vec<Vec<f64>> = self.added(mean).iter().map(|p| self.seen(p)).collect();
-        Matrix::from_fn(columns.len(), columns.len(), |i, j| columns[j][i])
-    }
-
-    /// `E[Δ P Δᵀ]`, pair by pair.
-    fn seen(&self, moments: &Matrix) -> Vec<f64> {
-        let spread = self.off.spread(moments);
-        self.pairs().map(|pair| spread[pair]).collect()
-    }
+fn add(sums: &mut [Matrix], factor: f64, more: &[Matrix]) {
+    sums.iter_mut().zip(more).for_each(|(sum, more)| sum.add_scaled(factor, more));
 }
 
 /// Where a falling function passes zero, between a point where it is above and one where it is below: by secants, each end's value
@@ -251,7 +222,7 @@ mod tests {
         for (n, size, stable) in [(8, 0.5, true), (8, 0.9, false), (12, 0.4, true)] {
             let stages = stages(n, size);
             let random = RandomStages::new(&stages);
-            assert!(random.rows.len() == n && n > WRITTEN_OUT);
+            assert!(random.schedule.kinds[0].rows.len() == n && n > WRITTEN_OUT);
             let wanted = log_spectral_radius(&mean_square(&stages));
             let found = random.growth();
             assert!((found - wanted).abs() < 1e-10, "{n} {size}: {found} {wanted}");
@@ -265,6 +236,41 @@ mod tests {
                 }
                 right.add_scaled(-1.0, &moments);
                 assert!(right.largest() < 1e-12 * moments.largest(), "{n}: {}", right.largest());
+            }
+        }
+    }
+
+    #[test]
+    fn growth_and_moments_of_a_schedule_are_those_of_the_product_of_its_operators() {
+        // Three rows that are drawn are written out; of eight the map is iterated.
+        for (n, sizes, stable) in
+            [(3, [0.4, 0.9, 0.6], true), (3, [1.0, 0.7, 1.3], false), (8, [0.3, 0.8, 0.2], true)]
+        {
+            let kinds: Vec<Vec<Stage>> = sizes.iter().map(|&size| stages(n, size)).collect();
+            let order = [0, 1, 1, 2];
+            let random = RandomStages::of_schedule(&kinds, &order);
+            assert_eq!(random.is_written_out(), n == 3);
+            let all = order.iter().fold(Matrix::identity(n * (n + 1) / 2), |all, &kind| {
+                &mean_square(&kinds[kind]) * &all
+            });
+            let wanted = log_spectral_radius(&all) / order.len() as f64;
+            let found = random.growth();
+            assert!((found - wanted).abs() < 1e-10, "{n}: {found} {wanted}");
+            assert_eq!((random.is_stable(), wanted < 0.0), (stable, stable), "{n}");
+            if !stable {
+                continue;
+            }
+            let noises: Vec<Matrix> =
+                (1..=3).map(|k| Matrix::identity(n).scaled(f64::from(k))).collect();
+            let moments = random.moments_by_period(&noises);
+            assert_eq!(moments.len(), order.len());
+            for (k, &kind) in order.iter().enumerate() {
+                let mut next = noises[kind].clone();
+                for stage in &kinds[kind] {
+                    next.add_scaled(stage.weight, &stage.step.congruence(&moments[k]));
+                }
+                next.add_scaled(-1.0, &moments[(k + 1) % order.len()]);
+                assert!(next.largest() < 1e-12 * moments[k].largest(), "{n} {k}");
             }
         }
     }

@@ -49,10 +49,15 @@ impl LinearLoop {
         if size > most {
             return Err(LinearLoopError::Size { size, most });
         }
+        let controllers = self.controllers();
         // Checked once, for all lengths.
-        self.stages_of(&even, &[(1.0, 0.0)], with_cost)?;
-        Ok(RecordedSchedule::new(record, timing.loss > 0.0, |length| {
-            self.stages_of(&even, &[(1.0, length - 1.0)], with_cost).unwrap_or_default()
-        }))
+        self.stages_of(controllers.at(0), &even, &[(1.0, 0.0)], with_cost)?;
+        let draws = timing.loss > 0.0;
+        let stages = |length: f64, kind: usize| {
+            let controller = &controllers.kinds()[kind];
+            let nodes = [(1.0, length - 1.0)];
+            self.stages_of(controller, &even, &nodes, with_cost).unwrap_or_default()
+        };
+        Ok(RecordedSchedule::with_controllers(record, controllers.order(), draws, stages))
     }
 }

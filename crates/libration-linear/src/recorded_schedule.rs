@@ -21,16 +21,30 @@ impl RecordedSchedule {
     /// The schedule of periods of these lengths, relative to the mean, over and over. `stages` has the possible periods of a relative
     /// length, and `draws` says whether there are several. Lengths are rounded to 2⁻¹⁴.
     pub fn new(lengths: &[f64], draws: bool, stages: impl Fn(f64) -> Vec<Stage>) -> Self {
+        Self::with_controllers(lengths, &[0], draws, |length, _| stages(length))
+    }
+
+    /// The same where a period also has a controller, whose numbers are those of `order`, over and over: of a length and a number
+    /// `stages` has the possible periods. Lengths and controllers together repeat after the least common multiple of both.
+    pub(crate) fn with_controllers(
+        lengths: &[f64],
+        order: &[usize],
+        draws: bool,
+        stages: impl Fn(f64, usize) -> Vec<Stage>,
+    ) -> Self {
         let mut kinds = Vec::new();
         let mut known = HashMap::new();
-        let kind = |length: &f64| {
+        let kind = |(length, controller): (&f64, &usize)| {
             let parts = (length / PART).round();
-            *known.entry(parts.to_bits()).or_insert_with(|| {
-                kinds.push(stages(parts * PART));
+            *known.entry((parts.to_bits(), *controller)).or_insert_with(|| {
+                kinds.push(stages(parts * PART, *controller));
                 kinds.len() - 1
             })
         };
-        let order = lengths.iter().map(kind).collect();
+        let passes = (1..=order.len()).find(|k| (k * lengths.len()).is_multiple_of(order.len()));
+        let count = passes.unwrap_or(1) * lengths.len();
+        let both = lengths.iter().cycle().zip(order.iter().cycle());
+        let order = both.take(count).map(kind).collect();
         RecordedSchedule { order, kinds, draws }
     }
 

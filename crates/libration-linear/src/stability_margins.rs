@@ -33,12 +33,16 @@ impl LinearLoop {
     /// measurements in transit.
     ///
     /// # Errors
-    /// [`LinearLoopError`]: an invalid timing.
+    /// [`LinearLoopError`]: an invalid timing, or a schedule of several controllers, whose loop has no frequency response.
     pub fn stability_margins(
         &self,
         timing: &LoopTiming,
         i: usize,
     ) -> Result<StabilityMargins, LinearLoopError> {
+        let periods = self.controllers().periods();
+        if periods > 1 {
+            return Err(LinearLoopError::Schedule { what: "gain and phase margins", periods });
+        }
         let response = self.open_loop(timing, i)?;
         let ratio = (PI / SLOWEST).ln() / (ANGLES - 1) as f64;
         let angles: Vec<f64> =
