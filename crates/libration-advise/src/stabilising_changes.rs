@@ -17,6 +17,9 @@ pub struct StabilisingChanges {
     pub(super) shown_factor: Option<f64>,
     /// The gains of position and velocity with the shown factor, in the units of the loop.
     pub gains: Option<[f64; 2]>,
+    /// Whether the factor is that of the inner controller of a cascade.
+    #[serde(skip)]
+    pub(super) inner: bool,
     /// The largest latency, in s, up to which the loop is stable with the other stated imperfections.
     pub latency: Option<f64>,
 }
@@ -74,7 +77,8 @@ impl TimedLoop {
             let few = (4..8).map(|digits| rounded(end, digits, end > 1.0));
             few.into_iter().find(|factor| amplified(*factor)).unwrap_or(end)
         });
-        StabilisingChanges { gain_factor, shown_factor, gains: None, latency }
+        let inner = self.linear.controllers().periods() > 1;
+        StabilisingChanges { gain_factor, shown_factor, gains: None, inner, latency }
     }
 
     /// Whether second moments decay by more than rounding; false if the loop is too large to analyse.
@@ -151,6 +155,7 @@ impl StabilisingChanges {
                 "all gains times {factor} (K_p = {position:.6} {}, K_d = {velocity:.6} {})",
                 gain_units[0], gain_units[1]
             ),
+            None if self.inner => format!("all gains of the inner controller times {factor}"),
             None => format!("all gains times {factor}"),
         });
         let latency =
@@ -158,8 +163,10 @@ impl StabilisingChanges {
         let all: Vec<String> = gains.into_iter().chain(latency).collect();
         match all.is_empty() {
             true => format!(
-                "No multiple of its gains from 2^-{} to 2^{}, and no smaller latency, stabilises it at this period.",
-                OCTAVES[0], OCTAVES[1]
+                "No multiple of {} from 2^-{} to 2^{}, and no smaller latency, stabilises it at this period.",
+                if self.inner { "the gains of the inner controller" } else { "its gains" },
+                OCTAVES[0],
+                OCTAVES[1]
             ),
             false => format!("It is stable with {}.", all.join(", or with ")),
         }

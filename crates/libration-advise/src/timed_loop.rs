@@ -268,8 +268,7 @@ impl TimedLoop {
 
     /// The same loop with all gains times `factor`.
     pub(super) fn amplified(&self, factor: f64) -> Result<Self, LinearLoopError> {
-        let controller = self.linear.controller().amplified(factor);
-        let linear = self.linear.with_controller(controller)?;
+        let linear = self.linear.amplified(factor)?;
         Ok(TimedLoop { linear, critical_latency: None, ..self.clone() })
     }
 

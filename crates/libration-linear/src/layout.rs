@@ -16,6 +16,7 @@ pub struct Layout {
     size: usize,
     working: usize,
     noise: usize,
+    ends_with_control: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -97,7 +98,18 @@ impl Layout {
                 arriving,
             })
             .collect();
-        Layout { states, memory, inputs, outputs, size, working: next, noise: first_noise }
+        let (working, noise) = (next, first_noise);
+        Layout { states, memory, inputs, outputs, size, working, noise, ends_with_control: false }
+    }
+
+    /// The layout of periods at whose end the controller of the next one runs. Their state holds the commands that it has computed.
+    pub(crate) fn ending_with_control(self) -> Self {
+        Layout { size: self.noise, ends_with_control: true, ..self }
+    }
+
+    /// Whether the controller runs at the end of a period instead of its beginning.
+    pub(crate) fn ends_with_control(&self) -> bool {
+        self.ends_with_control
     }
 
     /// The number of coordinates at the beginning of a period.

@@ -5,6 +5,7 @@
 
 mod cascade;
 mod channel_part;
+mod clocked_controller;
 mod controller;
 mod crossing_curves;
 mod controller_schedule;
@@ -31,6 +32,7 @@ mod loop_timing;
 mod matrix;
 mod open_channel;
 mod period;
+mod phases;
 mod plant;
 mod plant_modes;
 mod plant_rate;
@@ -48,10 +50,12 @@ mod stage;
 mod stationary;
 mod stein;
 mod step_integrals;
+mod timed_estimate;
 mod transfer_function;
 
 pub use cascade::{Cascade, CascadeError};
 pub use channel_part::{ChannelPart, ChannelPartError};
+pub use clocked_controller::ClockedController;
 pub use controller::DiscreteController;
 pub use controller_schedule::ControllerSchedule;
 pub use design::{CostWeights, DesignError};

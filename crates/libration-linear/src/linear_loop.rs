@@ -1,11 +1,14 @@
 //! Loops around linear plants.
 
+use std::borrow::Cow;
+
 use libration_core::control::Latency;
 use num_complex::Complex64;
 
 use crate::{
-    Arrival, Averages, ControllerSchedule, DiscreteController, Discretisation, Dynamics,
-    LinearLoopError, LinearPlant, LoopTiming, MOST_TURN, Matrix, Period, Stage, eigenvalues,
+    Arrival, Averages, ClockedController, ControllerSchedule, DiscreteController, Discretisation,
+    Dynamics, LinearLoopError, LinearPlant, LoopTiming, MOST_TURN, Matrix, Period, Stage,
+    eigenvalues,
 };
 
 /// A loop: a linear plant, and a controller that runs once per period, or a schedule of them.
@@ -13,6 +16,8 @@ use crate::{
 pub struct LinearLoop {
     plant: LinearPlant,
     controllers: ControllerSchedule,
+    /// The controller with a measured clock; none with the nominal one.
+    clocked: Option<ClockedController>,
     period: f64,
     cost: Matrix,
     output_noise: Vec<f64>,
@@ -62,6 +67,7 @@ impl LinearLoop {
         Ok(LinearLoop {
             plant,
             controllers,
+            clocked: None,
             period,
             cost,
             output_noise,
@@ -114,7 +120,44 @@ impl LinearLoop {
         LoopTiming::ideal(self.plant.inputs.len(), self.plant.outputs.len())
     }
 
-    /// The loop with another controller, or another schedule of them.
+    /// The loop with a controller that measures the lengths of periods. Its clock is right, also where periods are longer than they
+    /// should be.
+    ///
+    /// # Errors
+    /// As for [`LinearLoop::new`].
+    pub fn with_measured_clock(&self, clocked: ClockedController) -> Result<Self, LinearLoopError> {
+        let other = self.with_controller(clocked.at(self.period))?;
+        Ok(LinearLoop { clocked: Some(clocked), ..other })
+    }
+
+    /// The controller of a kind after a period of so many seconds.
+    pub(crate) fn controller_after(
+        &self,
+        kind: usize,
+        seconds: f64,
+    ) -> Cow<'_, DiscreteController> {
+        match &self.clocked {
+            Some(clocked) => Cow::Owned(clocked.at(seconds)),
+            None => Cow::Borrowed(&self.controllers.kinds()[kind]),
+        }
+    }
+
+    /// Whether the controller measures the lengths of periods.
+    pub(crate) fn measures_time(&self) -> bool {
+        self.clocked.is_some()
+    }
+
+    /// The loop with all commands times `factor`.
+    ///
+    /// # Errors
+    /// As for [`LinearLoop::new`].
+    pub fn amplified(&self, factor: f64) -> Result<Self, LinearLoopError> {
+        let clocked = self.clocked.as_ref().map(|own| own.amplified(factor));
+        let other = self.with_controller(self.controllers.amplified(factor))?;
+        Ok(LinearLoop { clocked, ..other })
+    }
+
+    /// The loop with another controller, or another schedule of them, with the nominal clock.
     ///
     /// # Errors
     /// As for [`LinearLoop::new`].
@@ -132,9 +175,10 @@ impl LinearLoop {
     /// # Errors
     /// As for [`LinearLoop::new`].
     pub fn with_cost(&self, cost: Matrix) -> Result<Self, LinearLoopError> {
-        let LinearLoop { plant, controllers, period, output_noise, holds_noise, .. } = self.clone();
+        let LinearLoop { plant, controllers, clocked, period, output_noise, holds_noise, .. } =
+            self.clone();
         let other = LinearLoop::new(plant, controllers, period, cost, output_noise)?;
-        Ok(LinearLoop { holds_noise, ..other })
+        Ok(LinearLoop { clocked, holds_noise, ..other })
     }
 
     /// The loop with noise of the plant that is held through each period, and with the cost of the states at the beginning of each
@@ -163,19 +207,25 @@ impl LinearLoop {
             return Err(LinearLoopError::Turn);
         }
         let nodes = if jitter.rms() > 0.0 { jitter.nodes(turn) } else { vec![(1.0, 0.0)] };
-        let of = |controller| self.stages_of(controller, timing, &nodes, with_cost);
-        self.controllers.kinds().iter().map(of).collect()
+        let varies = jitter.rms() > 0.0;
+        let of = |kind| self.stages_of(kind, timing, (&nodes, varies), with_cost);
+        (0..self.controllers.kinds().len()).map(of).collect()
     }
 
-    /// The periods of a controller whose lengths deviate from their mean by these parts, with these probabilities.
+    /// The periods with a kind of controller whose lengths deviate from their mean by these parts, with these probabilities, and
+    /// whether lengths vary from period to period.
     pub(crate) fn stages_of(
         &self,
-        controller: &DiscreteController,
+        kind: usize,
         timing: &LoopTiming,
-        nodes: &[(f64, f64)],
+        (nodes, varies): (&[(f64, f64)], bool),
         with_cost: bool,
     ) -> Result<Vec<Stage>, LinearLoopError> {
-        let layout = self.layout(timing)?;
+        let mut layout = self.layout(timing)?;
+        if varies && self.measures_time() {
+            // A controller that uses the length of the last period belongs to that period, which is drawn for itself.
+            layout = layout.ending_with_control();
+        }
         let LoopTiming { skew, loss, missing, .. } = *timing;
         let LinearPlant { a, b, c, d, g, sampling_period, .. } = &self.plant;
         let noise = g.congruence(&Matrix::identity(g.columns()));
@@ -192,18 +242,18 @@ impl LinearLoop {
             true => Dynamics::Exact { a, b, noise: &noise },
             false => Dynamics::Stepped { step: &step, noises, white },
         };
-        let period = Period {
-            dynamics,
-            outputs: [c, d],
-            controller,
-            layout: &layout,
-            output_latency: &timing.output_latency,
-            output_noise: &self.output_noise,
-            cost: with_cost.then_some(&self.cost),
-        };
         let mut stages = Vec::new();
         for &(weight, epsilon) in nodes {
             let seconds = self.period * (1.0 + skew) * (1.0 + epsilon);
+            let period = Period {
+                dynamics,
+                outputs: [c, d],
+                controller: &self.controller_after(kind, seconds),
+                layout: &layout,
+                output_latency: &timing.output_latency,
+                output_noise: &self.output_noise,
+                cost: with_cost.then_some(&self.cost),
+            };
             for (share, lost) in [(1.0 - loss, None), (loss, Some(missing))] {
                 let arrival = |&latency: &Latency| Arrival { latency, lost };
                 let arrivals: Vec<Arrival> = timing.input_latency.iter().map(arrival).collect();

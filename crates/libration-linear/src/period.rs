@@ -2,6 +2,7 @@
 
 use libration_core::control::Latency;
 
+use crate::phases::{merged, same};
 use crate::{
     DiscreteController, Discretisation, Dynamics, Layout, Matrix, MissingCommand, Stage,
     StepIntegrals,
@@ -61,7 +62,8 @@ impl Course {
 }
 
 impl Period<'_> {
-    /// A period of `seconds`, in which a command takes over at each input.
+    /// A period of `seconds`, in which a command takes over at each input. The controller runs at its beginning; in a layout that says
+    /// so, the controller of the next period runs at its end.
     pub fn stage(&self, weight: f64, seconds: f64, arrivals: &[Arrival]) -> Stage {
         let layout = self.layout;
         let (size, working) = (layout.size(), layout.working());
@@ -79,9 +81,14 @@ impl Period<'_> {
                 Dynamics::Stepped { .. } => 1.0,
             },
         };
-        let (control, noise) = self.control(arrivals);
-        course.pass(&control);
-        course.add((0, 0), &noise);
+        let control = |course: &mut Course| {
+            let (control, noise) = self.control(arrivals);
+            course.pass(&control);
+            course.add((0, 0), &noise);
+        };
+        if !layout.ends_with_control() {
+            control(&mut course);
+        }
         if let Dynamics::Stepped { noises, white, .. } = self.dynamics {
             let variance = match white {
                 false => 1.0,
@@ -114,6 +121,9 @@ impl Period<'_> {
             if let Some(&next) = phases.get(k + 1) {
                 self.move_on(&mut course, &mut stage, seconds, [phase, next]);
             }
+        }
+        if layout.ends_with_control() {
+            control(&mut course);
         }
         stage.step = course.rows.block((0, 0), (size, size));
         if let Some(added) = course.added {
@@ -269,22 +279,6 @@ impl Period<'_> {
             course.add((0, 0), &added);
         }
     }
-}
-
-/// Whether two phases differ by rounding only: then a measurement comes before a command.
-pub(crate) fn same(a: f64, b: f64) -> bool {
-    (a - b).abs() < 1e-12
-}
-
-/// Phases in order, each once.
-pub(crate) fn merged(mut phases: Vec<f64>) -> Vec<f64> {
-    phases.sort_by(f64::total_cmp);
-    // The first stays: 0 in place of what rounding leaves of it.
-    phases.dedup_by(|later, earlier| same(*later, *earlier));
-    if let Some(last) = phases.last_mut().filter(|last| same(**last, 1.0)) {
-        *last = 1.0;
-    }
-    phases
 }
 
 /// The rows of what is in transit move on by one, and `row` is the new first.

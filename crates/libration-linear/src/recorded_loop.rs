@@ -51,12 +51,11 @@ impl LinearLoop {
         }
         let controllers = self.controllers();
         // Checked once, for all lengths.
-        self.stages_of(controllers.at(0), &even, &[(1.0, 0.0)], with_cost)?;
+        self.stages_of(0, &even, (&[(1.0, 0.0)], true), with_cost)?;
         let draws = timing.loss > 0.0;
         let stages = |length: f64, kind: usize| {
-            let controller = &controllers.kinds()[kind];
             let nodes = [(1.0, length - 1.0)];
-            self.stages_of(controller, &even, &nodes, with_cost).unwrap_or_default()
+            self.stages_of(kind, &even, (&nodes, true), with_cost).unwrap_or_default()
         };
         Ok(RecordedSchedule::with_controllers(record, controllers.order(), draws, stages))
     }

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use libration_core::control::{Jitter, Latency};
 use libration_core::random::{Address, Purpose};
 
-use crate::period::{merged, same};
+use crate::phases::{merged, same};
 use crate::{LinearLoop, LoopTiming, Matrix, MissingCommand};
 
 /// A simulation of a loop with a timing, under noise that is held through each period.
@@ -29,6 +29,8 @@ struct Trajectory<'a> {
     simulation: Simulation<'a>,
     number: u64,
     step: u64,
+    /// The length of the last period, in s.
+    passed: f64,
     x: Vec<f64>,
     memory: Vec<f64>,
     /// The latest command first.
@@ -55,6 +57,7 @@ impl Simulation<'_> {
             simulation: *self,
             number,
             step: 0,
+            passed: self.linear.period() * (1.0 + self.timing.skew),
             x: vec![0.0; n],
             memory: vec![0.0; self.linear.controller().memory()],
             commands: vec![vec![0.0; m]; longest(&self.timing.input_latency)].into(),
@@ -115,7 +118,9 @@ impl Trajectory<'_> {
         let Simulation { linear, timing, .. } = self.simulation;
         let LoopTiming { input_latency, output_latency, loss, missing, .. } = timing;
         let plant = linear.plant();
-        let controller = linear.controllers().at(self.step as usize);
+        let schedule = linear.controllers().order();
+        let kind = schedule[(self.step % schedule.len() as u64) as usize];
+        let controller = linear.controller_after(kind, self.passed);
         let seconds = self.length();
         let lost = *loss > 0.0 && self.address(Purpose::Latency, self.step).uniform()[0] < *loss;
         let noise = self.deviates(Purpose::Observation, output_latency.len());
@@ -180,6 +185,7 @@ impl Trajectory<'_> {
         }
         self.counted += 1;
         self.step += 1;
+        self.passed = seconds;
     }
 }
 

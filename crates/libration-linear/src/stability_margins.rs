@@ -80,7 +80,7 @@ impl LinearLoop {
     /// What the loop makes of a command at input `i`, with the sign of negative feedback.
     fn open_loop(&self, timing: &LoopTiming, i: usize) -> Result<OpenLoop, LinearLoopError> {
         // The memory gets a command from outside, and keeps the one that the controller would have sent.
-        let own = self.controller();
+        let own = self.controller_after(0, self.period() * (1.0 + timing.skew));
         let (memory, measurements) = (own.memory(), own.measurements());
         let mut controller = DiscreteController {
             a: Matrix::zeros(memory + 2, memory + 2),

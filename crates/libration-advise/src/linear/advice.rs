@@ -20,7 +20,7 @@ pub struct LinearAdvice {
     pub states: Vec<SignalName>,
     /// Its inputs.
     pub inputs: Vec<SignalName>,
-    /// The measurements of the controller.
+    /// The measurements as the controller reads them: behind a difference they are per second.
     pub outputs: Vec<SignalName>,
     /// The modes of the plant, the one that grows fastest first.
     pub plant_modes: Vec<Mode>,
@@ -32,8 +32,10 @@ pub struct LinearAdvice {
     /// The gain of the estimator, states × outputs; none of other controllers.
     #[serde(serialize_with = "rows")]
     pub filter: Option<Matrix>,
-    /// The controller in state space.
-    pub controller_matrices: ControllerMatrices,
+    /// The controller in state space, with its filters of samples; none for a cascade.
+    pub controller_matrices: Option<ControllerMatrices>,
+    /// The controllers of all periods of a cascade until it repeats; empty for other controllers.
+    pub schedule: Vec<ControllerMatrices>,
     /// The sampling period, in s.
     pub period: f64,
     /// The sizes of each imperfection with which the loop is stable without others.
@@ -42,7 +44,7 @@ pub struct LinearAdvice {
     pub fails_first: Option<FirstFailure>,
     /// Each part of the latency by name.
     pub chain: Vec<ChainLink>,
-    /// Gain and phase margins at each input, with the stated latencies; empty if the loop is unstable with them.
+    /// Gain and phase margins at each input, with the stated latencies; empty if the loop is unstable with them, and for a cascade.
     pub margins: Vec<InputMargins>,
     /// The logarithm of the growth factor of second moments per period with all stated imperfections; below zero the loop is stable.
     pub growth: f64,

@@ -1,6 +1,7 @@
 //! Advice on loops around linear plants.
 
 use libration::linear::{LoopTiming, Signal, StabilityMargins};
+use libration_settings::linear_loop::Part;
 use libration_work::Work;
 
 use super::{Deviation, InputMargins, LinearAdvice, LinearRequest, SignalName};
@@ -59,19 +60,23 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         true => Some(request.redesigned(work, tolerance, cost)?),
         false => None,
     };
-    let plant = timed.linear.plant();
+    let (plant, controllers) = (timed.linear.plant(), timed.linear.controllers());
     let names = |signals: &[_]| signals.iter().map(SignalName::from).collect();
     let mut advice = LinearAdvice {
         answer: String::new(),
         warnings: Vec::new(),
         states: names(&plant.states),
         inputs: names(&plant.inputs),
-        outputs: names(&plant.outputs),
+        outputs: names(&Part::read(&request.parts, &plant.outputs)),
         plant_modes: request.plant.modes().into_iter().map(Into::into).collect(),
-        controller: request.design.description.clone(),
+        controller: request.described_controller(),
         gain: request.design.gain.clone(),
         filter: request.design.filter.clone(),
-        controller_matrices: timed.linear.controller().into(),
+        controller_matrices: (controllers.periods() == 1).then(|| controllers.at(0).into()),
+        schedule: match controllers.periods() {
+            1 => Vec::new(),
+            periods => (0..periods).map(|k| controllers.at(k).into()).collect(),
+        },
         period: timed.period(),
         chain: request.latency_chain(&budgets),
         margins: request.margins(&stated)?,
@@ -97,11 +102,24 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
 }
 
 impl LinearRequest {
+    /// The controller in words, and what its design does not know.
+    fn described_controller(&self) -> String {
+        let mut text = self.design.description.clone();
+        let filters = self.parts.iter().filter(|part| part.is_discrete());
+        let filters: Vec<&str> = filters.map(|part| part.name.as_str()).collect();
+        if self.design.weights.is_some() && !filters.is_empty() {
+            text += &format!("; the design does not know {}", filters.join(", "));
+        }
+        text
+    }
+
     /// The gain and phase margins at each input.
     fn margins(&self, stated: &LoopTiming) -> Result<Vec<InputMargins>, AdviseError> {
         let even = LoopTiming { loss: 0.0, jitter: stated.jitter.with_rms(0.0), ..stated.clone() };
         let linear = &self.timed.linear;
-        if !linear.is_stable(&even).map_err(LoopError::from)? {
+        // A cascade has no frequency response.
+        let periodic = linear.controllers().periods() > 1;
+        if periodic || !linear.is_stable(&even).map_err(LoopError::from)? {
             return Ok(Vec::new());
         }
         let of = |(i, input): (usize, &Signal)| {

@@ -2,6 +2,7 @@
 
 use core::f64::consts::TAU;
 
+use libration::linear::Signal;
 use serde::Serialize;
 
 use super::LinearRequest;
@@ -29,6 +30,7 @@ impl LinearRequest {
         let plant = self.timed.linear.plant();
         let frequency = |angle: f64| angle / (TAU * self.timed.period());
         let mut chain = Vec::new();
+        // Of a cascade, from the outputs over the references to the inputs.
         for (j, output) in plant.outputs.iter().enumerate() {
             let (limit, angle) = limit(budgets, Imperfection::OutputLatency, &output.name);
             let frequency = angle.map(frequency);
@@ -36,16 +38,30 @@ impl LinearRequest {
             let late = self.timed.timing.output_latency[j];
             add_delay(&mut chain, "measurement", &output.name, late, frequency, limit);
         }
+        self.add_references(&mut chain);
         for (i, input) in plant.inputs.iter().enumerate() {
             let (limit, angle) = limit(budgets, Imperfection::Latency, &input.name);
             let frequency = angle.map(frequency);
             let late = self.timed.timing.input_latency[i];
             add_delay(&mut chain, "command", &input.name, late, frequency, limit);
-            let half = self.timed.period() / 2.0;
-            add_delay(&mut chain, "hold (half a period)", &input.name, half, frequency, limit);
+            let every = self.design.cascade.as_ref().map_or(1, |cascade| cascade.inner_every);
+            let half = self.timed.period() * every as f64 / 2.0;
+            add_delay(&mut chain, &hold(every), &input.name, half, frequency, limit);
             self.add_parts(&mut chain, &input.name, Some(i), None, frequency, limit);
         }
         chain
+    }
+
+    /// The delays of the references of a cascade. They have no limit of their own, and so no phase and no share.
+    fn add_references(&self, chain: &mut Vec<ChainLink>) {
+        let Some(cascade) = &self.design.cascade else { return };
+        let period = self.timed.period();
+        for Signal { name, .. } in &cascade.references {
+            let late = period * cascade.outer_latency as f64;
+            add_delay(chain, "outer latency", name, late, None, None);
+            let half = period * cascade.outer_every as f64 / 2.0;
+            add_delay(chain, &hold(cascade.outer_every), name, half, None, None);
+        }
     }
 
     fn add_parts(
@@ -58,15 +74,24 @@ impl LinearRequest {
         limit: Option<f64>,
     ) {
         for part in self.parts.iter().filter(|part| part.input == input && part.output == output) {
-            let delay = part.part.delay();
+            let period = self.timed.period();
+            let delay = part.delay(period);
             chain.push(ChainLink {
                 part: part.name.clone(),
                 channel: channel.to_owned(),
                 delay,
-                phase: frequency.map(|f| part.part.phase(TAU * f).to_degrees()),
+                phase: frequency.map(|f| part.phase(TAU * f, period).to_degrees()),
                 share: limit.map(|limit| delay / limit),
             });
         }
+    }
+}
+
+/// The hold of what is computed every so many periods, in words.
+fn hold(every: usize) -> String {
+    match every {
+        1 => "hold (half a period)".to_owned(),
+        every => format!("hold (half of {every} periods)"),
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod advice;
 mod advisor;
+mod clock;
 mod latency_chain;
 mod page;
 mod redesign;
@@ -12,6 +13,6 @@ mod summary;
 pub use advice::{ControllerMatrices, Deviation, InputMargins, LinearAdvice, SignalName};
 pub use advisor::advise;
 pub use latency_chain::ChainLink;
-pub use page::page;
+pub use page::{NO_MARGINS, page};
 pub use redesign::Redesign;
 pub use request::{LinearRequest, RequestFile, is_linear, parse, parse_changed};

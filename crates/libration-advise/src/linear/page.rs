@@ -8,6 +8,9 @@ use libration_report::report;
 use super::LinearAdvice;
 use crate::page::{budget_row, figure};
 
+/// Why a cascade has no margins.
+pub const NO_MARGINS: &str = "Gain and phase margins are not available for a cascade: its loop changes from period to period and has no frequency response.";
+
 /// The advice as an HTML page.
 pub fn page(advice: &LinearAdvice) -> String {
     let mut page = Page { title: "Budget of a control loop".into(), ..Page::default() };
@@ -71,7 +74,7 @@ fn chain(page: &mut Page, advice: &LinearAdvice) {
     }
     page.heading("Where does the latency come from?");
     page.paragraph(
-        "Each part delays the loop by its delay at low frequencies. The phase is that at the frequency at which the loop oscillates when \
+        "Each part delays the loop by its delay at low frequencies. References of a cascade have no limit of their own. The phase is that at the frequency at which the loop oscillates when \
          the latency of the channel reaches its limit. The share is the delay over that limit.",
     );
     let columns = ["part", "channel", "delay (s)", "phase (°)", "share of the limit (%)"];
@@ -90,6 +93,11 @@ fn chain(page: &mut Page, advice: &LinearAdvice) {
 }
 
 fn margins(page: &mut Page, advice: &LinearAdvice) {
+    if !advice.schedule.is_empty() {
+        page.heading("Gain and phase margins");
+        page.paragraph(NO_MARGINS);
+        return;
+    }
     if advice.margins.is_empty() {
         return;
     }

@@ -14,6 +14,7 @@ use libration_settings::linear_loop::{
 use libration_settings::{Document, Fault, Number, SettingsError, suggestions};
 use serde::Deserialize;
 
+use super::clock::clocked;
 use crate::control::{skew_of, uneven};
 use crate::jitter_measurement;
 use crate::timed_loop::{StatedTiming, TimedLoop};
@@ -114,6 +115,7 @@ impl LinearRequest {
         let design = controller.design(&plant, period)?;
         let parts = file.part.iter().map(|table| table.part(&design.plant));
         let parts = parts.collect::<Result<Vec<Part>, Fault>>()?;
+        let controllers = Part::filtered(&parts, &design.controllers, &design.plant, period);
         let mut whole = design.plant.clone();
         for part in &parts {
             whole = part.applied(&whole)?;
@@ -129,8 +131,12 @@ impl LinearRequest {
         };
         let form = padded(&weights, plant.states.len(), whole.states.len());
         let timing = timing(&file.looped, &design.plant)?;
-        let linear = LinearLoop::new(whole, design.controller.clone(), period, form, noise);
-        let linear = linear.map_err(|error| Fault::new("loop", error.to_string()))?;
+        let linear = LinearLoop::new(whole, controllers, period, form, noise);
+        let wrong = |error: LinearLoopError| Fault::new("loop", error.to_string());
+        let mut linear = linear.map_err(wrong)?;
+        if let Some(clocked) = clocked(&file.looped.clock, &design, &parts, period)? {
+            linear = linear.with_measured_clock(clocked).map_err(wrong)?;
+        }
         let timed = TimedLoop { linear, timing, names_states: true, critical_latency: None };
         let stated = timed.stated().and_then(|stated| timed.linear.size(&stated));
         stated.map_err(|error| {

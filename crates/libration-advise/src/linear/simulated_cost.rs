@@ -44,7 +44,9 @@ impl LinearRequest {
         let size = linear.plant().states.len() as f64;
         let work_of_all = COUNT as f64 * (before + periods) as f64 * TERMS * size * size;
         let half = if work_of_all > MANY { 2 } else { 1 };
-        let periods = periods / half;
+        // Whole rounds of a cascade.
+        let round = linear.controllers().periods() as u64;
+        let periods = (periods / half).next_multiple_of(round);
         let numbers: Vec<u64> = (0..COUNT / half).collect();
         let costs = work.sweep("simulated loops", &numbers, |&number| {
             Ok::<f64, AdviseError>(simulation.mean_cost(number, before, periods))

@@ -72,6 +72,9 @@ fn describe(advice: &LinearAdvice) -> String {
             link.share.map_or_else(String::new, |share| format!("{:.1} %", 100.0 * share)),
         );
     }
+    if !advice.schedule.is_empty() {
+        let _ = writeln!(text, "\n{}", linear::NO_MARGINS);
+    }
     for margins in &advice.margins {
         let known = |x: Option<f64>, unit: &str| {
             x.map_or_else(|| "none".to_owned(), |x| format!("{x:.4}{unit}"))

@@ -115,6 +115,10 @@ fn the_same_plant_in_every_kind_of_file_gets_the_same_answer() {
 fn examples_hold_and_their_pages_name_their_channels() {
     let folder = tempfile::tempdir().unwrap();
     for (name, words) in [
+        (
+            "cascade.toml",
+            ["velocity filter", "hold (half of 5 periods)", "not available for a cascade"],
+        ),
         ("magnetic_bearing.toml", ["voltage", "gap", "command"]),
         ("quadrotor_attitude.toml", ["gyroscope filter", "rotors", "attitude"]),
         ("two_mass_drive.toml", ["motor lag", "load angle", "hold (half a period)"]),
@@ -197,6 +201,41 @@ fn plants_and_controllers_that_do_not_fit_are_usage_errors_that_name_the_key() {
             "[controller.state-feedback]",
             "[[part]]\ninput = \"u2\"\nlag = 1\n[controller.state-feedback]",
             "unknown input `u2`",
+        ),
+        (
+            "[controller.state-feedback]",
+            "[[part]]\ninput = \"u1\"\ndifference = true\n[controller.state-feedback]",
+            "`difference` stands before the input `u1`; expected an output",
+        ),
+        (
+            "[controller.state-feedback]",
+            "[[part]]\noutput = \"x1\"\nmoving-average = 0\n[controller.state-feedback]",
+            "averages 0 samples; expected 1 to 100",
+        ),
+        (
+            "[controller.state-feedback]",
+            "[[part]]\noutput = \"x1\"\nmoving-average = 2\nlag = 1\n[controller.state-feedback]",
+            "exactly one of `lag`, `butterworth2`, `moving-average` and `difference = true`",
+        ),
+        (
+            "[controller.state-feedback]\ngain = [[10, 2]]",
+            "[controller.cascade]\nevery = 2\ninner = { gain = [[1]] }\nouter = { gain = [[1, 0]] }",
+            "`gain` is 1 × 1; expected 1 × 3: inputs × outputs and references",
+        ),
+        (
+            "[controller.state-feedback]\ngain = [[10, 2]]",
+            "[controller.cascade]\nevery = 101\ninner = { gain = [[1, 1, 1]] }\nouter = { gain = [[1, 0]] }",
+            "`every` is 101; expected 1 to 100 periods",
+        ),
+        (
+            "[controller.state-feedback]\ngain = [[10, 2]]",
+            "[controller.cascade]\nevery = 2\ninner = { gain = [[1, 1, 1]] }\nouter = { pid = [] }",
+            "has no references",
+        ),
+        (
+            "[controller.state-feedback]\ngain = [[10, 2]]",
+            "[controller.cascade]\nevery = 2\ninner = { gain = [[1, 1, 1]] }\nouter = { pid = [{ output = \"x1\", input = \"u1\", reference = \"r\", proportional = 1 }] }",
+            "expected only a `reference`",
         ),
         (
             "[controller.state-feedback]",

@@ -1,8 +1,12 @@
 //! Tables of controllers of linear plants.
 
-use libration::linear::{CostWeights, DesignError, DiscreteController, LinearPlant, Matrix};
+use libration::linear::{
+    ClockedController, ControllerSchedule, CostWeights, DesignError, DiscreteController,
+    LinearPlant, Matrix,
+};
 use serde::Deserialize;
 
+use super::cascade_table::{CascadeTable, Cascaded};
 use super::pid_table::{PidTable, pid};
 use super::plant_table::{Rows, matrix};
 use crate::{Fault, Number};
@@ -21,6 +25,8 @@ pub enum LinearControllerTable {
     StateSpace(StateSpaceTable),
     /// PID controllers, each from an output to an input.
     Pid(Vec<PidTable>),
+    /// An inner controller whose references an outer one computes.
+    Cascade(Box<CascadeTable>),
 }
 
 /// State feedback.
@@ -94,8 +100,12 @@ impl Weights {
 pub struct Design {
     /// The plant with the outputs that the controller measures.
     pub plant: LinearPlant,
-    /// The controller.
-    pub controller: DiscreteController,
+    /// The controller, or the schedule of a cascade.
+    pub controllers: ControllerSchedule,
+    /// The controller with a measured clock; none if it uses no time, and of a cascade.
+    pub clocked: Option<ClockedController>,
+    /// The rates and references of a cascade.
+    pub cascade: Option<Cascaded>,
     /// The weights of the design.
     pub weights: Option<CostWeights>,
     /// The gain of the state or its estimate.
@@ -148,9 +158,15 @@ impl LinearControllerTable {
                 let wrong = |error: DesignError| design_fault("controller.lqg", &error);
                 let gain = plant.design_regulator(&weights, period).map_err(wrong)?.gain;
                 let filter = plant.design_filter(&noise, period).map_err(wrong)?;
+                let of_length = {
+                    let (plant, gain, filter) = (plant.clone(), gain.clone(), filter.clone());
+                    move |seconds| plant.timed_feedback(&gain, &filter, seconds)
+                };
                 Ok(Design {
                     plant: plant.clone(),
-                    controller: plant.estimated_feedback(&gain, &filter, period),
+                    controllers: plant.estimated_feedback(&gain, &filter, period).into(),
+                    clocked: Some(ClockedController::new(period, of_length)),
+                    cascade: None,
                     weights: Some(weights),
                     gain: Some(gain),
                     filter: Some(filter),
@@ -162,6 +178,7 @@ impl LinearControllerTable {
             }
             LinearControllerTable::StateSpace(table) => table.design(plant),
             LinearControllerTable::Pid(tables) => pid(tables, plant, period),
+            LinearControllerTable::Cascade(table) => table.design(plant, period),
         }
     }
 }
@@ -174,7 +191,9 @@ fn state_feedback(
 ) -> Design {
     Design {
         plant: plant.clone().with_all_states_measured(),
-        controller: DiscreteController::gain(gain.scaled(-1.0)),
+        controllers: DiscreteController::gain(gain.scaled(-1.0)).into(),
+        clocked: None,
+        cascade: None,
         weights,
         gain: Some(gain),
         filter: None,
@@ -185,11 +204,34 @@ fn state_feedback(
 
 impl StateSpaceTable {
     fn design(&self, plant: &LinearPlant) -> Result<Design, Fault> {
-        let (m, p, memory) = (plant.inputs.len(), plant.outputs.len(), self.a.len());
-        let of = |key: &'static str, name: &str, rows: &Rows, shape: [usize; 2], side: &str| {
+        let key = |name: &str| match name {
+            "a" => "controller.state-space.a",
+            "b" => "controller.state-space.b",
+            "c" => "controller.state-space.c",
+            _ => "controller.state-space.d",
+        };
+        let shape = [plant.inputs.len(), plant.outputs.len()];
+        let controller = self.controller(key, shape, ["inputs", "outputs"])?;
+        let memory = self.a.len();
+        Ok(by_outputs(plant, controller.into(), format!("a controller of {memory} states")))
+    }
+
+    /// The number of its commands.
+    pub(super) fn commands(&self) -> usize {
+        self.d.len()
+    }
+
+    /// The controller of so many commands and measurements, which are the `sides`. `key` has the key of a matrix.
+    pub(super) fn controller(
+        &self,
+        key: impl Fn(&str) -> &'static str,
+        [commands, measurements]: [usize; 2],
+        [to, from]: [&str; 2],
+    ) -> Result<DiscreteController, Fault> {
+        let of = |name: &str, rows: &Rows, shape: [usize; 2], side: String| {
             let found = match rows.is_empty() {
                 true => Matrix::zeros(shape[0], shape[1]),
-                false => matrix(key, rows)?,
+                false => matrix(key(name), rows)?,
             };
             match [found.rows(), found.columns()] == shape {
                 true => Ok(found),
@@ -199,29 +241,30 @@ impl StateSpaceTable {
                     let message = format!(
                         "`{name}` is {rows} × {columns}; expected {wanted} × {of_each}: {side}"
                     );
-                    Err(Fault::new(key, message))
+                    Err(Fault::new(key(name), message))
                 }
             }
         };
-        let square = "memory × memory";
-        let controller = DiscreteController {
-            a: of("controller.state-space.a", "a", &self.a, [memory; 2], square)?,
-            b: of("controller.state-space.b", "b", &self.b, [memory, p], "memory × outputs")?,
-            c: of("controller.state-space.c", "c", &self.c, [m, memory], "inputs × memory")?,
-            d: of("controller.state-space.d", "d", &self.d, [m, p], "inputs × outputs")?,
-        };
-        Ok(by_outputs(plant, controller, format!("a controller of {memory} states")))
+        let memory = self.a.len();
+        Ok(DiscreteController {
+            a: of("a", &self.a, [memory; 2], "memory × memory".into())?,
+            b: of("b", &self.b, [memory, measurements], format!("memory × {from}"))?,
+            c: of("c", &self.c, [commands, memory], format!("{to} × memory"))?,
+            d: of("d", &self.d, [commands, measurements], format!("{to} × {from}"))?,
+        })
     }
 }
 
 pub(super) fn by_outputs(
     plant: &LinearPlant,
-    controller: DiscreteController,
+    controllers: ControllerSchedule,
     description: String,
 ) -> Design {
     Design {
         plant: plant.clone(),
-        controller,
+        controllers,
+        clocked: None,
+        cascade: None,
         weights: None,
         gain: None,
         filter: None,

@@ -25,6 +25,8 @@ pub struct LinearLoopTable {
     pub loss: Number,
     /// What acts where a command is missing: `hold`, the command that acts already, or `zero`.
     pub missing: String,
+    /// The length of a period that the controller uses: `nominal`, or `measured`, that of the last one.
+    pub clock: String,
     /// The path of time stamps that replace jitter and skew.
     pub time_stamps: String,
     /// The weights of the cost (default: those of the design, or the squares of the outputs).
@@ -54,6 +56,7 @@ impl Default for LinearLoopTable {
             skew: Number(0.0),
             loss: Number(0.0),
             missing: "hold".into(),
+            clock: "nominal".into(),
             time_stamps: String::new(),
             cost: None,
             measurement_noise: None,

@@ -1,16 +1,20 @@
 //! Loops around linear plants in settings files.
 
+mod cascade_table;
 mod controller_table;
 mod loop_table;
+mod part;
 mod part_table;
 mod pid_table;
 mod plant_file;
 mod plant_table;
 
+pub use cascade_table::{CascadeControllerTable, CascadePidTable, CascadeTable, Cascaded};
 pub use controller_table::{
     Design, LinearControllerTable, StateFeedbackTable, Weights, WeightsTable,
 };
 pub use loop_table::{Channels, LinearLoopTable};
-pub use part_table::{Part, PartTable};
+pub use part::{Part, PartKind};
+pub use part_table::PartTable;
 pub use plant_file::read as read_plant;
 pub use plant_table::{PlantTable, Polynomials, Rows};

@@ -1,13 +1,14 @@
 //! Tables of lags and filters in the channels of a plant.
 
-use libration::linear::{ChannelPart, LinearPlant, Signal};
+use libration::linear::{ChannelPart, DiscreteFilter, LinearPlant, Signal};
 use serde::Deserialize;
 
-use crate::{Fault, Number, suggestions};
+use super::part::{Part, PartKind};
+use crate::{Count, Fault, Number, suggestions};
 
 /// A table `[[part]]`: a lag or a filter before an input or behind an output.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PartTable {
     /// Its name.
     pub name: Option<String>,
@@ -19,19 +20,10 @@ pub struct PartTable {
     pub lag: Option<Number>,
     /// The cutoff frequency of a second-order Butterworth filter, in Hz.
     pub butterworth2: Option<Number>,
-}
-
-/// A lag or a filter of a loop.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Part {
-    /// Its name.
-    pub name: String,
-    /// The number of the input; none behind an output.
-    pub input: Option<usize>,
-    /// The number of the output; none before an input.
-    pub output: Option<usize>,
-    /// The lag or filter.
-    pub part: ChannelPart,
+    /// The number of samples of a moving average, which runs with the controller.
+    pub moving_average: Option<Count>,
+    /// Whether it is the difference of two samples over the period, which runs with the controller.
+    pub difference: bool,
 }
 
 impl PartTable {
@@ -41,16 +33,24 @@ impl PartTable {
     /// [`Fault`]: an unknown channel, or not exactly one kind.
     pub fn part(&self, plant: &LinearPlant) -> Result<Part, Fault> {
         let wrong = |message: String| Fault::new("part", message);
-        let (part, kind) = match (self.lag, self.butterworth2) {
-            (Some(Number(time)), None) => (ChannelPart::Lag(time), "lag"),
-            (None, Some(Number(frequency))) => {
-                (ChannelPart::Butterworth2(frequency), "butterworth2")
-            }
-            _ => {
-                return Err(wrong(
-                    "a part requires exactly one of `lag` and `butterworth2`".into(),
-                ));
-            }
+        let kinds = [
+            self.lag.map(|Number(time)| (PartKind::Continuous(ChannelPart::Lag(time)), "lag")),
+            self.butterworth2.map(|Number(frequency)| {
+                (PartKind::Continuous(ChannelPart::Butterworth2(frequency)), "butterworth2")
+            }),
+            self.moving_average.map(|Count(samples)| {
+                // What does not fit is refused as too many.
+                let samples = usize::try_from(samples.max(0)).unwrap_or(usize::MAX);
+                let average = DiscreteFilter::MovingAverage(samples);
+                (PartKind::Discrete(average), "moving average")
+            }),
+            self.difference
+                .then_some((PartKind::Discrete(DiscreteFilter::Difference), "difference")),
+        ];
+        let mut given = kinds.into_iter().flatten();
+        let (Some((kind, word)), None) = (given.next(), given.next()) else {
+            let message = "a part requires exactly one of `lag`, `butterworth2`, `moving-average` and `difference = true`";
+            return Err(wrong(message.into()));
         };
         let (of, name, signals) = match (&self.input, &self.output) {
             (Some(name), None) => ("inputs", name, &plant.inputs),
@@ -62,8 +62,16 @@ impl PartTable {
             "inputs" => (Some(channel), None),
             _ => (None, Some(channel)),
         };
-        let name = self.name.clone().unwrap_or_else(|| format!("{kind} of {name}"));
-        Ok(Part { name, input, output, part })
+        if input.is_some() && kind == PartKind::Discrete(DiscreteFilter::Difference) {
+            return Err(wrong(format!(
+                "`difference` stands before the input `{name}`; expected an output"
+            )));
+        }
+        let name = self.name.clone().unwrap_or_else(|| format!("{word} of {name}"));
+        if let PartKind::Discrete(filter) = kind {
+            filter.check(&name).map_err(|error| wrong(error.to_string()))?;
+        }
+        Ok(Part { name, input, output, kind })
     }
 }
 
@@ -75,19 +83,4 @@ pub(super) fn find(of: &str, name: &str, signals: &[Signal]) -> Result<usize, Fa
         let fault = Fault::new("system", format!("unknown {one} `{name}`"));
         fault.help(suggestions::suggest(of, name, names))
     })
-}
-
-impl Part {
-    /// The plant with this part.
-    ///
-    /// # Errors
-    /// [`Fault`]: an invalid number, or too many states.
-    pub fn applied(&self, plant: &LinearPlant) -> Result<LinearPlant, Fault> {
-        let plant = match (self.input, self.output) {
-            (Some(i), _) => plant.with_input_part(i, self.part, &self.name),
-            (None, Some(j)) => plant.with_output_part(j, self.part, &self.name),
-            (None, None) => return Ok(plant.clone()),
-        };
-        plant.map_err(|error| Fault::new("part", error.to_string()))
-    }
 }

@@ -176,7 +176,7 @@ impl PlantTable {
 }
 
 /// A name with its unit in parentheses.
-fn signal(text: &str) -> Signal {
+pub(super) fn signal(text: &str) -> Signal {
     match text.trim().strip_suffix(')').and_then(|rest| rest.rsplit_once('(')) {
         Some((name, unit)) => Signal::new(name.trim(), unit.trim()),
         None => Signal::new(text.trim(), ""),
