@@ -16,7 +16,17 @@ from .analysis import Advice, Analysis, advise, analyze
 from .ensemble import Ensemble
 from .environments import Environments
 from .laboratory import STUDIES, Finding, Results, run_lab
-from .linear import LQG, Butterworth2, Lag, LinearPlant, StateFeedback, StateSpace
+from .linear import (
+    LQG,
+    Butterworth2,
+    Cascade,
+    Difference,
+    Lag,
+    LinearPlant,
+    MovingAverage,
+    StateFeedback,
+    StateSpace,
+)
 from .perturbations import LQR, PD, PID, Gaussian, Observer, Steps, Uniform
 from .replay import ReplayBuffer
 from .rollout import Rollout
@@ -27,7 +37,9 @@ __all__ = [
     "Advice",
     "Analysis",
     "Butterworth2",
+    "Cascade",
     "CustomSystem",
+    "Difference",
     "Ensemble",
     "Environments",
     "Finding",
@@ -37,6 +49,7 @@ __all__ = [
     "LQR",
     "Lag",
     "LinearPlant",
+    "MovingAverage",
     "Observer",
     "PD",
     "PID",

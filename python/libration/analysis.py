@@ -186,6 +186,7 @@ def advise(
     loss: float | None = None,
     cost_weights: Any = None,
     measurement_noise: Any = None,
+    clock: str | None = None,
     deviation: float | None = None,
     tolerance: tuple[str, float] | None = None,
     horizon: float | None = None,
@@ -205,7 +206,8 @@ def advise(
         Gains of position and velocity, in s⁻² and s⁻¹ (in N/m and N·s/m for a system with ``m`` and ``k``),
         :class:`~libration.PD`, :class:`~libration.PID`, :class:`~libration.LQR` or
         :class:`~libration.Observer` (default: no loop). Of a linear plant ``LQR(Q, R)``, :class:`~libration.LQG`,
-        :class:`~libration.StateFeedback`, :class:`~libration.StateSpace`, or a list of ``(output, input, PID)``.
+        :class:`~libration.StateFeedback`, :class:`~libration.StateSpace`, :class:`~libration.Cascade`, or a list of
+        ``(output, input, PID)``.
     q, v:
         Start of a simulation, or operating point of a loop (default: the origin).
     period:
@@ -215,6 +217,8 @@ def advise(
         (positive: slow), probability that a command is lost. Of a linear plant ``latency`` may have a value for each input.
     output_latency, measurement_noise:
         Of a linear plant: latency of the measurements in s, and variances of their noise; for all, or for each output.
+    clock:
+        Of a linear plant: whether the controller uses the ``"nominal"`` period (default) or the ``"measured"`` length of the last one.
     cost_weights, deviation, tolerance, horizon:
         Weights of position², velocity² and command² in the cost; largest deviation from which the loop must return, in m or rad;
         of a linear plant a pair, weights of states and inputs; tolerance of ``energy``, ``phase``, ``trajectory`` or ``cost``, as ``("energy", 1e-6)``; duration in s.
@@ -243,6 +247,7 @@ def advise(
         "loss": loss,
         "cost_weights": cost_weights,
         "measurement_noise": measurement_noise,
+        "clock": clock,
         "deviation": deviation,
         "tolerance": tolerance,
         "horizon": horizon,
@@ -260,7 +265,7 @@ def advise(
                 raise TypeError(f"{name} cannot be combined with a linear plant")
         request = text_of("config", linear_request(plant, controller, keywords))
     else:
-        for name in ("output_latency", "measurement_noise"):
+        for name in ("output_latency", "measurement_noise", "clock"):
             if keywords.pop(name) is not None:
                 raise TypeError(f"{name} requires a linear plant")
         request = text_of("config", _request(**keywords))

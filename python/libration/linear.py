@@ -11,7 +11,17 @@ from numpy.typing import ArrayLike
 from .perturbations import LQR, PID, Steps, law
 from ._settings import number
 
-__all__ = ["LQG", "Butterworth2", "Lag", "LinearPlant", "StateFeedback", "StateSpace"]
+__all__ = [
+    "LQG",
+    "Butterworth2",
+    "Cascade",
+    "Difference",
+    "Lag",
+    "LinearPlant",
+    "MovingAverage",
+    "StateFeedback",
+    "StateSpace",
+]
 
 
 @dataclass(frozen=True)
@@ -33,6 +43,26 @@ class Butterworth2:
     input: str | int | None = None
     """The name or number of the input; exactly one of ``input`` and ``output`` is required."""
     output: str | int | None = None
+    name: str | None = None
+
+
+@dataclass(frozen=True)
+class MovingAverage:
+    """Mean of the last samples of an output, or of the last commands of an input. It runs with the controller."""
+
+    samples: int
+    input: str | int | None = None
+    """The name or number of the input; exactly one of ``input`` and ``output`` is required."""
+    output: str | int | None = None
+    name: str | None = None
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Difference of the last two samples of an output over the period: its derivative per second. It runs with the controller."""
+
+    output: str | int
+    """The name or number of the output."""
     name: str | None = None
 
 
@@ -60,7 +90,7 @@ class LinearPlant:
     """Names of the states, with units in parentheses: ``"angle (rad)"``."""
     inputs: Sequence[str] | None = None
     outputs: Sequence[str] | None = None
-    parts: Sequence[Lag | Butterworth2] = field(default=())
+    parts: Sequence[Lag | Butterworth2 | MovingAverage | Difference] = field(default=())
     """Lags and filters of the channels."""
 
 
@@ -91,6 +121,27 @@ class StateSpace:
     B: ArrayLike
     C: ArrayLike
     D: ArrayLike
+
+
+@dataclass(frozen=True, eq=False)
+class Cascade:
+    """An inner controller whose references an outer one computes less often.
+
+    A controller is a matrix of gains (``u = gain @ y``, commands × measurements), a :class:`StateSpace`, or a list of PID controllers:
+    outer ones ``(output, reference, PID)``, inner ones ``(output, input, PID)`` or ``(output, input, PID, reference)``, which hold
+    the output at that reference. The outer controller measures the outputs, the inner one the outputs and then the references.
+    """
+
+    inner: Any
+    outer: Any
+    every: int
+    """The outer controller runs in every so-manieth period."""
+    inner_every: int = 1
+    """The inner controller runs in every so-manieth period."""
+    outer_latency: int = 0
+    """The periods from a run of the outer controller until its references act, at most ``every``."""
+    references: Sequence[str] | None = None
+    """Names of the references, with units in parentheses (default: those of the outer PID controllers, or ``r1``, ``r2``, …)."""
 
 
 def plant_of(system: Any) -> LinearPlant | None:
@@ -165,7 +216,7 @@ def linear_request(plant: LinearPlant, controller: Any, timing: dict[str, Any]) 
     if plant.dt is not None:
         table["sampling-period"] = number("dt", plant.dt, "a number of seconds")
     if controller is None:
-        raise TypeError("controller is missing; expected LQR, LQG, StateFeedback, StateSpace or a list of PID for a linear plant")
+        raise TypeError("controller is missing; expected LQR, LQG, StateFeedback, StateSpace, Cascade or a list of PID for a linear plant")
     request: dict[str, Any] = {"system": {"linear": table}, "controller": _controller(controller)}
     if plant.parts:
         # Feedback of the state measures the states.
@@ -179,12 +230,23 @@ def linear_request(plant: LinearPlant, controller: Any, timing: dict[str, Any]) 
     return request
 
 
-def _part(part: Lag | Butterworth2, inputs: tuple[str, Any], outputs: tuple[str, Any]) -> dict[str, Any]:
-    key, value = ("lag", part.seconds) if isinstance(part, Lag) else ("butterworth2", part.hertz)
-    table: dict[str, Any] = {key: number(key, value, "a number")}
+def _part(
+    part: Lag | Butterworth2 | MovingAverage | Difference, inputs: tuple[str, Any], outputs: tuple[str, Any]
+) -> dict[str, Any]:
+    if isinstance(part, Difference):
+        table: dict[str, Any] = {"difference": True}
+    elif isinstance(part, MovingAverage):
+        table = {"moving-average": number("samples", part.samples, "a number")}
+    elif isinstance(part, Lag):
+        table = {"lag": number("lag", part.seconds, "a number")}
+    else:
+        table = {"butterworth2": number("butterworth2", part.hertz, "a number")}
     if part.name is not None:
         table["name"] = part.name
-    for side, channel, (letter, names) in (("input", part.input, inputs), ("output", part.output, outputs)):
+    for side, channel, (letter, names) in (
+        ("input", getattr(part, "input", None), inputs),
+        ("output", part.output, outputs),
+    ):
         if isinstance(channel, int):
             # A name may have a unit in parentheses.
             table[side] = f"{letter}{channel + 1}" if names is None else str(names[channel]).partition("(")[0].strip()
@@ -205,20 +267,57 @@ def _controller(controller: Any) -> dict[str, Any]:
         names = ("states", "inputs", "measurement")
         return {"lqg": {name: _weights(name, getattr(controller, name)) for name in names}}
     if isinstance(controller, StateSpace):
-        empty = not np.size(controller.A)
-        table = {} if empty else {key: matrix(key.upper(), getattr(controller, key.upper())) for key in "abc"}
-        return {"state-space": {**table, "d": matrix("D", controller.D)}}
+        return {"state-space": _state_space(controller)}
+    if isinstance(controller, Cascade):
+        return {"cascade": _cascade(controller)}
     if isinstance(controller, Sequence) and controller and all(isinstance(one, tuple) for one in controller):
         return {"pid": [_pid(*one) for one in controller]}
     raise TypeError(
-        f"controller is {controller!r:.60}; expected LQR(Q, R), LQG, StateFeedback, StateSpace, or a list of (output, input, PID)"
+        f"controller is {controller!r:.60}; expected LQR(Q, R), LQG, StateFeedback, StateSpace, Cascade, "
+        "or a list of (output, input, PID)"
     )
 
 
+def _state_space(controller: StateSpace) -> dict[str, Any]:
+    empty = not np.size(controller.A)
+    table = {} if empty else {key: matrix(key.upper(), getattr(controller, key.upper())) for key in "abc"}
+    return {**table, "d": matrix("D", controller.D)}
+
+
+def _cascade(cascade: Cascade) -> dict[str, Any]:
+    counts = {name: getattr(cascade, name) for name in ("every", "inner_every", "outer_latency")}
+    table = {name.replace("_", "-"): number(name, value, "a number") for name, value in counts.items()}
+    if cascade.references is not None:
+        table["references"] = [str(name) for name in cascade.references]
+    for side in ("inner", "outer"):
+        table[side] = _cascaded(side, getattr(cascade, side))
+    return table
+
+
+def _cascaded(side: str, controller: Any) -> dict[str, Any]:
+    if isinstance(controller, StateSpace):
+        return {"state-space": _state_space(controller)}
+    if isinstance(controller, Sequence) and controller and all(isinstance(one, tuple) for one in controller):
+        pids = []
+        for one in controller:
+            if len(one) not in ((3, 4) if side == "inner" else (3,)) or not isinstance(one[2], PID):
+                expected = "(output, input, PID) or (output, input, PID, reference)" if side == "inner" else "(output, reference, PID)"
+                raise TypeError(f"{side} has the entry {one!r:.60}; expected {expected}")
+            names = {"output": one[0], "input" if side == "inner" else "reference": one[1]}
+            if len(one) == 4:
+                names["reference"] = one[3]
+            pids.append({**names, **_gains(one[2])})
+        return {"pid": pids}
+    return {"gain": matrix(side, controller)}
+
+
 def _pid(output: str, input: str, gains: PID) -> dict[str, Any]:
+    return {"output": output, "input": input, **_gains(gains)}
+
+
+def _gains(gains: PID) -> dict[str, Any]:
     names = ("proportional", "integral", "derivative", "filter")
-    table: dict[str, Any] = {name: number(name, getattr(gains, name), "a number") for name in names}
-    return {"output": output, "input": input, **table}
+    return {name: number(name, getattr(gains, name), "a number") for name in names}
 
 
 def _loop(timing: dict[str, Any]) -> dict[str, Any]:
@@ -244,6 +343,8 @@ def _loop(timing: dict[str, Any]) -> dict[str, Any]:
     if timing["cost_weights"] is not None:
         states, inputs = timing["cost_weights"]
         loop["cost"] = {"states": _weights("cost_weights", states), "inputs": _weights("cost_weights", inputs)}
+    if timing["clock"] is not None:
+        loop["clock"] = str(timing["clock"])
     if timing["measurement_noise"] is not None:
         loop["measurement-noise"] = _weights("measurement_noise", timing["measurement_noise"])
     return loop

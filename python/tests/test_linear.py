@@ -7,7 +7,22 @@ import numpy as np
 import pytest
 
 import libration
-from libration import LQG, LQR, PD, PID, Butterworth2, Lag, LinearPlant, StateFeedback, StateSpace, Steps, advise
+from libration import (
+    LQG,
+    LQR,
+    PD,
+    PID,
+    Butterworth2,
+    Cascade,
+    Difference,
+    Lag,
+    LinearPlant,
+    MovingAverage,
+    StateFeedback,
+    StateSpace,
+    Steps,
+    advise,
+)
 
 A, B = np.array([[0.0, 1.0], [4.0, -0.2]]), np.array([[0.0, 0.0], [1.0, 0.5]])
 PENDULUM = LinearPlant(A, B[:, 0], states=["angle (rad)", "rate (rad/s)"], inputs=["torque (N m)"])
@@ -85,6 +100,101 @@ def test_lags_shorten_what_latency_is_left_and_stand_in_the_chain():
     assert chain["motor"] == 0.02
     # √2/(2πf), as the guide of PX4 has it.
     assert chain["butterworth2 of rate"] == pytest.approx(np.sqrt(2) / (2 * np.pi * 20), rel=1e-12)
+
+
+def motor(parts=()):
+    # The encoder is read twice: as it is, and as a speed.
+    c = [[1.0, 0.0], [1.0, 0.0]]
+    return LinearPlant(
+        [[0.0, 1.0], [0.0, -20.0]],
+        [0.0, 200.0],
+        c,
+        states=["angle (rad)", "speed (rad/s)"],
+        inputs=["voltage (V)"],
+        outputs=["position (rad)", "velocity (rad)"],
+        parts=[Difference("velocity"), *parts],
+    )
+
+
+def test_a_difference_and_an_average_run_with_the_controller():
+    gain = StateSpace([], [], [], [[-12.0, -0.6]])
+    plain = advise(motor(), gain, period=0.001)
+    assert plain["outputs"] == [{"name": "position", "unit": "rad"}, {"name": "velocity", "unit": "rad/s"}]
+    averaged = advise(motor([MovingAverage(4, output=1, name="filter")]), gain, period=0.001)
+    assert limit(averaged, "latency") < limit(plain, "latency") - 0.0014
+    (link,) = [link for link in averaged["chain"] if link["part"] == "filter"]
+    assert link["delay"] == pytest.approx(0.0015, rel=1e-12)
+    # By plain eigenvalues: the memory is the last three rates, and the last angle.
+    phi, gamma = np.eye(4), np.zeros((2, 1))
+    term = np.zeros((3, 3))
+    term[:2, :2], term[1, 2] = [[0.0, 1.0], [0.0, -20.0]], 200.0
+    whole, power = np.eye(3), np.eye(3)
+    for k in range(1, 20):
+        power = power @ term * 0.001 / k
+        whole = whole + power
+    phi, gamma = whole[:2, :2], whole[:2, 2:]
+    rate = np.array([1.0, 0.0, -1.0, 0.0, 0.0, 0.0]) / 0.001
+    command = -12.0 * np.eye(6)[0] - 0.6 * (rate + np.eye(6)[3] + np.eye(6)[4] + np.eye(6)[5]) / 4
+    matrix = np.zeros((6, 6))
+    matrix[:2, :2] = phi
+    matrix[:2] += gamma @ command[np.newaxis]
+    matrix[2, 0], matrix[3], matrix[4, 3], matrix[5, 4] = 1.0, rate, 1.0, 1.0
+    assert averaged.growth == pytest.approx(2 * np.log(abs(np.linalg.eigvals(matrix)).max()), rel=1e-9)
+    with pytest.raises(ValueError, match="averages 0 samples; expected 1 to 100"):
+        advise(motor([MovingAverage(0, output=1)]), gain)
+
+
+def test_a_cascade_is_the_same_by_pid_controllers_by_matrices_and_by_gains():
+    pids = Cascade(
+        [("velocity", "voltage", PID(0.6, 0.0, 0.0), "speed")], [("position", "speed", PID(20.0, 0.0, 0.0))], every=5
+    )
+    inner, outer = [[0.0, -0.6, 0.6]], [[-20.0, 0.0]]
+    gains = Cascade(inner, outer, every=5, references=["speed (rad/s)"])
+    spaces = Cascade(StateSpace([], [], [], inner), StateSpace([], [], [], outer), every=5)
+    found = [advise(motor(), one, period=0.001, latency=0.0004, jitter=0.05) for one in (pids, gains, spaces)]
+    for other in found[1:]:
+        assert other.growth == pytest.approx(found[0].growth, rel=1e-9)
+        assert limit(other, "latency") == pytest.approx(limit(found[0], "latency"), rel=1e-9)
+    assert found[0]["controller_matrices"] is None and len(found[0]["schedule"]) == 5 and not found[0]["margins"]
+    chain = {(link["part"], link["channel"]): link["delay"] for link in found[1]["chain"]}
+    assert chain["hold (half of 5 periods)", "speed"] == pytest.approx(0.0025)
+    # With one rate it is an ordinary controller.
+    single = advise(motor(), Cascade(inner, outer, every=1), period=0.001)
+    plain = advise(motor(), StateSpace([], [], [], [[-12.0, -0.6]]), period=0.001)
+    assert single.growth == pytest.approx(plain.growth, rel=1e-12) and single["margins"]
+    for cascade, wanted in (
+        (Cascade(inner, outer, every=0), "`every` is 0; expected 1 to 100 periods"),
+        (Cascade(inner, outer, every=5, outer_latency=6), "expected at most 5"),
+        (Cascade([[1.0, 2.0]], outer, every=5), "`gain` is 1 × 2; expected 1 × 3: inputs × outputs and references"),
+        (Cascade(pids.inner, [("position", "rate", PID(20.0, 0.0, 0.0))], every=5), "unknown reference `speed`"),
+    ):
+        with pytest.raises(ValueError, match=wanted):
+            advise(motor(), cascade)
+    with pytest.raises(TypeError, match="expected \\(output, reference, PID\\)"):
+        advise(motor(), Cascade(inner, [("position", PID(1.0, 0.0, 0.0))], every=5))
+
+
+def test_an_estimate_that_measures_time_costs_less_under_jitter():
+    plant = LinearPlant(A, B[:, 0], [[1.0, 0.0]], inputs=["u"], outputs=["y"])
+    controller = LQG([10, 1], [0.1], [1e-4])
+    timing = {"period": 0.1, "latency": 0.02, "jitter": 0.2}
+    nominal, measured = (advise(plant, controller, clock=clock, **timing) for clock in (None, "measured"))
+    assert measured["cost"] < nominal["cost"]
+    assert measured["ideal_cost"] == pytest.approx(nominal["ideal_cost"], rel=1e-9)
+    # Feedback of the state uses no time.
+    same = [advise(PENDULUM, StateFeedback([[20.0, 5.0]]), clock=clock, jitter=0.2) for clock in ("nominal", "measured")]
+    assert same[0]["cost"] == pytest.approx(same[1]["cost"], rel=1e-9)
+    for error, wanted, refused in (
+        (ValueError, "unknown value `sundial` of `clock`", lambda: advise(plant, controller, clock="sundial")),
+        (
+            ValueError,
+            "the controller is a cascade",
+            lambda: advise(motor(), Cascade([[0.0, -0.6, 0.6]], [[-20.0, 0.0]], every=5), clock="measured"),
+        ),
+        (TypeError, "clock requires a linear plant", lambda: advise("oscillator", PD(10.0, 2.0), clock="measured")),
+    ):
+        with pytest.raises(error, match=wanted):
+            refused()
 
 
 def test_a_sampled_plant_keeps_its_step():

@@ -2,20 +2,20 @@
 
 use libration::control::{Jitter, Latency};
 use libration::linear::{
-    DiscreteController, LinearLoop, LinearPlant, LoopTiming, Matrix, MissingCommand,
-    log_spectral_radius,
+    ControllerSchedule, DiscreteController, LinearLoop, LinearPlant, LoopTiming, Matrix,
+    MissingCommand, log_spectral_radius,
 };
 use serde_json::Value;
 
-fn number(value: &Value) -> f64 {
+pub(crate) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
-fn numbers(value: &Value) -> Vec<f64> {
+pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(number).collect()
 }
 
-fn matrix(value: &Value, columns: usize) -> Matrix {
+pub(crate) fn matrix(value: &Value, columns: usize) -> Matrix {
     let rows: Vec<Vec<f64>> = value.as_array().unwrap().iter().map(numbers).collect();
     match rows.is_empty() {
         true => Matrix::zeros(0, columns),
@@ -23,26 +23,32 @@ fn matrix(value: &Value, columns: usize) -> Matrix {
     }
 }
 
-/// The loop of a case, and its timing.
-fn read(case: &Value) -> (LinearLoop, LoopTiming) {
+/// A controller in state space, with so many measurements.
+pub(crate) fn controller(own: &Value, measurements: usize) -> DiscreteController {
+    let memory = own["a"].as_array().unwrap().len();
+    DiscreteController {
+        a: matrix(&own["a"], 0),
+        b: matrix(&own["b"], measurements),
+        c: matrix(&own["c"], memory),
+        d: matrix(&own["d"], measurements),
+    }
+}
+
+/// The loop of a case with these controllers, and its timing.
+pub(crate) fn read(
+    case: &Value,
+    controllers: impl Into<ControllerSchedule>,
+) -> (LinearLoop, LoopTiming) {
     let of = |name: &str| matrix(&case[name], 0);
     let plant = LinearPlant::new(of("a"), of("b"), of("c"), of("d")).unwrap();
     let plant = plant.with_noise(of("g")).unwrap();
-    let (n, m, p) = (plant.states.len(), plant.inputs.len(), plant.outputs.len());
-    let own = &case["controller"];
-    let memory = own["a"].as_array().unwrap().len();
-    let controller = DiscreteController {
-        a: matrix(&own["a"], 0),
-        b: matrix(&own["b"], p),
-        c: matrix(&own["c"], memory),
-        d: matrix(&own["d"], p),
-    };
+    let (n, m) = (plant.states.len(), plant.inputs.len());
     let mut cost = Matrix::zeros(n + m, n + m);
     cost.set_block((0, 0), &of("state_weights"));
     cost.set_block((n, n), &of("input_weights"));
     let period = number(&case["period"]);
-    let linear =
-        LinearLoop::new(plant, controller, period, cost, numbers(&case["output_noise"])).unwrap();
+    let noise = numbers(&case["output_noise"]);
+    let linear = LinearLoop::new(plant, controllers, period, cost, noise).unwrap();
     let late = |name: &str| -> Vec<Latency> {
         numbers(&case[name]).into_iter().map(|steps| Latency::of_steps(steps).unwrap()).collect()
     };
@@ -61,6 +67,24 @@ fn read(case: &Value) -> (LinearLoop, LoopTiming) {
     (linear, timing)
 }
 
+/// Compares radius, growth, cost and deviations of a case.
+pub(crate) fn compare(i: usize, case: &Value, linear: &LinearLoop, timing: &LoopTiming) {
+    let close = |found: f64, wanted: f64, what: &str| {
+        let off = (found - wanted).abs() / wanted.abs().max(1e-3);
+        assert!(off < 1e-8, "{i} {what}: {found} {wanted}, {off:e}");
+    };
+    let radius = log_spectral_radius(&linear.period_matrix(timing).unwrap()).exp();
+    close(radius, number(&case["spectral_radius"]), "radius");
+    close(linear.growth(timing).unwrap(), number(&case["growth"]), "growth");
+    let found = linear.stationary(timing).unwrap();
+    assert_eq!(found.is_none(), case["cost"].is_null(), "{i}");
+    let Some(found) = found else { return };
+    close(found.cost, number(&case["cost"]), "cost");
+    for (found, wanted) in found.deviations.into_iter().zip(numbers(&case["deviations"])) {
+        close(found, wanted, "deviation");
+    }
+}
+
 #[test]
 fn radius_growth_cost_and_deviations_are_those_of_a_program_from_the_definition() {
     let reference: Value =
@@ -68,20 +92,8 @@ fn radius_growth_cost_and_deviations_are_those_of_a_program_from_the_definition(
     let cases = reference["cases"].as_array().unwrap();
     assert_eq!(cases.len(), 60);
     for (i, case) in cases.iter().enumerate() {
-        let (linear, timing) = read(case);
-        let close = |found: f64, wanted: f64, what: &str| {
-            let off = (found - wanted).abs() / wanted.abs().max(1e-3);
-            assert!(off < 1e-8, "{i} {what}: {found} {wanted}, {off:e}");
-        };
-        let radius = log_spectral_radius(&linear.period_matrix(&timing).unwrap()).exp();
-        close(radius, number(&case["spectral_radius"]), "radius");
-        close(linear.growth(&timing).unwrap(), number(&case["growth"]), "growth");
-        let found = linear.stationary(&timing).unwrap();
-        assert_eq!(found.is_none(), case["cost"].is_null(), "{i}");
-        let Some(found) = found else { continue };
-        close(found.cost, number(&case["cost"]), "cost");
-        for (found, wanted) in found.deviations.into_iter().zip(numbers(&case["deviations"])) {
-            close(found, wanted, "deviation");
-        }
+        let outputs = case["c"].as_array().unwrap().len();
+        let (linear, timing) = read(case, controller(&case["controller"], outputs));
+        compare(i, case, &linear, &timing);
     }
 }

@@ -3,9 +3,11 @@
 #![allow(clippy::unwrap_used)]
 
 mod budgets;
+mod cascade_reference;
 mod case;
 mod edges;
 mod linear_reference;
+mod measured_clock;
 mod page;
 mod requests;
 mod steps;
