@@ -44,8 +44,8 @@ struct Trajectory<'a> {
 
 impl Simulation<'_> {
     /// The mean cost rate of loop `number` over `periods` periods, after `before` periods from rest, with the states at the beginning
-    /// of each period: that of [`LinearLoop::with_held_noise`]. A schedule of controllers starts with the loop; a number of periods
-    /// that is a multiple of its own counts all of them alike.
+    /// of each period: that of [`LinearLoop::with_held_noise`]. A record and a schedule of controllers begin with their period
+    /// `number`, so that each has its place beside the other; a multiple of the periods of a schedule counts all of them alike.
     pub fn mean_cost(&self, number: u64, before: u64, periods: u64) -> f64 {
         let plant = self.linear.plant();
         let longest = |latencies: &[Latency]| {
@@ -119,7 +119,7 @@ impl Trajectory<'_> {
         let LoopTiming { input_latency, output_latency, loss, missing, .. } = timing;
         let plant = linear.plant();
         let schedule = linear.controllers().order();
-        let kind = schedule[(self.step % schedule.len() as u64) as usize];
+        let kind = schedule[((self.step + self.number) % schedule.len() as u64) as usize];
         let controller = linear.controller_after(kind, self.passed);
         let seconds = self.length();
         let lost = *loss > 0.0 && self.address(Purpose::Latency, self.step).uniform()[0] < *loss;
