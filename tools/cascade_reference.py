@@ -282,3 +282,4 @@ if __name__ == "__main__":
         ap.add_argument(name, type=int, default=default)
     o = ap.parse_args()
     json.dump({"cases": [to_json(p) for p in cases(o.count, o.seed)]}, sys.stdout)
+    print()

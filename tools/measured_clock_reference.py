@@ -142,3 +142,4 @@ if __name__ == "__main__":
         ap.add_argument(name, type=int, default=default)
     o = ap.parse_args()
     json.dump({"cases": [to_json(p) for p in cases(o.count, o.seed)]}, sys.stdout)
+    print()

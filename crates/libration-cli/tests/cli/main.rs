@@ -15,6 +15,7 @@ mod interrupt;
 mod kills;
 mod lab;
 mod linear;
+mod linear_filters;
 #[cfg(unix)]
 mod long_files;
 #[cfg(target_os = "linux")]

@@ -3,11 +3,11 @@
 use libration::linear::{Cascade, DiscreteController, LinearPlant, Signal};
 use serde::Deserialize;
 
-use super::Design;
-use super::controller_table::{StateSpaceTable, by_outputs};
+use super::design::{Cascaded, Design, by_outputs};
 use super::part_table::find;
 use super::pid_table::{Gains, PidChannel, side_by_side, zero};
 use super::plant_table::{Rows, matrix, signal};
+use super::state_space_table::StateSpaceTable;
 use crate::{Count, Fault, Number};
 
 /// The table `[controller.cascade]`: an inner controller whose references an outer one computes less often.
@@ -56,19 +56,6 @@ pub struct CascadePidTable {
     derivative: Number,
     #[serde(default = "zero")]
     filter: Number,
-}
-
-/// The rates and the references of a cascade.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Cascaded {
-    /// Names and units of the references.
-    pub references: Vec<Signal>,
-    /// The periods between two runs of the inner controller.
-    pub inner_every: usize,
-    /// The periods between two runs of the outer controller.
-    pub outer_every: usize,
-    /// The periods until references act.
-    pub outer_latency: usize,
 }
 
 const INNER: &str = "controller.cascade.inner";

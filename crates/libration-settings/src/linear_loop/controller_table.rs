@@ -1,14 +1,15 @@
 //! Tables of controllers of linear plants.
 
 use libration::linear::{
-    ClockedController, ControllerSchedule, CostWeights, DesignError, DiscreteController,
-    LinearPlant, Matrix,
+    ClockedController, CostWeights, DesignError, DiscreteController, LinearPlant, Matrix,
 };
 use serde::Deserialize;
 
-use super::cascade_table::{CascadeTable, Cascaded};
+use super::cascade_table::CascadeTable;
+use super::design::Design;
 use super::pid_table::{PidTable, pid};
 use super::plant_table::{Rows, matrix};
+use super::state_space_table::StateSpaceTable;
 use crate::{Fault, Number};
 
 /// A controller: one of the tables `[controller.…]`.
@@ -57,19 +58,6 @@ pub struct LqgTable {
     measurement: Weights,
 }
 
-/// A controller in state space.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
-pub struct StateSpaceTable {
-    #[serde(default)]
-    a: Rows,
-    #[serde(default)]
-    b: Rows,
-    #[serde(default)]
-    c: Rows,
-    d: Rows,
-}
-
 /// A symmetric matrix, or its diagonal.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(untagged)]
@@ -93,29 +81,6 @@ impl Weights {
             Weights::Matrix(rows) => matrix(key, rows),
         }
     }
-}
-
-/// A controller and what its design knows.
-#[derive(Clone, Debug)]
-pub struct Design {
-    /// The plant with the outputs that the controller measures.
-    pub plant: LinearPlant,
-    /// The controller, or the schedule of a cascade.
-    pub controllers: ControllerSchedule,
-    /// The controller with a measured clock; none if it uses no time, and of a cascade.
-    pub clocked: Option<ClockedController>,
-    /// The rates and references of a cascade.
-    pub cascade: Option<Cascaded>,
-    /// The weights of the design.
-    pub weights: Option<CostWeights>,
-    /// The gain of the state or its estimate.
-    pub gain: Option<Matrix>,
-    /// The gain of the estimator.
-    pub filter: Option<Matrix>,
-    /// The variances of the measurements.
-    pub measurement: Vec<f64>,
-    /// The controller in words.
-    pub description: String,
 }
 
 impl LinearControllerTable {
@@ -199,77 +164,6 @@ fn state_feedback(
         filter: None,
         measurement: vec![0.0; plant.states.len()],
         description: kind.to_owned(),
-    }
-}
-
-impl StateSpaceTable {
-    fn design(&self, plant: &LinearPlant) -> Result<Design, Fault> {
-        let key = |name: &str| match name {
-            "a" => "controller.state-space.a",
-            "b" => "controller.state-space.b",
-            "c" => "controller.state-space.c",
-            _ => "controller.state-space.d",
-        };
-        let shape = [plant.inputs.len(), plant.outputs.len()];
-        let controller = self.controller(key, shape, ["inputs", "outputs"])?;
-        let memory = self.a.len();
-        Ok(by_outputs(plant, controller.into(), format!("a controller of {memory} states")))
-    }
-
-    /// The number of its commands.
-    pub(super) fn commands(&self) -> usize {
-        self.d.len()
-    }
-
-    /// The controller of so many commands and measurements, which are the `sides`. `key` has the key of a matrix.
-    pub(super) fn controller(
-        &self,
-        key: impl Fn(&str) -> &'static str,
-        [commands, measurements]: [usize; 2],
-        [to, from]: [&str; 2],
-    ) -> Result<DiscreteController, Fault> {
-        let of = |name: &str, rows: &Rows, shape: [usize; 2], side: String| {
-            let found = match rows.is_empty() {
-                true => Matrix::zeros(shape[0], shape[1]),
-                false => matrix(key(name), rows)?,
-            };
-            match [found.rows(), found.columns()] == shape {
-                true => Ok(found),
-                false => {
-                    let (rows, columns) = (found.rows(), found.columns());
-                    let [wanted, of_each] = shape;
-                    let message = format!(
-                        "`{name}` is {rows} × {columns}; expected {wanted} × {of_each}: {side}"
-                    );
-                    Err(Fault::new(key(name), message))
-                }
-            }
-        };
-        let memory = self.a.len();
-        Ok(DiscreteController {
-            a: of("a", &self.a, [memory; 2], "memory × memory".into())?,
-            b: of("b", &self.b, [memory, measurements], format!("memory × {from}"))?,
-            c: of("c", &self.c, [commands, memory], format!("{to} × memory"))?,
-            d: of("d", &self.d, [commands, measurements], format!("{to} × {from}"))?,
-        })
-    }
-}
-
-pub(super) fn by_outputs(
-    plant: &LinearPlant,
-    controllers: ControllerSchedule,
-    description: String,
-) -> Design {
-    Design {
-        plant: plant.clone(),
-        controllers,
-        clocked: None,
-        cascade: None,
-        weights: None,
-        gain: None,
-        filter: None,
-        measurement: vec![0.0; plant.outputs.len()],
-        description,
     }
 }
 

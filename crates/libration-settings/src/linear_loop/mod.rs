@@ -2,17 +2,18 @@
 
 mod cascade_table;
 mod controller_table;
+mod design;
 mod loop_table;
 mod part;
 mod part_table;
 mod pid_table;
 mod plant_file;
 mod plant_table;
+mod state_space_table;
 
-pub use cascade_table::{CascadeControllerTable, CascadePidTable, CascadeTable, Cascaded};
-pub use controller_table::{
-    Design, LinearControllerTable, StateFeedbackTable, Weights, WeightsTable,
-};
+pub use cascade_table::{CascadeControllerTable, CascadePidTable, CascadeTable};
+pub use controller_table::{LinearControllerTable, StateFeedbackTable, Weights, WeightsTable};
+pub use design::{Cascaded, Design};
 pub use loop_table::{Channels, LinearLoopTable};
 pub use part::{Part, PartKind};
 pub use part_table::PartTable;

@@ -5,8 +5,7 @@ use libration::control::controller::{Pid, PidGains};
 use libration::linear::{ClockedController, DiscreteController, LinearPlant, Matrix};
 use serde::Deserialize;
 
-use super::Design;
-use super::controller_table::by_outputs;
+use super::design::{Design, by_outputs};
 use super::part_table::find;
 use crate::{Fault, Number};
 
