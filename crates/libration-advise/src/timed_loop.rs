@@ -143,7 +143,8 @@ impl TimedLoop {
         Ok(timing)
     }
 
-    /// The windows of stable latencies of a channel, in periods; none for other imperfections, or for all channels of several at once.
+    /// The windows of stable latencies of a channel, in periods; none for other imperfections, for all channels of several at once, and
+    /// for a cascade, whose channel has several numbers per round.
     pub(super) fn latency_windows(
         &self,
         subject: Subject,
@@ -158,7 +159,9 @@ impl TimedLoop {
             },
             _ => None,
         };
-        let Some(channel) = channel else { return Ok(None) };
+        let Some(channel) = channel.filter(|_| self.linear.controllers().periods() == 1) else {
+            return Ok(None);
+        };
         let stated = self.stated_size(subject) / self.period();
         if self
             .critical_latency
