@@ -171,6 +171,10 @@ def _of_catalogue(system: Any) -> System:
     return system
 
 
+_LINEAR_ONLY = ("output_latency", "measurement_noise", "missing", "deadline_misses", "overrun", "overrun_probability", "clock")
+"""Keywords of :func:`advise` that require a linear plant."""
+
+
 @check_keywords
 def advise(
     system: Any = None,
@@ -184,6 +188,10 @@ def advise(
     jitter: Any = None,
     skew: float | None = None,
     loss: float | None = None,
+    missing: str | None = None,
+    deadline_misses: str | None = None,
+    overrun: str | None = None,
+    overrun_probability: float | None = None,
     cost_weights: Any = None,
     measurement_noise: Any = None,
     clock: str | None = None,
@@ -215,6 +223,10 @@ def advise(
     latency, jitter, skew, loss:
         Imperfections of the loop: latency in s or :class:`~libration.Steps`, distribution of the sample period, relative clock error
         (positive: slow), probability that a command is lost. Of a linear plant ``latency`` may have a value for each input.
+    missing, deadline_misses, overrun, overrun_probability:
+        Of a linear plant: what acts in place of a missing command, ``"hold"`` (default) or ``"zero"``; how many deadlines are missed at
+        worst, ``"2 of 5"`` or ``"2 consecutive"``; what happens to a job that overruns its period, ``"kill"`` (default), ``"skip"`` or
+        ``"queue"``; the probability that a job overruns.
     output_latency, measurement_noise:
         Of a linear plant: latency of the measurements in s, and variances of their noise; for all, or for each output.
     clock:
@@ -245,6 +257,10 @@ def advise(
         "jitter": jitter,
         "skew": skew,
         "loss": loss,
+        "missing": missing,
+        "deadline_misses": deadline_misses,
+        "overrun": overrun,
+        "overrun_probability": overrun_probability,
         "cost_weights": cost_weights,
         "measurement_noise": measurement_noise,
         "clock": clock,
@@ -265,7 +281,7 @@ def advise(
                 raise TypeError(f"{name} cannot be combined with a linear plant")
         request = text_of("config", linear_request(plant, controller, keywords))
     else:
-        for name in ("output_latency", "measurement_noise", "clock"):
+        for name in _LINEAR_ONLY:
             if keywords.pop(name) is not None:
                 raise TypeError(f"{name} requires a linear plant")
         request = text_of("config", _request(**keywords))

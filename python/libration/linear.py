@@ -322,9 +322,16 @@ def _gains(gains: PID) -> dict[str, Any]:
 
 def _loop(timing: dict[str, Any]) -> dict[str, Any]:
     loop: dict[str, Any] = {}
-    for name in ("period", "skew", "loss"):
+    for name in ("period", "skew", "loss", "overrun_probability"):
         if timing[name] is not None:
-            loop[name] = number(name, timing[name], "a number", lambda _: True)
+            loop[name.replace("_", "-")] = number(name, timing[name], "a number", lambda _: True)
+    for name in ("missing", "overrun", "deadline_misses"):
+        value = timing[name]
+        if value is not None:
+            if not isinstance(value, str):
+                example = {"missing": "'hold' or 'zero'", "overrun": "'kill', 'skip' or 'queue'"}.get(name, "text like '2 of 5'")
+                raise TypeError(f"{name} is {value!r:.60}; expected {example}")
+            loop[name.replace("_", "-")] = value
     period = loop.get("period", 0.01)
 
     def seconds(name: str, value: Any) -> float:

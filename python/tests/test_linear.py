@@ -222,6 +222,32 @@ def test_a_sampled_plant_keeps_its_step():
         advise(system, StateFeedback([[20.0, 5.0]]), latency=0.015)
 
 
+def test_missed_deadlines_are_judged_as_by_their_matrices():
+    plant = LinearPlant([[0.0, 1.0], [9.0, 0.0]], [0.0, 1.0])
+    gain, h = np.array([[14.0, 4.5]]), 0.1
+    term = total = np.eye(3)
+    generator = np.array([[0.0, 1.0, 0.0], [9.0, 0.0, 1.0], [0.0, 0.0, 0.0]]) * h
+    for k in range(1, 20):
+        term = term @ generator / k
+        total = total + term
+    # On the state and the command that acts, which is sent at the end of a period.
+    met, missed = total.copy(), total.copy()
+    met[2] = np.append(-gain[0], 0.0)
+    advice = advise(plant, StateFeedback(gain), period=h, latency=h, deadline_misses="3 of 5", overrun="kill", missing="hold")
+    worst = advice["deadline_misses"]["worst_case"]
+    product = np.eye(3)
+    for outcome in worst["stated"]["sequence"]:
+        product = (met if outcome == "met" else missed) @ product
+    growth = abs(np.linalg.eigvals(product)).max() ** (1 / len(worst["stated"]["sequence"]))
+    assert worst["stated"]["lower"] == pytest.approx(growth, rel=1e-10)
+    assert growth > 1 and not advice.holds and worst["stable_up_to"] == 2
+    # Jobs that overrun at random and are killed: E[M ⊗ M].
+    advice = advise(plant, StateFeedback(gain), period=h, latency=h, overrun_probability=0.1)
+    mean = 0.9 * np.kron(met, met) + 0.1 * np.kron(missed, missed)
+    growth = np.log(abs(np.linalg.eigvals(mean)).max())
+    assert advice["deadline_misses"]["random"]["growth"] == pytest.approx(growth, rel=1e-9)
+
+
 def test_a_redesign_is_cheaper_with_the_latency_it_is_made_for():
     advice = advise(PENDULUM, LQR([10, 1], [0.1]), period=0.05, latency=0.08, redesign=True)
     assert advice["redesign"]["cost"] < advice["cost"]
@@ -240,11 +266,15 @@ def test_bad_input_is_refused_by_name():
         (StateFeedback([[20.0, 5.0]]), {"q": [1.0]}, TypeError, "q cannot be combined with a linear plant"),
         (StateFeedback([[20.0, 5.0]]), {"latency": -1.0}, ValueError, "expected a finite number of at least 0"),
         (StateFeedback([[0.0, 0.0]]), {}, ValueError, "a motion grows"),
+        (StateFeedback([[20.0, 5.0]]), {"deadline_misses": (2, 5)}, TypeError, "expected text like '2 of 5'"),
+        (StateFeedback([[20.0, 5.0]]), {"deadline_misses": "5 of 2"}, ValueError, "expected `m of K`"),
+        (StateFeedback([[20.0, 5.0]]), {"overrun": "drop"}, ValueError, "unknown value `drop`"),
         (PID(1.0, 0.0, 0.0), {}, TypeError, "expected LQR"),
     ):
         with pytest.raises(error, match=wanted):
             advise(PENDULUM, controller, **keywords)
     with pytest.raises(ValueError, match="dt is True"):
         advise(types.SimpleNamespace(A=A, B=B, C=A, D=B, dt=True), LQR([1, 1], [1, 1]))
-    with pytest.raises(TypeError, match="output_latency requires a linear plant"):
-        advise("oscillator", PD(10.0, 2.0), output_latency=0.1)
+    for name, value in (("output_latency", 0.1), ("deadline_misses", "1 of 2")):
+        with pytest.raises(TypeError, match=f"{name} requires a linear plant"):
+            advise("oscillator", PD(10.0, 2.0), **{name: value})

@@ -93,8 +93,9 @@ impl HessenbergForm {
     }
 }
 
-/// Scales rows and columns by powers of two until their norms are alike, which rounds nothing.
-fn balance(a: &mut Matrix) -> Vec<f64> {
+/// Scales rows and columns by powers of two until their norms are alike, which rounds nothing. Returns the factors of the columns; rows
+/// are divided by them.
+pub(crate) fn balance(a: &mut Matrix) -> Vec<f64> {
     let n = a.rows();
     let mut scales = vec![1.0; n];
     // Each pass halves what is left at least; far fewer are needed.

@@ -59,6 +59,7 @@ impl LinearLoop {
         channel: Channel,
         [until, most]: [f64; 2],
     ) -> Result<Vec<LatencyWindow>, LinearLoopError> {
+        self.only_controller("windows of latency")?;
         let open = OpenChannel::new(self, timing, channel)?;
         let grid = AngleGrid::new(&open, &self.period_matrix(timing)?);
         let sampled = self.plant().sampling_period.is_some();

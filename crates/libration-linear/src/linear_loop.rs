@@ -110,6 +110,17 @@ impl LinearLoop {
         &self.controllers
     }
 
+    /// The controller of all periods. `what` requires that there is only one.
+    pub(crate) fn only_controller(
+        &self,
+        what: &'static str,
+    ) -> Result<&DiscreteController, LinearLoopError> {
+        match self.controllers.periods() {
+            1 => Ok(self.controller()),
+            periods => Err(LinearLoopError::Schedule { what, periods }),
+        }
+    }
+
     /// The period, in s.
     pub fn period(&self) -> f64 {
         self.period

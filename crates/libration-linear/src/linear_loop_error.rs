@@ -61,6 +61,12 @@ pub enum LinearLoopError {
     /// The probability of a loss is invalid.
     #[error("the probability that commands are lost is {0}; expected at least 0 and below 1")]
     Loss(f64),
+    /// The probability of an overrun is invalid.
+    #[error("the probability that a job overruns is {0}; expected at least 0 and below 1")]
+    Overruns(f64),
+    /// Commands are lost besides random overruns.
+    #[error("commands are lost, and jobs overrun at random; expected one of the two")]
+    LossAndOverruns,
     /// Periods would not be above zero.
     #[error("the skew is {0}; expected a number above −1")]
     Skew(f64),
@@ -89,6 +95,9 @@ pub enum LinearLoopError {
         /// The periods of the schedule.
         periods: usize,
     },
+    /// The periods of a loop are beyond the range of floats.
+    #[error("the periods of the loop are beyond the range of floats")]
+    Range,
     /// The plant moves too far in a period.
     #[error("the plant turns by more than 2048 rad in a standard deviation of the jitter")]
     Turn,

@@ -53,26 +53,36 @@ impl LinearLoop {
     /// # Errors
     /// As for [`LinearLoop::growth`].
     pub fn stationary(&self, timing: &LoopTiming) -> Result<Option<Stationary>, LinearLoopError> {
-        let kinds = self.stages(timing, true)?;
-        let random = self.random_stages(&kinds);
+        let variance = |moments: &Matrix, i: usize| moments[(i, i)];
+        Ok(self.stationary_of(&self.stages(timing, true)?, self.controllers().order(), variance))
+    }
+
+    /// The stationary cost of kinds of periods in this order, with deviations from the variance of each state of the plant.
+    pub(crate) fn stationary_of(
+        &self,
+        kinds: &[Vec<Stage>],
+        order: &[usize],
+        variance: impl Fn(&Matrix, usize) -> f64,
+    ) -> Option<Stationary> {
+        let random = RandomStages::of_schedule(kinds, order);
         if !random.is_stable() {
-            return Ok(None);
+            return None;
         }
         let noises: Vec<Matrix> = kinds.iter().map(|stages| Stage::mean_noise(stages)).collect();
         let moments = random.moments_by_period(&noises);
         let (mut cost, mut length) = (0.0, 0.0);
-        for (&kind, moments) in self.controllers().order().iter().zip(&moments) {
+        for (&kind, moments) in order.iter().zip(&moments) {
             for stage in &kinds[kind] {
                 cost += stage.weight * stage.expected(moments);
                 length += stage.weight * stage.length;
             }
         }
         let cost = cost / length;
-        let variance = |i: usize| moments.iter().map(|p| p[(i, i)]).sum::<f64>();
-        let deviation = |i: usize| (variance(i) / moments.len() as f64).max(0.0).sqrt();
+        let sum = |i: usize| moments.iter().map(|moments| variance(moments, i)).sum::<f64>();
+        let deviation = |i: usize| (sum(i) / moments.len() as f64).max(0.0).sqrt();
         let deviations = (0..self.plant().states.len()).map(deviation).collect();
         // Beyond the edge of stability, by less than the growth can show, a form turns negative.
-        Ok((cost >= 0.0).then_some(Stationary { cost, deviations }))
+        (cost >= 0.0).then_some(Stationary { cost, deviations })
     }
 }
 

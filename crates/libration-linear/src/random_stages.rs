@@ -22,6 +22,8 @@ const WRITTEN_OUT: usize = 6;
 
 /// Most numbers of `S` of a schedule, up to which their map is written out.
 const NUMBERS: usize = 128;
+/// Iterations in a row that must agree on a sign.
+const IN_A_ROW: usize = 20;
 
 /// Most iterations of that map, where it is not.
 const ITERATIONS: usize = 2000;
@@ -88,7 +90,7 @@ impl RandomStages {
     }
 
     /// The logarithm of the spectral radius of the map of `S`, by iteration; if only its sign matters, ended where ten times the estimated
-    /// rest does not change it.
+    /// rest does not change it, some times in a row: a sequence that swings is slow where it turns back.
     ///
     /// The map takes positive semidefinite matrices to such, so that its spectral radius is an eigenvalue (M. G. Krein, M. A. Rutman,
     /// American Mathematical Society Translations 26, 1950). The rest is that of a sequence that settles in equal ratios.
@@ -97,6 +99,7 @@ impl RandomStages {
             self.schedule.periods().map(|period| Matrix::identity(period.rows.len())).collect();
         let trace = |spreads: &[Matrix]| spreads.iter().map(Matrix::trace).sum::<f64>();
         let (mut ratio, mut change) = (f64::NAN, f64::INFINITY);
+        let mut decided = 0;
         for _ in 0..ITERATIONS {
             let next = self.schedule.returned_spread(means, &spreads);
             let size = trace(&next);
@@ -113,7 +116,8 @@ impl RandomStages {
             (ratio, change) = (grown, moved);
             spreads = next.iter().map(|spread| spread.scaled(size.recip())).collect();
             let settled = moved <= 1e-14 * grown || rest <= 1e-13 * grown;
-            if settled || sign_only && 10.0 * rest < (grown - 1.0).abs() {
+            decided = if 10.0 * rest < (grown - 1.0).abs() { decided + 1 } else { 0 };
+            if settled || sign_only && decided >= IN_A_ROW {
                 break;
             }
         }

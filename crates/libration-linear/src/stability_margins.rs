@@ -39,10 +39,7 @@ impl LinearLoop {
         timing: &LoopTiming,
         i: usize,
     ) -> Result<StabilityMargins, LinearLoopError> {
-        let periods = self.controllers().periods();
-        if periods > 1 {
-            return Err(LinearLoopError::Schedule { what: "gain and phase margins", periods });
-        }
+        self.only_controller("gain and phase margins")?;
         let response = self.open_loop(timing, i)?;
         let ratio = (PI / SLOWEST).ln() / (ANGLES - 1) as f64;
         let angles: Vec<f64> =

@@ -3,7 +3,7 @@
 use libration::linear::{DiscreteController, Matrix, PlantMode, Signal};
 use serde::{Serialize, Serializer};
 
-use super::{ChainLink, Redesign};
+use super::{ChainLink, DeadlineMisses, Redesign};
 use crate::budget::{Budget, FirstFailure};
 use crate::combined_effect::SimulatedCost;
 use crate::stabilising_changes::StabilisingChanges;
@@ -64,6 +64,8 @@ pub struct LinearAdvice {
     pub deviations: Vec<Deviation>,
     /// The cost measured by a simulation; none if the loop is unstable, or decays too slowly to simulate.
     pub simulated: Option<SimulatedCost>,
+    /// Missed deadlines; none if the request states none.
+    pub deadline_misses: Option<DeadlineMisses>,
     /// Changes that stabilise an unstable loop; none if it is stable.
     pub remedies: Option<StabilisingChanges>,
     /// The regulator for the stated latency, if the request asks for it.
@@ -156,10 +158,11 @@ pub struct Deviation {
 }
 
 impl LinearAdvice {
-    /// Whether the loop is stable with the stated imperfections, its cost is tolerated and the simulation agrees.
+    /// Whether the loop is stable with the stated imperfections and missed deadlines, its cost is tolerated and the simulation agrees.
     pub fn holds(&self) -> bool {
         let agrees = self.simulated.is_none_or(|simulated| simulated.agrees());
-        self.growth < 0.0 && !self.exceeds_tolerated_cost() && agrees
+        let misses = self.deadline_misses.as_ref().is_none_or(DeadlineMisses::holds);
+        self.growth < 0.0 && !self.exceeds_tolerated_cost() && agrees && misses
     }
 
     /// Whether the cost exceeds its tolerance.

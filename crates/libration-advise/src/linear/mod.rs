@@ -3,15 +3,19 @@
 mod advice;
 mod advisor;
 mod clock;
+mod deadlines;
+mod deadlines_page;
 mod latency_chain;
 mod page;
 mod redesign;
 mod request;
 mod simulated_cost;
+mod stated_deadlines;
 mod summary;
 
 pub use advice::{ControllerMatrices, Deviation, InputMargins, LinearAdvice, SignalName};
 pub use advisor::advise;
+pub use deadlines::{DeadlineMisses, MissRow, RandomMisses, WorstCase};
 pub use latency_chain::ChainLink;
 pub use page::{NO_MARGINS, page};
 pub use redesign::Redesign;

@@ -6,6 +6,7 @@ use libration_report::record::{Cell, Table};
 use libration_report::report;
 
 use super::LinearAdvice;
+use super::deadlines_page::deadlines;
 use crate::page::{budget_row, figure};
 
 /// Why a cascade has no margins.
@@ -22,6 +23,7 @@ pub fn page(advice: &LinearAdvice) -> String {
     chain(&mut page, advice);
     redesign(&mut page, advice);
     margins(&mut page, advice);
+    deadlines(&mut page, advice);
     together(&mut page, advice);
     plant(&mut page, advice);
     let names = |signals: &[super::SignalName]| {

@@ -15,6 +15,7 @@ use libration_settings::{Document, Fault, Number, SettingsError, suggestions};
 use serde::Deserialize;
 
 use super::clock::clocked;
+use super::stated_deadlines::StatedDeadlines;
 use crate::control::{skew_of, uneven};
 use crate::jitter_measurement;
 use crate::timed_loop::{StatedTiming, TimedLoop};
@@ -53,6 +54,7 @@ pub struct LinearRequest {
     pub(super) parts: Vec<Part>,
     pub(super) design: Design,
     pub(super) timed: TimedLoop,
+    pub(super) deadlines: StatedDeadlines,
     /// The largest rise of the cost, `ΔJ/J₀`.
     pub(super) cost_tolerance: Option<f64>,
     /// Whether to compute a stability map.
@@ -131,6 +133,7 @@ impl LinearRequest {
         };
         let form = padded(&weights, plant.states.len(), whole.states.len());
         let timing = timing(&file.looped, &design.plant)?;
+        let deadlines = StatedDeadlines::new(&file.looped, design.cascade.is_some())?;
         let linear = LinearLoop::new(whole, controllers, period, form, noise);
         let wrong = |error: LinearLoopError| Fault::new("loop", error.to_string());
         let mut linear = linear.map_err(wrong)?;
@@ -153,6 +156,7 @@ impl LinearRequest {
             parts,
             design,
             timed,
+            deadlines,
             cost_tolerance,
             map: false,
             redesign: false,

@@ -5,8 +5,17 @@ use crate::budget::with_channel;
 use crate::summary::{capitalise, describe_window, percent};
 
 impl LinearAdvice {
-    /// The answer in a few sentences.
+    /// The answer in a few sentences. A failure because of missed deadlines comes first.
     pub(super) fn summary(&self) -> String {
+        let all_met = self.summary_without_misses();
+        match &self.deadline_misses {
+            Some(misses) if misses.holds() => format!("{all_met} {}", misses.sentences()),
+            Some(misses) => format!("{} Without missed deadlines: {all_met}", misses.sentences()),
+            None => all_met,
+        }
+    }
+
+    fn summary_without_misses(&self) -> String {
         if self.growth >= 0.0 {
             let remedies = self.remedies.as_ref().map(|remedies| remedies.sentence(["", ""]));
             return format!(
@@ -31,6 +40,7 @@ impl LinearAdvice {
             (None, Some(tried)) => format!(
                 "The loop is stable with the stated imperfections, also if all of them are at least {tried:.3} times as large, the most that was tried."
             ),
+            (None, None) if self.deadline_misses.is_some() => "The loop is stable.".to_owned(),
             (None, None) => {
                 "The loop is stable. The request states no imperfections.".to_owned()
             }
@@ -73,6 +83,12 @@ impl LinearAdvice {
                 "the loop was not simulated because it decays too slowly: the results follow from theory alone".into(),
             ),
             _ => {}
+        }
+        let worst = self.deadline_misses.as_ref().and_then(|misses| misses.worst_case.as_ref());
+        if worst.is_some_and(|worst| worst.stated.verdict == "undecided") {
+            warnings.push(
+                "the bounds of the worst sequence of missed deadlines do not tell whether the loop is stable".into(),
+            );
         }
         let fastest = self.plant_modes.iter().map(|mode| mode.frequency).fold(0.0, f64::max);
         let turn = core::f64::consts::TAU * fastest * self.period;

@@ -3,7 +3,7 @@
 use libration::control::{Jitter, Latency};
 use libration::linear::{
     ControllerSchedule, DiscreteController, LinearLoop, LinearPlant, LoopTiming, Matrix,
-    MissingCommand, log_spectral_radius,
+    log_spectral_radius,
 };
 use serde_json::Value;
 
@@ -20,6 +20,34 @@ pub(crate) fn matrix(value: &Value, columns: usize) -> Matrix {
     match rows.is_empty() {
         true => Matrix::zeros(0, columns),
         false => Matrix::from_rows(&rows).unwrap(),
+    }
+}
+
+/// The loop of a case, without noise and cost.
+pub(crate) fn read_loop(case: &Value) -> LinearLoop {
+    let of = |name: &str| matrix(&case[name], 0);
+    let plant = LinearPlant::new(of("a"), of("b"), of("c"), of("d")).unwrap();
+    let (n, m, p) = (plant.states.len(), plant.inputs.len(), plant.outputs.len());
+    let (memory, period) = (case["ac"].as_array().unwrap().len(), number(&case["period"]));
+    let controller = DiscreteController {
+        a: matrix(&case["ac"], 0),
+        b: matrix(&case["bc"], p),
+        c: matrix(&case["cc"], memory),
+        d: matrix(&case["dc"], p),
+    };
+    LinearLoop::new(plant, controller, period, Matrix::identity(n + m), vec![0.0; p]).unwrap()
+}
+
+/// The latencies and the skew of a case.
+pub(crate) fn read_timing(case: &Value) -> LoopTiming {
+    let late = |name: &str| -> Vec<Latency> {
+        numbers(&case[name]).into_iter().map(|steps| Latency::of_steps(steps).unwrap()).collect()
+    };
+    LoopTiming {
+        input_latency: late("input_latency"),
+        output_latency: late("output_latency"),
+        skew: number(&case["skew"]),
+        ..LoopTiming::ideal(0, 0)
     }
 }
 
@@ -49,20 +77,14 @@ pub(crate) fn read(
     let period = number(&case["period"]);
     let noise = numbers(&case["output_noise"]);
     let linear = LinearLoop::new(plant, controllers, period, cost, noise).unwrap();
-    let late = |name: &str| -> Vec<Latency> {
-        numbers(&case[name]).into_iter().map(|steps| Latency::of_steps(steps).unwrap()).collect()
-    };
     let rms = number(&case["jitter"]);
     let timing = LoopTiming {
-        input_latency: late("input_latency"),
-        output_latency: late("output_latency"),
         jitter: match case["law"].as_str().unwrap() {
             "uniform" => Jitter::Uniform(rms),
             _ => Jitter::Gaussian(rms),
         },
-        skew: number(&case["skew"]),
         loss: number(&case["loss"]),
-        missing: MissingCommand::Hold,
+        ..read_timing(case)
     };
     (linear, timing)
 }

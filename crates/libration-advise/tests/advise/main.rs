@@ -5,6 +5,7 @@
 mod budgets;
 mod cascade_reference;
 mod case;
+mod deadline_misses;
 mod edges;
 mod linear_reference;
 mod measured_clock;

@@ -90,6 +90,7 @@ fn describe(advice: &LinearAdvice) -> String {
         );
     }
     redesign(advice, &mut text);
+    deadlines(advice, &mut text);
     let _ = writeln!(
         text,
         "\nall imperfections together: second moments change by {:+.4e} per period (exact)",
@@ -151,6 +152,44 @@ fn redesign(advice: &LinearAdvice, text: &mut String) {
             after.limit(after.stable_up_to),
             before.unit,
             before.limit(before.stable_up_to)
+        );
+    }
+}
+
+/// Appends what the loop does when it misses deadlines.
+fn deadlines(advice: &LinearAdvice, text: &mut String) {
+    let Some(misses) = &advice.deadline_misses else { return };
+    if let Some(worst) = &misses.worst_case {
+        let _ = writeln!(
+            text,
+            "\n{:<32} {:<10} {:>14} {:>14}  worst sequence, over and over",
+            format!("missed deadlines ({}, {})", misses.overrun, misses.missing),
+            "verdict",
+            "growth from",
+            "to"
+        );
+        for row in &worst.tried {
+            let _ = writeln!(
+                text,
+                "{:<32} {:<10} {:>14.6} {:>14.6}  {}",
+                format!("at most {} of {}", row.misses, row.window),
+                row.verdict,
+                row.lower,
+                row.upper,
+                row.sequence_text()
+            );
+        }
+    }
+    if let Some(random) = &misses.random {
+        let limit = random.stable_up_to.map_or_else(|| "1".to_owned(), |x| format!("{x:.6}"));
+        let cost = random.cost.map_or_else(|| "infinite".to_owned(), |x| format!("{x:.6e}"));
+        let _ = writeln!(
+            text,
+            "\nrandom overruns ({}, {}) with probability {}: second moments change by {:+.4e} per period, cost {cost}, stable up to {limit}",
+            misses.overrun,
+            misses.missing,
+            random.probability,
+            random.growth.exp_m1()
         );
     }
 }

@@ -7,6 +7,7 @@ mod analyze;
 mod bench;
 mod clocks;
 mod closed_loop;
+mod deadline_misses;
 mod exit_codes;
 mod forces;
 #[cfg(unix)]

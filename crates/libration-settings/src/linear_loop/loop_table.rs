@@ -27,6 +27,12 @@ pub struct LinearLoopTable {
     pub missing: String,
     /// The length of a period that the controller uses: `nominal`, or `measured`, that of the last one.
     pub clock: String,
+    /// How many deadlines are missed at worst: `2 of 5` or `2 consecutive`; empty if none.
+    pub deadline_misses: String,
+    /// What happens to a job that overruns its period: `kill`, `skip` or `queue`.
+    pub overrun: String,
+    /// The probability that a job overruns.
+    pub overrun_probability: Number,
     /// The path of time stamps that replace jitter and skew.
     pub time_stamps: String,
     /// The weights of the cost (default: those of the design, or the squares of the outputs).
@@ -57,6 +63,9 @@ impl Default for LinearLoopTable {
             loss: Number(0.0),
             missing: "hold".into(),
             clock: "nominal".into(),
+            deadline_misses: String::new(),
+            overrun: "kill".into(),
+            overrun_probability: Number(0.0),
             time_stamps: String::new(),
             cost: None,
             measurement_noise: None,
