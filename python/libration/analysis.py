@@ -239,7 +239,8 @@ def advise(
     page:
         Whether to add an HTML page with a stability map, which takes longer.
     redesign:
-        Whether to design the regulator for the stated latency, of a linear plant with an :class:`~libration.LQR`.
+        Whether to design the controller of least cost for the stated latencies, jitter, skew and losses, of a linear plant with an
+        :class:`~libration.LQR`, an :class:`~libration.LQG`, or ``cost_weights``.
 
     Raises
     ------

@@ -4,7 +4,7 @@ use libration::analysis::{CostError, Imperfections, LinearController, LqrError, 
 use libration::control::controller::{Luenberger, Pid, PidGains, StateFeedback};
 use libration::control::{ControlError, Controller, Feedback, Latency, LqrWeights};
 use libration::linear::{
-    DesignError, LinearLoop, LinearLoopError, LoopTiming, Matrix, MissingCommand,
+    LinearLoop, LinearLoopError, LoopTiming, Matrix, MissingCommand, RedesignError,
 };
 use libration::{Float, Model, State, System};
 use libration_settings::units;
@@ -102,7 +102,7 @@ pub enum LoopError {
     Cost(#[from] CostError),
     /// The redesign failed.
     #[error(transparent)]
-    Design(#[from] DesignError),
+    Redesign(#[from] RedesignError),
     /// As for [`LoopError::Cost`].
     #[error(transparent)]
     Linear(#[from] LinearLoopError),

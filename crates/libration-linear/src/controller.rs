@@ -1,6 +1,6 @@
 //! Discrete controllers in state space.
 
-use crate::Matrix;
+use crate::{LinearLoopError, Matrix};
 
 /// `m' = A·m + B·y` and `u = C·m + D·y`: a controller with memory `m`, measurements `y` and commands `u`, once per period.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +21,31 @@ impl DiscreteController {
         let (commands, measurements) = (d.rows(), d.columns());
         let [a, b] = [Matrix::zeros(0, 0), Matrix::zeros(0, measurements)];
         DiscreteController { a, b, c: Matrix::zeros(commands, 0), d }
+    }
+
+    /// Fails if the controller does not fit so many inputs and outputs.
+    pub(crate) fn fits(&self, [m, p]: [usize; 2]) -> Result<(), LinearLoopError> {
+        for (of, given, expected, side) in [
+            ("commands", self.commands(), m, "inputs"),
+            ("measurements", self.measurements(), p, "outputs"),
+        ] {
+            if given != expected {
+                return Err(LinearLoopError::Channels { of, given, expected, side });
+            }
+        }
+        let memory = self.memory();
+        let DiscreteController { a, b, c, d } = self;
+        for (name, matrix, shape) in [
+            ("controller A", a, [memory, memory]),
+            ("controller B", b, [memory, p]),
+            ("controller C", c, [m, memory]),
+            ("controller D", d, [m, p]),
+        ] {
+            if [matrix.rows(), matrix.columns()] != shape || !matrix.is_finite() {
+                return Err(LinearLoopError::Matrix(name));
+            }
+        }
+        Ok(())
     }
 
     /// The size of the memory.

@@ -69,6 +69,12 @@ impl Deviations {
         }
         sum
     }
+
+    /// `E[Δᵀ F Δ]` of a form `F`: none without deviations.
+    pub(crate) fn gathered(&self, form: &Matrix) -> Option<Matrix> {
+        let parts = self.parts.iter().map(|part| part.transposed().congruence(form));
+        parts.reduce(|sum, part| sum.plus(&part))
+    }
 }
 
 fn square(matrix: &Matrix) -> f64 {

@@ -3,9 +3,11 @@
 //! A period of a loop is a matrix on its state: the states of the plant, the memory of the controller, and all commands and
 //! measurements in transit. Everything is in `f64`.
 
+mod augmented_plant;
 mod cascade;
 mod channel_part;
 mod clocked_controller;
+mod compensator;
 mod controller;
 mod controller_schedule;
 mod crossing_curves;
@@ -94,6 +96,7 @@ pub use plant_modes::PlantMode;
 pub use random_overruns::RandomOverruns;
 pub use random_stages::RandomStages;
 pub use recorded_schedule::RecordedSchedule;
+pub use redesign::{ASSUMED_NOISE, Redesign, RedesignError, RedesignKind};
 pub use riccati::{RegulatorProblem, RegulatorSolution};
 pub use simulation::Simulation;
 pub use spectral_norm::spectral_norm;

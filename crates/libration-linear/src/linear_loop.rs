@@ -43,7 +43,7 @@ impl LinearLoop {
         let controllers = controllers.into();
         let (n, m, p) = (plant.states.len(), plant.inputs.len(), plant.outputs.len());
         for controller in controllers.kinds() {
-            fits(controller, [m, p])?;
+            controller.fits([m, p])?;
         }
         if [cost.rows(), cost.columns()] != [n + m; 2] || !cost.is_finite() {
             return Err(LinearLoopError::Matrix("cost"));
@@ -154,7 +154,7 @@ impl LinearLoop {
     }
 
     /// Whether the controller measures the lengths of periods.
-    pub(crate) fn measures_time(&self) -> bool {
+    pub fn measures_time(&self) -> bool {
         self.clocked.is_some()
     }
 
@@ -275,29 +275,4 @@ impl LinearLoop {
         }
         Ok(stages)
     }
-}
-
-/// Fails if a controller does not fit so many inputs and outputs.
-fn fits(controller: &DiscreteController, [m, p]: [usize; 2]) -> Result<(), LinearLoopError> {
-    for (of, given, expected, side) in [
-        ("commands", controller.commands(), m, "inputs"),
-        ("measurements", controller.measurements(), p, "outputs"),
-    ] {
-        if given != expected {
-            return Err(LinearLoopError::Channels { of, given, expected, side });
-        }
-    }
-    let memory = controller.memory();
-    let DiscreteController { a, b, c, d } = controller;
-    for (name, matrix, shape) in [
-        ("controller A", a, [memory, memory]),
-        ("controller B", b, [memory, p]),
-        ("controller C", c, [m, memory]),
-        ("controller D", d, [m, p]),
-    ] {
-        if [matrix.rows(), matrix.columns()] != shape || !matrix.is_finite() {
-            return Err(LinearLoopError::Matrix(name));
-        }
-    }
-    Ok(())
 }

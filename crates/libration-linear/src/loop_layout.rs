@@ -10,6 +10,11 @@ pub(crate) const MOST_RANDOM: usize = 100;
 /// Most states of a loop whose periods are all the same.
 const MOST_REPEATED: usize = 300;
 
+/// The most states of a loop with this timing.
+pub(crate) fn most_states(timing: &LoopTiming) -> usize {
+    if timing.repeats() { MOST_REPEATED } else { MOST_RANDOM }
+}
+
 impl LinearLoop {
     /// The coordinates of the loop, after all numbers of the timing are checked.
     pub(crate) fn layout(&self, timing: &LoopTiming) -> Result<Layout, LinearLoopError> {
@@ -53,7 +58,7 @@ impl LinearLoop {
             output_latency.iter().map(|latency| Transit::of_measurements(*latency)).collect();
         let sizes = [self.plant().states.len(), self.controller().memory(), noises];
         let layout = Layout::new(sizes, &inputs, &outputs);
-        let most = if timing.repeats() { MOST_REPEATED } else { MOST_RANDOM };
+        let most = most_states(timing);
         match layout.size() > most {
             true => Err(LinearLoopError::Size { size: layout.size(), most }),
             false => Ok(layout),

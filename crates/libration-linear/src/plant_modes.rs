@@ -55,6 +55,11 @@ impl LinearPlant {
         self.hidden_mode(&self.a.transposed(), &self.c.transposed())
     }
 
+    /// A mode that does not decay and that no noise drives.
+    pub fn undisturbed_mode(&self) -> Option<PlantMode> {
+        self.hidden_mode(&self.a, &self.g)
+    }
+
     /// A mode that does not decay and that the cost `q`, a form of states, does not see. The feedback of least cost does not stabilise
     /// it.
     pub fn mode_without_cost(&self, q: &Matrix) -> Option<PlantMode> {

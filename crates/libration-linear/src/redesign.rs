@@ -1,216 +1,239 @@
-//! Regulators of a plant with commands under way.
+//! Controllers of least cost for a loop with its timing.
 
 use libration_core::control::Latency;
+use thiserror::Error;
 
+use crate::augmented_plant::AugmentedPlant;
+use crate::compensator::{Compensator, Unsolved};
+use crate::loop_layout::most_states;
 use crate::{
-    Arrival, DesignError, DiscreteController, Dynamics, Layout, LinearPlant, Matrix, Period,
-    RegulatorProblem, Transit, is_schur_stable,
+    DesignError, DiscreteController, LinearLoop, LinearLoopError, LoopTiming, Matrix, PlantMode,
 };
 
-impl LinearPlant {
-    /// The regulator of least cost for inputs with these latencies, in periods of `period` seconds: feedback of all states, which are
-    /// measured without latency, and of the commands under way. The cost rate is the form `cost` of states and inputs.
+/// Part of the variance that the noise of the plant adds to an output in a period, which a filter assumes as the noise of a measurement
+/// that has none.
+///
+/// Without any, what a sample shows of several states at once has a singular covariance. The standard deviation is a part of 10⁻⁴.
+pub const ASSUMED_NOISE: f64 = 1e-8;
+
+/// A controller of least cost for a loop with its timing.
+#[derive(Clone, Debug)]
+pub struct Redesign {
+    /// The controller.
+    pub controller: DiscreteController,
+    /// Its kind.
+    pub kind: RedesignKind,
+    /// The outputs without noise in which the filter assumes [`ASSUMED_NOISE`].
+    pub assumed_noise: Vec<usize>,
+    /// The cost per second (of a sampled plant: per sample) that its equations predict.
+    pub cost: f64,
+}
+
+/// The kind of a redesigned controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RedesignKind {
+    /// Feedback of all states, which are measured, and of the commands under way.
+    StateFeedback,
+    /// The same for periods and losses that are drawn, by a coupled Riccati equation.
+    RandomStateFeedback,
+    /// A Kalman filter and a regulator.
+    Lqg,
+    /// The optimal compensator for periods and losses that are drawn: filter and regulator by coupled equations.
+    Compensator,
+}
+
+/// Error of a redesign.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum RedesignError {
+    /// The timing is invalid, or the loop would be too large.
+    #[error(transparent)]
+    Loop(#[from] LinearLoopError),
+    /// The design failed.
+    #[error(transparent)]
+    Design(#[from] DesignError),
+    /// Nothing disturbs the loop.
+    #[error(
+        "no noise drives the plant, so that a filter has nothing to estimate; expected `g` with an entry that is not zero"
+    )]
+    NoNoise,
+    /// A motion that the filter must know is not disturbed.
+    #[error(
+        "the filter is on the edge of stability: no noise drives {0}; help: let a column of `g` drive one of its states"
+    )]
+    Undisturbed(PlantMode),
+    /// No controller of the kind is stable in the mean square.
+    #[error(
+        "no controller was found with which second moments decay: the equations for jitter of {jitter} (relative rms) and a loss \
+         probability of {loss} have no solution, or one too close to the edge of stability; help: lower them"
+    )]
+    NotStabilised {
+        /// The relative rms of the jitter.
+        jitter: f64,
+        /// The probability of a loss.
+        loss: f64,
+    },
+}
+
+impl LinearLoop {
+    /// The controller of least cost for the loop with this timing.
     ///
-    /// The commands under way are states of a larger plant, for which the regulator is designed: exactly, also for parts of a period
-    /// (K. J. Åström, B. Wittenmark, *Computer-Controlled Systems*, 3rd ed., 1997).
+    /// The commands and the measurements under way are states of a larger plant, exactly also for parts of a period (K. J. Åström, B.
+    /// Wittenmark, *Computer-Controlled Systems*, 3rd ed., 1997). If all states are known, it is a feedback of them. Else a
+    /// filter estimates them: the controller does not know the lengths of periods, nor which of its commands are lost.
     ///
     /// # Errors
-    /// [`DesignError::Unsettled`]: no feedback stabilises the plant in steps of this period, or the loop of least cost is too close to
-    /// the edge of stability.
-    pub fn design_latency_regulator(
-        &self,
-        cost: &Matrix,
-        latency: &[Latency],
-        period: f64,
-    ) -> Result<DiscreteController, DesignError> {
-        let plant = self.clone().with_all_states_measured();
-        let (n, m) = (plant.states.len(), plant.inputs.len());
-        let problem = plant.delayed_problem(cost, latency, period);
-        let stable = |gain: &Matrix| is_schur_stable(&problem.closed(gain));
+    /// [`RedesignError`].
+    pub fn redesign(&self, timing: &LoopTiming) -> Result<Redesign, RedesignError> {
+        let knows = self.knows_states(timing);
+        if !knows && self.plant().g.largest() == 0.0 {
+            return Err(RedesignError::NoNoise);
+        }
+        let (assumed_noise, variances) = self.filter_noise();
+        let own = if knows { self.output_noise() } else { &variances };
+        let augmented = AugmentedPlant::new(self, timing, own)?;
+        let size = augmented.a.rows();
+        let memory = if knows { size - augmented.plant_states } else { size };
+        let most = most_states(timing);
+        if size + memory > most {
+            return Err(LinearLoopError::Size { size: size + memory, most }.into());
+        }
+        let (n, m) = (self.plant().states.len(), self.plant().inputs.len());
         // Commands that act later cost nothing at once.
-        let length = if plant.sampling_period.is_some() { 1.0 } else { period };
-        let price = cost.block((n, n), (m, m)).scaled(length);
-        let gain = problem.solve_from(&price).map(|solution| solution.gain).filter(stable);
-        let gain = gain.ok_or(DesignError::Unsettled("regulator"))?;
-        // The commands in transit of each input, and the one that acts at the beginning if the step splits.
-        let under_way: Vec<usize> = latency
-            .iter()
-            .map(|late| late.whole() as usize + usize::from(late.part() > 0.0))
-            .collect();
-        let memory = under_way.iter().sum();
-        let mut controller = DiscreteController {
-            a: Matrix::zeros(memory, memory),
-            b: Matrix::zeros(memory, n),
-            c: Matrix::zeros(m, memory),
-            d: gain.block((0, 0), (m, n)).scaled(-1.0),
+        let price = self.cost_form().block((n, n), (m, m)).scaled(augmented.length);
+        let found = match knows {
+            true => augmented.state_feedback(&price),
+            false => augmented.output_feedback([&price, &Matrix::diagonal(&variances)]),
         };
-        // In the larger plant commands in transit come first, then those that act.
-        let layout = plant.delayed_layout(latency);
-        let mut first = 0;
-        let mut starts = Vec::new();
-        for (i, &count) in under_way.iter().enumerate() {
-            starts.push(first);
-            for k in 0..count {
-                let place = match layout.commands(i).nth(k) {
-                    Some(place) => place,
-                    None => layout.acting(i),
-                };
-                // The memory that makes commands is no coordinate of the problem.
-                for row in 0..m {
-                    controller.c[(row, first + k)] = -gain[(row, place - m)];
-                }
+        let found = found.map_err(|unsolved| self.unsolved(unsolved, timing))?;
+        let kind = match (knows, augmented.is_random) {
+            (true, false) => RedesignKind::StateFeedback,
+            (true, true) => RedesignKind::RandomStateFeedback,
+            (false, false) => RedesignKind::Lqg,
+            (false, true) => RedesignKind::Compensator,
+        };
+        let redesign = Redesign {
+            controller: controller(&augmented, &found),
+            kind,
+            assumed_noise: if knows { Vec::new() } else { assumed_noise },
+            cost: found.cost / augmented.length,
+        };
+        let closed = self.with_controller(redesign.controller.clone())?;
+        match closed.is_stable(timing)? {
+            true => Ok(redesign),
+            false => Err(self.unsolved(Unsolved::Random, timing)),
+        }
+    }
+
+    /// Whether the controller knows all states, and all commands that matter.
+    ///
+    /// With losses it does not know the command that acts. Without latency the feedback of least cost does not depend on it: a new
+    /// command that arrives replaces it at once, and one that is lost changes nothing.
+    fn knows_states(&self, timing: &LoopTiming) -> bool {
+        let plant = self.plant();
+        let states = plant.c == Matrix::identity(plant.states.len()) && plant.d.largest() == 0.0;
+        let exact = self.output_noise().iter().all(|variance| *variance == 0.0);
+        let at_once =
+            |channels: &[Latency]| channels.iter().all(|latency| *latency == Latency::NONE);
+        let known = timing.loss == 0.0 || at_once(&timing.input_latency);
+        states && exact && at_once(&timing.output_latency) && known
+    }
+
+    /// The outputs in whose measurements a filter assumes noise, and the variances of all.
+    fn filter_noise(&self) -> (Vec<usize>, Vec<f64>) {
+        let plant = self.plant();
+        let added = plant.c.congruence(&plant.step_noise(self.period()));
+        let given = self.output_noise();
+        // No noise reaches an output whose motion is known without measuring it: any variance is as good.
+        let assumed = |j: usize| match ASSUMED_NOISE * added[(j, j)] {
+            variance if variance > 0.0 => variance,
+            _ => 1.0,
+        };
+        let variance = |j: usize| if given[j] > 0.0 { given[j] } else { assumed(j) };
+        let without = (0..given.len()).filter(|&j| given[j] == 0.0).collect();
+        (without, (0..given.len()).map(variance).collect())
+    }
+
+    fn unsolved(&self, unsolved: Unsolved, timing: &LoopTiming) -> RedesignError {
+        let plant = self.plant();
+        let n = plant.states.len();
+        let (jitter, loss) = (timing.jitter.rms(), timing.loss);
+        match unsolved {
+            Unsolved::Filter if let Some(mode) = plant.unobservable_mode() => {
+                DesignError::Unobservable(mode).into()
             }
-            first += count;
-        }
-        for (i, &count) in under_way.iter().enumerate().filter(|(_, count)| **count > 0) {
-            let start = starts[i];
-            let (c, d) = (controller.c.row(i).to_vec(), controller.d.row(i).to_vec());
-            controller.a.row_mut(start).copy_from_slice(&c);
-            controller.b.row_mut(start).copy_from_slice(&d);
-            (1..count).for_each(|k| controller.a[(start + k, start + k - 1)] = 1.0);
-        }
-        Ok(controller)
-    }
-
-    fn delayed_layout(&self, latency: &[Latency]) -> Layout {
-        let (n, m) = (self.states.len(), self.inputs.len());
-        let inputs: Vec<Transit> =
-            latency.iter().map(|&late| Transit::of_commands(late, false)).collect();
-        Layout::new([n, m, 0], &inputs, &vec![Transit { count: 0, acts_on: false }; n])
-    }
-
-    /// The regulator problem of states and commands under way. A memory of the size of the inputs stands for the commands.
-    fn delayed_problem(&self, cost: &Matrix, latency: &[Latency], period: f64) -> RegulatorProblem {
-        let (n, m) = (self.states.len(), self.inputs.len());
-        let layout = self.delayed_layout(latency);
-        let pass = DiscreteController {
-            a: Matrix::zeros(m, m),
-            b: Matrix::zeros(m, n),
-            c: Matrix::identity(m),
-            d: Matrix::zeros(m, n),
-        };
-        let noise = Matrix::zeros(n, n);
-        let step = |_: f64, _: [f64; 2]| self.step(period);
-        let dynamics = match self.sampling_period {
-            None => Dynamics::Exact { a: &self.a, b: &self.b, noise: &noise },
-            Some(_) => Dynamics::Stepped { step: &step, noises: 0, white: false },
-        };
-        let whole = Period {
-            dynamics,
-            outputs: [&self.c, &self.d],
-            controller: &pass,
-            layout: &layout,
-            output_latency: &vec![Latency::NONE; n],
-            output_noise: &vec![0.0; n],
-            cost: Some(cost),
-        };
-        let arrivals: Vec<Arrival> =
-            latency.iter().map(|&latency| Arrival { latency, lost: None }).collect();
-        let stage = whole.stage(1.0, period, &arrivals);
-        let size = layout.size();
-        let kept: Vec<usize> = (0..n).chain(n + m..size).collect();
-        let made: Vec<usize> = (n..n + m).collect();
-        let of = |matrix: &Matrix, rows: &[usize], columns: &[usize]| {
-            Matrix::from_fn(rows.len(), columns.len(), |i, j| matrix[(rows[i], columns[j])])
-        };
-        RegulatorProblem {
-            a: of(&stage.step, &kept, &kept),
-            b: of(&stage.step, &kept, &made),
-            q: of(&stage.cost, &kept, &kept),
-            s: of(&stage.cost, &kept, &made),
-            r: of(&stage.cost, &made, &made),
+            Unsolved::Filter if let Some(mode) = plant.undisturbed_mode() => {
+                RedesignError::Undisturbed(mode)
+            }
+            Unsolved::Filter => DesignError::Unsettled("filter").into(),
+            Unsolved::Random if jitter > 0.0 || loss > 0.0 => {
+                RedesignError::NotStabilised { jitter, loss }
+            }
+            _ if let Some(mode) = plant.unreachable_mode() => DesignError::Unreachable(mode).into(),
+            _ if let Some(mode) =
+                plant.mode_without_cost(&self.cost_form().block((0, 0), (n, n))) =>
+            {
+                DesignError::Unseen(mode).into()
+            }
+            _ => DesignError::Unsettled("regulator").into(),
         }
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{CostWeights, LinearLoop, Signal};
-
-    fn pendulum() -> LinearPlant {
-        let a = Matrix::from_rows(&[[0.0, 1.0], [6.0, -0.1]]).unwrap();
-        let b = Matrix::from_rows(&[[0.0], [2.0]]).unwrap();
-        LinearPlant::new(a, b, Matrix::identity(2), Matrix::zeros(2, 1)).unwrap()
-    }
-
-    fn weights() -> CostWeights {
-        CostWeights { states: Matrix::diagonal(&[5.0, 1.0]), inputs: Matrix::diagonal(&[0.3]) }
-    }
-
-    #[test]
-    fn without_latency_it_is_the_plain_regulator() {
-        let plain = pendulum().design_regulator(&weights(), 0.05).unwrap().gain;
-        let found = pendulum().design_latency_regulator(&weights().form(), &[Latency::NONE], 0.05);
-        let found = found.unwrap();
-        assert_eq!(found.memory(), 0);
-        for (found, plain) in found.d.entries().iter().zip(plain.entries()) {
-            assert!((found + plain).abs() < 1e-12 * plain.abs(), "{found} {plain}");
+/// The controller in state space. Its memory is the predicted state, or the part of it that its commands depend on.
+fn controller(plant: &AugmentedPlant, compensator: &Compensator) -> DiscreteController {
+    let AugmentedPlant { a, b, c, .. } = plant;
+    let (size, p) = (a.rows(), c.rows());
+    let mut gain = compensator.gain.clone();
+    // x̂ over the prediction and the measurement.
+    let (mut kept, mut received) = (Matrix::identity(size), Matrix::zeros(size, p));
+    match &compensator.filter {
+        Some(filter) => {
+            kept.add_scaled(-1.0, &(filter * c));
+            received = filter.clone();
         }
-    }
-
-    #[test]
-    fn no_other_gain_nearby_costs_less_with_the_latency_there_is() {
-        for steps in [0.4, 1.0, 2.7] {
-            let latency = Latency::of_steps(steps).unwrap();
-            let form = weights().form();
-            let best = pendulum().design_latency_regulator(&form, &[latency], 0.05).unwrap();
-            let cost = |controller: &DiscreteController| {
-                let plant = pendulum();
-                let own = form.clone();
-                let linear = LinearLoop::new(plant, controller.clone(), 0.05, own, vec![0.0; 2]);
-                let linear = linear.unwrap();
-                let mut timing = linear.ideal();
-                timing.input_latency = vec![latency];
-                linear.stationary(&timing).unwrap().map_or(f64::INFINITY, |found| found.cost)
-            };
-            let least = cost(&best);
-            assert!(least.is_finite(), "{steps}");
-            let mut tried = 0;
-            for factor in [0.99, 1.01] {
-                // Of a command, what it is made of and what is remembered of it are the same.
-                for j in 0..2 {
-                    let mut other = best.clone();
-                    other.d[(0, j)] *= factor;
-                    other.b[(0, j)] *= factor;
-                    assert!(cost(&other) > least, "{steps} {j}");
-                    tried += 1;
-                }
-                for j in 0..best.memory() {
-                    let mut other = best.clone();
-                    other.c[(0, j)] *= factor;
-                    other.a[(0, j)] *= factor;
-                    assert!(cost(&other) > least, "{steps} {j}");
-                    tried += 1;
-                }
+        None => {
+            for i in 0..plant.plant_states {
+                (kept[(i, i)], received[(i, i)]) = (0.0, 1.0);
             }
-            assert!(tried >= 6);
+            // The command that acts, if it is not known, has no part in it but by rounding.
+            for &place in &plant.unknown {
+                (0..gain.rows()).for_each(|i| gain[(i, place)] = 0.0);
+            }
         }
     }
+    let mut closed = a.clone();
+    closed.add_scaled(-1.0, &(b * &gain));
+    let whole = DiscreteController {
+        a: &closed * &kept,
+        b: &closed * &received,
+        c: (&gain * &kept).scaled(-1.0),
+        d: (&gain * &received).scaled(-1.0),
+    };
+    without_unused(&whole)
+}
 
-    #[test]
-    fn a_latency_of_several_inputs_is_designed_for_input_by_input() {
-        let mass = Matrix::diagonal(&[1.0, 2.0]);
-        let zero = Matrix::zeros(2, 2);
-        let stiffness = Matrix::from_rows(&[[8.0, -3.0], [-3.0, 3.0]]).unwrap();
-        let names = Signal::numbered("q", 2);
-        let plant =
-            LinearPlant::mechanical([&mass, &zero, &stiffness], &Matrix::identity(2), &names)
-                .unwrap();
-        let weights = CostWeights { states: Matrix::identity(4), inputs: Matrix::identity(2) };
-        let latency = [1.3, 0.0].map(|steps| Latency::of_steps(steps).unwrap());
-        let form = weights.form();
-        let aware = plant.design_latency_regulator(&form, &latency, 0.2).unwrap();
-        let plain = plant.design_regulator(&weights, 0.2).unwrap().gain;
-        let cost = |controller: DiscreteController| {
-            let measured = plant.clone().with_all_states_measured();
-            let linear = LinearLoop::new(measured, controller, 0.2, form.clone(), vec![0.0; 4]);
-            let linear = linear.unwrap();
-            let mut timing = linear.ideal();
-            timing.input_latency = latency.to_vec();
-            linear.stationary(&timing).unwrap().map_or(f64::INFINITY, |found| found.cost)
-        };
-        let (aware, plain) = (cost(aware), cost(DiscreteController::gain(plain.scaled(-1.0))));
-        assert!(aware < plain, "{aware} {plain}");
+/// The same controller without memory that its commands do not depend on, now or later.
+fn without_unused(whole: &DiscreteController) -> DiscreteController {
+    let memory = whole.memory();
+    let read = |matrix: &Matrix, j: usize| (0..matrix.rows()).any(|i| matrix[(i, j)] != 0.0);
+    let mut used: Vec<bool> = (0..memory).map(|j| read(&whole.c, j)).collect();
+    let mut found = used.iter().filter(|used| **used).count();
+    loop {
+        let next = |j: usize| used[j] || (0..memory).any(|i| used[i] && whole.a[(i, j)] != 0.0);
+        used = (0..memory).map(next).collect();
+        let count = used.iter().filter(|used| **used).count();
+        if count == found {
+            break;
+        }
+        found = count;
+    }
+    let places: Vec<usize> = (0..memory).filter(|&j| used[j]).collect();
+    let count = places.len();
+    let DiscreteController { a, b, c, d } = whole;
+    DiscreteController {
+        a: Matrix::from_fn(count, count, |i, j| a[(places[i], places[j])]),
+        b: Matrix::from_fn(count, b.columns(), |i, j| b[(places[i], j)]),
+        c: Matrix::from_fn(c.rows(), count, |i, j| c[(i, places[j])]),
+        d: d.clone(),
     }
 }

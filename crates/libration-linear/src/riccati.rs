@@ -58,14 +58,13 @@ impl RegulatorProblem {
             power = &power * &moved;
             symmetrise(&mut reach);
             symmetrise(&mut cost);
-            if more.largest() <= 1e-16 * cost.largest() {
+            // Entry by entry: states have units, and a covariance in m² is small beside one in V².
+            if relative_diagonal(&more, &cost) <= 1e-16 {
                 settled = true;
                 break;
             }
         }
-        let moved = &b.transposed() * &cost;
-        let price = (&moved * b).plus(r);
-        let gain = solve_matrix(&price, &(&moved * a).plus(&s.transposed()))?;
+        let gain = self.gain(&cost)?;
         (settled && gain.is_finite()).then_some(RegulatorSolution { gain, cost })
     }
 
@@ -76,8 +75,12 @@ impl RegulatorProblem {
     /// state gains for the discrete optimal regulator*, IEEE Transactions on Automatic Control 16, 1971).
     pub fn solve_from(&self, price: &Matrix) -> Option<RegulatorSolution> {
         let priced = RegulatorProblem { r: self.r.plus(price), ..self.clone() };
-        let mut gain = priced.solve()?.gain;
-        let mut change = f64::INFINITY;
+        self.improve(priced.solve()?.gain)
+    }
+
+    /// The feedback that costs least, from a gain that stabilises, by Newton's iteration; none if that gain does not stabilise.
+    pub(crate) fn improve(&self, mut gain: Matrix) -> Option<RegulatorSolution> {
+        let (mut before, mut change): (Option<Matrix>, f64) = (None, f64::INFINITY);
         for _ in 0..DOUBLINGS {
             let closed = self.closed(&gain);
             if !is_schur_stable(&closed) {
@@ -88,20 +91,31 @@ impl RegulatorProblem {
             let mut weight = gain.transposed().congruence(&self.r).plus(&self.q);
             weight.add_scaled(-1.0, &crossed);
             weight.add_scaled(-1.0, &crossed.transposed());
-            let cost = solve_stein(&closed.transposed(), vec![weight]).remove(0);
-            let moved = &self.b.transposed() * &cost;
-            let price = (&moved * &self.b).plus(&self.r);
-            let next = solve_matrix(&price, &(&moved * &self.a).plus(&self.s.transposed()))?;
-            gain.add_scaled(-1.0, &next);
-            let off = gain.largest() / next.largest();
-            gain = next;
+            let mut cost = solve_stein(&closed.transposed(), vec![weight]).remove(0);
+            symmetrise(&mut cost);
+            gain = self.gain(&cost)?;
+            let off = before.map_or(f64::INFINITY, |mut before| {
+                before.add_scaled(-1.0, &cost);
+                relative_diagonal(&before, &cost)
+            });
             // The last steps are those of rounding.
-            if off.is_nan() || off <= 1e-15 || (off < 1e-9 && off >= change) {
+            if off.is_nan() || off <= 1e-15 || (off < 1e-6 && off >= change) {
                 return (!off.is_nan()).then_some(RegulatorSolution { gain, cost });
             }
-            change = off;
+            (before, change) = (Some(cost), off);
         }
         None
+    }
+
+    /// `R + BᵀXB`: what commands cost with the cost-to-go `X`.
+    pub(crate) fn price(&self, cost: &Matrix) -> Matrix {
+        self.b.transposed().congruence(cost).plus(&self.r)
+    }
+
+    /// The gain of least cost with this cost-to-go; none if commands cost nothing.
+    fn gain(&self, cost: &Matrix) -> Option<Matrix> {
+        let moved = &(&self.b.transposed() * cost) * &self.a;
+        solve_matrix(&self.price(cost), &moved.plus(&self.s.transposed()))
     }
 
     /// `A − BK`.
@@ -112,7 +126,16 @@ impl RegulatorProblem {
     }
 }
 
-fn symmetrise(matrix: &mut Matrix) {
+/// The largest size of an entry of the diagonal of `part`, over that of `whole`: independent of the units of states.
+pub(crate) fn relative_diagonal(part: &Matrix, whole: &Matrix) -> f64 {
+    let ratio = |i: usize| match part[(i, i)].abs() {
+        0.0 => 0.0,
+        size => size / whole[(i, i)].abs(),
+    };
+    (0..part.rows()).map(ratio).fold(0.0, |most: f64, x| if x.is_nan() { x } else { most.max(x) })
+}
+
+pub(crate) fn symmetrise(matrix: &mut Matrix) {
     let back = matrix.transposed();
     matrix.add_scaled(1.0, &back);
     matrix.entries_mut().iter_mut().for_each(|x| *x *= 0.5);

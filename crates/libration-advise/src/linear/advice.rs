@@ -3,7 +3,7 @@
 use libration::linear::{DiscreteController, Matrix, PlantMode, Signal};
 use serde::{Serialize, Serializer};
 
-use super::{ChainLink, DeadlineMisses, Redesign};
+use super::{ChainLink, DeadlineMisses, InputMargins, Redesign};
 use crate::budget::{Budget, FirstFailure};
 use crate::combined_effect::SimulatedCost;
 use crate::stabilising_changes::StabilisingChanges;
@@ -68,28 +68,13 @@ pub struct LinearAdvice {
     pub deadline_misses: Option<DeadlineMisses>,
     /// Changes that stabilise an unstable loop; none if it is stable.
     pub remedies: Option<StabilisingChanges>,
-    /// The regulator for the stated latency, if the request asks for it.
+    /// The controller of least cost for the stated timing, if the request asks for it.
     pub redesign: Option<Redesign>,
     /// A command that repeats this advice.
     pub repeat_command: String,
     /// The stability map, if the request asks for it.
     #[serde(skip)]
     pub map: Option<StabilityMap>,
-}
-
-/// The margins of the loop that is opened at one input, with all others closed.
-#[derive(Clone, Debug, Serialize)]
-pub struct InputMargins {
-    /// The input.
-    pub input: String,
-    /// The smallest factor above 1 of its commands at which the loop loses stability; none if there is none.
-    pub gain_up: Option<f64>,
-    /// The largest factor below 1; none if there is none.
-    pub gain_down: Option<f64>,
-    /// The phase margin in degrees; none if the gain never passes 1.
-    pub phase: Option<f64>,
-    /// The frequency of the phase margin in Hz.
-    pub crossover: Option<f64>,
 }
 
 /// The name and unit of a signal.

@@ -1,10 +1,11 @@
 //! Advice on loops around linear plants.
 
-use libration::linear::{LoopTiming, Signal, StabilityMargins};
+use libration::linear::Signal;
 use libration_settings::linear_loop::Part;
 use libration_work::Work;
 
-use super::{Deviation, InputMargins, LinearAdvice, LinearRequest, SignalName};
+use super::margins::margins;
+use super::{Deviation, LinearAdvice, LinearRequest, SignalName};
 use crate::loops::LoopError;
 use crate::request::{Measure, Tolerance};
 use crate::{AdviseError, limits::Imperfection};
@@ -24,6 +25,8 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         let help = timed.stabilising_changes(&ideal).sentence(["", ""]);
         return Err(AdviseError::Unstable { modes, help });
     }
+    // Refused before any work, if it is impossible.
+    let redesign = if request.redesign { Some(request.redesign()?) } else { None };
     let tolerance = match request.cost_tolerance {
         Some(most) => Tolerance { of: Measure::Cost, most },
         None => Tolerance { of: Measure::Trajectory, most: 1.0 },
@@ -56,10 +59,7 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         }
         false => None,
     };
-    let redesign = match request.redesign {
-        true => Some(request.redesigned(work, tolerance, cost)?),
-        false => None,
-    };
+    let redesign = redesign.map(|design| request.evaluated(work, &design, cost)).transpose()?;
     let (plant, controllers) = (timed.linear.plant(), timed.linear.controllers());
     let names = |signals: &[_]| signals.iter().map(SignalName::from).collect();
     let mut advice = LinearAdvice {
@@ -79,7 +79,7 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         },
         period: timed.period(),
         chain: request.latency_chain(&budgets),
-        margins: request.margins(&stated)?,
+        margins: margins(&timed.linear, &stated)?,
         budgets,
         fails_first,
         growth,
@@ -112,24 +112,6 @@ impl LinearRequest {
             text += &format!("; the design does not know {}", filters.join(", "));
         }
         text
-    }
-
-    /// The gain and phase margins at each input.
-    fn margins(&self, stated: &LoopTiming) -> Result<Vec<InputMargins>, AdviseError> {
-        let even = LoopTiming { loss: 0.0, jitter: stated.jitter.with_rms(0.0), ..stated.clone() };
-        let linear = &self.timed.linear;
-        // A cascade has no frequency response.
-        let periodic = linear.controllers().periods() > 1;
-        if periodic || !linear.is_stable(&even).map_err(LoopError::from)? {
-            return Ok(Vec::new());
-        }
-        let of = |(i, input): (usize, &Signal)| {
-            let found = linear.stability_margins(&even, i).map_err(LoopError::from)?;
-            let StabilityMargins { gain_up, gain_down, phase, crossover } = found;
-            let (input, phase) = (input.name.clone(), phase.map(f64::to_degrees));
-            Ok(InputMargins { input, gain_up, gain_down, phase, crossover })
-        };
-        linear.plant().inputs.iter().enumerate().map(of).collect()
     }
 
     /// The standard deviations of the states under noise.

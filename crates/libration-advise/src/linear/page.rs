@@ -5,8 +5,8 @@ use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
 
-use super::LinearAdvice;
 use super::deadlines_page::deadlines;
+use super::{InputMargins, LinearAdvice, redesign_page};
 use crate::page::{budget_row, figure};
 
 /// Why a cascade has no margins.
@@ -21,7 +21,7 @@ pub fn page(advice: &LinearAdvice) -> String {
     }
     budgets(&mut page, advice);
     chain(&mut page, advice);
-    redesign(&mut page, advice);
+    redesign_page::add(&mut page, advice);
     margins(&mut page, advice);
     deadlines(&mut page, advice);
     together(&mut page, advice);
@@ -107,9 +107,14 @@ fn margins(page: &mut Page, advice: &LinearAdvice) {
     page.paragraph(
         "Of the loop opened at one input, with the stated latencies and all other inputs closed.",
     );
+    page.table(&margins_table("margins", &advice.margins), 4);
+}
+
+/// The margins at each input.
+pub(super) fn margins_table(name: &str, margins: &[InputMargins]) -> Table {
     let columns = ["input", "least gain", "most gain", "phase margin (°)", "crossover (Hz)"];
-    let mut table = Table::new("margins", &columns);
-    for margins in &advice.margins {
+    let mut table = Table::new(name, &columns);
+    for margins in margins {
         let known =
             |x: Option<f64>| x.map_or_else(|| Cell::absent("none"), |x| Cell::rounded(x, 4));
         table.push([
@@ -120,45 +125,7 @@ fn margins(page: &mut Page, advice: &LinearAdvice) {
             known(margins.crossover),
         ]);
     }
-    page.table(&table, 4);
-}
-
-fn redesign(page: &mut Page, advice: &LinearAdvice) {
-    let Some(redesign) = &advice.redesign else { return };
-    page.heading("A regulator for this latency");
-    let gains =
-        |what: &str| page_sentence(what, redesign.cost_ratio, redesign.controller_matrices.a.len());
-    page.paragraph(gains("It feeds back the states and the commands under way"));
-    let columns = ["imperfection", "channel", "stable up to", "with the regulator", "unit"];
-    let mut table = Table::new("redesign", &columns);
-    for (before, after) in advice.budgets.iter().zip(&redesign.budgets) {
-        let [kind, _, stable, _, _, unit, _] = budget_row(before);
-        let [_, _, better, ..] = budget_row(after);
-        let channel = before.channel.clone().map_or_else(|| Cell::absent("all"), Cell::from);
-        table.push([kind, channel, stable, better, unit]);
-    }
-    if !redesign.budgets.is_empty() {
-        page.table(&table, 4);
-    }
-    let rows = |name: &str, rows: &[Vec<f64>]| format!("`{name} = {rows:?}`");
-    let own = &redesign.controller_matrices;
-    page.paragraph(format!(
-        "To paste into `[controller.state-space]` of a plant whose outputs are its states: {}, {}, {}, {}",
-        rows("a", &own.a),
-        rows("b", &own.b),
-        rows("c", &own.c),
-        rows("d", &own.d)
-    ));
-}
-
-/// What a regulator does and what it costs.
-fn page_sentence(what: &str, ratio: Option<f64>, commands: usize) -> String {
-    let costs = ratio.map_or_else(String::new, |ratio| {
-        format!(" With all stated imperfections its cost is {:.4} of the present one.", 1.0 / ratio)
-    });
-    format!(
-        "{what}: {commands} of them.{costs} Jitter, skew and losses have no part in its design."
-    )
+    table
 }
 
 fn together(page: &mut Page, advice: &LinearAdvice) {

@@ -15,6 +15,7 @@ use libration_settings::{Document, Fault, Number, SettingsError, suggestions};
 use serde::Deserialize;
 
 use super::clock::clocked;
+use super::redesign_toml::RedesignToml;
 use super::stated_deadlines::StatedDeadlines;
 use crate::control::{skew_of, uneven};
 use crate::jitter_measurement;
@@ -57,9 +58,10 @@ pub struct LinearRequest {
     pub(super) deadlines: StatedDeadlines,
     /// The largest rise of the cost, `ΔJ/J₀`.
     pub(super) cost_tolerance: Option<f64>,
+    pub(super) redesign_toml: RedesignToml,
     /// Whether to compute a stability map.
     pub map: bool,
-    /// Whether to design a regulator for the stated latency.
+    /// Whether to design the controller of least cost for the stated timing.
     pub redesign: bool,
     /// The command line that repeats the request, without options of output.
     pub invocation: String,
@@ -133,6 +135,7 @@ impl LinearRequest {
         };
         let form = padded(&weights, plant.states.len(), whole.states.len());
         let timing = timing(&file.looped, &design.plant)?;
+        let redesign_toml = RedesignToml::new(&file.looped, &plant, &design, &weights, &noise);
         let deadlines = StatedDeadlines::new(&file.looped, design.cascade.is_some())?;
         let linear = LinearLoop::new(whole, controllers, period, form, noise);
         let wrong = |error: LinearLoopError| Fault::new("loop", error.to_string());
@@ -158,6 +161,7 @@ impl LinearRequest {
             timed,
             deadlines,
             cost_tolerance,
+            redesign_toml,
             map: false,
             redesign: false,
             invocation,

@@ -67,6 +67,21 @@ impl LinearAdvice {
         text
     }
 
+    /// What the redesigned controller costs beside the given one, in a sentence.
+    pub fn redesign_effect(&self) -> String {
+        let Some(redesign) = &self.redesign else { return String::new() };
+        match (self.cost, redesign.cost) {
+            (_, None) => "The redesigned loop is unstable with the stated imperfections.".into(),
+            (None, Some(cost)) => format!(
+                "Its cost with all stated imperfections is {cost:.6e}; the given controller is unstable with them."
+            ),
+            (Some(before), Some(cost)) => format!(
+                "Its cost with all stated imperfections is {cost:.6e}, {:.4} of that of the given controller, {before:.6e}.",
+                cost / before
+            ),
+        }
+    }
+
     /// The warnings, most urgent first.
     pub(super) fn warnings_of(&self) -> Vec<String> {
         let mut warnings = Vec::new();

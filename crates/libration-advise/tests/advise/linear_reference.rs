@@ -62,14 +62,33 @@ pub(crate) fn controller(own: &Value, measurements: usize) -> DiscreteController
     }
 }
 
+/// The plant of a case.
+pub(crate) fn plant_of(case: &Value) -> LinearPlant {
+    let of = |name: &str| matrix(&case[name], 0);
+    let plant = LinearPlant::new(of("a"), of("b"), of("c"), of("d")).unwrap();
+    plant.with_noise(of("g")).unwrap()
+}
+
+/// The timing of a case with jitter and losses.
+pub(crate) fn timing_of(case: &Value) -> LoopTiming {
+    let rms = number(&case["jitter"]);
+    LoopTiming {
+        jitter: match case["law"].as_str().unwrap() {
+            "uniform" => Jitter::Uniform(rms),
+            _ => Jitter::Gaussian(rms),
+        },
+        loss: number(&case["loss"]),
+        ..read_timing(case)
+    }
+}
+
 /// The loop of a case with these controllers, and its timing.
 pub(crate) fn read(
     case: &Value,
     controllers: impl Into<ControllerSchedule>,
 ) -> (LinearLoop, LoopTiming) {
     let of = |name: &str| matrix(&case[name], 0);
-    let plant = LinearPlant::new(of("a"), of("b"), of("c"), of("d")).unwrap();
-    let plant = plant.with_noise(of("g")).unwrap();
+    let plant = plant_of(case);
     let (n, m) = (plant.states.len(), plant.inputs.len());
     let mut cost = Matrix::zeros(n + m, n + m);
     cost.set_block((0, 0), &of("state_weights"));
@@ -77,16 +96,7 @@ pub(crate) fn read(
     let period = number(&case["period"]);
     let noise = numbers(&case["output_noise"]);
     let linear = LinearLoop::new(plant, controllers, period, cost, noise).unwrap();
-    let rms = number(&case["jitter"]);
-    let timing = LoopTiming {
-        jitter: match case["law"].as_str().unwrap() {
-            "uniform" => Jitter::Uniform(rms),
-            _ => Jitter::Gaussian(rms),
-        },
-        loss: number(&case["loss"]),
-        ..read_timing(case)
-    };
-    (linear, timing)
+    (linear, timing_of(case))
 }
 
 /// Compares radius, growth, cost and deviations of a case.

@@ -10,5 +10,6 @@ mod edges;
 mod linear_reference;
 mod measured_clock;
 mod page;
+mod redesign_reference;
 mod requests;
 mod steps;

@@ -33,7 +33,7 @@ pub(crate) struct LinearArgs {
     /// Latency of the measurements of a linear plant: of all, or of each [default: 0]
     #[arg(long, value_name = "TIME", value_parser = latency, value_delimiter = ',', allow_hyphen_values = true)]
     output_latency: Vec<LatencyOption>,
-    /// Design the regulator for the stated latency: feedback of the states and of the commands under way
+    /// Design the controller of least cost for the stated latencies, jitter, skew and losses
     #[arg(long)]
     pub(crate) redesign: bool,
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use libration_advise::linear::{self, LinearAdvice, LinearRequest};
+use libration_advise::linear::{self, InputMargins, LinearAdvice, LinearRequest, StableRange};
 use libration_work::Work;
 
 use super::advise::{command_line, deliver};
@@ -75,20 +75,7 @@ fn describe(advice: &LinearAdvice) -> String {
     if !advice.schedule.is_empty() {
         let _ = writeln!(text, "\n{}", linear::NO_MARGINS);
     }
-    for margins in &advice.margins {
-        let known = |x: Option<f64>, unit: &str| {
-            x.map_or_else(|| "none".to_owned(), |x| format!("{x:.4}{unit}"))
-        };
-        let _ = writeln!(
-            text,
-            "\nmargins at {}: gain from {} to {}, phase {} at {}",
-            margins.input,
-            known(margins.gain_down, ""),
-            known(margins.gain_up, ""),
-            known(margins.phase, " deg"),
-            known(margins.crossover, " Hz"),
-        );
-    }
+    margins(&advice.margins, "", &mut text);
     redesign(advice, &mut text);
     deadlines(advice, &mut text);
     let _ = writeln!(
@@ -129,29 +116,20 @@ fn describe(advice: &LinearAdvice) -> String {
     text
 }
 
-/// Appends the regulator for the stated latency.
-fn redesign(advice: &LinearAdvice, text: &mut String) {
-    let Some(redesign) = &advice.redesign else { return };
-    let _ = writeln!(text, "\nredesigned for this latency: u = C m + D x, m' = A m + B x");
-    let own = &redesign.controller_matrices;
-    for (name, rows) in [("A", &own.a), ("B", &own.b), ("C", &own.c), ("D", &own.d)] {
-        let _ = writeln!(text, "  {name} = {rows:?}");
-    }
-    let shown = |x: Option<f64>| x.map_or_else(|| "infinite".to_owned(), |x| format!("{x:.6e}"));
-    let _ = writeln!(
-        text,
-        "  cost with all imperfections {}, with the given controller {}",
-        shown(redesign.cost),
-        shown(advice.cost)
-    );
-    for (before, after) in advice.budgets.iter().zip(&redesign.budgets) {
+/// Appends the margins at each input.
+fn margins(of_inputs: &[InputMargins], of: &str, text: &mut String) {
+    for margins in of_inputs {
+        let known = |x: Option<f64>, unit: &str| {
+            x.map_or_else(|| "none".to_owned(), |x| format!("{x:.4}{unit}"))
+        };
         let _ = writeln!(
             text,
-            "  {:<32} stable up to {:>12} {}, with the given controller {}",
-            before.name(),
-            after.limit(after.stable_up_to),
-            before.unit,
-            before.limit(before.stable_up_to)
+            "\nmargins{of} at {}: gain from {} to {}, phase {} at {}",
+            margins.input,
+            known(margins.gain_down, ""),
+            known(margins.gain_up, ""),
+            known(margins.phase, " deg"),
+            known(margins.crossover, " Hz"),
         );
     }
 }
@@ -192,6 +170,37 @@ fn deadlines(advice: &LinearAdvice, text: &mut String) {
             random.growth.exp_m1()
         );
     }
+}
+
+/// Appends the controller of least cost for the stated timing.
+fn redesign(advice: &LinearAdvice, text: &mut String) {
+    let Some(redesign) = &advice.redesign else { return };
+    let _ = writeln!(text, "\nredesign: {}", redesign.method);
+    let _ = writeln!(text, "{}", advice.redesign_effect());
+    for note in &redesign.notes {
+        let _ = writeln!(text, "note: {note}");
+    }
+    let _ = writeln!(
+        text,
+        "\n{:<32} {:>12} {:>24} {:>24}  unit",
+        "others as stated", "stated", "stable", "redesigned: stable"
+    );
+    let stable = |range: Option<StableRange>| {
+        range.map_or_else(|| "unstable".to_owned(), |range| range.in_words())
+    };
+    for limit in &redesign.limits {
+        let _ = writeln!(
+            text,
+            "{:<32} {:>12.6} {:>24} {:>24}  {}",
+            limit.name(),
+            limit.stated,
+            stable(limit.given),
+            stable(limit.redesigned),
+            limit.unit
+        );
+    }
+    margins(&redesign.margins, " of the redesign", text);
+    let _ = writeln!(text, "\nto paste in place of the controller:\n{}", redesign.toml.trim_end());
 }
 
 /// Appends the budget of each imperfection.

@@ -156,18 +156,6 @@ period = 1.0
 }
 
 #[test]
-fn a_redesign_costs_less_with_the_latency_it_is_made_for() {
-    let advice = json(&["advise", "--config", &example("magnetic_bearing.toml"), "--redesign"]);
-    let redesign = &advice["redesign"];
-    assert!(redesign["cost"].as_f64() < advice["cost"].as_f64(), "{redesign}");
-    // 1.25 periods: a command in transit, and one that acts at the beginning of a period.
-    assert_eq!(redesign["controller_matrices"]["a"].as_array().unwrap().len(), 2);
-    libration(&["advise", "--config", &example("two_mass_drive.toml"), "--redesign"])
-        .code(2)
-        .stderr(predicate::str::contains("the measurements have latency"));
-}
-
-#[test]
 fn plants_and_controllers_that_do_not_fit_are_usage_errors_that_name_the_key() {
     let folder = tempfile::tempdir().unwrap();
     let loops = [
@@ -182,6 +170,11 @@ fn plants_and_controllers_that_do_not_fit_are_usage_errors_that_name_the_key() {
         ("b = [[0], [1]]", "", "`a` is given, so `b` is required"),
         ("b = [[0], [1]]", "b = [[0], [1]]\nstates = [\"q\"]", "1 names of states for 2 states"),
         ("gain = [[10, 2]]", "gain = [[10]]", "`gain` is 1 × 1; expected 1 × 2"),
+        (
+            "[controller.state-feedback]\ngain = [[10, 2]]",
+            "[controller.state-space]\nmeasures = \"state\"\nd = [[-10, -2]]",
+            "unknown value `state` of `measures`",
+        ),
         ("period = 0.01", "period = 0", "`period` is 0.0; expected a finite number above 0"),
         (
             "period = 0.01",

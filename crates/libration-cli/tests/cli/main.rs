@@ -17,6 +17,7 @@ mod kills;
 mod lab;
 mod linear;
 mod linear_filters;
+mod linear_redesign;
 #[cfg(unix)]
 mod long_files;
 #[cfg(target_os = "linux")]

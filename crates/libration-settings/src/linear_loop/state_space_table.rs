@@ -5,12 +5,15 @@ use serde::Deserialize;
 
 use super::design::{Design, by_outputs};
 use super::plant_table::{Rows, matrix};
-use crate::Fault;
+use crate::{Fault, suggestions};
 
 /// A controller in state space.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct StateSpaceTable {
+    /// `outputs` (default) or `states`.
+    #[serde(default)]
+    measures: Option<String>,
     #[serde(default)]
     a: Rows,
     #[serde(default)]
@@ -28,10 +31,19 @@ impl StateSpaceTable {
             "c" => "controller.state-space.c",
             _ => "controller.state-space.d",
         };
+        let plant = match self.measures.as_deref() {
+            None | Some("outputs") => plant.clone(),
+            Some("states") => plant.clone().with_all_states_measured(),
+            Some(other) => {
+                let message = format!("unknown value `{other}` of `measures`");
+                let help = suggestions::suggest("values", other, ["outputs", "states"]);
+                return Err(Fault::new("controller.state-space.measures", message).help(help));
+            }
+        };
         let shape = [plant.inputs.len(), plant.outputs.len()];
         let controller = self.controller(key, shape, ["inputs", "outputs"])?;
         let memory = self.a.len();
-        Ok(by_outputs(plant, controller.into(), format!("a controller of {memory} states")))
+        Ok(by_outputs(&plant, controller.into(), format!("a controller of {memory} states")))
     }
 
     /// The number of its commands.
