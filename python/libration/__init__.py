@@ -1,8 +1,9 @@
 """Libration: effects of integrator, time step, float type, latency, jitter and clocks on a simulated system.
 
 :func:`simulate`, :func:`analyze`, :func:`advise` and :func:`run_lab` correspond to the commands of the program; :class:`Ensemble` steps many
-trajectories. :class:`Environments` are the environments of the engine. With Gymnasium installed they are registered as ``libration/Oscillator-v0``,
-``libration/Pendulum-v0`` and ``libration/Duffing-v0``, for ``gymnasium.make`` and ``gymnasium.make_vec``.
+trajectories, and :class:`LinearLoops` many loops around a linear plant. :class:`Environments` are the environments of the engine. With
+Gymnasium installed they are registered as ``libration/Oscillator-v0``, ``libration/Pendulum-v0`` and ``libration/Duffing-v0``, for
+``gymnasium.make`` and ``gymnasium.make_vec``; :class:`LinearVectorEnv` has a linear plant.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from .linear import (
     StateFeedback,
     StateSpace,
 )
+from .linear_loops import LinearLoops, LinearRollout
 from .perturbations import LQR, PD, PID, Gaussian, Observer, Steps, Uniform
 from .replay import ReplayBuffer
 from .rollout import Rollout
@@ -48,7 +50,9 @@ __all__ = [
     "LQG",
     "LQR",
     "Lag",
+    "LinearLoops",
     "LinearPlant",
+    "LinearRollout",
     "MovingAverage",
     "Observer",
     "PD",
@@ -79,10 +83,11 @@ if hasattr(os, "register_at_fork"):
 try:
     from .custom import CustomTaskVectorEnv
     from .envs import VectorEnv, register
+    from .linear_envs import LinearVectorEnv
 except ModuleNotFoundError as error:
     # Gymnasium is an extra.
     if error.name is None or error.name.split(".")[0] != "gymnasium":
         raise
 else:
     register()
-    __all__ += ["CustomTaskVectorEnv", "VectorEnv"]
+    __all__ += ["CustomTaskVectorEnv", "LinearVectorEnv", "VectorEnv"]

@@ -198,8 +198,8 @@ def _weights(name: str, value: ArrayLike) -> list[Any]:
     return array.tolist()
 
 
-def linear_request(plant: LinearPlant, controller: Any, timing: dict[str, Any]) -> dict[str, Any]:
-    """Return the request for a loop around a linear plant as the content of a request file."""
+def linear_request(plant: LinearPlant, controller: Any, timing: dict[str, Any], required: bool = True) -> dict[str, Any]:
+    """Return the request for a loop around a linear plant as the content of a request file, without a controller if none is required."""
     table: dict[str, Any] = {"a": matrix("A", plant.A)}
     b = _array("B", plant.B)
     # A vector is the column of the only input.
@@ -215,9 +215,11 @@ def linear_request(plant: LinearPlant, controller: Any, timing: dict[str, Any]) 
             table[key] = [str(name) for name in names]
     if plant.dt is not None:
         table["sampling-period"] = number("dt", plant.dt, "a number of seconds")
-    if controller is None:
+    if controller is None and required:
         raise TypeError("controller is missing; expected LQR, LQG, StateFeedback, StateSpace, Cascade or a list of PID for a linear plant")
-    request: dict[str, Any] = {"system": {"linear": table}, "controller": _controller(controller)}
+    request: dict[str, Any] = {"system": {"linear": table}}
+    if controller is not None:
+        request["controller"] = _controller(controller)
     if plant.parts:
         # Feedback of the state measures the states.
         of_states = isinstance(controller, (LQR, StateFeedback)) or plant.C is None

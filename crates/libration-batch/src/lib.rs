@@ -6,6 +6,7 @@
 
 pub mod checkpoint;
 pub mod ensemble;
+pub mod linear_loops;
 pub mod replay;
 pub mod rl;
 

@@ -91,7 +91,8 @@ impl LinearLoop {
         &self.cost
     }
 
-    pub(crate) fn output_noise(&self) -> &[f64] {
+    /// The variance of the noise of each output.
+    pub fn output_noise(&self) -> &[f64] {
         &self.output_noise
     }
 
@@ -196,6 +197,13 @@ impl LinearLoop {
     /// period: what a simulation measures.
     pub fn with_held_noise(&self) -> Self {
         LinearLoop { holds_noise: true, ..self.clone() }
+    }
+
+    /// The loop without noise of the plant and the measurements.
+    #[must_use]
+    pub fn without_noise(&self) -> Self {
+        let plant = LinearPlant { g: Matrix::zeros(self.plant.a.rows(), 0), ..self.plant.clone() };
+        LinearLoop { plant, output_noise: vec![0.0; self.output_noise.len()], ..self.clone() }
     }
 
     /// The number of states: those of plant and controller, and all commands and measurements in transit.

@@ -16,8 +16,11 @@ pub(crate) fn most_states(timing: &LoopTiming) -> usize {
 }
 
 impl LinearLoop {
-    /// The coordinates of the loop, after all numbers of the timing are checked.
-    pub(crate) fn layout(&self, timing: &LoopTiming) -> Result<Layout, LinearLoopError> {
+    /// Checks that a timing fits the loop.
+    ///
+    /// # Errors
+    /// [`LinearLoopError`]: an invalid timing.
+    pub fn check_timing(&self, timing: &LoopTiming) -> Result<(), LinearLoopError> {
         let LoopTiming { input_latency, output_latency, jitter, skew, loss, .. } = timing;
         let (m, p) = (self.plant().inputs.len(), self.plant().outputs.len());
         for (of, given, count) in
@@ -33,7 +36,6 @@ impl LinearLoop {
         if !(skew.is_finite() && *skew > -1.0) {
             return Err(LinearLoopError::Skew(*skew));
         }
-        let mut noises = if self.holds_noise() { self.plant().g.columns() } else { 0 };
         if self.plant().sampling_period.is_some() {
             let split = |latency: &Latency| latency.part() > 0.0;
             if input_latency.iter().chain(output_latency).any(split) {
@@ -42,8 +44,16 @@ impl LinearLoop {
             if jitter.rms() > 0.0 || *skew != 0.0 {
                 return Err(LinearLoopError::BetweenSamples("another period"));
             }
-            noises = self.plant().g.columns();
         }
+        Ok(())
+    }
+
+    /// The coordinates of the loop, after all numbers of the timing are checked.
+    pub(crate) fn layout(&self, timing: &LoopTiming) -> Result<Layout, LinearLoopError> {
+        self.check_timing(timing)?;
+        let LoopTiming { input_latency, output_latency, loss, .. } = timing;
+        let p = self.plant().outputs.len();
+        let noises = if self.holds_noise_and_cost() { self.plant().g.columns() } else { 0 };
         let direct = |i: usize| (0..p).any(|j| self.plant().d[(j, i)] != 0.0);
         let inputs: Vec<Transit> = input_latency
             .iter()

@@ -24,6 +24,15 @@ pub struct Simulation<'a> {
     pub seed: u64,
 }
 
+/// A loop at the beginning of a period.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PeriodStart {
+    /// The states of the plant.
+    pub x: Vec<f64>,
+    /// The cost of this period and all before it.
+    pub cost: f64,
+}
+
 /// One loop.
 struct Trajectory<'a> {
     simulation: Simulation<'a>,
@@ -47,13 +56,33 @@ impl Simulation<'_> {
     /// of each period: that of [`LinearLoop::with_held_noise`]. A record and a schedule of controllers begin with their period
     /// `number`, so that each has its place beside the other; a multiple of the periods of a schedule counts all of them alike.
     pub fn mean_cost(&self, number: u64, before: u64, periods: u64) -> f64 {
+        let mut one = self.trajectory(number);
+        (0..before).for_each(|_| one.advance());
+        (one.counted, one.cost) = (0, 0.0);
+        (0..periods).for_each(|_| one.advance());
+        one.cost / one.counted as f64
+    }
+
+    /// Loop `number` at the beginnings of its first periods, from the state `start`.
+    pub fn period_starts(&self, number: u64, start: &[f64], periods: u64) -> Vec<PeriodStart> {
+        let mut one = self.trajectory(number);
+        one.x.copy_from_slice(start);
+        let advance = |_| {
+            let x = one.x.clone();
+            one.advance();
+            PeriodStart { x, cost: one.cost }
+        };
+        (0..periods).map(advance).collect()
+    }
+
+    fn trajectory(&self, number: u64) -> Trajectory<'_> {
         let plant = self.linear.plant();
         let longest = |latencies: &[Latency]| {
             latencies.iter().map(|latency| latency.whole() as usize + 1).max().unwrap_or(1)
         };
         let (n, m) = (plant.states.len(), plant.inputs.len());
         let waiting = |latency: &Latency| VecDeque::from(vec![0.0; latency.whole() as usize + 2]);
-        let mut one = Trajectory {
+        Trajectory {
             simulation: *self,
             number,
             step: 0,
@@ -65,11 +94,7 @@ impl Simulation<'_> {
             measured: self.timing.output_latency.iter().map(waiting).collect(),
             counted: 0,
             cost: 0.0,
-        };
-        (0..before).for_each(|_| one.advance());
-        (one.counted, one.cost) = (0, 0.0);
-        (0..periods).for_each(|_| one.advance());
-        one.cost / one.counted as f64
+        }
     }
 }
 

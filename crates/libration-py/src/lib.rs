@@ -12,6 +12,7 @@ mod checked_mutex;
 mod datasets;
 mod error;
 mod laboratory;
+mod linear_loops;
 mod policy;
 mod program;
 mod replay;
@@ -39,6 +40,8 @@ mod _native {
     use crate::datasets::{_dataset_settings, _verify_dataset, _write_dataset};
     #[pymodule_export]
     use crate::laboratory::{_advise, _run_lab};
+    #[pymodule_export]
+    use crate::linear_loops::LinearLoops;
     #[pymodule_export]
     use crate::program::_program;
     #[pymodule_export]

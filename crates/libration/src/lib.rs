@@ -9,7 +9,7 @@
 //! input or output, reads a clock or prints.
 
 pub use libration_analysis as analysis;
-pub use libration_batch::{Ensemble, checkpoint, ensemble, replay, rl};
+pub use libration_batch::{Ensemble, checkpoint, ensemble, linear_loops, replay, rl};
 pub use libration_core::{
     AnySystem, CatalogError, Elementary, Float, Hamiltonian, Integrator, Method, Model, Scalar,
     State, System, catalog, control, elementary, integrator, number, random, simulation, system,

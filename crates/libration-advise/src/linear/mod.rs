@@ -6,6 +6,7 @@ mod clock;
 mod deadlines;
 mod deadlines_page;
 mod latency_chain;
+mod loop_of_request;
 mod margins;
 mod page;
 mod redesign;

@@ -38,7 +38,7 @@ impl EnsembleOptions {
     }
 
     /// The execution of the ensemble.
-    pub(super) fn execution(&self) -> Result<Execution, TrajectoryError> {
+    pub(crate) fn execution(&self) -> Result<Execution, TrajectoryError> {
         let execution = Execution::serial().instructions(self.instruction_set()?)?;
         Ok(execution.threads(self.threads)?)
     }

@@ -3,6 +3,7 @@
 use libration::CatalogError;
 use libration::control::Latency;
 use libration::ensemble::{EnsembleError, InsufficientMemory};
+use libration::linear_loops::LinearLoopsError;
 use libration::simulation::SimulationError;
 use thiserror::Error;
 
@@ -44,6 +45,9 @@ pub enum TrajectoryError {
     /// The ensemble could not be created.
     #[error(transparent)]
     Ensemble(#[from] EnsembleError),
+    /// The loops around a linear plant could not be created.
+    #[error(transparent)]
+    LinearLoops(#[from] LinearLoopsError),
     /// There is not enough memory.
     #[error("{0} (--count, --every, --float)")]
     Memory(InsufficientMemory),
@@ -69,6 +73,7 @@ impl TrajectoryError {
     pub fn missing_memory(&self) -> Option<&InsufficientMemory> {
         match self {
             TrajectoryError::Memory(room)
+            | TrajectoryError::LinearLoops(LinearLoopsError::Memory(room))
             | TrajectoryError::Ensemble(EnsembleError::Memory(room)) => Some(room),
             _ => None,
         }

@@ -163,7 +163,7 @@ fn write_as<S: EnsembleFloat>(
 }
 
 /// The text of a law, as in `gaussian:0.1`.
-fn jitter_text(law: Jitter) -> String {
+pub(crate) fn jitter_text(law: Jitter) -> String {
     match law {
         Jitter::Gaussian(rms) => format!("gaussian:{rms:?}"),
         Jitter::Uniform(rms) => format!("uniform:{rms:?}"),

@@ -38,7 +38,7 @@ impl Outcome {
     }
 
     /// The key and value of the outcome in a file.
-    pub(super) fn json_entry(&self, several: bool) -> (&'static str, Value) {
+    pub(crate) fn json_entry(&self, several: bool) -> (&'static str, Value) {
         match self {
             Outcome::Diverged(stopped) => ("stopped", json!(stopped)),
             Outcome::NotFinite { count, first, reason } => {

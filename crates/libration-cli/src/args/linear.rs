@@ -44,7 +44,7 @@ const NOT_LINEAR: [&str; 8] =
 
 /// The value of `--gain`.
 #[derive(Clone, Debug)]
-struct Gain(Rows);
+pub(super) struct Gain(pub(super) Rows);
 
 impl AdviseArgs {
     /// Returns the request for a loop around the plant of `--plant`, if it is given.
@@ -131,7 +131,7 @@ impl AdviseArgs {
 }
 
 /// A fault with the option that causes it.
-fn named(fault: &Fault) -> String {
+pub(super) fn named(fault: &Fault) -> String {
     let option = match fault.key {
         "loop.latency" => "--latency: ",
         "loop.output-latency" => "--output-latency: ",
@@ -151,7 +151,7 @@ fn numbers(text: &str) -> Option<Vec<Number>> {
     text.split(',').map(|number| finite(number.trim()).map(Number)).collect()
 }
 
-fn lqr(text: &str) -> Result<WeightsTable, String> {
+pub(super) fn lqr(text: &str) -> Result<WeightsTable, String> {
     let rule =
         "expected the weights of all states, a slash, and those of all inputs, e.g. 10,1/0.1";
     let (states, inputs) = text.split_once('/').ok_or(rule)?;
@@ -159,7 +159,7 @@ fn lqr(text: &str) -> Result<WeightsTable, String> {
     Ok(WeightsTable { states, inputs: Weights::Diagonal(numbers(inputs).ok_or(rule)?) })
 }
 
-fn rows(text: &str) -> Result<Gain, String> {
+pub(super) fn rows(text: &str) -> Result<Gain, String> {
     let rule =
         "expected numbers separated by commas, and rows separated by semicolons, e.g. \"10,2;0,1\"";
     let rows: Option<Rows> = text.split(';').map(numbers).collect();

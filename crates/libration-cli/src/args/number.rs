@@ -13,6 +13,11 @@ impl Coordinates {
     pub(super) fn origin() -> Self {
         Coordinates(vec![0.0])
     }
+
+    /// Returns the numbers.
+    pub(super) fn values(&self) -> &[f64] {
+        &self.0
+    }
 }
 
 impl fmt::Display for Coordinates {

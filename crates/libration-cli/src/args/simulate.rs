@@ -9,17 +9,19 @@ use libration_analyze::trajectory::{FloatType, Format};
 
 use super::number::{count, trajectory_steps, whole_number};
 use super::timing::TimingArgs;
-use super::{StepArgs, SystemArgs, simd};
+use super::{LinearSimulationArgs, StepArgs, SystemArgs, simd};
 
 /// Arguments of `simulate`.
 #[derive(Args, Debug)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, override_usage = USAGE)]
 pub(crate) struct SimulateArgs {
     #[command(flatten)]
-    pub(crate) system: SystemArgs,
+    pub(crate) system: Option<SystemArgs>,
     #[command(flatten)]
-    pub(crate) step: StepArgs,
-    /// Number of steps, up to 2^53; --every limits the number of rows
+    pub(crate) step: Option<StepArgs>,
+    #[command(flatten)]
+    pub(crate) linear: LinearSimulationArgs,
+    /// Number of steps (with --plant or --config: of periods), up to 2^53; --every limits the number of rows
     #[arg(long, value_name = "N", value_parser = trajectory_steps, allow_hyphen_values = true)]
     pub(crate) steps: u64,
     /// Float type of the state, the parameters and every operation
@@ -57,7 +59,7 @@ pub(crate) struct SimulateArgs {
     /// File of measured time stamps (in s or ns, one per line); their intervals are the lengths of the steps
     #[arg(long, value_name = "FILE")]
     pub(crate) time_stamps: Option<PathBuf>,
-    /// Seed of --jitter and --skew
+    /// Seed of --jitter, --skew, --loss and --noise
     #[arg(long, value_name = "N", value_parser = seed, allow_hyphen_values = true, default_value = "0")]
     pub(crate) seed: u64,
     /// Format of the rows [default: by the extension of --output, or csv]
@@ -68,6 +70,11 @@ pub(crate) struct SimulateArgs {
     pub(crate) output: Option<PathBuf>,
 }
 
+const USAGE: &str = "\
+libration simulate --system <NAME> --integrator <NAME> --dt <SECONDS> --steps <N> [OPTIONS]
+       libration simulate --plant <FILE> [--lqr <STATES/INPUTS>] --steps <N> [OPTIONS]
+       libration simulate --config <FILE> --steps <N> [OPTIONS]";
+
 const EXAMPLES: &str = "\
 Examples:
   libration simulate --system oscillator --set omega2=10 --integrator rk4 --dt 0.01 --steps 1000
@@ -77,8 +84,12 @@ Examples:
       --every 1e4 --count 1e5 --spread 0.5 --float f32 --output swings.npy
   libration simulate --system oscillator --integrator velocity-verlet --dt 0.01 --steps 2e3 \\
       --feedback 10,2 --latency 0.015 --jitter gaussian:0.1 --count 100 --seed 7 --output loop.csv
+  libration simulate --plant drive.toml --lqr 1,100,0,1/0.1 --period 0.001 --latency 0.0008 \
+      --reference \"load angle=1\" --steps 500 --output step.csv
 
 The columns are step, t, q0, …, v0, …, energy; with --count the first column is trajectory.
+With --plant or --config a row belongs to the beginning of a period. Its columns are step, t, the states,
+`measured NAME` (what the controller reads), `input NAME` (what acts), and the cost so far.
 If the state overflows, the rows end and a note says so. With --count, --feedback, --jitter, --skew
 or --time-stamps the rows continue, and the note states the number of overflows.
 With --jitter, --skew or --time-stamps, t is the true time: the sum of the actual step lengths.

@@ -9,14 +9,14 @@ use libration_settings::limits::{MOST_GAIN, MOST_RMS};
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct TimingArgs {
     /// Gains of the feedback −KP·q − KD·v [default: no loop; in s⁻² and s⁻¹, with --set m= in N/m and N·s/m]
-    #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
+    #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true, group = "loop")]
     pub(crate) feedback: Option<Feedback>,
     /// Latency of a command, e.g. 0.015 (in s) or 1.5steps (of --dt); at most 4096 steps [default: 0]
     #[arg(
         long,
         value_name = "TIME",
         value_parser = latency,
-        requires = "feedback",
+        requires = "loop",
         allow_hyphen_values = true
     )]
     pub(crate) latency: Option<LatencyOption>,

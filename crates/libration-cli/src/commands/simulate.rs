@@ -7,14 +7,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use indicatif::ProgressBar;
 use libration::control::clock::Recorded;
+use libration_advise::linear::{self, LinearRequest, RequestFile};
 use libration_analyze::export::ExportError;
+use libration_analyze::linear_trajectory;
 use libration_analyze::trajectory;
 use libration_analyze::trajectory::{
     Divergence, EnsembleOptions, Format, Monitor, Outcome, Request, TrajectoryError,
 };
 use libration_settings::initial_value_problem::InitialValueProblem;
+use libration_settings::{Document, Fault};
 
-use super::time_stamps;
+use super::{config_file, time_stamps};
 use crate::args::{SimulateArgs, simd};
 use crate::error::Failure;
 use crate::output_file::OutputFile;
@@ -25,18 +28,38 @@ const BUFFER: usize = 1 << 18;
 
 /// Simulates a trajectory and writes its rows.
 pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
-    let request = request(args)?;
     let format = format(args)?;
+    if let Some(request) = args.linear_request(linear_file) {
+        let request = request?;
+        return write(args, quiet, format, &|out, watcher| {
+            linear_trajectory::write(&request, format, out, watcher)
+        });
+    }
+    let request = request(args)?;
     let caveat = request.stepping.method().and_then(|method| request.system.caveat(method));
     if let Some(caveat) = caveat.filter(|_| !quiet) {
         terminal::say(&format!("note: {caveat}"));
     }
+    write(args, quiet, format, &|out, watcher| trajectory::write(&request, format, out, watcher))
+}
+
+/// Writes rows into `out`.
+type WriteRows<'a> =
+    &'a dyn Fn(&mut (dyn Write + Send), &Watcher) -> Result<Outcome, TrajectoryError>;
+
+/// Writes the rows to the output and says how they ended.
+fn write(
+    args: &SimulateArgs,
+    quiet: bool,
+    format: Format,
+    rows: WriteRows<'_>,
+) -> Result<(), Failure> {
     // Rows on the same terminal would break a bar.
     let rows_shown = args.output.is_none() && io::stdout().is_terminal();
-    let watcher = Watcher::new(quiet || rows_shown, request.steps, interrupt::listen());
+    let watcher = Watcher::new(quiet || rows_shown, args.steps, interrupt::listen());
     let outcome = match &args.output {
-        Some(path) => into_file(path, &request, format, &watcher),
-        None => into_stdout(&request, format, &watcher),
+        Some(path) => into_file(path, rows, &watcher),
+        None => into_stdout(rows, format, &watcher),
     };
     watcher.clear();
     match outcome? {
@@ -84,14 +107,19 @@ fn format(args: &SimulateArgs) -> Result<Format, Failure> {
 }
 
 fn request(args: &SimulateArgs) -> Result<Request, Failure> {
-    let InitialValueProblem { system, actuation, q, v } = args.system.resolve()?;
+    let (Some(system), Some(step)) = (&args.system, &args.step) else {
+        return Err(Failure::usage(
+            "--system, --integrator and --dt are required without --plant and --config",
+        ));
+    };
+    let InitialValueProblem { system, actuation, q, v } = system.resolve()?;
     let instructions = if args.count.is_some() { simd::instruction_set(args.simd)? } else { None };
     Ok(Request {
         actuation,
         system,
-        stepping: args.step.integrator,
+        stepping: step.integrator,
         float: args.float,
-        dt: args.step.dt,
+        dt: step.dt,
         steps: args.steps,
         q,
         v,
@@ -103,8 +131,22 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
             instructions,
         }),
         timing: args.timing.timing(),
-        record: args.time_stamps.as_deref().map(|path| recorded(path, args.step.dt)).transpose()?,
+        record: args.time_stamps.as_deref().map(|path| recorded(path, step.dt)).transpose()?,
         seed: args.seed,
+    })
+}
+
+/// Reads the loop of a request file, which `change` changes.
+fn linear_file(path: &Path, change: &dyn Fn(&mut RequestFile)) -> Result<LinearRequest, Failure> {
+    config_file::read(path, |text, name| {
+        if !linear::is_linear(text) {
+            let document = Document::parse(text, name)?;
+            return Err(document.locate(Fault::new(
+                "system",
+                "there is no linear plant; expected the table [system.linear]",
+            )));
+        }
+        linear::parse_changed(text, name, change)
     })
 }
 
@@ -113,30 +155,24 @@ fn recorded(path: &Path, dt: f64) -> Result<Vec<f64>, Failure> {
     time_stamps::read(path, "--time-stamps", |stamps| Recorded::steps_in(&stamps, dt))
 }
 
-fn into_file(
-    path: &Path,
-    request: &Request,
-    format: Format,
-    watcher: &Watcher,
-) -> Result<Outcome, Failure> {
+fn into_file(path: &Path, rows: WriteRows<'_>, watcher: &Watcher) -> Result<Outcome, Failure> {
     let unwritable =
         |error: io::Error| format!("cannot write `{}` (--output): {error}", path.display());
     let file = OutputFile::create(path).map_err(|error| Failure::usage(unwritable(error)))?;
     let mut out = BufWriter::with_capacity(BUFFER, file);
-    let outcome =
-        trajectory::write(request, format, &mut out, watcher).map_err(|error| match error {
-            TrajectoryError::Export(ExportError::Io(error)) => Failure::run(unwritable(error)),
-            TrajectoryError::Interrupted => {
-                Failure::Interrupted(format!("interrupted; `{}` is unchanged", path.display()))
-            }
-            error => failure(error),
-        })?;
+    let outcome = rows(&mut out, watcher).map_err(|error| match error {
+        TrajectoryError::Export(ExportError::Io(error)) => Failure::run(unwritable(error)),
+        TrajectoryError::Interrupted => {
+            Failure::Interrupted(format!("interrupted; `{}` is unchanged", path.display()))
+        }
+        error => failure(error),
+    })?;
     let written = out.into_inner().map_err(|error| error.into_error());
     written.and_then(OutputFile::keep).map_err(|error| Failure::run(unwritable(error)))?;
     Ok(outcome)
 }
 
-fn into_stdout(request: &Request, format: Format, watcher: &Watcher) -> Result<Outcome, Failure> {
+fn into_stdout(rows: WriteRows<'_>, format: Format, watcher: &Watcher) -> Result<Outcome, Failure> {
     if format.is_binary() && io::stdout().is_terminal() {
         let name = format.name();
         return Err(Failure::usage(format!(
@@ -145,8 +181,7 @@ fn into_stdout(request: &Request, format: Format, watcher: &Watcher) -> Result<O
         )));
     }
     let mut out = BufWriter::with_capacity(BUFFER, io::stdout());
-    let outcome = trajectory::write(request, format, &mut out, watcher);
-    match outcome {
+    match rows(&mut out, watcher) {
         // A closed pipe is not an error.
         Err(TrajectoryError::Export(ExportError::Io(error)))
             if error.kind() == ErrorKind::BrokenPipe =>
@@ -204,7 +239,9 @@ fn failure(error: TrajectoryError) -> Failure {
             Failure::usage(format!("--{name} is {value}; expected {allowed}"))
         }
         TrajectoryError::Parameter { .. } => Failure::usage(format!("{error} (--float)")),
-        TrajectoryError::Catalog(_) | TrajectoryError::Simulation(_) => Failure::usage(error),
+        TrajectoryError::Catalog(_)
+        | TrajectoryError::Simulation(_)
+        | TrajectoryError::LinearLoops(_) => Failure::usage(error),
         TrajectoryError::Memory(_) | TrajectoryError::Export(_) | TrajectoryError::Interrupted => {
             Failure::run(error)
         }

@@ -18,6 +18,7 @@ mod lab;
 mod linear;
 mod linear_filters;
 mod linear_redesign;
+mod linear_simulation;
 #[cfg(unix)]
 mod long_files;
 #[cfg(target_os = "linux")]

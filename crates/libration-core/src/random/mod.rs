@@ -6,10 +6,12 @@
 
 mod address;
 mod deviate;
+mod gaussian_lanes;
 mod philox;
 mod streams;
 
 pub use address::{Address, Purpose};
 pub use deviate::{LARGEST, UNIT, normal, odd, uniform};
+pub use gaussian_lanes::gaussian_lanes;
 pub use philox::philox4x32;
 pub use streams::{EPOCH, Streams};

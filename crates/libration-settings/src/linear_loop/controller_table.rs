@@ -84,6 +84,12 @@ impl Weights {
 }
 
 impl LinearControllerTable {
+    /// No controller: measurements without effect, and commands of zero.
+    pub fn open_loop(plant: &LinearPlant) -> Self {
+        let d = vec![vec![Number(0.0); plant.outputs.len()]; plant.inputs.len()];
+        LinearControllerTable::StateSpace(StateSpaceTable::of_gain(d))
+    }
+
     /// The controller of `plant` with a period of `period` seconds. Feedback of the state measures all states, the others measure the
     /// outputs.
     ///

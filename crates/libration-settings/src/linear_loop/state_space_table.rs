@@ -24,6 +24,11 @@ pub struct StateSpaceTable {
 }
 
 impl StateSpaceTable {
+    /// `u = D y`.
+    pub(super) fn of_gain(d: Rows) -> Self {
+        StateSpaceTable { measures: None, a: Vec::new(), b: Vec::new(), c: Vec::new(), d }
+    }
+
     pub(super) fn design(&self, plant: &LinearPlant) -> Result<Design, Fault> {
         let key = |name: &str| match name {
             "a" => "controller.state-space.a",

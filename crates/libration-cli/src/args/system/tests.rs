@@ -22,7 +22,8 @@ fn probe(system: &str, flags: &str) -> Result<(Probe, InitialValueProblem), Stri
 fn parse(line: &str) -> Result<(Probe, InitialValueProblem), String> {
     let probe = Probe::try_parse_from(line.split(' ').filter(|word| !word.is_empty()))
         .map_err(|error| error.to_string())?;
-    match probe.args.system.resolve() {
+    let system = probe.args.system.as_ref().ok_or("there is no system")?;
+    match system.resolve() {
         Ok(setting) => Ok((probe, setting)),
         Err(Failure::Usage(message)) => Err(message),
         Err(other) => panic!("not a usage error: {other:?}"),
@@ -50,10 +51,8 @@ fn the_other_flags_are_read() {
     let (probe, setting) =
         probe("oscillator", "--set k=4 --set m=2 --steps 1e6 --float bf16").unwrap();
     assert_eq!(setting.system.parameters(), [("omega2", 2.0)]);
-    assert_eq!(
-        (probe.args.step.integrator, probe.args.step.dt),
-        (Stepping::Method(Method::Rk4), 0.01)
-    );
+    let step = probe.args.step.unwrap();
+    assert_eq!((step.integrator, step.dt), (Stepping::Method(Method::Rk4), 0.01));
     assert_eq!((probe.args.steps, probe.args.float), (1_000_000, FloatType::Bf16));
 }
 

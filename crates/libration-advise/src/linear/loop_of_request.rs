@@ -1,0 +1,25 @@
+//! The loop that a request describes, for simulations.
+
+use libration::linear::{LinearLoop, LinearLoopError, LoopTiming};
+
+use super::LinearRequest;
+
+impl LinearRequest {
+    /// The loop, with the lags and filters of its channels.
+    pub fn linear_loop(&self) -> &LinearLoop {
+        &self.timed.linear
+    }
+
+    /// The stated timing.
+    ///
+    /// # Errors
+    /// [`LinearLoopError`]: a latency that is too large.
+    pub fn loop_timing(&self) -> Result<LoopTiming, LinearLoopError> {
+        self.timed.stated()
+    }
+
+    /// The lengths of recorded periods, as multiples of their mean; none without time stamps.
+    pub fn recorded_periods(&self) -> Option<&[f64]> {
+        self.timed.timing.record.as_deref()
+    }
+}

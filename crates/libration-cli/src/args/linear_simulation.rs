@@ -1,0 +1,189 @@
+//! Arguments of simulations of linear plants and loops around them.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use libration::control::Jitter;
+use libration::linear::Signal;
+use libration_advise::linear::{LinearRequest, RequestFile};
+use libration_analyze::LatencyOption;
+use libration_analyze::linear_trajectory;
+use libration_analyze::trajectory::EnsembleOptions;
+use libration_settings::linear_loop::{
+    Channels, LinearControllerTable, LinearLoopTable, StateFeedbackTable, WeightsTable, read_plant,
+};
+use libration_settings::{Number, suggestions};
+
+use super::advise::seconds;
+use super::linear::{Gain, lqr, named, rows};
+use super::number::{Coordinates, assignment, coordinates};
+use super::timing::{finite, latency};
+use super::{SimulateArgs, simd};
+use crate::error::Failure;
+
+/// Arguments of a linear plant and the loop around it.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct LinearSimulationArgs {
+    /// File of a linear plant ẋ = Ax + Bu, y = Cx + Du: .toml, .json or .csv; without --lqr or --gain in open loop
+    #[arg(long, value_name = "FILE", group = "loop", conflicts_with_all = NOT_LINEAR)]
+    plant: Option<PathBuf>,
+    /// File of a loop around a linear plant, as for `advise --config`; without a controller in open loop
+    #[arg(long, value_name = "FILE", group = "loop", conflicts_with_all = NOT_LINEAR)]
+    pub(crate) config: Option<PathBuf>,
+    /// Design a linear-quadratic regulator with these weights of the squares of states and inputs, e.g. 10,1/0.1
+    #[arg(long, value_name = "STATES/INPUTS", value_parser = lqr, requires = "plant", conflicts_with = "gain")]
+    lqr: Option<WeightsTable>,
+    /// Gain K of the state feedback u = −Kx, rows (inputs) separated by semicolons, e.g. "10,2;0,1"
+    #[arg(long, value_name = "ROWS", value_parser = rows, requires = "plant", allow_hyphen_values = true)]
+    gain: Option<Gain>,
+    /// Period of the loop in s [default: 0.01]
+    #[arg(long, value_name = "SECONDS", value_parser = number, requires = "plant", allow_hyphen_values = true)]
+    period: Option<f64>,
+    /// Latency of the measurements of a linear plant: of all, or of each [default: 0]
+    #[arg(long, value_name = "TIME", value_parser = latency, value_delimiter = ',', requires = LINEAR, allow_hyphen_values = true)]
+    output_latency: Vec<LatencyOption>,
+    /// Probability that the commands of a period are lost (0 to below 1), in a loop around a linear plant
+    #[arg(long, value_name = "P", value_parser = number, requires = LINEAR, allow_hyphen_values = true)]
+    loss: Option<f64>,
+    /// Initial states of a linear plant, separated by commas [default: zeros]
+    #[arg(long, value_name = "X,…", value_parser = coordinates, requires = LINEAR, allow_hyphen_values = true)]
+    x0: Option<Coordinates>,
+    /// Value that the controller subtracts from a measurement, by the name of the output; repeatable
+    #[arg(long, value_name = "OUTPUT=VALUE", value_parser = assignment, requires = LINEAR, allow_hyphen_values = true)]
+    reference: Vec<(String, f64)>,
+    /// Constant that is added to the command of an input, by its name; in open loop the step of that input; repeatable
+    #[arg(long, value_name = "INPUT=VALUE", value_parser = assignment, requires = LINEAR, allow_hyphen_values = true)]
+    disturbance: Vec<(String, f64)>,
+    /// Add the noise of the plant (its `g`, by default white noise of unit intensity at the inputs) and of the measurements
+    #[arg(long, requires = LINEAR)]
+    noise: bool,
+}
+
+/// The group of the options that give a loop.
+const LINEAR: &str = "loop";
+
+/// Options that are about systems of the catalogue.
+const NOT_LINEAR: [&str; 9] =
+    ["system", "set", "q", "v", "integrator", "dt", "float", "skew", "time_stamps"];
+
+impl SimulateArgs {
+    /// Returns the request for a linear plant, if there is one.
+    pub(crate) fn linear_request(
+        &self,
+        read: impl FnOnce(&Path, &dyn Fn(&mut RequestFile)) -> Result<LinearRequest, Failure>,
+    ) -> Option<Result<linear_trajectory::LinearRequest, Failure>> {
+        let change = |file: &mut RequestFile| self.change(file);
+        let request = match (&self.linear.plant, &self.linear.config) {
+            (Some(path), _) => self.of_plant(path),
+            (None, Some(path)) => read(path, &change),
+            (None, None) => return None,
+        };
+        Some(request.and_then(|request| self.trajectory(&request)))
+    }
+
+    /// The loop around the plant of a file.
+    fn of_plant(&self, path: &Path) -> Result<LinearRequest, Failure> {
+        let plant = read_plant(path).map_err(|why| {
+            Failure::usage(format!("cannot use `{}` (--plant): {why}", path.display()))
+        })?;
+        let LinearSimulationArgs { lqr, gain, period, .. } = &self.linear;
+        let controller = match (lqr, gain) {
+            (Some(weights), _) => Some(LinearControllerTable::Lqr(weights.clone())),
+            (None, Some(Gain(gain))) => {
+                let gain = gain.clone();
+                Some(LinearControllerTable::StateFeedback(StateFeedbackTable { gain }))
+            }
+            (None, None) => None,
+        };
+        let default = LinearLoopTable::default();
+        let looped = LinearLoopTable { period: period.map_or(default.period, Number), ..default };
+        let mut file = RequestFile { controller, looped, ..Default::default() };
+        file.system.linear = plant;
+        self.change(&mut file);
+        LinearRequest::new(file).map_err(|fault| Failure::usage(named(&fault)))
+    }
+
+    /// Puts the options in place of what a file states.
+    fn change(&self, file: &mut RequestFile) {
+        if file.controller.is_none()
+            && let Ok(plant) = file.system.linear.plant()
+        {
+            file.controller = Some(LinearControllerTable::open_loop(&plant));
+        }
+        let looped = &mut file.looped;
+        let period = looped.period.0;
+        if let Some(late) = self.timing.latency {
+            looped.latency = Channels::All(Number(seconds(late, period)));
+        }
+        match &self.linear.output_latency[..] {
+            [] => {}
+            [one] => looped.output_latency = Channels::All(Number(seconds(*one, period))),
+            all => {
+                let all = all.iter().map(|one| Number(seconds(*one, period)));
+                looped.output_latency = Channels::Each(all.collect());
+            }
+        }
+        if let Some(jitter) = self.timing.jitter {
+            let law = if let Jitter::Uniform(_) = jitter { "uniform" } else { "gaussian" };
+            (looped.jitter, looped.law) = (Number(jitter.rms()), law.into());
+            looped.time_stamps.clear();
+        }
+        looped.loss = self.linear.loss.map_or(looped.loss, Number);
+    }
+
+    fn trajectory(
+        &self,
+        request: &LinearRequest,
+    ) -> Result<linear_trajectory::LinearRequest, Failure> {
+        let linear = request.linear_loop();
+        let timing = request.loop_timing().map_err(Failure::usage)?;
+        let plant = linear.plant();
+        let LinearSimulationArgs { x0, reference, disturbance, noise, .. } = &self.linear;
+        let start = match x0 {
+            Some(given) => given.values().to_vec(),
+            None => vec![0.0; plant.states.len()],
+        };
+        let instructions =
+            if self.count.is_some() { simd::instruction_set(self.simd)? } else { None };
+        Ok(linear_trajectory::LinearRequest {
+            start,
+            reference: values("reference", "output", reference, &plant.outputs)?,
+            disturbance: values("disturbance", "input", disturbance, &plant.inputs)?,
+            record: request.recorded_periods().map(<[f64]>::to_vec),
+            steps: self.steps,
+            every: self.every,
+            ensemble: self.count.map(|count| EnsembleOptions {
+                count,
+                spread: self.spread,
+                threads: self.threads,
+                instructions,
+            }),
+            seed: self.seed,
+            linear: if *noise { linear.clone() } else { linear.without_noise() },
+            timing,
+        })
+    }
+}
+
+/// A value for each signal: those given by name, and zeros.
+fn values(
+    option: &str,
+    kind: &str,
+    given: &[(String, f64)],
+    signals: &[Signal],
+) -> Result<Vec<f64>, Failure> {
+    let mut all = vec![0.0; signals.len()];
+    for (name, value) in given {
+        let Some(place) = signals.iter().position(|signal| signal.name == *name) else {
+            let known = signals.iter().map(|signal| &*signal.name);
+            let hint = suggestions::suggest(&format!("{kind}s"), name, known);
+            return Err(Failure::usage(format!("unknown {kind} `{name}` (--{option}): {hint}")));
+        };
+        all[place] = *value;
+    }
+    Ok(all)
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    finite(text).ok_or_else(|| "expected a finite number".to_owned())
+}
