@@ -23,7 +23,7 @@ const WRITTEN_OUT: usize = 6;
 /// Most numbers of `S` of a schedule, up to which their map is written out.
 const NUMBERS: usize = 128;
 /// Iterations in a row that must agree on a sign.
-const IN_A_ROW: usize = 20;
+const IN_A_ROW: usize = 6;
 
 /// Most iterations of that map, where it is not.
 const ITERATIONS: usize = 2000;
