@@ -30,6 +30,9 @@ const SLOWEST: f64 = 1e-9;
 /// Angles in equal distances.
 const EVEN: u32 = 256;
 
+/// Logarithm of a gain that is no more than rounding.
+const ROUNDING: f64 = 1e-11;
+
 /// Least distance from the unit circle that widens the grid around an eigenvalue.
 const NEAREST: f64 = 1e-8;
 
@@ -46,7 +49,8 @@ impl<'a> AngleGrid<'a> {
             let distance = value.norm().ln().abs().max(NEAREST);
             let steps = core::iter::successors(Some(0.25 * distance), |step| Some(1.414 * step));
             let away = steps.take_while(|step| *step < PI).flat_map(|step| [-step, step]);
-            angles.extend(away.chain([0.0]).map(|step| value.arg() + step));
+            // Not the eigenvalue itself, which may be a pole of the response.
+            angles.extend(away.map(|step| value.arg() + step));
         }
         angles.retain(|angle| (SLOWEST..=PI).contains(angle));
         angles.sort_by(f64::total_cmp);
@@ -73,7 +77,9 @@ impl<'a> AngleGrid<'a> {
         let mut angles = Vec::new();
         for (k, pair) in known.windows(2).enumerate() {
             let [from, to] = [pair[0], pair[1]];
-            if (from.1 > 0.0) != (to.1 > 0.0) {
+            // A gain of 1 without a turn, as of many oscillators, is no crossing.
+            let rounding = from.1.abs().max(to.1.abs()) < ROUNDING;
+            if (from.1 > 0.0) != (to.1 > 0.0) && !rounding {
                 angles.push(crossing(at, from, to));
             } else if let Some(&after) = known.get(k + 2)
                 && let Some(turn) = turn(at, from, to, after)
@@ -140,8 +146,16 @@ fn join(
         let room = neighbours.map(|angle| (angle - a.angle).abs()).fold(PI, f64::min);
         turned(a.phase, b.phase).abs() < 0.7 && (b.angle - a.angle).abs() < 0.5 * room
     };
-    let real = |column: &Column| column.ends.map(|end| (end.re > 1.0, end.re < -1.0));
-    let alike = from.gains.len() == to.gains.len() && real(from) == real(to);
+    // On which side of ±1 real responses are, which says nothing where they are at it.
+    let sides = |column: &Column| {
+        let side = |x: f64| if x.abs() < ROUNDING { 0.0 } else { x.signum() };
+        column.ends.map(|end| [side(end.re - 1.0), side(end.re + 1.0)])
+    };
+    let passes = |k: usize| {
+        let [a, b] = [sides(from)[k], sides(to)[k]];
+        a[0] * b[0] < 0.0 || a[1] * b[1] < 0.0
+    };
+    let alike = from.gains.len() == to.gains.len() && !passes(0) && !passes(1);
     if alike && (0..from.gains.len()).all(close) {
         let pairs = from.gains.iter().zip(&to.gains);
         pieces.extend(pairs.map(|(&a, &b)| CurvePiece { parts, gains: [a, b] }));
@@ -162,7 +176,7 @@ fn join(
         pieces.push(CurvePiece { parts, gains: [*a, b] });
     }
     for (k, angle) in [0.0, PI].into_iter().enumerate() {
-        if real(from)[k] != real(to)[k] {
+        if passes(k) {
             let gain = UnitGain { angle, phase: from.ends[k].arg() };
             pieces.push(CurvePiece { parts, gains: [gain; 2] });
         }

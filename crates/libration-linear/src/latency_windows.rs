@@ -98,7 +98,9 @@ impl Search<'_> {
         for whole in 0..most.ceil() as u64 {
             let mut ends = self.crossings(whole)?;
             let next = (whole + 1) as f64;
-            if self.jumps || next >= most {
+            // Beyond `until` one unstable interval ends the search.
+            let ends_here = begun.is_none() && next > until;
+            if self.jumps || ends_here || next >= most {
                 ends.push(Crossing::jump(next.min(most)));
             }
             for end in ends.into_iter().filter(|end| end.latency <= most) {
