@@ -6,6 +6,7 @@
 //!
 //! This crate knows no physics.
 
+mod array_file;
 mod bounded_read;
 mod checksum;
 mod direct_write;
@@ -22,6 +23,7 @@ mod table;
 mod thread_work;
 mod verification;
 
+pub use array_file::{ArrayValues, NamedArray, read_mat, read_npz};
 pub use bounded_read::{read_bounded, read_text_bounded};
 pub use checksum::checksum;
 pub use durable_file::{write_direct, write_file};

@@ -21,7 +21,7 @@ use crate::error::Failure;
 /// Arguments of a loop around a linear plant.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct LinearArgs {
-    /// File of a linear plant ẋ = Ax + Bu, y = Cx + Du: .toml, .json or .csv, with matrices a, b, c, d
+    /// File of a linear plant ẋ = Ax + Bu, y = Cx + Du: .toml, .json, .csv, .npz or .mat, with matrices a, b, c, d
     #[arg(long, value_name = "FILE", conflicts_with_all = NOT_LINEAR)]
     pub(crate) plant: Option<PathBuf>,
     /// Design a linear-quadratic regulator with these weights of the squares of states and inputs, e.g. 10,1/0.1

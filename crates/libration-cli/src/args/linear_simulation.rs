@@ -24,7 +24,7 @@ use crate::error::Failure;
 /// Arguments of a linear plant and the loop around it.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct LinearSimulationArgs {
-    /// File of a linear plant ẋ = Ax + Bu, y = Cx + Du: .toml, .json or .csv; without --lqr or --gain in open loop
+    /// File of a linear plant ẋ = Ax + Bu, y = Cx + Du: .toml, .json, .csv, .npz or .mat; without --lqr or --gain in open loop
     #[arg(long, value_name = "FILE", group = "loop", conflicts_with_all = NOT_LINEAR)]
     plant: Option<PathBuf>,
     /// File of a loop around a linear plant, as for `advise --config`; without a controller in open loop

@@ -3,20 +3,27 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use libration_data::{ArrayValues, NamedArray, read_mat, read_npz};
+
 use super::PlantTable;
 use super::plant_table::Rows;
+use crate::limits::SETTINGS_BYTES;
 use crate::{Document, Number};
+
+/// All arrays of a file together are as long as its text could be.
+const ARRAY_BYTES: usize = SETTINGS_BYTES as usize;
 
 /// Reads a plant from a file.
 ///
 /// `.toml` and `.json` have the keys of `[system.linear]`. A line of a `.csv` file has the name of a matrix and the numbers of one of
-/// its rows.
+/// its rows. `.npz` (NumPy) and `.mat` (MATLAB 5 to 7) have the matrices as arrays.
 ///
 /// # Errors
-/// The error in words.
+/// The error in words, without the name of the file.
 pub fn read(path: &Path) -> Result<PlantTable, String> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
     let text = || crate::read_text(path).map_err(|error| error.to_string());
+    let bytes = || crate::read(path).map_err(|error| error.to_string());
     let table = match ending.as_deref() {
         Some("toml") => {
             let text = text()?;
@@ -26,9 +33,11 @@ pub fn read(path: &Path) -> Result<PlantTable, String> {
         }
         Some("json") => serde_json::from_str(&text()?).map_err(|error| error.to_string())?,
         Some("csv") => from_csv(&text()?)?,
+        Some("npz") => from_arrays(read_npz(&bytes()?, ARRAY_BYTES)?)?,
+        Some("mat") => from_arrays(read_mat(&bytes()?, ARRAY_BYTES)?)?,
         _ => {
             return Err(format!(
-                "unknown kind of file `{}`; expected .toml, .json or .csv",
+                "unknown kind of file `{}`; expected .toml, .json, .csv, .npz or .mat",
                 path.display()
             ));
         }
@@ -66,6 +75,51 @@ fn from_csv(text: &str) -> Result<PlantTable, String> {
             }
         }
     }
+    fill(table, matrices)
+}
+
+/// A matrix by an array.
+fn from_arrays(arrays: Vec<NamedArray>) -> Result<PlantTable, String> {
+    let mut matrices: BTreeMap<String, Rows> = BTreeMap::new();
+    let mut table = PlantTable::default();
+    for NamedArray { name, values } in arrays {
+        let key = name.to_lowercase();
+        match (&*key, values) {
+            ("states", ArrayValues::Text(names)) => table.states = Some(names),
+            ("inputs", ArrayValues::Text(names)) => table.inputs = Some(names),
+            ("outputs", ArrayValues::Text(names)) => table.outputs = Some(names),
+            (_, ArrayValues::Text(_)) => {
+                return Err(format!("array `{name}`: it has strings; expected numbers"));
+            }
+            (_, ArrayValues::Numbers { shape, entries }) => {
+                let rows = rows(&key, &shape, &entries).map_err(|why| format!("`{name}` {why}"))?;
+                if matrices.insert(key, rows).is_some() {
+                    return Err(format!("it has `{name}` in capital and in small letters"));
+                }
+            }
+        }
+    }
+    fill(table, matrices)
+}
+
+/// The rows of an array. One of a single dimension is a column of B and G, with a row for each state, and a row of others.
+fn rows(key: &str, shape: &[usize], entries: &[f64]) -> Result<Rows, String> {
+    let columns = match (shape, key) {
+        (&[_, n], _) => n,
+        ([_], "b" | "g") => 1,
+        _ => entries.len(),
+    };
+    if entries.is_empty() {
+        return Err("is empty; expected numbers".to_owned());
+    }
+    if matches!(key, "dt" | "ts") && entries.len() != 1 {
+        return Err(format!("has {} numbers; expected one", entries.len()));
+    }
+    Ok(entries.chunks(columns).map(|row| row.iter().copied().map(Number).collect()).collect())
+}
+
+/// Puts the matrices into the table by their names.
+fn fill(mut table: PlantTable, matrices: BTreeMap<String, Rows>) -> Result<PlantTable, String> {
     for (name, rows) in matrices {
         let place = match &*name {
             "a" => &mut table.a,
@@ -76,7 +130,7 @@ fn from_csv(text: &str) -> Result<PlantTable, String> {
             "mass" | "m" => &mut table.mass,
             "damping" => &mut table.damping,
             "stiffness" | "k" => &mut table.stiffness,
-            "dt" => {
+            "dt" | "ts" => {
                 let period = rows.first().and_then(|row| row.first()).copied();
                 // A plant in continuous time has a period of zero.
                 table.sampling_period = period.filter(|period| period.0 != 0.0);
@@ -84,7 +138,7 @@ fn from_csv(text: &str) -> Result<PlantTable, String> {
             }
             other => {
                 return Err(format!(
-                    "unknown matrix `{other}`; expected A, B, C, D, G, mass, damping, stiffness or dt"
+                    "unknown matrix `{other}`; expected A, B, C, D, G, mass, damping, stiffness, dt or Ts"
                 ));
             }
         };

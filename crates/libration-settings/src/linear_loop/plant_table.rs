@@ -10,7 +10,7 @@ use crate::{Fault, Number};
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PlantTable {
-    /// A file with the same keys: `.toml`, `.json` or `.csv`.
+    /// A file with the same keys: `.toml`, `.json`, `.csv`, `.npz` or `.mat`.
     pub file: Option<String>,
     /// States × states.
     pub a: Option<Rows>,
