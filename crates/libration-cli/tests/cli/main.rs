@@ -23,6 +23,7 @@ mod linear_simulation;
 mod long_files;
 #[cfg(target_os = "linux")]
 mod memory;
+mod plant_files;
 mod readers;
 #[cfg(unix)]
 mod replaced_file;
