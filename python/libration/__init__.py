@@ -29,6 +29,7 @@ from .linear import (
     StateSpace,
 )
 from .linear_loops import LinearLoops, LinearRollout
+from .operating_point import OperatingPoint
 from .perturbations import LQR, PD, PID, Gaussian, Observer, Steps, Uniform
 from .replay import ReplayBuffer
 from .rollout import Rollout
@@ -55,6 +56,7 @@ __all__ = [
     "LinearRollout",
     "MovingAverage",
     "Observer",
+    "OperatingPoint",
     "PD",
     "PID",
     "ReplayBuffer",

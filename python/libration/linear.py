@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Sequence
+from typing import Any, Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .perturbations import LQR, PID, Steps, law
+from ._keywords import check_keywords
 from ._settings import number
+from .operating_point import OperatingPoint, linearize
 
 __all__ = [
     "LQG",
@@ -92,6 +94,77 @@ class LinearPlant:
     outputs: Sequence[str] | None = None
     parts: Sequence[Lag | Butterworth2 | MovingAverage | Difference] = field(default=())
     """Lags and filters of the channels."""
+    operating_point: OperatingPoint | None = None
+    """The equilibrium at which :meth:`linearize` found the matrices."""
+
+    @classmethod
+    @check_keywords
+    def linearize(
+        cls,
+        f: Callable[..., ArrayLike],
+        x0: ArrayLike,
+        u0: ArrayLike,
+        *,
+        output: Callable[[np.ndarray, np.ndarray], ArrayLike] | None = None,
+        dt: float | None = None,
+        fixed_states: Sequence[str | int] | str | int = (),
+        free_inputs: Sequence[str | int] | str | int = (),
+        x_scale: ArrayLike | None = None,
+        u_scale: ArrayLike | None = None,
+        tolerance: float = 1e-8,
+        G: ArrayLike | None = None,
+        states: Sequence[str] | None = None,
+        inputs: Sequence[str] | None = None,
+        outputs: Sequence[str] | None = None,
+        parts: Sequence[Lag | Butterworth2 | MovingAverage | Difference] = (),
+    ) -> LinearPlant:
+        """Linearise a nonlinear system at an equilibrium, which Newton's method finds.
+
+        The states, inputs and outputs of the plant are deviations from ``plant.operating_point``.
+
+        Parameters
+        ----------
+        f:
+            ``f(x, u)`` returns the rates of the states, ``ẋ``. With ``dt`` it is a step of a simulator: ``f(x, u, dt)`` returns the
+            states ``dt`` later, under the constant command ``u``. States must be independent of each other: a rotation is three
+            numbers, not a quaternion.
+        x0, u0:
+            Where the search begins, vectors of at most 100 states and 1 to 100 inputs.
+        output:
+            ``output(x, u)`` returns the outputs (default: the states).
+        dt:
+            Length of a step in s; the plant is sampled then.
+        fixed_states, free_inputs:
+            States that stay at ``x0``, and inputs to solve for, by name or number. By default all states are solved for, and all
+            inputs stay at ``u0``. If there are several equilibria, each step has the least norm relative to the scales.
+        x_scale, u_scale:
+            Typical deviations of states and inputs, numbers or vectors (default: the larger of 1 and the absolute starting value).
+            Differences begin at a sixteenth of them.
+        tolerance:
+            Largest ``relative_residual`` of an equilibrium.
+        G, states, inputs, outputs, parts:
+            As in :class:`LinearPlant`.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For an invalid value, no equilibrium (with the largest rate that is left), or a function that has no derivative there.
+        """
+        point, a, b, c, d = linearize(
+            f,
+            x0,
+            u0,
+            output=output,
+            dt=dt,
+            fixed_states=fixed_states,
+            free_inputs=free_inputs,
+            x_scale=x_scale,
+            u_scale=u_scale,
+            tolerance=tolerance,
+            states=states,
+            inputs=inputs,
+        )
+        return cls(a, b, c, d, G, dt, states, inputs, outputs, parts, point)
 
 
 @dataclass(frozen=True, eq=False)

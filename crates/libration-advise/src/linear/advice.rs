@@ -1,6 +1,7 @@
 //! The results of advice on loops around linear plants.
 
 use libration::linear::{DiscreteController, Matrix, PlantMode, Signal};
+use libration_settings::linear_loop::OperatingPoint;
 use serde::{Serialize, Serializer};
 
 use super::{ChainLink, DeadlineMisses, InputMargins, Redesign};
@@ -22,6 +23,8 @@ pub struct LinearAdvice {
     pub inputs: Vec<SignalName>,
     /// The measurements as the controller reads them: behind a difference they are per second.
     pub outputs: Vec<SignalName>,
+    /// The equilibrium at which a system of the catalogue was linearised; none of other plants.
+    pub operating_point: Option<OperatingPoint>,
     /// The modes of the plant, the one that grows fastest first.
     pub plant_modes: Vec<Mode>,
     /// The controller in words.

@@ -181,6 +181,9 @@ fn together(page: &mut Page, advice: &LinearAdvice) {
 
 fn plant(page: &mut Page, advice: &LinearAdvice) {
     page.heading("The plant");
+    if let Some(point) = &advice.operating_point {
+        page.paragraph(point.sentence());
+    }
     let columns = ["mode in", "growth rate (1/s)", "frequency (Hz)"];
     let mut table = Table::new("plant-modes", &columns);
     for mode in &advice.plant_modes {

@@ -9,7 +9,7 @@ use libration::linear::{
     CostWeights, LinearLoop, LinearLoopError, LinearPlant, Matrix, MissingCommand,
 };
 use libration_settings::linear_loop::{
-    Design, LinearControllerTable, LinearLoopTable, Part, PartTable, PlantTable,
+    Design, LinearControllerTable, LinearLoopTable, OperatingPoint, Part, PartTable, PlantTable,
 };
 use libration_settings::{Document, Fault, Number, SettingsError, suggestions};
 use serde::Deserialize;
@@ -52,6 +52,8 @@ pub struct SystemTable {
 pub struct LinearRequest {
     /// The plant without lags and filters.
     pub(super) plant: LinearPlant,
+    /// The equilibrium at which a system of the catalogue was linearised.
+    pub(super) operating_point: Option<OperatingPoint>,
     pub(super) parts: Vec<Part>,
     pub(super) design: Design,
     pub(super) timed: TimedLoop,
@@ -107,6 +109,7 @@ impl LinearRequest {
     /// [`Fault`]: an invalid value, or a design that fails.
     pub fn new(file: RequestFile) -> Result<Self, Fault> {
         let plant = file.system.linear.plant()?;
+        let operating_point = file.system.linear.operating_point()?;
         let Some(controller) = file.controller else {
             let message = "there is no controller; expected a table, as [controller.lqr]";
             return Err(Fault::new("controller", message));
@@ -156,6 +159,7 @@ impl LinearRequest {
         let invocation = "libration advise --config FILE".into();
         Ok(LinearRequest {
             plant,
+            operating_point,
             parts,
             design,
             timed,

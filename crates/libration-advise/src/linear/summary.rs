@@ -8,11 +8,15 @@ impl LinearAdvice {
     /// The answer in a few sentences. A failure because of missed deadlines comes first.
     pub(super) fn summary(&self) -> String {
         let all_met = self.summary_without_misses();
-        match &self.deadline_misses {
+        let mut text = match &self.deadline_misses {
             Some(misses) if misses.holds() => format!("{all_met} {}", misses.sentences()),
             Some(misses) => format!("{} Without missed deadlines: {all_met}", misses.sentences()),
             None => all_met,
+        };
+        if let Some(point) = &self.operating_point {
+            text = format!("{} {}", text.trim_end(), point.sentence());
         }
+        text
     }
 
     fn summary_without_misses(&self) -> String {

@@ -8,6 +8,7 @@ mod case;
 mod deadline_misses;
 mod edges;
 mod linear_reference;
+mod linearised_plant;
 mod measured_clock;
 mod page;
 mod redesign_reference;

@@ -1,6 +1,7 @@
 //! Loops around linear plants in settings files.
 
 mod cascade_table;
+mod catalogue_plant;
 mod controller_table;
 mod design;
 mod loop_table;
@@ -12,6 +13,7 @@ mod plant_table;
 mod state_space_table;
 
 pub use cascade_table::{CascadeControllerTable, CascadePidTable, CascadeTable};
+pub use catalogue_plant::{Coordinates, OperatingPoint};
 pub use controller_table::{LinearControllerTable, StateFeedbackTable, Weights, WeightsTable};
 pub use design::{Cascaded, Design};
 pub use loop_table::{Channels, LinearLoopTable};

@@ -1,8 +1,11 @@
 //! Tables of linear plants.
 
+use std::collections::BTreeMap;
+
 use libration::linear::{LinearPlant, Matrix, PlantError, Signal};
 use serde::Deserialize;
 
+use super::catalogue_plant::{Coordinates, OperatingPoint, linearise};
 use super::plant_file;
 use crate::{Fault, Number};
 
@@ -12,6 +15,14 @@ use crate::{Fault, Number};
 pub struct PlantTable {
     /// A file with the same keys: `.toml`, `.json`, `.csv`, `.npz` or `.mat`.
     pub file: Option<String>,
+    /// A system of the catalogue, linearised at an equilibrium.
+    pub of: Option<String>,
+    /// Its parameters.
+    pub parameters: BTreeMap<String, Number>,
+    /// The coordinates at which the search for the equilibrium begins (default: zero).
+    pub at: Option<Coordinates>,
+    /// The constant command at the equilibrium (default: zero).
+    pub command: Option<Coordinates>,
     /// States × states.
     pub a: Option<Rows>,
     /// States × inputs.
@@ -73,12 +84,20 @@ impl PlantTable {
             let table = plant_file::read(std::path::Path::new(file)).map_err(wrong)?;
             return table.plant().map_err(|fault| wrong(fault.to_string()));
         }
-        let plant = match (&self.a, &self.mass, &self.numerator) {
-            (Some(a), None, None) => self.by_matrices(a)?,
-            (None, Some(mass), None) => self.mechanical(mass)?,
-            (None, None, Some(numerator)) => self.by_transfer_functions(numerator)?,
+        if self.of.is_none()
+            && (self.at.is_some() || self.command.is_some() || !self.parameters.is_empty())
+        {
+            let message =
+                "`at`, `command` and `parameters` require `of`, a system of the catalogue";
+            return Err(Fault::new("system.linear", message));
+        }
+        let plant = match (&self.of, &self.a, &self.mass, &self.numerator) {
+            (Some(of), None, None, None) => self.of_catalogue(of)?.0,
+            (None, Some(a), None, None) => self.by_matrices(a)?,
+            (None, None, Some(mass), None) => self.mechanical(mass)?,
+            (None, None, None, Some(numerator)) => self.by_transfer_functions(numerator)?,
             _ => {
-                let message = "a plant requires one of `a`, `mass`, `numerator` and `file`";
+                let message = "a plant requires one of `of`, `a`, `mass`, `numerator` and `file`";
                 return Err(Fault::new("system.linear", message));
             }
         };
@@ -91,6 +110,31 @@ impl PlantTable {
             Some(Number(period)) => plant.sampled(period).map_err(fault),
             None => Ok(plant),
         }
+    }
+
+    /// The equilibrium of a system of the catalogue; none of other plants.
+    ///
+    /// # Errors
+    /// [`Fault`]: as for [`PlantTable::plant`].
+    pub fn operating_point(&self) -> Result<Option<OperatingPoint>, Fault> {
+        let in_file = |file: &String| {
+            let table = plant_file::read(std::path::Path::new(file));
+            table.map_err(|why| Fault::new("system.linear.file", why))?.operating_point()
+        };
+        match (&self.file, &self.of) {
+            (Some(file), _) => in_file(file),
+            (None, Some(of)) => Ok(Some(self.of_catalogue(of)?.1)),
+            (None, None) => Ok(None),
+        }
+    }
+
+    fn of_catalogue(&self, name: &str) -> Result<(LinearPlant, OperatingPoint), Fault> {
+        let matrices = [&self.b, &self.c, &self.d];
+        if matrices.iter().any(|matrix| matrix.is_some()) || self.sampling_period.is_some() {
+            let message = "`of` is given, so `b`, `c`, `d` and `sampling-period` are not allowed";
+            return Err(Fault::new("system.linear.of", message));
+        }
+        linearise(name, &self.parameters, self.at.as_ref(), self.command.as_ref())
     }
 
     fn by_matrices(&self, a: &Rows) -> Result<LinearPlant, Fault> {
@@ -169,7 +213,11 @@ impl PlantTable {
         };
         let inputs = signals(&self.inputs, &plant.inputs);
         // Without `c` the outputs are the states.
-        let known = if self.c.is_none() && self.a.is_some() { &states } else { &plant.outputs };
+        let known = if self.c.is_none() && (self.a.is_some() || self.of.is_some()) {
+            &states
+        } else {
+            &plant.outputs
+        };
         let outputs = signals(&self.outputs, known);
         plant.named(states, inputs, outputs).map_err(fault)
     }
