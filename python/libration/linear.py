@@ -361,7 +361,7 @@ def _state_space(controller: StateSpace) -> dict[str, Any]:
 
 def _cascade(cascade: Cascade) -> dict[str, Any]:
     counts = {name: getattr(cascade, name) for name in ("every", "inner_every", "outer_latency")}
-    table = {name.replace("_", "-"): number(name, value, "a number") for name, value in counts.items()}
+    table: dict[str, Any] = {name.replace("_", "-"): number(name, value, "a number") for name, value in counts.items()}
     if cascade.references is not None:
         table["references"] = [str(name) for name in cascade.references]
     for side in ("inner", "outer"):
