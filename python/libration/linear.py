@@ -398,10 +398,10 @@ def _gains(gains: PID) -> dict[str, Any]:
 def _loop(timing: dict[str, Any]) -> dict[str, Any]:
     loop: dict[str, Any] = {}
     for name in ("period", "skew", "loss", "overrun_probability"):
-        if timing[name] is not None:
-            loop[name.replace("_", "-")] = number(name, timing[name], "a number", lambda _: True)
+        if (value := timing.get(name)) is not None:
+            loop[name.replace("_", "-")] = number(name, value, "a number", lambda _: True)
     for name in ("missing", "overrun", "deadline_misses"):
-        value = timing[name]
+        value = timing.get(name)
         if value is not None:
             if not isinstance(value, str):
                 example = {"missing": "'hold' or 'zero'", "overrun": "'kill', 'skip' or 'queue'"}.get(name, "text like '2 of 5'")
@@ -425,7 +425,7 @@ def _loop(timing: dict[str, Any]) -> dict[str, Any]:
     if timing["cost_weights"] is not None:
         states, inputs = timing["cost_weights"]
         loop["cost"] = {"states": _weights("cost_weights", states), "inputs": _weights("cost_weights", inputs)}
-    if timing["clock"] is not None:
+    if timing.get("clock") is not None:
         loop["clock"] = str(timing["clock"])
     if timing["measurement_noise"] is not None:
         loop["measurement-noise"] = _weights("measurement_noise", timing["measurement_noise"])
