@@ -36,8 +36,8 @@ fn run() -> ExitCode {
     }
 }
 
-/// Reports a panic as a bug. A panic of the standard library for lack of memory ends the run instead, with a message that needs
-/// no memory.
+/// Reports a panic as a bug. A panic for lack of memory (of the standard library, or of a compressor) ends the run instead, with a
+/// message that needs no memory.
 fn report_panic(panic: &PanicHookInfo<'_>) {
     if !panic.payload_as_str().is_some_and(is_out_of_memory) {
         return terminal::error(&format!("this is a bug: {panic}"));
@@ -49,11 +49,13 @@ fn report_panic(panic: &PanicHookInfo<'_>) {
 
 /// The message for lack of memory.
 const OUT_OF_MEMORY: &[u8] =
-    b"error: out of memory: cannot start a thread; help: lower --threads, or raise the limit (ulimit -v)\n";
+    b"error: out of memory; help: lower --threads, or raise the limit (ulimit -v)\n";
 
-/// Whether the message of a panic reports a failed thread, or the operating system's error 12, `ENOMEM`, in either format of Rust.
+/// Whether the message of a panic reports a failed thread, the operating system's error 12, `ENOMEM`, in either format of Rust, or
+/// that Zstandard got no memory for a context.
 fn is_out_of_memory(message: &str) -> bool {
-    let parts = ["failed to spawn thread", "(os error 12)", "code: 12,"];
+    let parts =
+        ["failed to spawn thread", "(os error 12)", "code: 12,", "zstd returned null pointer"];
     parts.iter().any(|part| message.contains(part))
 }
 
@@ -68,6 +70,8 @@ mod tests {
         let refused = io::Error::from_raw_os_error(12);
         assert!(is_out_of_memory(&format!("failed to allocate an alternative stack: {refused}")));
         assert!(is_out_of_memory(&format!("failed to spawn thread: {refused:?}")));
+        // The words of `zstd_safe::DCtx::create`.
+        assert!(is_out_of_memory("zstd returned null pointer when creating new context"));
         let missing = io::Error::from_raw_os_error(2);
         assert!(!is_out_of_memory(&format!("{missing} {missing:?}")));
         assert!(!is_out_of_memory("index out of bounds: the len is 12"));
