@@ -29,14 +29,15 @@ impl Averages for Jitter {
             return nodes_above(self, turn);
         }
         match self {
-            // The trapezoidal rule on a Gaussian errs by exp(−(2π/h − turn)²/2) only; to ten deviations.
+            // The trapezoidal rule on a Gaussian errs by exp(−(2π/h − turn)²/2) only; to ten deviations. The nodes below −1 weigh less than
+            // 10⁻⁸, but backwards in time what decays fast grows by more than that.
             Jitter::Gaussian(rms) => {
                 let apart = (core::f64::consts::TAU / (turn + 12.0)).min(0.5);
                 let last = (10.0 / apart).ceil() as i32;
                 let at = |j: i32| f64::from(j) * apart;
                 let weight = |x: f64| (-x * x / 2.0).exp();
                 let all: f64 = (-last..=last).map(|j| weight(at(j))).sum();
-                (-last..=last).map(|j| (weight(at(j)) / all, at(j) * rms)).collect()
+                (-last..=last).map(|j| (weight(at(j)) / all, (at(j) * rms).max(-1.0))).collect()
             }
             Jitter::Uniform(rms) => {
                 let half = half_width(rms).to_f64();
@@ -208,6 +209,13 @@ mod tests {
         let half = 30.0 * 3.0_f64.sqrt();
         let (found, wanted) = (at(Jitter::Uniform(0.1)), half.sin() / half);
         assert!((found - wanted).abs() < 1e-14, "{found} {wanted}");
+    }
+
+    #[test]
+    fn no_node_is_a_period_of_negative_length() {
+        for law in [Jitter::Gaussian(0.17), Jitter::Gaussian(0.3), Jitter::Uniform(0.57)] {
+            assert!(law.nodes(0.0).iter().all(|&(_, x)| x >= -1.0), "{law:?}");
+        }
     }
 
     #[test]

@@ -6,12 +6,12 @@ use libration_core::control::{Jitter, Latency};
 use libration_core::random::{Address, Purpose};
 
 use crate::phases::{merged, same};
-use crate::{LinearLoop, LoopTiming, Matrix, MissingCommand};
+use crate::{Discretisation, LinearLoop, LoopTiming, Matrix, MissingCommand};
 
 /// A simulation of a loop with a timing, under noise that is held through each period.
 ///
-/// It knows nothing of period matrices: states move by Taylor's series of the equations of motion, and commands and measurements
-/// wait in queues.
+/// It knows nothing of period matrices: states move by Taylor's series of the equations of motion (those of a stiff plant by the
+/// exponential of its matrix), and commands and measurements wait in queues.
 #[derive(Clone, Copy, Debug)]
 pub struct Simulation<'a> {
     /// The loop.
@@ -223,6 +223,16 @@ fn flow(a: &Matrix, x: &mut [f64], push: &[f64], seconds: f64) {
     let n = x.len();
     // Terms reach e⁴ at most before they fall: two digits.
     let parts = (0.25 * a.row_sum_norm() * seconds).ceil().max(1.0);
+    if parts > 64.0 {
+        let driving = Matrix::from_fn(n, 1, |i, _| push[i]);
+        let Discretisation { phi, gamma } = Discretisation::exact(a, &driving, seconds);
+        let moved = phi.apply(x);
+        x.iter_mut()
+            .zip(moved)
+            .zip(gamma.entries())
+            .for_each(|((x, moved), push)| *x = moved + push);
+        return;
+    }
     let h = seconds / parts;
     let (mut term, mut next) = (vec![0.0; n], vec![0.0; n]);
     for _ in 0..parts as u64 {

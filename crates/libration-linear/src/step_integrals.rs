@@ -1,7 +1,7 @@
 //! Integrals over an exact step: process noise and cost.
 
 use crate::Matrix;
-use crate::exponential::halvings;
+use crate::exponential::{halvings, twice};
 
 /// Integrals over an exact step of `ẋ = Ax + Bu` with white noise, under a held command.
 #[derive(Clone, Debug)]
@@ -39,7 +39,8 @@ impl StepIntegrals {
             constant: 0.0,
             cost: Matrix::zeros(n + m, n + m),
         };
-        let mut flow = power.clone();
+        // What is added to the flow of no time, as in `exponential`.
+        let mut grown = Matrix::zeros(n + m, n + m);
         let mut share = 1.0;
         for k in 1..=TERMS {
             share *= short / f64::from(k);
@@ -47,13 +48,14 @@ impl StepIntegrals {
             all.cost.add_scaled(share, &form);
             all.constant += share * short / f64::from(k + 1) * of_states.inner(&w);
             power = &generator * &power;
-            flow.add_scaled(share, &power);
+            grown.add_scaled(share, &power);
             let half = a * &w;
             w = half.plus(&half.transposed());
             let half = &back * &form;
             form = half.plus(&half.transposed());
         }
         for _ in 0..doublings {
+            let flow = Matrix::identity(n + m).plus(&grown);
             let phi = flow.block((0, 0), (n, n));
             let first = all.cost.block((0, 0), (n, n));
             all.constant = 2.0 * all.constant + first.inner(&all.noise);
@@ -61,7 +63,7 @@ impl StepIntegrals {
             all.noise.add_scaled(1.0, &later);
             let later = flow.transposed().congruence(&all.cost);
             all.cost.add_scaled(1.0, &later);
-            flow = &flow * &flow;
+            grown = twice(&grown);
         }
         all
     }
