@@ -55,7 +55,8 @@ impl Budget {
     /// A limit in words: the size, or the largest tried one.
     pub fn limit(&self, limit: Option<f64>) -> String {
         match limit {
-            Some(limit) => format!("{limit:.6}"),
+            Some(limit) => rounded(limit),
+            None if self.tried_up_to < 1e-2 => format!("above {}", rounded(self.tried_up_to)),
             None => format!("above {:.3}", self.tried_up_to),
         }
     }
@@ -68,6 +69,11 @@ impl Budget {
             (None, None) => String::new(),
         }
     }
+}
+
+/// A number with six decimals, or with four digits where six decimals show fewer than three.
+pub fn rounded(x: f64) -> String {
+    if x == 0.0 || x.abs() >= 1e-4 { format!("{x:.6}") } else { format!("{x:.3e}") }
 }
 
 /// An imperfection with its channel, in words.

@@ -39,7 +39,7 @@ use libration::{AnySystem, with_system};
 use thiserror::Error;
 
 pub use advice::{Advice, FloatChoice, LoopAdvice, ToleranceAnswer};
-pub use budget::{Budget, FirstFailure};
+pub use budget::{Budget, FirstFailure, rounded};
 pub use combined_effect::{CombinedEffect, SimulatedCost};
 pub use control::{Control, Correction, Law, Regulator};
 pub use file::{DEFAULT, parse};

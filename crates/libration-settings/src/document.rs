@@ -42,6 +42,11 @@ impl<'a> Document<'a> {
         }
     }
 
+    /// Whether there is a key of this name at the root.
+    pub fn has_key(&self, name: &str) -> bool {
+        self.table.get_ref().keys().any(|key| AsRef::<str>::as_ref(key.get_ref()) == name)
+    }
+
     /// The error of a value that is not allowed.
     pub fn locate(&self, fault: Fault) -> SettingsError {
         let span = self.find(fault.key, fault.index);
@@ -57,10 +62,13 @@ impl<'a> Document<'a> {
                 let known = known.iter().copied();
                 (format!("unknown key `{key}`"), Some(suggestions::suggest("keys", key, known)))
             }
-            None => match key_around(self.table.get_ref(), &span) {
-                Some(key) => (format!("`{key}`: {message}"), None),
-                None => (message.to_owned(), None),
-            },
+            None => {
+                let message = one_of_many(message).unwrap_or(message);
+                match key_around(self.table.get_ref(), &span) {
+                    Some(key) => (format!("`{key}`: {message}"), None),
+                    None => (message.to_owned(), None),
+                }
+            }
         };
         SettingsError::new(self.file, self.text, span, message, help)
     }
@@ -96,6 +104,16 @@ fn unknown_key(message: &str) -> Option<(&str, Vec<&str>)> {
     let (key, rest) = words.split_once("`, expected ")?;
     // Every second piece is between backquotes.
     Some((key, rest.split('`').skip(1).step_by(2).collect()))
+}
+
+/// Why one of several tables, of which a file needs one, cannot be read, in words.
+fn one_of_many(message: &str) -> Option<&'static str> {
+    let found = message.strip_prefix("wanted exactly 1 element, ")?;
+    Some(if found.starts_with("more") {
+        "more than one is given; expected exactly one table"
+    } else {
+        "none is given; expected exactly one table"
+    })
 }
 
 /// The dotted key of the innermost value around `span`.

@@ -60,6 +60,13 @@ impl SettingsError {
         &self.message
     }
 
+    /// The error in a sentence with its line, for a message that names the file.
+    pub fn sentence(&self) -> String {
+        let line = self.source[..self.span.start].matches('\n').count() + 1;
+        let help = self.help.as_ref().map_or_else(String::new, |help| format!("; help: {help}"));
+        format!("line {line}: {}{help}", self.message)
+    }
+
     /// A suggestion, if there is one.
     pub fn help(&self) -> Option<&str> {
         self.help.as_deref()

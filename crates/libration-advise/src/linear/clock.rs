@@ -24,6 +24,10 @@ pub(super) fn clocked(
             return Err(fault.help(suggestions::suggest("values", other, known)));
         }
     }
+    if design.clocked.is_none() && !parts.iter().any(Part::counts_seconds) {
+        let message = "`clock` is \"measured\", but nothing in the controller depends on the length of a period; expected \"nominal\"";
+        return Err(Fault::new("loop.clock", message));
+    }
     let (own, nominal) = (design.clocked.clone(), design.controllers.clone());
     let (plant, parts) = (design.plant.clone(), parts.to_vec());
     let of_length = move |seconds| {

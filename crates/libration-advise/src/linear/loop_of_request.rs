@@ -18,6 +18,11 @@ impl LinearRequest {
         self.timed.stated()
     }
 
+    /// Whether the request states missed deadlines or overruns.
+    pub fn misses_deadlines(&self) -> bool {
+        self.deadlines.misses.is_some() || self.deadlines.probability > 0.0
+    }
+
     /// The lengths of recorded periods, as multiples of their mean; none without time stamps.
     pub fn recorded_periods(&self) -> Option<&[f64]> {
         self.timed.timing.record.as_deref()

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::request::LinearRequest;
 use crate::AdviseError;
+use crate::budget::rounded;
 use crate::limits::Imperfection;
 use crate::loops::LoopError;
 use crate::timed_loop::{StatedTiming, Subject, TimedLoop};
@@ -53,10 +54,12 @@ impl StableRange {
     /// The range in words.
     pub fn in_words(&self) -> String {
         match (self.from, self.to) {
-            (None, Some(to)) => format!("up to {to:.5}"),
-            (None, None) => format!("above {:.3}", self.tried_up_to),
-            (Some(from), Some(to)) => format!("{from:.5} to {to:.5}"),
-            (Some(from), None) => format!("{from:.5} to above {:.3}", self.tried_up_to),
+            (None, Some(to)) => format!("up to {}", rounded(to)),
+            (None, None) => format!("above {}", rounded(self.tried_up_to)),
+            (Some(from), Some(to)) => format!("{} to {}", rounded(from), rounded(to)),
+            (Some(from), None) => {
+                format!("{} to above {}", rounded(from), rounded(self.tried_up_to))
+            }
         }
     }
 }

@@ -41,10 +41,18 @@ impl RedesignToml {
         }
     }
 
-    /// The table that replaces `[controller]`, and lines for `[loop]`.
+    /// Lines for `[loop]`, and the table that replaces `[controller]`.
     pub(super) fn table(&self, controller: &DiscreteController) -> String {
         let DiscreteController { a, b, c, d } = controller;
-        let mut text = "[controller.state-space]\n".to_owned();
+        let mut text = String::new();
+        if !self.loop_lines.is_empty() {
+            text +=
+                "# These lines belong to [loop]: they were part of the design that is replaced.\n";
+        }
+        for line in &self.loop_lines {
+            text += &format!("{line}\n");
+        }
+        text += "[controller.state-space]\n";
         if self.measures_states {
             text += "measures = \"states\"\n";
         }
@@ -52,9 +60,6 @@ impl RedesignToml {
             if !matrix.entries().is_empty() {
                 text += &format!("{name} = {}\n", rows(matrix));
             }
-        }
-        for line in &self.loop_lines {
-            text += &format!("# in [loop]: {line}\n");
         }
         text
     }

@@ -102,6 +102,9 @@ pub fn parse_changed(
     Ok(LinearRequest { invocation: format!("libration advise --config {file_name}"), ..request })
 }
 
+/// Periods in s that a request may have.
+const PERIODS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+
 impl LinearRequest {
     /// The loop that a file describes.
     ///
@@ -115,8 +118,8 @@ impl LinearRequest {
             return Err(Fault::new("controller", message));
         };
         let Number(period) = file.looped.period;
-        if !(period.is_finite() && period > 0.0) {
-            let message = format!("`period` is {period:?}; expected a finite number above 0");
+        if !PERIODS.contains(&period) {
+            let message = format!("`period` is {period:?}; expected 1e-9 to 1e9 (s)");
             return Err(Fault::new("loop.period", message));
         }
         let design = controller.design(&plant, period)?;
@@ -131,7 +134,11 @@ impl LinearRequest {
         weights.check(&plant).map_err(|error| Fault::new("loop.cost", error.to_string()))?;
         let noise = match &file.looped.measurement_noise {
             Some(variances) => {
-                let matrix = variances.matrix("loop.measurement-noise")?;
+                let matrix = variances.matrix(
+                    "loop.measurement-noise",
+                    "outputs",
+                    design.plant.outputs.len(),
+                )?;
                 (0..matrix.rows()).map(|j| matrix[(j, j)]).collect()
             }
             None => design.measurement.clone(),
@@ -201,8 +208,8 @@ fn weights(
 ) -> Result<CostWeights, Fault> {
     if let Some(own) = &table.cost {
         return Ok(CostWeights {
-            states: own.states.matrix("loop.cost.states")?,
-            inputs: own.inputs.matrix("loop.cost.inputs")?,
+            states: own.states.matrix("loop.cost.states", "states", plant.states.len())?,
+            inputs: own.inputs.matrix("loop.cost.inputs", "inputs", plant.inputs.len())?,
         });
     }
     if let Some(weights) = &design.weights {

@@ -34,6 +34,13 @@ impl StatedDeadlines {
             text => Some(constraint(text)?),
         };
         let probability = table.overrun_probability.0;
+        if strategy != OverrunStrategy::Kill && misses.is_none() && probability == 0.0 {
+            let message = format!(
+                "`overrun` is \"{}\", but no job overruns; expected `deadline-misses` or `overrun-probability` with it",
+                table.overrun
+            );
+            return Err(Fault::new("loop.overrun", message));
+        }
         if misses.is_some() || probability > 0.0 {
             let other = match table.clock.as_str() {
                 _ if cascade => Some("the controller is a cascade; expected one controller"),

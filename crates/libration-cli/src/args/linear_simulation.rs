@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use libration::control::Jitter;
-use libration::linear::Signal;
+use libration::linear::{DiscreteController, Signal};
 use libration_advise::linear::{LinearRequest, RequestFile};
 use libration_analyze::LatencyOption;
 use libration_analyze::linear_trajectory;
@@ -138,6 +138,16 @@ impl SimulateArgs {
         let linear = request.linear_loop();
         let timing = request.loop_timing().map_err(Failure::usage)?;
         let plant = linear.plant();
+        let reads = |controller: &DiscreteController| {
+            [&controller.b, &controller.d].iter().any(|part| part.largest() > 0.0)
+        };
+        if let [(name, value), ..] = &self.linear.reference[..]
+            && !reads(linear.controller())
+        {
+            return Err(Failure::usage(format!(
+                "--reference is {name}={value}, but no controller reads the measurements; expected a controller, or --disturbance for a step of an input"
+            )));
+        }
         let LinearSimulationArgs { x0, reference, disturbance, noise, .. } = &self.linear;
         let start = match x0 {
             Some(given) => given.values().to_vec(),

@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 use libration_advise as advise;
-use libration_advise::{Advice, AdviseError, LoopAdvice, Request};
+use libration_advise::{Advice, AdviseError, LoopAdvice, Request, rounded};
 use libration_work::Work;
 use serde::Serialize;
 
@@ -212,9 +212,9 @@ fn describe_loop(looped: &LoopAdvice, again: &str, text: &mut String) {
     for budget in &looped.budgets {
         let _ = writeln!(
             text,
-            "{:<14} {:>12.6} {:>14} {:>14} {:>8}  {:<17} {}",
+            "{:<14} {:>12} {:>14} {:>14} {:>8}  {:<17} {}",
             budget.kind.name(),
-            budget.stated,
+            rounded(budget.stated),
             budget.limit(budget.stable_up_to),
             budget.tolerated_up_to.map_or_else(String::new, |limit| budget.limit(limit)),
             budget.used_in_percent(),

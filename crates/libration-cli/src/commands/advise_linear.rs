@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use libration_advise::linear::{self, InputMargins, LinearAdvice, LinearRequest, StableRange};
+use libration_advise::rounded;
 use libration_work::Work;
 
 use super::advise::{command_line, deliver};
@@ -49,7 +50,7 @@ fn describe(advice: &LinearAdvice) -> String {
     let _ = writeln!(text, "\n{}; a sample every {} s", advice.controller, advice.period);
     if let Some(gain) = &advice.gain {
         for i in 0..gain.rows() {
-            let row: Vec<String> = gain.row(i).iter().map(|x| format!("{x:.6}")).collect();
+            let row: Vec<String> = gain.row(i).iter().map(|x| rounded(*x)).collect();
             let _ = writeln!(text, "  {} = -[{}] x", advice.inputs[i].name, row.join(", "));
         }
     }
@@ -64,10 +65,10 @@ fn describe(advice: &LinearAdvice) -> String {
     for link in &advice.chain {
         let _ = writeln!(
             text,
-            "{:<24} {:<16} {:>12.6} {:>10} {:>16}",
+            "{:<24} {:<16} {:>12} {:>10} {:>16}",
             link.part,
             link.channel,
-            link.delay,
+            rounded(link.delay),
             link.phase.map_or_else(String::new, |phase| format!("{phase:.2}")),
             link.share.map_or_else(String::new, |share| format!("{:.1} %", 100.0 * share)),
         );
@@ -159,7 +160,7 @@ fn deadlines(advice: &LinearAdvice, text: &mut String) {
         }
     }
     if let Some(random) = &misses.random {
-        let limit = random.stable_up_to.map_or_else(|| "1".to_owned(), |x| format!("{x:.6}"));
+        let limit = random.stable_up_to.map_or_else(|| "1".to_owned(), rounded);
         let cost = random.cost.map_or_else(|| "infinite".to_owned(), |x| format!("{x:.6e}"));
         let _ = writeln!(
             text,
@@ -191,9 +192,9 @@ fn redesign(advice: &LinearAdvice, text: &mut String) {
     for limit in &redesign.limits {
         let _ = writeln!(
             text,
-            "{:<32} {:>12.6} {:>24} {:>24}  {}",
+            "{:<32} {:>12} {:>24} {:>24}  {}",
             limit.name(),
-            limit.stated,
+            rounded(limit.stated),
             stable(limit.given),
             stable(limit.redesigned),
             limit.unit
@@ -205,19 +206,28 @@ fn redesign(advice: &LinearAdvice, text: &mut String) {
 
 /// Appends the budget of each imperfection.
 fn budgets(advice: &LinearAdvice, text: &mut String) {
+    // Without a tolerance of the cost there is nothing in the column.
+    let tolerance = advice.budgets.iter().any(|budget| budget.tolerated_up_to.is_some());
+    let tolerated = |what: String| if tolerance { format!(" {what:>14}") } else { String::new() };
     let _ = writeln!(
         text,
-        "\n{:<32} {:>12} {:>14} {:>14} {:>8}  {:<17} how",
-        "alone", "stated", "stable up to", "tolerated", "used", "unit"
+        "\n{:<32} {:>12} {:>14}{} {:>8}  {:<17} how",
+        "alone",
+        "stated",
+        "stable up to",
+        tolerated("tolerated".into()),
+        "used",
+        "unit"
     );
     for budget in &advice.budgets {
+        let limit = budget.tolerated_up_to.map_or_else(String::new, |limit| budget.limit(limit));
         let _ = writeln!(
             text,
-            "{:<32} {:>12.6} {:>14} {:>14} {:>8}  {:<17} {}",
+            "{:<32} {:>12} {:>14}{} {:>8}  {:<17} {}",
             budget.name(),
-            budget.stated,
+            rounded(budget.stated),
             budget.limit(budget.stable_up_to),
-            budget.tolerated_up_to.map_or_else(String::new, |limit| budget.limit(limit)),
+            tolerated(limit),
             budget.used_in_percent(),
             budget.unit,
             budget.how

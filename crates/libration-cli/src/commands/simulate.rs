@@ -29,7 +29,16 @@ const BUFFER: usize = 1 << 18;
 /// Simulates a trajectory and writes its rows.
 pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
     let format = format(args)?;
-    if let Some(request) = args.linear_request(linear_file) {
+    let read = |path: &Path, change: &dyn Fn(&mut RequestFile)| {
+        let request = linear_file(path, change)?;
+        if request.misses_deadlines() && !quiet {
+            terminal::say(
+                "note: a simulation misses no deadlines; `deadline-misses`, `overrun` and `overrun-probability` have no effect",
+            );
+        }
+        Ok(request)
+    };
+    if let Some(request) = args.linear_request(read) {
         let request = request?;
         return write(args, quiet, format, &|out, watcher| {
             linear_trajectory::write(&request, format, out, watcher)

@@ -14,7 +14,7 @@ const TOLERANCE: f64 = 1e-8;
 
 /// One number, or one for each coordinate.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a number, or a list with one number for each coordinate")]
 pub enum Coordinates {
     /// Of a system with one degree of freedom.
     One(Number),

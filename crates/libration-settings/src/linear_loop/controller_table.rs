@@ -60,7 +60,7 @@ pub struct LqgTable {
 
 /// A symmetric matrix, or its diagonal.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a list of numbers (the diagonal), or the rows of a matrix")]
 pub enum Weights {
     /// The diagonal.
     Diagonal(Vec<Number>),
@@ -69,12 +69,19 @@ pub enum Weights {
 }
 
 impl Weights {
-    /// The matrix.
+    /// The matrix; a diagonal has a number for each of `count` signals, which are `of`.
     ///
     /// # Errors
-    /// [`Fault`]: rows of different lengths.
-    pub fn matrix(&self, key: &'static str) -> Result<Matrix, Fault> {
+    /// [`Fault`]: a diagonal of another length, or rows of different lengths.
+    pub fn matrix(&self, key: &'static str, of: &str, count: usize) -> Result<Matrix, Fault> {
         match self {
+            Weights::Diagonal(entries) if entries.len() != count => {
+                let (name, given) = (key.rsplit('.').next().unwrap_or(key), entries.len());
+                let message = format!(
+                    "`{name}` has {given} numbers; expected {count}, one for each of the {of}"
+                );
+                Err(Fault::new(key, message))
+            }
             Weights::Diagonal(entries) => {
                 Ok(Matrix::diagonal(&entries.iter().map(|x| x.0).collect::<Vec<_>>()))
             }
@@ -96,12 +103,11 @@ impl LinearControllerTable {
     /// # Errors
     /// [`Fault`]: matrices that do not fit, or a design that fails.
     pub fn design(&self, plant: &LinearPlant, period: f64) -> Result<Design, Fault> {
+        let [n, m, p] = [&plant.states, &plant.inputs, &plant.outputs].map(Vec::len);
         match self {
             LinearControllerTable::StateFeedback(table) => {
                 let gain = matrix("controller.state-feedback.gain", &table.gain)?;
-                let shape = [plant.inputs.len(), plant.states.len()];
-                if [gain.rows(), gain.columns()] != shape {
-                    let [m, n] = shape;
+                if [gain.rows(), gain.columns()] != [m, n] {
                     let message = format!(
                         "`gain` is {} × {}; expected {m} × {n}: inputs × states",
                         gain.rows(),
@@ -113,8 +119,8 @@ impl LinearControllerTable {
             }
             LinearControllerTable::Lqr(WeightsTable { states, inputs }) => {
                 let weights = CostWeights {
-                    states: states.matrix("controller.lqr.states")?,
-                    inputs: inputs.matrix("controller.lqr.inputs")?,
+                    states: states.matrix("controller.lqr.states", "states", n)?,
+                    inputs: inputs.matrix("controller.lqr.inputs", "inputs", m)?,
                 };
                 let solution = plant.design_regulator(&weights, period);
                 let gain = solution.map_err(|error| design_fault("controller.lqr", &error))?.gain;
@@ -122,10 +128,10 @@ impl LinearControllerTable {
             }
             LinearControllerTable::Lqg(LqgTable { states, inputs, measurement }) => {
                 let weights = CostWeights {
-                    states: states.matrix("controller.lqg.states")?,
-                    inputs: inputs.matrix("controller.lqg.inputs")?,
+                    states: states.matrix("controller.lqg.states", "states", n)?,
+                    inputs: inputs.matrix("controller.lqg.inputs", "inputs", m)?,
                 };
-                let noise = measurement.matrix("controller.lqg.measurement")?;
+                let noise = measurement.matrix("controller.lqg.measurement", "outputs", p)?;
                 let wrong = |error: DesignError| design_fault("controller.lqg", &error);
                 let gain = plant.design_regulator(&weights, period).map_err(wrong)?.gain;
                 let filter = plant.design_filter(&noise, period).map_err(wrong)?;

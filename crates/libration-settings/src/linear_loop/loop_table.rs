@@ -43,7 +43,7 @@ pub struct LinearLoopTable {
 
 /// One number for all channels, or one for each.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a number, or a list with one number for each channel")]
 pub enum Channels {
     /// For all.
     All(Number),

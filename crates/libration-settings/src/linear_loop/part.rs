@@ -55,6 +55,11 @@ impl Part {
         self.filter().is_some()
     }
 
+    /// Whether the length of a period is in its coefficients, as in those of a difference per second.
+    pub fn counts_seconds(&self) -> bool {
+        self.filter() == Some(DiscreteFilter::Difference)
+    }
+
     /// The delay at low frequencies in s, in a loop with this period in s.
     pub fn delay(&self, period: f64) -> f64 {
         match self.kind {
@@ -98,9 +103,7 @@ impl Part {
     /// The outputs as the controller reads them: behind a difference per second.
     pub fn read(parts: &[Part], outputs: &[Signal]) -> Vec<Signal> {
         let mut signals = outputs.to_vec();
-        let differences =
-            parts.iter().filter(|part| part.filter() == Some(DiscreteFilter::Difference));
-        for j in differences.filter_map(|part| part.output) {
+        for j in parts.iter().filter(|part| part.counts_seconds()).filter_map(|part| part.output) {
             signals[j].unit = per_second(&signals[j].unit);
         }
         signals

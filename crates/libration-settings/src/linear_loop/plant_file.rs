@@ -28,8 +28,12 @@ pub fn read(path: &Path) -> Result<PlantTable, String> {
         Some("toml") => {
             let text = text()?;
             let name = path.to_string_lossy();
-            let document = Document::parse(&text, &name).map_err(|error| error.to_string())?;
-            toml::from_str(&text).map_err(|error| document.explain(&error).to_string())?
+            let document = Document::parse(&text, &name).map_err(|error| error.sentence())?;
+            if document.has_key("system") {
+                let message = "it is a request with the table [system.linear]; expected --config, or a file with the keys of that table alone";
+                return Err(message.to_owned());
+            }
+            toml::from_str(&text).map_err(|error| document.explain(&error).sentence())?
         }
         Some("json") => serde_json::from_str(&text()?).map_err(|error| error.to_string())?,
         Some("csv") => from_csv(&text()?)?,

@@ -58,7 +58,10 @@ pub type Rows = Vec<Vec<Number>>;
 
 /// One polynomial, or one for each pair of output and input.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "expected a list of numbers, or one for each output and input: `[[[1], [2, 1]]]`"
+)]
 pub enum Polynomials {
     /// Of a plant with one input and one output.
     One(Vec<Number>),
@@ -238,7 +241,9 @@ pub(super) fn matrix(key: &'static str, rows: &Rows) -> Result<Matrix, Fault> {
         let first = numbers[0].len();
         let odd = numbers.iter().position(|row| row.len() != first).unwrap_or(0);
         let count = numbers[odd].len();
-        Fault::at(key, odd, format!("row {} has {count} numbers, row 1 has {first}", odd + 1))
+        let name = key.rsplit('.').next().unwrap_or(key);
+        let message = format!("row {} of `{name}` has {count} numbers, row 1 has {first}", odd + 1);
+        Fault::at(key, odd, message)
     })
 }
 
