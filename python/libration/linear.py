@@ -284,6 +284,8 @@ def linear_request(plant: LinearPlant, controller: Any, timing: dict[str, Any], 
         g = _array("G", plant.G)
         table["g"] = matrix("G", g[:, np.newaxis] if g.ndim == 1 else g)
     for key, names in (("states", plant.states), ("inputs", plant.inputs), ("outputs", plant.outputs)):
+        if isinstance(names, str):
+            raise TypeError(f"{key} is {names!r:.60}; expected a list with a name for each")
         if names is not None:
             table[key] = [str(name) for name in names]
     if plant.dt is not None:
@@ -423,7 +425,10 @@ def _loop(timing: dict[str, Any]) -> dict[str, Any]:
     if timing["jitter"] is not None:
         loop["law"], loop["jitter"] = law("jitter", timing["jitter"]) or ("gaussian", 0.0)
     if timing["cost_weights"] is not None:
-        states, inputs = timing["cost_weights"]
+        weights = timing["cost_weights"]
+        if not isinstance(weights, (tuple, list)) or len(weights) != 2:
+            raise TypeError(f"cost_weights is {weights!r:.60}; expected (Q, R), weights of states and inputs")
+        states, inputs = weights
         loop["cost"] = {"states": _weights("cost_weights", states), "inputs": _weights("cost_weights", inputs)}
     if timing.get("clock") is not None:
         loop["clock"] = str(timing["clock"])

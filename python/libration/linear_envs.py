@@ -12,10 +12,15 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
-from ._settings import count, number
+from ._settings import count, nearest, number
 from .linear_loops import OpenLoops
 
 __all__ = ["LinearVectorEnv"]
+
+_TIMING = (
+    *("period", "latency", "output_latency", "jitter", "skew", "loss", "cost_weights", "measurement_noise"),
+    *("disturbance", "noise", "threads"),
+)
 
 
 class LinearVectorEnv(gymnasium.vector.VectorEnv):
@@ -55,9 +60,12 @@ class LinearVectorEnv(gymnasium.vector.VectorEnv):
         max_episode_steps: int = 1000,
         **timing: Any,
     ) -> None:
-        for name in ("controller", "reference", "x0", "seed", "num_loops"):
-            if name in timing:
+        for name in timing:
+            if name in ("controller", "reference", "x0", "seed", "num_loops"):
                 raise TypeError(f"unexpected keyword argument {name!r}: the policy is the controller, and start gives the states")
+            if name not in _TIMING:
+                own = ("start", "max_action", "max_episode_steps", *_TIMING)
+                raise TypeError(f"unexpected keyword argument {name!r}: {nearest(name, own)}")
         self._loops = OpenLoops(plant, None, count("num_envs", num_envs, 1, 2**40), **timing)
         self.num_envs = self._loops.num_loops
         states, inputs, outputs = (

@@ -258,7 +258,7 @@ def test_a_redesign_is_cheaper_with_the_latency_it_is_made_for():
 def test_bad_input_is_refused_by_name():
     for controller, keywords, error, wanted in (
         (None, {}, TypeError, "controller is missing"),
-        (LQR([1, 1, 1], [1]), {}, ValueError, "is 3 × 3; expected 2 × 2"),
+        (LQR([1, 1, 1], [1]), {}, ValueError, "`states` has 3 numbers; expected 2"),
         (LQR([1, 1, 1]), {}, ValueError, "expected LQR\\(Q, R\\)"),
         (LQR([1, np.nan], [1]), {}, ValueError, "Q has an entry that is not finite"),
         (StateFeedback([[1.0]]), {}, ValueError, "`gain` is 1 × 1; expected 1 × 2"),
@@ -268,11 +268,17 @@ def test_bad_input_is_refused_by_name():
         (StateFeedback([[0.0, 0.0]]), {}, ValueError, "a motion grows"),
         (StateFeedback([[20.0, 5.0]]), {"deadline_misses": (2, 5)}, TypeError, "expected text like '2 of 5'"),
         (StateFeedback([[20.0, 5.0]]), {"deadline_misses": "5 of 2"}, ValueError, "expected `m of K`"),
+        (StateFeedback([[20.0, 5.0]]), {"cost_weights": (1, 2, 3)}, TypeError, "expected \\(Q, R\\), weights of states and inputs"),
+        (StateFeedback([[20.0, 5.0]]), {"measurement_noise": [0.0, -1.0]}, ValueError, "expected a finite variance of at least 0"),
         (StateFeedback([[20.0, 5.0]]), {"overrun": "drop"}, ValueError, "unknown value `drop`"),
         (PID(1.0, 0.0, 0.0), {}, TypeError, "expected LQR"),
     ):
         with pytest.raises(error, match=wanted):
             advise(PENDULUM, controller, **keywords)
+    with pytest.raises(TypeError, match="states is 'xy'; expected a list"):
+        advise(LinearPlant(A, B, states="xy"), LQR([1, 1], [1]))
+    with pytest.raises(ValueError, match="a"):
+        advise(LinearPlant([], []), LQR([1, 1], [1]))
     with pytest.raises(ValueError, match="dt is True"):
         advise(types.SimpleNamespace(A=A, B=B, C=A, D=B, dt=True), LQR([1, 1], [1, 1]))
     for name, value in (("output_latency", 0.1), ("deadline_misses", "1 of 2")):

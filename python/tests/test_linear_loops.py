@@ -125,3 +125,10 @@ def test_an_environment_passes_gymnasiums_checks_of_spaces():
     np.testing.assert_array_equal(observations, same)
     observations, rewards, *_ = envs.step(envs.action_space.sample())
     assert envs.observation_space.contains(observations) and (rewards <= 0).all()
+
+
+def test_an_environment_names_the_keywords_that_it_takes():
+    with pytest.raises(TypeError, match="unexpected keyword argument 'latencies': did you mean 'latency'"):
+        LinearVectorEnv(SPRING, latencies=1.0)
+    with pytest.raises(TypeError, match="the policy is the controller"):
+        LinearVectorEnv(SPRING, controller=LQR([10, 1], [0.1]))

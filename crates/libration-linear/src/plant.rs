@@ -100,6 +100,14 @@ pub enum PlantError {
         /// The number of signals.
         count: usize,
     },
+    /// A name is empty, or cannot be printed on a line.
+    #[error("a name of the {of} is {name:?}; expected text on one line")]
+    Name {
+        /// `states`, `inputs` or `outputs`.
+        of: &'static str,
+        /// The name with its unit.
+        name: String,
+    },
     /// Two signals have the same name.
     #[error("two {of} have the name `{name}`; expected different names")]
     Repeated {
@@ -192,7 +200,7 @@ impl LinearPlant {
     /// The plant with these names and units of its states, inputs and outputs.
     ///
     /// # Errors
-    /// [`PlantError`]: a wrong number of names, or a repeated one.
+    /// [`PlantError`]: a wrong number of names, an empty one, one with control characters, or a repeated one.
     pub fn named(
         self,
         states: Vec<Signal>,
@@ -206,6 +214,14 @@ impl LinearPlant {
         ] {
             if given.len() != count {
                 return Err(PlantError::Names { of, given: given.len(), count });
+            }
+            let printed = |s: &&Signal| {
+                !s.name.trim().is_empty()
+                    && !s.name.chars().chain(s.unit.chars()).any(char::is_control)
+            };
+            if let Some(signal) = given.iter().find(|s| !printed(s)) {
+                let name = [&*signal.name, &*signal.unit].join(" ").trim_end().to_owned();
+                return Err(PlantError::Name { of, name });
             }
             let repeated =
                 (1..given.len()).find(|&i| given[..i].iter().any(|s| s.name == given[i].name));

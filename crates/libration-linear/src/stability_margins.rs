@@ -20,10 +20,10 @@ pub struct StabilityMargins {
 }
 
 /// Angles per period at which the response is computed, in equal ratios from the slowest.
-const ANGLES: usize = 4000;
+const ANGLES: usize = 5200;
 
 /// The slowest angle, in rad.
-const SLOWEST: f64 = 1e-6;
+const SLOWEST: f64 = 1e-8;
 
 /// Bisections of an angle.
 const HALVINGS: u32 = 50;

@@ -134,12 +134,8 @@ impl LinearRequest {
         weights.check(&plant).map_err(|error| Fault::new("loop.cost", error.to_string()))?;
         let noise = match &file.looped.measurement_noise {
             Some(variances) => {
-                let matrix = variances.matrix(
-                    "loop.measurement-noise",
-                    "outputs",
-                    design.plant.outputs.len(),
-                )?;
-                (0..matrix.rows()).map(|j| matrix[(j, j)]).collect()
+                let outputs = design.plant.outputs.len();
+                variances.variances("loop.measurement-noise", "outputs", outputs)?
             }
             None => design.measurement.clone(),
         };

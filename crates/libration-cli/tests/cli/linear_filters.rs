@@ -3,6 +3,7 @@
 use std::fs;
 
 use predicates::prelude::*;
+use serde_json::Value;
 
 use super::advise::{json, libration};
 use super::linear::{OSCILLATOR, example, written};
@@ -42,5 +43,31 @@ fn a_measured_clock_is_for_controllers_of_one_rate() {
         libration(&["advise", "--config", path.to_str().unwrap()])
             .code(2)
             .stderr(predicate::str::contains(words));
+    }
+}
+
+#[test]
+fn a_part_that_is_ten_orders_faster_than_the_period_changes_no_limit() {
+    let folder = tempfile::tempdir().unwrap();
+    let advice = |part: &str| {
+        let text = OSCILLATOR.replace("[controller", &format!("{part}\n[controller"));
+        let path = written(&folder, "fast.toml", &text);
+        json(&["advise", "--config", path.to_str().unwrap()])
+    };
+    let without = advice("");
+    for part in ["lag = 1e-12", "butterworth2 = 1e10"] {
+        let with = advice(&format!("[[part]]\ninput = \"u1\"\n{part}"));
+        let limits = |advice: &Value| -> Vec<Option<f64>> {
+            let budgets = advice["budgets"].as_array().unwrap();
+            budgets.iter().map(|budget| budget["stable_up_to"].as_f64()).collect()
+        };
+        for (fast, none) in limits(&with).into_iter().zip(limits(&without)) {
+            // A latency is shorter by the delay of the part, 10⁻¹² s, 10⁻¹⁰ of a period.
+            let close = match (fast, none) {
+                (Some(fast), Some(none)) => (fast - none).abs() < 1e-9,
+                (fast, none) => fast == none,
+            };
+            assert!(close, "{part}: {fast:?} {none:?}");
+        }
     }
 }

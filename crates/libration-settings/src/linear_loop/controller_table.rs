@@ -54,7 +54,7 @@ pub struct WeightsTable {
 pub struct LqgTable {
     states: Weights,
     inputs: Weights,
-    /// The covariance of the noise of a sample, or its diagonal.
+    /// The variances of the noise of a sample.
     measurement: Weights,
 }
 
@@ -86,6 +86,39 @@ impl Weights {
                 Ok(Matrix::diagonal(&entries.iter().map(|x| x.0).collect::<Vec<_>>()))
             }
             Weights::Matrix(rows) => matrix(key, rows),
+        }
+    }
+}
+
+impl Weights {
+    /// The variances of `count` noises that are independent of each other, one of each of the signals, which are `of`.
+    ///
+    /// # Errors
+    /// [`Fault`]: as for [`Weights::matrix`], entries beside the diagonal, or a negative variance.
+    pub fn variances(&self, key: &'static str, of: &str, count: usize) -> Result<Vec<f64>, Fault> {
+        let covariance = self.matrix(key, of, count)?;
+        let name = key.rsplit('.').next().unwrap_or(key);
+        if [covariance.rows(), covariance.columns()] != [count; 2] {
+            let (rows, columns) = (covariance.rows(), covariance.columns());
+            let message = format!("`{name}` is {rows} × {columns}; expected {count} × {count}");
+            return Err(Fault::new(key, message));
+        }
+        let variances: Vec<f64> = (0..count).map(|j| covariance[(j, j)]).collect();
+        if covariance != Matrix::diagonal(&variances) {
+            let message = format!(
+                "`{name}` has entries beside its diagonal; expected variances of independent noises, one for each of the {of}"
+            );
+            return Err(Fault::new(key, message));
+        }
+        match variances.iter().position(|x| !(x.is_finite() && *x >= 0.0)) {
+            None => Ok(variances),
+            Some(j) => {
+                let message = format!(
+                    "`{name}` is {:?}; expected a finite variance of at least 0",
+                    variances[j]
+                );
+                Err(Fault::at(key, j, message))
+            }
         }
     }
 }
@@ -131,7 +164,9 @@ impl LinearControllerTable {
                     states: states.matrix("controller.lqg.states", "states", n)?,
                     inputs: inputs.matrix("controller.lqg.inputs", "inputs", m)?,
                 };
-                let noise = measurement.matrix("controller.lqg.measurement", "outputs", p)?;
+                let variances =
+                    measurement.variances("controller.lqg.measurement", "outputs", p)?;
+                let noise = Matrix::diagonal(&variances);
                 let wrong = |error: DesignError| design_fault("controller.lqg", &error);
                 let gain = plant.design_regulator(&weights, period).map_err(wrong)?.gain;
                 let filter = plant.design_filter(&noise, period).map_err(wrong)?;
@@ -147,7 +182,7 @@ impl LinearControllerTable {
                     weights: Some(weights),
                     gain: Some(gain),
                     filter: Some(filter),
-                    measurement: (0..noise.rows()).map(|j| noise[(j, j)]).collect(),
+                    measurement: variances,
                     description:
                         "LQG, designed: a regulator of a state that a Kalman filter estimates"
                             .into(),

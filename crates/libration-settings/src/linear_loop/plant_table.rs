@@ -262,7 +262,12 @@ fn fault(error: PlantError) -> Fault {
         ("mass", _) | (_, PlantError::Mass(_)) => "system.linear.mass",
         ("damping", _) => "system.linear.damping",
         ("stiffness", _) => "system.linear.stiffness",
-        (_, PlantError::Names { of, .. } | PlantError::Repeated { of, .. }) => match *of {
+        (
+            _,
+            PlantError::Names { of, .. }
+            | PlantError::Name { of, .. }
+            | PlantError::Repeated { of, .. },
+        ) => match *of {
             "states" => "system.linear.states",
             "inputs" => "system.linear.inputs",
             _ => "system.linear.outputs",
