@@ -18,7 +18,7 @@ from .linear_loops import OpenLoops
 __all__ = ["LinearVectorEnv"]
 
 _TIMING = (
-    *("period", "latency", "output_latency", "jitter", "skew", "loss", "cost_weights", "measurement_noise"),
+    *("period", "latency", "output_latency", "jitter", "skew", "loss", "missing", "cost_weights", "measurement_noise"),
     *("disturbance", "noise", "threads"),
 )
 
@@ -44,8 +44,8 @@ class LinearVectorEnv(gymnasium.vector.VectorEnv):
     max_episode_steps:
         Number of periods of an episode.
     **timing:
-        ``period``, ``latency``, ``output_latency``, ``jitter``, ``skew``, ``loss``, ``cost_weights``, ``measurement_noise``,
-        ``disturbance``, ``noise`` and ``threads``, as in :class:`~libration.LinearLoops`.
+        ``period``, ``latency``, ``output_latency``, ``jitter``, ``skew``, ``loss``, ``missing``, ``cost_weights``,
+        ``measurement_noise``, ``disturbance``, ``noise`` and ``threads``, as in :class:`~libration.LinearLoops`.
     """
 
     metadata: dict[str, Any] = {"autoreset_mode": AutoresetMode.NEXT_STEP}

@@ -48,7 +48,7 @@ class LinearLoops:
         Number of loops.
     period:
         Period in s (default: 0.01, or ``dt`` of a sampled plant).
-    latency, output_latency, jitter, skew, loss, cost_weights, measurement_noise:
+    latency, output_latency, jitter, skew, loss, missing, cost_weights, measurement_noise:
         As in :func:`~libration.advise`.
     reference:
         What the controller subtracts from its measurements: a value for each output, or a dictionary by name (default: zeros).
@@ -85,6 +85,7 @@ class LinearLoops:
         jitter: Any = None,
         skew: float | None = None,
         loss: float | None = None,
+        missing: str | None = None,
         cost_weights: Any = None,
         measurement_noise: ArrayLike | None = None,
         reference: ArrayLike | Mapping[str, float] | None = None,
@@ -104,6 +105,7 @@ class LinearLoops:
             "jitter": jitter,
             "skew": skew,
             "loss": loss,
+            "missing": missing,
             "cost_weights": cost_weights,
             "measurement_noise": measurement_noise,
             "tolerance": None,

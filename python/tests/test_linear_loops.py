@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import libration
-from libration import LQR, LinearLoops, LinearPlant, StateFeedback
+from libration import LQR, LinearLoops, LinearPlant, LinearVectorEnv, StateFeedback
 
 A, B = np.array([[0.0, 1.0], [-4.0, -0.4]]), np.array([[0.0], [1.0]])
 SPRING = LinearPlant(A, B, states=["angle (rad)", "rate (rad/s)"], inputs=["torque (N m)"])
@@ -50,6 +50,20 @@ def test_the_mean_cost_under_noise_and_jitter_is_that_of_the_advice():
     rates = (after.cost - before.cost) / (after.time - before.time).mean()
     error = rates.std(ddof=1) / math.sqrt(len(rates))
     assert abs(rates.mean() - advice["cost"]) < 4 * error
+
+
+def test_in_place_of_a_lost_command_acts_zero_or_the_last_one():
+    gain = np.array([[3.0, 1.0]])
+    for missing in ("hold", "zero"):
+        loops = LinearLoops(SPRING, StateFeedback(gain), 100, period=0.1, loss=0.3, missing=missing, x0=[1.0, 0.0])
+        rows = loops.rollout(100)
+        command = -(rows.states @ gain.T)[1:-1, :, 0]
+        acting = rows.inputs[:, :, 0]
+        lost = abs(acting[1:-1] - command) > 1e-12
+        instead = acting[:-2] if missing == "hold" else np.zeros_like(command)
+        np.testing.assert_array_equal(acting[1:-1][lost], instead[lost])
+        # 9,900 draws: five standard deviations of their mean.
+        assert abs(lost.mean() - 0.3) < 5 * math.sqrt(0.21 / lost.size)
 
 
 def test_bits_do_not_depend_on_the_number_of_loops_and_threads():
