@@ -24,6 +24,24 @@ pub fn exponential(a: &Matrix) -> Matrix {
     unit.plus(&grown)
 }
 
+/// The change of `exp(a)`, relative to its largest entry, if entries of `a` change by a unit of rounding: the largest of three patterns.
+///
+/// It is about the unit of rounding, unless `a` is stiff and dense: where an entry is a sum of motions of very different rates, the slow
+/// ones lose digits beside the fast ones.
+pub fn exponential_rounding(a: &Matrix) -> f64 {
+    let own = exponential(a);
+    let change = |pattern: usize| {
+        let moved = Matrix::from_fn(a.rows(), a.columns(), |i, j| {
+            let up = (5 * i + 3 * j + pattern) % 7 < 3;
+            a[(i, j)] * if up { 1.0 + f64::EPSILON } else { 1.0 - f64::EPSILON }
+        });
+        let moved = exponential(&moved);
+        let off = own.entries().iter().zip(moved.entries()).map(|(x, y)| (x - y).abs());
+        off.fold(0.0, f64::max)
+    };
+    (0..3).map(change).fold(0.0, f64::max) / own.largest()
+}
+
 /// `exp(2a) − 1` of `exp(a) − 1`.
 pub(crate) fn twice(grown: &Matrix) -> Matrix {
     let mut double = grown * grown;
@@ -64,5 +82,30 @@ mod tests {
         // (e^{−0.01} − e^{−10¹⁰})/(10¹⁰ − 0.01); some roundings.
         let through = slow / (1e10 - 0.01);
         assert!((found[(0, 1)] / through - 1.0).abs() < 1e-14, "{} {through}", found[(0, 1)]);
+        assert!(exponential_rounding(&stiff) < 1e-15);
+    }
+
+    #[test]
+    fn the_digits_that_a_dense_stiff_matrix_loses_are_told() {
+        // With the eigenvectors (1, 1) and (1, −2), the exponential is ⅓[2s + f, s − f; 2s − 2f, s + 2f] of slow and fast.
+        let mixed = |slow: f64, fast: f64| {
+            let rows =
+                [[2.0 * slow + fast, slow - fast], [2.0 * slow - 2.0 * fast, slow + 2.0 * fast]];
+            Matrix::from_rows(&rows).unwrap().scaled(1.0 / 3.0)
+        };
+        for rate in [3e3, 3e6, 3e9] {
+            let a = mixed(-1.5, -rate);
+            let wanted = mixed((-1.5_f64).exp(), (-rate).exp());
+            let found = exponential(&a);
+            let off = found.entries().iter().zip(wanted.entries()).map(|(x, y)| (x - y).abs());
+            let off = off.fold(0.0, f64::max) / wanted.largest();
+            let told = exponential_rounding(&a);
+            // The entries of `a` are rounded themselves, often by less than a unit: a unit of the fast rate reaches the slow one.
+            let unit = f64::EPSILON * rate;
+            assert!(
+                off < told && (0.1 * unit..10.0 * unit).contains(&told),
+                "{rate:e}: {off:e} {told:e}"
+            );
+        }
     }
 }

@@ -80,7 +80,7 @@ pub use discretisation::Discretisation;
 pub use dynamics::{Dynamics, SplitStep};
 pub use eigenvalues::eigenvalues;
 pub use eigenvector::eigenvector;
-pub use exponential::exponential;
+pub use exponential::{exponential, exponential_rounding};
 pub use growth_bounds::{GrowthBounds, SearchEnd, Verdict};
 pub use jitter::{Averages, MOST_TURN};
 pub use latency_windows::LatencyWindow;

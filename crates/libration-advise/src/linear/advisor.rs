@@ -99,6 +99,7 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         map,
     };
     advice.warnings = advice.warnings_of();
+    advice.warnings.extend(request.stiffness_warning());
     advice.answer = advice.summary();
     Ok(advice)
 }

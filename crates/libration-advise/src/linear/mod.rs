@@ -16,6 +16,7 @@ mod redesign_toml;
 mod request;
 mod simulated_cost;
 mod stated_deadlines;
+mod stiffness;
 mod summary;
 
 pub use advice::{ControllerMatrices, Deviation, LinearAdvice, SignalName};

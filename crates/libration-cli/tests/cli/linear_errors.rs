@@ -2,7 +2,7 @@
 
 use predicates::prelude::*;
 
-use super::advise::libration;
+use super::advise::{json, libration};
 use super::linear::{OSCILLATOR, example, written};
 
 #[test]
@@ -184,4 +184,20 @@ inputs = [1]
         predicate::str::contains("a motion grows by the factor")
             .and(predicate::str::contains("x2, x1")),
     );
+}
+
+#[test]
+fn a_plant_that_mixes_fast_and_slow_motions_in_its_entries_gets_a_warning() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = |a: &str| {
+        let text = format!(
+            "[system.linear]\na = {a}\nb = [[1], [1]]\n[controller.state-feedback]\ngain = [[0, 0]]\n"
+        );
+        let path = written(&folder, "stiff.toml", &text);
+        json(&["advise", "--config", path.to_str().unwrap()])["warnings"].to_string()
+    };
+    // Rates of 1.5 and 3·10⁹ per second, mixed and apart.
+    let mixed = "[[-1000000001.0, 999999999.5], [1999999999.0, -2000000000.5]]";
+    assert!(told(mixed).contains("the plant is stiff: rounding changes"));
+    assert!(!told("[[-1.5, 0], [0, -3e9]]").contains("stiff"));
 }
