@@ -18,6 +18,7 @@ __all__ = [
     "__version__",
     "_advise",
     "_analyze",
+    "_analyze_linear",
     "_dataset_settings",
     "_forked",
     "_integrators",
@@ -62,6 +63,7 @@ def _simulate(
 def _analyze(
     step: Mapping[str, Any], looped: Mapping[str, Any], options: Mapping[str, Any]
 ) -> str: ...
+def _analyze_linear(config: str, dt: float | None, integrator: str | None) -> str: ...
 def _advise(
     config: str, page: bool, redesign: bool, progress: Callable[[str, int, int, str, int, int], Any] | None
 ) -> tuple[str, bool, str | None]: ...

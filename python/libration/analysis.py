@@ -68,7 +68,7 @@ def _shown(value: Any) -> str:
 
 
 class Analysis(Answer):
-    """Analysis of one step, with the keys of ``libration analyze --json``.
+    """Analysis of one step, with the keys of ``libration analyze --json``; of a linear plant with those of ``docs/plants.md``.
 
     ``spectral_radius`` and all keys without ``closed_loop`` belong to one step of the plant without feedback. The loop has
     ``closed_loop_spectral_radius``, and with jitter or losses ``mean_square_growth``. ``note`` is a restriction of the numbers,
@@ -108,31 +108,51 @@ class Advice(Answer):
         Path(path).write_text(self.page, encoding="utf-8")
 
 
+_STEPS = 1_000_000
+"""Default number of steps for the largest energy drift."""
+
+
 @check_keywords
 def analyze(
-    system: str | System,
+    system: Any,
+    controller: Any = None,
     *,
-    integrator: str,
-    dt: float,
+    integrator: str | None = None,
+    dt: float | None = None,
     q: Any = None,
     v: Any = None,
-    steps: int = 1_000_000,
+    steps: int = _STEPS,
     max_drift: float | None = None,
     max_amplitude: float | None = None,
     max_error: float | None = None,
     feedback: Any = None,
+    period: float | None = None,
     latency: Any = None,
+    output_latency: Any = None,
     jitter: Any = None,
     skew: Any = None,
     loss: float | None = None,
-    cost_weights: Sequence[float] | None = None,
+    missing: str | None = None,
+    cost_weights: Any = None,
+    measurement_noise: Any = None,
+    clock: str | None = None,
 ) -> Analysis:
-    """Return the analysis of one step, as ``libration analyze`` prints it.
+    """Return the analysis of one step or of a linear plant, as ``libration analyze`` prints it.
 
     Parameters
     ----------
-    system, integrator, dt, q, v, feedback, latency, jitter, skew:
+    system:
+        A name or a :class:`~libration.System`, which requires ``integrator`` and ``dt``; or a linear plant, as in
+        :func:`~libration.advise`.
+    controller:
+        Of a linear plant: as in :func:`~libration.advise`; without one its commands are zero.
+    integrator, dt:
+        As in :func:`~libration.simulate`. Of a linear plant both are optional: without ``integrator`` the analysis has all that apply,
+        without ``dt`` the time steps at which they are stable.
+    q, v, feedback:
         As in :func:`~libration.simulate`.
+    latency, jitter, skew:
+        As in :func:`~libration.simulate`; of a loop around a linear plant as in :func:`~libration.advise`.
     steps:
         Number of steps for the largest energy drift (linear systems: up to 10¹⁵).
     max_drift, max_amplitude, max_error:
@@ -141,13 +161,51 @@ def analyze(
     loss:
         Probability that a command is lost, at least 0 and below 1; the previous command then stays active.
     cost_weights:
-        Weights of position², velocity² and command² in the cost of the loop (default: those of its energy).
+        Weights of position², velocity² and command² in the cost of the loop (default: those of its energy). Of a linear plant a pair,
+        weights of states and inputs.
+    period, output_latency, missing, measurement_noise, clock:
+        Of a loop around a linear plant: as in :func:`~libration.advise`.
 
     Raises
     ------
     TypeError, ValueError
         For an invalid value, before any work; the message has the name of the parameter and the allowed values.
     """
+    of_catalogue = {
+        "q": q,
+        "v": v,
+        "steps": None if steps == _STEPS else steps,
+        "max_drift": max_drift,
+        "max_amplitude": max_amplitude,
+        "max_error": max_error,
+        "feedback": feedback,
+    }
+    of_loop = {"latency": latency, "jitter": jitter, "skew": skew, "loss": loss, "cost_weights": cost_weights}
+    of_linear = {
+        "period": period,
+        "output_latency": output_latency,
+        "missing": missing,
+        "measurement_noise": measurement_noise,
+        "clock": clock,
+    }
+    if (plant := plant_of(system)) is not None:
+        for name, value in of_catalogue.items():
+            if value is not None:
+                raise TypeError(f"{name} cannot be combined with a linear plant")
+        if controller is None:
+            for name, value in (of_loop | of_linear).items():
+                if value is not None:
+                    raise TypeError(f"{name} requires a controller")
+        if integrator is not None and not isinstance(integrator, str):
+            raise TypeError(f"integrator is {integrator!r:.60}; expected a name")
+        request = linear_request(plant, controller, of_loop | of_linear | {"tolerance": None}, required=False)
+        step = None if dt is None else number("dt", dt, "finite and greater than 0")
+        return Analysis(json.loads(_native._analyze_linear(text_of("config", request), step, integrator)))
+    for name, value in ({"controller": controller} | of_linear).items():
+        if value is not None:
+            raise TypeError(f"{name} requires a linear plant")
+    if integrator is None or dt is None:
+        raise TypeError(f"{'integrator' if integrator is None else 'dt'} is missing")
     system = _of_catalogue(system)
     criteria = {"max_drift": max_drift, "max_amplitude": max_amplitude, "max_error": max_error}
     answer = _native._analyze(

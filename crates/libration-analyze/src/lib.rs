@@ -1,8 +1,9 @@
 //! Analyses and trajectories of a system that is chosen at run time: the results of the commands `analyze` and `simulate`.
 //!
-//! [`analyze`] derives stability, errors and costs of one step and of a control loop; [`trajectory`] and [`linear_trajectory`] simulate.
+//! [`analyze`] derives stability, errors and costs of one step and of a control loop, and [`linear_analysis`] those of linear plants; [`trajectory`] and [`linear_trajectory`] simulate.
 
 pub mod export;
+pub mod linear_analysis;
 pub mod linear_trajectory;
 mod step;
 pub mod trajectory;

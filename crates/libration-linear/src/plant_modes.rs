@@ -29,7 +29,7 @@ impl core::fmt::Display for PlantMode {
 }
 
 /// Part of the size of a matrix below which a singular value counts as zero. Its square is a rounding.
-const NOTHING: f64 = 3e-8;
+pub(crate) const NOTHING: f64 = 3e-8;
 
 /// Part of the size of the plant below which a growth rate counts as zero.
 const NEUTRAL: f64 = 1e-9;
@@ -37,12 +37,16 @@ const NEUTRAL: f64 = 1e-9;
 impl LinearPlant {
     /// The modes of the plant, the one that grows fastest first; of a pair one.
     pub fn modes(&self) -> Vec<PlantMode> {
+        self.shapes().iter().map(|(value, shape)| self.mode(*value, shape)).collect()
+    }
+
+    /// Eigenvalues of the state matrix with their vectors, the one that grows fastest first; of a pair one.
+    pub(crate) fn shapes(&self) -> Vec<(Complex64, Vec<Complex64>)> {
         let mut values = eigenvalues(&self.a).unwrap_or_default();
         values.retain(|value| value.im >= 0.0);
         let rate = |value: &Complex64| self.rate_of(*value).re;
         values.sort_by(|a, b| rate(b).total_cmp(&rate(a)));
-        let mode = |value: Complex64| Some(self.mode(value, &eigenvector(&self.a, value)?));
-        values.into_iter().filter_map(mode).collect()
+        values.into_iter().filter_map(|value| Some((value, eigenvector(&self.a, value)?))).collect()
     }
 
     /// A mode that does not decay and that no input reaches.
@@ -81,7 +85,7 @@ impl LinearPlant {
         })
     }
 
-    fn mode(&self, value: Complex64, shape: &[Complex64]) -> PlantMode {
+    pub(crate) fn mode(&self, value: Complex64, shape: &[Complex64]) -> PlantMode {
         let value = self.rate_of(value);
         PlantMode {
             growth_rate: value.re,
@@ -91,7 +95,7 @@ impl LinearPlant {
     }
 
     /// The eigenvalue in 1/s.
-    fn rate_of(&self, value: Complex64) -> Complex64 {
+    pub(crate) fn rate_of(&self, value: Complex64) -> Complex64 {
         match self.sampling_period {
             None => value,
             Some(period) => value.ln() / period,
@@ -114,7 +118,11 @@ pub(crate) fn largest(signals: &[Signal], shape: &[Complex64]) -> Vec<(String, f
 }
 
 /// The smallest singular value of `[λ − A, B]`, with each column of `B` scaled to the size of `A`, and its left vector.
-fn smallest_singular(a: &Matrix, b: &Matrix, value: Complex64) -> Option<(f64, Vec<Complex64>)> {
+pub(crate) fn smallest_singular(
+    a: &Matrix,
+    b: &Matrix,
+    value: Complex64,
+) -> Option<(f64, Vec<Complex64>)> {
     let n = a.rows();
     let size = a.row_sum_norm().max(f64::MIN_POSITIVE);
     let shifted = |i: usize, j: usize| {

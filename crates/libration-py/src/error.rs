@@ -6,6 +6,7 @@ use libration::replay::ReplayError;
 use libration::rl::EnvironmentError;
 use libration_advise::AdviseError;
 use libration_analyze::AnalyzeError;
+use libration_analyze::linear_analysis::LinearAnalysisError;
 use libration_analyze::trajectory::TrajectoryError;
 use libration_data::DataError;
 use libration_env::dataset::DatasetError;
@@ -72,6 +73,15 @@ impl Raised for AnalyzeError {
             return interrupted();
         }
         value_error(keywords(&self.to_string()))
+    }
+}
+
+impl Raised for LinearAnalysisError {
+    fn raised(self) -> PyErr {
+        match self {
+            LinearAnalysisError::Interrupted => interrupted(),
+            error => value_error(keywords(&error.to_string())),
+        }
     }
 }
 

@@ -12,6 +12,7 @@ mod checked_mutex;
 mod datasets;
 mod error;
 mod laboratory;
+mod linear_analysis;
 mod linear_loops;
 mod policy;
 mod program;
@@ -40,6 +41,8 @@ mod _native {
     use crate::datasets::{_dataset_settings, _verify_dataset, _write_dataset};
     #[pymodule_export]
     use crate::laboratory::{_advise, _run_lab};
+    #[pymodule_export]
+    use crate::linear_analysis::_analyze_linear;
     #[pymodule_export]
     use crate::linear_loops::LinearLoops;
     #[pymodule_export]

@@ -2,6 +2,7 @@
 
 mod advice;
 mod advisor;
+mod analysis_request;
 mod clock;
 mod deadlines;
 mod deadlines_page;
@@ -21,6 +22,7 @@ mod summary;
 
 pub use advice::{ControllerMatrices, Deviation, LinearAdvice, SignalName};
 pub use advisor::advise;
+pub use analysis_request::AnalysisFile;
 pub use deadlines::{DeadlineMisses, MissRow, RandomMisses, WorstCase};
 pub use latency_chain::ChainLink;
 pub use margins::InputMargins;

@@ -5,6 +5,7 @@
 mod analyze;
 mod dimensions;
 mod export;
+mod linear_analysis;
 mod loop_growth;
 mod overflow;
 mod reference;

@@ -31,31 +31,31 @@ pub(crate) struct LinearSimulationArgs {
     #[arg(long, value_name = "FILE", group = "loop", conflicts_with_all = NOT_LINEAR)]
     pub(crate) config: Option<PathBuf>,
     /// Design a linear-quadratic regulator with these weights of the squares of states and inputs, e.g. 10,1/0.1
-    #[arg(long, value_name = "STATES/INPUTS", value_parser = lqr, requires = "plant", conflicts_with = "gain")]
+    #[arg(long, value_name = "STATES/INPUTS", value_parser = lqr, requires = "plant", conflicts_with_all = ["gain", "system"])]
     lqr: Option<WeightsTable>,
     /// Gain K of the state feedback u = −Kx, rows (inputs) separated by semicolons, e.g. "10,2;0,1"
-    #[arg(long, value_name = "ROWS", value_parser = rows, requires = "plant", allow_hyphen_values = true)]
+    #[arg(long, value_name = "ROWS", value_parser = rows, requires = "plant", conflicts_with = "system", allow_hyphen_values = true)]
     gain: Option<Gain>,
     /// Period of the loop in s [default: 0.01]
-    #[arg(long, value_name = "SECONDS", value_parser = number, requires = "plant", allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = number, requires = "plant", conflicts_with = "system", allow_hyphen_values = true)]
     period: Option<f64>,
     /// Latency of the measurements of a linear plant: of all, or of each [default: 0]
-    #[arg(long, value_name = "TIME", value_parser = latency, value_delimiter = ',', requires = LINEAR, allow_hyphen_values = true)]
+    #[arg(long, value_name = "TIME", value_parser = latency, value_delimiter = ',', requires = LINEAR, conflicts_with = "system", allow_hyphen_values = true)]
     output_latency: Vec<LatencyOption>,
     /// Probability that the commands of a period are lost (0 to below 1), in a loop around a linear plant
-    #[arg(long, value_name = "P", value_parser = number, requires = LINEAR, allow_hyphen_values = true)]
+    #[arg(long, value_name = "P", value_parser = number, requires = LINEAR, conflicts_with = "system", allow_hyphen_values = true)]
     loss: Option<f64>,
     /// Initial states of a linear plant, separated by commas [default: zeros]
-    #[arg(long, value_name = "X,…", value_parser = coordinates, requires = LINEAR, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,…", value_parser = coordinates, requires = LINEAR, conflicts_with = "system", allow_hyphen_values = true)]
     x0: Option<Coordinates>,
     /// Value that the controller subtracts from a measurement, by the name of the output; repeatable
-    #[arg(long, value_name = "OUTPUT=VALUE", value_parser = assignment, requires = LINEAR, allow_hyphen_values = true)]
+    #[arg(long, value_name = "OUTPUT=VALUE", value_parser = assignment, requires = LINEAR, conflicts_with = "system", allow_hyphen_values = true)]
     reference: Vec<(String, f64)>,
     /// Constant that is added to the command of an input, by its name; in open loop the step of that input; repeatable
-    #[arg(long, value_name = "INPUT=VALUE", value_parser = assignment, requires = LINEAR, allow_hyphen_values = true)]
+    #[arg(long, value_name = "INPUT=VALUE", value_parser = assignment, requires = LINEAR, conflicts_with = "system", allow_hyphen_values = true)]
     disturbance: Vec<(String, f64)>,
     /// Add the noise of the plant (its `g`, by default white noise of unit intensity at the inputs) and of the measurements
-    #[arg(long, requires = LINEAR)]
+    #[arg(long, requires = LINEAR, conflicts_with = "system")]
     noise: bool,
 }
 
@@ -83,52 +83,20 @@ impl SimulateArgs {
 
     /// The loop around the plant of a file.
     fn of_plant(&self, path: &Path) -> Result<LinearRequest, Failure> {
-        let plant = read_plant(path).map_err(|why| {
-            Failure::usage(format!("cannot use `{}` (--plant): {why}", path.display()))
-        })?;
         let LinearSimulationArgs { lqr, gain, period, .. } = &self.linear;
-        let controller = match (lqr, gain) {
-            (Some(weights), _) => Some(LinearControllerTable::Lqr(weights.clone())),
-            (None, Some(Gain(gain))) => {
-                let gain = gain.clone();
-                Some(LinearControllerTable::StateFeedback(StateFeedbackTable { gain }))
-            }
-            (None, None) => None,
-        };
-        let default = LinearLoopTable::default();
-        let looped = LinearLoopTable { period: period.map_or(default.period, Number), ..default };
-        let mut file = RequestFile { controller, looped, ..Default::default() };
-        file.system.linear = plant;
-        self.change(&mut file);
-        LinearRequest::new(file).map_err(|fault| Failure::usage(named(&fault)))
+        let controller = controller_table(lqr.as_ref(), gain.as_ref());
+        loop_of_plant(path, controller, *period, |file| self.change(file))
     }
 
     /// Puts the options in place of what a file states.
     fn change(&self, file: &mut RequestFile) {
-        if file.controller.is_none()
-            && let Ok(plant) = file.system.linear.plant()
-        {
-            file.controller = Some(LinearControllerTable::open_loop(&plant));
-        }
-        let looped = &mut file.looped;
-        let period = looped.period.0;
-        if let Some(late) = self.timing.latency {
-            looped.latency = Channels::All(Number(seconds(late, period)));
-        }
-        match &self.linear.output_latency[..] {
-            [] => {}
-            [one] => looped.output_latency = Channels::All(Number(seconds(*one, period))),
-            all => {
-                let all = all.iter().map(|one| Number(seconds(*one, period)));
-                looped.output_latency = Channels::Each(all.collect());
-            }
-        }
-        if let Some(jitter) = self.timing.jitter {
-            let law = if let Jitter::Uniform(_) = jitter { "uniform" } else { "gaussian" };
-            (looped.jitter, looped.law) = (Number(jitter.rms()), law.into());
-            looped.time_stamps.clear();
-        }
-        looped.loss = self.linear.loss.map_or(looped.loss, Number);
+        let timing = TimingOptions {
+            latency: self.timing.latency,
+            output_latency: &self.linear.output_latency,
+            jitter: self.timing.jitter,
+            loss: self.linear.loss,
+        };
+        timing.set(file);
     }
 
     fn trajectory(
@@ -175,6 +143,72 @@ impl SimulateArgs {
     }
 }
 
+/// The controller of `--lqr` or `--gain`; none without them.
+pub(super) fn controller_table(
+    lqr: Option<&WeightsTable>,
+    gain: Option<&Gain>,
+) -> Option<LinearControllerTable> {
+    let lqr = lqr.map(|weights| LinearControllerTable::Lqr(weights.clone()));
+    let feedback = |Gain(gain): &Gain| StateFeedbackTable { gain: gain.clone() };
+    lqr.or(gain.map(|gain| LinearControllerTable::StateFeedback(feedback(gain))))
+}
+
+/// The loop around the plant of a file, which `change` changes.
+pub(super) fn loop_of_plant(
+    path: &Path,
+    controller: Option<LinearControllerTable>,
+    period: Option<f64>,
+    change: impl FnOnce(&mut RequestFile),
+) -> Result<LinearRequest, Failure> {
+    let plant = read_plant(path).map_err(|why| {
+        Failure::usage(format!("cannot use `{}` (--plant): {why}", path.display()))
+    })?;
+    let default = LinearLoopTable::default();
+    let looped = LinearLoopTable { period: period.map_or(default.period, Number), ..default };
+    let mut file = RequestFile { controller, looped, ..Default::default() };
+    file.system.linear = plant;
+    change(&mut file);
+    LinearRequest::new(file).map_err(|fault| Failure::usage(named(&fault)))
+}
+
+/// Timing options of a loop around a linear plant.
+pub(super) struct TimingOptions<'a> {
+    pub(super) latency: Option<LatencyOption>,
+    pub(super) output_latency: &'a [LatencyOption],
+    pub(super) jitter: Option<Jitter>,
+    pub(super) loss: Option<f64>,
+}
+
+impl TimingOptions<'_> {
+    /// Puts the options in place of what a file states. A plant without a controller gets commands of zero.
+    pub(super) fn set(&self, file: &mut RequestFile) {
+        if file.controller.is_none()
+            && let Ok(plant) = file.system.linear.plant()
+        {
+            file.controller = Some(LinearControllerTable::open_loop(&plant));
+        }
+        let looped = &mut file.looped;
+        let period = looped.period.0;
+        if let Some(late) = self.latency {
+            looped.latency = Channels::All(Number(seconds(late, period)));
+        }
+        match self.output_latency {
+            [] => {}
+            [one] => looped.output_latency = Channels::All(Number(seconds(*one, period))),
+            all => {
+                let all = all.iter().map(|one| Number(seconds(*one, period)));
+                looped.output_latency = Channels::Each(all.collect());
+            }
+        }
+        if let Some(jitter) = self.jitter {
+            let law = if let Jitter::Uniform(_) = jitter { "uniform" } else { "gaussian" };
+            (looped.jitter, looped.law) = (Number(jitter.rms()), law.into());
+            looped.time_stamps.clear();
+        }
+        looped.loss = self.loss.map_or(looped.loss, Number);
+    }
+}
+
 /// A value for each signal: those given by name, and zeros.
 fn values(
     option: &str,
@@ -194,6 +228,6 @@ fn values(
     Ok(all)
 }
 
-fn number(text: &str) -> Result<f64, String> {
+pub(super) fn number(text: &str) -> Result<f64, String> {
     finite(text).ok_or_else(|| "expected a finite number".to_owned())
 }

@@ -4,6 +4,7 @@ mod advise;
 mod analyze;
 mod bench;
 mod linear;
+mod linear_analysis;
 mod linear_simulation;
 mod measure_jitter;
 mod number;
@@ -28,6 +29,7 @@ pub(crate) use advise::AdviseArgs;
 pub(crate) use analyze::AnalyzeArgs;
 pub(crate) use bench::BenchArgs;
 pub(crate) use linear::LinearArgs;
+pub(crate) use linear_analysis::LinearAnalysisArgs;
 pub(crate) use linear_simulation::LinearSimulationArgs;
 pub(crate) use measure_jitter::MeasureJitterArgs;
 pub(crate) use rollout::{RolloutArgs, VerifyArgs};
@@ -75,7 +77,7 @@ Exit codes: 0 success; 1 failed run, or measurement outside its tolerance; 2 inv
 pub(crate) enum Command {
     /// Run studies and write a report
     Lab(LabArgs),
-    /// Analyze one step: update matrix, eigenvalues, stability and drift
+    /// Analyze one step: update matrix, eigenvalues, stability and drift; modes of linear plants and loops
     Analyze(AnalyzeArgs),
     /// Compute limits: integrator, time step, float type, latency, jitter, skew and losses
     Advise(AdviseArgs),

@@ -95,7 +95,7 @@ fn system_names() -> PossibleValuesParser {
     PossibleValuesParser::new(ENTRIES.map(value))
 }
 
-fn integrators() -> impl TypedValueParser<Value = Stepping> {
+pub(super) fn integrators() -> impl TypedValueParser<Value = Stepping> {
     let value = |method: Method| PossibleValue::new(method.name()).help(method.summary());
     let exact = PossibleValue::new(Stepping::EXACT).help(Exact::SUMMARY);
     PossibleValuesParser::new(Method::ALL.map(value).into_iter().chain([exact]))

@@ -45,7 +45,7 @@ pub(crate) struct CostArgs {
         long,
         value_name = "P",
         value_parser = loss,
-        requires = "feedback",
+        requires = "loop",
         allow_hyphen_values = true
     )]
     pub(crate) loss: Option<f64>,

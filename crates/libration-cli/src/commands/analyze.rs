@@ -10,14 +10,21 @@ use libration_analyze::{
 use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::limits;
 
+use super::analyze_linear;
 use super::closed_loop::{dephasing, describe_loop};
+use super::simulate::linear_file;
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
 
 /// Analyzes one step and prints the result.
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
-    let InitialValueProblem { system, actuation, q, v } = args.system.resolve()?;
-    let (stepping, dt) = (args.step.integrator, args.step.dt);
+    if let Some(request) = args.linear_request(linear_file) {
+        return print(&analyze_linear::run(&request?, args.json)?);
+    }
+    let (Some(system), Some(stepping), Some(dt)) = (&args.system, args.integrator, args.dt) else {
+        return Err(Failure::usage("--system is required without --plant and --config"));
+    };
+    let InitialValueProblem { system, actuation, q, v } = system.resolve()?;
     let CostArgs { loss, cost_weights: weights } = args.cost;
     let timing = Timing { loss, weights, ..args.timing.timing() };
     if !system.is_linear() {
@@ -36,6 +43,11 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
         true => serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n",
         false => describe(&analysis, &request),
     };
+    print(&text)
+}
+
+/// Prints the result.
+fn print(text: &str) -> Result<(), Failure> {
     match io::stdout().lock().write_all(text.as_bytes()) {
         // A closed pipe is not an error.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),

@@ -3,12 +3,14 @@
 mod advise;
 mod advise_linear;
 mod analyze;
+mod analyze_linear;
 mod bench;
 mod closed_loop;
 mod completions;
 mod config_file;
 mod disagreements;
 mod lab;
+mod linear_closed_loop;
 mod list;
 mod measure_jitter;
 mod rollout;

@@ -146,7 +146,10 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
 }
 
 /// Reads the loop of a request file, which `change` changes.
-fn linear_file(path: &Path, change: &dyn Fn(&mut RequestFile)) -> Result<LinearRequest, Failure> {
+pub(super) fn linear_file(
+    path: &Path,
+    change: &dyn Fn(&mut RequestFile),
+) -> Result<LinearRequest, Failure> {
     config_file::read(path, |text, name| {
         if !linear::is_linear(text) {
             let document = Document::parse(text, name)?;

@@ -95,3 +95,26 @@ fn a_file_without_a_controller_is_simulated_in_open_loop_and_json_has_names_and_
     assert_eq!(found["units"][2], "m");
     assert_eq!(found["rows"][2][2], 0.04);
 }
+
+#[test]
+fn a_system_of_the_catalogue_refuses_the_options_of_linear_plants() {
+    let words = [
+        "simulate",
+        "--system",
+        "oscillator",
+        "--integrator",
+        "rk4",
+        "--dt",
+        "0.1",
+        "--steps",
+        "2",
+    ];
+    let options = ["--lqr 1/1", "--gain 1,1", "--period 0.1", "--x0 1,0", "--loss 0.1", "--noise"];
+    for option in options {
+        let option: Vec<&str> = option.split_whitespace().collect();
+        libration(&[&words[..], &option].concat())
+            .code(2)
+            .stdout("")
+            .stderr(predicate::str::contains("cannot be used with"));
+    }
+}

@@ -16,6 +16,7 @@ mod interrupt;
 mod kills;
 mod lab;
 mod linear;
+mod linear_analysis;
 mod linear_errors;
 mod linear_filters;
 mod linear_redesign;

@@ -1,0 +1,249 @@
+//! The time steps at which an integrator is stable on a linear plant.
+
+use libration_core::system::DampedOscillator;
+use libration_core::{Method, Model};
+use libration_linear::eigenvalues;
+use num_complex::Complex64;
+
+use super::{
+    LinearStepper, StabilityFunction, StabilityWindow, StepWindow, SymbolicStep, UnknownStep,
+};
+
+/// Part of the largest eigenvalue that is a rounding of another one.
+const ROUNDING: f64 = 1e-13;
+
+/// The same of the growth rate of a mode that oscillates.
+const NO_GROWTH: f64 = 1e-12;
+
+/// Part of the largest eigenvalue up to which rounding parts several zeros: by the root of a rounding.
+const PARTED: f64 = 1e-7;
+
+/// Part of the size of parted zeros below which their sum is zero.
+const NO_SUM: f64 = 1e-3;
+
+/// Growth per step that counts as none: with modes at rest, since rounding parts a double eigenvalue 1 by its root, and without.
+const NEUTRAL: [f64; 2] = [1e-7, 1e-11];
+
+/// Relative width below which a window of a search is a point at which eigenvalues touch the unit circle.
+const POINT: f64 = 1e-6;
+
+/// Eigenvalues without their rounding: those beside the largest are zero, and so are growth rates of oscillations.
+///
+/// Rounding parts a double zero, such as that of a free mass, to small numbers whose sum is zero. So such small numbers are zero.
+pub fn without_rounding(values: &[Complex64]) -> Vec<Complex64> {
+    let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
+    let small = values.iter().filter(|value| value.norm() <= PARTED * largest);
+    let size = small.clone().map(|value| value.norm()).fold(0.0, f64::max);
+    let sum: f64 = small.map(|value| value.re).sum();
+    let zero = if sum.abs() <= NO_SUM * size { PARTED } else { ROUNDING };
+    let known = |value: &Complex64| match value {
+        value if value.norm() <= zero * largest => Complex64::ZERO,
+        value if value.im != 0.0 && value.re.abs() <= NO_GROWTH * largest => {
+            Complex64::new(0.0, value.im)
+        }
+        value => *value,
+    };
+    values.iter().map(known).collect()
+}
+
+impl LinearStepper {
+    /// The time steps in s at which no mode grows that does not grow in exact steps, for the eigenvalues of the plant in 1/s.
+    ///
+    /// With a stability function they are exact, also if other modes of the plant grow. Of a mechanical plant without damping or with
+    /// modal damping they are those of its oscillators, from exact polynomials. With other damping the spectral radius of the update
+    /// matrix is searched up to about twice the limit of the fastest mode without damping, at distances of about a hundredth of it:
+    /// narrower windows and those beyond may be missed. None if the integrator does not apply, or if a mode grows and there is no
+    /// stability function.
+    pub fn stable_steps(&self, method: Method, values: &[Complex64]) -> Option<Vec<StepWindow>> {
+        let values = without_rounding(values);
+        if let Some(function) = StabilityFunction::new(method) {
+            let kept = values.iter().filter(|value| value.re <= 0.0);
+            return Some(intersection(kept.map(|&value| function.stable_steps(value))));
+        }
+        if !self.is_mechanical() || values.iter().any(|value| value.re > 0.0) {
+            return None;
+        }
+        // In powers of ωh.
+        let undamped = windows_of(&SymbolicStep::new(method)?);
+        if !self.is_damped() {
+            let of = |value: &Complex64| match value.norm() {
+                0.0 => vec![StepWindow::ALL],
+                size => undamped.iter().map(|window| window.scaled(size.recip())).collect(),
+            };
+            return Some(intersection(values.iter().map(of)));
+        }
+        let exact = self.oscillators(&values).and_then(|all| {
+            let step = |one: &DampedOscillator<f64>| {
+                SymbolicStep::of(method, &Model::on::<UnknownStep>(one))
+            };
+            all.iter().map(|one| Some(windows_of(&step(one)?))).collect::<Option<Vec<_>>>()
+        });
+        if let Some(exact) = exact {
+            return Some(intersection(exact.into_iter()));
+        }
+        let last = undamped.last().map_or(0.0, |window| window.to);
+        Some(self.searched_windows(method, &values, 2.0 * last + 1.0))
+    }
+
+    /// The damped oscillators that a mechanical plant consists of; none if they are not known.
+    ///
+    /// Modes are oscillators if the matrices of damping and stiffness, both over the masses, commute (T. K. Caughey, M. E. J. O'Kelly,
+    /// Journal of Applied Mechanics 32, 1965).
+    fn oscillators(&self, values: &[Complex64]) -> Option<Vec<DampedOscillator<f64>>> {
+        let (stiffness, damping) = self.stiffness_and_damping();
+        if stiffness.rows() == 1 {
+            let [omega2, gamma] = [stiffness[(0, 0)], damping[(0, 0)]];
+            return Some(vec![DampedOscillator { omega2, gamma }]);
+        }
+        let mut apart = &stiffness * &damping;
+        apart.add_scaled(-1.0, &(&damping * &stiffness));
+        let rounding = 1e-13 * stiffness.row_sum_norm() * damping.row_sum_norm();
+        let oscillates = values.iter().all(|value| value.im != 0.0);
+        let upper = values.iter().filter(|value| value.im > 0.0);
+        let one = |value: &Complex64| DampedOscillator {
+            omega2: value.norm_sqr(),
+            gamma: -2.0 * value.re,
+        };
+        (oscillates && apart.largest() <= rounding).then(|| upper.map(one).collect())
+    }
+
+    /// Where the spectral radius is at most 1, up to a step in which the fastest mode has `|hλ| = most`.
+    fn searched_windows(&self, method: Method, values: &[Complex64], most: f64) -> Vec<StepWindow> {
+        let fastest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        if fastest == 0.0 || !most.is_finite() {
+            return vec![StepWindow::ALL];
+        }
+        let [at_rest, moving] = NEUTRAL;
+        let neutral = if values.contains(&Complex64::ZERO) { at_rest } else { moving };
+        let is_stable = |z: f64| {
+            let step = self.with_step::<f64>(method, z / fastest);
+            let values = step.and_then(|step| eigenvalues(&step.update_matrix()));
+            values.is_some_and(|values| values.iter().all(|x| x.norm() <= 1.0 + neutral))
+        };
+        // Eigenvalues cost the cube of the size.
+        let points = (400_000 / values.len().pow(2)).clamp(50, 400);
+        let place = |k: usize| most * k as f64 / points as f64;
+        let states: Vec<bool> = (1..=points).map(|k| is_stable(place(k))).collect();
+        let mut cuts = Vec::new();
+        for k in 1..points {
+            if states[k - 1] != states[k] {
+                cuts.push(bisected(place(k), place(k + 1), |z| is_stable(z) == states[k - 1]));
+            }
+        }
+        if !states[0] {
+            cuts.insert(0, bisected(0.0, place(1), is_stable));
+        }
+        let windows = StepWindow::of_cells(&cuts, |z| z <= most && is_stable(z));
+        let wide = windows.into_iter().filter(|window| window.to - window.from > POINT * window.to);
+        wide.map(|window| window.scaled(fastest.recip())).collect()
+    }
+}
+
+/// The stability windows of a step on polynomials, in its unit.
+fn windows_of(step: &SymbolicStep) -> Vec<StepWindow> {
+    let ends = |window: &StabilityWindow| StepWindow {
+        from: window.from.to_f64(),
+        to: window.to.map_or(f64::INFINITY, |to| to.to_f64()),
+    };
+    step.stability_windows().iter().map(ends).collect()
+}
+
+/// The end of `holds` between a point where it holds and one where it does not.
+fn bisected(mut inside: f64, mut outside: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..40 {
+        let middle = 0.5 * (inside + outside);
+        if holds(middle) { inside = middle } else { outside = middle }
+    }
+    inside
+}
+
+fn intersection(all: impl Iterator<Item = Vec<StepWindow>>) -> Vec<StepWindow> {
+    all.fold(vec![StepWindow::ALL], |sum, next| StepWindow::intersections(&sum, &next))
+}
+
+#[cfg(test)]
+mod tests {
+    use libration_linear::Matrix;
+
+    use super::*;
+
+    fn windows(a: &Matrix, method: Method) -> Option<Vec<StepWindow>> {
+        LinearStepper::new(a).unwrap().stable_steps(method, &eigenvalues(a).unwrap())
+    }
+
+    fn oscillator(omega2: f64, gamma: f64) -> Matrix {
+        Matrix::from_rows(&[[0.0, 1.0], [-omega2, -gamma]]).unwrap()
+    }
+
+    #[test]
+    fn roundings_of_zeros_are_zero_and_slow_modes_of_stiff_plants_stay() {
+        let of = |values: &[f64]| {
+            let values: Vec<Complex64> = values.iter().map(|&x| Complex64::from(x)).collect();
+            without_rounding(&values).iter().map(|value| value.re).collect::<Vec<f64>>()
+        };
+        assert_eq!(of(&[3e-8, -3e-8, -4.0]), [0.0, 0.0, -4.0]);
+        assert_eq!(of(&[2e-16, -1.0, -1e3]), [0.0, -1.0, -1e3]);
+        assert_eq!(of(&[-1.0, -2.0, -1e10]), [-1.0, -2.0, -1e10]);
+        let undamped = [Complex64::new(2e-16, 7.0), Complex64::new(-1e-9, 9.0)];
+        assert_eq!(without_rounding(&undamped), [Complex64::new(0.0, 7.0), undamped[1]]);
+    }
+
+    #[test]
+    fn searched_windows_of_a_damped_oscillator_are_those_of_its_exact_polynomials() {
+        for (omega2, gamma) in [(9.0, 0.6), (9.0, 6.0), (9.0, 30.0)] {
+            let a = oscillator(omega2, gamma);
+            let stepper = LinearStepper::new(&a).unwrap();
+            for method in [Method::SymplecticEuler, Method::VelocityVerlet, Method::TextbookVerlet]
+            {
+                let exact = windows(&a, method).unwrap();
+                let values = eigenvalues(&a).unwrap();
+                let found = stepper.searched_windows(method, &values, 5.0);
+                // A narrow window of overdamped Verlet steps is beyond the search.
+                assert!(exact.len() >= found.len(), "{method:?} {found:?} {exact:?}");
+                for (found, exact) in found.iter().zip(&exact) {
+                    // A growth of 10⁻¹¹ counts as none; eigenvalues leave the circle at a rate of about one per ωh.
+                    assert!((found.from - exact.from).abs() < 1e-10, "{method:?} {found:?}");
+                    assert!((found.to - exact.to).abs() < 1e-10, "{method:?} {found:?} {exact:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn modal_damping_has_the_windows_of_its_oscillators() {
+        // Damping of 0.1 times the stiffness, whose squared frequencies are 1 and 3.
+        let modal = Matrix::from_rows(&[
+            [0.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+            [-2.0, 1.0, -0.2, 0.1],
+            [1.0, -2.0, 0.1, -0.2],
+        ])
+        .unwrap();
+        let one = windows(&oscillator(3.0, 0.3), Method::SymplecticEuler).unwrap();
+        let both = windows(&modal, Method::SymplecticEuler).unwrap();
+        assert_eq!(both.len(), 1);
+        assert!((both[0].to / one[0].to - 1.0).abs() < 1e-13, "{both:?} {one:?}");
+    }
+
+    #[test]
+    fn the_fastest_mode_limits_the_step_and_modes_at_zero_do_not() {
+        // Two masses of 1 kg, free, with a spring of 8 N/m between them: 0 and 4 rad/s.
+        let free = Matrix::from_rows(&[
+            [0.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+            [-8.0, 8.0, 0.0, 0.0],
+            [8.0, -8.0, 0.0, 0.0],
+        ])
+        .unwrap();
+        for (method, limit) in [(Method::VelocityVerlet, 0.5), (Method::Rk4, 0.5_f64.sqrt())] {
+            let [window] = windows(&free, method).unwrap()[..] else { panic!("{method:?}") };
+            assert!(window.from == 0.0 && (window.to / limit - 1.0).abs() < 1e-12, "{window:?}");
+        }
+        assert_eq!(windows(&free, Method::ExplicitEuler), Some(vec![]));
+        // It does not apply to matrices whose rows are no velocities.
+        let lag = Matrix::from_rows(&[[-2.0]]).unwrap();
+        assert_eq!(windows(&lag, Method::Leapfrog), None);
+        let all = windows(&lag, Method::ExplicitEuler).unwrap();
+        assert_eq!(all, [StepWindow { from: 0.0, to: 1.0 }]);
+    }
+}

@@ -1,0 +1,200 @@
+//! Analysis of linear plants, of steps of integrators on them and of loops around them: the output of `libration analyze --plant`.
+
+mod closed_loop;
+mod error;
+mod mode;
+mod simulated_mode;
+mod step;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use libration::Method;
+use libration::analysis::{LinearStepper, without_rounding};
+use libration::linear::{Complex64, LinearLoop, LinearPlant, LoopTiming, ModeDetails, Signal};
+use serde::Serialize;
+
+use crate::Stepping;
+pub use closed_loop::{ClosedLoop, LoopMode, StateDeviation};
+pub use error::LinearAnalysisError;
+pub use mode::Mode;
+pub use simulated_mode::SimulatedMode;
+pub use step::{ModeUnderSteps, StepAnalysis};
+
+/// Version of the JSON format.
+pub const SCHEMA: &str = "libration.linear-analysis/1";
+
+/// A linear plant to analyse.
+#[derive(Clone, Debug)]
+pub struct LinearRequest {
+    /// The plant with the loop around it; without a controller its commands are zero.
+    pub linear: LinearLoop,
+    /// The timing of the loop; none without a controller.
+    pub timing: Option<LoopTiming>,
+    /// The time step of integrators in s.
+    pub dt: Option<f64>,
+    /// The integrator, or exact steps; none for all.
+    pub integrator: Option<Stepping>,
+    /// A restriction of the numbers.
+    pub note: Option<String>,
+}
+
+/// The analysis of a linear plant; the fields are the keys of `analyze --plant --json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct LinearAnalysis {
+    /// The version of this format.
+    pub schema: &'static str,
+    /// The states of the plant, those of lags and filters last.
+    pub states: Vec<SignalName>,
+    /// Its inputs.
+    pub inputs: Vec<SignalName>,
+    /// Its outputs.
+    pub outputs: Vec<SignalName>,
+    /// The period of a sampled plant in s; none in continuous time.
+    pub sampling_period: Option<f64>,
+    /// Whether half of the states are rates of the other half, so that each integrator applies.
+    pub mechanical: bool,
+    /// The modes of the plant, the one that grows fastest first; of a pair one.
+    pub modes: Vec<Mode>,
+    /// The largest size of an eigenvalue in 1/s.
+    pub fastest_rate: f64,
+    /// The smallest size of an eigenvalue other than zero in 1/s; none if all are zero.
+    pub slowest_rate: Option<f64>,
+    /// The ratio of the two.
+    pub stiffness: Option<f64>,
+    /// The time step of integrators in s.
+    pub dt: Option<f64>,
+    /// Steps of the integrators: exact steps first; empty for a sampled plant.
+    pub steps: Vec<StepAnalysis>,
+    /// The integrators that do not apply to the plant.
+    pub not_applicable: Vec<&'static str>,
+    /// The closed loop; none without a controller.
+    #[serde(rename = "loop")]
+    pub closed_loop: Option<ClosedLoop>,
+    /// A restriction of the numbers, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+}
+
+/// The name and unit of a signal.
+#[derive(Clone, Debug, Serialize)]
+pub struct SignalName {
+    /// The name.
+    pub name: String,
+    /// The unit; empty if it is unknown.
+    pub unit: String,
+}
+
+impl SignalName {
+    fn all(signals: &[Signal]) -> Vec<SignalName> {
+        let one =
+            |Signal { name, unit }: &Signal| SignalName { name: name.clone(), unit: unit.clone() };
+        signals.iter().map(one).collect()
+    }
+}
+
+/// Analyses a linear plant until `stop` is set.
+///
+/// # Errors
+/// [`LinearAnalysisError`]: values that do not fit the plant, before any work, or an interruption.
+pub fn analyze(
+    request: &LinearRequest,
+    stop: &AtomicBool,
+) -> Result<LinearAnalysis, LinearAnalysisError> {
+    let plant = request.linear.plant();
+    let stepper = request.stepper()?;
+    let mut details = plant.mode_details();
+    if details.is_empty() {
+        return Err(LinearAnalysisError::Eigenvalues);
+    }
+    let values: Vec<Complex64> = details.iter().map(|mode| mode.value).collect();
+    let values = without_rounding(&values);
+    details.iter_mut().zip(&values).for_each(|(mode, &value)| mode.value = value);
+    let sizes = values.iter().map(|value| value.norm());
+    let fastest = sizes.clone().fold(0.0, f64::max);
+    let slowest = sizes.filter(|size| *size > 0.0).reduce(f64::min);
+    let mut steps = Vec::new();
+    let shapes = shapes(&details);
+    let subject = step::Subject { plant, stepper: stepper.as_ref(), shapes: &shapes };
+    for stepping in request.steppings(stepper.as_ref()) {
+        if stop.load(Ordering::Relaxed) {
+            return Err(LinearAnalysisError::Interrupted);
+        }
+        steps.push(subject.analyze(stepping, request.dt, request.integrator.is_some()));
+    }
+    let applies = |method: &Method| stepper.as_ref().is_some_and(|own| own.applies(*method));
+    let not_applicable = match request.integrator {
+        None => Method::ALL.into_iter().filter(|method| !applies(method)).collect(),
+        Some(_) => Vec::new(),
+    };
+    let closed_loop = match &request.timing {
+        Some(timing) => Some(ClosedLoop::new(&request.linear, timing)?),
+        None => None,
+    };
+    Ok(LinearAnalysis {
+        schema: SCHEMA,
+        states: SignalName::all(&plant.states),
+        inputs: SignalName::all(&plant.inputs),
+        outputs: SignalName::all(&plant.outputs),
+        sampling_period: plant.sampling_period,
+        mechanical: stepper.as_ref().is_some_and(LinearStepper::is_mechanical),
+        modes: details.iter().map(Mode::from).collect(),
+        fastest_rate: fastest,
+        slowest_rate: slowest,
+        stiffness: slowest.map(|slowest| fastest / slowest),
+        dt: request.dt,
+        steps,
+        not_applicable: not_applicable.into_iter().map(Method::name).collect(),
+        closed_loop,
+        note: request.note.clone(),
+    })
+}
+
+/// Eigenvalues and shapes.
+fn shapes(details: &[ModeDetails]) -> Vec<(Complex64, Vec<Complex64>)> {
+    details.iter().map(|mode| (mode.value, mode.shape.clone())).collect()
+}
+
+impl LinearRequest {
+    fn plant(&self) -> &LinearPlant {
+        self.linear.plant()
+    }
+
+    /// The steps of integrators on the plant; none of a sampled plant.
+    fn stepper(&self) -> Result<Option<LinearStepper>, LinearAnalysisError> {
+        if let Some(dt) = self.dt.filter(|dt| !(dt.is_finite() && *dt > 0.0)) {
+            return Err(LinearAnalysisError::Dt(dt));
+        }
+        if let Some(period) = self.plant().sampling_period {
+            return match (self.dt, self.integrator) {
+                (None, None) => Ok(None),
+                (Some(_), _) => Err(LinearAnalysisError::Sampled { option: "dt", period }),
+                (None, Some(_)) => {
+                    Err(LinearAnalysisError::Sampled { option: "integrator", period })
+                }
+            };
+        }
+        let stepper =
+            LinearStepper::new(&self.plant().a).ok_or(LinearAnalysisError::Eigenvalues)?;
+        match self.integrator {
+            Some(Stepping::Method(method)) if !stepper.applies(method) => {
+                let allowed = Method::ALL.into_iter().filter(|method| stepper.applies(*method));
+                let allowed = allowed.map(Method::name).chain([Stepping::EXACT]).collect();
+                Err(LinearAnalysisError::Integrator { name: method.name(), allowed })
+            }
+            _ => Ok(Some(stepper)),
+        }
+    }
+
+    /// The integrators to analyse. With a controller they require a time step.
+    fn steppings(&self, stepper: Option<&LinearStepper>) -> Vec<Stepping> {
+        let Some(stepper) = stepper else { return Vec::new() };
+        match self.integrator {
+            Some(one) => vec![one],
+            None if self.timing.is_some() && self.dt.is_none() => Vec::new(),
+            None => {
+                let methods = Method::ALL.into_iter().filter(|method| stepper.applies(*method));
+                [Stepping::Exact].into_iter().chain(methods.map(Stepping::Method)).collect()
+            }
+        }
+    }
+}

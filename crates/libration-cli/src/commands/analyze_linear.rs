@@ -1,0 +1,232 @@
+//! `libration analyze` for linear plants and loops around them.
+
+use std::fmt::Write as _;
+use std::sync::atomic::AtomicBool;
+
+use libration_analyze::linear_analysis::{
+    LinearAnalysis, LinearAnalysisError, LinearRequest, SimulatedMode, StepAnalysis, analyze,
+};
+
+use super::linear_closed_loop::closed_loop;
+use crate::error::Failure;
+
+/// Returns the analysis as text or as JSON.
+pub(super) fn run(request: &LinearRequest, json: bool) -> Result<String, Failure> {
+    let analysis = analyze(request, &AtomicBool::new(false)).map_err(|error| match error {
+        LinearAnalysisError::Interrupted => Failure::Interrupted(error.to_string()),
+        error => Failure::usage(error),
+    })?;
+    match json {
+        true => Ok(serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n"),
+        false => Ok(describe(&analysis, request.integrator.is_some())),
+    }
+}
+
+/// Returns the analysis as text.
+fn describe(analysis: &LinearAnalysis, detail: bool) -> String {
+    let mut text = String::new();
+    plant(analysis, &mut text);
+    modes(analysis, &mut text);
+    if let (Some(dt), false) = (analysis.dt, analysis.steps.is_empty()) {
+        let _ = writeln!(text, "\nSteps of dt = {dt} s");
+        steps(&analysis.steps, &mut text);
+    }
+    stable_steps(analysis, &mut text);
+    if detail {
+        analysis.steps.iter().for_each(|step| step_modes(step, &mut text));
+    }
+    if let Some(own) = &analysis.closed_loop {
+        closed_loop(own, &mut text);
+    }
+    if let Some(note) = &analysis.note {
+        let _ = writeln!(text, "note: {note}");
+    }
+    text
+}
+
+fn plant(analysis: &LinearAnalysis, text: &mut String) {
+    let counts =
+        [(&analysis.states, "state"), (&analysis.inputs, "input"), (&analysis.outputs, "output")]
+            .map(|(signals, noun)| counted(signals.len(), noun));
+    let clock = match analysis.sampling_period {
+        Some(period) => format!("sampled every {period} s"),
+        None => "in continuous time".to_owned(),
+    };
+    let kind = if analysis.mechanical { ", positions and velocities" } else { "" };
+    let _ = writeln!(text, "Linear plant {clock}: {}{kind}", counts.join(", "));
+    let ratio =
+        analysis.stiffness.map_or_else(|| "none".to_owned(), |ratio| format!("{ratio:.4e}"));
+    let slowest =
+        analysis.slowest_rate.map_or_else(|| "none".to_owned(), |rate| format!("{rate:.6} 1/s"));
+    let _ = writeln!(
+        text,
+        "  fastest rate {:.6} 1/s, slowest other than zero {slowest}, stiffness (their ratio) {ratio}",
+        analysis.fastest_rate
+    );
+}
+
+/// A number of things.
+pub(super) fn counted(count: usize, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{plural}")
+}
+
+/// Names of states with their sizes relative to the largest.
+pub(super) fn shape(states: &[(String, f64)]) -> String {
+    let each = states.iter().map(|(name, share)| match share {
+        share if *share > 0.995 => name.clone(),
+        share => format!("{share:.2} {name}"),
+    });
+    each.collect::<Vec<_>>().join(", ")
+}
+
+/// A number with nine digits at most.
+fn rounded(x: f64) -> String {
+    format!("{x:.8e}").parse().map_or_else(|_| x.to_string(), |x: f64| x.to_string())
+}
+
+/// A number if it is known.
+pub(super) fn known(x: Option<f64>, digits: usize) -> String {
+    x.map_or_else(|| "none".to_owned(), |x| format!("{x:.digits$}"))
+}
+
+fn modes(analysis: &LinearAnalysis, text: &mut String) {
+    let _ = writeln!(
+        text,
+        "\n{:>4} {:>14} {:>12} {:>14} {:>14} {:>14}  states that move most",
+        "mode", "growth/(1/s)", "damping", "nat./(rad/s)", "natural/Hz", "time const./s"
+    );
+    for (i, mode) in analysis.modes.iter().enumerate() {
+        let _ = writeln!(
+            text,
+            "{:>4} {:>14.6} {:>12} {:>14.6} {:>14.6} {:>14}  {}{}{}",
+            i + 1,
+            mode.growth_rate,
+            known(mode.damping_ratio, 6),
+            mode.natural_frequency,
+            mode.natural_frequency_hz,
+            known(mode.time_constant, 6),
+            shape(&mode.states),
+            if mode.controllable { "" } else { "; not controllable: no input reaches it" },
+            if mode.observable { "" } else { "; not observable: no output shows it" },
+        );
+    }
+}
+
+/// The table of integrators.
+fn steps(all: &[StepAnalysis], text: &mut String) {
+    let _ = writeln!(
+        text,
+        "{:<28} {:>16} {:>16} {:>16} {:>16} {:>22} {:>22}",
+        "spectral radius less 1",
+        "predicted",
+        "update matrix",
+        "simulated f64",
+        "simulated f32",
+        "growth error/(1/s)",
+        "phase error/rad"
+    );
+    for step in all {
+        let excess = |radius: Option<f64>| {
+            radius.map_or_else(|| "-".to_owned(), |x| format!("{:+.6e}", x - 1.0))
+        };
+        let simulated = |own: Option<SimulatedMode>| excess(own.map(|own| own.growth));
+        let error = |own: Option<(f64, usize)>| match own {
+            Some((error, mode)) => format!("{error:+.3e}, mode {}", mode + 1),
+            None => "-".to_owned(),
+        };
+        let _ = writeln!(
+            text,
+            "{:<28} {:>16} {:>16} {:>16} {:>16} {:>22} {:>22}",
+            step.integrator,
+            excess(step.predicted_spectral_radius),
+            excess(step.spectral_radius),
+            simulated(step.simulated),
+            simulated(step.simulated_f32),
+            error(step.largest_growth_error),
+            error(step.largest_phase_error),
+        );
+    }
+}
+
+/// The time steps at which integrators are stable.
+fn stable_steps(analysis: &LinearAnalysis, text: &mut String) {
+    if analysis.steps.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "\n{:<28} stable for dt in s", "integrator");
+    for step in &analysis.steps {
+        let end = |x: Option<f64>| x.map_or("∞".into(), rounded);
+        let window = |&[from, to]: &[Option<f64>; 2]| format!("{} to {}", end(from), end(to));
+        let shown = match &step.stable_dt {
+            None => "not known: a mode of the plant grows".to_owned(),
+            Some(windows) if windows.is_empty() => "none".to_owned(),
+            Some(windows) => windows.iter().map(window).collect::<Vec<_>>().join(", "),
+        };
+        let _ = writeln!(text, "{:<28} {shown}", step.integrator);
+    }
+    if !analysis.not_applicable.is_empty() {
+        let names = analysis.not_applicable.join(", ");
+        let _ = writeln!(
+            text,
+            "not applicable, half of the states are not the rates of the other half: {names}"
+        );
+    }
+}
+
+/// Each mode under steps of one integrator.
+fn step_modes(step: &StepAnalysis, text: &mut String) {
+    if let Some(function) = &step.stability_function {
+        let _ = writeln!(text, "\nstability function, z = dt·λ: {function}");
+    }
+    let head = |text: &mut String, what: &str| {
+        let _ = writeln!(
+            text,
+            "\n{:>4} {:>22} {:>22} {:>14} {:>14} {:>22} {:>16} {:>8}",
+            "mode",
+            format!("exact {what}"),
+            "step",
+            "error/step",
+            "error/s",
+            "simulated f64",
+            "f32 less f64",
+            "steps"
+        );
+    };
+    let simulated = |own: Option<SimulatedMode>, of: fn(SimulatedMode) -> f64| own.map(of);
+    let shown = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), |x| format!("{x:.15}"));
+    let less = |a: Option<f64>, b: Option<f64>| {
+        a.zip(b).map_or_else(|| "-".to_owned(), |(a, b)| format!("{:+.3e}", a - b))
+    };
+    let row = |text: &mut String,
+               i: usize,
+               values: [f64; 4],
+               own: [Option<f64>; 2],
+               count: Option<u32>| {
+        let [exact, of_step, per_step, per_second] = values;
+        let _ = writeln!(
+            text,
+            "{:>4} {exact:>22.15} {of_step:>22.15} {per_step:>+14.4e} {per_second:>+14.4e} {:>22} {:>16} {:>8}",
+            i + 1,
+            shown(own[0]),
+            less(own[1], own[0]),
+            count.map_or_else(|| "-".to_owned(), |count| count.to_string()),
+        );
+    };
+    if step.modes.is_empty() {
+        return;
+    }
+    head(text, "growth per step");
+    for (i, mode) in step.modes.iter().enumerate() {
+        let own = [mode.simulated, mode.simulated_f32].map(|own| simulated(own, |own| own.growth));
+        let values =
+            [mode.exact_growth, mode.growth, mode.growth_error_per_step, mode.growth_error];
+        row(text, i, values, own, mode.simulated.map(|own| own.steps));
+    }
+    head(text, "angle/rad");
+    for (i, mode) in step.modes.iter().enumerate() {
+        let own = [mode.simulated, mode.simulated_f32].map(|own| simulated(own, |own| own.angle));
+        let values = [mode.exact_angle, mode.angle, mode.phase_error_per_step, mode.phase_error];
+        row(text, i, values, own, mode.simulated.map(|own| own.steps));
+    }
+}

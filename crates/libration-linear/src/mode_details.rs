@@ -1,0 +1,92 @@
+//! Eigenvalue, shape, controllability and observability of each mode of a plant.
+
+use num_complex::Complex64;
+
+use crate::plant_modes::{NOTHING, smallest_singular};
+use crate::{LinearPlant, Matrix, PlantMode};
+
+/// A mode of a plant with its eigenvalue, and how well inputs reach it and outputs show it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModeDetails {
+    /// Growth rate, frequency and the states that move most.
+    pub mode: PlantMode,
+    /// The eigenvalue in 1/s; of a pair the upper one.
+    pub value: Complex64,
+    /// The eigenvector, of largest entry 1.
+    pub shape: Vec<Complex64>,
+    /// The smallest singular value of `[λ − A, B]` relative to the size of `A`: 0 if no input reaches the mode.
+    pub controllability: f64,
+    /// The same of `[λ − Aᵀ, Cᵀ]`: 0 if no output shows the mode.
+    pub observability: f64,
+}
+
+impl ModeDetails {
+    /// Whether an input reaches the mode.
+    pub fn is_controllable(&self) -> bool {
+        self.controllability >= NOTHING
+    }
+
+    /// Whether an output shows the mode.
+    pub fn is_observable(&self) -> bool {
+        self.observability >= NOTHING
+    }
+
+    /// The natural frequency `|λ|` in rad/s; of a mode without oscillation its rate.
+    pub fn natural_frequency(&self) -> f64 {
+        self.value.norm()
+    }
+
+    /// The damping ratio `−Re λ/|λ|`, from −1 to 1; none of `λ = 0`.
+    pub fn damping_ratio(&self) -> Option<f64> {
+        let size = self.value.norm();
+        // Not the negative zero.
+        (size > 0.0).then(|| 0.0 - self.value.re / size)
+    }
+
+    /// The time in s in which the mode decays to 1/e; none if it does not decay.
+    pub fn time_constant(&self) -> Option<f64> {
+        (self.value.re < 0.0).then(|| -self.value.re.recip())
+    }
+}
+
+impl LinearPlant {
+    /// The modes of the plant with all details, the one that grows fastest first; of a pair one.
+    ///
+    /// Controllability is that of the test of Popov, Belevitch and Hautus, as for [`LinearPlant::unreachable_mode`].
+    pub fn mode_details(&self) -> Vec<ModeDetails> {
+        let size = self.a.row_sum_norm().max(f64::MIN_POSITIVE);
+        let least = |a: &Matrix, b: &Matrix, value| {
+            smallest_singular(a, b, value).map_or(0.0, |(least, _)| least / size)
+        };
+        let (dual, shown) = (self.a.transposed(), self.c.transposed());
+        let details = |(value, shape): (Complex64, Vec<Complex64>)| ModeDetails {
+            mode: self.mode(value, &shape),
+            value: self.rate_of(value),
+            shape,
+            controllability: least(&self.a, &self.b, value),
+            observability: least(&dual, &shown, value),
+        };
+        self.shapes().into_iter().map(details).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mode_that_no_input_reaches_or_no_output_shows_is_marked_also_if_it_decays() {
+        let a = Matrix::from_rows(&[[0.0, 1.0, 0.0], [-25.0, -2.0, 0.0], [0.0, 0.0, -3.0]]);
+        let b = Matrix::from_rows(&[[0.0], [1.0], [0.0]]).unwrap();
+        let c = Matrix::from_rows(&[[0.0, 0.0, 1.0]]).unwrap();
+        let plant = LinearPlant::new(a.unwrap(), b, c, Matrix::zeros(1, 1)).unwrap();
+        let [pair, lone] = &plant.mode_details()[..] else { panic!("two modes") };
+        assert!(pair.is_controllable() && !pair.is_observable(), "{pair:?}");
+        assert!(!lone.is_controllable() && lone.is_observable(), "{lone:?}");
+        // λ² + 2λ + 25, a natural frequency of 5 rad/s and a damping ratio of 1/5.
+        assert!((pair.natural_frequency() - 5.0).abs() < 1e-14, "{pair:?}");
+        assert!((pair.damping_ratio().unwrap() - 0.2).abs() < 1e-15, "{pair:?}");
+        assert!((pair.time_constant().unwrap() - 1.0).abs() < 1e-15, "{pair:?}");
+        assert_eq!((lone.damping_ratio(), lone.time_constant()), (Some(1.0), Some(1.0 / 3.0)));
+    }
+}
