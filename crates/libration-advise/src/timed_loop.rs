@@ -2,7 +2,7 @@
 
 use libration::control::{Jitter, Latency};
 use libration::linear::{
-    Channel, LatencyWindow, LinearLoop, LinearLoopError, LoopMode, LoopTiming, MissingCommand,
+    Channels, LatencyWindow, LinearLoop, LinearLoopError, LoopMode, LoopTiming, MissingCommand,
 };
 
 use super::limits::Imperfection;
@@ -143,25 +143,26 @@ impl TimedLoop {
         Ok(timing)
     }
 
-    /// The windows of stable latencies of a channel, in periods; none for other imperfections, for all channels of several at once, and
-    /// for a cascade, whose channel has several numbers per round.
+    /// The windows of stable latencies of a channel or of all, in periods; none for other imperfections, and for a cascade, whose channels
+    /// have several numbers per round.
     pub(super) fn latency_windows(
         &self,
         subject: Subject,
     ) -> Result<Option<Vec<LatencyWindow>>, LinearLoopError> {
-        let only = |count: usize| subject.channel.or_else(|| (count == 1).then_some(0));
+        let late = |count: usize| subject.channel.map_or_else(|| (0..count).collect(), |i| vec![i]);
         let StatedTiming { input_latency, output_latency, .. } = &self.timing;
-        let channel = match subject.kind {
-            Imperfection::Latency => only(input_latency.len()).map(Channel::Input),
-            Imperfection::OutputLatency => match self.delays_commands_instead(subject) {
-                true => only(input_latency.len()).map(Channel::Input),
-                false => only(output_latency.len()).map(Channel::Output),
-            },
-            _ => None,
+        let channels = match subject.kind {
+            Imperfection::OutputLatency if !self.delays_commands_instead(subject) => {
+                Channels::Outputs(late(output_latency.len()))
+            }
+            Imperfection::Latency | Imperfection::OutputLatency => {
+                Channels::Inputs(late(input_latency.len()))
+            }
+            _ => return Ok(None),
         };
-        let Some(channel) = channel.filter(|_| self.linear.controllers().periods() == 1) else {
+        if self.linear.controllers().periods() > 1 {
             return Ok(None);
-        };
+        }
         let stated = self.stated_size(subject) / self.period();
         if self
             .critical_latency
@@ -170,7 +171,7 @@ impl TimedLoop {
             return Ok(None);
         }
         let sizes = [stated, self.largest(subject)];
-        self.linear.latency_windows(&self.ideal(), channel, sizes).map(Some)
+        self.linear.latency_windows(&self.ideal(), &channels, sizes).map(Some)
     }
 
     /// Whether measurements of all outputs that are late may be replaced by commands to all inputs that are late: without a direct path

@@ -15,10 +15,10 @@ pub(crate) struct HessenbergForm {
     rotation: Matrix,
 }
 
-/// `(z − H)⁻¹ b`, with the determinant of `z − H`.
+/// `(z − H)⁻¹ b` of some columns `b`, with the determinant of `z − H`.
 #[derive(Clone, Debug)]
 pub(crate) struct Resolved {
-    pub(crate) solution: Vec<Complex64>,
+    pub(crate) solutions: Vec<Vec<Complex64>>,
     pub(crate) determinant: Complex64,
 }
 
@@ -50,8 +50,8 @@ impl HessenbergForm {
         self.rotation.transposed().apply(&balanced)
     }
 
-    /// `(z − H)⁻¹ b`, by elimination with the larger pivot of two rows.
-    pub(crate) fn resolvent(&self, z: Complex64, b: &[f64]) -> Resolved {
+    /// `(z − H)⁻¹ b` of each of these columns, by elimination with the larger pivot of two rows.
+    pub(crate) fn resolvent(&self, z: Complex64, columns: &[Vec<f64>]) -> Resolved {
         let n = self.h.rows();
         let full_row = |i: usize| -> Vec<Complex64> {
             let mut row: Vec<Complex64> =
@@ -59,7 +59,9 @@ impl HessenbergForm {
             row[i] += z;
             row
         };
-        let mut solution: Vec<Complex64> = b.iter().map(|&x| Complex64::from(x)).collect();
+        let complex =
+            |b: &Vec<f64>| -> Vec<Complex64> { b.iter().map(|&x| Complex64::from(x)).collect() };
+        let mut solutions: Vec<Vec<Complex64>> = columns.iter().map(complex).collect();
         let mut upper: Vec<Vec<Complex64>> = Vec::with_capacity(n);
         let mut determinant = Complex64::ONE;
         let mut current = if n > 0 { full_row(0) } else { Vec::new() };
@@ -72,24 +74,28 @@ impl HessenbergForm {
             let mut next = full_row(k + 1);
             if next[k].norm_sqr() > current[k].norm_sqr() {
                 core::mem::swap(&mut current, &mut next);
-                solution.swap(k, k + 1);
+                solutions.iter_mut().for_each(|solution| solution.swap(k, k + 1));
                 determinant = -determinant;
             }
             determinant *= current[k];
             if next[k] != Complex64::ZERO {
                 let factor = next[k] / current[k];
                 next[k + 1..].iter_mut().zip(&current[k + 1..]).for_each(|(x, p)| *x -= factor * p);
-                let eliminated = factor * solution[k];
-                solution[k + 1] -= eliminated;
+                for solution in &mut solutions {
+                    let eliminated = factor * solution[k];
+                    solution[k + 1] -= eliminated;
+                }
             }
             upper.push(core::mem::replace(&mut current, next));
         }
         for k in (0..n).rev() {
-            let (known, rest) = (&upper[k][k + 1..], &solution[k + 1..]);
-            let sum: Complex64 = known.iter().zip(rest).map(|(a, x)| a * x).sum();
-            solution[k] = (solution[k] - sum) / upper[k][k];
+            for solution in &mut solutions {
+                let (known, rest) = (&upper[k][k + 1..], &solution[k + 1..]);
+                let sum: Complex64 = known.iter().zip(rest).map(|(a, x)| a * x).sum();
+                solution[k] = (solution[k] - sum) / upper[k][k];
+            }
         }
-        Resolved { solution, determinant }
+        Resolved { solutions, determinant }
     }
 }
 
@@ -189,9 +195,9 @@ mod tests {
         let c: Vec<f64> = scales.iter().enumerate().map(|(i, s)| (1.0 + i as f64) / s).collect();
         let form = HessenbergForm::new(&a);
         let z = Complex64::from_polar(1.0, 0.7);
-        let resolved = form.resolvent(z, &form.column(&b));
+        let resolved = form.resolvent(z, &[form.column(&b)]);
         let found: Complex64 =
-            form.row(&c).iter().zip(&resolved.solution).map(|(c, x)| c * x).sum();
+            form.row(&c).iter().zip(&resolved.solutions[0]).map(|(c, x)| c * x).sum();
         let row = |i: usize| -> Vec<Complex64> {
             let entry = |j: usize| if i == j { z - a[(i, j)] } else { Complex64::from(-a[(i, j)]) };
             (0..6).map(entry).chain([Complex64::from(b[i])]).collect()

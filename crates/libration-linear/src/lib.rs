@@ -3,12 +3,14 @@
 //! A period of a loop is a matrix on its state: the states of the plant, the memory of the controller, and all commands and
 //! measurements in transit. Everything is in `f64`.
 
+mod angle_grid;
 mod augmented_plant;
 mod cascade;
 mod channel_part;
 mod cholesky;
 mod clocked_controller;
 mod compensator;
+mod complex_eigenvalues;
 mod controller;
 mod controller_schedule;
 mod crossing_curves;
@@ -25,6 +27,7 @@ mod exponential;
 mod growth_bounds;
 mod hessenberg;
 mod jitter;
+mod latency_crossings;
 mod latency_windows;
 mod layout;
 mod linear_equations;
@@ -38,7 +41,7 @@ mod matrix;
 mod miss_constraint;
 mod mode_details;
 mod node_coordinates;
-mod open_channel;
+mod open_channels;
 mod overrun;
 mod part_motion;
 mod period;
@@ -95,7 +98,7 @@ pub use matrix::Matrix;
 pub use miss_constraint::MissConstraint;
 pub use mode_details::ModeDetails;
 pub use num_complex::Complex64;
-pub use open_channel::Channel;
+pub use open_channels::Channels;
 pub use overrun::{OverrunStrategy, PeriodOutcome};
 pub use part_motion::PartMotion;
 pub use period::{Arrival, Period};

@@ -49,6 +49,18 @@ pub enum LinearLoopError {
         /// The number of channels.
         count: usize,
     },
+    /// The channels that are late together are invalid.
+    #[error(
+        "the late {of} are {given:?}; expected at least one, each once, with numbers below {count}"
+    )]
+    LateChannels {
+        /// `inputs` or `outputs`.
+        of: &'static str,
+        /// Their numbers.
+        given: Vec<usize>,
+        /// The number of channels.
+        count: usize,
+    },
     /// A latency is invalid.
     #[error(
         "the latency is {periods} periods of the loop; it must be at least 0 and at most {} periods",

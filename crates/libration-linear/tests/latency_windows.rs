@@ -4,7 +4,7 @@
 
 use libration_core::control::Latency;
 use libration_linear::{
-    Channel, DiscreteController, LinearLoop, LinearPlant, Matrix, eigenvalues, is_schur_stable,
+    Channels, DiscreteController, LinearLoop, LinearPlant, Matrix, eigenvalues, is_schur_stable,
 };
 use num_complex::Complex64;
 
@@ -44,12 +44,12 @@ fn random_loop(seed: u64, direct: bool) -> LinearLoop {
     panic!("no stable loop");
 }
 
-fn at(linear: &LinearLoop, channel: Channel, latency: f64) -> Matrix {
+fn at(linear: &LinearLoop, channels: &Channels, latency: f64) -> Matrix {
     let mut timing = linear.ideal();
     let latency = Latency::of_steps(latency).unwrap();
-    match channel {
-        Channel::Input(i) => timing.input_latency[i] = latency,
-        Channel::Output(j) => timing.output_latency[j] = latency,
+    match channels {
+        Channels::Inputs(all) => all.iter().for_each(|&i| timing.input_latency[i] = latency),
+        Channels::Outputs(all) => all.iter().for_each(|&j| timing.output_latency[j] = latency),
     }
     linear.period_matrix(&timing).unwrap()
 }
@@ -59,8 +59,8 @@ fn windows_are_where_the_spectral_radius_of_the_whole_matrix_is_below_one() {
     let mut ends = 0;
     for seed in 0..60 {
         let linear = random_loop(seed, seed % 3 == 0);
-        for channel in [Channel::Input(0), Channel::Output(1)] {
-            let windows = linear.latency_windows(&linear.ideal(), channel, [12.0, 12.0]).unwrap();
+        for channels in [Channels::Inputs(vec![0]), Channels::Outputs(vec![1])] {
+            let windows = linear.latency_windows(&linear.ideal(), &channels, [12.0, 12.0]).unwrap();
             let inside = |latency: f64| {
                 windows.iter().any(|window| {
                     window.from <= latency && window.to.is_none_or(|to| latency <= to)
@@ -75,13 +75,13 @@ fn windows_are_where_the_spectral_radius_of_the_whole_matrix_is_below_one() {
                 if ends_near(latency) {
                     continue;
                 }
-                let stable = is_schur_stable(&at(&linear, channel, latency));
-                assert_eq!(inside(latency), stable, "{seed} {channel:?} {latency}: {windows:?}");
+                let stable = is_schur_stable(&at(&linear, &channels, latency));
+                assert_eq!(inside(latency), stable, "{seed} {channels:?} {latency}: {windows:?}");
             }
             for window in &windows {
                 if let (Some(to), Some(angle)) = (window.to, window.angle) {
                     ends += 1;
-                    let matrix = at(&linear, channel, to);
+                    let matrix = at(&linear, &channels, to);
                     let value = eigenvalues(&matrix)
                         .unwrap()
                         .into_iter()
