@@ -128,12 +128,11 @@ impl<'a, T: Copy, const D: usize> Share<'a, T, D> {
 
     /// The lanes that an observer receives.
     pub(super) fn lanes(&self, step: u64) -> Lanes<'_, T, D> {
-        Lanes {
-            first: self.first,
-            step,
-            q: self.q.each_ref().map(|plane| &**plane),
-            v: self.v.each_ref().map(|plane| &**plane),
+        let (mut q, mut v): ([&[T]; D], [&[T]; D]) = ([&[]; D], [&[]; D]);
+        for i in 0..D {
+            (q[i], v[i]) = (&*self.q[i], &*self.v[i]);
         }
+        Lanes { first: self.first, step, q, v }
     }
 
     /// Sets trajectory `n` of these.

@@ -8,12 +8,13 @@ use std::time::{Duration, Instant};
 
 use crate::rollout::{contents, libration, settings};
 
+/// Forty chunks, at any of which a kill may fall.
 const SETTINGS: &str = "\
-environments = 2000
+environments = 800
 steps = 3000
 limit = 90
 [chunk]
-environments = 500
+environments = 200
 steps = 300
 [start]
 q = [-1.0, 1.0]

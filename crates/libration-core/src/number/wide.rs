@@ -92,14 +92,21 @@ impl Wide {
         (!self.is_nan()).then_some((self.negative, self.significand, self.exponent))
     }
 
+    /// Whether this is neither zero nor NaN. One bit tells it; a comparison with zero would read all 1024.
+    #[inline]
+    fn is_normal(&self) -> bool {
+        self.significand.bit(BITS - 1)
+    }
+
     /// Whether this is zero.
     pub fn is_zero(self) -> bool {
-        self.significand.is_zero() && !self.is_nan()
+        !self.is_normal() && self.exponent == 0
     }
 
     /// Whether this is NaN.
+    #[inline]
     pub fn is_nan(self) -> bool {
-        self.significand.is_zero() && self.exponent != 0
+        !self.is_normal() && self.exponent != 0
     }
 
     /// Whether this is less than zero.
@@ -114,7 +121,7 @@ impl Wide {
 
     /// `⌊log₂|self|⌋`; none for zero and NaN.
     pub fn exponent(self) -> Option<i64> {
-        (!self.significand.is_zero()).then(|| self.leading())
+        self.is_normal().then(|| self.leading())
     }
 
     fn leading(self) -> i64 {
@@ -123,7 +130,7 @@ impl Wide {
 
     /// `self · 2^power`, exactly.
     pub fn scaled(self, power: i64) -> Self {
-        if self.significand.is_zero() {
+        if !self.is_normal() {
             return self;
         }
         let exponent = self.exponent.saturating_add(power);
@@ -132,7 +139,7 @@ impl Wide {
 
     /// The value rounded to nearest, ties to even; infinite above the range of `f64`.
     pub fn to_f64(self) -> f64 {
-        if self.significand.is_zero() {
+        if !self.is_normal() {
             return if self.is_nan() { f64::NAN } else { 0.0 };
         }
         let top = (self.significand >> (BITS - 64)).as_();
@@ -143,7 +150,7 @@ impl Wide {
     /// The magnitude rounded to an integer, half up; none if that does not fit.
     fn nearest_integer(self) -> Option<U1024> {
         match u32::try_from(-self.exponent) {
-            _ if self.significand.is_zero() => (!self.is_nan()).then_some(U1024::MIN),
+            _ if !self.is_normal() => (!self.is_nan()).then_some(U1024::MIN),
             Ok(0) => Some(self.significand),
             Ok(shift) if shift <= BITS => {
                 let up: U1024 = self.significand.bit(shift - 1).as_();
@@ -231,7 +238,7 @@ impl Sub for Wide {
 impl Mul for Wide {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        if self.significand.is_zero() || other.significand.is_zero() {
+        if !self.is_normal() || !other.is_normal() {
             return if self.is_nan() || other.is_nan() { Wide::NAN } else { Wide::ZERO };
         }
         let negative = self.negative != other.negative;
@@ -249,7 +256,7 @@ impl Mul for Wide {
 impl Div for Wide {
     type Output = Self;
     fn div(self, other: Self) -> Self {
-        if self.is_nan() || other.significand.is_zero() {
+        if self.is_nan() || !other.is_normal() {
             return Wide::NAN;
         }
         if self.is_zero() {
@@ -272,7 +279,7 @@ impl Div for Wide {
 impl Neg for Wide {
     type Output = Self;
     fn neg(self) -> Self {
-        Wide { negative: !self.negative && !self.significand.is_zero(), ..self }
+        Wide { negative: !self.negative && self.is_normal(), ..self }
     }
 }
 

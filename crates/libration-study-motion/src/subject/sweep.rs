@@ -110,8 +110,17 @@ impl<Sys: Hamiltonian<f64, D> + Send, const D: usize> Observer<f64, D> for Bound
     fn observe(&mut self, lanes: &Lanes<'_, f64, D>) {
         let stays = &mut self.stays[lanes.first - self.first..][..lanes.len()];
         // Of known lengths: a check within the loop would cost it its vectors.
-        let (q, v) = (lanes.q.map(|q| &q[..stays.len()]), lanes.v.map(|v| &v[..stays.len()]));
-        let state = |l: usize| State { q: q.map(|q| q[l]), v: v.map(|v| v[l]) };
+        let (mut q, mut v) = (lanes.q, lanes.v);
+        for plane in q.iter_mut().chain(&mut v) {
+            *plane = &plane[..stays.len()];
+        }
+        let state = |l: usize| {
+            let mut state = State { q: [0.0; D], v: [0.0; D] };
+            for i in 0..D {
+                (state.q[i], state.v[i]) = (q[i][l], v[i][l]);
+            }
+            state
+        };
         let finite = |state: &State<f64, D>| {
             (0..D).fold(true, |all, i| all & state.q[i].is_finite() & state.v[i].is_finite())
         };

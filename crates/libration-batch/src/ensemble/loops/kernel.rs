@@ -6,11 +6,12 @@ use core::ops::Range;
 use bytemuck::Pod;
 use libration_core::control::delay::Event;
 use libration_core::control::{Clock, Controller, Delay, Disturbance, Memory};
-use libration_core::random::{EPOCH, Purpose, Streams};
+use libration_core::random::EPOCH;
 use libration_core::system::CommandedSystem;
 use libration_core::{Float, Integrator, State, System};
 use pulp::{Simd, WithSimd};
 
+use super::generators::Generators;
 use super::lane::{ratio, step_with_command};
 use super::rows::Block;
 use super::setup::{Layout, Setup};
@@ -43,6 +44,7 @@ where
     pub(super) common: &'b Common<'b, T, A, M, K, C, L, N>,
     pub(super) block: &'b mut Share<'a, T, D>,
     pub(super) memory: Block<'b, T, W>,
+    pub(super) generators: &'b mut Generators<W>,
     pub(super) systems: A::Lanes<W>,
     pub(super) steps: Range<u64>,
 }
@@ -63,7 +65,7 @@ where
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Steps { common, block, mut memory, systems, steps } = self;
+        let Steps { common, block, mut memory, generators, systems, steps } = self;
         let Common { setup, layout, dt, seed } = *common;
         let Setup { method, clock, controller, delay, disturbance, .. } = *setup;
         let schedule = delay.schedule();
@@ -143,11 +145,8 @@ where
         let mut begin = steps.start;
         while begin < steps.end {
             let end = steps.end.min((begin / EPOCH + 1).saturating_mul(EPOCH));
-            let mut times = Streams::at_step(seed, first, begin, Purpose::StepTime, words[0]);
-            let mut latencies =
-                Streams::<W>::at_step(seed, first, begin, Purpose::Latency, words[1]);
-            let mut pushes =
-                Streams::<W>::at_step(seed, first, begin, Purpose::Disturbance, words[2]);
+            let [mut times, mut latencies, mut pushes] =
+                generators.at_step(seed, first, begin, words);
             if const { !K::ACTS && !N::ACTS } {
                 for step in begin..end {
                     let beat = clock.beat(step);
@@ -277,6 +276,7 @@ where
                     until!(l, T::one());
                 }
             }
+            generators.keep(end, [times, latencies, pushes], words);
             begin = end;
         }
 

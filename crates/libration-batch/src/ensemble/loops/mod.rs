@@ -1,5 +1,6 @@
 //! Many control loops, each with its clock, its delays and its controller.
 
+mod generators;
 mod kernel;
 mod lane;
 mod rows;

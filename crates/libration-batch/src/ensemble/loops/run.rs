@@ -7,6 +7,7 @@ use bytemuck::Pod;
 use libration_core::control::{Clock, Controller, Delay, Disturbance, Memory};
 use libration_core::{Float, Integrator, System};
 
+use super::generators::Generators;
 use super::kernel::{Common, Steps};
 use super::rows::Rows;
 use crate::ensemble::instructions::{Baseline, Target, Targeted};
@@ -106,6 +107,7 @@ where
     ) {
         let mut block = block;
         let systems = self.common.setup.systems.lanes::<W>(block.first, block.len());
+        let mut generators = Generators::new();
         let mut step = self.steps.start;
         if let Some((_, observer)) = &mut self.watch
             && step == 0
@@ -117,7 +119,7 @@ where
                 Some((every, _)) => (step - step % every).saturating_add(every).min(self.steps.end),
                 None => self.steps.end,
             };
-            let (common, block) = (self.common, &mut block);
+            let (common, block, generators) = (self.common, &mut block, &mut generators);
             let memory = self.rows.of::<W>(block.first - first);
             let steps = step..next;
             if const { K::ACTS && L::SHARED }
@@ -127,6 +129,7 @@ where
                     common,
                     block,
                     memory,
+                    generators,
                     systems,
                     steps,
                 });
@@ -135,6 +138,7 @@ where
                     common,
                     block,
                     memory,
+                    generators,
                     systems,
                     steps,
                 });
