@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::{
     DiscreteController, Discretisation, LinearPlant, Matrix, PlantMode, RegulatorProblem,
-    RegulatorSolution, StepIntegrals, eigenvalues, is_schur_stable,
+    RegulatorSolution, StepIntegrals, eigenvalues,
 };
 
 /// Error of a design.
@@ -131,16 +131,13 @@ impl LinearPlant {
         period: f64,
     ) -> Result<RegulatorSolution, DesignError> {
         weights.check(self)?;
-        if let Some(mode) = self.unreachable_mode() {
-            return Err(DesignError::Unreachable(mode));
-        }
         let problem = self.regulator_problem(weights, period);
-        let stable =
-            |solution: &RegulatorSolution| is_schur_stable(&problem.closed(&solution.gain));
-        let solution = problem.solve().filter(stable);
-        solution.ok_or_else(|| match self.mode_without_cost(&weights.states) {
-            Some(mode) => DesignError::Unseen(mode),
-            None => DesignError::Unsettled("regulator"),
+        let hidden = self.unreachable_mode();
+        let solution = problem.stabilising(hidden.is_some());
+        solution.ok_or_else(|| match (hidden, self.mode_without_cost(&weights.states)) {
+            (Some(mode), _) => DesignError::Unreachable(mode),
+            (None, Some(mode)) => DesignError::Unseen(mode),
+            (None, None) => DesignError::Unsettled("regulator"),
         })
     }
 
@@ -171,9 +168,6 @@ impl LinearPlant {
     /// [`DesignError`].
     pub fn design_filter(&self, noise: &Matrix, period: f64) -> Result<Matrix, DesignError> {
         semidefinite(noise, "measurement noise", self.outputs.len(), true)?;
-        if let Some(mode) = self.unobservable_mode() {
-            return Err(DesignError::Unobservable(mode));
-        }
         let Discretisation { phi, .. } = self.step(period);
         // The dual of the regulator: X is the covariance of the predicted state.
         let problem = RegulatorProblem {
@@ -183,10 +177,10 @@ impl LinearPlant {
             s: Matrix::zeros(self.states.len(), self.outputs.len()),
             r: noise.clone(),
         };
-        let stable =
-            |solution: &RegulatorSolution| is_schur_stable(&problem.closed(&solution.gain));
-        let solution = problem.solve().filter(stable);
-        let covariance = solution.ok_or(DesignError::Unsettled("filter"))?.cost;
+        let hidden = self.unobservable_mode();
+        let solution = problem.stabilising(hidden.is_some());
+        let failed = hidden.map_or(DesignError::Unsettled("filter"), DesignError::Unobservable);
+        let covariance = solution.ok_or(failed)?.cost;
         let moved = &self.c * &covariance;
         let innovation = (&moved * &self.c.transposed()).plus(noise);
         let gain = crate::solve_matrix(&innovation, &moved);

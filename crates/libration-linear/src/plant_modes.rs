@@ -31,8 +31,8 @@ impl core::fmt::Display for PlantMode {
 /// Part of the size of a matrix below which a singular value counts as zero. Its square is a rounding.
 pub(crate) const NOTHING: f64 = 3e-8;
 
-/// Part of the size of the plant below which a growth rate counts as zero.
-const NEUTRAL: f64 = 1e-9;
+/// Part of the size of the plant below which a growth rate counts as zero: some roundings of its eigenvalues.
+const NEUTRAL: f64 = 1e-12;
 
 impl LinearPlant {
     /// The modes of the plant, the one that grows fastest first; of a pair one.
@@ -137,7 +137,7 @@ pub(crate) fn smallest_singular(
     let square = |i: usize, j: usize| {
         let inner: Complex64 = (0..n).map(|k| shifted(i, k) * shifted(j, k).conj()).sum();
         let driven: f64 =
-            scales.iter().enumerate().map(|(k, s)| s * s * b[(i, k)] * b[(j, k)]).sum();
+            scales.iter().enumerate().map(|(k, s)| (s * b[(i, k)]) * (s * b[(j, k)])).sum();
         let own = if i == j { size * size * f64::EPSILON } else { 0.0 };
         inner + driven + own
     };
@@ -169,6 +169,16 @@ mod tests {
         let of = |rows: &[&[f64]]| Matrix::from_rows(rows).unwrap();
         let d = Matrix::zeros(c.len(), b[0].len());
         LinearPlant::new(of(a), of(b), of(c), d).unwrap()
+    }
+
+    #[test]
+    fn a_slow_decay_beside_fast_ones_is_no_motion_out_of_reach() {
+        // Rates of 1 and 10⁹, mixed with the eigenvectors (1, 1) and (1, −2).
+        let rows = [[-333_333_334.0, 333_333_333.0], [666_666_666.0, -666_666_667.0]];
+        let stiff = plant(&[&rows[0], &rows[1]], &[&[1.0], &[-2.0]], &[&[1.0, 0.0]]);
+        assert_eq!(stiff.unreachable_mode(), None);
+        let huge = plant(&[&[0.0, 1.0], &[0.0, 0.0]], &[&[0.0], &[1e200]], &[&[1.0, 0.0]]);
+        assert_eq!(huge.unreachable_mode(), None);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The discrete algebraic Riccati equation.
 
-use crate::{Matrix, is_schur_stable, solve_matrix, solve_stein};
+use crate::{Matrix, is_schur_stable, log_spectral_radius, solve_matrix, solve_stein};
 
 /// Doublings of the horizon: enough for a loop whose deviations fall by 10⁻¹⁵ a step.
 const DOUBLINGS: usize = 64;
@@ -66,6 +66,14 @@ impl RegulatorProblem {
         }
         let gain = self.gain(&cost)?;
         (settled && gain.is_finite()).then_some(RegulatorSolution { gain, cost })
+    }
+
+    /// The solution, if its loop is stable, `doubtful` ones by more than rounding: by a factor of `1 − 10⁻⁹` per step.
+    pub(crate) fn stabilising(&self, doubtful: bool) -> Option<RegulatorSolution> {
+        let solution = self.solve()?;
+        let closed = self.closed(&solution.gain);
+        let decays = !doubtful || log_spectral_radius(&closed) < -1e-9;
+        (decays && is_schur_stable(&closed)).then_some(solution)
     }
 
     /// The feedback that costs least where some commands cost nothing at once, as those that act later: `price` is a weight of the
