@@ -15,8 +15,10 @@ impl LinearRequest {
             return None;
         }
         let rounding = exponential_rounding(&linear.plant().a.scaled(linear.period()));
-        // NaN is no small rounding.
-        (!(rounding <= MOST)).then(|| format!(
+        if !rounding.is_finite() {
+            return Some("the plant moves so fast in a period that the matrix of a step cannot be computed; help: shorten the period".to_owned());
+        }
+        (rounding > MOST).then(|| format!(
             "the plant is stiff: rounding changes the matrix of its step by {rounding:.0e} of the largest entry, and the results by as much; help: give fast parts as [[part]], or states in which fast and slow motions are apart"
         ))
     }

@@ -99,6 +99,22 @@ impl SimulateArgs {
         timing.set(file);
     }
 
+    /// Fails if an option acts through a controller, and none reads the measurements.
+    fn ensure_controller(&self, controller: &DiscreteController) -> Result<(), Failure> {
+        let given = [
+            ("reference", !self.linear.reference.is_empty()),
+            ("latency", self.timing.latency.is_some()),
+            ("loss", self.linear.loss.is_some()),
+        ];
+        let reads = [&controller.b, &controller.d].iter().any(|part| part.largest() > 0.0);
+        match given.iter().find(|(_, given)| *given) {
+            Some((name, _)) if !reads => Err(Failure::usage(format!(
+                "--{name} is given, but no controller reads the measurements; expected a controller, or --disturbance for a step of an input"
+            ))),
+            _ => Ok(()),
+        }
+    }
+
     fn trajectory(
         &self,
         request: &LinearRequest,
@@ -106,16 +122,7 @@ impl SimulateArgs {
         let linear = request.linear_loop();
         let timing = request.loop_timing().map_err(Failure::usage)?;
         let plant = linear.plant();
-        let reads = |controller: &DiscreteController| {
-            [&controller.b, &controller.d].iter().any(|part| part.largest() > 0.0)
-        };
-        if let [(name, value), ..] = &self.linear.reference[..]
-            && !reads(linear.controller())
-        {
-            return Err(Failure::usage(format!(
-                "--reference is {name}={value}, but no controller reads the measurements; expected a controller, or --disturbance for a step of an input"
-            )));
-        }
+        self.ensure_controller(linear.controller())?;
         let LinearSimulationArgs { x0, reference, disturbance, noise, .. } = &self.linear;
         let start = match x0 {
             Some(given) => given.values().to_vec(),

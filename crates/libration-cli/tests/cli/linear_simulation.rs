@@ -71,7 +71,9 @@ fn wrong_options_of_a_plant_are_refused_by_name() {
         ("--disturbance heet=1", "unknown input `heet` (--disturbance): did you mean `heat`"),
         ("--x0 1,2", "--x0 is 2 numbers; expected 3 numbers, one for each of the states"),
         ("--latency 1e9steps", "--latency: "),
-        ("--reference temperature=1", "no controller reads the measurements"),
+        ("--reference temperature=1", "--reference is given, but no controller reads"),
+        ("--latency 0.3", "--latency is given, but no controller reads"),
+        ("--loss 0.5", "--loss is given, but no controller reads"),
         ("--dt 0.01", "cannot be used with"),
         ("--skew gaussian:0.1", "cannot be used with"),
     ] {

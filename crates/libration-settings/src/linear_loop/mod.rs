@@ -9,6 +9,7 @@ mod part;
 mod part_table;
 mod pid_table;
 mod plant_file;
+mod plant_keys;
 mod plant_table;
 mod state_space_table;
 

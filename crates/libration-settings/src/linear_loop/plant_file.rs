@@ -56,10 +56,17 @@ pub fn read(path: &Path) -> Result<PlantTable, String> {
 fn from_csv(text: &str) -> Result<PlantTable, String> {
     let mut matrices: BTreeMap<String, Rows> = BTreeMap::new();
     let mut table = PlantTable::default();
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     for (i, line) in text.lines().enumerate() {
         let line = line.trim();
         if line.is_empty() || line.starts_with('#') {
             continue;
+        }
+        if line.contains(';') {
+            return Err(format!(
+                "line {} has a semicolon; expected commas between its cells",
+                i + 1
+            ));
         }
         let mut cells = line.split(',').map(str::trim);
         let name = cells.next().unwrap_or_default().to_lowercase();

@@ -6,7 +6,7 @@ use libration::linear::{LinearPlant, Matrix, PlantError, Signal};
 use serde::Deserialize;
 
 use super::catalogue_plant::{Coordinates, OperatingPoint, linearise};
-use super::plant_file;
+use super::{plant_file, plant_keys};
 use crate::{Fault, Number};
 
 /// The table `[system.linear]`: a plant by its matrices, by masses, dampers and springs, by transfer functions, or in a file.
@@ -24,14 +24,19 @@ pub struct PlantTable {
     /// The constant command at the equilibrium (default: zero).
     pub command: Option<Coordinates>,
     /// States × states.
+    #[serde(alias = "A")]
     pub a: Option<Rows>,
     /// States × inputs.
+    #[serde(alias = "B")]
     pub b: Option<Rows>,
     /// Outputs × states (default: all states).
+    #[serde(alias = "C")]
     pub c: Option<Rows>,
     /// Outputs × inputs (default: zero).
+    #[serde(alias = "D")]
     pub d: Option<Rows>,
     /// States × noises (default: noise enters where the inputs do).
+    #[serde(alias = "G")]
     pub g: Option<Rows>,
     /// The mass matrix of `M q̈ + D q̇ + K q = B u`.
     pub mass: Option<Rows>,
@@ -87,22 +92,13 @@ impl PlantTable {
             let table = plant_file::read(std::path::Path::new(file)).map_err(wrong)?;
             return table.plant().map_err(|fault| wrong(fault.to_string()));
         }
-        if self.of.is_none()
-            && (self.at.is_some() || self.command.is_some() || !self.parameters.is_empty())
-        {
-            let message =
-                "`at`, `command` and `parameters` require `of`, a system of the catalogue";
-            return Err(Fault::new("system.linear", message));
-        }
+        self.check_keys()?;
         let plant = match (&self.of, &self.a, &self.mass, &self.numerator) {
             (Some(of), None, None, None) => self.of_catalogue(of)?.0,
             (None, Some(a), None, None) => self.by_matrices(a)?,
             (None, None, Some(mass), None) => self.mechanical(mass)?,
             (None, None, None, Some(numerator)) => self.by_transfer_functions(numerator)?,
-            _ => {
-                let message = "a plant requires one of `of`, `a`, `mass`, `numerator` and `file`";
-                return Err(Fault::new("system.linear", message));
-            }
+            _ => return Err(Fault::new("system.linear", plant_keys::ONE_FORM)),
         };
         let plant = match &self.g {
             Some(g) => plant.with_noise(matrix("system.linear.g", g)?).map_err(fault)?,
@@ -132,11 +128,6 @@ impl PlantTable {
     }
 
     fn of_catalogue(&self, name: &str) -> Result<(LinearPlant, OperatingPoint), Fault> {
-        let matrices = [&self.b, &self.c, &self.d];
-        if matrices.iter().any(|matrix| matrix.is_some()) || self.sampling_period.is_some() {
-            let message = "`of` is given, so `b`, `c`, `d` and `sampling-period` are not allowed";
-            return Err(Fault::new("system.linear.of", message));
-        }
         linearise(name, &self.parameters, self.at.as_ref(), self.command.as_ref())
     }
 
