@@ -191,11 +191,14 @@ def random_loop(rng):
     return p, (plant, controller), keys, stated
 
 # ---------------------------------------------------------------- the check
+def of_all(channel):
+    return channel is None or channel.startswith("all ")
+
 def growth_at(p, kind, channel, stated):
     """(the growth as a function of the size of an imperfection, in the unit of the budget; the relative step across a limit)."""
     if kind in ("latency", "output-latency"):
         key, count = ("late_in", p["b"].shape[1]) if kind == "latency" else ("late_out", len(p["c"]))
-        pick = np.ones(count) if channel is None else np.eye(count)[int(channel[1:]) - 1]
+        pick = np.ones(count) if of_all(channel) else np.eye(count)[int(channel[1:]) - 1]
         return (lambda v: growth(p, **{key: v / p["period"] * pick})), 1e-6
     if kind == "margin":
         scaled = lambda v: {k: min(1.0, v * q) if k == "loss" else v * np.array(q) for k, q in stated.items()}
@@ -257,22 +260,22 @@ def check(job):
     say = lambda kind, channel, limit, what: wrong.append(f"{name}: {kind} {channel or ''} limit {limit!r}: {what}") if what else None
     if "design" in p and not np.allclose(p["dc"], -p["design"], rtol=1e-6, atol=1e-8 * np.abs(p["design"]).max()):
         say("gain", None, p["dc"].tolist(), f"expected {(-p['design']).tolist()}")
-    budgets = [(b["kind"], b.get("channel"), b["stable_up_to"], b["tried_up_to"], b.get("regained")) for b in advice.budgets]
-    budgets += [("margin", None, advice.margin, advice.margin_tried_up_to, None)] * bool(advice.margin_tried_up_to)
-    for kind, channel, limit, tried, regained in budgets:
+    budgets = [(b["kind"], b.get("channel"), b["stable_up_to"], b["tried_up_to"], b.get("later_windows", [])) for b in advice.budgets]
+    budgets += [("margin", None, advice.margin, advice.margin_tried_up_to, [])] * bool(advice.margin_tried_up_to)
+    for kind, channel, limit, tried, later in budgets:
         f, near = growth_at(p, kind, channel, stated)
         points = 8 if kind == "margin" and moments else 50 if limit else 25
         jumps = np.arange(1, 21) * p["period"] if "latency" in kind and p["d"].any() else ()
-        judged[kind + " of all" * ("latency" in kind and channel is None) + ", none stated" * (limit is None)] += 1
+        judged[kind + " of all" * ("latency" in kind and of_all(channel)) + ", none stated" * (limit is None)] += 1
         say(kind, channel, limit, judge(f, near, limit, min(tried, 1 - 1e-6) if kind == "loss" else tried, points, float(kind == "margin"), jumps))
-        if regained:
-            judged[kind + ", regained"] += 1
-            start, end = regained["from"], regained["to"] or np.inf
+        for window in later:
+            judged[kind + ", later windows"] += 1
+            start, end = window["from"], window["to"] or np.inf
             inside = [f(v) for v in np.linspace(start * (1 + near), min(end * (1 - near), 1.5 * start), 20)]
             outside = [f(v) for v in (start * (1 - near), end * (1 + near)) if np.isfinite(v)]
             if max(inside) > 1 + 1e-9 or min(outside) < 1 - 1e-9:
-                say(kind, channel, limit, f"regained {regained}: largest growth inside {max(inside)!r}, growth just outside {outside}")
-        if number % 10 == 0 and limit and "latency" in kind and channel and not judged["simulated"]:
+                say(kind, channel, limit, f"window {window}: largest growth inside {max(inside)!r}, growth just outside {outside}")
+        if number % 10 == 0 and limit and "latency" in kind and not of_all(channel) and not judged["simulated"]:
             judged["simulated"] = 2
             for size in (0.98 * limit, 1.02 * limit):
                 say(kind, channel, limit, simulation_disagrees(p, kind, channel, size, f(size)))

@@ -1,6 +1,6 @@
 //! Budgets of the imperfections of a loop.
 
-use libration::linear::{LinearLoopError, LoopMode, LoopTiming};
+use libration::linear::{LatencyWindow, LinearLoopError, LoopMode, LoopTiming};
 use libration_work::Work;
 use serde::Serialize;
 
@@ -11,14 +11,15 @@ use super::motion::describe_motion;
 use super::request::Tolerance;
 use super::stabilising_changes::NEUTRAL;
 use super::stability_window::StabilityWindow;
-use super::timed_loop::{Subject, TimedLoop};
+use super::subject::Subject;
+use super::timed_loop::TimedLoop;
 
 /// The budget of one imperfection: the sizes with which the loop is stable without others.
 #[derive(Clone, Debug, Serialize)]
 pub struct Budget {
     /// The imperfection.
     pub kind: Imperfection,
-    /// The input or output; none for all, or the only one.
+    /// The input or output, `all inputs` or `all outputs`; none for the only one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub channel: Option<String>,
     /// The unit of its sizes.
@@ -37,6 +38,9 @@ pub struct Budget {
     /// The separate stability window beyond the limit that contains the stated size.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub regained: Option<StabilityWindow>,
+    /// The windows of a latency beyond the first limit in which the loop is stable as well, up to 160 periods, or more if more is stated.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub later_windows: Vec<StabilityWindow>,
     /// The angle in rad per period by which the loop turns at its limit of a latency; none without oscillation.
     #[serde(skip)]
     pub crossing_angle: Option<f64>,
@@ -69,6 +73,12 @@ impl Budget {
             (None, None) => String::new(),
         }
     }
+}
+
+/// The windows that do not begin at zero, in the unit of a budget.
+fn later_windows(windows: Option<&[LatencyWindow]>, scale: f64) -> Vec<StabilityWindow> {
+    let later = windows.unwrap_or_default().iter().filter(|window| window.from > 0.0);
+    later.map(|w| StabilityWindow { from: scale * w.from, to: w.to.map(|to| scale * to) }).collect()
 }
 
 /// A number with six decimals, or with four digits where six decimals show fewer than three.
@@ -168,7 +178,7 @@ impl TimedLoop {
         let (unit, scale) = match subject.kind {
             Imperfection::Latency | Imperfection::OutputLatency => ("s", self.period()),
             Imperfection::Jitter => ("relative rms", 1.0),
-            Imperfection::Skew => ("part of a period", 1.0_f64.copysign(stated)),
+            Imperfection::Skew => ("part of a period", self.side()),
             Imperfection::Loss => ("probability", 1.0),
         };
         let end = |limit: Limit| match limit {
@@ -211,6 +221,7 @@ impl TimedLoop {
                 .filter(|&limit| limit != 0.0 && regained.is_none())
                 .map(|limit| stated / limit),
             regained,
+            later_windows: later_windows(windows.as_deref(), scale),
             crossing_angle: crossing.filter(|angle| *angle > 0.0),
             how: match subject.kind {
                 Imperfection::Latency | Imperfection::OutputLatency | Imperfection::Skew => {
@@ -225,14 +236,17 @@ impl TimedLoop {
         })
     }
 
-    /// The name of a channel; none for all, or the only one.
+    /// The name of a channel, or of all; none for the only one.
     fn channel_name(&self, subject: Subject) -> Option<String> {
         let plant = self.linear.plant();
-        let signals = match subject.kind {
-            Imperfection::OutputLatency => &plant.outputs,
-            _ => &plant.inputs,
+        let (signals, all) = match subject.kind {
+            Imperfection::OutputLatency => (&plant.outputs, "all outputs"),
+            _ => (&plant.inputs, "all inputs"),
         };
-        subject.channel.map(|i| signals[i].name.clone())
+        match subject.channel {
+            Some(i) => Some(signals[i].name.clone()),
+            None => (subject.is_latency() && signals.len() > 1).then(|| all.to_owned()),
+        }
     }
 
     /// The imperfection that uses most of its budget.

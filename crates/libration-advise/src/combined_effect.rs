@@ -9,6 +9,7 @@ use libration_work::Work;
 use super::AdviseError;
 use super::budget::Budget;
 use super::ensemble::{EnsembleResult, EnsembleRun, GROUPS, MEMORIES, MOST_PERIODS};
+use super::limits::MOST_LOSS;
 use super::loops::{AnyController, Loop, LoopError, PlantModel};
 use super::region_of_attraction::RegionOfAttraction;
 use super::request::{Measure, Request, Tolerance};
@@ -115,9 +116,6 @@ impl TimedLoop {
         let ends: Vec<f64> = ends.map(|used| (1.0 + 1e-6) / used).collect();
         let holds = |share: f64| -> Result<bool, LinearLoopError> {
             let imperfections = self.scaled(share)?;
-            if imperfections.loss >= 1.0 {
-                return Ok(false);
-            }
             Ok(match tolerance {
                 Tolerance { of: Measure::Cost, most } => {
                     self.cost(&imperfections)? <= (1.0 + most) * ideal_cost
@@ -143,9 +141,14 @@ impl TimedLoop {
         let longest = input_latency.iter().chain(output_latency).copied().fold(0.0, f64::max);
         let turn = (longest * self.rate()).max(f64::MIN_POSITIVE);
         let step = (0.25 / turn).max((MOST - 1.0) / 128.0);
+        // A probability of a loss is below 1.
+        let most = match self.timing.loss {
+            0.0 => MOST,
+            loss => MOST.min(MOST_LOSS / loss).max(1.0),
+        };
         let mut low = 1.0;
-        while low < MOST {
-            let high = (low * ratio).min(low + step).min(MOST);
+        while low < most {
+            let high = (low * ratio).min(low + step).min(most);
             let high = ends.iter().copied().filter(|end| *end > low).fold(high, f64::min);
             // A clock a thousand times as fast is invalid.
             if 1.0 + high * self.timing.skew < 1e-3 {

@@ -28,6 +28,7 @@ mod request;
 mod stabilising_changes;
 mod stability_map;
 mod stability_window;
+mod subject;
 mod summary;
 mod throughput;
 mod timed_loop;

@@ -3,7 +3,8 @@
 use libration::linear::{LatencyWindow, LinearLoopError, LoopTiming};
 
 use super::request::{Measure, Tolerance};
-use super::timed_loop::{Subject, TimedLoop};
+use super::subject::Subject;
+use super::timed_loop::TimedLoop;
 
 /// A timing imperfection of a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -60,6 +61,9 @@ const LONG: f64 = 32.0;
 /// Whole periods on both sides of which latencies are tried, of a plant with a direct path.
 const WHOLE: u32 = 64;
 
+/// Largest tried probability of a loss.
+pub(super) const MOST_LOSS: f64 = 1.0 - 1e-9;
+
 /// Number of bisections: to the digits of a float.
 const HALVINGS: u32 = 48;
 
@@ -77,7 +81,7 @@ impl TimedLoop {
             Imperfection::Jitter => (2.0 * stated).max(1.0),
             Imperfection::Skew if stated < 0.0 => 0.999,
             Imperfection::Skew => 8.0,
-            Imperfection::Loss => 1.0 - 1e-9,
+            Imperfection::Loss => MOST_LOSS,
         }
     }
 

@@ -6,7 +6,8 @@ use libration_work::Work;
 use super::AdviseError;
 use super::limits::Imperfection;
 use super::loops::LoopError;
-use super::timed_loop::{Subject, TimedLoop};
+use super::subject::Subject;
+use super::timed_loop::TimedLoop;
 
 /// The growth of a loop over latency and gain.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,8 +3,10 @@
 use libration::linear::{LatencyWindow, LinearLoopError};
 use serde::Serialize;
 
+use super::budget::rounded;
 use super::request::{Measure, Tolerance};
-use super::timed_loop::{Subject, TimedLoop};
+use super::subject::Subject;
+use super::timed_loop::TimedLoop;
 
 /// A stability window beyond the first limit that contains the stated size.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -13,6 +15,16 @@ pub struct StabilityWindow {
     pub from: f64,
     /// The largest size in the window; none if no end was found.
     pub to: Option<f64>,
+}
+
+impl StabilityWindow {
+    /// The ends in words, without the unit.
+    pub fn in_words(&self) -> String {
+        match self.to {
+            Some(to) => format!("from {} to {}", rounded(self.from), rounded(to)),
+            None => format!("from {}", rounded(self.from)),
+        }
+    }
 }
 
 /// Relative accuracy of the ends of a window, which are printed to six digits.

@@ -1,7 +1,7 @@
 //! Summaries in sentences.
 
 use super::advice::{Advice, LoopAdvice, ToleranceAnswer};
-use super::budget::Budget;
+use super::budget::{Budget, rounded};
 use super::combined_effect::CombinedEffect;
 use super::control::Control;
 use super::loop_simulation::MOST_PERIODS;
@@ -98,19 +98,12 @@ pub(super) fn percent(share: f64) -> String {
 }
 
 /// A loop that is stable only in a separate window, in words.
-pub(super) fn describe_window(
-    budget: &Budget,
-    StabilityWindow { from, to }: StabilityWindow,
-) -> String {
-    let (kind, unit) = (budget.kind.name(), budget.unit);
-    let limit = budget.stable_up_to.unwrap_or(0.0);
-    let end = match to {
-        Some(to) => format!("from {from:.6} to {to:.6}"),
-        None => format!("from {from:.6}"),
-    };
+pub(super) fn describe_window(budget: &Budget, window: StabilityWindow) -> String {
+    let (kind, unit, end) = (budget.kind.name(), budget.unit, window.in_words());
+    let limit = rounded(budget.stable_up_to.unwrap_or(0.0));
     format!(
         "The loop is stable with the stated imperfections, but only in a separate stability window: {kind} alone is stable {end} {unit}, \
-         and unstable below that from {limit:.6} {unit} on. Do not rely on it: less {kind} destabilises the loop, and so does more."
+         and unstable below that from {limit} {unit} on. Do not rely on it: less {kind} destabilises the loop, and so does more."
     )
 }
 

@@ -6,6 +6,7 @@ use libration::linear::{
 };
 
 use super::limits::Imperfection;
+use super::subject::Subject;
 
 /// The timing that a request states.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,52 +42,7 @@ pub(super) struct TimedLoop {
     pub(super) critical_latency: Option<CriticalLatency>,
 }
 
-/// An imperfection, of one channel or of all.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Subject {
-    pub(super) kind: Imperfection,
-    /// The input or output; none for all.
-    pub(super) channel: Option<usize>,
-}
-
-impl Subject {
-    /// Whether it is a latency, whose sizes are in periods.
-    pub(super) fn is_latency(self) -> bool {
-        matches!(self.kind, Imperfection::Latency | Imperfection::OutputLatency)
-    }
-}
-
-/// Most outputs whose latencies have a budget each.
-const MOST_OUTPUTS: usize = 8;
-
 impl TimedLoop {
-    /// The imperfections that have a budget, with those of the outputs or without.
-    pub(super) fn subjects(&self, with_outputs: bool) -> Vec<Subject> {
-        let of = |kind| Subject { kind, channel: None };
-        let each = |kind, count: usize| {
-            (0..count).map(move |i| Subject { kind, channel: Some(i) }).collect::<Vec<_>>()
-        };
-        let StatedTiming { input_latency, output_latency, .. } = &self.timing;
-        let mut subjects = match input_latency.len() {
-            1 => vec![of(Imperfection::Latency)],
-            count => each(Imperfection::Latency, count),
-        };
-        if with_outputs {
-            match output_latency.len() {
-                1 => subjects.push(of(Imperfection::OutputLatency)),
-                count if count <= MOST_OUTPUTS => {
-                    subjects.extend(each(Imperfection::OutputLatency, count));
-                }
-                _ => subjects.push(of(Imperfection::OutputLatency)),
-            }
-        }
-        if !self.is_sampled() {
-            subjects.extend([Imperfection::Jitter, Imperfection::Skew].map(of));
-        }
-        subjects.push(of(Imperfection::Loss));
-        subjects
-    }
-
     /// The period, in s.
     pub(super) fn period(&self) -> f64 {
         self.linear.period()
@@ -137,7 +93,7 @@ impl TimedLoop {
             Imperfection::OutputLatency => self.delay(&mut timing.output_latency, subject, size)?,
             Imperfection::Jitter => timing.jitter = self.timing.jitter.with_rms(size),
             // To the stated side; a slow clock if none is stated.
-            Imperfection::Skew => timing.skew = size.abs().copysign(self.timing.skew),
+            Imperfection::Skew => timing.skew = size.abs() * self.side(),
             Imperfection::Loss => timing.loss = size,
         }
         Ok(timing)
@@ -170,8 +126,13 @@ impl TimedLoop {
         {
             return Ok(None);
         }
-        let sizes = [stated, self.largest(subject)];
-        self.linear.latency_windows(&self.ideal(), &channels, sizes).map(Some)
+        let largest = self.largest(subject);
+        self.linear.latency_windows(&self.ideal(), &channels, [largest; 2]).map(Some)
+    }
+
+    /// The side of the skew: 1 for a slow clock, also if none is stated, −1 for a fast one.
+    pub(super) fn side(&self) -> f64 {
+        if self.timing.skew < 0.0 { -1.0 } else { 1.0 }
     }
 
     /// Whether measurements of all outputs that are late may be replaced by commands to all inputs that are late: without a direct path
@@ -196,12 +157,15 @@ impl TimedLoop {
         Ok(())
     }
 
-    /// The stated size of an imperfection: in s for a latency.
+    /// The stated size of an imperfection: in s for a latency. Of all channels it is the latency that they have in common, the smallest, or
+    /// the largest where no channel has a budget of its own.
     pub(super) fn stated_size(&self, subject: Subject) -> f64 {
         let StatedTiming { input_latency, output_latency, jitter, skew, loss, .. } = &self.timing;
+        let lone = !self.is_joint(subject);
         let late = |channels: &[f64]| match subject.channel {
             Some(i) => channels[i],
-            None => channels.iter().copied().fold(0.0, f64::max),
+            None if lone => channels.iter().copied().fold(0.0, f64::max),
+            None => channels.iter().copied().reduce(f64::min).unwrap_or(0.0),
         };
         match subject.kind {
             Imperfection::Latency => late(input_latency),

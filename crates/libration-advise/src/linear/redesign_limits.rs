@@ -9,7 +9,8 @@ use crate::AdviseError;
 use crate::budget::rounded;
 use crate::limits::Imperfection;
 use crate::loops::LoopError;
-use crate::timed_loop::{StatedTiming, Subject, TimedLoop};
+use crate::subject::Subject;
+use crate::timed_loop::{StatedTiming, TimedLoop};
 
 /// The sizes of an imperfection with which a loop is stable while all other imperfections are as stated.
 #[derive(Clone, Debug, Serialize)]
@@ -80,7 +81,9 @@ impl LinearRequest {
         work: &Work<'_>,
         after: &TimedLoop,
     ) -> Result<Vec<RedesignLimit>, AdviseError> {
-        let subjects = self.timed.subjects(true);
+        // Others as stated: a latency of all channels would be that of none.
+        let mut subjects = self.timed.subjects(true);
+        subjects.retain(|subject| !self.timed.is_joint(*subject));
         work.sweep("limits of the redesign", &subjects, |&subject| {
             let range = |timed: &TimedLoop| timed.stable_range(subject).map_err(LoopError::from);
             let plant = self.timed.linear.plant();

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use libration_advise::linear::{self, InputMargins, LinearAdvice, LinearRequest, StableRange};
-use libration_advise::rounded;
+use libration_advise::{StabilityWindow, rounded};
 use libration_work::Work;
 
 use super::advise::{command_line, deliver};
@@ -232,5 +232,13 @@ fn budgets(advice: &LinearAdvice, text: &mut String) {
             budget.unit,
             budget.how
         );
+    }
+    for budget in &advice.budgets {
+        let windows = budget.later_windows.iter().map(StabilityWindow::in_words);
+        let windows = windows.collect::<Vec<_>>().join(", ");
+        if !windows.is_empty() {
+            let _ =
+                writeln!(text, "{} alone is stable again {windows} {}", budget.name(), budget.unit);
+        }
     }
 }

@@ -56,8 +56,7 @@ impl OperatingPoint {
     /// The operating point in a sentence.
     pub fn sentence(&self) -> String {
         let list = |numbers: &[f64]| {
-            let numbers: Vec<String> = numbers.iter().map(|&x| seven_digits(x)).collect();
-            numbers.join(", ")
+            numbers.iter().map(|&x| seven_digits(x)).collect::<Vec<_>>().join(", ")
         };
         format!(
             "The plant is the system {} linearised at q = {} {} under the constant command {} {}, where an acceleration of {:.1e} is left.",
@@ -261,10 +260,7 @@ mod tests {
         assert_eq!(fault.key, "system.linear.at");
         // At q = −90° gravity is 14 of the 15.
         assert!(fault.message.contains("an acceleration of 1.000e0 is left"), "{fault}");
-        let fault = pendulum(0.0, 50.0).unwrap_err();
-        let (_, left) = fault.message.split_once("an acceleration of ").unwrap();
-        let left: f64 = left.split(' ').next().unwrap().parse().unwrap();
-        assert!((36.0..64.1).contains(&left), "{fault}");
+        assert!(pendulum(0.0, 50.0).unwrap_err().message.contains("3.600e1 is left"));
     }
 
     #[test]

@@ -92,7 +92,7 @@ impl PlantTable {
             let table = plant_file::read(std::path::Path::new(file)).map_err(wrong)?;
             return table.plant().map_err(|fault| wrong(fault.to_string()));
         }
-        self.check_keys()?;
+        plant_keys::check(&self.given())?;
         let plant = match (&self.of, &self.a, &self.mass, &self.numerator) {
             (Some(of), None, None, None) => self.of_catalogue(of)?.0,
             (None, Some(a), None, None) => self.by_matrices(a)?,
@@ -125,6 +125,27 @@ impl PlantTable {
             (None, Some(of)) => Ok(Some(self.of_catalogue(of)?.1)),
             (None, None) => Ok(None),
         }
+    }
+
+    /// The keys that are given, without those of noise and names.
+    fn given(&self) -> Vec<&'static str> {
+        let keys = [
+            ("of", self.of.is_some()),
+            ("at", self.at.is_some()),
+            ("command", self.command.is_some()),
+            ("parameters", !self.parameters.is_empty()),
+            ("a", self.a.is_some()),
+            ("b", self.b.is_some()),
+            ("c", self.c.is_some()),
+            ("d", self.d.is_some()),
+            ("mass", self.mass.is_some()),
+            ("damping", self.damping.is_some()),
+            ("stiffness", self.stiffness.is_some()),
+            ("numerator", self.numerator.is_some()),
+            ("denominator", self.denominator.is_some()),
+            ("sampling-period", self.sampling_period.is_some()),
+        ];
+        keys.into_iter().filter(|(_, given)| *given).map(|(key, _)| key).collect()
     }
 
     fn of_catalogue(&self, name: &str) -> Result<(LinearPlant, OperatingPoint), Fault> {
