@@ -154,3 +154,43 @@ period = 1.0
         assert!((found - 0.77128).abs() < 1e-5, "{kind}: {found}");
     }
 }
+
+#[test]
+fn all_windows_of_a_latency_are_listed_and_several_channels_have_a_limit_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "\
+[system.linear]
+a = [[0, 1], [-400, -0.4]]
+b = [[0], [1]]
+c = [[0, 1]]
+[controller.state-space]
+d = [[-2]]
+";
+    let path = written(&folder, "windows.toml", text);
+    let advice = json(&["advise", "--config", path.to_str().unwrap()]);
+    let windows = advice["budgets"][0]["later_windows"].as_array().unwrap();
+    let ends = |window: &Value| ["from", "to"].map(|end| window[end].as_f64().unwrap());
+    // By eigenvalues of NumPy at every half millisecond up to 1.6 s: the first at which the answer changes.
+    let scanned =
+        [[0.232, 0.379], [0.562, 0.678], [0.892, 0.977], [1.222, 1.2765], [1.5515, 1.5755]];
+    assert_eq!(windows.len(), scanned.len(), "{windows:?}");
+    for (found, wanted) in windows.iter().map(ends).zip(scanned) {
+        let before = |i: usize| (0.0..5e-4).contains(&(wanted[i] - found[i]));
+        assert!(before(0) && before(1), "{found:?} {wanted:?}");
+    }
+    // Two equal axes without coupling: together they have the limit of each.
+    let twins = "\
+[system.linear]
+a = [[0, 1, 0, 0], [0, 0, 0, 0], [0, 0, 0, 1], [0, 0, 0, 0]]
+b = [[0, 0], [1, 0], [0, 0], [0, 1]]
+[controller.state-feedback]
+gain = [[9, 3, 0, 0], [0, 0, 9, 3]]
+[loop]
+latency = [0.02, 0.01]
+";
+    let path = written(&folder, "twins.toml", twins);
+    let advice = json(&["advise", "--config", path.to_str().unwrap()]);
+    let [all, one] = ["all inputs", "u1"].map(|name| limit(&advice, "latency", Some(name)));
+    assert!((all.unwrap() - one.unwrap()).abs() < 1e-9, "{all:?} {one:?}");
+    assert_eq!(advice["budgets"][0]["stated"], 0.01);
+}
