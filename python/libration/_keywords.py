@@ -14,7 +14,7 @@ R = TypeVar("R")
 
 def check_keywords(function: Callable[P, R]) -> Callable[P, R]:
     """Return the function with an error message that has the nearest name of an unknown keyword."""
-    known = [name for name in inspect.signature(function).parameters if name != "self"]
+    known = [name for name in inspect.signature(function).parameters if name not in ("self", "cls")]
 
     @functools.wraps(function)
     def checked(*args: P.args, **kwargs: P.kwargs) -> R:

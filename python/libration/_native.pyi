@@ -22,6 +22,7 @@ __all__ = [
     "_dataset_settings",
     "_forked",
     "_integrators",
+    "_linear_plant",
     "_parameters",
     "_program",
     "_run_lab",
@@ -64,6 +65,7 @@ def _analyze(
     step: Mapping[str, Any], looped: Mapping[str, Any], options: Mapping[str, Any]
 ) -> str: ...
 def _analyze_linear(config: str, dt: float | None, integrator: str | None) -> str: ...
+def _linear_plant(text: str) -> tuple[list[list[list[float]]], list[list[tuple[str, str]]]]: ...
 def _advise(
     config: str, page: bool, redesign: bool, progress: Callable[[str, int, int, str, int, int], Any] | None
 ) -> tuple[str, bool, str | None]: ...

@@ -24,6 +24,11 @@ def nearest(name: str, known: Iterable[str]) -> str:
     return f"{hint}known are {', '.join(known)}"
 
 
+def shown(value: Any) -> str:
+    """Return a value as text on one line, of at most 60 characters."""
+    return " ".join(repr(value).split())[:60]
+
+
 def number(name: str, value: Any, allowed: str, holds=math.isfinite) -> float:
     """Return ``value`` as a float.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 import json
 from pathlib import Path
-from typing import Any, Mapping, Sequence
+from typing import Any, Mapping
 
 from . import _native
 from ._requests import coordinates, loop_request, step_request, whole
@@ -13,7 +13,7 @@ from ._keywords import check_keywords
 from ._progress import Progress, ProgressDisplay
 from ._settings import number
 from ._toml import text_of
-from .linear import linear_request, plant_of
+from .linear import linear_request, plant_of, tolerance_table
 from .perturbations import LQR, PD, PID, Controller, Observer, law, numbers
 from .perturbations import latency as _latency
 from .systems import CustomSystem, System, known
@@ -267,7 +267,8 @@ def advise(
     ----------
     system:
         A name or a :class:`~libration.System`; or a linear plant: a :class:`~libration.LinearPlant`, or any object with ``A``,
-        ``B``, ``C``, ``D`` and ``dt``, as ``control.ss`` and ``scipy.signal.StateSpace`` make them.
+        ``B``, ``C``, ``D`` and ``dt``, as ``control.ss`` and ``scipy.signal.StateSpace`` make them, or with ``num``, ``den`` and ``dt``,
+        as ``control.tf`` and ``scipy.signal.TransferFunction`` do.
     controller:
         Gains of position and velocity, in s⁻² and s⁻¹ (in N/m and N·s/m for a system with ``m`` and ``k``),
         :class:`~libration.PD`, :class:`~libration.PID`, :class:`~libration.LQR` or
@@ -374,9 +375,7 @@ def _request(
     if horizon is not None:
         request["request"] = {"horizon": number("horizon", horizon, "a number")}
     if tolerance is not None:
-        if isinstance(tolerance, str) or not isinstance(tolerance, Sequence) or len(tolerance) != 2:
-            raise TypeError(f"tolerance is {tolerance!r}, but it must be a pair like ('energy', 1e-6)")
-        request["tolerance"] = {tolerance[0]: number("tolerance", tolerance[1], "a number")}
+        request["tolerance"] = tolerance_table(tolerance, "('energy', 1e-6)")
     loop: dict[str, Any] = {
         name: number(name, value, "a number", lambda _: True)
         for name, value in {

@@ -8,10 +8,14 @@ from typing import Any, Callable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .perturbations import LQR, PID, Steps, law
+from . import _native
 from ._keywords import check_keywords
-from ._settings import number
+from ._matrices import array, columns, matrix
+from ._settings import number, positive, shown
+from ._toml import text_of
+from ._transfer_functions import of_object, polynomials
 from .operating_point import OperatingPoint, linearize
+from .perturbations import LQR, PID, Steps, law
 
 __all__ = [
     "LQG",
@@ -72,8 +76,9 @@ class Difference:
 class LinearPlant:
     """A linear plant ``ẋ = Ax + Bu + Gw``, ``y = Cx + Du`` with white noise ``w`` of unit intensity.
 
-    :func:`advise` also takes any object with ``A``, ``B``, ``C``, ``D`` and ``dt`` in its place, as ``control.ss`` and
-    ``scipy.signal.StateSpace`` make them.
+    :meth:`mechanical`, :meth:`transfer_function` and :meth:`linearize` make one of another form. :func:`advise` also takes any object
+    with ``A``, ``B``, ``C``, ``D`` and ``dt`` in its place, as ``control.ss`` and ``scipy.signal.StateSpace`` make them, or with
+    ``num``, ``den`` and ``dt``, as ``control.tf`` and ``scipy.signal.TransferFunction`` do.
     """
 
     A: ArrayLike
@@ -96,6 +101,113 @@ class LinearPlant:
     """Lags and filters of the channels."""
     operating_point: OperatingPoint | None = None
     """The equilibrium at which :meth:`linearize` found the matrices."""
+
+    @classmethod
+    @check_keywords
+    def mechanical(
+        cls,
+        mass: ArrayLike,
+        damping: ArrayLike | None = None,
+        stiffness: ArrayLike | None = None,
+        force: ArrayLike | None = None,
+        *,
+        C: ArrayLike | None = None,
+        D: ArrayLike | None = None,
+        G: ArrayLike | None = None,
+        states: Sequence[str] | None = None,
+        inputs: Sequence[str] | None = None,
+        outputs: Sequence[str] | None = None,
+        parts: Sequence[Lag | Butterworth2 | MovingAverage | Difference] = (),
+    ) -> LinearPlant:
+        """Return the plant of masses, dampers and springs ``M q̈ + D q̇ + K q = B u``; its states are ``q`` and then ``q̇``.
+
+        Parameters
+        ----------
+        mass, damping, stiffness:
+            ``M``, ``D`` and ``K``, coordinates × coordinates, for 1 to 50 coordinates (default of the last two: zero).
+        force:
+            ``B``, coordinates × inputs; a vector is a column (default: an input for each coordinate).
+        C, D:
+            Outputs × states and outputs × inputs (default: the outputs are ``q``, without a direct path).
+        G:
+            States × noises, of all states (default: noise enters where the inputs do).
+        states:
+            Names of the coordinates, with units in parentheses. The rate of ``"angle (rad)"`` is ``"angle' (rad/s)"``.
+        inputs, outputs, parts:
+            As in :class:`LinearPlant`.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For matrices that do not fit, or a singular mass matrix; the message names the matrix.
+        """
+        table: dict[str, Any] = {"mass": matrix("mass", mass)}
+        for key, value in (("damping", damping), ("stiffness", stiffness)):
+            if value is not None:
+                table[key] = matrix(key, value)
+        if force is not None:
+            table["b"] = columns("force", force)
+        for name, value in (("C", C), ("D", D)):
+            if value is not None:
+                table[name.lower()] = matrix(name, value)
+        return cls._of_table(table, G, None, states, inputs, outputs, parts)
+
+    @classmethod
+    @check_keywords
+    def transfer_function(
+        cls,
+        numerator: Any,
+        denominator: Any,
+        *,
+        dt: float | None = None,
+        G: ArrayLike | None = None,
+        states: Sequence[str] | None = None,
+        inputs: Sequence[str] | None = None,
+        outputs: Sequence[str] | None = None,
+        parts: Sequence[Lag | Butterworth2 | MovingAverage | Difference] = (),
+    ) -> LinearPlant:
+        """Return the plant of a transfer function, or of one for each output and input.
+
+        Each has states of its own, in controllable canonical form, so that the plant may have more states than are necessary.
+
+        Parameters
+        ----------
+        numerator, denominator:
+            Polynomials by falling powers of ``s``, or of ``z`` with ``dt``: one, ``[1, 2]``, or nested lists outputs × inputs,
+            ``[[[1], [2, 1]]]``.
+        dt:
+            The period in s of a sampled plant (default: continuous time).
+        G, states, inputs, outputs, parts:
+            As in :class:`LinearPlant`.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For a numerator of higher degree than its denominator, a denominator of zero, or another structure.
+        """
+        table = {"numerator": polynomials("numerator", numerator), "denominator": polynomials("denominator", denominator)}
+        period = None if dt is None else positive("dt", dt)
+        return cls._of_table(table, G, period, states, inputs, outputs, parts)
+
+    @classmethod
+    def _of_table(
+        cls,
+        table: dict[str, Any],
+        G: ArrayLike | None,
+        dt: float | None,
+        states: Any,
+        inputs: Any,
+        outputs: Any,
+        parts: Sequence[Lag | Butterworth2 | MovingAverage | Difference],
+    ) -> LinearPlant:
+        """Return the plant of the keys of a plant file, which the engine reads."""
+        if G is not None:
+            table["g"] = columns("G", G)
+        text = text_of("plant", table | _names(states, inputs, outputs))
+        matrices, signals = _native._linear_plant(text)
+        a, b, c, d, g = (np.array(rows) for rows in matrices)
+        named = [[f"{name} ({unit})" if unit else name for name, unit in own] for own in signals]
+        return cls(a, b, c, d, g, dt, named[0], named[1], named[2], parts)
 
     @classmethod
     @check_keywords
@@ -221,10 +333,14 @@ def plant_of(system: Any) -> LinearPlant | None:
     """Return a linear plant for an object with the matrices of one; None for others."""
     if isinstance(system, LinearPlant):
         return system
-    if not all(hasattr(system, name) for name in "ABCD") and hasattr(system, "to_ss"):
+    by_matrices = _has_matrices(system)
+    fraction = None if by_matrices else of_object(system)
+    if not by_matrices and fraction is None:
+        if not hasattr(system, "to_ss"):
+            return None
         system = system.to_ss()
-    if not all(hasattr(system, name) for name in "ABCD"):
-        return None
+        if not _has_matrices(system):
+            return None
     dt = getattr(system, "dt", None)
     if dt is True:
         raise ValueError("system.dt is True, a period that is not given; expected a number of seconds, or 0 for continuous time")
@@ -233,61 +349,56 @@ def plant_of(system: Any) -> LinearPlant | None:
         found = getattr(system, name, None)
         return [str(label) for label in found] if found is not None else None
 
+    period = float(dt) if dt else None
+    if fraction is not None:
+        return LinearPlant.transfer_function(
+            *fraction, dt=period, inputs=labels("input_labels"), outputs=labels("output_labels")
+        )
     return LinearPlant(
         system.A,
         system.B,
         system.C,
         system.D,
-        dt=float(dt) if dt else None,
+        dt=period,
         states=labels("state_labels"),
         inputs=labels("input_labels"),
         outputs=labels("output_labels"),
     )
 
 
-def matrix(name: str, value: ArrayLike) -> list[list[float]]:
-    """Return a matrix row by row; numbers and vectors are rows."""
-    rows = np.atleast_2d(_array(name, value))
-    if rows.ndim != 2:
-        raise ValueError(f"{name} has shape {np.shape(value)}; expected a matrix")
-    return rows.tolist()
+def _has_matrices(system: Any) -> bool:
+    return all(hasattr(system, name) for name in "ABCD")
 
 
-def _array(name: str, value: ArrayLike) -> np.ndarray:
-    array = np.asarray(value)
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name} has dtype {array.dtype}; expected real numbers")
-    array = array.astype(np.float64)
-    if not np.isfinite(array).all():
-        raise ValueError(f"{name} has an entry that is not finite; expected finite numbers")
-    return array
-
-
-def _weights(name: str, value: ArrayLike) -> list[Any]:
-    """Return a matrix row by row, or its diagonal."""
-    array = np.atleast_1d(_array(name, value))
-    if array.ndim > 2:
-        raise ValueError(f"{name} has shape {array.shape}; expected a matrix or its diagonal")
-    return array.tolist()
-
-
-def linear_request(plant: LinearPlant, controller: Any, timing: dict[str, Any], required: bool = True) -> dict[str, Any]:
-    """Return the request for a loop around a linear plant as the content of a request file, without a controller if none is required."""
-    table: dict[str, Any] = {"a": matrix("A", plant.A)}
-    b = _array("B", plant.B)
-    # A vector is the column of the only input.
-    table["b"] = matrix("B", b[:, np.newaxis] if b.ndim == 1 else b)
-    for key, value in (("c", plant.C), ("d", plant.D)):
-        if value is not None:
-            table[key] = matrix(key.upper(), value)
-    if plant.G is not None:
-        g = _array("G", plant.G)
-        table["g"] = matrix("G", g[:, np.newaxis] if g.ndim == 1 else g)
-    for key, names in (("states", plant.states), ("inputs", plant.inputs), ("outputs", plant.outputs)):
+def _names(states: Any, inputs: Any, outputs: Any) -> dict[str, list[str]]:
+    """Return the names of signals by the keys of a plant file."""
+    table = {}
+    for key, names in (("states", states), ("inputs", inputs), ("outputs", outputs)):
         if isinstance(names, str):
             raise TypeError(f"{key} is {names!r:.60}; expected a list with a name for each")
         if names is not None:
             table[key] = [str(name) for name in names]
+    return table
+
+
+def _weights(name: str, value: ArrayLike) -> list[Any]:
+    """Return a matrix row by row, or its diagonal."""
+    weights = np.atleast_1d(array(name, value))
+    if weights.ndim > 2:
+        raise ValueError(f"{name} has shape {weights.shape}; expected a matrix or its diagonal")
+    return weights.tolist()
+
+
+def linear_request(plant: LinearPlant, controller: Any, timing: dict[str, Any], required: bool = True) -> dict[str, Any]:
+    """Return the request for a loop around a linear plant as the content of a request file, without a controller if none is required."""
+    # A vector is the column of the only input.
+    table: dict[str, Any] = {"a": matrix("A", plant.A), "b": columns("B", plant.B)}
+    for key, value in (("c", plant.C), ("d", plant.D)):
+        if value is not None:
+            table[key] = matrix(key.upper(), value)
+    if plant.G is not None:
+        table["g"] = columns("G", plant.G)
+    table |= _names(plant.states, plant.inputs, plant.outputs)
     if plant.dt is not None:
         table["sampling-period"] = number("dt", plant.dt, "a number of seconds")
     if controller is None and required:
@@ -302,9 +413,15 @@ def linear_request(plant: LinearPlant, controller: Any, timing: dict[str, Any], 
         request["part"] = [_part(part, ("u", plant.inputs), measured) for part in plant.parts]
     request["loop"] = _loop(timing)
     if timing["tolerance"] is not None:
-        kind, most = timing["tolerance"]
-        request["tolerance"] = {kind: number("tolerance", most, "a number")}
+        request["tolerance"] = tolerance_table(timing["tolerance"], "('cost', 0.05)")
     return request
+
+
+def tolerance_table(tolerance: Any, example: str) -> dict[str, float]:
+    """Return a pair of a kind and the most that is allowed as the content of the table ``[tolerance]``."""
+    if isinstance(tolerance, str) or not isinstance(tolerance, Sequence) or len(tolerance) != 2 or not isinstance(tolerance[0], str):
+        raise TypeError(f"tolerance is {shown(tolerance)}; expected a pair like {example}")
+    return {tolerance[0]: number("tolerance", tolerance[1], "a number")}
 
 
 def _part(
@@ -349,10 +466,14 @@ def _controller(controller: Any) -> dict[str, Any]:
         return {"cascade": _cascade(controller)}
     if isinstance(controller, Sequence) and controller and all(isinstance(one, tuple) for one in controller):
         return {"pid": [_pid(*one) for one in controller]}
-    raise TypeError(
-        f"controller is {controller!r:.60}; expected LQR(Q, R), LQG, StateFeedback, StateSpace, Cascade, "
-        "or a list of (output, input, PID)"
-    )
+    expected = "LQR(Q, R), LQG, StateFeedback, StateSpace, Cascade, or a list of (output, input, PID)"
+    raise TypeError(f"controller is {shown(controller)}; expected {expected}{_help(controller)}")
+
+
+def _help(controller: Any) -> str:
+    if not _has_matrices(controller):
+        return ""
+    return "; help: libration.StateSpace(A, B, C, D) is u = C m + D y, without the minus of a negative feedback"
 
 
 def _state_space(controller: StateSpace) -> dict[str, Any]:
@@ -385,6 +506,9 @@ def _cascaded(side: str, controller: Any) -> dict[str, Any]:
                 names["reference"] = one[3]
             pids.append({**names, **_gains(one[2])})
         return {"pid": pids}
+    if _has_matrices(controller):
+        expected = "a matrix of gains, StateSpace, or a list of PID controllers"
+        raise TypeError(f"{side} is {shown(controller)}; expected {expected}{_help(controller)}")
     return {"gain": matrix(side, controller)}
 
 

@@ -92,9 +92,11 @@ class LinearVectorEnv(gymnasium.vector.VectorEnv):
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float64], dict[str, Any]]:
-        """Begin an episode in all environments; ``seed`` is a number."""
+        """Begin an episode in all environments; ``seed`` is a number. There are no ``options``."""
         if isinstance(seed, list):
             raise TypeError("seed is a list; expected a number: environment n draws from stream n of one seed")
+        if options:
+            raise ValueError(f"options has {next(iter(options))!r}; expected no options")
         super().reset(seed=seed)
         observations = self._begin()
         return observations, {}
@@ -118,7 +120,12 @@ class LinearVectorEnv(gymnasium.vector.VectorEnv):
         commands = np.asarray(actions, dtype=np.float64)
         if commands.shape != self.action_space.shape:
             raise ValueError(f"actions have shape {commands.shape}; expected {self.action_space.shape}")
-        row = self._loops.command(np.ascontiguousarray(np.clip(commands, -self._most, self._most)))
+        commands = np.ascontiguousarray(np.clip(commands, -self._most, self._most))
+        if not (finite := np.isfinite(commands)).all():
+            n, i = np.argwhere(~finite)[0]
+            name = self._loops.input_names[i]
+            raise ValueError(f"actions have the entry {commands[n, i]} for {name!r} in environment {n}; expected finite numbers")
+        row = self._loops.command(commands)
         lost = ~(np.isfinite(row.cost) & np.isfinite(row.states).all(axis=1))
         with np.errstate(invalid="ignore"):
             rewards = np.where(lost, 0.0, self._cost - row.cost)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _native
 from ._keywords import check_keywords
-from ._settings import count, nearest, number
+from ._settings import count, nearest, number, shown
 from ._toml import text_of
 from .linear import linear_request, plant_of
 
@@ -97,7 +97,7 @@ class LinearLoops:
     ) -> None:
         found = plant_of(plant)
         if found is None:
-            raise TypeError(f"plant is {plant!r:.60}; expected a LinearPlant, or an object with A, B, C, D and dt")
+            raise TypeError(f"plant is {shown(plant)}; expected a LinearPlant, or an object with A, B, C, D and dt or with num, den and dt")
         timing = {
             "period": found.dt if period is None else period,
             "latency": latency,

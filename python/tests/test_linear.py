@@ -23,6 +23,7 @@ from libration import (
     Steps,
     advise,
 )
+from libration.linear import plant_of
 
 A, B = np.array([[0.0, 1.0], [4.0, -0.2]]), np.array([[0.0, 0.0], [1.0, 0.5]])
 PENDULUM = LinearPlant(A, B[:, 0], states=["angle (rad)", "rate (rad/s)"], inputs=["torque (N m)"])
@@ -255,6 +256,157 @@ def test_a_redesign_is_cheaper_with_the_latency_it_is_made_for():
     assert advice["redesign"]["cost"] < advice["cost"]
     with pytest.raises(ValueError, match="redesign requires a linear plant"):
         advise("oscillator", PD(10.0, 2.0), redesign=True)
+
+
+MASS, DAMPING, STIFFNESS = [[2.0, 0.5], [0.5, 1.0]], [[0.3, -0.1], [-0.1, 0.2]], [[50.0, -20.0], [-20.0, 30.0]]
+
+
+def response(plant, s):
+    """The transfer matrix of a plant."""
+    n = np.shape(plant.A)[0]
+    return np.asarray(plant.C) @ np.linalg.solve(s * np.eye(n) - plant.A, plant.B) + plant.D
+
+
+def test_a_mechanical_plant_has_the_response_of_its_masses_dampers_and_springs():
+    plant = LinearPlant.mechanical(MASS, DAMPING, STIFFNESS, [1.0, 0.0], states=["motor (rad)", "load (rad)"], inputs=["torque (N m)"])
+    assert plant.states == ["motor (rad)", "load (rad)", "motor' (rad/s)", "load' (rad/s)"]
+    assert plant.outputs == ["motor (rad)", "load (rad)"] and plant.inputs == ["torque (N m)"] and plant.dt is None
+    for omega in (0.1, 3.0, 40.0):
+        s = 1j * omega
+        wanted = np.linalg.solve(s**2 * np.array(MASS) + s * np.array(DAMPING) + STIFFNESS, [[1.0], [0.0]])
+        np.testing.assert_allclose(response(plant, s), wanted, rtol=1e-12)
+    # By default each coordinate has an input, and noise enters where the inputs do.
+    free = LinearPlant.mechanical(2.0)
+    np.testing.assert_array_equal(free.A, [[0, 1], [0, 0]])
+    np.testing.assert_array_equal(np.hstack([free.B, free.G]), [[0, 0], [0.5, 0.5]])
+    other = LinearPlant.mechanical(MASS, C=[[0, 0, 1, 0]], G=[0, 0, 1, 0], D=[[0.0, 7.0]], parts=[Lag(0.01, input=0)])
+    np.testing.assert_array_equal(other.C, [[0, 0, 1, 0]])
+    np.testing.assert_array_equal(other.G, [[0], [0], [1], [0]])
+    np.testing.assert_array_equal(other.D, [[0, 7]])
+    assert other.outputs == ["y1"] and len(other.parts) == 1
+    np.testing.assert_array_equal(LinearPlant.mechanical(MASS, D=[[0, 1], [2, 3]]).D, [[0, 1], [2, 3]])
+    # The request has the names and the units.
+    advice = advise(plant, LQR([1, 1, 1, 1], [1]), period=0.01, tolerance=("cost", 0.5))
+    assert advice["states"][3] == {"name": "load'", "unit": "rad/s"} and advice.holds
+
+
+NUMERATORS = [[[1.0], [2.0, 3.0]], [[0.0], [1.0, 0.5, 3.0]]]
+DENOMINATORS = [[[5.0, 1.0], [3.0, 4.0, 1.0]], [[1.0], [2.0, 1.0, 4.0]]]
+
+
+def rational(numerators, denominators, s):
+    return [[np.polyval(n, s) / np.polyval(d, s) for n, d in zip(*rows)] for rows in zip(numerators, denominators)]
+
+
+def test_a_plant_of_transfer_functions_has_their_response():
+    plant = LinearPlant.transfer_function(NUMERATORS, DENOMINATORS, inputs=["left", "right"], outputs=["a (m)", "b (m)"])
+    assert plant.inputs == ["left", "right"] and plant.outputs == ["a (m)", "b (m)"] and len(plant.states) == 5
+    for s in (0.3j, 2.0j, 1.0 + 5.0j):
+        np.testing.assert_allclose(response(plant, s), rational(NUMERATORS, DENOMINATORS, s), rtol=1e-12, atol=1e-15)
+    one = LinearPlant.transfer_function([0.1], [1.0, -0.9], dt=0.01)
+    assert one.dt == 0.01 and advise(one, StateSpace([], [], [], [[-1.0]]), period=0.01).holds
+    np.testing.assert_array_equal([one.A, one.C * one.B], [[[0.9]], [[0.1]]])
+    array = LinearPlant.transfer_function(np.array([[[0.0, 1.0]]]), np.array([[[1.0, 2.0]]]))
+    np.testing.assert_array_equal([array.A, array.C * array.B], [[[-2.0]], [[1.0]]])
+
+
+def test_an_object_with_numerators_and_denominators_is_a_plant():
+    controller = LQG([1] * 5, [1, 1], [0.01, 0.01])
+    wanted = advise(LinearPlant.transfer_function(NUMERATORS, DENOMINATORS), controller, period=0.1)
+    lists = {"num": NUMERATORS, "den": [[np.array(one) for one in row] for row in DENOMINATORS]}
+    names = {"input_labels": ["left", "right"], "output_labels": ["a", "b"], "state_labels": []}
+    new = {"num_list": lists["num"], "den_list": lists["den"], "num": None, "den": None}
+    for given in (lists, new):
+        system = types.SimpleNamespace(**given, **names, dt=0, to_ss=lambda: 1 / 0)
+        advice = advise(system, controller, period=0.1)
+        assert [signal["name"] for signal in advice["inputs"]] == ["left", "right"]
+        assert advice.growth == wanted.growth
+    # SciPy's have one input, with a common denominator of several outputs.
+    plain = types.SimpleNamespace(num=np.array([1.0, 2.0]), den=np.array([1.0, 3.0, 4.0]), dt=0.1)
+    common = types.SimpleNamespace(num=np.array([[0.0, 1.0], [1.0, 2.0]]), den=np.array([1.0, 3.0]), dt=None)
+    for system, outputs, dt in ((plain, 1, 0.1), (common, 2, None)):
+        found = plant_of(system)
+        assert (np.shape(found.C)[0], found.dt) == (outputs, dt)
+        s = 0.5j
+        polynomials = np.polyval(system.num.T, s) / np.polyval(system.den, s)
+        np.testing.assert_allclose(response(found, s)[:, 0], polynomials, rtol=1e-14)
+    with pytest.raises(ValueError, match="system.dt is True"):
+        advise(types.SimpleNamespace(num=[1.0], den=[1.0, 1.0], dt=True), controller)
+
+
+def test_transfer_functions_of_other_packages_are_plants():
+    signal = pytest.importorskip("scipy.signal")
+    s = 0.7j
+    for system in (
+        signal.TransferFunction([1.0, 2.0], [1.0, 3.0, 4.0]),
+        signal.TransferFunction([[0.0, 1.0], [1.0, 2.0]], [1.0, 3.0]),
+        signal.TransferFunction([1.0], [1.0, -0.5], dt=0.1),
+        signal.ZerosPolesGain([-1.0], [-2.0, -3.0], 4.0),
+    ):
+        a, b, c, d = (getattr(system.to_ss(), name) for name in "ABCD")
+        wanted = c @ np.linalg.solve(s * np.eye(len(a)) - a, b) + d
+        found = plant_of(system)
+        assert found.dt == system.dt
+        np.testing.assert_allclose(response(found, s), wanted, rtol=1e-13)
+
+
+@pytest.mark.parametrize(
+    "make, error, wanted",
+    [
+        (lambda: LinearPlant.mechanical([[1, 0], [0, 0]]), ValueError, "the mass matrix is singular: `q2` has no inertia"),
+        (lambda: LinearPlant.mechanical(MASS, [[1.0]]), ValueError, "`damping` is 1 × 1; expected 2 × 2"),
+        (lambda: LinearPlant.mechanical(MASS, force=[1, 2, 3]), ValueError, "`force` is 3 × 1; expected 2 rows"),
+        (lambda: LinearPlant.mechanical(MASS, C=[1, 2, 3]), ValueError, "`C` is 1 × 3; expected 4 columns"),
+        (lambda: LinearPlant.mechanical(MASS, stiffness=[[np.inf]]), ValueError, "stiffness has an entry that is not finite"),
+        (lambda: LinearPlant.mechanical([[1, 2], [3]]), ValueError, "mass is .*; expected rows of equal length"),
+        (lambda: LinearPlant.mechanical(MASS, states=["q"]), ValueError, "1 names of states for 2 states"),
+        (lambda: LinearPlant.mechanical(MASS, states="ab"), TypeError, "states is 'ab'; expected a list"),
+        (lambda: LinearPlant.mechanical(MASS, stifness=MASS), TypeError, "'stifness': did you mean 'stiffness'"),
+        (lambda: LinearPlant.transfer_function([1, 0, 0], [1, 1]), ValueError, "numerator of higher degree than its denominator"),
+        (lambda: LinearPlant.transfer_function([1], [0.0]), ValueError, "a denominator of zero"),
+        (lambda: LinearPlant.transfer_function(1, [1, 1]), TypeError, "numerator is 1; expected a polynomial"),
+        (lambda: LinearPlant.transfer_function([[1]], [[1, 1]]), TypeError, r"numerator is \[\[1\]\]; expected a polynomial"),
+        (lambda: LinearPlant.transfer_function([[[1], 2]], [[[1], [2]]]), TypeError, r"numerator\[0\]\[1\] is 2; expected the coeff"),
+        (lambda: LinearPlant.transfer_function([[[1]], 2], [[[1]], [[2]]]), TypeError, r"numerator\[1\] is 2; expected a polynomial"),
+        (lambda: LinearPlant.transfer_function([[[1], [1]]], [[[1, 1]]]), ValueError, "`denominator` is 1 × 1; expected 1 × 2 polynom"),
+        (lambda: LinearPlant.transfer_function([1], [1, np.nan]), ValueError, "denominator has an entry that is not finite"),
+        (lambda: LinearPlant.transfer_function([1j], [1, 1]), TypeError, "numerator has dtype complex128"),
+        (lambda: LinearPlant.transfer_function([1], [1, 1], dt=True), TypeError, "dt must be a number, not bool"),
+        (lambda: LinearPlant.transfer_function([1], [1, 1], dt=0), ValueError, "dt is 0.0, but it must be finite and greater than 0"),
+    ],
+)
+def test_plants_of_other_forms_name_what_is_wrong(make, error, wanted):
+    with pytest.raises(error, match=wanted):
+        make()
+
+
+def test_a_tolerance_is_a_pair():
+    for tolerance in ({"cost": 0.05}, "cost", ("cost",), (0.05, "cost"), 0.05):
+        with pytest.raises(TypeError, match=r"tolerance is .*; expected a pair like \('cost', 0.05\)"):
+            advise(PENDULUM, StateFeedback([[20.0, 5.0]]), tolerance=tolerance)
+        with pytest.raises(TypeError, match=r"expected a pair like \('energy', 1e-6\)"):
+            advise("oscillator", PD(10.0, 2.0), tolerance=tolerance)
+
+
+def test_a_controller_of_another_package_is_shown_on_one_line_with_help():
+    class System:
+        def __repr__(self):
+            return "StateSpace(\narray([[1.]]),\n        array([[2.]]))"
+
+    system = System()
+    for controller, name in ((system, "controller"), (Cascade(system, [[1.0]], every=2), "inner")):
+        system.A = system.B = system.C = system.D = [[1.0]]
+        with pytest.raises(TypeError) as raised:
+            advise(PENDULUM, controller)
+        message = str(raised.value)
+        assert message.startswith(f"{name} is StateSpace( array([[1.]]), array([[2.]])); expected")
+        assert message.endswith(
+            "help: libration.StateSpace(A, B, C, D) is u = C m + D y, without the minus of a negative feedback"
+        )
+    del system.D
+    with pytest.raises(TypeError) as raised:
+        advise(PENDULUM, system)
+    assert "help" not in str(raised.value) and "\n" not in str(raised.value)
 
 
 def test_bad_input_is_refused_by_name():

@@ -146,3 +146,29 @@ def test_an_environment_names_the_keywords_that_it_takes():
         LinearVectorEnv(SPRING, latencies=1.0)
     with pytest.raises(TypeError, match="the policy is the controller"):
         LinearVectorEnv(SPRING, controller=LQR([10, 1], [0.1]))
+
+
+def test_an_environment_names_actions_that_are_not_finite():
+    pytest.importorskip("gymnasium")
+    for most, action in ((np.inf, np.nan), (2.0, np.nan), (np.inf, np.inf)):
+        envs = LinearVectorEnv(SPRING, 3, max_action=most)
+        envs.reset(seed=1)
+        before = envs.loops.step(0).states
+        with pytest.raises(ValueError, match=f"actions have the entry {action} for 'torque' in environment 1; expected finite numbers"):
+            envs.step([[0.0], [action], [0.0]])
+        np.testing.assert_array_equal(envs.loops.step(0).states, before)
+    # A largest action clips what is infinite.
+    envs = LinearVectorEnv(SPRING, 1, max_action=2.0)
+    envs.reset(seed=1)
+    envs.step([[np.inf]])
+    assert envs.loops.step(0).inputs.tolist() == [[2.0]]
+
+
+def test_an_environment_has_no_options():
+    pytest.importorskip("gymnasium")
+    envs = LinearVectorEnv(SPRING, 2)
+    with pytest.raises(ValueError, match="options has 'x0'; expected no options"):
+        envs.reset(options={"x0": [1.0, 0.0]})
+    for options in (None, {}):
+        observations, _ = envs.reset(seed=1, options=options)
+        assert observations.shape == (2, 2)

@@ -5,7 +5,8 @@ use libration_work::Work;
 use serde::Serialize;
 
 use super::AdviseError;
-use super::limits::{Imperfection, Limit};
+use super::imperfection::Imperfection;
+use super::limits::Limit;
 use super::loops::LoopError;
 use super::motion::describe_motion;
 use super::request::Tolerance;
@@ -60,6 +61,7 @@ impl Budget {
     pub fn limit(&self, limit: Option<f64>) -> String {
         match limit {
             Some(limit) => rounded(limit),
+            None if self.tried_up_to == 0.0 => "too many states".to_owned(),
             None if self.tried_up_to < 1e-2 => format!("above {}", rounded(self.tried_up_to)),
             None => format!("above {:.3}", self.tried_up_to),
         }

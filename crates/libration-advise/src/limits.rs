@@ -2,38 +2,10 @@
 
 use libration::linear::{LatencyWindow, LinearLoopError, LoopTiming};
 
+use super::imperfection::Imperfection;
 use super::request::{Measure, Tolerance};
 use super::subject::Subject;
 use super::timed_loop::TimedLoop;
-
-/// A timing imperfection of a loop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Imperfection {
-    /// Latency of commands, in periods of the loop.
-    Latency,
-    /// Latency of measurements, in periods of the loop.
-    OutputLatency,
-    /// Independent jitter of sample times, as relative rms.
-    Jitter,
-    /// Relative error of the period, to the stated side: slow or fast.
-    Skew,
-    /// Loss of commands, as a probability.
-    Loss,
-}
-
-impl Imperfection {
-    /// The name in output.
-    pub fn name(self) -> &'static str {
-        match self {
-            Imperfection::Latency => "latency",
-            Imperfection::OutputLatency => "output latency",
-            Imperfection::Jitter => "jitter",
-            Imperfection::Skew => "clock",
-            Imperfection::Loss => "lost commands",
-        }
-    }
-}
 
 /// The limit of an imperfection.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,7 +161,7 @@ impl TimedLoop {
                 }
                 Ok(false) => {}
                 // The rest is too large to analyse.
-                Err(LinearLoopError::Size { .. }) if low > 0.0 => return Ok(Limit::Beyond(low)),
+                Err(LinearLoopError::Size { .. }) => return Ok(Limit::Beyond(low)),
                 Err(error) => return Err(error),
             }
             if late && self.is_sampled() {

@@ -4,7 +4,7 @@ use libration_report::figure::Grid;
 use libration_work::Work;
 
 use super::AdviseError;
-use super::limits::Imperfection;
+use super::imperfection::Imperfection;
 use super::loops::LoopError;
 use super::subject::Subject;
 use super::timed_loop::TimedLoop;

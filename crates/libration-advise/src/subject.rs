@@ -1,6 +1,6 @@
 //! Imperfections that have a budget, of one channel or of all.
 
-use super::limits::Imperfection;
+use super::imperfection::Imperfection;
 use super::timed_loop::{StatedTiming, TimedLoop};
 
 /// An imperfection, of one channel or of all.

@@ -5,7 +5,7 @@ use libration::linear::{
     Channels, LatencyWindow, LinearLoop, LinearLoopError, LoopMode, LoopTiming, MissingCommand,
 };
 
-use super::limits::Imperfection;
+use super::imperfection::Imperfection;
 use super::subject::Subject;
 
 /// The timing that a request states.

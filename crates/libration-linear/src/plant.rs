@@ -248,7 +248,7 @@ impl LinearPlant {
         for (matrix, name) in [(mass, "mass"), (damping, "damping"), (stiffness, "stiffness")] {
             fits(matrix, name, [n, n], format!("{n} × {n}, a row for each coordinate"))?;
         }
-        fits(force, "input", [n, m], format!("{n} rows, one for each coordinate"))?;
+        fits(force, "force", [n, m], format!("{n} rows, one for each coordinate"))?;
         if coordinates.len() != n {
             return Err(PlantError::Names { of: "states", given: coordinates.len(), count: n });
         }

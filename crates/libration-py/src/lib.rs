@@ -14,6 +14,7 @@ mod error;
 mod laboratory;
 mod linear_analysis;
 mod linear_loops;
+mod linear_plant;
 mod policy;
 mod program;
 mod replay;
@@ -45,6 +46,8 @@ mod _native {
     use crate::linear_analysis::_analyze_linear;
     #[pymodule_export]
     use crate::linear_loops::LinearLoops;
+    #[pymodule_export]
+    use crate::linear_plant::_linear_plant;
     #[pymodule_export]
     use crate::program::_program;
     #[pymodule_export]

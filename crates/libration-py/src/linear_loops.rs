@@ -1,7 +1,6 @@
 //! The Python class `LinearLoops`: many loops around a linear plant.
 
 use libration::ensemble::Execution;
-use libration::linear::Signal;
 use libration::linear_loops::{LinearLoops as Loops, LinearLoopsError};
 use libration_advise::linear;
 use libration_settings::linear_loop::LinearControllerTable;
@@ -12,13 +11,14 @@ use pyo3::prelude::*;
 use crate::array::{Array, allocate, view_mut};
 use crate::checked_mutex::CheckedMutex;
 use crate::error::{Raised, check_memory, value_error};
+use crate::linear_plant::{Names, names};
 use crate::time_slices::run_in_slices;
 
 /// Loops around a linear plant, which the engine steps together.
 #[pyclass(frozen, module = "libration._native")]
 pub(crate) struct LinearLoops {
     loops: CheckedMutex<(Loops, Threads)>,
-    names: [Vec<(String, String)>; 3],
+    names: Names,
     period: f64,
 }
 
@@ -72,16 +72,13 @@ impl LinearLoops {
         let loops = Loops::new(&linear, &timing, request.recorded_periods(), count, execution);
         let loops = loops.map_err(Raised::raised)?;
         let loops = if open { loops.without_controller() } else { loops };
-        let plant = linear.plant();
-        let names = [&plant.states, &plant.inputs, &plant.outputs].map(|signals| {
-            signals.iter().map(|Signal { name, unit }| (name.clone(), unit.clone())).collect()
-        });
+        let names = names(linear.plant());
         let period = linear.period();
         Ok(LinearLoops { loops: CheckedMutex::new((loops, threads)), names, period })
     }
 
     /// Returns names and units of states, inputs and outputs.
-    fn _names(&self) -> [Vec<(String, String)>; 3] {
+    fn _names(&self) -> Names {
         self.names.clone()
     }
 

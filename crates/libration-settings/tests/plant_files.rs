@@ -5,7 +5,7 @@
 use std::path::PathBuf;
 
 use libration::linear::{LinearPlant, Matrix};
-use libration_settings::linear_loop::{PlantTable, read_plant};
+use libration_settings::linear_loop::{PlantTable, parse_plant, read_plant};
 
 fn path(name: &str) -> PathBuf {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../libration-data/tests/array_file");
@@ -49,6 +49,19 @@ fn a_mechanical_plant_is_read_by_its_mass_and_stiffness() {
     assert_eq!((plant.a.rows(), plant.b.columns()), (4, 1));
     let accelerations = [plant.a[(2, 0)], plant.a[(2, 1)], plant.a[(3, 0)], plant.a[(3, 1)]];
     assert_eq!(accelerations, [-3.0, 1.0, 0.5, -0.5]);
+}
+
+#[test]
+fn a_mechanical_plant_has_its_positions_as_outputs_also_with_a_direct_path() {
+    let table = parse_plant("mass = [[2]]\nd = [[0.5]]\nstates = [\"angle (rad)\"]", "plant.toml");
+    let plant = table.unwrap().plant().unwrap();
+    assert_eq!((plant.c.entries(), plant.d.entries()), (&[1.0, 0.0][..], &[0.5][..]));
+    assert_eq!((&*plant.outputs[0].name, &*plant.outputs[0].unit), ("angle", "rad"));
+    let wrong = parse_plant("mass = [[2]]\nb = [[1], [1]]", "plant.toml").unwrap().plant();
+    let error = wrong.unwrap_err().to_string();
+    assert!(error.starts_with("`force` is 2 × 1; expected 1 rows"), "{error}");
+    let error = parse_plant("mass = [[2]]\nspring = 1", "plant.toml").unwrap_err();
+    assert!(error.message().contains("unknown key `spring`"), "{}", error.message());
 }
 
 #[test]

@@ -6,9 +6,10 @@ use libration_work::Work;
 
 use super::margins::margins;
 use super::{Deviation, LinearAdvice, LinearRequest, SignalName};
+use crate::AdviseError;
+use crate::imperfection::Imperfection;
 use crate::loops::LoopError;
 use crate::request::{Measure, Tolerance};
-use crate::{AdviseError, limits::Imperfection};
 
 /// Advises on a loop around a linear plant.
 ///

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::LinearRequest;
 use crate::budget::Budget;
-use crate::limits::Imperfection;
+use crate::imperfection::Imperfection;
 
 /// A part of the latency of a loop.
 #[derive(Clone, Debug, Serialize)]

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::request::LinearRequest;
 use crate::AdviseError;
 use crate::budget::rounded;
-use crate::limits::Imperfection;
+use crate::imperfection::Imperfection;
 use crate::loops::LoopError;
 use crate::subject::Subject;
 use crate::timed_loop::{StatedTiming, TimedLoop};

@@ -23,6 +23,12 @@ fn plants_and_controllers_that_do_not_fit_are_usage_errors_that_name_the_key() {
         ("b = [[0], [1]]", "b = [[0]]", "`B` is 1 × 1; expected 2 rows"),
         ("b = [[0], [1]]", "", "`a` is given, so `b` is required"),
         ("b = [[0], [1]]", "b = [[0], [1]]\nstates = [\"q\"]", "1 names of states for 2 states"),
+        (
+            "b = [[0], [1]]",
+            "b = [[0], [1]]\ndamping = [[4]]",
+            "`damping` is given, but it is no key of a plant by `a`",
+        ),
+        ("b = [[0], [1]]", "b = [[0], [1]]\nmass = [[1]]", "but `a` and `mass` are given"),
         ("gain = [[10, 2]]", "gain = [[10]]", "`gain` is 1 × 1; expected 1 × 2"),
         (
             "[controller.state-feedback]\ngain = [[10, 2]]",
@@ -136,6 +142,10 @@ fn plants_and_controllers_that_do_not_fit_are_usage_errors_that_name_the_key() {
     let plant = plant.to_str().unwrap();
     let words = ["advise", "--plant", plant, "--lqr", "1/1"];
     libration(&words).code(2).stderr(predicate::str::contains("line 1: `one` is no number"));
+    let masses = written(&folder, "masses.csv", "M, 1\nD, 0.5\nK, 4\nB, 1\n");
+    libration(&["advise", "--plant", masses.to_str().unwrap(), "--lqr", "1,1/1"])
+        .code(2)
+        .stderr(predicate::str::contains("expected `damping`, or `C` and `D`"));
     let request = example("two_mass_drive.toml");
     libration(&["advise", "--plant", &request, "--lqr", "1/1"]).code(2).stderr(
         predicate::str::contains(

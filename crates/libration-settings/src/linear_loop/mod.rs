@@ -20,5 +20,5 @@ pub use design::{Cascaded, Design};
 pub use loop_table::{Channels, LinearLoopTable};
 pub use part::{Part, PartKind};
 pub use part_table::PartTable;
-pub use plant_file::read as read_plant;
+pub use plant_file::{parse as parse_plant, read as read_plant};
 pub use plant_table::{PlantTable, Polynomials, Rows};

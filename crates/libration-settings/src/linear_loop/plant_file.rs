@@ -8,7 +8,7 @@ use libration_data::{ArrayValues, NamedArray, read_mat, read_npz};
 use super::PlantTable;
 use super::plant_table::Rows;
 use crate::limits::SETTINGS_BYTES;
-use crate::{Document, Number};
+use crate::{Document, Number, SettingsError};
 
 /// All arrays of a file together are as long as its text could be.
 const ARRAY_BYTES: usize = SETTINGS_BYTES as usize;
@@ -33,7 +33,7 @@ pub fn read(path: &Path) -> Result<PlantTable, String> {
                 let message = "it is a request with the table [system.linear]; expected --config, or a file with the keys of that table alone";
                 return Err(message.to_owned());
             }
-            toml::from_str(&text).map_err(|error| document.explain(&error).sentence())?
+            table(&text, &document).map_err(|error| error.sentence())?
         }
         Some("json") => serde_json::from_str(&text()?).map_err(|error| error.to_string())?,
         Some("csv") => from_csv(&text()?)?,
@@ -50,6 +50,18 @@ pub fn read(path: &Path) -> Result<PlantTable, String> {
         return Err("it has the key `file`; expected a plant".to_owned());
     };
     Ok(table)
+}
+
+/// Parses the keys of `[system.linear]`; `file` is the name in messages.
+///
+/// # Errors
+/// [`SettingsError`] with the position of the error.
+pub fn parse(text: &str, file: &str) -> Result<PlantTable, SettingsError> {
+    table(text, &Document::parse(text, file)?)
+}
+
+fn table(text: &str, document: &Document<'_>) -> Result<PlantTable, SettingsError> {
+    toml::from_str(text).map_err(|error| document.explain(&error))
 }
 
 /// A matrix by lines: `A, 0, 1`.
@@ -131,6 +143,10 @@ fn rows(key: &str, shape: &[usize], entries: &[f64]) -> Result<Rows, String> {
 
 /// Puts the matrices into the table by their names.
 fn fill(mut table: PlantTable, matrices: BTreeMap<String, Rows>) -> Result<PlantTable, String> {
+    let has = |name: &str| matrices.contains_key(name);
+    if has("d") && !has("c") && (has("m") || has("mass")) {
+        return Err("`D` beside a mass matrix and without `C` may be damping or a direct path; expected `damping`, or `C` and `D`".to_owned());
+    }
     for (name, rows) in matrices {
         let place = match &*name {
             "a" => &mut table.a,

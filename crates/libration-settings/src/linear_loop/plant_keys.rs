@@ -29,9 +29,5 @@ pub(super) fn check(given: &[&str]) -> Result<(), Fault> {
         let message = format!("`{key}` is given, but it is no key of a plant by `{form}`");
         return Err(Fault::new("system.linear", message));
     }
-    if *form == "mass" && given.contains(&"d") && !given.contains(&"c") {
-        let message = "`d` is given without `c`: it is the direct path to the outputs; the damping matrix is `damping`";
-        return Err(Fault::new("system.linear.d", message));
-    }
     Ok(())
 }

@@ -188,15 +188,20 @@ impl PlantTable {
         };
         let plant = LinearPlant::mechanical([&mass, &damping, &stiffness], &force, &coordinates);
         let plant = plant.map_err(fault)?;
-        let Some(c) = &self.c else { return Ok(plant) };
-        let c = matrix("system.linear.c", c)?;
+        if self.c.is_none() && self.d.is_none() {
+            return Ok(plant);
+        }
+        let LinearPlant { a, b, c: positions, states, inputs, outputs, .. } = plant;
+        let c = match &self.c {
+            Some(c) => matrix("system.linear.c", c)?,
+            None => positions,
+        };
         let d = match &self.d {
             Some(d) => matrix("system.linear.d", d)?,
             None => Matrix::zeros(c.rows(), force.columns()),
         };
-        let LinearPlant { a, b, states, inputs, .. } = plant;
         let plant = LinearPlant::new(a, b, c, d).map_err(fault)?;
-        let outputs = plant.outputs.clone();
+        let outputs = if self.c.is_none() { outputs } else { plant.outputs.clone() };
         plant.named(states, inputs, outputs).map_err(fault)
     }
 
@@ -267,7 +272,7 @@ fn fault(error: PlantError) -> Fault {
     };
     let key = match (matrix, &error) {
         ("A", _) => "system.linear.a",
-        ("B" | "input", _) => "system.linear.b",
+        ("B" | "force", _) => "system.linear.b",
         ("C", _) => "system.linear.c",
         ("D", _) => "system.linear.d",
         ("G", _) => "system.linear.g",
