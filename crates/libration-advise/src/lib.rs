@@ -119,7 +119,7 @@ pub enum AdviseError {
     },
     /// The ideal loop is unstable.
     #[error(
-        "the loop is not stable without latency, jitter, skew and loss: {}; help: {help}",
+        "the loop is unstable without latency, jitter, skew and loss: {}; help: {help}",
         modes.join("; ")
     )]
     Unstable {

@@ -9,6 +9,7 @@ use libration_report::report;
 use super::advice::{Advice, LoopAdvice};
 use super::budget::Budget;
 use super::stability_map::StabilityMap;
+use super::summary::{ANY_PROBABILITY, is_any_probability};
 
 /// The advice as an HTML page.
 pub fn page(advice: &Advice) -> String {
@@ -127,7 +128,10 @@ fn of_loop(page: &mut Page, looped: &LoopAdvice, map: Option<&StabilityMap>) {
 
 /// The row of a budget in its table.
 pub(super) fn budget_row(budget: &Budget) -> [Cell; 7] {
-    let beyond = format!("above {}", number(budget.tried_up_to, 3));
+    let beyond = match is_any_probability(budget.kind, budget.tried_up_to) {
+        true => ANY_PROBABILITY.to_owned(),
+        false => format!("above {}", number(budget.tried_up_to, 3)),
+    };
     let limit = |limit: Option<f64>| limit.map_or_else(|| Cell::absent(beyond.clone()), Cell::from);
     [
         budget.kind.name().into(),
@@ -137,7 +141,7 @@ pub(super) fn budget_row(budget: &Budget) -> [Cell; 7] {
         match (budget.used, budget.regained) {
             (_, Some(_)) => Cell::absent("regained"),
             (Some(used), None) => Cell::rounded(100.0 * used, 3),
-            (None, None) => Cell::absent(""),
+            (None, None) => Cell::absent("—"),
         },
         budget.unit.into(),
         budget.how.into(),

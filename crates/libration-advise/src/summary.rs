@@ -4,6 +4,7 @@ use super::advice::{Advice, LoopAdvice, ToleranceAnswer};
 use super::budget::{Budget, rounded};
 use super::combined_effect::CombinedEffect;
 use super::control::Control;
+use super::imperfection::Imperfection;
 use super::loop_simulation::MOST_PERIODS;
 use super::loops::{Loop, PlantModel};
 use super::request::{Measure, Request, Tolerance};
@@ -73,7 +74,7 @@ pub(super) fn describe_loop(looped: &LoopAdvice, tolerance: &ToleranceAnswer) ->
     if let Some(failing) = &looped.fails_first {
         text += &format!(
             " {} fails first, with {:.1} % of its budget used; {}.",
-            capitalise(failing.kind.name()),
+            capitalise(noun(failing.kind)),
             100.0 * failing.used,
             failing.how
         );
@@ -91,6 +92,33 @@ pub(super) fn describe_loop(looped: &LoopAdvice, tolerance: &ToleranceAnswer) ->
     text
 }
 
+/// The imperfection as the subject of a sentence: one thing, of which there is more or less.
+pub(super) fn noun(kind: Imperfection) -> &'static str {
+    match kind {
+        Imperfection::Loss => "loss of commands",
+        Imperfection::Skew => "clock error",
+        kind => kind.name(),
+    }
+}
+
+/// The words for a limit of lost commands that was not found.
+pub(super) const ANY_PROBABILITY: &str = "any below 1";
+
+/// Whether all probabilities below 1 were tried.
+pub(super) fn is_any_probability(kind: Imperfection, tried_up_to: f64) -> bool {
+    kind == Imperfection::Loss && 1.0 - tried_up_to < 1e-6
+}
+
+impl Budget {
+    /// A limit in words: the size, or the largest tried one.
+    pub fn limit_in_words(&self, limit: Option<f64>) -> String {
+        match limit {
+            None if is_any_probability(self.kind, self.tried_up_to) => ANY_PROBABILITY.to_owned(),
+            limit => self.limit(limit),
+        }
+    }
+}
+
 /// A share in percent with significant digits.
 pub(super) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
@@ -99,7 +127,7 @@ pub(super) fn percent(share: f64) -> String {
 
 /// A loop that is stable only in a separate window, in words.
 pub(super) fn describe_window(budget: &Budget, window: StabilityWindow) -> String {
-    let (kind, unit, end) = (budget.kind.name(), budget.unit, window.in_words());
+    let (kind, unit, end) = (noun(budget.kind), budget.unit, window.in_words());
     let limit = rounded(budget.stable_up_to.unwrap_or(0.0));
     format!(
         "The loop is stable with the stated imperfections, but only in a separate stability window: {kind} alone is stable {end} {unit}, \

@@ -40,6 +40,7 @@ mod loop_timing;
 mod matrix;
 mod miss_constraint;
 mod mode_details;
+mod mode_names;
 mod node_coordinates;
 mod open_channels;
 mod overrun;

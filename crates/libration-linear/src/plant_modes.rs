@@ -20,7 +20,9 @@ pub struct PlantMode {
 impl core::fmt::Display for PlantMode {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let names: Vec<&str> = self.states.iter().map(|(name, _)| name.as_str()).collect();
-        write!(f, "the mode of {} (growth rate {:.4} 1/s", names.join(", "), self.growth_rate)?;
+        // Not the negative zero.
+        let growth = (self.growth_rate * 1e4).round() / 1e4 + 0.0;
+        write!(f, "the mode of {} (growth rate {growth:.4} 1/s", names.join(", "))?;
         match self.frequency {
             0.0 => write!(f, ")"),
             frequency => write!(f, ", {frequency:.4} Hz)"),
@@ -35,11 +37,6 @@ pub(crate) const NOTHING: f64 = 3e-8;
 const NEUTRAL: f64 = 1e-12;
 
 impl LinearPlant {
-    /// The modes of the plant, the one that grows fastest first; of a pair one.
-    pub fn modes(&self) -> Vec<PlantMode> {
-        self.shapes().iter().map(|(value, shape)| self.mode(*value, shape)).collect()
-    }
-
     /// Eigenvalues of the state matrix with their vectors, the one that grows fastest first; of a pair one.
     pub(crate) fn shapes(&self) -> Vec<(Complex64, Vec<Complex64>)> {
         let mut values = eigenvalues(&self.a).unwrap_or_default();

@@ -36,6 +36,8 @@ pub enum Block {
     Paragraph(String),
     /// A remark.
     Note(String),
+    /// Lines of code to paste, which break at spaces only.
+    Code(String),
     /// A figure.
     Figure(Box<Figure>),
     /// A table with a number of significant digits.
@@ -61,6 +63,11 @@ impl Page {
     /// Adds a remark.
     pub fn note(&mut self, text: impl Into<String>) {
         self.blocks.push(Block::Note(text.into()));
+    }
+
+    /// Adds lines of code to paste.
+    pub fn code(&mut self, text: impl Into<String>) {
+        self.blocks.push(Block::Code(text.into()));
     }
 
     /// Adds a figure if it shows data. A configuration may exclude all data of a figure.

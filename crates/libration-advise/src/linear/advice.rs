@@ -1,10 +1,10 @@
 //! The results of advice on loops around linear plants.
 
-use libration::linear::{DiscreteController, Matrix, PlantMode, Signal};
+use libration::linear::{DiscreteController, Matrix, Signal};
 use libration_settings::linear_loop::OperatingPoint;
 use serde::{Serialize, Serializer};
 
-use super::{ChainLink, DeadlineMisses, InputMargins, Redesign};
+use super::{ChainLink, DeadlineMisses, InputMargins, Mode, Redesign};
 use crate::budget::{Budget, FirstFailure};
 use crate::combined_effect::SimulatedCost;
 use crate::stabilising_changes::StabilisingChanges;
@@ -25,8 +25,10 @@ pub struct LinearAdvice {
     pub outputs: Vec<SignalName>,
     /// The equilibrium at which a system of the catalogue was linearised; none of other plants.
     pub operating_point: Option<OperatingPoint>,
-    /// The modes of the plant, the one that grows fastest first.
+    /// The modes of the plant without lags and filters, the one that grows fastest first.
     pub plant_modes: Vec<Mode>,
+    /// Those of the lags and filters in continuous time.
+    pub part_modes: Vec<Mode>,
     /// The controller in words.
     pub controller: String,
     /// The gain of `u = −K x`, inputs × states; none of other controllers.
@@ -95,23 +97,6 @@ impl From<&Signal> for SignalName {
     }
 }
 
-/// A mode of the plant.
-#[derive(Clone, Debug, Serialize)]
-pub struct Mode {
-    /// The growth rate in 1/s; below zero the mode decays.
-    pub growth_rate: f64,
-    /// The frequency in Hz; 0 without oscillation.
-    pub frequency: f64,
-    /// The states that move most, with their sizes relative to the largest.
-    pub states: Vec<(String, f64)>,
-}
-
-impl From<PlantMode> for Mode {
-    fn from(PlantMode { growth_rate, frequency, states }: PlantMode) -> Self {
-        Mode { growth_rate, frequency, states }
-    }
-}
-
 /// `m' = A m + B y` and `u = C m + D y`, row by row.
 #[derive(Clone, Debug, Serialize)]
 pub struct ControllerMatrices {
@@ -151,6 +136,11 @@ impl LinearAdvice {
         let agrees = self.simulated.is_none_or(|simulated| simulated.agrees());
         let misses = self.deadline_misses.as_ref().is_none_or(DeadlineMisses::holds);
         self.growth < 0.0 && !self.exceeds_tolerated_cost() && agrees && misses
+    }
+
+    /// The words for a deviation that is not known.
+    pub fn no_deviation(&self) -> &'static str {
+        if self.growth >= 0.0 { "infinite" } else { "unknown" }
     }
 
     /// Whether the cost exceeds its tolerance.

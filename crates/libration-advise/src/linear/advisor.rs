@@ -62,6 +62,7 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
     };
     let redesign = redesign.map(|design| request.evaluated(work, &design, cost)).transpose()?;
     let (plant, controllers) = (timed.linear.plant(), timed.linear.controllers());
+    let (plant_modes, part_modes) = request.modes();
     let names = |signals: &[_]| signals.iter().map(SignalName::from).collect();
     let mut advice = LinearAdvice {
         answer: String::new(),
@@ -70,7 +71,8 @@ pub fn advise(work: &Work<'_>, request: &LinearRequest) -> Result<LinearAdvice, 
         inputs: names(&plant.inputs),
         outputs: names(&Part::read(&request.parts, &plant.outputs)),
         operating_point: request.operating_point.clone(),
-        plant_modes: request.plant.modes().into_iter().map(Into::into).collect(),
+        plant_modes,
+        part_modes,
         controller: request.described_controller(),
         gain: request.design.gain.clone(),
         filter: request.design.filter.clone(),

@@ -6,7 +6,7 @@ use libration_report::record::{Cell, Table};
 use libration_report::report;
 
 use super::deadlines_page::deadlines;
-use super::{InputMargins, LinearAdvice, redesign_page};
+use super::{ChainLink, InputMargins, LinearAdvice, redesign_page};
 use crate::page::{budget_row, figure};
 
 /// Why a cascade has no margins.
@@ -47,27 +47,29 @@ fn budgets(page: &mut Page, advice: &LinearAdvice) {
         advice.controller,
         number(advice.period, 4),
     ));
-    let columns = [
-        "imperfection",
-        "channel",
-        "stated",
-        "stable up to",
-        "tolerated up to",
-        "used (%)",
-        "unit",
-        "method",
+    // Without a tolerance of the cost there is nothing in its column.
+    let tolerance = advice.budgets.iter().any(|budget| budget.tolerated_up_to.is_some());
+    let [front, back] = [
+        &["imperfection", "channel", "stated", "stable up to"][..],
+        &["used (%)", "unit", "method"],
     ];
-    let mut table = Table::new("budget", &columns);
+    let tolerated = if tolerance { &["tolerated up to"][..] } else { &[] };
+    let mut table = Table::new("budget", &[front, tolerated, back].concat());
     for budget in &advice.budgets {
-        let [kind, rest @ ..] = budget_row(budget);
-        let channel = budget.channel.clone().map_or_else(|| Cell::absent("all"), Cell::from);
-        let [stated, stable, tolerated, used, unit, how] = rest;
-        table.push([kind, channel, stated, stable, tolerated, used, unit, how]);
+        let [kind, stated, stable, tolerated, used, unit, how] = budget_row(budget);
+        let row = [kind, channel_cell(&budget.channel), stated, stable];
+        let tolerated = tolerance.then_some(tolerated);
+        table.push(row.into_iter().chain(tolerated).chain([used, unit, how]));
     }
     page.table(&table, 4);
     if let Some(map) = &advice.map {
         page.figure(figure(map));
     }
+}
+
+/// The channel of an imperfection, in its column.
+pub(super) fn channel_cell(channel: &Option<String>) -> Cell {
+    channel.as_deref().unwrap_or("all").into()
 }
 
 fn chain(page: &mut Page, advice: &LinearAdvice) {
@@ -76,13 +78,13 @@ fn chain(page: &mut Page, advice: &LinearAdvice) {
     }
     page.heading("Where does the latency come from?");
     page.paragraph(
-        "Each part delays the loop by its delay at low frequencies. References of a cascade have no limit of their own. The phase is that at the frequency at which the loop oscillates when \
+        "Each part delays the loop by its delay at low frequencies. The phase is that at the frequency at which the loop oscillates when \
          the latency of the channel reaches its limit. The share is the delay over that limit.",
     );
     let columns = ["part", "channel", "delay (s)", "phase (°)", "share of the limit (%)"];
     let mut table = Table::new("latency-chain", &columns);
     for link in &advice.chain {
-        let known = |x: Option<f64>| x.map_or_else(|| Cell::absent(""), |x| Cell::rounded(x, 4));
+        let known = |x: Option<f64>| x.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, 4));
         table.push([
             link.part.clone().into(),
             link.channel.clone().into(),
@@ -92,6 +94,9 @@ fn chain(page: &mut Page, advice: &LinearAdvice) {
         ]);
     }
     page.table(&table, 4);
+    for note in ChainLink::notes(&advice.chain) {
+        page.note(format!("{note}."));
+    }
 }
 
 fn margins(page: &mut Page, advice: &LinearAdvice) {
@@ -168,12 +173,13 @@ fn together(page: &mut Page, advice: &LinearAdvice) {
     page.heading("Deviations under noise");
     let columns = ["state", "unit", "ideal loop (rms)", "with all imperfections (rms)"];
     let mut table = Table::new("deviations", &columns);
+    let unknown = || Cell::absent(advice.no_deviation());
     for deviation in &advice.deviations {
         table.push([
             deviation.state.clone().into(),
             deviation.unit.clone().into(),
             Cell::rounded(deviation.ideal, 4),
-            deviation.stated.map_or_else(|| Cell::absent("unknown"), |x| Cell::rounded(x, 4)),
+            deviation.stated.map_or_else(unknown, |x| Cell::rounded(x, 4)),
         ]);
     }
     page.table(&table, 4);
@@ -184,24 +190,32 @@ fn plant(page: &mut Page, advice: &LinearAdvice) {
     if let Some(point) = &advice.operating_point {
         page.paragraph(point.sentence());
     }
-    let columns = ["mode in", "growth rate (1/s)", "frequency (Hz)"];
-    let mut table = Table::new("plant-modes", &columns);
-    for mode in &advice.plant_modes {
-        let names: Vec<&str> = mode.states.iter().map(|(name, _)| name.as_str()).collect();
-        table.push([
-            names.join(", ").into(),
-            Cell::rounded(mode.growth_rate, 4),
-            Cell::rounded(mode.frequency, 4),
-        ]);
-    }
-    page.table(&table, 4);
+    modes(page, advice);
     if let Some(gain) = &advice.gain {
         let row = |i: usize| -> String {
             let numbers: Vec<String> = gain.row(i).iter().map(|x| format!("{x:.8e}")).collect();
             format!("[{}]", numbers.join(", "))
         };
         let rows: Vec<String> = (0..gain.rows()).map(row).collect();
-        page.paragraph(format!("The gain of the state, to paste: `[{}]`", rows.join(", ")));
+        page.paragraph("The gain of the state, inputs × states, to paste:");
+        page.code(format!("[{}]", rows.join(",\n ")));
     }
     page.paragraph(format!("Command that repeats this advice: `{}`", advice.repeat_command));
+}
+
+/// The modes of all states.
+fn modes(page: &mut Page, advice: &LinearAdvice) {
+    let LinearAdvice { plant_modes, part_modes, .. } = advice;
+    let has_parts = !part_modes.is_empty();
+    let rates = ["growth rate (1/s)", "frequency (Hz)"];
+    let of = if has_parts { &["of"][..] } else { &[] };
+    let mut table = Table::new("plant-modes", &[&["mode in"][..], of, &rates].concat());
+    let plant = plant_modes.iter().map(|mode| (mode, "plant"));
+    for (mode, of) in plant.chain(part_modes.iter().map(|mode| (mode, "lags and filters"))) {
+        let names: Vec<&str> = mode.states.iter().map(|(name, _)| name.as_str()).collect();
+        let of = has_parts.then(|| Cell::from(of));
+        let rates = mode.shown.map(|x| Cell::rounded(x, 4));
+        table.push([Cell::from(names.join(", "))].into_iter().chain(of).chain(rates));
+    }
+    page.table(&table, 4);
 }

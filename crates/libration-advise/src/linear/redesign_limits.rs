@@ -10,6 +10,7 @@ use crate::budget::rounded;
 use crate::imperfection::Imperfection;
 use crate::loops::LoopError;
 use crate::subject::Subject;
+use crate::summary::{ANY_PROBABILITY, is_any_probability};
 use crate::timed_loop::{StatedTiming, TimedLoop};
 
 /// The sizes of an imperfection with which a loop is stable while all other imperfections are as stated.
@@ -49,11 +50,27 @@ impl RedesignLimit {
     pub fn name(&self) -> String {
         crate::budget::with_channel(self.kind, self.channel.as_deref())
     }
+
+    /// A range of its sizes in words; `unstable` for none.
+    pub fn in_words(&self, range: Option<StableRange>) -> String {
+        match range {
+            None => "unstable".to_owned(),
+            Some(StableRange { from, to: None, tried_up_to })
+                if is_any_probability(self.kind, tried_up_to) =>
+            {
+                from.map_or_else(
+                    || ANY_PROBABILITY.to_owned(),
+                    |from| format!("{} to 1", rounded(from)),
+                )
+            }
+            Some(range) => range.in_words(),
+        }
+    }
 }
 
 impl StableRange {
     /// The range in words.
-    pub fn in_words(&self) -> String {
+    fn in_words(&self) -> String {
         match (self.from, self.to) {
             (None, Some(to)) => format!("up to {}", rounded(to)),
             (None, None) => format!("above {}", rounded(self.tried_up_to)),

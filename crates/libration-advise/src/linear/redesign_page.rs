@@ -4,8 +4,8 @@ use libration_report::notation::number;
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 
-use super::page::margins_table;
-use super::{LinearAdvice, StableRange};
+use super::page::{channel_cell, margins_table};
+use super::{LinearAdvice, RedesignLimit, StableRange};
 
 /// Adds the controller of least cost for the stated timing, if there is one.
 pub(super) fn add(page: &mut Page, advice: &LinearAdvice) {
@@ -17,16 +17,17 @@ pub(super) fn add(page: &mut Page, advice: &LinearAdvice) {
     }
     let columns = ["imperfection", "channel", "stated", "stable", "redesigned: stable", "unit"];
     let mut table = Table::new("redesign", &columns);
-    let stable = |range: Option<StableRange>| {
-        range.map_or_else(|| Cell::absent("unstable"), |range| range.in_words().into())
+    let stable = |range: Option<StableRange>, limit: &RedesignLimit| match range {
+        Some(_) => Cell::from(limit.in_words(range)),
+        None => Cell::absent(limit.in_words(range)),
     };
     for limit in &redesign.limits {
         table.push([
             limit.kind.name().into(),
-            limit.channel.clone().map_or_else(|| Cell::absent("all"), Cell::from),
+            channel_cell(&limit.channel),
             number(limit.stated, 4).into(),
-            stable(limit.given),
-            stable(limit.redesigned),
+            stable(limit.given, limit),
+            stable(limit.redesigned, limit),
             limit.unit.into(),
         ]);
     }
@@ -39,7 +40,5 @@ pub(super) fn add(page: &mut Page, advice: &LinearAdvice) {
         page.table(&margins_table("redesign-margins", &redesign.margins), 4);
     }
     page.paragraph("To paste into the request file in place of the controller:");
-    for line in redesign.toml.lines() {
-        page.paragraph(format!("`{line}`"));
-    }
+    page.code(&*redesign.toml);
 }

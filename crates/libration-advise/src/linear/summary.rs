@@ -1,8 +1,7 @@
 //! The answer on a loop around a linear plant, in sentences.
 
 use super::LinearAdvice;
-use crate::budget::with_channel;
-use crate::summary::{capitalise, describe_window, percent};
+use crate::summary::{capitalise, describe_window, noun, percent};
 
 impl LinearAdvice {
     /// The answer in a few sentences. A failure because of missed deadlines comes first.
@@ -57,9 +56,14 @@ impl LinearAdvice {
                     format!(", most of all in {}", names.join(", "))
                 }
             };
+            let kind = noun(failing.kind);
+            let subject = match &failing.channel {
+                Some(channel) => format!("{kind} of {channel}"),
+                None => kind.to_owned(),
+            };
             text += &format!(
                 " {} fails first, with {:.1} % of its budget used; {}{shape}.",
-                capitalise(&with_channel(failing.kind, failing.channel.as_deref())),
+                capitalise(&subject),
                 100.0 * failing.used,
                 failing.how
             );

@@ -1,8 +1,10 @@
 //! Tests of advice as a page and as JSON.
 
 use libration_advise as advise;
+use libration_advise::Imperfection;
+use libration_advise::linear::{self, LinearAdvice};
 
-use super::requests::advice;
+use super::requests::{advice, with_work};
 
 const ASKED: &str = "
 [controller.pd]
@@ -46,4 +48,132 @@ fn a_tolerated_cost_ends_a_budget_before_stability_does() {
     let at = advice(&advise::parse(&again, "again.toml").unwrap()).unwrap();
     let rise = at.looped.unwrap().combined.cost_increase.unwrap();
     assert!((rise - 0.5).abs() < 1e-9, "{rise}");
+}
+
+fn linear_advice(text: &str) -> LinearAdvice {
+    let request = linear::parse(text, "loop.toml").unwrap();
+    with_work(|work| linear::advise(work, &request)).unwrap()
+}
+
+/// A page from the heading to the next one.
+fn section<'a>(page: &'a str, heading: &str) -> &'a str {
+    let rest = page.split(&format!("<h3>{heading}</h3>")).nth(1);
+    rest.unwrap_or_else(|| panic!("no {heading}"))
+        .split("<h3>")
+        .next()
+        .unwrap()
+        .split("</main>")
+        .next()
+        .unwrap()
+}
+
+fn example(name: &str) -> String {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/loops/");
+    std::fs::read_to_string(format!("{folder}{name}")).unwrap()
+}
+
+/// A loop of one state that decays without commands.
+const DECAYING: &str = "
+[system.linear]
+a = [[-1.0]]
+b = [[1.0]]
+states = [\"level (m)\"]
+inputs = [\"flow (m/s)\"]
+[controller.state-feedback]
+gain = [[0.5]]
+[loop]
+period = 0.01
+";
+
+#[test]
+fn an_unstable_loop_has_infinite_deviations_beside_its_infinite_cost() {
+    // With a gain of 30 the loop endures about (π/2)/30 s of latency.
+    let text = DECAYING.replace("0.5", "30.0");
+    let late = linear_advice(&format!("{text}latency = 0.1\n"));
+    assert!(late.growth > 0.0);
+    let page = linear::page(&late);
+    let deviations = section(&page, "Deviations under noise");
+    assert!(deviations.contains(">infinite<") && !deviations.contains("unknown"), "{deviations}");
+    assert!(section(&page, "All imperfections together").contains(">infinite<"));
+    let even = linear::page(&linear_advice(&text));
+    assert!(!section(&even, "Deviations under noise").contains("infinite"));
+}
+
+#[test]
+fn a_growth_rate_within_rounding_is_zero_on_the_page_and_keeps_its_digits_in_json() {
+    let found = linear_advice(&example("two_mass_drive.toml"));
+    let json = serde_json::to_value(&found).unwrap();
+    let free = json["plant_modes"][0]["growth_rate"].as_f64().unwrap();
+    // n ε ‖A‖ with a norm of 3004 1/s².
+    assert!(free != 0.0 && free.abs() < 4.0 * f64::EPSILON * 3004.0, "{free}");
+    assert_eq!(found.plant_modes[0].shown, [0.0; 2]);
+    let page = linear::page(&found);
+    let plant = section(&page, "The plant");
+    assert!(!plant.contains("10<sup>") && plant.contains(">0<"), "{plant}");
+    // The other rates stay.
+    assert!(plant.contains(">−0.3334<") && plant.contains(">−2500<"), "{plant}");
+}
+
+#[test]
+fn modes_of_the_plant_and_of_its_lags_and_filters_have_names_of_their_own() {
+    let found = linear_advice(&example("quadrotor_attitude.toml"));
+    let page = linear::page(&found);
+    let plant = section(&page, "The plant");
+    for name in ["roll", "roll rate", "rotors", "gyroscope filter, gyroscope filter (rate)"] {
+        assert_eq!(
+            plant.matches(&format!("<td class=\"prose\">{name}<")).count(),
+            1,
+            "{name}: {plant}"
+        );
+    }
+    // Butterworth: 30 Hz at a damping ratio of 1/√2.
+    let filter = found.part_modes.last().unwrap();
+    assert!((filter.frequency - 30.0 * 0.5_f64.sqrt()).abs() < 1e-9, "{filter:?}");
+    let count = |mode: &linear::Mode| if mode.frequency > 0.0 { 2 } else { 1 };
+    let all = found.plant_modes.iter().chain(&found.part_modes).map(count).sum::<usize>();
+    assert_eq!(all, found.states.len());
+}
+
+#[test]
+fn a_missing_phase_or_share_has_its_reason_below_the_table() {
+    let found = linear_advice(&example("two_mass_drive.toml"));
+    for link in &found.chain {
+        assert_eq!(link.note.is_some(), link.phase.is_none() || link.share.is_none(), "{link:?}");
+    }
+    let page = linear::page(&found);
+    let chain = section(&page, "Where does the latency come from?");
+    assert!(
+        chain.contains("load angle: no phase and no share, because no limit was found"),
+        "{chain}"
+    );
+}
+
+#[test]
+fn a_loop_that_endures_all_losses_says_so_and_one_that_does_not_names_them_in_the_singular() {
+    let found = linear_advice(DECAYING);
+    let losses = found.budgets.iter().find(|budget| budget.kind == Imperfection::Loss).unwrap();
+    assert_eq!(losses.limit_in_words(losses.stable_up_to), "any below 1");
+    assert!(
+        section(&linear::page(&found), "Budget of each imperfection").contains(">any below 1<")
+    );
+    // An integrator that grows without commands.
+    let text = DECAYING.replace("[[-1.0]]", "[[5.0]]").replace("0.5", "30.0");
+    let found = linear_advice(&format!("{text}loss = 0.1\n"));
+    assert!(found.answer.contains("Loss of commands fails first, with"), "{}", found.answer);
+}
+
+#[test]
+fn feedback_of_states_says_that_it_does_not_measure_the_outputs_of_the_plant() {
+    let lqr = DECAYING.replace(
+        "[controller.state-feedback]\ngain = [[0.5]]",
+        "[controller.lqr]\nstates = [1]\ninputs = [1]",
+    );
+    assert_eq!(linear_advice(&lqr).controller, "LQR, designed");
+    for own in ["c = [[2.0]]", "c = [[1.0]]\nd = [[0.1]]"] {
+        let text = lqr.replace("b = ", &format!("{own}\nb = "));
+        assert_eq!(
+            linear_advice(&text).controller,
+            "LQR, designed; it measures the states, not the outputs of the plant"
+        );
+    }
 }

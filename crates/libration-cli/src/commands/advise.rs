@@ -215,8 +215,8 @@ fn describe_loop(looped: &LoopAdvice, again: &str, text: &mut String) {
             "{:<14} {:>12} {:>14} {:>14} {:>8}  {:<17} {}",
             budget.kind.name(),
             rounded(budget.stated),
-            budget.limit(budget.stable_up_to),
-            budget.tolerated_up_to.map_or_else(String::new, |limit| budget.limit(limit)),
+            budget.limit_in_words(budget.stable_up_to),
+            budget.tolerated_up_to.map_or_else(String::new, |limit| budget.limit_in_words(limit)),
             budget.used_in_percent(),
             budget.unit,
             budget.how

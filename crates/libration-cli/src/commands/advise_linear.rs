@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use libration_advise::linear::{self, InputMargins, LinearAdvice, LinearRequest, StableRange};
+use libration_advise::linear::{self, ChainLink, InputMargins, LinearAdvice, LinearRequest};
 use libration_advise::{StabilityWindow, rounded};
 use libration_work::Work;
 
@@ -69,9 +69,12 @@ fn describe(advice: &LinearAdvice) -> String {
             link.part,
             link.channel,
             rounded(link.delay),
-            link.phase.map_or_else(String::new, |phase| format!("{phase:.2}")),
-            link.share.map_or_else(String::new, |share| format!("{:.1} %", 100.0 * share)),
+            link.phase.map_or_else(|| "-".to_owned(), |phase| format!("{phase:.2}")),
+            link.share.map_or_else(|| "-".to_owned(), |share| format!("{:.1} %", 100.0 * share)),
         );
+    }
+    for note in ChainLink::notes(&advice.chain) {
+        let _ = writeln!(text, "  {note}");
     }
     if !advice.schedule.is_empty() {
         let _ = writeln!(text, "\n{}", linear::NO_MARGINS);
@@ -84,13 +87,12 @@ fn describe(advice: &LinearAdvice) -> String {
         "\nall imperfections together: second moments change by {:+.4e} per period (exact)",
         advice.growth.exp_m1()
     );
-    if let Some(cost) = advice.cost {
-        let _ = writeln!(
-            text,
-            "cost under noise: {cost:.6e}, without imperfections {:.6e} (exact: Lyapunov equation)",
-            advice.ideal_cost
-        );
-    }
+    let _ = writeln!(
+        text,
+        "cost under noise: {}, without imperfections {:.6e} (exact: Lyapunov equation)",
+        advice.cost.map_or_else(|| "infinite".to_owned(), |cost| format!("{cost:.6e}")),
+        advice.ideal_cost
+    );
     if let Some(s) = &advice.simulated {
         let _ = writeln!(
             text,
@@ -110,7 +112,9 @@ fn describe(advice: &LinearAdvice) -> String {
             deviation.state,
             deviation.unit,
             deviation.ideal,
-            deviation.stated.map_or_else(|| "unknown".to_owned(), |x| format!("{x:.6e}")),
+            deviation
+                .stated
+                .map_or_else(|| advice.no_deviation().to_owned(), |x| format!("{x:.6e}")),
         );
     }
     let _ = writeln!(text, "repeat with: {}", advice.repeat_command);
@@ -160,7 +164,7 @@ fn deadlines(advice: &LinearAdvice, text: &mut String) {
         }
     }
     if let Some(random) = &misses.random {
-        let limit = random.stable_up_to.map_or_else(|| "1".to_owned(), rounded);
+        let limit = random.stable_up_to.map_or_else(|| "above 63/64".to_owned(), rounded);
         let cost = random.cost.map_or_else(|| "infinite".to_owned(), |x| format!("{x:.6e}"));
         let _ = writeln!(
             text,
@@ -186,17 +190,14 @@ fn redesign(advice: &LinearAdvice, text: &mut String) {
         "\n{:<32} {:>12} {:>24} {:>24}  unit",
         "others as stated", "stated", "stable", "redesigned: stable"
     );
-    let stable = |range: Option<StableRange>| {
-        range.map_or_else(|| "unstable".to_owned(), |range| range.in_words())
-    };
     for limit in &redesign.limits {
         let _ = writeln!(
             text,
             "{:<32} {:>12} {:>24} {:>24}  {}",
             limit.name(),
             rounded(limit.stated),
-            stable(limit.given),
-            stable(limit.redesigned),
+            limit.in_words(limit.given),
+            limit.in_words(limit.redesigned),
             limit.unit
         );
     }
@@ -220,13 +221,14 @@ fn budgets(advice: &LinearAdvice, text: &mut String) {
         "unit"
     );
     for budget in &advice.budgets {
-        let limit = budget.tolerated_up_to.map_or_else(String::new, |limit| budget.limit(limit));
+        let limit =
+            budget.tolerated_up_to.map_or_else(String::new, |limit| budget.limit_in_words(limit));
         let _ = writeln!(
             text,
             "{:<32} {:>12} {:>14}{} {:>8}  {:<17} {}",
             budget.name(),
             rounded(budget.stated),
-            budget.limit(budget.stable_up_to),
+            budget.limit_in_words(budget.stable_up_to),
             tolerated(limit),
             budget.used_in_percent(),
             budget.unit,

@@ -194,3 +194,30 @@ latency = [0.02, 0.01]
     assert!((all.unwrap() - one.unwrap()).abs() < 1e-9, "{all:?} {one:?}");
     assert_eq!(advice["budgets"][0]["stated"], 0.01);
 }
+
+#[test]
+fn an_unstable_loop_and_a_limit_of_probability_have_words_in_the_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!("{OSCILLATOR}latency = 2.0\n");
+    let path = written(&folder, "late.toml", &text);
+    libration(&["advise", "--config", path.to_str().unwrap()])
+        .stdout(predicate::str::contains("cost under noise: infinite"))
+        .stdout(predicate::str::is_match("(?m)^x1 .* infinite$").unwrap())
+        .stdout(predicate::str::contains("above 1.000  ").not());
+}
+
+#[test]
+fn numbers_to_paste_stay_whole_in_the_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("page.html");
+    let bearing = example("magnetic_bearing.toml");
+    let to = page.to_str().unwrap();
+    libration(&["advise", "--config", &bearing, "--redesign", "--page", to]).success();
+    let page = fs::read_to_string(page).unwrap();
+    let codes: Vec<&str> =
+        page.split("<pre ").skip(1).map(|code| code.split("</pre>").next().unwrap()).collect();
+    let [redesign, gain] = &codes[..] else { panic!("{} codes", codes.len()) };
+    assert!(redesign.contains("<span>[controller.state-space]</span>"), "{redesign}");
+    // Each of the three numbers is in a span of its own, which does not break.
+    assert_eq!(gain.matches("<span>").count(), 3, "{gain}");
+}

@@ -4,7 +4,7 @@ use crate::figure;
 use crate::notation::number;
 use crate::page::{Block, Chapter};
 use crate::record::{Cell, Finding, Quantity, Table, Verdict};
-use crate::text::{escape, render_html};
+use crate::text::{escape, plain, render_html};
 
 /// Renders a chapter: question, evidence and all findings.
 pub(super) fn render(chapter: &Chapter) -> String {
@@ -36,36 +36,69 @@ pub(super) fn block(block: &Block) -> String {
         Block::Heading(heading) => format!("<h3>{}</h3>\n", render_html(heading)),
         Block::Paragraph(paragraph) => format!("<p>{}</p>\n", render_html(paragraph)),
         Block::Note(note) => format!("<p class=\"note\">{}</p>\n", render_html(note)),
+        Block::Code(code) => self::code(code),
         Block::Figure(figure) => figure::embed(figure),
         Block::Table { table, digits } => self::table(table, *digits),
     }
 }
 
-/// Renders a table. A column with a number is aligned as numbers.
+/// Renders lines of code. Browsers break lines at hyphens too, and so within `1e-3`: each word is kept whole.
+fn code(code: &str) -> String {
+    let word = |word: &str| format!("<span>{}</span>", escape(word));
+    let line = |line: &str| line.split(' ').map(word).collect::<Vec<_>>().join(" ");
+    let lines: Vec<String> = code.trim_end().lines().map(line).collect();
+    format!("<pre tabindex=\"0\"><code>{}</code></pre>\n", lines.join("\n"))
+}
+
+/// Characters of a cell above which its column breaks lines.
+const LONG: usize = 28;
+
+/// Columns from which a table with sentences becomes a list on narrow screens.
+const MANY: usize = 5;
+
+/// Renders a table. A column with a number is aligned as numbers, and one with long text breaks lines.
 fn table(table: &Table, digits: usize) -> String {
     let is_number = |cell: &Cell| match cell {
         Cell::Number(quantity) => !matches!(quantity, Quantity::Intervals(..)),
         Cell::Text(_) => false,
     };
-    let numeric: Vec<bool> =
-        (0..table.columns.len()).map(|i| table.rows.iter().any(|row| is_number(&row[i]))).collect();
-    let class = |i: usize| if numeric[i] { " class=\"num\"" } else { " class=\"formula\"" };
+    let is_long = |cell: &Cell| cell.typeset(digits).chars().count() > LONG;
+    let some = |i: usize, of: &dyn Fn(&Cell) -> bool| table.rows.iter().any(|row| of(&row[i]));
+    let classes: Vec<&str> = (0..table.columns.len())
+        .map(|i| match (some(i, &is_number), some(i, &is_long)) {
+            (true, _) => "num",
+            (false, true) => "prose",
+            (false, false) => "formula",
+        })
+        .collect();
+    let listed = classes.contains(&"prose") && classes.len() >= MANY;
     let head: String = table
         .columns
         .iter()
-        .enumerate()
-        .map(|(i, c)| format!("<th{}>{}</th>", class(i), render_html(c)))
+        .zip(&classes)
+        .map(|(c, class)| format!("<th class=\"{class}\">{}</th>", render_html(c)))
         .collect();
+    let labels: Vec<String> = match listed {
+        true => {
+            table.columns.iter().map(|c| format!(" data-label=\"{}\"", escape(&plain(c)))).collect()
+        }
+        false => vec![String::new(); classes.len()],
+    };
     let cell = |(i, cell): (usize, &Cell)| {
-        format!("<td{}>{}</td>", class(i), render_html(&cell.typeset(digits)))
+        let (class, label) = (classes[i], &labels[i]);
+        // One element, so that superscripts stay in their line of a list.
+        let text = render_html(&cell.typeset(digits));
+        let text = if listed { format!("<span>{text}</span>") } else { text };
+        format!("<td class=\"{class}\"{label}>{text}</td>")
     };
     let rows: String = table
         .rows
         .iter()
         .map(|row| format!("<tr>{}</tr>", row.iter().enumerate().map(cell).collect::<String>()))
         .collect();
+    let kind = if listed { " class=\"listed\"" } else { "" };
     format!(
-        "{}<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>\n",
+        "{}<table{kind}><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>\n",
         super::scroll_container(&format!("Table: {}", table.name))
     )
 }
@@ -120,4 +153,47 @@ fn finding(finding: &Finding) -> String {
         tolerance =
             finding.tolerance.tolerance.map_or_else(|| "—".into(), |t| render_html(&number(t, 2))),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_text_breaks_lines_and_numbers_do_not() {
+        let mut own = Table::new("x", &["name", "value", "method"]);
+        own.push(["a".into(), Cell::from(1.5), "exact: the spectral radius passes 1".into()]);
+        let html = table(&own, 4);
+        for wanted in
+            ["<td class=\"formula\">a<", "<td class=\"num\">1.5<", "<td class=\"prose\">exact"]
+        {
+            assert!(html.contains(wanted), "{wanted}: {html}");
+        }
+        assert!(!html.contains("listed") && !html.contains("data-label"), "three columns fit");
+    }
+
+    #[test]
+    fn a_wide_table_with_sentences_has_the_head_of_its_column_in_each_cell() {
+        let mut own = Table::new("x", &["a", "b", "c", "10^-3", "method"]);
+        own.push(
+            [1.0, 2.0, 3.0, 4.0]
+                .map(Cell::from)
+                .into_iter()
+                .chain(["m".repeat(29).as_str().into()]),
+        );
+        let html = table(&own, 4);
+        assert!(html.contains("<table class=\"listed\">"), "{html}");
+        assert!(
+            html.contains("<td class=\"num\" data-label=\"10⁻³\"><span>4</span></td>"),
+            "{html}"
+        );
+    }
+
+    #[test]
+    fn code_keeps_each_word_whole_and_its_lines() {
+        assert_eq!(
+            code("a = [1e-3, <2]\nb"),
+            "<pre tabindex=\"0\"><code><span>a</span> <span>=</span> <span>[1e-3,</span> <span>&lt;2]</span>\n<span>b</span></code></pre>\n"
+        );
+    }
 }

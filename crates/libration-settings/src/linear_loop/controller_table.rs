@@ -201,6 +201,13 @@ fn state_feedback(
     weights: Option<CostWeights>,
     kind: &str,
 ) -> Design {
+    // Its C would be read as that of the controller.
+    let ignores_outputs =
+        plant.c != Matrix::identity(plant.states.len()) || plant.d.largest() > 0.0;
+    let description = match ignores_outputs {
+        true => format!("{kind}; it measures the states, not the outputs of the plant"),
+        false => kind.to_owned(),
+    };
     Design {
         plant: plant.clone().with_all_states_measured(),
         controllers: DiscreteController::gain(gain.scaled(-1.0)).into(),
@@ -210,7 +217,7 @@ fn state_feedback(
         gain: Some(gain),
         filter: None,
         measurement: vec![0.0; plant.states.len()],
-        description: kind.to_owned(),
+        description,
     }
 }
 
