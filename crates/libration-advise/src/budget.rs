@@ -39,7 +39,7 @@ pub struct Budget {
     /// The separate stability window beyond the limit that contains the stated size.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub regained: Option<StabilityWindow>,
-    /// The windows of a latency beyond the first limit in which the loop is stable as well, up to 160 periods, or more if more is stated.
+    /// The windows of a latency beyond the first limit in which the loop is stable as well, up to the largest tried latency.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub later_windows: Vec<StabilityWindow>,
     /// The angle in rad per period by which the loop turns at its limit of a latency; none without oscillation.

@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn beside_a_rate_ten_orders_faster_a_slow_mode_keeps_its_digits() {
-        // 34 squarings of numbers near 1 would lose ten digits.
+        // 35 squarings of numbers near 1 would lose ten digits.
         let stiff = Matrix::from_rows(&[[-0.01, 1.0], [0.0, -1e10]]).unwrap();
         let found = exponential(&stiff);
         let slow = (-0.01_f64).exp();

@@ -4,7 +4,7 @@ use libration::linear::exponential_rounding;
 
 use super::request::LinearRequest;
 
-/// The largest relative rounding of a step that needs no warning.
+/// The largest relative rounding of a step that needs no warning. The text shows seven digits.
 const MOST: f64 = 1e-9;
 
 impl LinearRequest {

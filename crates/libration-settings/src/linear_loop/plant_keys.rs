@@ -6,7 +6,7 @@ use crate::Fault;
 pub(super) const ONE_FORM: &str =
     "a plant requires one of `of`, `a`, `mass`, `numerator` and `file`";
 
-/// Each form of plant, by the key that gives it, with the keys that may stand beside it.
+/// The key of each form of plant, and the other keys that the form takes.
 const FORMS: [(&str, &[&str]); 4] = [
     ("of", &["at", "command", "parameters"]),
     ("a", &["b", "c", "d", "sampling-period"]),
@@ -14,7 +14,10 @@ const FORMS: [(&str, &[&str]); 4] = [
     ("numerator", &["denominator", "sampling-period"]),
 ];
 
-/// Fails if the given keys are not those of one form of plant. Noise and names may stand beside all, and are not among them.
+/// Checks that the given keys are those of one form of plant. Keys of noise and names belong to every form; `given` is without them.
+///
+/// # Errors
+/// [`Fault`]: no form, several forms, or a key of another form.
 pub(super) fn check(given: &[&str]) -> Result<(), Fault> {
     let forms: Vec<_> = FORMS.iter().filter(|(form, _)| given.contains(form)).collect();
     let [(form, others)] = forms[..] else {
