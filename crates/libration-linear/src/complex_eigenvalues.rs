@@ -34,6 +34,10 @@ pub(crate) fn complex_eigenvalues(entries: Vec<Complex64>, n: usize) -> Vec<Comp
             a.at(k, k - 1).norm() <= f64::EPSILON * beside
         };
         let begin = (1..end).rev().find(|&k| negligible(k)).unwrap_or(0);
+        if begin > 0 {
+            // For good: sweeps of the block leave the rows above it as they are.
+            a.entries[begin * n + begin - 1] = Complex64::ZERO;
+        }
         match end - begin {
             1 => values.push(a.at(begin, begin)),
             2 => values.extend(a.pair(begin)),

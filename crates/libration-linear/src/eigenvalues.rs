@@ -43,6 +43,10 @@ fn solve_hessenberg(h: &mut Matrix) -> Option<Vec<Complex64>> {
             h[(k, k - 1)].abs() <= f64::EPSILON * beside
         };
         let begin = (1..end).rev().find(|&k| negligible(k)).unwrap_or(0);
+        if begin > 0 {
+            // For good: sweeps of the block leave the rows above it as they are.
+            h[(begin, begin - 1)] = 0.0;
+        }
         match end - begin {
             1 => values.push(Complex64::from(h[(begin, begin)])),
             2 => values.extend(pair(h, begin)),
@@ -79,20 +83,19 @@ fn pair(h: &Matrix, k: usize) -> [Complex64; 2] {
 fn sweep(h: &mut Matrix, block: core::ops::Range<usize>, iterations: usize) {
     let (begin, end) = (block.start, block.end);
     let n = end - 1;
-    let (mut sum, mut product) = (
-        h[(n - 1, n - 1)] + h[(n, n)],
-        h[(n - 1, n - 1)] * h[(n, n)] - h[(n - 1, n)] * h[(n, n - 1)],
-    );
+    let mut shifts = pair(h, n - 1);
     if iterations.is_multiple_of(10) {
-        // A shift that breaks circles.
+        // Shifts that break circles.
         let size = h[(n, n - 1)].abs() + h[(n - 1, n - 2)].abs();
-        (sum, product) = (1.5 * size, size * size);
+        let shift = h[(n, n)] + 0.75 * size;
+        shifts = [Complex64::new(shift, size), Complex64::new(shift, -size)];
     }
-    // The first column of (H − a)(H − b).
-    let [h00, h10] = [h[(begin, begin)], h[(begin + 1, begin)]];
+    // The first column of (H − a)(H − b), by differences: of almost equal eigenvalues nothing else is left.
+    let [h00, h10, h11] = [h[(begin, begin)], h[(begin + 1, begin)], h[(begin + 1, begin + 1)]];
+    let [off, beside] = shifts.map(|shift| h00 - shift);
     let mut x = vec![
-        h00 * h00 + h[(begin, begin + 1)] * h10 - sum * h00 + product,
-        h10 * (h00 + h[(begin + 1, begin + 1)] - sum),
+        (off * beside).re + h[(begin, begin + 1)] * h10,
+        h10 * ((h00 - shifts[0].re) + (h11 - shifts[1].re)),
         h10 * h[(begin + 2, begin + 1)],
     ];
     for k in begin..n {
@@ -114,11 +117,22 @@ fn sweep(h: &mut Matrix, block: core::ops::Range<usize>, iterations: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::complex_eigenvalues::complex_eigenvalues;
+    use crate::solve_matrix;
 
-    fn sorted(matrix: &Matrix) -> Vec<Complex64> {
-        let mut values = eigenvalues(matrix).unwrap();
+    fn sorted(mut values: Vec<Complex64>) -> Vec<Complex64> {
         values.sort_by(|a, b| a.re.total_cmp(&b.re).then(a.im.total_cmp(&b.im)));
         values
+    }
+
+    /// Entries between −1/2 and 1/2.
+    fn random(n: usize, state: &mut u64) -> Matrix {
+        let mut a = Matrix::zeros(n, n);
+        for x in a.entries_mut() {
+            *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            *x = (*state >> 33) as f64 / (1_u64 << 31) as f64 - 0.5;
+        }
+        a
     }
 
     /// The companion matrix of the polynomial with these roots.
@@ -139,7 +153,9 @@ mod tests {
     #[test]
     fn roots_of_polynomials_are_found() {
         let wanted: Vec<f64> = (1..=8).map(f64::from).collect();
-        for (found, wanted) in sorted(&companion(&wanted)).into_iter().zip(wanted) {
+        for (found, wanted) in
+            sorted(eigenvalues(&companion(&wanted)).unwrap()).into_iter().zip(wanted)
+        {
             // The roots of Wilkinson's polynomial of degree 8 have conditions up to 10⁴.
             assert!((found - wanted).norm() < 1e-10, "{found} {wanted}");
         }
@@ -169,26 +185,43 @@ mod tests {
         let scales = [1e-9, 1.0, 1e6, 1e12];
         let plain = companion(&[-1.0, -2.0, -3.0, -4.0]);
         let bad = Matrix::from_fn(4, 4, |i, j| plain[(i, j)] * scales[i] / scales[j]);
-        for (found, wanted) in sorted(&bad).into_iter().zip([-4.0, -3.0, -2.0, -1.0]) {
+        for (found, wanted) in
+            sorted(eigenvalues(&bad).unwrap()).into_iter().zip([-4.0, -3.0, -2.0, -1.0])
+        {
             assert!((found - wanted).norm() < 1e-11, "{found} {wanted}");
         }
     }
 
     #[test]
     fn sums_and_products_of_eigenvalues_are_trace_and_determinant() {
-        let mut state = 1_u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 33) as f64 / (1_u64 << 31) as f64 - 0.5
-        };
+        let mut state = 1;
         for n in [1, 2, 3, 10, 40, 90] {
-            let mut a = Matrix::zeros(n, n);
-            a.entries_mut().iter_mut().for_each(|x| *x = next());
+            let a = random(n, &mut state);
             let values = eigenvalues(&a).unwrap();
             let [sum, square] =
                 [1, 2].map(|power| values.iter().map(|x| x.powi(power)).sum::<Complex64>());
             assert!((sum - a.trace()).norm() < 1e-12, "{n}");
             assert!((square - (&a * &a).trace()).norm() < 1e-11, "{n}");
+        }
+    }
+
+    #[test]
+    fn eigenvalues_that_repeat_are_found() {
+        let wanted = [-0.0465, -0.0465, 0.0, 0.0, 0.0, 0.0465, 0.0465, 0.0465, 0.0465];
+        for seed in 1..200 {
+            let basis = random(9, &mut { seed });
+            let a = solve_matrix(&basis, &(&Matrix::diagonal(&wanted) * &basis)).unwrap();
+            let inverse = solve_matrix(&basis, &Matrix::identity(9)).unwrap();
+            let condition = basis.row_sum_norm() * inverse.row_sum_norm();
+            // A change of the matrix moves eigenvalues by at most that times the condition of the basis (F. L. Bauer, C. T. Fike,
+            // Numerische Mathematik 2, 1960).
+            let rounding = f64::EPSILON * a.row_sum_norm() * condition;
+            let entries = a.entries().iter().map(|&x| Complex64::from(x)).collect();
+            for found in [eigenvalues(&a).unwrap(), complex_eigenvalues(entries, 9)] {
+                for (found, wanted) in sorted(found).into_iter().zip(wanted) {
+                    assert!((found - wanted).norm() < rounding, "{seed}: {found} {wanted}");
+                }
+            }
         }
     }
 }

@@ -3,6 +3,8 @@
 use libration_core::control::Latency;
 use thiserror::Error;
 
+use crate::loop_timing::{MOST_RANDOM, MOST_REPEATED};
+
 /// Error of a loop around a linear plant.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum LinearLoopError {
@@ -84,7 +86,8 @@ pub enum LinearLoopError {
     Skew(f64),
     /// The loop is too large.
     #[error(
-        "the loop has {size} states with all commands and measurements in transit; expected at most {most}"
+        "the loop has {size} states with all commands and measurements in transit; expected at most {most}{}",
+        in_words(*most)
     )]
     Size {
         /// The number of states.
@@ -113,4 +116,12 @@ pub enum LinearLoopError {
     /// The plant moves too far in a period.
     #[error("the plant turns by more than 2048 rad in a standard deviation of the jitter")]
     Turn,
+}
+
+/// The most states of loops of other timings.
+fn in_words(most: usize) -> String {
+    match most {
+        MOST_RANDOM => format!(" with jitter, losses or overruns, {MOST_REPEATED} without"),
+        _ => String::new(),
+    }
 }

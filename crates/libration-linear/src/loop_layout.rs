@@ -4,17 +4,6 @@ use libration_core::control::Latency;
 
 use crate::{Layout, LinearLoop, LinearLoopError, LoopTiming, Transit};
 
-/// Most states of a loop whose periods are drawn.
-pub(crate) const MOST_RANDOM: usize = 100;
-
-/// Most states of a loop whose periods are all the same.
-const MOST_REPEATED: usize = 300;
-
-/// The most states of a loop with this timing.
-pub(crate) fn most_states(timing: &LoopTiming) -> usize {
-    if timing.repeats() { MOST_REPEATED } else { MOST_RANDOM }
-}
-
 impl LinearLoop {
     /// Checks that a timing fits the loop.
     ///
@@ -68,7 +57,7 @@ impl LinearLoop {
             output_latency.iter().map(|latency| Transit::of_measurements(*latency)).collect();
         let sizes = [self.plant().states.len(), self.controller().memory(), noises];
         let layout = Layout::new(sizes, &inputs, &outputs);
-        let most = most_states(timing);
+        let most = timing.most_states();
         match layout.size() > most {
             true => Err(LinearLoopError::Size { size: layout.size(), most }),
             false => Ok(layout),

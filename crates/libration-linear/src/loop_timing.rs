@@ -2,6 +2,12 @@
 
 use libration_core::control::{Jitter, Latency};
 
+/// Most states of a loop whose periods are drawn.
+pub(crate) const MOST_RANDOM: usize = 100;
+
+/// Most states of a loop whose periods are all the same.
+pub(crate) const MOST_REPEATED: usize = 300;
+
 /// The timing of a loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopTiming {
@@ -53,5 +59,10 @@ impl LoopTiming {
     /// Whether all periods are the same.
     pub fn repeats(&self) -> bool {
         self.jitter.rms() == 0.0 && self.loss == 0.0
+    }
+
+    /// The most states of a loop.
+    pub(crate) fn most_states(&self) -> usize {
+        if self.repeats() { MOST_REPEATED } else { MOST_RANDOM }
     }
 }

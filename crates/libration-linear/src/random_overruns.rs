@@ -1,6 +1,6 @@
 //! Loops whose jobs overrun at random.
 
-use crate::loop_layout::MOST_RANDOM;
+use crate::loop_timing::MOST_RANDOM;
 use crate::{
     LinearLoop, LinearLoopError, LoopTiming, Matrix, OverrunStrategy, PeriodOutcome, RandomStages,
     Stage, Stationary,

@@ -1,6 +1,6 @@
 //! Loops around linear plants whose periods repeat a record.
 
-use crate::loop_layout::MOST_RANDOM;
+use crate::loop_timing::MOST_RANDOM;
 use crate::{LinearLoop, LinearLoopError, LoopTiming, RecordedSchedule};
 
 /// Most states of a loop that replays a record with losses.

@@ -5,7 +5,6 @@ use thiserror::Error;
 
 use crate::augmented_plant::AugmentedPlant;
 use crate::compensator::{Compensator, Unsolved};
-use crate::loop_layout::most_states;
 use crate::{
     DesignError, DiscreteController, LinearLoop, LinearLoopError, LoopTiming, Matrix, PlantMode,
 };
@@ -93,7 +92,7 @@ impl LinearLoop {
         let augmented = AugmentedPlant::new(self, timing, own)?;
         let size = augmented.a.rows();
         let memory = if knows { size - augmented.plant_states } else { size };
-        let most = most_states(timing);
+        let most = timing.most_states();
         if size + memory > most {
             return Err(LinearLoopError::Size { size: size + memory, most }.into());
         }
