@@ -17,7 +17,7 @@ import libration
 import numpy as np
 from scipy.linalg import block_diag, expm, solve_discrete_are
 from scipy.optimize import brentq, minimize_scalar
-from scipy.sparse.linalg import LinearOperator, eigs
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
 from scipy.stats import norm
 
 # ---------------------------------------------------------------- the judge
@@ -50,8 +50,7 @@ def period_map(p, h, late_in, late_out, lost=False):
 def law(p, rms):
     """Relative lengths of periods and their probabilities."""
     half = rms * (3**0.5 if p["law"] == "uniform" else 10)
-    low = max(-half, -1)
-    z, w = np.polynomial.legendre.leggauss(48 + int((half - low) * p["speed"]))
+    z, w = np.polynomial.legendre.leggauss(48 + int((half - (low := max(-half, -1))) * p["speed"]))
     z, w = low + (half - low) * (z + 1) / 2, w * (half - low) / 2
     w = w / (2 * half) if p["law"] == "uniform" else w * norm.pdf(z / rms) / rms
     return np.append(1 + z, 0.0), np.append(w, max(0.0, 1 - w.sum()))    # the rest has length zero
@@ -61,15 +60,17 @@ def second_moments(branches):
     maps = np.concatenate([np.sqrt(w)[:, None, None] * m for w, m in branches])
     size = maps.shape[1]
     _, values, rows = np.linalg.svd(maps.reshape(len(maps), -1), full_matrices=False)    # the same operator in fewer terms
-    few = values > 1e-15 * values[0]
-    maps = (values[few, None] * rows[few]).reshape(-1, size, size)
-    if size <= 20:                                      # the matrix of the operator on symmetric P
-        i, j = np.triu_indices(size)
-        entries = lambda p, q: np.einsum("kpq,kpq->pq", maps[:, i][:, :, p], maps[:, j][:, :, q])
-        return np.abs(np.linalg.eigvals((entries(i, j) + entries(j, i)) * np.where(i == j, 0.5, 1))).max()
+    maps = (values[:, None] * rows)[values > 1e-15 * values[0]].reshape(-1, size, size)
     step = lambda v: (maps @ v.reshape(size, size) @ maps.transpose(0, 2, 1)).sum(0).ravel()
-    operator = LinearOperator((size**2,) * 2, step, dtype=float)    # several eigenvalues: those of queues are close to each other
-    return np.abs(eigs(operator, 4, v0=np.eye(size).ravel(), ncv=60, tol=1e-11, maxiter=10000, return_eigenvectors=False)).max()
+    if size > 20:
+        try:                                            # several eigenvalues: those of queues are close to each other
+            return np.abs(eigs(LinearOperator((size**2,) * 2, step, dtype=float), 4, v0=np.eye(size).ravel(), ncv=60, tol=1e-11,
+                               maxiter=1000, return_eigenvectors=False)).max()
+        except ArpackNoConvergence:
+            pass
+    i, j = np.triu_indices(size)                        # the matrix of the operator on symmetric P
+    entries = lambda p, q: sum(m[i][:, p] * m[j][:, q] for m in maps)
+    return np.abs(np.linalg.eigvals((entries(i, j) + entries(j, i)) * np.where(i == j, 0.5, 1))).max()
 
 def growth(p, late_in=0.0, late_out=0.0, jitter=0.0, skew=0.0, loss=0.0):
     """The factor per period: of the state without jitter and losses, else of its second moments."""
