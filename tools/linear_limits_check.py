@@ -62,10 +62,10 @@ def second_moments(branches):
     _, values, rows = np.linalg.svd(maps.reshape(len(maps), -1), full_matrices=False)    # the same operator in fewer terms
     maps = (values[:, None] * rows)[values > 1e-15 * values[0]].reshape(-1, size, size)
     step = lambda v: (maps @ v.reshape(size, size) @ maps.transpose(0, 2, 1)).sum(0).ravel()
-    if size > 20:
-        try:                                            # several eigenvalues: those of queues are close to each other
-            return np.abs(eigs(LinearOperator((size**2,) * 2, step, dtype=float), 4, v0=np.eye(size).ravel(), ncv=60, tol=1e-11,
-                               maxiter=1000, return_eigenvectors=False)).max()
+    for ncv in (60, 240) if size > 20 else ():           # several eigenvalues: those of queues are close to each other
+        try:
+            return np.abs(eigs(LinearOperator((size**2,) * 2, step, dtype=float), 4, v0=np.eye(size).ravel(), ncv=ncv, tol=1e-11,
+                               maxiter=400, return_eigenvectors=False)).max()
         except ArpackNoConvergence:
             pass
     i, j = np.triu_indices(size)                        # the matrix of the operator on symmetric P
@@ -271,9 +271,9 @@ def check(job):
         say(kind, channel, limit, judge(f, near, limit, min(tried, 1 - 1e-6) if kind == "loss" else tried, points, float(kind == "margin"), jumps))
         for window in later:
             judged[kind + ", later windows"] += 1
-            start, end = window["from"], window["to"] or np.inf
-            inside = [f(v) for v in np.linspace(start * (1 + near), min(end * (1 - near), 1.5 * start), 20)]
-            outside = [f(v) for v in (start * (1 - near), end * (1 + near)) if np.isfinite(v)]
+            start, end = window["from"], window["to"]       # without an end it reaches to the largest that was tried
+            inside = [f(v) for v in np.linspace(start * (1 + near), (end or 160 * p["period"]) * (1 - near), 20)]
+            outside = [f(v) for v in (start * (1 - near), *([end * (1 + near)] if end else []))]
             if max(inside) > 1 + 1e-9 or min(outside) < 1 - 1e-9:
                 say(kind, channel, limit, f"window {window}: largest growth inside {max(inside)!r}, growth just outside {outside}")
         if number % 10 == 0 and limit and "latency" in kind and not of_all(channel) and not judged["simulated"]:

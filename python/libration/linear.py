@@ -296,6 +296,8 @@ class LQG:
     """Weights of the inputs, a matrix or its diagonal."""
     measurement: ArrayLike
     """Covariance of the noise of each sample, a matrix or its diagonal."""
+    outputs: ArrayLike | None = None
+    """Weights of the outputs, which add to those of the states, a matrix or its diagonal."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -411,7 +413,8 @@ def linear_request(plant: LinearPlant, controller: Any, timing: dict[str, Any], 
         of_states = isinstance(controller, (LQR, StateFeedback)) or plant.C is None
         measured = ("x", plant.states) if of_states else ("y", plant.outputs)
         request["part"] = [_part(part, ("u", plant.inputs), measured) for part in plant.parts]
-    request["loop"] = _loop(timing)
+    # A sampled plant keeps its period.
+    request["loop"] = _loop(timing | {"period": plant.dt} if timing.get("period") is None else timing)
     if timing["tolerance"] is not None:
         request["tolerance"] = tolerance_table(timing["tolerance"], "('cost', 0.05)")
     return request
@@ -449,17 +452,21 @@ def _part(
     return table
 
 
+def _cost(of_states: str, states: Any, outputs: Any, of_inputs: str, inputs: Any) -> dict[str, Any]:
+    given = {"states": (of_states, states), "outputs": ("outputs", outputs), "inputs": (of_inputs, inputs)}
+    return {key: _weights(name, weights) for key, (name, weights) in given.items() if weights is not None}
+
+
 def _controller(controller: Any) -> dict[str, Any]:
     if isinstance(controller, StateFeedback):
         return {"state-feedback": {"gain": matrix("gain", controller.gain)}}
     if isinstance(controller, LQR):
         if controller.inputs is None:
             raise ValueError("LQR has one argument; expected LQR(Q, R), weights of states and inputs, for a linear plant")
-        states, inputs = _weights("Q", controller.weights), _weights("R", controller.inputs)
-        return {"lqr": {"states": states, "inputs": inputs}}
+        return {"lqr": _cost("Q", controller.weights, controller.outputs, "R", controller.inputs)}
     if isinstance(controller, LQG):
-        names = ("states", "inputs", "measurement")
-        return {"lqg": {name: _weights(name, getattr(controller, name)) for name in names}}
+        cost = _cost("states", controller.states, controller.outputs, "inputs", controller.inputs)
+        return {"lqg": cost | {"measurement": _weights("measurement", controller.measurement)}}
     if isinstance(controller, StateSpace):
         return {"state-space": _state_space(controller)}
     if isinstance(controller, Cascade):
@@ -550,10 +557,18 @@ def _loop(timing: dict[str, Any]) -> dict[str, Any]:
         loop["law"], loop["jitter"] = law("jitter", timing["jitter"]) or ("gaussian", 0.0)
     if timing["cost_weights"] is not None:
         weights = timing["cost_weights"]
-        if not isinstance(weights, (tuple, list)) or len(weights) != 2:
-            raise TypeError(f"cost_weights is {weights!r:.60}; expected (Q, R), weights of states and inputs")
-        states, inputs = weights
-        loop["cost"] = {"states": _weights("cost_weights", states), "inputs": _weights("cost_weights", inputs)}
+        if isinstance(weights, Mapping):
+            if unknown := set(weights) - {"states", "outputs", "inputs"}:
+                raise ValueError(f"cost_weights has the key {sorted(unknown)[0]!r:.60}; expected 'states', 'outputs' and 'inputs'")
+            loop["cost"] = {key: _weights("cost_weights", one) for key, one in weights.items()}
+        elif isinstance(weights, (tuple, list)) and len(weights) == 2:
+            states, inputs = weights
+            loop["cost"] = {"states": _weights("cost_weights", states), "inputs": _weights("cost_weights", inputs)}
+        else:
+            raise TypeError(
+                f"cost_weights is {weights!r:.60}; expected (Q, R), weights of states and inputs, or a dictionary of those of "
+                "'states', 'outputs' and 'inputs'"
+            )
     if timing.get("clock") is not None:
         loop["clock"] = str(timing["clock"])
     if timing["measurement_noise"] is not None:

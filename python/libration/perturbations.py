@@ -71,6 +71,8 @@ class LQR:
     """Weights of position², velocity² and command²; with ``inputs`` those of the states, a matrix or its diagonal."""
     inputs: Any = None
     """Weights of the inputs of a linear plant, a matrix or its diagonal."""
+    outputs: Any = None
+    """Weights of the outputs of a linear plant, which add to those of the states; ``weights`` may be None then."""
 
 
 @dataclass(frozen=True)

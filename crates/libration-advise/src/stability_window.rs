@@ -18,6 +18,13 @@ pub struct StabilityWindow {
 }
 
 impl StabilityWindow {
+    /// Windows of an imperfection beyond the first, in a sentence without a full stop; none if there are none.
+    pub fn sentence(name: &str, windows: &[StabilityWindow], unit: &str) -> Option<String> {
+        let windows: Vec<String> = windows.iter().map(StabilityWindow::in_words).collect();
+        let sentence = || format!("{name} alone is stable again {} {unit}", windows.join(", "));
+        (!windows.is_empty()).then(sentence)
+    }
+
     /// The ends in words, without the unit.
     pub fn in_words(&self) -> String {
         match self.to {

@@ -84,12 +84,15 @@ pub(super) fn describe_loop(looped: &LoopAdvice, tolerance: &ToleranceAnswer) ->
             true => format!(", more than the tolerance of {:.3} %", 100.0 * tolerance.most),
             false => String::new(),
         };
-        text += &format!(
-            " Its cost is {:.3} % above that of the ideal loop{tolerated}.",
-            100.0 * increase
-        );
+        text += &format!(" Its cost is {}{tolerated}.", beside_ideal(increase));
     }
     text
+}
+
+/// A relative increase of the cost in words.
+pub(super) fn beside_ideal(increase: f64) -> String {
+    let side = if increase < 0.0 { "below" } else { "above" };
+    format!("{:.3} % {side} that of the ideal loop", 100.0 * increase.abs())
 }
 
 /// The imperfection as the subject of a sentence: one thing, of which there is more or less.

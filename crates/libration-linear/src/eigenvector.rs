@@ -9,7 +9,8 @@ use crate::{Matrix, solve};
 /// By inverse iteration.
 pub fn eigenvector(matrix: &Matrix, value: Complex64) -> Option<Vec<Complex64>> {
     let n = matrix.rows();
-    let size = matrix.row_sum_norm().max(f64::MIN_POSITIVE);
+    // Every vector is one of a zero matrix.
+    let size = if matrix.largest() == 0.0 { 1.0 } else { matrix.row_sum_norm() };
     // Off the eigenvalue by a rounding, so that the equations have a solution.
     let near = value + Complex64::new(1.0, 1.0) * (size * 4.0 * f64::EPSILON);
     let mut vector: Vec<Complex64> =

@@ -50,6 +50,13 @@ impl HessenbergForm {
         self.rotation.transposed().apply(&balanced)
     }
 
+    /// `S x` of a column `x`.
+    pub(crate) fn restored(&self, x: &[Complex64]) -> Vec<Complex64> {
+        let n = self.h.rows();
+        let turned = |i: usize| (0..n).map(|j| x[j] * self.rotation[(i, j)]).sum::<Complex64>();
+        (0..n).map(|i| turned(i) * self.scales[i]).collect()
+    }
+
     /// `(z − H)⁻¹ b` of each of these columns, by elimination with the larger pivot of two rows.
     pub(crate) fn resolvent(&self, z: Complex64, columns: &[Vec<f64>]) -> Resolved {
         let n = self.h.rows();

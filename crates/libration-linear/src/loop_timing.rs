@@ -19,7 +19,8 @@ pub struct LoopTiming {
     pub jitter: Jitter,
     /// The part by which all periods are longer than they should be.
     pub skew: f64,
-    /// The probability that the commands of a period are lost, independently.
+    /// The probability that the commands that arrive in a period are lost, all of them together and independently of other periods.
+    /// Where latencies of inputs differ by whole periods, commands that were computed together arrive apart.
     pub loss: f64,
     /// What acts where a command is missing.
     pub missing: MissingCommand,

@@ -14,19 +14,20 @@ pub struct ModeDetails {
     pub value: Complex64,
     /// The eigenvector, of largest entry 1.
     pub shape: Vec<Complex64>,
-    /// The smallest singular value of `[λ − A, B]` relative to the size of `A`: 0 if no input reaches the mode.
+    /// The smallest singular value of `[λ − A, B]` relative to the size of `A`: 0 if inputs do not reach all motions with this
+    /// eigenvalue.
     pub controllability: f64,
-    /// The same of `[λ − Aᵀ, Cᵀ]`: 0 if no output shows the mode.
+    /// The same of `[λ − Aᵀ, Cᵀ]`: 0 if outputs do not show all motions with this eigenvalue.
     pub observability: f64,
 }
 
 impl ModeDetails {
-    /// Whether an input reaches the mode.
+    /// Whether inputs reach all motions with this eigenvalue.
     pub fn is_controllable(&self) -> bool {
         self.controllability >= NOTHING
     }
 
-    /// Whether an output shows the mode.
+    /// Whether outputs show all motions with this eigenvalue.
     pub fn is_observable(&self) -> bool {
         self.observability >= NOTHING
     }
@@ -59,14 +60,17 @@ impl LinearPlant {
             smallest_singular(a, b, value).map_or(0.0, |(least, _)| least / size)
         };
         let (dual, shown) = (self.a.transposed(), self.c.transposed());
-        let details = |(value, shape): (Complex64, Vec<Complex64>)| ModeDetails {
-            mode: self.mode(value, &shape),
-            value: self.rate_of(value),
-            shape,
-            controllability: least(&self.a, &self.b, value),
-            observability: least(&dual, &shown, value),
-        };
-        self.shapes().into_iter().map(details).collect()
+        let shapes = self.shapes();
+        let named = self.name_shapes(&shapes);
+        let details =
+            |((value, shape), named): ((Complex64, Vec<Complex64>), &Vec<Complex64>)| ModeDetails {
+                mode: self.mode(value, named),
+                value: self.rate_of(value),
+                shape,
+                controllability: least(&self.a, &self.b, value),
+                observability: least(&dual, &shown, value),
+            };
+        shapes.into_iter().zip(&named).map(details).collect()
     }
 }
 

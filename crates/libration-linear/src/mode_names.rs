@@ -4,34 +4,94 @@ use core::ops::Range;
 
 use num_complex::Complex64;
 
+use crate::hessenberg::HessenbergForm;
 use crate::{LinearPlant, Matrix, PlantMode, solve};
 
 /// Sine of the angle between eigenvectors below which they are one, of a repeated eigenvalue. Rounding parts those by its root.
 const ALIKE: f64 = 1e-6;
 
+/// Part of the size of the plant by which inverse iteration is beside an eigenvalue that repeats, so that rounding does not part the
+/// repetitions.
+const NEAR: f64 = 1e-6;
+
 impl LinearPlant {
     /// The modes of the plant, the one that grows fastest first; of a pair one.
     ///
     /// A repeated eigenvalue may have one eigenvector only, as that of a free mass: the first of its modes is named by it, and each
-    /// further one by the motion at a right angle to those before it in their invariant subspace.
+    /// further one by the motion at a right angle to those before it in their invariant subspace. Where it has several, they are those
+    /// next to single states, so that equal subsystems have a mode each.
     pub fn modes(&self) -> Vec<PlantMode> {
         let shapes = self.shapes();
-        let mut named: Vec<Vec<Complex64>> = Vec::with_capacity(shapes.len());
-        for (k, (value, shape)) in shapes.iter().enumerate() {
-            let own = normalised(shape.clone());
-            let alike = |j: &usize| {
-                let mut rest = own.clone();
-                remove(&mut rest, &normalised(shapes[*j].1.clone()));
-                norm(&rest) < ALIKE
-            };
-            let before: Vec<&[Complex64]> = (0..k).filter(alike).map(|j| &named[j][..]).collect();
-            let further = match before.is_empty() {
-                true => None,
-                false => further_vector(&self.a, *value, &before),
-            };
-            named.push(further.unwrap_or(own));
-        }
+        let named = self.name_shapes(&shapes);
         shapes.iter().zip(&named).map(|((value, _), shape)| self.mode(*value, shape)).collect()
+    }
+
+    /// The motion by which each of these modes is named.
+    pub(crate) fn name_shapes(
+        &self,
+        shapes: &[(Complex64, Vec<Complex64>)],
+    ) -> Vec<Vec<Complex64>> {
+        let own: Vec<Vec<Complex64>> =
+            shapes.iter().map(|(_, shape)| normalised(shape.clone())).collect();
+        let alike = |k: usize, j: usize| {
+            let mut rest = own[k].clone();
+            remove(&mut rest, &own[j]);
+            norm(&rest) < ALIKE
+        };
+        let mut named: Vec<Option<Vec<Complex64>>> = vec![None; shapes.len()];
+        for k in 0..shapes.len() {
+            if named[k].is_some() {
+                continue;
+            }
+            let same: Vec<usize> = (k..shapes.len()).filter(|&j| alike(k, j)).collect();
+            let value = shapes[k].0;
+            let single =
+                if same.len() > 1 { self.single_motions(value, same.len()) } else { vec![] };
+            if single.len() == same.len() {
+                same.into_iter().zip(single).for_each(|(j, shape)| named[j] = Some(shape));
+                continue;
+            }
+            let mut before: Vec<Vec<Complex64>> = Vec::new();
+            for j in same {
+                let further =
+                    if before.is_empty() { None } else { further_vector(&self.a, value, &before) };
+                let shape = further.unwrap_or_else(|| own[j].clone());
+                before.push(shape.clone());
+                named[j] = Some(shape);
+            }
+        }
+        named.into_iter().flatten().collect()
+    }
+
+    /// Up to `count` independent eigenvectors of an eigenvalue, each the part of one state that lies in its eigenspace.
+    fn single_motions(&self, value: Complex64, count: usize) -> Vec<Vec<Complex64>> {
+        let n = self.a.rows();
+        let size = self.a.row_sum_norm().max(f64::MIN_POSITIVE);
+        let near = value + Complex64::new(1.0, 1.0) * (size * NEAR);
+        let form = HessenbergForm::new(&self.a);
+        let unit = |i: usize| (0..n).map(|j| f64::from(u8::from(i == j))).collect::<Vec<f64>>();
+        let columns: Vec<Vec<f64>> = (0..n).map(|i| form.column(&unit(i))).collect();
+        let parts: Vec<Vec<Complex64>> =
+            form.resolvent(near, &columns).solutions.iter().map(|x| form.restored(x)).collect();
+        let most = parts.iter().map(|x| norm(x)).fold(0.0, f64::max);
+        let mut found: Vec<Vec<Complex64>> = Vec::new();
+        let mut basis: Vec<Vec<Complex64>> = Vec::new();
+        for part in parts {
+            let mut rest = part.clone();
+            basis.iter().for_each(|along| remove(&mut rest, along));
+            // A chain of a defective eigenvalue has another length.
+            let moved: Vec<Complex64> = (0..n)
+                .map(|i| {
+                    (0..n).map(|j| part[j] * self.a[(i, j)]).sum::<Complex64>() - value * part[i]
+                })
+                .collect();
+            let is_eigenvector = norm(&moved) < ALIKE.sqrt() * size * norm(&part);
+            if found.len() < count && is_eigenvector && norm(&rest) > 0.1 * most {
+                basis.push(normalised(rest));
+                found.push(normalised(part));
+            }
+        }
+        found
     }
 
     /// The modes of some of the states without all others, such as those of lags and filters. They are modes of the plant if these
@@ -76,11 +136,15 @@ fn remove(x: &mut [Complex64], along: &[Complex64]) {
 
 /// The vector of norm 1 that spans the invariant subspace of a repeated eigenvalue together with orthonormal vectors of it: inverse
 /// iteration at a right angle to those.
-fn further_vector(a: &Matrix, value: Complex64, before: &[&[Complex64]]) -> Option<Vec<Complex64>> {
+fn further_vector(
+    a: &Matrix,
+    value: Complex64,
+    before: &[Vec<Complex64>],
+) -> Option<Vec<Complex64>> {
     let n = a.rows();
     let size = a.row_sum_norm().max(f64::MIN_POSITIVE);
     // Beside the eigenvalue by the root of a rounding or more, so that the part along the others, larger by this, leaves digits.
-    let near = value + Complex64::new(1.0, 1.0) * (size * 1e-6);
+    let near = value + Complex64::new(1.0, 1.0) * (size * NEAR);
     let entry = |i: usize, j: usize| a[(i, j)] - if i == j { near } else { Complex64::ZERO };
     let mut vector: Vec<Complex64> = (1..=n).map(|i| Complex64::from((i as f64).recip())).collect();
     for _ in 0..4 {
@@ -122,6 +186,39 @@ mod tests {
         let names: Vec<&str> = modes.iter().map(|mode| mode.states[0].0.as_str()).collect();
         assert_eq!(names, ["x1", "x2", "x3"]);
         assert!(modes.iter().all(|mode| mode.states.len() == 1), "{modes:?}");
+    }
+
+    #[test]
+    fn equal_subsystems_have_a_mode_each() {
+        // Three oscillators with a common input, and two with a spring between them, whose modes are not equal.
+        let spring = |n: usize, between: f64| {
+            Matrix::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
+                (true, _) => f64::from(u8::from(j == i + n)),
+                (false, true) if j + n == i => -100.0 - between,
+                (false, true) => between,
+                (false, false) => {
+                    if i == j {
+                        -0.1
+                    } else {
+                        0.0
+                    }
+                }
+            })
+        };
+        let of = |n: usize, between: f64| {
+            let push = Matrix::from_fn(2 * n, 1, |i, _| f64::from(u8::from(i >= n)));
+            let shown = Matrix::from_fn(1, 2 * n, |_, j| f64::from(u8::from(j == 0)));
+            LinearPlant::new(spring(n, between), push, shown, Matrix::zeros(1, 1)).unwrap()
+        };
+        let equal = of(3, 0.0).modes();
+        let names: Vec<&str> = equal.iter().map(|mode| mode.states[0].0.as_str()).collect();
+        assert_eq!(names, ["x4", "x5", "x6"], "{equal:?}");
+        assert!(equal.iter().all(|mode| mode.states.len() <= 2), "{equal:?}");
+        let coupled = of(2, 5.0).modes();
+        assert!(
+            coupled.iter().all(|mode| mode.states.len() == 4 || mode.states[1].1 > 0.99),
+            "{coupled:?}"
+        );
     }
 
     #[test]

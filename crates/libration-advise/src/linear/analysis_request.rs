@@ -2,7 +2,6 @@
 
 use libration::linear::LinearLoopError;
 use libration_analyze::{Stepping, linear_analysis};
-use libration_settings::Number;
 use libration_settings::linear_loop::{LinearControllerTable, LinearLoopTable};
 
 use super::{LinearRequest, RequestFile};
@@ -17,7 +16,7 @@ pub struct AnalysisFile {
 }
 
 impl AnalysisFile {
-    /// Completes a file without a controller: commands are zero, and the period of a sampled plant is its own.
+    /// Completes a file without a controller: commands are zero.
     pub fn complete(file: &mut RequestFile) -> Self {
         let LinearLoopTable { deadline_misses, overrun_probability, time_stamps, .. } =
             &file.looped;
@@ -29,7 +28,6 @@ impl AnalysisFile {
         let unused = keys.into_iter().filter_map(|(given, key)| given.then_some(key)).collect();
         let has_controller = file.controller.is_some();
         if !has_controller && let Ok(plant) = file.system.linear.plant() {
-            file.looped.period = Number(plant.sampling_period.unwrap_or(file.looped.period.0));
             file.controller = Some(LinearControllerTable::open_loop(&plant));
         }
         AnalysisFile { has_controller, unused }

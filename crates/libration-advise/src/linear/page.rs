@@ -8,6 +8,7 @@ use libration_report::report;
 use super::deadlines_page::deadlines;
 use super::{ChainLink, InputMargins, LinearAdvice, redesign_page};
 use crate::page::{budget_row, figure};
+use crate::{Budget, StabilityWindow};
 
 /// Why a cascade has no margins.
 pub const NO_MARGINS: &str = "Gain and phase margins are not available for a cascade: its loop changes from period to period and has no frequency response.";
@@ -62,6 +63,12 @@ fn budgets(page: &mut Page, advice: &LinearAdvice) {
         table.push(row.into_iter().chain(tolerated).chain([used, unit, how]));
     }
     page.table(&table, 4);
+    let later = |budget: &Budget| {
+        StabilityWindow::sentence(&budget.name(), &budget.later_windows, budget.unit)
+    };
+    for windows in advice.budgets.iter().filter_map(later) {
+        page.note(format!("{windows}."));
+    }
     if let Some(map) = &advice.map {
         page.figure(figure(map));
     }

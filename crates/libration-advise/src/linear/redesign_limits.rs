@@ -85,6 +85,9 @@ impl StableRange {
 /// Growth of the steps in which sizes are tried.
 const GROWTH: f64 = 1.25;
 
+/// Steps of the longest length that fill the range of an imperfection.
+const TRIED: f64 = 64.0;
+
 /// Largest latency beyond the stated one that is tried, in periods.
 const MOST_PERIODS: f64 = 40.0;
 
@@ -132,17 +135,17 @@ impl TimedLoop {
         if !self.is_stable_at(subject, stated)? {
             return Ok(None);
         }
-        let (step, least, most) = match subject.kind {
+        let ([step, longest], least, most) = match subject.kind {
             Imperfection::Latency | Imperfection::OutputLatency => {
                 let period = self.period();
-                (0.05 * period, 0.0, stated + MOST_PERIODS * period)
+                ([0.05 * period, period], 0.0, stated + MOST_PERIODS * period)
             }
-            Imperfection::Jitter => (0.005, 0.0, stated.max(1.0)),
-            Imperfection::Skew => (0.005, -0.9, 8.0),
-            Imperfection::Loss => (0.005, 0.0, 1.0 - 1e-9),
+            Imperfection::Jitter => ([0.005, 1.0 / TRIED], 0.0, stated.max(1.0)),
+            Imperfection::Skew => ([0.005, 8.0 / TRIED], -0.9, 8.0),
+            Imperfection::Loss => ([0.005, 1.0 / TRIED], 0.0, 1.0 - 1e-9),
         };
-        let (from, begins) = self.range_end(subject, stated, -step, least)?;
-        let (to, ends) = self.range_end(subject, stated, step, most)?;
+        let (from, begins) = self.range_end(subject, stated, [-step, -longest], least)?;
+        let (to, ends) = self.range_end(subject, stated, [step, longest], most)?;
         Ok(Some(StableRange {
             from: begins.then_some(from),
             to: ends.then_some(to),
@@ -150,12 +153,13 @@ impl TimedLoop {
         }))
     }
 
-    /// The last stable size from a stable one towards `end`, and whether the loop is unstable beyond.
+    /// The last stable size from a stable one towards `end`, and whether the loop is unstable beyond. Steps grow from the first to the
+    /// longest.
     fn range_end(
         &self,
         subject: Subject,
         from: f64,
-        step: f64,
+        [step, longest]: [f64; 2],
         end: f64,
     ) -> Result<(f64, bool), LinearLoopError> {
         // Latencies of a sampled plant are whole periods.
@@ -186,7 +190,9 @@ impl TimedLoop {
                 ) => return Ok((stable, false)),
                 Err(error) => return Err(error),
             }
-            step *= if whole { 1.0 } else { GROWTH };
+            if !whole {
+                step = if (GROWTH * step).abs() < longest.abs() { GROWTH * step } else { longest };
+            }
         }
         Ok((stable, false))
     }

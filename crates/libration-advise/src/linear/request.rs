@@ -8,44 +8,16 @@ use libration::control::clock::{Recorded, RecordedError};
 use libration::linear::{
     CostWeights, LinearLoop, LinearLoopError, LinearPlant, Matrix, MissingCommand,
 };
-use libration_settings::linear_loop::{
-    Design, LinearControllerTable, LinearLoopTable, OperatingPoint, Part, PartTable, PlantTable,
-};
+use libration_settings::linear_loop::{Design, LinearLoopTable, OperatingPoint, Part};
 use libration_settings::{Document, Fault, Number, SettingsError, suggestions};
-use serde::Deserialize;
 
 use super::clock::clocked;
 use super::redesign_toml::RedesignToml;
+use super::request_file::RequestFile;
 use super::stated_deadlines::StatedDeadlines;
 use crate::control::{skew_of, uneven};
 use crate::jitter_measurement;
 use crate::timed_loop::{StatedTiming, TimedLoop};
-
-/// A request file for a loop around a linear plant.
-#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
-#[serde(default, deny_unknown_fields)]
-pub struct RequestFile {
-    /// The plant.
-    pub system: SystemTable,
-    /// Lags and filters.
-    pub part: Vec<PartTable>,
-    /// The controller.
-    pub controller: Option<LinearControllerTable>,
-    /// The loop and its timing.
-    #[serde(rename = "loop")]
-    pub looped: LinearLoopTable,
-    /// A tolerance of the cost.
-    pub tolerance: BTreeMap<String, Number>,
-}
-
-/// The table `[system]` of a request file.
-#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
-pub struct SystemTable {
-    /// The plant.
-    #[serde(default)]
-    pub linear: PlantTable,
-}
 
 /// A loop around a linear plant, designed, with its timing.
 #[derive(Clone, Debug)]
@@ -113,11 +85,11 @@ impl LinearRequest {
     pub fn new(file: RequestFile) -> Result<Self, Fault> {
         let plant = file.system.linear.plant()?;
         let operating_point = file.system.linear.operating_point()?;
+        let period = file.period();
         let Some(controller) = file.controller else {
             let message = "there is no controller; expected a table, as [controller.lqr]";
             return Err(Fault::new("controller", message));
         };
-        let Number(period) = file.looped.period;
         if !PERIODS.contains(&period) {
             let message = format!("`period` is {period:?}; expected 1e-9 to 1e9 (s)");
             return Err(Fault::new("loop.period", message));
@@ -140,7 +112,7 @@ impl LinearRequest {
             None => design.measurement.clone(),
         };
         let form = padded(&weights, plant.states.len(), whole.states.len());
-        let timing = timing(&file.looped, &design.plant)?;
+        let timing = timing(&file.looped, &design.plant, period)?;
         let redesign_toml = RedesignToml::new(&file.looped, &plant, &design, &weights, &noise);
         let deadlines = StatedDeadlines::new(&file.looped, design.cascade.is_some())?;
         let linear = LinearLoop::new(whole, controllers, period, form, noise);
@@ -203,10 +175,7 @@ fn weights(
     plant: &LinearPlant,
 ) -> Result<CostWeights, Fault> {
     if let Some(own) = &table.cost {
-        return Ok(CostWeights {
-            states: own.states.matrix("loop.cost.states", "states", plant.states.len())?,
-            inputs: own.inputs.matrix("loop.cost.inputs", "inputs", plant.inputs.len())?,
-        });
+        return own.cost(["loop.cost.states", "loop.cost.outputs", "loop.cost.inputs"], plant);
     }
     if let Some(weights) = &design.weights {
         return Ok(weights.clone());
@@ -227,7 +196,11 @@ fn padded(weights: &CostWeights, states: usize, all: usize) -> Matrix {
     form
 }
 
-fn timing(table: &LinearLoopTable, plant: &LinearPlant) -> Result<StatedTiming, Fault> {
+fn timing(
+    table: &LinearLoopTable,
+    plant: &LinearPlant,
+    period: f64,
+) -> Result<StatedTiming, Fault> {
     let jitter = match &*table.law {
         "gaussian" => Jitter::Gaussian(table.jitter.0),
         "uniform" => Jitter::Uniform(table.jitter.0),
@@ -275,7 +248,7 @@ fn timing(table: &LinearLoopTable, plant: &LinearPlant) -> Result<StatedTiming, 
         let wrong =
             |why: String| Fault::new("loop.time-stamps", format!("cannot use `{path}`: {why}"));
         let stamps = jitter_measurement::read_time_stamps(Path::new(path)).map_err(wrong)?;
-        replay(&mut timing, &stamps, table.period.0).map_err(|error| wrong(error.to_string()))?;
+        replay(&mut timing, &stamps, period).map_err(|error| wrong(error.to_string()))?;
     }
     Ok(timing)
 }

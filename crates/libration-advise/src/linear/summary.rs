@@ -1,7 +1,7 @@
 //! The answer on a loop around a linear plant, in sentences.
 
 use super::LinearAdvice;
-use crate::summary::{capitalise, describe_window, noun, percent};
+use crate::summary::{beside_ideal, capitalise, describe_window, noun, percent};
 
 impl LinearAdvice {
     /// The answer in a few sentences. A failure because of missed deadlines comes first.
@@ -69,8 +69,7 @@ impl LinearAdvice {
             );
         }
         if let Some(increase) = self.cost_increase.filter(|_| self.margin_tried_up_to.is_some()) {
-            text +=
-                &format!(" Its cost is {:.3} % above that of the ideal loop.", 100.0 * increase);
+            text += &format!(" Its cost is {}.", beside_ideal(increase));
         }
         text
     }

@@ -22,9 +22,9 @@ pub struct Mode {
     pub time_constant: Option<f64>,
     /// The states that move most, with their sizes relative to the largest.
     pub states: Vec<(String, f64)>,
-    /// Whether an input reaches the mode.
+    /// Whether inputs reach all motions with this eigenvalue.
     pub controllable: bool,
-    /// Whether an output shows the mode.
+    /// Whether outputs show all motions with this eigenvalue.
     pub observable: bool,
     /// The smallest singular value of `[λ − A, B]` relative to the size of `A`.
     pub controllability: f64,

@@ -27,15 +27,9 @@ pub(crate) struct AdviseArgs {
     /// Gains of the feedback −KP·q − KD·v [default: no loop; in s⁻² and s⁻¹, with --set m= in N/m and N·s/m]
     #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
     feedback: Option<Feedback>,
-    /// Sample period of the loop in s
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        value_parser = number,
-        default_value = "0.01",
-        allow_hyphen_values = true
-    )]
-    pub(super) period: f64,
+    /// Sample period of the loop in s [default: 0.01, or that of a sampled plant]
+    #[arg(long, value_name = "SECONDS", value_parser = number, allow_hyphen_values = true)]
+    pub(super) period: Option<f64>,
     /// Latency of a command: 0.015 (in s) or 1.5steps (of --period); with --plant also one for each input, e.g. 0.003,0.01
     /// [default: 0]
     #[arg(
@@ -184,7 +178,7 @@ impl AdviseArgs {
         }
         let control = self.feedback.map(|gains| Control {
             law: Law::Pd(gains),
-            period: self.period,
+            period: self.period.unwrap_or(0.01),
             latency: 0.0,
             jitter: Jitter::Gaussian(0.0),
             skew: 0.0,

@@ -68,10 +68,10 @@ impl AdviseArgs {
                 ));
             }
         };
-        let mut looped = LinearLoopTable { period: Number(self.period), ..Default::default() };
-        self.set_timing(&mut looped);
+        let looped = LinearLoopTable { period: self.period.map(Number), ..Default::default() };
         let mut file = RequestFile { controller: Some(controller), looped, ..Default::default() };
         file.system.linear = plant;
+        self.set_timing(&mut file);
         if let Some((name, most)) = self.linear_tolerance()? {
             file.tolerance.insert(name.to_owned(), Number(most));
         }
@@ -107,9 +107,10 @@ impl AdviseArgs {
         }
     }
 
-    /// Puts the timing options in place of those of a table.
-    pub(crate) fn set_timing(&self, looped: &mut LinearLoopTable) {
-        let period = looped.period.0;
+    /// Puts the timing options in place of those of a file.
+    pub(crate) fn set_timing(&self, file: &mut RequestFile) {
+        let period = file.period();
+        let looped = &mut file.looped;
         let channels = |latencies: &[LatencyOption]| match latencies {
             [one] => Channels::All(Number(seconds(*one, period))),
             all => Channels::Each(all.iter().map(|one| Number(seconds(*one, period))).collect()),
@@ -156,7 +157,12 @@ pub(super) fn lqr(text: &str) -> Result<WeightsTable, String> {
         "expected the weights of all states, a slash, and those of all inputs, e.g. 10,1/0.1";
     let (states, inputs) = text.split_once('/').ok_or(rule)?;
     let states = Weights::Diagonal(numbers(states).ok_or(rule)?);
-    Ok(WeightsTable { states, inputs: Weights::Diagonal(numbers(inputs).ok_or(rule)?) })
+    let states = Some(states);
+    Ok(WeightsTable {
+        states,
+        outputs: None,
+        inputs: Weights::Diagonal(numbers(inputs).ok_or(rule)?),
+    })
 }
 
 pub(super) fn rows(text: &str) -> Result<Gain, String> {

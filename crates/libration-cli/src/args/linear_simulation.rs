@@ -42,7 +42,7 @@ pub(crate) struct LinearSimulationArgs {
     /// Latency of the measurements of a linear plant: of all, or of each [default: 0]
     #[arg(long, value_name = "TIME", value_parser = latency, value_delimiter = ',', requires = LINEAR, conflicts_with = "system", allow_hyphen_values = true)]
     output_latency: Vec<LatencyOption>,
-    /// Probability that the commands of a period are lost (0 to below 1), in a loop around a linear plant
+    /// Probability that the commands that arrive in a period are lost (0 to below 1), in a loop around a linear plant
     #[arg(long, value_name = "P", value_parser = number, requires = LINEAR, conflicts_with = "system", allow_hyphen_values = true)]
     loss: Option<f64>,
     /// Initial states of a linear plant, separated by commas [default: zeros]
@@ -170,8 +170,7 @@ pub(super) fn loop_of_plant(
     let plant = read_plant(path).map_err(|why| {
         Failure::usage(format!("cannot use `{}` (--plant): {why}", path.display()))
     })?;
-    let default = LinearLoopTable::default();
-    let looped = LinearLoopTable { period: period.map_or(default.period, Number), ..default };
+    let looped = LinearLoopTable { period: period.map(Number), ..Default::default() };
     let mut file = RequestFile { controller, looped, ..Default::default() };
     file.system.linear = plant;
     change(&mut file);
@@ -194,8 +193,8 @@ impl TimingOptions<'_> {
         {
             file.controller = Some(LinearControllerTable::open_loop(&plant));
         }
+        let period = file.period();
         let looped = &mut file.looped;
-        let period = looped.period.0;
         if let Some(late) = self.latency {
             looped.latency = Channels::All(Number(seconds(late, period)));
         }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use libration_advise::linear::{self, ChainLink, InputMargins, LinearAdvice, LinearRequest};
-use libration_advise::{StabilityWindow, rounded};
+use libration_advise::{Budget, StabilityWindow, rounded};
 use libration_work::Work;
 
 use super::advise::{command_line, deliver};
@@ -16,7 +16,7 @@ pub(super) fn load_request(args: &AdviseArgs) -> Result<Option<LinearRequest>, F
     let request = match (&args.config, args.linear_request()) {
         (_, Some(request)) => Some(request?),
         (Some(path), None) => config_file::read(path, |text, name| {
-            let change = |file: &mut linear::RequestFile| args.set_timing(&mut file.looped);
+            let change = |file: &mut linear::RequestFile| args.set_timing(file);
             match linear::is_linear(text) {
                 true => linear::parse_changed(text, name, change).map(Some),
                 false => Ok(None),
@@ -235,12 +235,10 @@ fn budgets(advice: &LinearAdvice, text: &mut String) {
             budget.how
         );
     }
-    for budget in &advice.budgets {
-        let windows = budget.later_windows.iter().map(StabilityWindow::in_words);
-        let windows = windows.collect::<Vec<_>>().join(", ");
-        if !windows.is_empty() {
-            let _ =
-                writeln!(text, "{} alone is stable again {windows} {}", budget.name(), budget.unit);
-        }
+    let later = |budget: &Budget| {
+        StabilityWindow::sentence(&budget.name(), &budget.later_windows, budget.unit)
+    };
+    for windows in advice.budgets.iter().filter_map(later) {
+        let _ = writeln!(text, "{windows}");
     }
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::sync::atomic::AtomicBool;
 
 use libration_analyze::linear_analysis::{
-    LinearAnalysis, LinearAnalysisError, LinearRequest, SimulatedMode, StepAnalysis, analyze,
+    LinearAnalysis, LinearAnalysisError, LinearRequest, Mode, SimulatedMode, StepAnalysis, analyze,
 };
 
 use super::linear_closed_loop::closed_loop;
@@ -96,6 +96,15 @@ fn modes(analysis: &LinearAnalysis, text: &mut String) {
         "\n{:>4} {:>14} {:>12} {:>14} {:>14} {:>14}  states that move most",
         "mode", "growth/(1/s)", "damping", "nat./(rad/s)", "natural/Hz", "time const./s"
     );
+    // Rounding parts eigenvalues that repeat by its root.
+    let repeats = |i: usize| {
+        let [re, im] = analysis.modes[i].eigenvalue;
+        let near = |other: &Mode| {
+            let apart = (other.eigenvalue[0] - re).hypot(other.eigenvalue[1] - im);
+            apart <= 1e-6 * re.hypot(im)
+        };
+        analysis.modes.iter().filter(|other| near(other)).count() > 1
+    };
     for (i, mode) in analysis.modes.iter().enumerate() {
         let _ = writeln!(
             text,
@@ -107,8 +116,18 @@ fn modes(analysis: &LinearAnalysis, text: &mut String) {
             mode.natural_frequency_hz,
             known(mode.time_constant, 6),
             shape(&mode.states),
-            if mode.controllable { "" } else { "; not controllable: no input reaches it" },
-            if mode.observable { "" } else { "; not observable: no output shows it" },
+            match (mode.controllable, repeats(i)) {
+                (true, _) => "",
+                (false, false) => "; not controllable: no input reaches it",
+                (false, true) =>
+                    "; not controllable: the inputs do not reach all motions with this eigenvalue",
+            },
+            match (mode.observable, repeats(i)) {
+                (true, _) => "",
+                (false, false) => "; not observable: no output shows it",
+                (false, true) =>
+                    "; not observable: the outputs do not show all motions with this eigenvalue",
+            },
         );
     }
 }

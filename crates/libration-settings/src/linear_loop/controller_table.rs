@@ -10,6 +10,7 @@ use super::design::Design;
 use super::pid_table::{PidTable, pid};
 use super::plant_table::{Rows, matrix};
 use super::state_space_table::StateSpaceTable;
+use super::weights_table::{Weights, WeightsTable};
 use crate::{Fault, Number};
 
 /// A controller: one of the tables `[controller.…]`.
@@ -38,90 +39,21 @@ pub struct StateFeedbackTable {
     pub gain: Rows,
 }
 
-/// Weights of a regulator: a matrix, or its diagonal.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
-pub struct WeightsTable {
-    /// Of the states.
-    pub states: Weights,
-    /// Of the inputs.
-    pub inputs: Weights,
-}
-
 /// Weights of a regulator and noise of the measurements.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct LqgTable {
-    states: Weights,
+    states: Option<Weights>,
+    outputs: Option<Weights>,
     inputs: Weights,
     /// The variances of the noise of a sample.
     measurement: Weights,
 }
 
-/// A symmetric matrix, or its diagonal.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(untagged, expecting = "expected a list of numbers (the diagonal), or the rows of a matrix")]
-pub enum Weights {
-    /// The diagonal.
-    Diagonal(Vec<Number>),
-    /// All rows.
-    Matrix(Rows),
-}
-
-impl Weights {
-    /// The matrix; a diagonal has a number for each of `count` signals, which are `of`.
-    ///
-    /// # Errors
-    /// [`Fault`]: a diagonal of another length, or rows of different lengths.
-    pub fn matrix(&self, key: &'static str, of: &str, count: usize) -> Result<Matrix, Fault> {
-        match self {
-            Weights::Diagonal(entries) if entries.len() != count => {
-                let (name, given) = (key.rsplit('.').next().unwrap_or(key), entries.len());
-                let message = format!(
-                    "`{name}` has {given} numbers; expected {count}, one for each of the {of}"
-                );
-                Err(Fault::new(key, message))
-            }
-            Weights::Diagonal(entries) => {
-                Ok(Matrix::diagonal(&entries.iter().map(|x| x.0).collect::<Vec<_>>()))
-            }
-            Weights::Matrix(rows) => matrix(key, rows),
-        }
-    }
-}
-
-impl Weights {
-    /// The variances of `count` noises that are independent of each other, one of each of the signals, which are `of`.
-    ///
-    /// # Errors
-    /// [`Fault`]: as for [`Weights::matrix`], entries beside the diagonal, or a negative variance.
-    pub fn variances(&self, key: &'static str, of: &str, count: usize) -> Result<Vec<f64>, Fault> {
-        let covariance = self.matrix(key, of, count)?;
-        let name = key.rsplit('.').next().unwrap_or(key);
-        if [covariance.rows(), covariance.columns()] != [count; 2] {
-            let (rows, columns) = (covariance.rows(), covariance.columns());
-            let message = format!("`{name}` is {rows} × {columns}; expected {count} × {count}");
-            return Err(Fault::new(key, message));
-        }
-        let variances: Vec<f64> = (0..count).map(|j| covariance[(j, j)]).collect();
-        if covariance != Matrix::diagonal(&variances) {
-            let message = format!(
-                "`{name}` has entries beside its diagonal; expected variances of independent noises, one for each of the {of}"
-            );
-            return Err(Fault::new(key, message));
-        }
-        match variances.iter().position(|x| !(x.is_finite() && *x >= 0.0)) {
-            None => Ok(variances),
-            Some(j) => {
-                let message = format!(
-                    "`{name}` is {:?}; expected a finite variance of at least 0",
-                    variances[j]
-                );
-                Err(Fault::at(key, j, message))
-            }
-        }
-    }
-}
+const LQR_KEYS: [&str; 3] =
+    ["controller.lqr.states", "controller.lqr.outputs", "controller.lqr.inputs"];
+const LQG_KEYS: [&str; 3] =
+    ["controller.lqg.states", "controller.lqg.outputs", "controller.lqg.inputs"];
 
 impl LinearControllerTable {
     /// No controller: measurements without effect, and commands of zero.
@@ -150,20 +82,16 @@ impl LinearControllerTable {
                 }
                 Ok(state_feedback(plant, gain, None, "state feedback"))
             }
-            LinearControllerTable::Lqr(WeightsTable { states, inputs }) => {
-                let weights = CostWeights {
-                    states: states.matrix("controller.lqr.states", "states", n)?,
-                    inputs: inputs.matrix("controller.lqr.inputs", "inputs", m)?,
-                };
+            LinearControllerTable::Lqr(weights) => {
+                let weights = weights.cost(LQR_KEYS, plant)?;
                 let solution = plant.design_regulator(&weights, period);
                 let gain = solution.map_err(|error| design_fault("controller.lqr", &error))?.gain;
                 Ok(state_feedback(plant, gain, Some(weights), "LQR, designed"))
             }
-            LinearControllerTable::Lqg(LqgTable { states, inputs, measurement }) => {
-                let weights = CostWeights {
-                    states: states.matrix("controller.lqg.states", "states", n)?,
-                    inputs: inputs.matrix("controller.lqg.inputs", "inputs", m)?,
-                };
+            LinearControllerTable::Lqg(LqgTable { states, outputs, inputs, measurement }) => {
+                let [states, outputs] = [states.clone(), outputs.clone()];
+                let weights = WeightsTable { states, outputs, inputs: inputs.clone() };
+                let weights = weights.cost(LQG_KEYS, plant)?;
                 let variances =
                     measurement.variances("controller.lqg.measurement", "outputs", p)?;
                 let noise = Matrix::diagonal(&variances);

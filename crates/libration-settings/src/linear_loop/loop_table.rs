@@ -2,15 +2,15 @@
 
 use serde::Deserialize;
 
-use super::controller_table::{Weights, WeightsTable};
+use super::weights_table::{Weights, WeightsTable};
 use crate::{Fault, Number};
 
 /// The table `[loop]` of a loop around a linear plant.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct LinearLoopTable {
-    /// The sampling period, in s.
-    pub period: Number,
+    /// The sampling period, in s (default: that of a sampled plant, or 0.01).
+    pub period: Option<Number>,
     /// The latency of all inputs, or of each, in s.
     pub latency: Channels,
     /// The latency of all outputs, or of each, in s.
@@ -21,7 +21,7 @@ pub struct LinearLoopTable {
     pub law: String,
     /// The relative error of the period: positive for a slow clock.
     pub skew: Number,
-    /// The probability that the commands of a period are lost.
+    /// The probability that the commands that arrive in a period are lost.
     pub loss: Number,
     /// What acts where a command is missing: `hold`, the command that acts already, or `zero`.
     pub missing: String,
@@ -54,7 +54,7 @@ pub enum Channels {
 impl Default for LinearLoopTable {
     fn default() -> Self {
         LinearLoopTable {
-            period: Number(0.01),
+            period: None,
             latency: Channels::All(Number(0.0)),
             output_latency: Channels::All(Number(0.0)),
             jitter: Number(0.0),

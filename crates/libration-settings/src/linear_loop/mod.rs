@@ -12,13 +12,15 @@ mod plant_file;
 mod plant_keys;
 mod plant_table;
 mod state_space_table;
+mod weights_table;
 
 pub use cascade_table::{CascadeControllerTable, CascadePidTable, CascadeTable};
 pub use catalogue_plant::{Coordinates, OperatingPoint};
-pub use controller_table::{LinearControllerTable, StateFeedbackTable, Weights, WeightsTable};
+pub use controller_table::{LinearControllerTable, StateFeedbackTable};
 pub use design::{Cascaded, Design};
 pub use loop_table::{Channels, LinearLoopTable};
 pub use part::{Part, PartKind};
 pub use part_table::PartTable;
 pub use plant_file::{parse as parse_plant, read as read_plant};
 pub use plant_table::{PlantTable, Polynomials, Rows};
+pub use weights_table::{Weights, WeightsTable};
