@@ -133,7 +133,10 @@ impl LinearPlant {
         weights.check(self)?;
         let problem = self.regulator_problem(weights, period);
         let hidden = self.unreachable_mode();
-        let solution = problem.stabilising(hidden.is_some());
+        // Doubling loses digits where the cost-to-go has entries of very different sizes; Newton's iteration restores them.
+        let solution = problem
+            .stabilising(hidden.is_some())
+            .map(|solution| problem.improve(solution.gain.clone()).unwrap_or(solution));
         solution.ok_or_else(|| match (hidden, self.mode_without_cost(&weights.states)) {
             (Some(mode), _) => DesignError::Unreachable(mode),
             (None, Some(mode)) => DesignError::Unseen(mode),

@@ -2,6 +2,7 @@
 
 use num_complex::Complex64;
 
+use crate::plant_modes::size_of;
 use crate::{Matrix, solve};
 
 /// The right eigenvector of a simple eigenvalue, of largest entry 1; none if the matrix has an entry that is infinite or NaN.
@@ -9,8 +10,7 @@ use crate::{Matrix, solve};
 /// By inverse iteration.
 pub fn eigenvector(matrix: &Matrix, value: Complex64) -> Option<Vec<Complex64>> {
     let n = matrix.rows();
-    // Every vector is one of a zero matrix.
-    let size = if matrix.largest() == 0.0 { 1.0 } else { matrix.row_sum_norm() };
+    let size = size_of(matrix);
     // Off the eigenvalue by a rounding, so that the equations have a solution.
     let near = value + Complex64::new(1.0, 1.0) * (size * 4.0 * f64::EPSILON);
     let mut vector: Vec<Complex64> =

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use crate::plant_modes::{NOTHING, smallest_singular};
+use crate::plant_modes::{NOTHING, size_of, smallest_singular};
 use crate::{LinearPlant, Matrix, PlantMode};
 
 /// A mode of a plant with its eigenvalue, and how well inputs reach it and outputs show it.
@@ -55,7 +55,7 @@ impl LinearPlant {
     ///
     /// Controllability is that of the test of Popov, Belevitch and Hautus, as for [`LinearPlant::unreachable_mode`].
     pub fn mode_details(&self) -> Vec<ModeDetails> {
-        let size = self.a.row_sum_norm().max(f64::MIN_POSITIVE);
+        let size = size_of(&self.a);
         let least = |a: &Matrix, b: &Matrix, value| {
             smallest_singular(a, b, value).map_or(0.0, |(least, _)| least / size)
         };
@@ -92,5 +92,25 @@ mod tests {
         assert!((pair.damping_ratio().unwrap() - 0.2).abs() < 1e-15, "{pair:?}");
         assert!((pair.time_constant().unwrap() - 1.0).abs() < 1e-15, "{pair:?}");
         assert_eq!((lone.damping_ratio(), lone.time_constant()), (Some(1.0), Some(1.0 / 3.0)));
+    }
+
+    #[test]
+    fn a_plant_that_does_not_move_by_itself_has_modes_that_inputs_reach() {
+        let of = |inputs: usize| {
+            let b = Matrix::from_fn(2, inputs, |i, k| f64::from(u8::from(i == k)));
+            let plant = LinearPlant::new(
+                Matrix::zeros(2, 2),
+                b,
+                Matrix::identity(2),
+                Matrix::zeros(2, inputs),
+            );
+            plant.unwrap().mode_details()
+        };
+        let [one, two] = &of(2)[..] else { panic!("two modes") };
+        assert!(one.is_controllable() && one.is_observable() && two.is_controllable(), "{one:?}");
+        assert_eq!((one.mode.states[0].0.as_str(), two.mode.states[0].0.as_str()), ("x1", "x2"));
+        assert_eq!((one.value.norm(), one.damping_ratio()), (0.0, None));
+        // Of two integrators one input reaches one.
+        assert!(of(1).iter().all(|mode| !mode.is_controllable()));
     }
 }

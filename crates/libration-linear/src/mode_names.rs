@@ -5,6 +5,7 @@ use core::ops::Range;
 use num_complex::Complex64;
 
 use crate::hessenberg::HessenbergForm;
+use crate::plant_modes::size_of;
 use crate::{LinearPlant, Matrix, PlantMode, solve};
 
 /// Sine of the angle between eigenvectors below which they are one, of a repeated eigenvalue. Rounding parts those by its root.
@@ -66,7 +67,7 @@ impl LinearPlant {
     /// Up to `count` independent eigenvectors of an eigenvalue, each the part of one state that lies in its eigenspace.
     fn single_motions(&self, value: Complex64, count: usize) -> Vec<Vec<Complex64>> {
         let n = self.a.rows();
-        let size = self.a.row_sum_norm().max(f64::MIN_POSITIVE);
+        let size = size_of(&self.a);
         let near = value + Complex64::new(1.0, 1.0) * (size * NEAR);
         let form = HessenbergForm::new(&self.a);
         let unit = |i: usize| (0..n).map(|j| f64::from(u8::from(i == j))).collect::<Vec<f64>>();
@@ -142,7 +143,7 @@ fn further_vector(
     before: &[Vec<Complex64>],
 ) -> Option<Vec<Complex64>> {
     let n = a.rows();
-    let size = a.row_sum_norm().max(f64::MIN_POSITIVE);
+    let size = size_of(a);
     // Beside the eigenvalue by the root of a rounding or more, so that the part along the others, larger by this, leaves digits.
     let near = value + Complex64::new(1.0, 1.0) * (size * NEAR);
     let entry = |i: usize, j: usize| a[(i, j)] - if i == j { near } else { Complex64::ZERO };

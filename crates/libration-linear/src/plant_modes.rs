@@ -70,7 +70,7 @@ impl LinearPlant {
     /// By the test of Popov, Belevitch and Hautus: `[λ − A, B]` loses rank.
     fn hidden_mode(&self, a: &Matrix, b: &Matrix) -> Option<PlantMode> {
         let values = eigenvalues(a)?;
-        let size = a.row_sum_norm().max(f64::MIN_POSITIVE);
+        let size = size_of(a);
         let grows = |value: &&Complex64| match self.sampling_period {
             None => value.re >= -NEUTRAL * size,
             Some(_) => value.norm() >= 1.0 - NEUTRAL,
@@ -100,6 +100,11 @@ impl LinearPlant {
     }
 }
 
+/// The size of a state matrix; 1 of zero, which has a size in no unit.
+pub(crate) fn size_of(a: &Matrix) -> f64 {
+    if a.largest() == 0.0 { 1.0 } else { a.row_sum_norm() }
+}
+
 /// The signals that move most in a mode of this shape.
 pub(crate) fn largest(signals: &[Signal], shape: &[Complex64]) -> Vec<(String, f64)> {
     let most = shape.iter().map(|x| x.norm()).fold(0.0, f64::max);
@@ -121,7 +126,7 @@ pub(crate) fn smallest_singular(
     value: Complex64,
 ) -> Option<(f64, Vec<Complex64>)> {
     let n = a.rows();
-    let size = a.row_sum_norm().max(f64::MIN_POSITIVE);
+    let size = size_of(a);
     let shifted = |i: usize, j: usize| {
         let own = if i == j { value } else { Complex64::ZERO };
         own - a[(i, j)]
