@@ -225,6 +225,22 @@ def test_a_sampled_plant_keeps_its_step():
         advise(system, StateFeedback([[20.0, 5.0]]), latency=0.015)
 
 
+def test_weights_of_outputs_add_to_those_of_the_states_and_a_sampled_plant_needs_no_period():
+    A, B, C = [[0.0, 1.0], [-4.0, -0.5]], [[0.0], [1.0]], [[2.0, 1.0]]
+    plant = libration.LinearPlant(A, B, C)
+    outputs = advise(plant, LQR(None, [0.1], outputs=[3.0]), period=0.05)
+    states = advise(plant, LQR([[13.0, 6.0], [6.0, 3.0]], [0.1]), period=0.05)
+    both = advise(plant, LQR([1.0, 0.0], [0.1], outputs=[3.0]), period=0.05, cost_weights={"outputs": [3.0], "inputs": [0.1]})
+    assert both["gain"] == states["gain"] and both["cost"] == outputs["cost"]
+    with pytest.raises(ValueError, match="no weights of `states` or `outputs`"):
+        advise(plant, LQR(None, [0.1]))
+    with pytest.raises(ValueError, match="'commands'.*expected 'states', 'outputs' and 'inputs'"):
+        advise(plant, StateFeedback([[1.0, 1.0]]), cost_weights={"commands": [1.0]})
+    sampled = libration.LinearPlant([[1.0, 0.1], [0.0, 0.95]], [[0.005], [0.1]], dt=0.1)
+    advice = advise(sampled, LQR([1.0, 1.0], [1.0]), latency=libration.Steps(2))
+    assert advice["period"] == 0.1 and advice["budgets"][0]["stated"] == 0.2
+
+
 def test_missed_deadlines_are_judged_as_by_their_matrices():
     plant = LinearPlant([[0.0, 1.0], [9.0, 0.0]], [0.0, 1.0])
     gain, h = np.array([[14.0, 4.5]]), 0.1

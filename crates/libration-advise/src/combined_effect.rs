@@ -111,6 +111,8 @@ impl TimedLoop {
         budgets: &[Budget],
     ) -> Result<(Option<f64>, f64), LinearLoopError> {
         const MOST: f64 = 16.0;
+        /// Part of a period between two trials of a plant with a direct path.
+        const DIRECT: f64 = 0.04;
         // Slightly beyond each limit.
         let ends = budgets.iter().filter_map(|budget| budget.used.filter(|used| *used > 0.0));
         let ends: Vec<f64> = ends.map(|used| (1.0 + 1e-6) / used).collect();
@@ -141,6 +143,11 @@ impl TimedLoop {
         let longest = input_latency.iter().chain(output_latency).copied().fold(0.0, f64::max);
         let turn = (longest * self.rate()).max(f64::MIN_POSITIVE);
         let step = (0.25 / turn).max((MOST - 1.0) / 128.0);
+        // A direct path shows commands that take over at whole periods: windows beside these are narrow, and trials cheap.
+        let step = match self.has_direct_path() && self.stated()?.repeats() {
+            true => step.min((DIRECT * self.period() / longest).max((MOST - 1.0) / 1500.0)),
+            false => step,
+        };
         // A probability of a loss is below 1.
         let most = match self.timing.loss {
             0.0 => MOST,

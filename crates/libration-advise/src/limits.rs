@@ -117,7 +117,7 @@ impl TimedLoop {
             Imperfection::Jitter | Imperfection::Loss => even(TRIED).collect(),
             // Quarters of a period, then whole ones.
             Imperfection::Latency | Imperfection::OutputLatency => {
-                let direct = self.linear.plant().d.largest() > 0.0 && !self.is_sampled();
+                let direct = self.has_direct_path();
                 let step = |at: f64| match (self.is_sampled(), direct) {
                     (true, _) => 1.0,
                     // A direct path shows commands that take over at whole periods: windows beside these may be narrow.
@@ -132,7 +132,7 @@ impl TimedLoop {
             (true, seconds) => self.latency(seconds / self.period())?.steps(),
             (false, size) => size.abs(),
         };
-        if late && self.linear.plant().d.largest() > 0.0 && !self.is_sampled() {
+        if late && self.has_direct_path() {
             let whole = (1..=WHOLE).map(f64::from).filter(|whole| *whole + 1e-9 < largest);
             sizes.extend(whole.flat_map(|whole| [whole - 1e-9, whole, whole + 1e-9]));
         }

@@ -181,6 +181,11 @@ impl TimedLoop {
         self.linear.plant().sampling_period.is_some()
     }
 
+    /// Whether an output shows commands at once, between samples as well.
+    pub(super) fn has_direct_path(&self) -> bool {
+        self.linear.plant().d.largest() > 0.0 && !self.is_sampled()
+    }
+
     /// The latency of `periods` periods; of a sampled plant that of the whole ones.
     pub(super) fn latency(&self, periods: f64) -> Result<Latency, LinearLoopError> {
         let exact = self.exact_latency(periods)?;

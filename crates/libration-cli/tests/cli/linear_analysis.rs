@@ -188,3 +188,23 @@ fn options_without_sense_are_refused_with_what_is_expected() {
         refused(libration(&[&words[..], &option].concat()), "cannot be used with");
     }
 }
+
+#[test]
+fn plants_without_motion_and_equal_subsystems_have_modes() {
+    let integrator = json(analyze("a = [[0]]\nb = [[1]]\n", "--dt 0.1 --json"));
+    let mode = &integrator["modes"][0];
+    assert_eq!(
+        (&mode["growth_rate"], &mode["controllable"]),
+        (&Value::from(0.0), &Value::from(true))
+    );
+    let joints = "mass = [[1, 0], [0, 1]]\nstiffness = [[100, 0], [0, 100]]\nb = [[1], [1]]\n";
+    analyze(joints, "")
+        .success()
+        .stdout(predicate::str::contains(
+            "the inputs do not reach all motions with this eigenvalue",
+        ))
+        .stdout(predicate::str::contains("no input reaches it").not());
+    let modes = json(analyze(joints, "--json"));
+    let first = |i: usize| modes["modes"][i]["states"][0][0].as_str().unwrap().to_owned();
+    assert_ne!(first(0), first(1));
+}

@@ -21,6 +21,7 @@ mod linear_errors;
 mod linear_filters;
 mod linear_redesign;
 mod linear_simulation;
+mod linear_weights;
 #[cfg(unix)]
 mod long_files;
 #[cfg(target_os = "linux")]
