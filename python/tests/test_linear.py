@@ -231,7 +231,9 @@ def test_weights_of_outputs_add_to_those_of_the_states_and_a_sampled_plant_needs
     outputs = advise(plant, LQR(None, [0.1], outputs=[3.0]), period=0.05)
     states = advise(plant, LQR([[13.0, 6.0], [6.0, 3.0]], [0.1]), period=0.05)
     both = advise(plant, LQR([1.0, 0.0], [0.1], outputs=[3.0]), period=0.05, cost_weights={"outputs": [3.0], "inputs": [0.1]})
-    assert both["gain"] == states["gain"] and both["cost"] == outputs["cost"]
+    assert both["gain"] == states["gain"] != outputs["gain"]
+    weights = ([[12.0, 6.0], [6.0, 3.0]], [0.1])
+    assert both["cost"] == advise(plant, LQR([1.0, 0.0], [0.1], outputs=[3.0]), period=0.05, cost_weights=weights)["cost"]
     with pytest.raises(ValueError, match="no weights of `states` or `outputs`"):
         advise(plant, LQR(None, [0.1]))
     with pytest.raises(ValueError, match="'commands'.*expected 'states', 'outputs' and 'inputs'"):
