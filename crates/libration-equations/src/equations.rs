@@ -1,0 +1,127 @@
+//! Systems of equations.
+
+use super::program::{Program, ValueId};
+use super::program_builder::ProgramBuilder;
+use super::resolver::Resolver;
+use super::{Definitions, EquationError};
+
+/// A system `q̈ = a(q, v, u)` by its equations.
+///
+/// A state of first order is the velocity of a coordinate that nothing depends on, and its rate the acceleration. Time, where an
+/// equation needs it, is the last coordinate, with velocity 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Equations {
+    degrees: Vec<Degree>,
+    inputs: Vec<String>,
+    /// From positions, velocities and inputs to accelerations.
+    accelerations: Program,
+    /// From positions, velocities and inputs.
+    energy: Option<Program>,
+}
+
+/// A degree of freedom.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Degree {
+    /// A coordinate with an acceleration.
+    Coordinate(String),
+    /// A state of first order.
+    State(String),
+    /// Time.
+    Time,
+}
+
+impl Equations {
+    /// The system of these definitions.
+    ///
+    /// # Errors
+    /// [`EquationError`]: the first definition that is wrong.
+    pub fn new(definitions: &Definitions) -> Result<Self, EquationError> {
+        let Definitions { coordinates, accelerations, rates, parts, parameters, inputs, energy } =
+            definitions;
+        definitions.check()?;
+        let mut degrees: Vec<Degree> =
+            coordinates.iter().cloned().map(Degree::Coordinate).collect();
+        degrees.extend(rates.iter().map(|(name, _)| Degree::State(name.clone())));
+        if definitions.mention("t") {
+            degrees.push(Degree::Time);
+        }
+        let mut builder = ProgramBuilder::default();
+        let positions: Vec<ValueId> = degrees.iter().map(|_| builder.input()).collect();
+        let velocities: Vec<ValueId> = degrees.iter().map(|_| builder.input()).collect();
+        let commands: Vec<ValueId> = inputs.iter().map(|_| builder.input()).collect();
+        let mut resolver = Resolver::new(builder);
+        let pi = resolver.builder.constant(core::f64::consts::PI);
+        resolver.define("pi", 0, pi);
+        for ((degree, &position), &velocity) in degrees.iter().zip(&positions).zip(&velocities) {
+            match degree {
+                Degree::Coordinate(name) => {
+                    resolver.define(name, 0, position);
+                    resolver.define(name, 1, velocity);
+                }
+                Degree::State(name) => resolver.define(name, 0, velocity),
+                Degree::Time => resolver.define("t", 0, position),
+            }
+        }
+        for (name, value) in parameters {
+            let value = resolver.builder.constant(*value);
+            resolver.define(name, 0, value);
+        }
+        for (name, command) in inputs.iter().zip(commands) {
+            resolver.define(name, 0, command);
+        }
+        for (table, primes, texts) in
+            [("let", 0, parts), ("acceleration", 2, accelerations), ("rate", 1, rates)]
+        {
+            for (name, text) in texts {
+                resolver.define_expression(name, primes, format!("{table}.{name}"), text)?;
+            }
+        }
+        let mut outputs = Vec::with_capacity(degrees.len());
+        for degree in &degrees {
+            outputs.push(match degree {
+                Degree::Coordinate(name) => {
+                    resolver.resolve(name, 2, (&format!("acceleration.{name}"), None))?
+                }
+                Degree::State(name) => {
+                    resolver.resolve(name, 1, (&format!("rate.{name}"), None))?
+                }
+                Degree::Time => resolver.builder.constant(0.0),
+            });
+        }
+        // A part that nothing needs must be right, too.
+        for (name, _) in parts {
+            resolver.resolve(name, 0, (&format!("let.{name}"), None))?;
+        }
+        let energy = energy.as_ref().map(|text| resolver.value_of("energy", text)).transpose()?;
+        let builder = resolver.builder;
+        let energy = energy.map(|energy| builder.clone().finish(&[energy]));
+        let accelerations = builder.finish(&outputs);
+        Ok(Equations { degrees, inputs: inputs.clone(), accelerations, energy })
+    }
+
+    /// The degrees of freedom, in the order of the state.
+    pub fn degrees(&self) -> &[Degree] {
+        &self.degrees
+    }
+
+    /// The names of the inputs.
+    pub fn inputs(&self) -> &[String] {
+        &self.inputs
+    }
+
+    /// The program from positions, velocities and inputs to accelerations.
+    pub fn accelerations(&self) -> &Program {
+        &self.accelerations
+    }
+
+    /// The program from positions, velocities and inputs to the energy, if there is one.
+    pub fn energy(&self) -> Option<&Program> {
+        self.energy.as_ref()
+    }
+
+    /// Whether no acceleration depends on a velocity.
+    pub fn is_positional(&self) -> bool {
+        let d = self.degrees.len();
+        !self.accelerations.inputs_in_use().any(|input| (d..2 * d).contains(&input))
+    }
+}

@@ -1,0 +1,26 @@
+//! Systems from text: expressions, and straight-line programs that evaluate them on any number type.
+//!
+//! This crate does no input or output, reads no clock and prints nothing.
+
+mod definitions;
+mod equation_error;
+mod equations;
+mod error;
+mod expression;
+mod function;
+mod parser;
+mod program;
+mod program_builder;
+mod resolver;
+mod step_program;
+mod step_trace;
+
+pub use definitions::{Definitions, MAX_DEFINITIONS, MAX_DEGREES};
+pub use equation_error::{EquationError, EquationErrorKind};
+pub use equations::{Degree, Equations};
+pub use error::{ExpressionError, ExpressionErrorKind};
+pub use expression::Expression;
+pub use function::Function;
+pub use parser::MAX_LENGTH;
+pub use program::{Evaluation, Program};
+pub use step_program::StepProgram;

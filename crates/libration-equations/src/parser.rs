@@ -1,0 +1,262 @@
+//! The grammar of expressions.
+
+use core::ops::Range;
+
+use winnow::ascii::{digit0, digit1};
+use winnow::combinator::{
+    Infix, alt, dispatch, empty, expression, fail, opt, preceded, repeat, separated, terminated,
+};
+use winnow::error::{ErrMode, ParserError};
+use winnow::prelude::*;
+use winnow::stream::{LocatingSlice, Location, Stateful, Stream};
+use winnow::token::{any, one_of, take_while};
+
+use super::expression::{Comparison, Expression, Node, NodeId, NodeKind, Operator};
+use super::{ExpressionError, ExpressionErrorKind, Function};
+
+/// The most bytes of an expression.
+pub const MAX_LENGTH: usize = 65_536;
+
+/// The most brackets, functions and powers within each other.
+const MAX_DEPTH: usize = 100;
+
+type Input<'a> = Stateful<LocatingSlice<&'a str>, Tree>;
+
+/// What is parsed so far.
+#[derive(Debug, Default)]
+struct Tree {
+    nodes: Vec<Node>,
+    depth: usize,
+}
+
+/// An error; none where an alternative does not apply.
+#[derive(Debug)]
+struct Failure(Option<ExpressionError>);
+
+impl<'a> ParserError<Input<'a>> for Failure {
+    type Inner = Self;
+
+    fn from_input(_: &Input<'a>) -> Self {
+        Failure(None)
+    }
+
+    fn into_inner(self) -> Result<Self::Inner, Self> {
+        Ok(self)
+    }
+}
+
+type Parsed<T> = Result<T, ErrMode<Failure>>;
+
+impl Expression {
+    /// Parses an expression.
+    ///
+    /// Operators are `+ - * / ^`, in the usual order; `^` binds to the right and stronger than a sign. Names have letters, digits and
+    /// `_`, and up to two primes.
+    ///
+    /// # Errors
+    /// [`ExpressionError`]: the text is no expression, or exceeds a limit.
+    pub fn parse(text: &str) -> Result<Self, ExpressionError> {
+        if text.len() > MAX_LENGTH {
+            let kind = ExpressionErrorKind::Length(text.len());
+            return Err(ExpressionError { span: 0..text.len(), kind });
+        }
+        let mut input = Input { input: LocatingSlice::new(text), state: Tree::default() };
+        let parsed = terminated(sum, space).parse_next(&mut input);
+        let parsed = parsed.and_then(|_| match input.peek_token() {
+            None => Ok(()),
+            Some(_) => Err(unexpected(&input, "an operator or the end")),
+        });
+        match parsed {
+            Ok(()) => Ok(Expression { nodes: input.state.nodes }),
+            Err(ErrMode::Cut(Failure(Some(error)))) => Err(error),
+            // No alternative applies: every operand says so itself.
+            Err(_) => {
+                let place = input.current_token_start();
+                Err(ExpressionError { span: place..place, kind: found(&input, OPERAND) })
+            }
+        }
+    }
+}
+
+/// The texts that begin an operand.
+const OPERAND: &str = "a number, a name, a function or `(`";
+
+/// A sum of products.
+fn sum(input: &mut Input<'_>) -> Parsed<NodeId> {
+    let operator = dispatch! {any;
+        '+' => empty.value(Infix::Left(1, |i: &mut Input<'_>, a, b| operation(i, Operator::Sum, a, b))),
+        '-' => empty.value(Infix::Left(1, |i: &mut Input<'_>, a, b| operation(i, Operator::Difference, a, b))),
+        '*' => empty.value(Infix::Left(2, |i: &mut Input<'_>, a, b| operation(i, Operator::Product, a, b))),
+        '/' => empty.value(Infix::Left(2, |i: &mut Input<'_>, a, b| operation(i, Operator::Quotient, a, b))),
+        _ => fail,
+    };
+    expression(operand).infix(preceded(space, operator)).parse_next(input)
+}
+
+/// Signs, and what they belong to: a power.
+fn operand(input: &mut Input<'_>) -> Parsed<NodeId> {
+    space(input)?;
+    let begin = input.current_token_start();
+    let signs: Vec<char> = repeat(0.., terminated(one_of(['-', '+']), space)).parse_next(input)?;
+    let mut node = deeper(input, power)?;
+    if signs.iter().filter(|sign| **sign == '-').count() % 2 == 1 {
+        node = push(input, begin, NodeKind::Negative(node));
+    }
+    Ok(node)
+}
+
+fn power(input: &mut Input<'_>) -> Parsed<NodeId> {
+    let base = atom(input)?;
+    match opt(preceded(space, '^')).parse_next(input)? {
+        None => Ok(base),
+        Some(_) => {
+            let exponent = operand(input)?;
+            operation(input, Operator::Power, base, exponent)
+        }
+    }
+}
+
+/// A number, a name, a call or an expression in brackets.
+fn atom(input: &mut Input<'_>) -> Parsed<NodeId> {
+    let begin = input.current_token_start();
+    match input.peek_token() {
+        Some('(') => {
+            any.void().parse_next(input)?;
+            let inside = sum(input)?;
+            expect(input, ')', "an operator or `)`")?;
+            Ok(inside)
+        }
+        Some(c) if c.is_ascii_digit() || c == '.' => number(input),
+        Some(c) if c.is_ascii_alphabetic() || c == '_' => {
+            let name: &str = take_while(1.., is_name).parse_next(input)?;
+            let primes: usize = take_while(0.., '\'').map(str::len).parse_next(input)?;
+            if primes > 2 {
+                let kind = ExpressionErrorKind::Primes { name: name.into(), primes };
+                return Err(failure(begin..input.current_token_start(), kind));
+            }
+            let is_call = primes == 0 && opt(preceded(space, '(')).parse_next(input)?.is_some();
+            match is_call {
+                true => call(input, begin..begin + name.len(), name),
+                false => Ok(push(input, begin, NodeKind::Name { name: name.into(), primes })),
+            }
+        }
+        _ => Err(unexpected(input, OPERAND)),
+    }
+}
+
+fn is_name(c: char) -> bool {
+    c.is_ascii_alphanumeric() || c == '_'
+}
+
+fn number(input: &mut Input<'_>) -> Parsed<NodeId> {
+    let begin = input.current_token_start();
+    let text =
+        (digit0, opt(('.', digit0)), opt((one_of(['e', 'E']), opt(one_of(['-', '+'])), digit1)))
+            .take()
+            .parse_next(input)?;
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(push(input, begin, NodeKind::Number(value))),
+        Ok(_) => {
+            let span = begin..input.current_token_start();
+            Err(failure(span, ExpressionErrorKind::Number(text.into())))
+        }
+        Err(_) => {
+            let found = format!("`{text}`");
+            let kind = ExpressionErrorKind::Unexpected { found, expected: OPERAND };
+            Err(failure(begin..begin + text.len(), kind))
+        }
+    }
+}
+
+/// The arguments of a function, behind its opening bracket.
+fn call(input: &mut Input<'_>, name: Range<usize>, text: &str) -> Parsed<NodeId> {
+    if text == "if" {
+        return choice(input, name.start);
+    }
+    let Some(function) = Function::from_name(text) else {
+        return Err(failure(name, ExpressionErrorKind::UnknownFunction { name: text.into() }));
+    };
+    let arguments: Vec<NodeId> = separated(1.., sum, preceded(space, ',')).parse_next(input)?;
+    expect(input, ')', "an operator, `,` or `)`")?;
+    let (given, expected) = (arguments.len(), function.arity());
+    if given != expected {
+        let kind = ExpressionErrorKind::Arguments { name: function.name(), given, expected };
+        return Err(failure(name.start..input.current_token_start(), kind));
+    }
+    Ok(push(input, name.start, NodeKind::Call(function, arguments)))
+}
+
+/// `a < b, then, otherwise)`.
+fn choice(input: &mut Input<'_>, begin: usize) -> Parsed<NodeId> {
+    let a = sum(input)?;
+    space(input)?;
+    let comparison = alt((
+        "<=".value(Comparison::LessOrEqual),
+        ">=".value(Comparison::GreaterOrEqual),
+        '<'.value(Comparison::Less),
+        '>'.value(Comparison::Greater),
+    ));
+    let Some(comparison) = opt(comparison).parse_next(input)? else {
+        return Err(unexpected(input, "an operator or a comparison `<`, `<=`, `>`, `>=`"));
+    };
+    let b = sum(input)?;
+    expect(input, ',', "an operator or `,`")?;
+    let then = sum(input)?;
+    expect(input, ',', "an operator or `,`")?;
+    let otherwise = sum(input)?;
+    expect(input, ')', "an operator or `)`")?;
+    let kind = NodeKind::Choice { comparison, sides: [a, b], values: [then, otherwise] };
+    Ok(push(input, begin, kind))
+}
+
+/// Runs a parser one level deeper.
+fn deeper(input: &mut Input<'_>, parser: fn(&mut Input<'_>) -> Parsed<NodeId>) -> Parsed<NodeId> {
+    if input.state.depth == MAX_DEPTH {
+        let place = input.current_token_start();
+        return Err(failure(place..place + 1, ExpressionErrorKind::Depth(MAX_DEPTH)));
+    }
+    input.state.depth += 1;
+    let node = parser(input)?;
+    input.state.depth -= 1;
+    Ok(node)
+}
+
+fn space(input: &mut Input<'_>) -> Parsed<()> {
+    take_while(0.., char::is_whitespace).void().parse_next(input)
+}
+
+fn expect(input: &mut Input<'_>, token: char, expected: &'static str) -> Parsed<()> {
+    space(input)?;
+    match opt(token).parse_next(input)? {
+        Some(_) => Ok(()),
+        None => Err(unexpected(input, expected)),
+    }
+}
+
+/// Adds a node that begins there and ends at the last byte that is not a space.
+fn push(input: &mut Input<'_>, begin: usize, kind: NodeKind) -> NodeId {
+    let span = begin..input.previous_token_end();
+    input.state.nodes.push(Node { kind, span });
+    input.state.nodes.len() - 1
+}
+
+fn operation(input: &mut Input<'_>, operator: Operator, a: NodeId, b: NodeId) -> Parsed<NodeId> {
+    let begin = input.state.nodes[a].span.start;
+    Ok(push(input, begin, NodeKind::Operation(operator, [a, b])))
+}
+
+fn failure(span: Range<usize>, kind: ExpressionErrorKind) -> ErrMode<Failure> {
+    ErrMode::Cut(Failure(Some(ExpressionError { span, kind })))
+}
+
+/// What stands where something else is expected.
+fn found(input: &Input<'_>, expected: &'static str) -> ExpressionErrorKind {
+    let found = input.peek_token().map_or_else(|| "the end".into(), |c| format!("`{c}`"));
+    ExpressionErrorKind::Unexpected { found, expected }
+}
+
+fn unexpected(input: &Input<'_>, expected: &'static str) -> ErrMode<Failure> {
+    let begin = input.current_token_start();
+    let length = input.peek_token().map_or(0, char::len_utf8);
+    failure(begin..begin + length, found(input, expected))
+}

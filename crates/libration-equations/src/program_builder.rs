@@ -1,0 +1,161 @@
+//! Programs under construction.
+
+use std::collections::HashMap;
+
+use super::Function;
+use super::program::{Operation, Program, ValueId};
+
+/// Collects the operations of a program, each once, and computes those of constants in `f64`.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ProgramBuilder {
+    inputs: usize,
+    values: Vec<Operation>,
+    known: HashMap<Key, ValueId>,
+}
+
+/// An operation with the bits of a constant in place of the constant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Key {
+    Input(usize),
+    Constant(u64),
+    Operation(u8, ValueId, ValueId),
+    Ratio(ValueId, i32, i32),
+    Call(Function, ValueId),
+}
+
+impl ProgramBuilder {
+    /// A new input.
+    pub(crate) fn input(&mut self) -> ValueId {
+        self.inputs += 1;
+        self.value(Operation::Input(self.inputs - 1))
+    }
+
+    pub(crate) fn constant(&mut self, c: f64) -> ValueId {
+        self.value(Operation::Constant(c))
+    }
+
+    /// The constant that a value is, if it is one.
+    pub(crate) fn as_constant(&self, value: ValueId) -> Option<f64> {
+        match self.values[value] {
+            Operation::Constant(c) => Some(c),
+            _ => None,
+        }
+    }
+
+    /// The value of an operation: computed here if its operands are constants, and that of the same operation before if there is one.
+    pub(crate) fn value(&mut self, operation: Operation) -> ValueId {
+        let operation = self.simplified(operation);
+        let key = match operation {
+            Operation::Input(i) => Key::Input(i),
+            Operation::Constant(c) => Key::Constant(c.to_bits()),
+            // Sums and products do not depend on the order of their operands.
+            Operation::Sum(a, b) => Key::Operation(0, a.min(b), a.max(b)),
+            Operation::Product(a, b) => Key::Operation(1, a.min(b), a.max(b)),
+            Operation::Difference(a, b) => Key::Operation(2, a, b),
+            Operation::Quotient(a, b) => Key::Operation(3, a, b),
+            Operation::Negative(a) => Key::Operation(4, a, a),
+            Operation::Reciprocal(a) => Key::Operation(5, a, a),
+            Operation::Ratio(a, num, den) => Key::Ratio(a, num, den),
+            Operation::Call(function, a) => Key::Call(function, a),
+        };
+        *self.known.entry(key).or_insert_with(|| {
+            self.values.push(operation);
+            self.values.len() - 1
+        })
+    }
+
+    /// The same with the same bits, as a constant or with fewer roundings to name.
+    fn simplified(&self, operation: Operation) -> Operation {
+        let of = |value: ValueId| self.as_constant(value);
+        match operation {
+            Operation::Sum(a, b) => match (of(a), of(b)) {
+                (Some(a), Some(b)) => Operation::Constant(a + b),
+                _ => operation,
+            },
+            Operation::Difference(a, b) => match (of(a), of(b)) {
+                (Some(a), Some(b)) => Operation::Constant(a - b),
+                _ => operation,
+            },
+            Operation::Product(a, b) => match (of(a), of(b)) {
+                (Some(a), Some(b)) => Operation::Constant(a * b),
+                _ => operation,
+            },
+            Operation::Quotient(a, b) => match (of(a), of(b)) {
+                (Some(a), Some(b)) => Operation::Constant(a / b),
+                (Some(1.0), None) => Operation::Reciprocal(b),
+                (None, Some(b)) => match whole(b) {
+                    Some(den) => Operation::Ratio(a, 1, den),
+                    None => operation,
+                },
+                _ => operation,
+            },
+            Operation::Negative(a) => of(a).map_or(operation, |a| Operation::Constant(-a)),
+            Operation::Reciprocal(a) => of(a).map_or(operation, |a| Operation::Constant(a.recip())),
+            Operation::Ratio(a, num, den) => of(a)
+                .map_or(operation, |a| Operation::Constant(a * f64::from(num) / f64::from(den))),
+            Operation::Call(function, a) => {
+                of(a).map_or(operation, |a| Operation::Constant(function.of(a)))
+            }
+            Operation::Input(_) | Operation::Constant(_) => operation,
+        }
+    }
+
+    /// A whole power: by squares, `x³ = x²·x`, `x⁴ = (x²)²`, `x⁻ⁿ = 1/xⁿ`.
+    pub(crate) fn whole_power(&mut self, x: ValueId, exponent: i32) -> ValueId {
+        match exponent {
+            0 => self.constant(1.0),
+            1 => x,
+            ..0 => {
+                let power = self.whole_power(x, -exponent);
+                self.value(Operation::Reciprocal(power))
+            }
+            _ if exponent % 2 == 0 => {
+                let root = self.whole_power(x, exponent / 2);
+                self.value(Operation::Product(root, root))
+            }
+            _ => {
+                let rest = self.whole_power(x, exponent - 1);
+                self.value(Operation::Product(rest, x))
+            }
+        }
+    }
+
+    /// The outputs of a program on these inputs, as a part of this one.
+    pub(crate) fn inline(&mut self, program: &Program, inputs: &[ValueId]) -> Vec<ValueId> {
+        let mut places: Vec<ValueId> = Vec::with_capacity(program.values.len());
+        for operation in &program.values {
+            places.push(match *operation {
+                Operation::Input(input) => inputs[input],
+                operation => self.value(operation.moved(&places)),
+            });
+        }
+        program.outputs.iter().map(|&output| places[output]).collect()
+    }
+
+    /// The program with these outputs, and without what they do not need.
+    pub(crate) fn finish(self, outputs: &[ValueId]) -> Program {
+        let mut needed = vec![false; self.values.len()];
+        outputs.iter().for_each(|&output| needed[output] = true);
+        for i in (0..self.values.len()).rev() {
+            if needed[i] {
+                self.values[i].operands().for_each(|operand| needed[operand] = true);
+            }
+        }
+        let mut places = vec![0; self.values.len()];
+        let mut values = Vec::new();
+        for (i, operation) in self.values.into_iter().enumerate() {
+            if needed[i] {
+                places[i] = values.len();
+                values.push(operation.moved(&places));
+            }
+        }
+        let outputs = outputs.iter().map(|&output| places[output]).collect();
+        Program { inputs: self.inputs, values, outputs }
+    }
+}
+
+/// The integer that a number is, if it is a small one.
+fn whole(x: f64) -> Option<i32> {
+    let whole = x as i32;
+    (f64::from(whole) == x && whole != 0).then_some(whole)
+}

@@ -1,0 +1,157 @@
+//! Names in equations, and what they stand for.
+
+use core::ops::Range;
+use std::collections::HashMap;
+
+use super::expression::{Comparison, Expression, NodeKind, Operator};
+use super::program::{Operation, ValueId};
+use super::program_builder::ProgramBuilder;
+use super::{EquationError, EquationErrorKind, Function};
+
+/// The values of names, computed where they are needed first.
+pub(crate) struct Resolver {
+    pub(crate) builder: ProgramBuilder,
+    meanings: HashMap<Name, Meaning>,
+}
+
+/// A name with the number of its primes.
+type Name = (String, usize);
+
+/// What a name stands for.
+enum Meaning {
+    Value(ValueId),
+    /// An expression, whose value nobody needed before.
+    Expression {
+        key: String,
+        expression: Expression,
+    },
+    /// An expression whose value is being computed.
+    InProgress,
+}
+
+impl Resolver {
+    pub(crate) fn new(builder: ProgramBuilder) -> Self {
+        Resolver { builder, meanings: HashMap::new() }
+    }
+
+    /// Gives a name a value.
+    pub(crate) fn define(&mut self, name: &str, primes: usize, value: ValueId) {
+        self.meanings.insert((name.into(), primes), Meaning::Value(value));
+    }
+
+    /// Gives a name the value of an expression, the text of `key`.
+    ///
+    /// # Errors
+    /// The text is no expression.
+    pub(crate) fn define_expression(
+        &mut self,
+        name: &str,
+        primes: usize,
+        key: String,
+        text: &str,
+    ) -> Result<(), EquationError> {
+        let expression = parse(&key, text)?;
+        self.meanings.insert((name.into(), primes), Meaning::Expression { key, expression });
+        Ok(())
+    }
+
+    /// The value of the text of `key`.
+    pub(crate) fn value_of(&mut self, key: &str, text: &str) -> Result<ValueId, EquationError> {
+        let expression = parse(key, text)?;
+        self.evaluate(key, &expression)
+    }
+
+    /// The value of a name in the definition `key`.
+    pub(crate) fn resolve(
+        &mut self,
+        name: &str,
+        primes: usize,
+        (key, span): (&str, Option<Range<usize>>),
+    ) -> Result<ValueId, EquationError> {
+        let full = || format!("{name}{}", "'".repeat(primes));
+        let error = |kind| EquationError { key: key.into(), span: span.clone(), kind };
+        let Some(meaning) = self.meanings.get_mut(&(name.to_owned(), primes)) else {
+            let mut known: Vec<String> = self
+                .meanings
+                .keys()
+                .map(|(name, primes)| format!("{name}{}", "'".repeat(*primes)))
+                .collect();
+            known.extend(Function::ALL.map(|function| function.name().to_owned()));
+            known.sort_unstable();
+            return Err(error(EquationErrorKind::UnknownName { name: full(), known }));
+        };
+        match core::mem::replace(meaning, Meaning::InProgress) {
+            Meaning::Value(value) => {
+                *meaning = Meaning::Value(value);
+                Ok(value)
+            }
+            Meaning::InProgress => Err(error(EquationErrorKind::Circle(full()))),
+            Meaning::Expression { key, expression } => {
+                let value = self.evaluate(&key, &expression)?;
+                self.define(name, primes, value);
+                Ok(value)
+            }
+        }
+    }
+
+    /// The value of an expression, node by node.
+    fn evaluate(&mut self, key: &str, expression: &Expression) -> Result<ValueId, EquationError> {
+        let mut values: Vec<ValueId> = Vec::with_capacity(expression.nodes.len());
+        for node in &expression.nodes {
+            let value = match &node.kind {
+                NodeKind::Number(x) => self.builder.constant(*x),
+                NodeKind::Name { name, primes } => {
+                    self.resolve(name, *primes, (key, Some(node.span.clone())))?
+                }
+                NodeKind::Negative(a) => self.builder.value(Operation::Negative(values[*a])),
+                NodeKind::Operation(operator, [a, b]) => {
+                    self.operation(*operator, values[*a], values[*b])
+                }
+                NodeKind::Call(function, arguments) => {
+                    self.builder.value(Operation::Call(*function, values[arguments[0]]))
+                }
+                NodeKind::Choice { comparison, sides: [a, b], values: [then, otherwise] } => {
+                    let [a, b] = match comparison {
+                        Comparison::Less | Comparison::LessOrEqual => [a, b],
+                        Comparison::Greater | Comparison::GreaterOrEqual => [b, a],
+                    };
+                    let _ = (a, b, then, otherwise);
+                    values[*then]
+                }
+            };
+            values.push(value);
+        }
+        // An expression has at least one node.
+        Ok(values.pop().unwrap_or_default())
+    }
+
+    fn operation(&mut self, operator: Operator, a: ValueId, b: ValueId) -> ValueId {
+        match operator {
+            Operator::Sum => self.builder.value(Operation::Sum(a, b)),
+            Operator::Difference => self.builder.value(Operation::Difference(a, b)),
+            Operator::Product => self.builder.value(Operation::Product(a, b)),
+            Operator::Quotient => self.builder.value(Operation::Quotient(a, b)),
+            Operator::Power => self.power(a, b),
+        }
+    }
+}
+
+impl Resolver {
+    /// `a^b`: whole powers by products, halves by roots.
+    fn power(&mut self, a: ValueId, b: ValueId) -> ValueId {
+        let exponent = self.builder.as_constant(b);
+        match exponent.map(|b| (b, b as i32)) {
+            Some((b, whole)) if f64::from(whole) == b => self.builder.whole_power(a, whole),
+            Some((0.5, _)) => self.builder.value(Operation::Call(Function::Sqrt, a)),
+            _ => a,
+        }
+    }
+}
+
+fn parse(key: &str, text: &str) -> Result<Expression, EquationError> {
+    Expression::parse(text).map_err(|error| EquationError {
+        key: key.into(),
+        span: Some(error.span.clone()),
+        kind: EquationErrorKind::Expression(error),
+    })
+}

@@ -1,0 +1,140 @@
+//! A number that records the step of an integrator.
+
+use core::cell::RefCell;
+use core::ops::{Add, Mul, Neg, Sub};
+
+use libration_core::{Scalar, State, System};
+
+/// The operations of a step on whole vectors: positions, velocities and accelerations of a system of any size.
+///
+/// An integrator treats all degrees of freedom alike, so that a step in one dimension has the operations of all of them.
+#[derive(Debug, Default)]
+pub(crate) struct StepTrace {
+    operations: RefCell<Vec<VectorOperation>>,
+}
+
+/// The index of a vector.
+pub(crate) type VectorId = usize;
+
+/// The origin of a vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum VectorOperation {
+    Positions,
+    Velocities,
+    /// The time step in each entry.
+    TimeStep,
+    Constant(f64),
+    Sum(VectorId, VectorId),
+    Difference(VectorId, VectorId),
+    Product(VectorId, VectorId),
+    Negative(VectorId),
+    Ratio(VectorId, i32, i32),
+    /// The accelerations at these positions and velocities.
+    AccelerationsAt(VectorId, VectorId),
+}
+
+impl StepTrace {
+    pub(crate) fn record(&self, operation: VectorOperation) -> TracedVector<'_> {
+        let mut operations = self.operations.borrow_mut();
+        operations.push(operation);
+        TracedVector::Recorded { trace: self, id: operations.len() - 1 }
+    }
+
+    /// The index of a vector; a constant becomes one.
+    pub(crate) fn id(&self, vector: TracedVector<'_>) -> VectorId {
+        match vector {
+            TracedVector::Recorded { id, .. } => id,
+            TracedVector::Constant(c) => {
+                let mut operations = self.operations.borrow_mut();
+                operations.push(VectorOperation::Constant(c));
+                operations.len() - 1
+            }
+        }
+    }
+
+    pub(crate) fn into_operations(self) -> Vec<VectorOperation> {
+        self.operations.into_inner()
+    }
+}
+
+/// A vector of a step, or a number that is the same in every entry.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum TracedVector<'t> {
+    Constant(f64),
+    Recorded { trace: &'t StepTrace, id: VectorId },
+}
+
+use TracedVector::{Constant, Recorded};
+
+impl<'t> TracedVector<'t> {
+    fn with(
+        self,
+        other: Self,
+        operation: fn(VectorId, VectorId) -> VectorOperation,
+        of_constants: fn(f64, f64) -> f64,
+    ) -> Self {
+        let trace = match (self, other) {
+            (Constant(a), Constant(b)) => return Constant(of_constants(a, b)),
+            (Recorded { trace, .. }, _) | (_, Recorded { trace, .. }) => trace,
+        };
+        let (a, b) = (trace.id(self), trace.id(other));
+        trace.record(operation(a, b))
+    }
+}
+
+impl Add for TracedVector<'_> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        self.with(other, VectorOperation::Sum, |a, b| a + b)
+    }
+}
+
+impl Sub for TracedVector<'_> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self.with(other, VectorOperation::Difference, |a, b| a - b)
+    }
+}
+
+impl Mul for TracedVector<'_> {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        self.with(other, VectorOperation::Product, |a, b| a * b)
+    }
+}
+
+impl Neg for TracedVector<'_> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        match self {
+            Constant(c) => Constant(-c),
+            Recorded { trace, id } => trace.record(VectorOperation::Negative(id)),
+        }
+    }
+}
+
+impl Scalar for TracedVector<'_> {
+    fn from_f64(c: f64) -> Self {
+        Constant(c)
+    }
+
+    fn ratio(self, num: i32, den: i32) -> Self {
+        match self {
+            Constant(c) => Constant(c * f64::from(num) / f64::from(den)),
+            Recorded { trace, id } => trace.record(VectorOperation::Ratio(id, num, den)),
+        }
+    }
+}
+
+/// A system of any size, whose accelerations are recorded.
+pub(crate) struct TracedSystem<'t>(pub(crate) &'t StepTrace);
+
+impl<'t> System<TracedVector<'t>, 1> for TracedSystem<'t> {
+    const POSITIONAL: bool = true;
+
+    fn acceleration(&self, state: &State<TracedVector<'t>, 1>) -> [TracedVector<'t>; 1] {
+        let TracedSystem(trace) = self;
+        let (q, v) = (trace.id(state.q[0]), trace.id(state.v[0]));
+        [trace.record(VectorOperation::AccelerationsAt(q, v))]
+    }
+}

@@ -1,0 +1,82 @@
+//! Systems of the catalogue, written as equations.
+
+use libration_core::integrator::{
+    ExplicitEuler, Leapfrog, Rk4, SUZUKI4, SymplecticEuler, TextbookVerlet, VelocityVerlet,
+    YOSHIDA4,
+};
+use libration_core::system::{
+    DampedOscillator, DrivenOscillator, Duffing, HenonHeiles, Kepler, Oscillator, Pendulum,
+};
+use libration_core::{Float, Integrator, Model, State};
+use libration_equations::{Definitions, Equations, StepProgram};
+
+fn definitions(accelerations: &[(&str, &str)], parameters: &[(&str, f64)]) -> Definitions {
+    let texts = |pairs: &[(&str, &str)]| -> Vec<(String, String)> {
+        pairs.iter().map(|(a, b)| (a.to_string(), b.to_string())).collect()
+    };
+    Definitions {
+        coordinates: accelerations.iter().map(|(name, _)| name.to_string()).collect(),
+        accelerations: texts(accelerations),
+        parameters: parameters.iter().map(|(name, value)| (name.to_string(), *value)).collect(),
+        ..Definitions::default()
+    }
+}
+
+/// Asserts that ten steps have the same bits.
+fn check<S: Float, M: Model<D>, const D: usize>(
+    method: impl Integrator,
+    model: M,
+    equations: &Equations,
+    start: State<f64, D>,
+) {
+    let step = StepProgram::new(method, equations);
+    let dt = S::from_f64(0.0123);
+    let mut run = step.program().on::<S>();
+    let mut state = start.map(S::from_f64);
+    let mut own: Vec<S> = state.coordinates().collect();
+    let system = model.on::<S>();
+    for _ in 0..10 {
+        state = method.step(&system, state, dt);
+        let inputs: Vec<S> = own.iter().copied().chain([dt]).collect();
+        own = run.run(&inputs).collect();
+        let wanted: Vec<S> = state.coordinates().collect();
+        assert_eq!(format!("{own:?}"), format!("{wanted:?}"));
+    }
+}
+
+fn all<M: Model<D>, const D: usize>(model: M, equations: &Definitions, start: State<f64, D>) {
+    let equations = Equations::new(equations).unwrap();
+    macro_rules! each {
+        ($($method:expr),*) => {$(
+            check::<f64, M, D>($method, model, &equations, start);
+            check::<f32, M, D>($method, model, &equations, start);
+            check::<half::f16, M, D>($method, model, &equations, start);
+        )*};
+    }
+    each!(
+        ExplicitEuler,
+        SymplecticEuler,
+        VelocityVerlet,
+        TextbookVerlet,
+        Leapfrog,
+        Rk4,
+        YOSHIDA4,
+        SUZUKI4
+    );
+}
+
+#[test]
+fn steps_of_the_catalogue_written_as_equations_have_the_bits_of_the_compiled_ones() {
+    let start = State { q: [1.3], v: [-0.4] };
+    all(
+        Oscillator { omega2: 10.3 },
+        &definitions(&[("x", "-omega2 * x")], &[("omega2", 10.3)]),
+        start,
+    );
+    all(Pendulum { omega2: 9.81 }, &definitions(&[("x", "-g * sin(x)")], &[("g", 9.81)]), start);
+    all(
+        Duffing { alpha: -1.1, beta: 0.7 },
+        &definitions(&[("x", "-alpha * x - beta * x^3")], &[("alpha", -1.1), ("beta", 0.7)]),
+        start,
+    );
+}
