@@ -3,11 +3,12 @@
 use crate::{Outcome, command};
 
 /// The engine, and what it depends on directly.
-const ALLOWED: [&str; 18] = [
+const ALLOWED: [&str; 20] = [
     "libration",
     "libration-analysis",
     "libration-batch",
     "libration-core",
+    "libration-equations",
     "libration-linear",
     "bnum",
     "bytemuck",
@@ -22,6 +23,7 @@ const ALLOWED: [&str; 18] = [
     "rayon",
     "sysinfo",
     "thiserror",
+    "winnow",
 ];
 
 /// Never in its tree, not even through others.

@@ -25,8 +25,14 @@ pub(crate) fn built(program: &str) -> PathBuf {
 }
 
 /// The crates of the engine: numbers and physics, which do no input or output.
-pub(crate) const ENGINE: [&str; 5] =
-    ["libration", "libration-analysis", "libration-batch", "libration-core", "libration-linear"];
+pub(crate) const ENGINE: [&str; 6] = [
+    "libration",
+    "libration-analysis",
+    "libration-batch",
+    "libration-core",
+    "libration-equations",
+    "libration-linear",
+];
 
 /// Whether a file is a source of the engine.
 pub(crate) fn in_engine(path: &str) -> bool {

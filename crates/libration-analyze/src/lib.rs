@@ -2,12 +2,16 @@
 //!
 //! [`analyze`] derives stability, errors and costs of one step and of a control loop, and [`linear_analysis`] those of linear plants; [`trajectory`] and [`linear_trajectory`] simulate.
 
+mod equation_summary;
+pub mod equation_trajectory;
 pub mod export;
 pub mod linear_analysis;
 pub mod linear_trajectory;
+mod recording;
 mod step;
 pub mod trajectory;
 
+pub use equation_summary::{EquationSummary, SummaryParameter, SummaryState};
 pub use step::{
     Analysis, AnalyzeError, Criteria, Drift, LargestDt, LatencyOption, LoopAnalysis, LoopCost,
     LoopGrowth, ModifiedHamiltonian, OrderOfWord, Request, RequestSummary, StableLatencies,

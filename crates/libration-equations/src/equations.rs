@@ -119,6 +119,13 @@ impl Equations {
         self.energy.as_ref()
     }
 
+    /// The largest degree of the accelerations as polynomials of positions and velocities; none if one is no polynomial.
+    pub fn polynomial_degree(&self) -> Option<u32> {
+        let states = 2 * self.degrees.len();
+        let degrees = self.accelerations.polynomial_degrees(|input| input < states);
+        degrees.into_iter().try_fold(0, |most, degree| Some(most.max(degree?)))
+    }
+
     /// Whether no acceleration depends on a velocity.
     pub fn is_positional(&self) -> bool {
         let d = self.degrees.len();

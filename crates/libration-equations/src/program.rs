@@ -89,6 +89,28 @@ impl Program {
         })
     }
 
+    /// The degree of each output as a polynomial of the inputs for which `is_variable` is true; none if it is none.
+    pub fn polynomial_degrees(&self, is_variable: impl Fn(usize) -> bool) -> Vec<Option<u32>> {
+        let mut degrees: Vec<Option<u32>> = Vec::with_capacity(self.values.len());
+        for operation in &self.values {
+            let constant = |value: ValueId| degrees[value].filter(|degree| *degree == 0);
+            degrees.push(match *operation {
+                Operation::Input(input) => Some(u32::from(is_variable(input))),
+                Operation::Constant(_) => Some(0),
+                Operation::Sum(a, b) | Operation::Difference(a, b) => {
+                    degrees[a].zip(degrees[b]).map(|(a, b)| a.max(b))
+                }
+                Operation::Product(a, b) => {
+                    degrees[a].zip(degrees[b]).map(|(a, b)| a.saturating_add(b))
+                }
+                Operation::Quotient(a, b) => degrees[a].filter(|_| constant(b).is_some()),
+                Operation::Negative(a) | Operation::Ratio(a, _, _) => degrees[a],
+                Operation::Reciprocal(a) | Operation::Call(_, a) => constant(a),
+            });
+        }
+        self.outputs.iter().map(|&output| degrees[output]).collect()
+    }
+
     /// The program on numbers of type `S`.
     pub fn on<S: Elementary>(&self) -> Evaluation<'_, S> {
         let constant = |operation: &Operation| match operation {

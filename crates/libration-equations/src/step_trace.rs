@@ -37,14 +37,14 @@ impl StepTrace {
     pub(crate) fn record(&self, operation: VectorOperation) -> TracedVector<'_> {
         let mut operations = self.operations.borrow_mut();
         operations.push(operation);
-        TracedVector::Recorded { trace: self, id: operations.len() - 1 }
+        Recorded { trace: self, id: operations.len() - 1 }
     }
 
     /// The index of a vector; a constant becomes one.
     pub(crate) fn id(&self, vector: TracedVector<'_>) -> VectorId {
         match vector {
-            TracedVector::Recorded { id, .. } => id,
-            TracedVector::Constant(c) => {
+            Recorded { id, .. } => id,
+            Constant(c) => {
                 let mut operations = self.operations.borrow_mut();
                 operations.push(VectorOperation::Constant(c));
                 operations.len() - 1

@@ -79,4 +79,38 @@ fn steps_of_the_catalogue_written_as_equations_have_the_bits_of_the_compiled_one
         &definitions(&[("x", "-alpha * x - beta * x^3")], &[("alpha", -1.1), ("beta", 0.7)]),
         start,
     );
+    all(
+        DampedOscillator { omega2: 10.3, gamma: 0.3 },
+        &definitions(&[("x", "-omega2 * x - gamma * x'")], &[("omega2", 10.3), ("gamma", 0.3)]),
+        start,
+    );
+    let start = State { q: [0.4, 0.1], v: [-0.2, 1.9] };
+    all(
+        Kepler { mu: 1.1 },
+        &definitions(
+            &[
+                ("x", "-mu * (1 / sqrt(x*x + y*y))^3 * x"),
+                ("y", "-mu * (1 / sqrt(x*x + y*y))^3 * y"),
+            ],
+            &[("mu", 1.1)],
+        ),
+        start,
+    );
+    all(
+        HenonHeiles { lambda: 0.9 },
+        &definitions(
+            &[("x", "-x - lambda * (x*y + x*y)"), ("y", "-y - lambda * (x*x - y*y)")],
+            &[("lambda", 0.9)],
+        ),
+        start,
+    );
+    let start = State { q: [0.4, 0.0], v: [-0.2, 1.0] };
+    all(
+        DrivenOscillator { omega2: 10.3, gamma: 0.3, amplitude: 0.7, drive: 3.1 },
+        &definitions(
+            &[("x", "-omega2*x - gamma*x' + amplitude*cos(drive*t)")],
+            &[("omega2", 10.3), ("gamma", 0.3), ("amplitude", 0.7), ("drive", 3.1)],
+        ),
+        start,
+    );
 }

@@ -3,6 +3,7 @@
 //! Each limit is defined once, for files and flags. An error names the position in the file.
 
 mod document;
+pub mod equations;
 mod error;
 mod fault;
 mod file;

@@ -5,7 +5,7 @@
 //! polynomials it yields its own update matrix.
 //!
 //! This crate is the front of the engine: [`libration_core`] has numbers, integrators, systems and the parts of control loops,
-//! [`libration_linear`] loops as matrices, [`libration_analysis`] what is derived from a step, [`libration_batch`] what runs many trajectories at once. None of them does
+//! [`libration_linear`] loops as matrices, [`libration_equations`] systems from text, [`libration_analysis`] what is derived from a step, [`libration_batch`] what runs many trajectories at once. None of them does
 //! input or output, reads a clock or prints.
 
 pub use libration_analysis as analysis;
@@ -15,4 +15,5 @@ pub use libration_core::{
     State, System, catalog, control, elementary, integrator, number, random, simulation, system,
     with_method, with_system,
 };
+pub use libration_equations as equations;
 pub use libration_linear as linear;

@@ -6,7 +6,7 @@ use super::source::Source;
 /// The crates of each floor, the lowest first.
 const FLOORS: [&[&str]; 12] = [
     &["libration-core"],
-    &["libration-linear"],
+    &["libration-equations", "libration-linear"],
     &["libration-analysis", "libration-batch"],
     &["libration"],
     &["libration-data", REPORT, "libration-work"],

@@ -4,7 +4,6 @@
 //! are several. An overflow ends the table of a single trajectory; in an ensemble the others continue.
 //! It is a result and not an error.
 
-mod columns;
 mod ensemble;
 mod ensemble_options;
 mod error;
@@ -21,15 +20,14 @@ mod run;
 use std::io::Write;
 use std::sync::atomic::AtomicBool;
 
-use columns::Columns;
 use ensemble::EnsembleFloat;
 use libration::control::{Feedback, Jitter, Latency};
-use libration::ensemble::InsufficientMemory;
 use libration_settings::units;
 use serde_json::{Value, json};
 
 use crate::Timing;
-use crate::export::{Csv, ExportError, Json, Table, parquet_bytes, write_npy, write_parquet};
+use crate::export::{Rows, Table};
+use crate::recording::{self, Recording};
 
 pub use ensemble_options::EnsembleOptions;
 pub use error::TrajectoryError;
@@ -68,10 +66,10 @@ pub fn simulate_until(
     monitor: &dyn Monitor,
 ) -> Result<Trajectory, TrajectoryError> {
     match request.float {
-        FloatType::F64 => simulate_table::<f64>(request, monitor, |_, _| 0),
-        FloatType::F32 => simulate_table::<f32>(request, monitor, |_, _| 0),
-        FloatType::F16 => simulate_table::<half::f16>(request, monitor, |_, _| 0),
-        FloatType::Bf16 => simulate_table::<half::bf16>(request, monitor, |_, _| 0),
+        FloatType::F64 => simulate_table::<f64>(request, monitor),
+        FloatType::F32 => simulate_table::<f32>(request, monitor),
+        FloatType::F16 => simulate_table::<half::f16>(request, monitor),
+        FloatType::Bf16 => simulate_table::<half::bf16>(request, monitor),
     }
 }
 
@@ -96,19 +94,13 @@ pub fn write(
     }
 }
 
-/// Simulates and keeps all rows; `encoding` returns the bytes needed to write a table of some rows and bytes.
 fn simulate_table<S: EnsembleFloat>(
     request: &Request,
     monitor: &dyn Monitor,
-    encoding: fn(u64, u128) -> u128,
 ) -> Result<Trajectory, TrajectoryError> {
     check_request::<S>(request)?;
-    let bytes = Columns::<S>::bytes(request);
-    let needed = bytes + encoding(request.rows(), bytes);
-    InsufficientMemory::check(needed).map_err(TrajectoryError::Memory)?;
-    let mut columns = Columns::<S>::new(request).map_err(TrajectoryError::Memory)?;
-    let outcome = run::run(request, &mut columns, monitor)?;
-    Ok(Trajectory { table: columns.into_table(request)?, outcome })
+    let (table, outcome) = recording::table::<S>(request, monitor, |_, _| 0)?;
+    Ok(Trajectory { table, outcome })
 }
 
 /// Checks the request and its memory before the first row.
@@ -126,40 +118,34 @@ fn write_as<S: EnsembleFloat>(
     monitor: &dyn Monitor,
 ) -> Result<Outcome, TrajectoryError> {
     check_request::<S>(request)?;
-    let several = request.ensemble.is_some();
-    let outcome = match format {
-        Format::Csv => {
-            let names = request.column_names();
-            let mut csv = Csv::new(&mut *out, names.iter().map(String::as_str))?;
-            run::run::<S>(request, &mut csv, monitor)?
-        }
-        Format::Json => {
-            let mut json = Json::new(&mut *out, &head(request))?;
-            let outcome = run::run::<S>(request, &mut json, monitor)?;
-            let (key, value) = outcome.json_entry(several);
-            json.finish(key, &value)?;
-            outcome
-        }
-        Format::Npy => {
-            let Trajectory { table, outcome } = simulate_table::<S>(request, monitor, |_, _| 0)?;
-            write_npy(&table, &mut *out).map_err(ExportError::from)?;
-            outcome
-        }
-        Format::Parquet => {
-            let Trajectory { table, outcome } =
-                simulate_table::<S>(request, monitor, |rows, bytes| parquet_bytes(rows, bytes, 1))?;
-            let mut about: serde_json::Map<_, _> =
-                head(request).into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
-            let (key, value) = outcome.json_entry(several);
-            about.insert(key.to_owned(), value);
-            let about = Value::Object(about).to_string();
-            write_parquet(&table, &[("libration.trajectory", &about)], 1, &mut *out)
-                .map_err(ExportError::from)?;
-            outcome
-        }
-    };
-    out.flush().map_err(ExportError::from)?;
-    Ok(outcome)
+    recording::write::<S>(request, format, out, monitor)
+}
+
+impl<S: EnsembleFloat> Recording<S> for Request {
+    fn columns(&self) -> Vec<(String, String)> {
+        let units = self.column_units().into_iter().map(str::to_owned);
+        self.column_names().into_iter().zip(units).collect()
+    }
+
+    fn is_ensemble(&self) -> bool {
+        self.ensemble.is_some()
+    }
+
+    fn rows(&self) -> u64 {
+        Request::rows(self)
+    }
+
+    fn head(&self) -> Vec<(&'static str, Value)> {
+        head(self)
+    }
+
+    fn run(
+        &self,
+        rows: &mut dyn Rows<S>,
+        monitor: &dyn Monitor,
+    ) -> Result<Outcome, TrajectoryError> {
+        run::run::<S>(self, rows, monitor)
+    }
 }
 
 /// The text of a law, as in `gaussian:0.1`.

@@ -1,7 +1,10 @@
 //! Options of the system, its start and its step, which several commands share.
 
-use clap::Args;
+use std::ffi::OsStr;
+use std::path::Path;
+
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Arg, Args, Command};
 use libration::catalog::{ENTRIES, Entry};
 use libration::integrator::Exact;
 use libration::{CatalogError, Method, catalog};
@@ -15,8 +18,8 @@ use crate::error::Failure;
 /// The system, its parameters and its start.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SystemArgs {
-    /// Name of the system; see `libration list`
-    #[arg(long, value_name = "NAME", value_parser = system_names(), hide_possible_values = true)]
+    /// Name of the system, see `libration list`; or a file NAME.toml with its equations
+    #[arg(long, value_name = "NAME", value_parser = NameOrFile, hide_possible_values = true)]
     pub(crate) system: String,
     /// Parameter of the system, e.g. omega2=10; repeatable. With m= (kg) and k= (N/m), commands are forces
     #[arg(long, value_name = "KEY=VALUE", value_parser = assignment, allow_hyphen_values = true)]
@@ -40,12 +43,54 @@ pub(crate) struct StepArgs {
     pub(crate) dt: f64,
 }
 
+/// A name of the catalogue, or a path with the extension `toml`.
+#[derive(Clone)]
+struct NameOrFile;
+
+impl TypedValueParser for NameOrFile {
+    type Value = String;
+
+    fn parse_ref(
+        &self,
+        command: &Command,
+        arg: Option<&Arg>,
+        value: &OsStr,
+    ) -> Result<String, clap::Error> {
+        match value.to_str() {
+            Some(path) if is_file(path) => Ok(path.to_owned()),
+            _ => system_names().parse_ref(command, arg, value),
+        }
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(
+            ENTRIES.map(|entry| PossibleValue::new(entry.name).help(entry.summary)).into_iter(),
+        ))
+    }
+}
+
+/// Whether the value of `--system` is a file of equations.
+fn is_file(system: &str) -> bool {
+    Path::new(system).extension().is_some_and(|extension| extension == "toml")
+}
+
 impl SystemArgs {
+    /// The file of equations, if `--system` names one.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        is_file(&self.system).then(|| Path::new(&self.system))
+    }
+
     /// Returns the system and its start. Missing values are those of the catalogue.
     ///
     /// # Errors
     /// If a parameter is unknown or not allowed, or the number of coordinates is wrong.
     pub(crate) fn resolve(&self) -> Result<InitialValueProblem, Failure> {
+        if self.file().is_some() {
+            return Err(Failure::usage(format!(
+                "--system `{}`: this command knows systems of the catalogue only; `simulate` and `list` read files of equations",
+                self.system
+            )));
+        }
         let (system, actuation) =
             catalog::build(&self.system, &self.set).map_err(wrong_parameter)?;
         let entry = system.entry();

@@ -3,16 +3,26 @@
 use libration::Method;
 use libration::catalog::{ENTRIES, Entry};
 use libration::integrator::Exact;
+use libration_analyze::EquationSummary;
 use libration_lab::STUDIES;
 use libration_study::Study;
 use serde_json::{Value, json};
 
+use super::equation_file;
 use crate::args::ListArgs;
 use crate::error::Failure;
 use crate::terminal;
 
 /// Lists studies, systems and integrators.
 pub(crate) fn run(args: &ListArgs) -> Result<(), Failure> {
+    if let Some(file) = &args.file {
+        let summary = EquationSummary::new(&equation_file::read(file, &[])?);
+        let text = match args.json {
+            true => format!("{:#}\n", json!(summary)),
+            false => summary_text(&summary),
+        };
+        return Ok(terminal::print(&text)?);
+    }
     let listing = if args.json { format!("{:#}\n", as_json()) } else { as_text() };
     terminal::print(&listing)?;
     Ok(())
@@ -100,4 +110,58 @@ fn line(label: &str, text: &str) -> String {
     }
     lines.truncate(lines.trim_end().len());
     lines + "\n"
+}
+
+/// Returns the properties of a system by equations.
+fn summary_text(summary: &EquationSummary) -> String {
+    let EquationSummary { name, description, states, parameters, inputs, .. } = summary;
+    let mut text = match description.is_empty() {
+        true => format!("{name}\n"),
+        false => line(&format!("{name}: "), description),
+    };
+    text += "\nStates at the start\n";
+    let width = states.iter().map(|state| state.name.chars().count()).max().unwrap_or_default();
+    for state in states {
+        text += &format!("  {:width$}  {}\n", state.name, state.start);
+    }
+    if !parameters.is_empty() {
+        text += "\nParameters\n";
+        let width = parameters.iter().map(|p| p.name.len()).max().unwrap_or_default();
+        for p in parameters {
+            let row = format!("  {:width$}  {} {}", p.name, p.value, p.unit);
+            text += &format!("{}\n", row.trim_end());
+        }
+    }
+    if !inputs.is_empty() {
+        text += &format!("\nInputs: {}\n", inputs.join(", "));
+    }
+    let forces = match summary.positional {
+        true => "depend on positions only",
+        false => "depend on velocities",
+    };
+    let kind = match summary.polynomial_degree {
+        Some(0 | 1) => "linear".to_owned(),
+        Some(degree) => format!("polynomials of degree {degree}"),
+        None => "no polynomials".to_owned(),
+    };
+    let time = if summary.time_dependent { "; they depend on time" } else { "" };
+    text += &format!(
+        "\nEquations: {kind}; accelerations {forces}{time}; {} operations\n",
+        summary.operations
+    );
+    if !summary.energy {
+        text += "There is no energy: nothing is said of its drift.\n";
+    }
+    text += &format!("At the start the largest rate of a velocity is {}.\n", summary.rate_at_start);
+    match &summary.eigenvalues_at_start {
+        None => text += "There a derivative is not finite.\n",
+        Some(values) => {
+            text += "Linearised there, the eigenvalues in 1/s are\n";
+            for [re, im] in values.iter().filter(|[_, im]| *im >= 0.0) {
+                let pair = if *im > 0.0 { format!(" ± {im:.6}i") } else { String::new() };
+                text += &format!("  {re:.6}{pair}\n");
+            }
+        }
+    }
+    text
 }

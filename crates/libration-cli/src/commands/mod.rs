@@ -9,6 +9,7 @@ mod closed_loop;
 mod completions;
 mod config_file;
 mod disagreements;
+mod equation_file;
 mod lab;
 mod linear_closed_loop;
 mod list;

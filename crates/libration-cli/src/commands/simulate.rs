@@ -8,17 +8,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use indicatif::ProgressBar;
 use libration::control::clock::Recorded;
 use libration_advise::linear::{self, LinearRequest, RequestFile};
+use libration_analyze::equation_trajectory;
 use libration_analyze::export::ExportError;
-use libration_analyze::linear_trajectory;
 use libration_analyze::trajectory;
 use libration_analyze::trajectory::{
     Divergence, EnsembleOptions, Format, Monitor, Outcome, Request, TrajectoryError,
 };
+use libration_analyze::linear_trajectory;
 use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::{Document, Fault};
 
-use super::{config_file, time_stamps};
-use crate::args::{SimulateArgs, simd};
+use super::{config_file, equation_file, time_stamps};
+use crate::args::{SimulateArgs, SystemArgs, simd};
 use crate::error::Failure;
 use crate::output_file::OutputFile;
 use crate::{interrupt, progress, terminal};
@@ -42,6 +43,12 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
         let request = request?;
         return write(args, quiet, format, &|out, watcher| {
             linear_trajectory::write(&request, format, out, watcher)
+        });
+    }
+    if let Some(file) = args.system.as_ref().and_then(SystemArgs::file) {
+        let request = equation_file::simulation(args, file)?;
+        return write(args, quiet, format, &|out, watcher| {
+            equation_trajectory::write(&request, format, out, watcher)
         });
     }
     let request = request(args)?;

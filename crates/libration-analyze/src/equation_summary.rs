@@ -1,0 +1,128 @@
+//! Summaries of systems by equations.
+
+use libration::equations::Degree;
+use libration::linear::{Matrix, eigenvalues};
+use libration::number::Dual;
+use libration_settings::equations::EquationSystem;
+use serde::Serialize;
+
+/// The properties of a system that follow from its equations.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EquationSummary {
+    /// The name.
+    pub name: String,
+    /// The description; empty without one.
+    pub description: String,
+    /// The states with their values at the start.
+    pub states: Vec<SummaryState>,
+    /// The parameters.
+    pub parameters: Vec<SummaryParameter>,
+    /// The names of the inputs.
+    pub inputs: Vec<String>,
+    /// Whether no acceleration depends on a velocity.
+    pub positional: bool,
+    /// Whether an equation depends on time.
+    pub time_dependent: bool,
+    /// The degree of the equations as polynomials of the states; none if they are no polynomials.
+    pub polynomial_degree: Option<u32>,
+    /// Whether there is an energy.
+    pub energy: bool,
+    /// Number of operations of an evaluation of all accelerations.
+    pub operations: usize,
+    /// The largest absolute rate of a velocity or a state of first order at the start.
+    pub rate_at_start: f64,
+    /// The eigenvalues of the equations, linearised at the start, in 1/s: real and imaginary parts, slowest first. None where a
+    /// derivative is not finite.
+    pub eigenvalues_at_start: Option<Vec<[f64; 2]>>,
+}
+
+/// A state.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SummaryState {
+    /// The name; that of a velocity has a prime.
+    pub name: String,
+    /// The value at the start.
+    pub start: f64,
+}
+
+/// A parameter.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SummaryParameter {
+    /// The name.
+    pub name: String,
+    /// The value.
+    pub value: f64,
+    /// The unit; empty without one.
+    pub unit: String,
+}
+
+impl EquationSummary {
+    /// The summary of a system.
+    pub fn new(system: &EquationSystem) -> Self {
+        let equations = &system.equations;
+        let degrees = equations.degrees();
+        let d = degrees.len();
+        let start: Vec<f64> = system.q.iter().chain(&system.v).copied().collect();
+        let named = |i: usize| -> Option<String> {
+            match &degrees[i % d] {
+                Degree::Coordinate(name) if i < d => Some(name.clone()),
+                Degree::Coordinate(name) => Some(format!("{name}'")),
+                Degree::State(name) if i >= d => Some(name.clone()),
+                Degree::State(_) | Degree::Time => None,
+            }
+        };
+        let places: Vec<usize> = (0..2 * d).filter(|&i| named(i).is_some()).collect();
+        let states =
+            places.iter().filter_map(|&i| Some(SummaryState { name: named(i)?, start: start[i] }));
+        let parameters = system.definitions.parameters.iter().zip(&system.units);
+        let parameter = |((name, value), unit): (&(String, f64), &String)| SummaryParameter {
+            name: name.clone(),
+            value: *value,
+            unit: unit.clone(),
+        };
+        let rates: Vec<f64> = equations.accelerations().on::<f64>().run(&start).collect();
+        EquationSummary {
+            name: system.name.clone(),
+            description: system.description.clone(),
+            states: states.collect(),
+            parameters: parameters.map(parameter).collect(),
+            inputs: equations.inputs().to_vec(),
+            positional: equations.is_positional(),
+            time_dependent: degrees.contains(&Degree::Time),
+            polynomial_degree: equations.polynomial_degree(),
+            energy: equations.energy().is_some(),
+            operations: equations.accelerations().operations(),
+            rate_at_start: rates.iter().fold(0.0, |most, rate| f64::max(most, rate.abs())),
+            eigenvalues_at_start: eigenvalues_at(system, &start, &places),
+        }
+    }
+}
+
+/// The eigenvalues of the Jacobian at `start`, by dual numbers.
+fn eigenvalues_at(
+    system: &EquationSystem,
+    start: &[f64],
+    places: &[usize],
+) -> Option<Vec<[f64; 2]>> {
+    let d = start.len() / 2;
+    let mut accelerations = system.equations.accelerations().on::<Dual<f64>>();
+    let mut column = |j: usize| -> Vec<f64> {
+        let seeded = start.iter().enumerate().map(|(i, &x)| match i == places[j] {
+            true => Dual::variable(x),
+            false => Dual::constant(x),
+        });
+        let inputs: Vec<Dual<f64>> = seeded.collect();
+        let rates: Vec<f64> = accelerations.run(&inputs).map(|rate| rate.du).collect();
+        let rate = |&i: &usize| match i < d {
+            true => f64::from(u8::from(places[j] == i + d)),
+            false => rates[i - d],
+        };
+        places.iter().map(rate).collect()
+    };
+    let columns: Vec<Vec<f64>> = (0..places.len()).map(&mut column).collect();
+    let jacobian = Matrix::from_fn(places.len(), places.len(), |i, j| columns[j][i]);
+    let mut values: Vec<[f64; 2]> =
+        eigenvalues(&jacobian)?.into_iter().map(|value| [value.re, value.im]).collect();
+    values.sort_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])));
+    Some(values)
+}

@@ -1,0 +1,84 @@
+//! Requests for trajectories of systems by equations.
+
+use libration::catalog::Allowed;
+use libration::equations::Degree;
+use libration::{Float, Method};
+use libration_settings::equations::EquationSystem;
+use libration_settings::limits;
+
+use crate::trajectory::{FloatType, TrajectoryError};
+
+/// Largest number of values in a table: 8 GB.
+const MOST_VALUES: u64 = 1_000_000_000;
+
+/// A system by equations with its integrator and the steps to keep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EquationRequest {
+    /// The system, with its start.
+    pub system: EquationSystem,
+    /// The integrator.
+    pub method: Method,
+    /// The float type of all numbers but the time.
+    pub float: FloatType,
+    /// The time step in seconds.
+    pub dt: f64,
+    /// Number of steps.
+    pub steps: u64,
+    /// The interval of kept steps. The start and the last step are always kept.
+    pub every: u64,
+}
+
+impl EquationRequest {
+    /// Names and units of the columns, from left to right.
+    pub fn columns(&self) -> Vec<(String, String)> {
+        let mut names = vec![("step".to_owned(), "1".to_owned()), ("t".to_owned(), "s".to_owned())];
+        let unnamed = |name: String| (name, String::new());
+        let degrees = self.system.equations.degrees();
+        names.extend(degrees.iter().filter_map(|degree| match degree {
+            Degree::Coordinate(name) => Some(unnamed(name.clone())),
+            Degree::State(_) | Degree::Time => None,
+        }));
+        names.extend(degrees.iter().filter_map(|degree| match degree {
+            Degree::Coordinate(name) => Some(unnamed(format!("{name}'"))),
+            Degree::State(name) => Some(unnamed(name.clone())),
+            Degree::Time => None,
+        }));
+        names.extend(self.system.equations.energy().map(|_| unnamed("energy".to_owned())));
+        names
+    }
+
+    /// Number of rows if the state stays finite.
+    pub fn rows(&self) -> u64 {
+        let every = self.every.max(1);
+        (self.steps / every).saturating_add(1 + u64::from(!self.steps.is_multiple_of(every)))
+    }
+
+    /// Checks every value, and that the float type `S` represents it.
+    pub(super) fn check<S: Float>(&self) -> Result<(), TrajectoryError> {
+        let value = |name, value: String, allowed: String| {
+            Err(TrajectoryError::Value { name, value, allowed })
+        };
+        if !Allowed::Positive.admits(S::from_f64(self.dt).to_f64()) {
+            let allowed = format!("{} in {}", Allowed::Positive, S::NAME);
+            return value("dt", format!("{:?}", self.dt), allowed);
+        }
+        if !limits::TRAJECTORY_STEPS.contains(&self.steps) {
+            return value("steps", self.steps.to_string(), limits::trajectory_steps_allowed());
+        }
+        if self.every == 0 {
+            return value("every", "0".to_owned(), "at least 1".to_owned());
+        }
+        for (name, numbers) in [("q", &self.system.q), ("v", &self.system.v)] {
+            if let Some(x) = numbers.iter().find(|x| !S::from_f64(**x).is_finite()) {
+                return value(name, format!("{x:?}"), format!("finite in {}", S::NAME));
+            }
+        }
+        let values = self.rows().saturating_mul(self.columns().len() as u64);
+        if values > MOST_VALUES {
+            let allowed =
+                format!("such that rows × columns is at most {MOST_VALUES}; it is {values}");
+            return value("every", self.every.to_string(), allowed);
+        }
+        Ok(())
+    }
+}

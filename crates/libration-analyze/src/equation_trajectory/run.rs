@@ -1,0 +1,63 @@
+//! Rows of a system by equations.
+
+use libration::equations::{Degree, StepProgram};
+
+use super::EquationRequest;
+use crate::export::{Number, Rows};
+use crate::trajectory::{Divergence, Monitor, Outcome, TrajectoryError};
+
+/// Steps between two checks of the monitor.
+const CHUNK: u64 = 1 << 12;
+
+/// Simulates a checked request in the float type `S`.
+pub(super) fn run<S: Number>(
+    request: &EquationRequest,
+    rows: &mut dyn Rows<S>,
+    monitor: &dyn Monitor,
+) -> Result<Outcome, TrajectoryError> {
+    let EquationRequest { system, steps, every, .. } = request;
+    let equations = &system.equations;
+    let program = StepProgram::new(request.method, equations);
+    let mut step_of = program.program().on::<S>();
+    let mut energy_of = equations.energy().map(|energy| energy.on::<S>());
+    let d = equations.degrees().len();
+    let dt = S::from_f64(request.dt);
+    // Positions, velocities, inputs, which are zero, and the time step.
+    let mut inputs: Vec<S> = system.q.iter().chain(&system.v).map(|&x| S::from_f64(x)).collect();
+    inputs.resize(2 * d + equations.inputs().len(), S::zero());
+    inputs.push(dt);
+    let is_position = |degree: &Degree| matches!(degree, Degree::Coordinate(_));
+    let is_velocity = |degree: &Degree| !matches!(degree, Degree::Time);
+    let mut values = Vec::with_capacity(2 * d + 1);
+    let mut step = 0;
+    loop {
+        let time = step as f64 * dt.to_f64();
+        if step % every == 0 || step == *steps {
+            values.clear();
+            let degrees = || equations.degrees().iter();
+            let positions = degrees().zip(&inputs[..d]).filter(|(degree, _)| is_position(degree));
+            values.extend(positions.map(|(_, x)| *x));
+            let velocities = degrees().zip(&inputs[d..]).filter(|(degree, _)| is_velocity(degree));
+            values.extend(velocities.map(|(_, x)| *x));
+            values.extend(energy_of.iter_mut().flat_map(|energy| energy.run(&inputs)));
+            rows.row(&[step], time, &values)?;
+        }
+        if step == *steps {
+            return Ok(Outcome::Complete);
+        }
+        if step % CHUNK == 0 {
+            if monitor.should_stop() {
+                return Err(TrajectoryError::Interrupted);
+            }
+            monitor.on_step(step);
+        }
+        let next: Vec<S> = step_of.run(&inputs).collect();
+        step += 1;
+        if !next.iter().all(|x| x.is_finite()) {
+            let reason = "the state stopped being finite".to_owned();
+            let t = step as f64 * dt.to_f64();
+            return Ok(Outcome::Diverged(Divergence { step, t, reason }));
+        }
+        inputs[..2 * d].copy_from_slice(&next);
+    }
+}
