@@ -10,11 +10,11 @@ use libration::control::clock::Recorded;
 use libration_advise::linear::{self, LinearRequest, RequestFile};
 use libration_analyze::equation_trajectory;
 use libration_analyze::export::ExportError;
+use libration_analyze::linear_trajectory;
 use libration_analyze::trajectory;
 use libration_analyze::trajectory::{
     Divergence, EnsembleOptions, Format, Monitor, Outcome, Request, TrajectoryError,
 };
-use libration_analyze::linear_trajectory;
 use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::{Document, Fault};
 
