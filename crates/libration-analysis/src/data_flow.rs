@@ -14,7 +14,7 @@ pub enum Operation {
     Addition,
     /// `a / b`.
     Division,
-    /// A square root, sine or cosine.
+    /// A square root or another function of [`Elementary`](libration_core::Elementary) but the reciprocal.
     Function,
 }
 

@@ -24,9 +24,8 @@ enum Kind {
     Product,
     Quotient,
     Reciprocal,
-    Root,
-    Sine,
-    Cosine,
+    /// A function by its name in [`Elementary`].
+    Function(&'static str),
 }
 
 impl Kind {
@@ -35,7 +34,7 @@ impl Kind {
             Kind::Sum | Kind::Difference => Operation::Addition,
             Kind::Product => Operation::Multiplication,
             Kind::Quotient | Kind::Reciprocal => Operation::Division,
-            Kind::Root | Kind::Sine | Kind::Cosine => Operation::Function,
+            Kind::Function(_) => Operation::Function,
         }
     }
 }
@@ -125,13 +124,40 @@ impl<'a> TracedScalar<'a> {
         if negative { -self } else { self }
     }
 
-    /// A function of a value, or of a constant.
-    fn function(self, kind: Kind, on: impl Fn(f64) -> f64) -> Self {
-        match self {
-            Constant(c) => Constant(on(c)),
-            Value { trace, node, negative } => {
-                trace.result(kind, vec![Operand::Value(node, negative)], false)
-            }
+    /// A function of values, or of constants, of which it is one itself.
+    fn function<const N: usize>(
+        operands: [Self; N],
+        kind: Kind,
+        on: impl FnOnce([f64; N]) -> f64,
+    ) -> Self {
+        let trace = operands.iter().find_map(|operand| match operand {
+            Constant(_) => None,
+            Value { trace, .. } => Some(*trace),
+        });
+        let Some(trace) = trace else {
+            return Constant(on(operands.map(|operand| match operand {
+                Constant(c) => c,
+                Value { .. } => f64::NAN,
+            })));
+        };
+        let operand = |operand: Self| match operand {
+            Constant(c) => Operand::Constant(c.to_bits()),
+            Value { node, negative, .. } => Operand::Value(node, negative),
+        };
+        trace.result(kind, operands.map(operand).to_vec(), false)
+    }
+
+    /// A choice by the order of two numbers, done if both are constants.
+    fn select(
+        operands: [Self; 4],
+        name: &'static str,
+        holds: impl FnOnce(f64, f64) -> bool,
+    ) -> Self {
+        let [a, b, then, otherwise] = operands;
+        match (a, b) {
+            (Constant(a), Constant(b)) if holds(a, b) => then,
+            (Constant(_), Constant(_)) => otherwise,
+            _ => TracedScalar::function(operands, Kind::Function(name), |_| f64::NAN),
         }
     }
 }
@@ -209,20 +235,63 @@ impl Scalar for TracedScalar<'_> {
     }
 }
 
+/// Functions that are recorded by their names.
+macro_rules! recorded {
+    ($($function:ident($($other:ident)?))*) => {$(
+        fn $function(self $(, $other: Self)?) -> Self {
+            let kind = Kind::Function(stringify!($function));
+            TracedScalar::function([self $(, $other)?], kind, |[x $(, $other)?]| {
+                Elementary::$function(x $(, $other)?)
+            })
+        }
+    )*};
+}
+
 impl Elementary for TracedScalar<'_> {
-    fn sqrt(self) -> Self {
-        self.function(Kind::Root, f64::sqrt)
+    recorded! {
+        sqrt() sin() cos() tan() asin() acos() atan() atan2(other) exp() ln() sinh() cosh() tanh()
+        abs() min(other) max(other) signum()
     }
 
     fn recip(self) -> Self {
-        self.function(Kind::Reciprocal, f64::recip)
+        TracedScalar::function([self], Kind::Reciprocal, |[x]| x.recip())
     }
 
-    fn sin(self) -> Self {
-        self.function(Kind::Sine, Elementary::sin)
+    fn select_less(self, other: Self, then: Self, otherwise: Self) -> Self {
+        TracedScalar::select([self, other, then, otherwise], "select_less", |a, b| a < b)
     }
 
-    fn cos(self) -> Self {
-        self.function(Kind::Cosine, Elementary::cos)
+    fn select_equal(self, other: Self, then: Self, otherwise: Self) -> Self {
+        TracedScalar::select([self, other, then, otherwise], "select_equal", |a, b| a == b)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn functions_of_values_are_recorded_once_and_those_of_constants_are_computed() {
+        let trace = OperationTrace::default();
+        let (x, c) = (trace.input(), TracedScalar::from_f64);
+        let node = |scalar: TracedScalar<'_>| scalar.node();
+        assert!(node(x.exp()).is_some() && node(x.exp()) == node(x.exp()));
+        assert!(node(x.exp()) != node((-x).exp()) && node(x.exp()) != node(x.ln()));
+        assert!(node(x.atan2(c(2.0))) != node(c(2.0).atan2(x)));
+        assert!(node(x.min(c(2.0))) != node(x.max(c(2.0))));
+        assert!(matches!(c(0.5).atan2(c(-2.0)), Constant(y) if y == Elementary::atan2(0.5, -2.0)));
+        assert!(matches!(c(0.5).tanh(), Constant(y) if y == Elementary::tanh(0.5)));
+        // A choice by constants is the chosen value, and by a value it is an operation.
+        assert!(node(c(1.0).select_less(c(2.0), x, c(0.0))) == node(x));
+        assert!(node(c(2.0).select_equal(c(1.0), x, c(0.0))).is_none());
+        let chosen = x.select_less(c(2.0), c(1.0), c(0.0));
+        assert!(
+            node(chosen).is_some() && node(chosen) != node(x.select_equal(c(2.0), c(1.0), c(0.0)))
+        );
+        let nodes = trace.into_nodes();
+        assert_eq!(nodes.iter().filter(|node| **node == Node::Input).count(), 1);
+        let function =
+            |node: &Node| matches!(node, Node::Result(Operation::Function, on) if *on == [0]);
+        assert!(nodes[1..].iter().all(function), "{nodes:?}");
     }
 }

@@ -34,7 +34,8 @@ pub trait Scalar:
 /// A scalar with the elementary functions that nonlinear systems need.
 ///
 /// The float versions are branch-free arithmetic: they vectorise with the loop around them and
-/// give the same bits on every machine, neither of which is true of a platform's `libm`.
+/// give the same bits on every machine, neither of which is true of a platform's `libm`. Their ranges,
+/// errors and special values are in the documentation of [`elementary`](crate::elementary).
 pub trait Elementary: Scalar {
     /// Square root.
     fn sqrt(self) -> Self;
@@ -44,6 +45,44 @@ pub trait Elementary: Scalar {
     fn sin(self) -> Self;
     /// Cosine of an angle in radians.
     fn cos(self) -> Self;
+    /// Tangent of an angle in radians.
+    fn tan(self) -> Self;
+    /// Arc sine in radians, undefined outside `[−1, 1]`.
+    fn asin(self) -> Self;
+    /// Arc cosine in radians, undefined outside `[−1, 1]`.
+    fn acos(self) -> Self;
+    /// Arc tangent in radians.
+    fn atan(self) -> Self;
+    /// Angle of the vector `(x, self)` in `[−π, π]`, in radians.
+    fn atan2(self, x: Self) -> Self;
+    /// Exponential function.
+    fn exp(self) -> Self;
+    /// Natural logarithm, undefined below zero.
+    fn ln(self) -> Self;
+    /// Hyperbolic sine.
+    fn sinh(self) -> Self;
+    /// Hyperbolic cosine.
+    fn cosh(self) -> Self;
+    /// Hyperbolic tangent.
+    fn tanh(self) -> Self;
+    /// Absolute value.
+    fn abs(self) -> Self;
+    /// The lesser of two numbers; NaN if either is NaN.
+    fn min(self, other: Self) -> Self;
+    /// The greater of two numbers; NaN if either is NaN.
+    fn max(self, other: Self) -> Self;
+    /// −1, 0 or 1, with the sign of this number; a zero is returned as it is, NaN as NaN.
+    fn signum(self) -> Self;
+    /// `then` if `self < other`, else `otherwise`, also if either is NaN.
+    fn select_less(self, other: Self, then: Self, otherwise: Self) -> Self;
+    /// `then` if `self == other`, else `otherwise`, also if either is NaN.
+    fn select_equal(self, other: Self, then: Self, otherwise: Self) -> Self;
+
+    /// `then` if `self ≤ other`, else `otherwise`, also if either is NaN.
+    #[inline(always)]
+    fn select_less_equal(self, other: Self, then: Self, otherwise: Self) -> Self {
+        self.select_less(other, then, self.select_equal(other, then, otherwise))
+    }
 }
 
 /// A scalar whose value can be looked at: a float, whatever its width.

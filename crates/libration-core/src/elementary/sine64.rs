@@ -71,7 +71,7 @@ fn turn(a: f64, quarters: u64, sign: u64) -> f64 {
 
 /// The integer `k` nearest to `a / (π/2)` (its low bits only) and `a − k·π/2` as an unevaluated sum.
 #[inline(always)]
-fn reduce(a: f64) -> (u64, f64, f64) {
+pub(super) fn reduce(a: f64) -> (u64, f64, f64) {
     let shifted = a * FRAC_2_PI + ROUNDER;
     let k = shifted - ROUNDER;
 
@@ -87,14 +87,21 @@ fn reduce(a: f64) -> (u64, f64, f64) {
 /// Sine and cosine of `r + tail` for `|r| ≤ π/4`, where `tail` is at most an ulp of `r` or both are tiny.
 #[inline(always)]
 fn kernels(r: f64, tail: f64) -> (f64, f64) {
+    let (sine, base, cosine) = corrections(r, tail);
+    (r + sine, base + cosine)
+}
+
+/// The sine minus `r`, a number near the cosine, and the cosine minus that number.
+#[inline(always)]
+pub(super) fn corrections(r: f64, tail: f64) -> (f64, f64, f64) {
     let z = r * r;
     let half = 0.5 * z;
     // 1 − z/2 rounds; what it lost is recovered exactly below.
     let base = 1.0 - half;
 
-    let sine = r + (z * r * horner(z, SIN) + tail * base);
-    let cosine = base + (((1.0 - base) - half) + (z * z * horner(z, COS) - r * tail));
-    (sine, cosine)
+    let sine = z * r * horner(z, SIN) + tail * base;
+    let cosine = ((1.0 - base) - half) + (z * z * horner(z, COS) - r * tail);
+    (sine, base, cosine)
 }
 
 #[inline(always)]

@@ -2,6 +2,7 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
+use super::pair::{equal, less};
 use crate::{Elementary, Float, Scalar};
 
 /// An `f32`, and the rounding errors of the sums that led to it.
@@ -26,6 +27,11 @@ impl Compensated {
     #[inline(always)]
     fn plain(value: f32) -> Self {
         Compensated { value, lost: 0.0 }
+    }
+
+    #[inline(always)]
+    fn parts(self) -> (f32, f32) {
+        (self.value, self.lost)
     }
 }
 
@@ -79,22 +85,53 @@ impl Scalar for Compensated {
     }
 }
 
+/// Functions of the value, which use nothing of the compensation.
+macro_rules! function_of_value {
+    ($($function:ident($($other:ident)?))*) => {$(
+        #[inline(always)]
+        fn $function(self $(, $other: Self)?) -> Self {
+            Compensated::plain(Elementary::$function(self.value $(, $other.value)?))
+        }
+    )*};
+}
+
 impl Elementary for Compensated {
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Compensated::plain(self.value.sqrt())
+    function_of_value! {
+        sqrt() recip() sin() cos() tan() asin() acos() atan() atan2(x) exp() ln() sinh() cosh() tanh()
     }
     #[inline(always)]
-    fn recip(self) -> Self {
-        Compensated::plain(self.value.recip())
+    fn abs(self) -> Self {
+        if self.value < 0.0 { -self } else { self }
     }
     #[inline(always)]
-    fn sin(self) -> Self {
-        Compensated::plain(Elementary::sin(self.value))
+    fn min(self, other: Self) -> Self {
+        let value = if less(other.parts(), self.parts()) { other } else { self };
+        if self.value.is_nan() | other.value.is_nan() {
+            Compensated::plain(f32::NAN)
+        } else {
+            value
+        }
     }
     #[inline(always)]
-    fn cos(self) -> Self {
-        Compensated::plain(Elementary::cos(self.value))
+    fn max(self, other: Self) -> Self {
+        let value = if less(self.parts(), other.parts()) { other } else { self };
+        if self.value.is_nan() | other.value.is_nan() {
+            Compensated::plain(f32::NAN)
+        } else {
+            value
+        }
+    }
+    #[inline(always)]
+    fn signum(self) -> Self {
+        Compensated::plain(Elementary::signum(self.value))
+    }
+    #[inline(always)]
+    fn select_less(self, other: Self, then: Self, otherwise: Self) -> Self {
+        if less(self.parts(), other.parts()) { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn select_equal(self, other: Self, then: Self, otherwise: Self) -> Self {
+        if equal(self.parts(), other.parts()) { then } else { otherwise }
     }
 }
 

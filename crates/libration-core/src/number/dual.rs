@@ -104,4 +104,116 @@ impl<S: Elementary> Elementary for Dual<S> {
     fn cos(self) -> Self {
         self.chain(self.re.cos(), -self.re.sin())
     }
+
+    #[inline(always)]
+    fn tan(self) -> Self {
+        let tangent = self.re.tan();
+        self.chain(tangent, S::one() + tangent * tangent)
+    }
+
+    #[inline(always)]
+    fn asin(self) -> Self {
+        self.chain_from_end(self.re.asin(), self.arcsine_slope())
+    }
+
+    #[inline(always)]
+    fn acos(self) -> Self {
+        self.chain_from_end(self.re.acos(), -self.arcsine_slope())
+    }
+
+    #[inline(always)]
+    fn atan(self) -> Self {
+        self.chain(self.re.atan(), (S::one() + self.re * self.re).recip())
+    }
+
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        let inverse = (x.re * x.re + self.re * self.re).recip();
+        Dual { re: self.re.atan2(x.re), du: (x.re * self.du - self.re * x.du) * inverse }
+    }
+
+    #[inline(always)]
+    fn exp(self) -> Self {
+        let exponential = self.re.exp();
+        self.chain(exponential, exponential)
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        self.chain(self.re.ln(), self.re.recip())
+    }
+
+    #[inline(always)]
+    fn sinh(self) -> Self {
+        self.chain(self.re.sinh(), self.re.cosh())
+    }
+
+    #[inline(always)]
+    fn cosh(self) -> Self {
+        self.chain(self.re.cosh(), self.re.sinh())
+    }
+
+    /// Its slope is `1/cosh²`: `1 − tanh²` would lose its digits far from zero.
+    #[inline(always)]
+    fn tanh(self) -> Self {
+        let inverse = self.re.cosh().recip();
+        self.chain(self.re.tanh(), inverse * inverse)
+    }
+
+    /// Its slope at 0 is 0, the middle of the slopes on both sides.
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.chain(self.re.abs(), self.re.signum())
+    }
+
+    /// Of equal values it has the derivative of `self`.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        let du = other.re.select_less(self.re, other.du, self.du);
+        Dual { re: self.re.min(other.re), du }
+    }
+
+    /// Of equal values it has the derivative of `self`.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        let du = self.re.select_less(other.re, other.du, self.du);
+        Dual { re: self.re.max(other.re), du }
+    }
+
+    /// Its slope is 0, also at the jump.
+    #[inline(always)]
+    fn signum(self) -> Self {
+        Dual::constant(self.re.signum())
+    }
+
+    #[inline(always)]
+    fn select_less(self, other: Self, then: Self, otherwise: Self) -> Self {
+        Dual {
+            re: self.re.select_less(other.re, then.re, otherwise.re),
+            du: self.re.select_less(other.re, then.du, otherwise.du),
+        }
+    }
+
+    #[inline(always)]
+    fn select_equal(self, other: Self, then: Self, otherwise: Self) -> Self {
+        Dual {
+            re: self.re.select_equal(other.re, then.re, otherwise.re),
+            du: self.re.select_equal(other.re, then.du, otherwise.du),
+        }
+    }
+}
+
+impl<S: Elementary> Dual<S> {
+    /// `1/√(1 − re²)`, infinite at ±1.
+    #[inline(always)]
+    fn arcsine_slope(self) -> S {
+        ((S::one() - self.re) * (S::one() + self.re)).sqrt().recip()
+    }
+
+    /// [`chain`](Self::chain) for a slope that may be infinite: a constant has the derivative 0 nevertheless.
+    #[inline(always)]
+    fn chain_from_end(self, value: S, slope: S) -> Self {
+        let du = self.du.select_equal(S::zero(), self.du, slope * self.du);
+        Dual { re: value, du }
+    }
 }

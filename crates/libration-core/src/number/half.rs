@@ -5,10 +5,8 @@
 //! `q ≥ 2p + 2` (Figueroa, *When is double rounding innocuous?*, 1995), and `f32` has `q = 24`,
 //! `f16` has `p = 11` and `bf16` has `p = 8`.
 //!
-//! Sine and cosine are computed in `f64` and rounded once, which is correct for every argument: the
-//! exhaustive test finds no value near enough to a tie. The range is that of [`sine64`].
-//!
-//! [`sine64`]: crate::elementary::sine64
+//! The other elementary functions are those of `f64`, rounded once, which is correct for every argument: the
+//! exhaustive test finds no value near enough to a tie. Their ranges are in [`elementary`](crate::elementary).
 
 use half::{bf16, f16};
 
@@ -33,6 +31,16 @@ fn to_odd(c: f64) -> f32 {
     }
 }
 
+/// Functions that `f64` computes and a conversion rounds.
+macro_rules! in_f64 {
+    ($($function:ident($($other:ident)?))*) => {$(
+        #[inline(always)]
+        fn $function(self $(, $other: Self)?) -> Self {
+            Scalar::from_f64(Elementary::$function(self.to_f64() $(, $other.to_f64())?))
+        }
+    )*};
+}
+
 macro_rules! half_float {
     ($float:ident, $name:literal, $unit_roundoff:expr) => {
         impl Scalar for $float {
@@ -55,13 +63,17 @@ macro_rules! half_float {
             fn recip(self) -> Self {
                 $float::from_f32(self.to_f32().recip())
             }
-            #[inline(always)]
-            fn sin(self) -> Self {
-                Scalar::from_f64(Elementary::sin(self.to_f64()))
+            in_f64! {
+                sin() cos() tan() asin() acos() atan() atan2(x) exp() ln() sinh() cosh() tanh()
+                abs() min(other) max(other) signum()
             }
             #[inline(always)]
-            fn cos(self) -> Self {
-                Scalar::from_f64(Elementary::cos(self.to_f64()))
+            fn select_less(self, other: Self, then: Self, otherwise: Self) -> Self {
+                if self < other { then } else { otherwise }
+            }
+            #[inline(always)]
+            fn select_equal(self, other: Self, then: Self, otherwise: Self) -> Self {
+                if self == other { then } else { otherwise }
             }
         }
 

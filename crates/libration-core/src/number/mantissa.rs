@@ -63,22 +63,28 @@ impl<const P: u32> Scalar for Mantissa<P> {
     }
 }
 
+/// Functions that `f64` computes, rounded.
+macro_rules! rounded_function {
+    ($($function:ident($($other:ident)?))*) => {$(
+        #[inline(always)]
+        fn $function(self $(, $other: Self)?) -> Self {
+            Mantissa::rounded(Elementary::$function(self.0 $(, $other.0)?))
+        }
+    )*};
+}
+
 impl<const P: u32> Elementary for Mantissa<P> {
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Mantissa::rounded(self.0.sqrt())
+    rounded_function! {
+        sqrt() recip() sin() cos() tan() asin() acos() atan() atan2(x) exp() ln() sinh() cosh() tanh()
+        abs() min(other) max(other) signum()
     }
     #[inline(always)]
-    fn recip(self) -> Self {
-        Mantissa::rounded(self.0.recip())
+    fn select_less(self, other: Self, then: Self, otherwise: Self) -> Self {
+        if self.0 < other.0 { then } else { otherwise }
     }
     #[inline(always)]
-    fn sin(self) -> Self {
-        Mantissa::rounded(Elementary::sin(self.0))
-    }
-    #[inline(always)]
-    fn cos(self) -> Self {
-        Mantissa::rounded(Elementary::cos(self.0))
+    fn select_equal(self, other: Self, then: Self, otherwise: Self) -> Self {
+        if self.0 == other.0 { then } else { otherwise }
     }
 }
 

@@ -7,6 +7,7 @@ mod dual;
 mod float;
 mod half;
 mod mantissa;
+mod pair;
 mod poly;
 mod ratio;
 mod twofloat;

@@ -4,7 +4,9 @@ use core::fmt;
 use core::ops::{Add, Mul, Neg, Sub};
 
 use super::{Ratio, Wide};
-use crate::{Elementary, Scalar};
+use crate::Scalar;
+
+mod functions;
 
 /// A polynomial in `z` of degree below `N`, with exact coefficients.
 ///
@@ -185,26 +187,6 @@ impl<const N: usize> Scalar for Poly<N> {
             *c = *c * factor;
         }
         if self.is_valid() { self } else { Poly::UNDEFINED }
-    }
-}
-
-/// No elementary function of a polynomial is one: all are undefined. So a nonlinear system can be
-/// put on polynomials, and a step on it says that it has no matrix.
-impl<const N: usize> Elementary for Poly<N> {
-    fn sqrt(self) -> Self {
-        Poly::UNDEFINED
-    }
-
-    fn recip(self) -> Self {
-        Poly::UNDEFINED
-    }
-
-    fn sin(self) -> Self {
-        Poly::UNDEFINED
-    }
-
-    fn cos(self) -> Self {
-        Poly::UNDEFINED
     }
 }
 

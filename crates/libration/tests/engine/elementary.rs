@@ -13,7 +13,7 @@ const SINE_OF_F32: u64 = 0x9420_c1f6_397d_2f91;
 const COSINE_OF_F32: u64 = 0xec58_68c0_ab27_48e9;
 
 /// A float whose bits the tests may handle.
-trait Bits: Float {
+pub(crate) trait Bits: Float {
     const RANGE: Self;
     /// How many multiples of π/2 the range holds.
     const QUARTERS: u64;
@@ -48,10 +48,10 @@ bits!(f32, u32, sine32::RANGE, 1 << 16, sinf, cosf);
 bits!(f64, u64, sine64::RANGE, 1 << 20, sin, cos);
 
 /// SplitMix64.
-struct Random(u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    fn bits(&mut self) -> u64 {
+    pub(crate) fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -59,12 +59,12 @@ impl Random {
     }
 
     /// Uniform among the floats of `[low, high]`, hence about uniform in the exponent.
-    fn float<T: Bits>(&mut self, low: T, high: T) -> T {
+    pub(crate) fn float<T: Bits>(&mut self, low: T, high: T) -> T {
         T::of_bits(low.bits() + self.bits() % (high.bits() - low.bits() + 1))
     }
 
     /// Uniform on the interval `[0, high)`.
-    fn real<T: Bits>(&mut self, high: T) -> T {
+    pub(crate) fn real<T: Bits>(&mut self, high: T) -> T {
         T::from_f64((self.bits() >> 11) as f64 / 2f64.powi(53) * high.to_f64())
     }
 }

@@ -235,3 +235,41 @@ fn every_sine_and_cosine_of_f16_and_bf16_is_rounded_correctly() {
     sines_round_correctly::<f16>();
     sines_round_correctly::<bf16>();
 }
+
+/// Against the functions of CORE-MATH, which are right to 53 bits.
+fn functions_round_correctly<T: Format>() {
+    macro_rules! check {
+        ($a:ident: $($name:ident $correct:ident)*) => {$(
+            let exact = core_math::$correct($a.to_f64());
+            assert_is($a.$name(), exact, || format!("{} {:?}", stringify!($name), $a));
+        )*};
+    }
+    for a in all::<T>() {
+        check!(a: asin asin acos acos atan atan exp exp ln log sinh sinh cosh cosh tanh tanh);
+        let x = a.to_f64();
+        let tangent = if x.abs() <= sine64::RANGE { core_math::tan(x) } else { f64::NAN };
+        assert_is(a.tan(), tangent, || format!("tan {a:?}"));
+        assert_is(a.abs(), x.abs(), || format!("abs {a:?}"));
+        for b in some::<T>().step_by(41) {
+            let y = b.to_f64();
+            assert_is(a.atan2(b), core_math::atan2(x, y), || format!("atan2 {a:?} {b:?}"));
+            let [least, greatest] = if x.is_nan() || y.is_nan() {
+                [f64::NAN; 2]
+            } else if (x, x.is_sign_positive()) < (y, y.is_sign_positive()) {
+                [x, y]
+            } else {
+                [y, x]
+            };
+            assert_is(a.min(b), least, || format!("min {a:?} {b:?}"));
+            assert_is(a.max(b), greatest, || format!("max {a:?} {b:?}"));
+            let choice = a.select_less_equal(b, T::one(), T::zero());
+            assert_is(choice, f64::from(u8::from(x <= y)), || format!("{a:?} <= {b:?}"));
+        }
+    }
+}
+
+#[test]
+fn every_function_of_f16_and_bf16_is_rounded_correctly() {
+    functions_round_correctly::<f16>();
+    functions_round_correctly::<bf16>();
+}

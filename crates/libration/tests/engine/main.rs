@@ -7,6 +7,7 @@ mod analysis;
 mod catalog;
 mod dimensions;
 mod elementary;
+mod elementary_functions;
 mod ensemble;
 mod exact;
 mod golden;

@@ -5,6 +5,7 @@ mod poly;
 mod ratio;
 mod twofloat;
 mod wide;
+mod wide_functions;
 
 use libration::number::Wide;
 

@@ -78,6 +78,37 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    // Measured: at most 7u² on 20,000 arguments. 10⁻³⁰ is 81u².
+    #[test]
+    fn the_other_functions_are_right_to_1e_30(
+        a in twofloat(), b in twofloat(), x in -600.0..600.0_f64, t in -1.0..1.0_f64, low in -1.0..1.0_f64,
+    ) {
+        within!(a.atan(), Wide::from(a).atan(), 81.0);
+        within!(a.atan2(b), Wide::from(a).atan2(Wide::from(b)), 81.0);
+        within!(a.abs().ln(), Wide::from(a.abs()).ln(), 81.0);
+        for x in [x, 0.01 * x, t] {
+            let x = TwoFloat::from_sum(x, low * x * exp2(-54));
+            let w = Wide::from(x);
+            within!(x.exp(), w.exp(), 81.0);
+            within!(x.sinh(), w.sinh(), 81.0);
+            within!(x.cosh(), w.cosh(), 81.0);
+            within!(x.tanh(), w.tanh(), 81.0);
+            // Next to one.
+            let near = TwoFloat::from_f64(1.0) + TwoFloat::from_f64(t * exp2(-20));
+            within!(near.ln(), Wide::from(near).ln(), 81.0);
+        }
+        for t in [t, t.signum() - 0.001 * t] {
+            let t = TwoFloat::from_sum(t, low * t * exp2(-54));
+            within!(t.tan(), Wide::from(t).tan(), 81.0);
+            within!(t.asin(), Wide::from(t).asin(), 81.0);
+            within!(t.acos(), Wide::from(t).acos(), 81.0);
+        }
+    }
+}
+
 #[test]
 fn large_operands_survive_the_split() {
     // Above 2⁹⁹⁶ the splitting constant times the operand would overflow.

@@ -8,6 +8,8 @@ use bnum::types::U1024;
 use super::{BITS, GUARD, Guarded, Wide};
 use crate::{Elementary, Scalar};
 
+mod elementary;
+
 /// The largest angle, as a power of two, that `sin` and `cos` reduce.
 const LARGEST_ANGLE: i64 = 512;
 
@@ -92,7 +94,7 @@ impl Wide {
     }
 
     /// `atan` of a number of magnitude at most 1.
-    fn atan(self) -> Self {
+    fn atan_of_fraction(self) -> Self {
         // atan t = 2 atan(t / (1 + √(1 + t²))): three times leaves |t| < 0.1.
         let mut t = self;
         for _ in 0..3 {
@@ -121,11 +123,11 @@ impl Wide {
         }
         let half_turn = if y.negative { -Wide::pi() } else { Wide::pi() };
         if y.abs() > x.abs() {
-            half_turn.scaled(-1) - (x / y).atan()
+            half_turn.scaled(-1) - (x / y).atan_of_fraction()
         } else if x.negative {
-            half_turn + (y / x).atan()
+            half_turn + (y / x).atan_of_fraction()
         } else {
-            (y / x).atan()
+            (y / x).atan_of_fraction()
         }
     }
 
@@ -211,30 +213,5 @@ impl Wide {
             text.insert(1, '.');
         }
         format!("{}{text}e{power}", if self.negative { "-" } else { "" })
-    }
-}
-
-impl Elementary for Wide {
-    /// Newton's iteration from the `f64` root; five steps reach 1600 bits.
-    fn sqrt(self) -> Self {
-        if self.negative || self.significand.is_zero() {
-            return if self.is_zero() { self } else { Wide::NAN };
-        }
-        let even = self.leading() & !1;
-        let x = self.scaled(-even);
-        let seed = Wide::from_f64(x.to_f64().sqrt());
-        (0..5).fold(seed, |y, _| (y + x / y).scaled(-1)).scaled(even / 2)
-    }
-
-    fn recip(self) -> Self {
-        Wide::one() / self
-    }
-
-    fn sin(self) -> Self {
-        self.sin_cos().0
-    }
-
-    fn cos(self) -> Self {
-        self.sin_cos().1
     }
 }
