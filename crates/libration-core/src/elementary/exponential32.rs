@@ -11,10 +11,10 @@ const ROUNDER: f32 = 12_582_912.0;
 const LN_2: [f32; 2] = [0.693_145_75, 1.428_606_8e-6];
 
 /// `(cosh r − 1 − r²/2)/r⁴` as a polynomial in `r²`: minimax on `[-ln 2 / 2, ln 2 / 2]`, found by Remez's
-/// exchange, its coefficients rounded one after the other. The error of the cosine is below 2⁻³³.
+/// exchange, its coefficients rounded one after the other. The error of cosh is below 2⁻³³.
 const COSH: [f32; 2] = [0.041_666_46, 0.001_393_542_9];
 
-/// `(sinh r − r)/r³` as a polynomial in `r²`, found in the same way. The relative error of the sine is below
+/// `(sinh r − r)/r³` as a polynomial in `r²`, found in the same way. The relative error of sinh is below
 /// 2⁻³⁴.
 const SINH: [f32; 3] = [0.166_666_67, 0.008_333_175, 0.000_199_740_46];
 

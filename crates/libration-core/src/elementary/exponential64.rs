@@ -13,7 +13,7 @@ const ROUNDER: f64 = 6_755_399_441_055_744.0;
 const LN_2: [f64; 2] = [0.693_147_180_559_890_3, 5.497_923_018_708_371e-14];
 
 /// `(cosh r − 1 − r²/2)/r⁴` as a polynomial in `r²`: minimax on `[-ln 2 / 2, ln 2 / 2]`, found by Remez's
-/// exchange, its coefficients rounded one after the other. The error of the cosine is below 2⁻⁷⁰.
+/// exchange, its coefficients rounded one after the other. The error of cosh is below 2⁻⁷⁰.
 const COSH: [f64; 5] = [
     0.041_666_666_666_666_685,
     0.001_388_888_888_887_328_3,
@@ -22,7 +22,7 @@ const COSH: [f64; 5] = [
     2.092_176_494_298_979_6e-9,
 ];
 
-/// `(sinh r − r)/r³` as a polynomial in `r²`, found in the same way. The relative error of the sine is below
+/// `(sinh r − r)/r³` as a polynomial in `r²`, found in the same way. The relative error of sinh is below
 /// 2⁻⁶¹.
 const SINH: [f64; 5] = [
     0.166_666_666_666_666_77,

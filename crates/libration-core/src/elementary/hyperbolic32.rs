@@ -11,11 +11,11 @@ use super::exponential64::power_of_two;
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// `(cosh r − 1 − r²/2)/r⁴` as a polynomial in `r²`: minimax on `[-ln 2 / 2, ln 2 / 2]`, found by Remez's
-/// exchange. The error of the cosine is below 2⁻⁴⁵.
+/// exchange. The error of cosh is below 2⁻⁴⁵.
 const COSH: [f64; 3] =
     [0.041_666_666_814_830_58, 0.001_388_883_053_043_227_2, 2.487_290_549_233_680_4e-5];
 
-/// `(sinh r − r)/r³` as a polynomial in `r²`, found in the same way. The relative error of the sine is below
+/// `(sinh r − r)/r³` as a polynomial in `r²`, found in the same way. The relative error of sinh is below
 /// 2⁻³⁷.
 const SINH: [f64; 3] =
     [0.166_666_667_545_366_4, 0.008_333_288_959_130_25, 0.000_199_049_581_835_207_45];

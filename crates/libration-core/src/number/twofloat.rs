@@ -22,8 +22,8 @@ mod functions;
 /// | `sqrt` | 25/8 u² | Lefèvre, Louvet, Muller, Picot and Rideau, ACM TOMS 49 (2023), 1 |
 ///
 /// `sin` and `cos` have an absolute error of at most 10⁻³⁰ for `|x| ≤ 2⁵⁰` and are NaN beyond,
-/// where the argument itself no longer names an angle to that accuracy. The other functions have a relative
-/// error of at most 10⁻³⁰, with `tan` in the same range and the special values of `f64`.
+/// where the argument itself no longer names an angle to that accuracy. `tan` is their quotient. The other
+/// functions have a relative error of at most 10⁻³⁰ and the special values of `f64`.
 ///
 /// There is no fused multiply-add: the exact product is Dekker's, so that every machine gives the
 /// same bits. Overflow gives infinity or NaN; products above 2¹⁰²² may already do so.

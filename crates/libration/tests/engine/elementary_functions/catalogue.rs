@@ -35,7 +35,7 @@ macro_rules! function {
 /// The errors are those in the documentation of each function.
 pub(super) const FUNCTIONS: [Function; 9] = [
     function!(exp, exp, 750.0, [0.62, 0.62]),
-    function!(ln, log, f64::MAX, [0.67, 0.88]),
+    function!(ln, log, f64::MAX, [0.67, 0.73]),
     function!(tan, tan, sine64::RANGE, [0.88, 0.501]),
     function!(asin, asin, 1.0, [0.66, 0.501]),
     function!(acos, acos, 1.0, [0.65, 0.501]),

@@ -38,6 +38,8 @@ impl Wide {
     }
 }
 
+/// `asin`, `acos` and `atan` have relative errors of at most 2⁻¹⁰¹³ and are NaN where they are undefined. `tan` has
+/// the absolute errors of [`sin_cos`](Wide::sin_cos); `exp`, `ln` and `atan2` are the methods of these names.
 impl Elementary for Wide {
     /// Newton's iteration from the `f64` root; five steps reach 1600 bits.
     fn sqrt(self) -> Self {
