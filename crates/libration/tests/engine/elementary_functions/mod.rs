@@ -3,6 +3,7 @@
 mod accuracy;
 mod bits;
 mod catalogue;
+mod ensemble;
 mod number_types;
 mod order;
 mod special_pairs;
