@@ -14,7 +14,7 @@
 //! | [`arcsine64::acos`] | abs(x) ≤ 1 | 0.629 ulp | 2.4·10⁷ |
 //! | [`arctangent64::atan`] | all | 0.656 ulp | 2.4·10⁷ |
 //! | [`arctangent64::atan2`] | all | 0.664 ulp | 2.4·10⁷ |
-//! | [`exponential64::exp`] | all | 0.606 ulp, 0.75 subnormal | 2.4·10⁷ |
+//! | [`exponential64::exp`] | all | 0.606 ulp, 0.751 subnormal | 2.4·10⁷ |
 //! | [`logarithm64::ln`] | x ≥ 0 | 0.657 ulp | 2.4·10⁷ |
 //! | [`hyperbolic64::sinh`] | all | 0.725 ulp | 2.4·10⁷ |
 //! | [`hyperbolic64::cosh`] | all | 0.675 ulp | 2.4·10⁷ |
