@@ -28,24 +28,28 @@ pub(crate) enum Operation {
     Reciprocal(ValueId),
     /// A value times one integer, divided by another.
     Ratio(ValueId, i32, i32),
-    Call(Function, ValueId),
+    /// Of a function of one argument both are the same.
+    Call(Function, [ValueId; 2]),
+    /// Of `[a, b, then, otherwise]` the third if `a < b`, else the last; if equal as the flag says.
+    Choice(bool, [ValueId; 4]),
 }
 
 impl Operation {
     /// The values that it takes.
     pub(crate) fn operands(self) -> impl Iterator<Item = ValueId> {
-        let [a, b] = match self {
-            Operation::Input(_) | Operation::Constant(_) => [None, None],
+        let (operands, count) = match self {
+            Operation::Input(_) | Operation::Constant(_) => ([0; 4], 0),
             Operation::Sum(a, b)
             | Operation::Difference(a, b)
             | Operation::Product(a, b)
-            | Operation::Quotient(a, b) => [Some(a), Some(b)],
-            Operation::Negative(a)
-            | Operation::Reciprocal(a)
-            | Operation::Ratio(a, _, _)
-            | Operation::Call(_, a) => [Some(a), None],
+            | Operation::Quotient(a, b) => ([a, b, 0, 0], 2),
+            Operation::Negative(a) | Operation::Reciprocal(a) | Operation::Ratio(a, _, _) => {
+                ([a, 0, 0, 0], 1)
+            }
+            Operation::Call(function, [a, b]) => ([a, b, 0, 0], function.arity()),
+            Operation::Choice(_, operands) => (operands, 4),
         };
-        a.into_iter().chain(b)
+        operands.into_iter().take(count)
     }
 
     /// The same with operands at other places.
@@ -59,7 +63,12 @@ impl Operation {
             Operation::Negative(a) => Operation::Negative(places[a]),
             Operation::Reciprocal(a) => Operation::Reciprocal(places[a]),
             Operation::Ratio(a, num, den) => Operation::Ratio(places[a], num, den),
-            Operation::Call(function, a) => Operation::Call(function, places[a]),
+            Operation::Call(function, operands) => {
+                Operation::Call(function, operands.map(|a| places[a]))
+            }
+            Operation::Choice(or_equal, operands) => {
+                Operation::Choice(or_equal, operands.map(|a| places[a]))
+            }
         }
     }
 }
@@ -105,7 +114,11 @@ impl Program {
                 }
                 Operation::Quotient(a, b) => degrees[a].filter(|_| constant(b).is_some()),
                 Operation::Negative(a) | Operation::Ratio(a, _, _) => degrees[a],
-                Operation::Reciprocal(a) | Operation::Call(_, a) => constant(a),
+                Operation::Reciprocal(a) => constant(a),
+                Operation::Call(_, [a, b]) => constant(a).and(constant(b)),
+                Operation::Choice(_, operands) => {
+                    operands.into_iter().try_fold(0, |_, a| constant(a))
+                }
             });
         }
         self.outputs.iter().map(|&output| degrees[output]).collect()
@@ -118,6 +131,14 @@ impl Program {
             _ => S::zero(),
         };
         Evaluation { program: self, values: self.values.iter().map(constant).collect() }
+    }
+}
+
+/// The third of four numbers if the first is below the second, else the last; if equal as `or_equal` says.
+pub(crate) fn choose<S: Elementary>(or_equal: bool, [a, b, then, otherwise]: [S; 4]) -> S {
+    match or_equal {
+        true => a.select_less_equal(b, then, otherwise),
+        false => a.select_less(b, then, otherwise),
     }
 }
 
@@ -146,7 +167,10 @@ impl<S: Elementary> Evaluation<'_, S> {
                 Operation::Negative(a) => -values[a],
                 Operation::Reciprocal(a) => values[a].recip(),
                 Operation::Ratio(a, num, den) => values[a].ratio(num, den),
-                Operation::Call(function, a) => function.of(values[a]),
+                Operation::Call(function, operands) => function.of(operands.map(|a| values[a])),
+                Operation::Choice(or_equal, operands) => {
+                    choose(or_equal, operands.map(|a| values[a]))
+                }
             };
         }
         self.program.outputs.iter().map(|&output| self.values[output])

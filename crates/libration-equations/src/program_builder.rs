@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::Function;
-use super::program::{Operation, Program, ValueId};
+use super::program::{Operation, Program, ValueId, choose};
 
 /// Collects the operations of a program, each once, and computes those of constants in `f64`.
 #[derive(Clone, Debug, Default)]
@@ -20,7 +20,8 @@ enum Key {
     Constant(u64),
     Operation(u8, ValueId, ValueId),
     Ratio(ValueId, i32, i32),
-    Call(Function, ValueId),
+    Call(Function, [ValueId; 2]),
+    Choice(bool, [ValueId; 4]),
 }
 
 impl ProgramBuilder {
@@ -56,7 +57,8 @@ impl ProgramBuilder {
             Operation::Negative(a) => Key::Operation(4, a, a),
             Operation::Reciprocal(a) => Key::Operation(5, a, a),
             Operation::Ratio(a, num, den) => Key::Ratio(a, num, den),
-            Operation::Call(function, a) => Key::Call(function, a),
+            Operation::Call(function, operands) => Key::Call(function, operands),
+            Operation::Choice(or_equal, operands) => Key::Choice(or_equal, operands),
         };
         *self.known.entry(key).or_insert_with(|| {
             self.values.push(operation);
@@ -93,8 +95,17 @@ impl ProgramBuilder {
             Operation::Reciprocal(a) => of(a).map_or(operation, |a| Operation::Constant(a.recip())),
             Operation::Ratio(a, num, den) => of(a)
                 .map_or(operation, |a| Operation::Constant(a * f64::from(num) / f64::from(den))),
-            Operation::Call(function, a) => {
-                of(a).map_or(operation, |a| Operation::Constant(function.of(a)))
+            Operation::Call(function, [a, b]) => match (of(a), of(b)) {
+                (Some(a), Some(b)) => Operation::Constant(function.of([a, b])),
+                _ => operation,
+            },
+            Operation::Choice(or_equal, [a, b, then, otherwise]) => {
+                match (of(a), of(b), of(then), of(otherwise)) {
+                    (Some(a), Some(b), Some(then), Some(otherwise)) => {
+                        Operation::Constant(choose(or_equal, [a, b, then, otherwise]))
+                    }
+                    _ => operation,
+                }
             }
             Operation::Input(_) | Operation::Constant(_) => operation,
         }

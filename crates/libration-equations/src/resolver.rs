@@ -108,15 +108,19 @@ impl Resolver {
                     self.operation(*operator, values[*a], values[*b])
                 }
                 NodeKind::Call(function, arguments) => {
-                    self.builder.value(Operation::Call(*function, values[arguments[0]]))
+                    let last = arguments[function.arity() - 1];
+                    let operands = [values[arguments[0]], values[last]];
+                    self.builder.value(Operation::Call(*function, operands))
                 }
                 NodeKind::Choice { comparison, sides: [a, b], values: [then, otherwise] } => {
-                    let [a, b] = match comparison {
-                        Comparison::Less | Comparison::LessOrEqual => [a, b],
-                        Comparison::Greater | Comparison::GreaterOrEqual => [b, a],
+                    let (or_equal, [a, b]) = match comparison {
+                        Comparison::Less => (false, [a, b]),
+                        Comparison::LessOrEqual => (true, [a, b]),
+                        Comparison::Greater => (false, [b, a]),
+                        Comparison::GreaterOrEqual => (true, [b, a]),
                     };
-                    let _ = (a, b, then, otherwise);
-                    values[*then]
+                    let operands = [a, b, then, otherwise].map(|node| values[*node]);
+                    self.builder.value(Operation::Choice(or_equal, operands))
                 }
             };
             values.push(value);
@@ -137,13 +141,17 @@ impl Resolver {
 }
 
 impl Resolver {
-    /// `a^b`: whole powers by products, halves by roots.
+    /// `a^b`: whole powers by products, a power of a half by a root, others by `exp(b log(a))`.
     fn power(&mut self, a: ValueId, b: ValueId) -> ValueId {
         let exponent = self.builder.as_constant(b);
         match exponent.map(|b| (b, b as i32)) {
             Some((b, whole)) if f64::from(whole) == b => self.builder.whole_power(a, whole),
-            Some((0.5, _)) => self.builder.value(Operation::Call(Function::Sqrt, a)),
-            _ => a,
+            Some((0.5, _)) => self.builder.value(Operation::Call(Function::Sqrt, [a, a])),
+            _ => {
+                let logarithm = self.builder.value(Operation::Call(Function::Log, [a, a]));
+                let product = self.builder.value(Operation::Product(b, logarithm));
+                self.builder.value(Operation::Call(Function::Exp, [product, product]))
+            }
         }
     }
 }
