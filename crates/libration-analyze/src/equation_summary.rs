@@ -25,6 +25,8 @@ pub struct EquationSummary {
     pub time_dependent: bool,
     /// The degree of the equations as polynomials of the states; none if they are no polynomials.
     pub polynomial_degree: Option<u32>,
+    /// Whether the accelerations have derivatives everywhere.
+    pub smooth: bool,
     /// Whether there is an energy.
     pub energy: bool,
     /// Number of operations of an evaluation of all accelerations.
@@ -90,6 +92,7 @@ impl EquationSummary {
             positional: equations.is_positional(),
             time_dependent: degrees.contains(&Degree::Time),
             polynomial_degree: equations.polynomial_degree(),
+            smooth: equations.accelerations().is_smooth(),
             energy: equations.energy().is_some(),
             operations: equations.accelerations().operations(),
             rate_at_start: rates.iter().fold(0.0, |most, rate| f64::max(most, rate.abs())),

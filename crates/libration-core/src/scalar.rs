@@ -78,6 +78,12 @@ pub trait Elementary: Scalar {
     /// `then` if `self == other`, else `otherwise`, also if either is NaN.
     fn select_equal(self, other: Self, then: Self, otherwise: Self) -> Self;
 
+    /// `self / divisor`, of floats with one rounding.
+    #[inline(always)]
+    fn quotient(self, divisor: Self) -> Self {
+        self * divisor.recip()
+    }
+
     /// `then` if `self ≤ other`, else `otherwise`, also if either is NaN.
     #[inline(always)]
     fn select_less_equal(self, other: Self, then: Self, otherwise: Self) -> Self {

@@ -124,6 +124,15 @@ impl Program {
         self.outputs.iter().map(|&output| degrees[output]).collect()
     }
 
+    /// Whether all outputs have derivatives: no function has a kink or a jump.
+    pub fn is_smooth(&self) -> bool {
+        self.values.iter().all(|operation| match operation {
+            Operation::Call(function, _) => function.is_smooth(),
+            Operation::Choice(..) => false,
+            _ => true,
+        })
+    }
+
     /// The program on numbers of type `S`.
     pub fn on<S: Elementary>(&self) -> Evaluation<'_, S> {
         let constant = |operation: &Operation| match operation {
@@ -163,7 +172,7 @@ impl<S: Elementary> Evaluation<'_, S> {
                 Operation::Sum(a, b) => values[a] + values[b],
                 Operation::Difference(a, b) => values[a] - values[b],
                 Operation::Product(a, b) => values[a] * values[b],
-                Operation::Quotient(a, b) => values[a] * values[b].recip(),
+                Operation::Quotient(a, b) => values[a].quotient(values[b]),
                 Operation::Negative(a) => -values[a],
                 Operation::Reciprocal(a) => values[a].recip(),
                 Operation::Ratio(a, num, den) => values[a].ratio(num, den),

@@ -44,6 +44,9 @@ fn operators_have_the_usual_order() {
         ("x^3", 8.0),
         ("x^-2", 0.25),
         ("x^0", 1.0),
+        // One rounding, not that of a reciprocal and that of a product.
+        ("x' / (u * 0.7)", 5.0 / (11.0 * 0.7)),
+        ("u / 0.3", 11.0 / 0.3),
         ("(x * 2)^0.5", 2.0),
         ("log(exp(x)^1.5)", 3.0),
         ("if(x < 2, 1, 3)", 3.0),

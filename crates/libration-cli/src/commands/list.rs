@@ -149,6 +149,10 @@ fn summary_text(summary: &EquationSummary) -> String {
         "\nEquations: {kind}; accelerations {forces}{time}; {} operations\n",
         summary.operations
     );
+    if !summary.smooth {
+        text +=
+            "They have kinks or jumps: what theory derives from derivatives holds between them.\n";
+    }
     if !summary.energy {
         text += "There is no energy: nothing is said of its drift.\n";
     }

@@ -8,6 +8,7 @@ mod bench;
 mod clocks;
 mod closed_loop;
 mod deadline_misses;
+mod equations;
 mod exit_codes;
 mod forces;
 #[cfg(unix)]

@@ -96,6 +96,12 @@ impl<S: Elementary> Elementary for Dual<S> {
     }
 
     #[inline(always)]
+    fn quotient(self, divisor: Self) -> Self {
+        let quotient = self.re.quotient(divisor.re);
+        Dual { re: quotient, du: (self.du - quotient * divisor.du).quotient(divisor.re) }
+    }
+
+    #[inline(always)]
     fn sin(self) -> Self {
         self.chain(self.re.sin(), self.re.cos())
     }

@@ -30,6 +30,10 @@ macro_rules! machine_float {
                 1.0 / self
             }
             #[inline(always)]
+            fn quotient(self, divisor: Self) -> Self {
+                self / divisor
+            }
+            #[inline(always)]
             fn sin(self) -> Self {
                 $sine::sin(self)
             }

@@ -63,6 +63,10 @@ macro_rules! half_float {
             fn recip(self) -> Self {
                 $float::from_f32(self.to_f32().recip())
             }
+            #[inline(always)]
+            fn quotient(self, divisor: Self) -> Self {
+                self / divisor
+            }
             in_f64! {
                 sin() cos() tan() asin() acos() atan() atan2(x) exp() ln() sinh() cosh() tanh()
                 abs() min(other) max(other) signum()

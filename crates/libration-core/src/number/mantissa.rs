@@ -78,6 +78,11 @@ impl<const P: u32> Elementary for Mantissa<P> {
         sqrt() recip() sin() cos() tan() asin() acos() atan() atan2(x) exp() ln() sinh() cosh() tanh()
         abs() min(other) max(other) signum()
     }
+
+    #[inline(always)]
+    fn quotient(self, divisor: Self) -> Self {
+        self / divisor
+    }
     #[inline(always)]
     fn select_less(self, other: Self, then: Self, otherwise: Self) -> Self {
         if self.0 < other.0 { then } else { otherwise }

@@ -131,6 +131,10 @@ impl Elementary for TwoFloat {
         TwoFloat::constant(1.0).over(self)
     }
 
+    fn quotient(self, divisor: Self) -> Self {
+        self.over(divisor)
+    }
+
     fn sin(self) -> Self {
         self.sin_cos().0
     }
