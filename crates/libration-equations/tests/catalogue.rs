@@ -45,7 +45,7 @@ fn check<S: Float, M: Model<D>, const D: usize>(
 }
 
 fn all<M: Model<D>, const D: usize>(model: M, equations: &Definitions, start: State<f64, D>) {
-    let equations = Equations::new(equations).unwrap();
+    let equations = Equations::new(equations).unwrap_or_else(|error| panic!("{error}"));
     macro_rules! each {
         ($($method:expr),*) => {$(
             check::<f64, M, D>($method, model, &equations, start);

@@ -14,7 +14,7 @@ fn examples() -> PathBuf {
 
 fn read(name: &str) -> EquationSystem {
     let path = examples().join(format!("{name}.toml"));
-    let text = fs::read_to_string(&path).unwrap();
+    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{name}: {error}"));
     EquationSystem::parse(&text, name, &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
