@@ -142,11 +142,19 @@ contains a complete report.";
 #[derive(Args, Debug)]
 pub(crate) struct ListArgs {
     /// File of equations to summarise [default: list studies, systems and integrators]
-    #[arg(value_name = "FILE")]
+    #[arg(value_name = "FILE", value_parser = equation_file)]
     pub(crate) file: Option<PathBuf>,
     /// Print the result as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Parses the path of a file of equations.
+fn equation_file(path: &str) -> Result<PathBuf, String> {
+    match system::is_file(path) {
+        true => Ok(path.into()),
+        false => Err("expected a file of equations, NAME.toml".to_owned()),
+    }
 }
 
 /// Arguments of `completions`.

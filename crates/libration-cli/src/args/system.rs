@@ -70,7 +70,7 @@ impl TypedValueParser for NameOrFile {
 }
 
 /// Whether the value of `--system` is a file of equations.
-fn is_file(system: &str) -> bool {
+pub(super) fn is_file(system: &str) -> bool {
     Path::new(system).extension().is_some_and(|extension| extension == "toml")
 }
 
