@@ -91,15 +91,43 @@ impl Definitions {
         coordinates.chain(rates).chain(inputs).chain(parameters).chain(parts)
     }
 
-    /// Whether an expression has this name. Texts that are no expressions have none.
-    pub(crate) fn mention(&self, name: &str) -> bool {
-        let texts = [&self.accelerations, &self.rates, &self.parts];
-        let texts = texts.into_iter().flatten().map(|(_, text)| text).chain(&self.energy);
-        texts.filter_map(|text| Expression::parse(text).ok()).any(|expression| {
-            let mut names = expression.names();
-            names.any(|(other, primes, _)| other == name && primes == 0)
-        })
+    /// The parsed expressions of parts, accelerations, rates and the energy.
+    pub(crate) fn parse(&self) -> Result<Vec<NamedExpression<'_>>, EquationError> {
+        let tables = [
+            ("let", 0, &self.parts),
+            ("acceleration", 2, &self.accelerations),
+            ("rate", 1, &self.rates),
+        ];
+        let named = tables.into_iter().flat_map(|(table, primes, texts)| {
+            texts.iter().map(move |(name, text)| {
+                (name.as_str(), primes, format!("{table}.{name}"), text.as_str())
+            })
+        });
+        let energy = self.energy.iter().map(|text| (ENERGY, 0, "energy".to_owned(), text.as_str()));
+        named
+            .chain(energy)
+            .map(|(name, primes, key, text)| {
+                let expression = Expression::parse(text).map_err(|error| EquationError {
+                    key: key.clone(),
+                    span: Some(error.span.clone()),
+                    kind: EquationErrorKind::Expression(error),
+                })?;
+                Ok(NamedExpression { name, primes, key, expression })
+            })
+            .collect()
     }
+}
+
+/// The name of the energy among expressions, which no expression can have.
+pub(crate) const ENERGY: &str = "";
+
+/// An expression with the name that it defines.
+pub(crate) struct NamedExpression<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) primes: usize,
+    /// The key of its text, as in `acceleration.theta`.
+    pub(crate) key: String,
+    pub(crate) expression: Expression,
 }
 
 fn fault(key: &str, kind: EquationErrorKind) -> EquationError {

@@ -1,5 +1,6 @@
 //! Systems of equations.
 
+use super::definitions::ENERGY;
 use super::program::{Program, ValueId};
 use super::program_builder::ProgramBuilder;
 use super::resolver::Resolver;
@@ -36,13 +37,15 @@ impl Equations {
     /// # Errors
     /// [`EquationError`]: the first definition that is wrong.
     pub fn new(definitions: &Definitions) -> Result<Self, EquationError> {
-        let Definitions { coordinates, accelerations, rates, parts, parameters, inputs, energy } =
-            definitions;
+        let Definitions { coordinates, rates, parts, parameters, inputs, .. } = definitions;
         definitions.check()?;
+        let expressions = definitions.parse()?;
+        let is_time = |(name, primes): (&str, usize)| name == "t" && primes == 0;
+        let needs_time = expressions.iter().any(|own| own.expression.names().any(is_time));
         let mut degrees: Vec<Degree> =
             coordinates.iter().cloned().map(Degree::Coordinate).collect();
         degrees.extend(rates.iter().map(|(name, _)| Degree::State(name.clone())));
-        if definitions.mention("t") {
+        if needs_time {
             degrees.push(Degree::Time);
         }
         let mut builder = ProgramBuilder::default();
@@ -69,12 +72,8 @@ impl Equations {
         for (name, command) in inputs.iter().zip(commands) {
             resolver.define(name, 0, command);
         }
-        for (table, primes, texts) in
-            [("let", 0, parts), ("acceleration", 2, accelerations), ("rate", 1, rates)]
-        {
-            for (name, text) in texts {
-                resolver.define_expression(name, primes, format!("{table}.{name}"), text)?;
-            }
+        for own in expressions {
+            resolver.define_expression(own);
         }
         let mut outputs = Vec::with_capacity(degrees.len());
         for degree in &degrees {
@@ -92,7 +91,8 @@ impl Equations {
         for (name, _) in parts {
             resolver.resolve(name, 0, (&format!("let.{name}"), None))?;
         }
-        let energy = energy.as_ref().map(|text| resolver.value_of("energy", text)).transpose()?;
+        let energy = definitions.energy.as_ref();
+        let energy = energy.map(|_| resolver.resolve(ENERGY, 0, ("energy", None))).transpose()?;
         let builder = resolver.builder;
         let energy = energy.map(|energy| builder.clone().finish(&[energy]));
         let accelerations = builder.finish(&outputs);

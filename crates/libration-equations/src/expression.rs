@@ -61,10 +61,10 @@ pub(crate) enum Comparison {
 }
 
 impl Expression {
-    /// The names in the expression, each with the number of its primes and its place in the text.
-    pub fn names(&self) -> impl Iterator<Item = (&str, usize, Range<usize>)> {
+    /// The names in the expression, each with the number of its primes.
+    pub fn names(&self) -> impl Iterator<Item = (&str, usize)> {
         self.nodes.iter().filter_map(|node| match &node.kind {
-            NodeKind::Name { name, primes } => Some((name.as_str(), *primes, node.span.clone())),
+            NodeKind::Name { name, primes } => Some((name.as_str(), *primes)),
             _ => None,
         })
     }

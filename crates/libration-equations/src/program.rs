@@ -7,7 +7,6 @@ use super::Function;
 /// A program without loops and branches: each value follows from inputs, constants and values before it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
-    pub(crate) inputs: usize,
     pub(crate) values: Vec<Operation>,
     pub(crate) outputs: Vec<ValueId>,
 }
@@ -74,16 +73,6 @@ impl Operation {
 }
 
 impl Program {
-    /// The number of inputs.
-    pub fn inputs(&self) -> usize {
-        self.inputs
-    }
-
-    /// The number of outputs.
-    pub fn outputs(&self) -> usize {
-        self.outputs.len()
-    }
-
     /// The number of operations of one evaluation, without inputs and constants.
     pub fn operations(&self) -> usize {
         let counts = |operation: &&Operation| operation.operands().next().is_some();

@@ -66,22 +66,16 @@ impl ProgramBuilder {
         })
     }
 
-    /// The same with the same bits, as a constant or with fewer roundings to name.
+    /// A simpler operation with the same bits: the constant that it is, a reciprocal or a ratio.
     fn simplified(&self, operation: Operation) -> Operation {
         let of = |value: ValueId| self.as_constant(value);
+        let both = |a: ValueId, b: ValueId, f: fn(f64, f64) -> f64| {
+            of(a).zip(of(b)).map_or(operation, |(a, b)| Operation::Constant(f(a, b)))
+        };
         match operation {
-            Operation::Sum(a, b) => match (of(a), of(b)) {
-                (Some(a), Some(b)) => Operation::Constant(a + b),
-                _ => operation,
-            },
-            Operation::Difference(a, b) => match (of(a), of(b)) {
-                (Some(a), Some(b)) => Operation::Constant(a - b),
-                _ => operation,
-            },
-            Operation::Product(a, b) => match (of(a), of(b)) {
-                (Some(a), Some(b)) => Operation::Constant(a * b),
-                _ => operation,
-            },
+            Operation::Sum(a, b) => both(a, b, |a, b| a + b),
+            Operation::Difference(a, b) => both(a, b, |a, b| a - b),
+            Operation::Product(a, b) => both(a, b, |a, b| a * b),
             Operation::Quotient(a, b) => match (of(a), of(b)) {
                 (Some(a), Some(b)) => Operation::Constant(a / b),
                 (Some(1.0), None) => Operation::Reciprocal(b),
@@ -115,17 +109,23 @@ impl ProgramBuilder {
     pub(crate) fn whole_power(&mut self, x: ValueId, exponent: i32) -> ValueId {
         match exponent {
             0 => self.constant(1.0),
-            1 => x,
             ..0 => {
-                let power = self.whole_power(x, -exponent);
+                let power = self.positive_power(x, exponent.unsigned_abs());
                 self.value(Operation::Reciprocal(power))
             }
-            _ if exponent % 2 == 0 => {
-                let root = self.whole_power(x, exponent / 2);
+            _ => self.positive_power(x, exponent.unsigned_abs()),
+        }
+    }
+
+    fn positive_power(&mut self, x: ValueId, exponent: u32) -> ValueId {
+        match exponent {
+            0 | 1 => x,
+            _ if exponent.is_multiple_of(2) => {
+                let root = self.positive_power(x, exponent / 2);
                 self.value(Operation::Product(root, root))
             }
             _ => {
-                let rest = self.whole_power(x, exponent - 1);
+                let rest = self.positive_power(x, exponent - 1);
                 self.value(Operation::Product(rest, x))
             }
         }
@@ -161,7 +161,7 @@ impl ProgramBuilder {
             }
         }
         let outputs = outputs.iter().map(|&output| places[output]).collect();
-        Program { inputs: self.inputs, values, outputs }
+        Program { values, outputs }
     }
 }
 

@@ -3,6 +3,7 @@
 use core::ops::Range;
 use std::collections::HashMap;
 
+use super::definitions::{ENERGY, NamedExpression};
 use super::expression::{Comparison, Expression, NodeKind, Operator};
 use super::program::{Operation, ValueId};
 use super::program_builder::ProgramBuilder;
@@ -39,26 +40,10 @@ impl Resolver {
         self.meanings.insert((name.into(), primes), Meaning::Value(value));
     }
 
-    /// Gives a name the value of an expression, the text of `key`.
-    ///
-    /// # Errors
-    /// The text is no expression.
-    pub(crate) fn define_expression(
-        &mut self,
-        name: &str,
-        primes: usize,
-        key: String,
-        text: &str,
-    ) -> Result<(), EquationError> {
-        let expression = parse(&key, text)?;
+    /// Gives a name the value of an expression.
+    pub(crate) fn define_expression(&mut self, own: NamedExpression<'_>) {
+        let NamedExpression { name, primes, key, expression } = own;
         self.meanings.insert((name.into(), primes), Meaning::Expression { key, expression });
-        Ok(())
-    }
-
-    /// The value of the text of `key`.
-    pub(crate) fn value_of(&mut self, key: &str, text: &str) -> Result<ValueId, EquationError> {
-        let expression = parse(key, text)?;
-        self.evaluate(key, &expression)
     }
 
     /// The value of a name in the definition `key`.
@@ -76,6 +61,7 @@ impl Resolver {
                 .keys()
                 .map(|(name, primes)| format!("{name}{}", "'".repeat(*primes)))
                 .collect();
+            known.retain(|name| name != ENERGY);
             known.extend(Function::ALL.map(|function| function.name().to_owned()));
             known.sort_unstable();
             return Err(error(EquationErrorKind::UnknownName { name: full(), known }));
@@ -154,12 +140,4 @@ impl Resolver {
             }
         }
     }
-}
-
-fn parse(key: &str, text: &str) -> Result<Expression, EquationError> {
-    Expression::parse(text).map_err(|error| EquationError {
-        key: key.into(),
-        span: Some(error.span.clone()),
-        kind: EquationErrorKind::Expression(error),
-    })
 }

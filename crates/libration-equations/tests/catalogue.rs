@@ -1,13 +1,9 @@
 //! Systems of the catalogue, written as equations.
 
-use libration_core::integrator::{
-    ExplicitEuler, Leapfrog, Rk4, SUZUKI4, SymplecticEuler, TextbookVerlet, VelocityVerlet,
-    YOSHIDA4,
-};
 use libration_core::system::{
     DampedOscillator, DrivenOscillator, Duffing, HenonHeiles, Kepler, Oscillator, Pendulum,
 };
-use libration_core::{Float, Integrator, Model, State};
+use libration_core::{Float, Integrator, Method, Model, State};
 use libration_equations::{Definitions, Equations, StepProgram};
 
 fn definitions(accelerations: &[(&str, &str)], parameters: &[(&str, f64)]) -> Definitions {
@@ -46,23 +42,11 @@ fn check<S: Float, M: Model<D>, const D: usize>(
 
 fn all<M: Model<D>, const D: usize>(model: M, equations: &Definitions, start: State<f64, D>) {
     let equations = Equations::new(equations).unwrap_or_else(|error| panic!("{error}"));
-    macro_rules! each {
-        ($($method:expr),*) => {$(
-            check::<f64, M, D>($method, model, &equations, start);
-            check::<f32, M, D>($method, model, &equations, start);
-            check::<half::f16, M, D>($method, model, &equations, start);
-        )*};
+    for method in Method::ALL {
+        check::<f64, M, D>(method, model, &equations, start);
+        check::<f32, M, D>(method, model, &equations, start);
+        check::<half::f16, M, D>(method, model, &equations, start);
     }
-    each!(
-        ExplicitEuler,
-        SymplecticEuler,
-        VelocityVerlet,
-        TextbookVerlet,
-        Leapfrog,
-        Rk4,
-        YOSHIDA4,
-        SUZUKI4
-    );
 }
 
 #[test]

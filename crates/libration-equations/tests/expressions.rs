@@ -44,6 +44,8 @@ fn operators_have_the_usual_order() {
         ("x^3", 8.0),
         ("x^-2", 0.25),
         ("x^0", 1.0),
+        ("x^-2147483648", 0.0),
+        ("x^2147483648", f64::INFINITY),
         // One rounding, not that of a reciprocal and that of a product.
         ("x' / (u * 0.7)", 5.0 / (11.0 * 0.7)),
         ("u / 0.3", 11.0 / 0.3),
@@ -124,6 +126,22 @@ fn long_and_deep_expressions_are_refused_and_long_sums_are_not() {
     assert_eq!(value(&signs), -2.0);
     let message = equations(&vec!["x"; 40_000].join("+")).unwrap_err().to_string();
     assert!(message.contains("at most 65536"), "{message}");
+}
+
+#[test]
+fn a_thousand_parts_may_each_need_the_next() {
+    let part = |i: usize| {
+        (format!("p{i}"), if i == 999 { "x".to_owned() } else { format!("p{} + 1", i + 1) })
+    };
+    let definitions = Definitions {
+        coordinates: vec!["x".into()],
+        accelerations: vec![("x".into(), "p0".into())],
+        parts: (0..1000).map(part).collect(),
+        ..Definitions::default()
+    };
+    let equations = Equations::new(&definitions).unwrap();
+    let found = equations.accelerations().on::<f64>().run(&[0.5, 0.0]).next();
+    assert_eq!(found, Some(999.5));
 }
 
 #[test]

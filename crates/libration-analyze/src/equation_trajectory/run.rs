@@ -28,7 +28,7 @@ pub(super) fn run<S: Number>(
     inputs.push(dt);
     let is_position = |degree: &Degree| matches!(degree, Degree::Coordinate(_));
     let is_velocity = |degree: &Degree| !matches!(degree, Degree::Time);
-    let mut values = Vec::with_capacity(2 * d + 1);
+    let (mut values, mut next) = (Vec::with_capacity(2 * d + 1), Vec::with_capacity(2 * d));
     let mut step = 0;
     loop {
         let time = step as f64 * dt.to_f64();
@@ -51,7 +51,8 @@ pub(super) fn run<S: Number>(
             }
             monitor.on_step(step);
         }
-        let next: Vec<S> = step_of.run(&inputs).collect();
+        next.clear();
+        next.extend(step_of.run(&inputs));
         step += 1;
         if !next.iter().all(|x| x.is_finite()) {
             let reason = "the state stopped being finite".to_owned();

@@ -78,7 +78,7 @@ fn the_bits_of_f32_are_the_same_on_every_machine() {
     assert_eq!(found, DIGESTS_OF_F32, "{found:#018x?}");
 }
 
-/// Whoever changes these changes every simulation of a system that uses the function.
+/// A change of these changes every simulation of a system that uses the function.
 const DIGESTS_OF_F64: [(&str, u64); 10] = [
     ("tan", 0x374d_7a95_1960_6b4e),
     ("asin", 0x0b5a_3916_672c_2e98),
