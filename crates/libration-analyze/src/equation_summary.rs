@@ -82,19 +82,20 @@ impl EquationSummary {
             value: *value,
             unit: unit.clone(),
         };
-        let rates: Vec<f64> = equations.accelerations().on::<f64>().run(&start).collect();
+        let rates: Vec<f64> =
+            equations.dynamics().accelerations().on::<f64>().run(&start).collect();
         EquationSummary {
             name: system.name.clone(),
             description: system.description.clone(),
             states: states.collect(),
             parameters: parameters.map(parameter).collect(),
             inputs: equations.inputs().to_vec(),
-            positional: equations.is_positional(),
+            positional: equations.dynamics().is_positional(),
             time_dependent: degrees.contains(&Degree::Time),
             polynomial_degree: equations.polynomial_degree(),
-            smooth: equations.accelerations().is_smooth(),
-            energy: equations.energy().is_some(),
-            operations: equations.accelerations().operations(),
+            smooth: equations.dynamics().accelerations().is_smooth(),
+            energy: equations.dynamics().energy().is_some(),
+            operations: equations.dynamics().accelerations().operations(),
             rate_at_start: rates.iter().fold(0.0, |most, rate| f64::max(most, rate.abs())),
             eigenvalues_at_start: eigenvalues_at(system, &start, &places),
         }
@@ -108,7 +109,7 @@ fn eigenvalues_at(
     places: &[usize],
 ) -> Option<Vec<[f64; 2]>> {
     let d = start.len() / 2;
-    let mut accelerations = system.equations.accelerations().on::<Dual<f64>>();
+    let mut accelerations = system.equations.dynamics().accelerations().on::<Dual<f64>>();
     let mut column = |j: usize| -> Vec<f64> {
         let seeded = start.iter().enumerate().map(|(i, &x)| match i == places[j] {
             true => Dual::variable(x),

@@ -7,6 +7,7 @@
 pub mod checkpoint;
 pub mod ensemble;
 pub mod linear_loops;
+mod machine;
 pub mod replay;
 pub mod rl;
 

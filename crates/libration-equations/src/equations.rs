@@ -1,10 +1,10 @@
 //! Systems of equations.
 
 use super::definitions::ENERGY;
-use super::program::{Program, ValueId};
+use super::program::ValueId;
 use super::program_builder::ProgramBuilder;
 use super::resolver::Resolver;
-use super::{Definitions, EquationError};
+use super::{Definitions, Dynamics, EquationError};
 
 /// A system `q̈ = a(q, v, u)` by its equations.
 ///
@@ -14,10 +14,7 @@ use super::{Definitions, EquationError};
 pub struct Equations {
     degrees: Vec<Degree>,
     inputs: Vec<String>,
-    /// From positions, velocities and inputs to accelerations.
-    accelerations: Program,
-    /// From positions, velocities and inputs.
-    energy: Option<Program>,
+    dynamics: Dynamics,
 }
 
 /// A degree of freedom.
@@ -96,7 +93,8 @@ impl Equations {
         let builder = resolver.builder;
         let energy = energy.map(|energy| builder.clone().finish(&[energy]));
         let accelerations = builder.finish(&outputs);
-        Ok(Equations { degrees, inputs: inputs.clone(), accelerations, energy })
+        let dynamics = Dynamics::new(degrees.len(), inputs.len(), accelerations, energy);
+        Ok(Equations { degrees, inputs: inputs.clone(), dynamics })
     }
 
     /// The degrees of freedom, in the order of the state.
@@ -109,26 +107,15 @@ impl Equations {
         &self.inputs
     }
 
-    /// The program from positions, velocities and inputs to accelerations.
-    pub fn accelerations(&self) -> &Program {
-        &self.accelerations
-    }
-
-    /// The program from positions, velocities and inputs to the energy, if there is one.
-    pub fn energy(&self) -> Option<&Program> {
-        self.energy.as_ref()
+    /// The accelerations and the energy.
+    pub fn dynamics(&self) -> &Dynamics {
+        &self.dynamics
     }
 
     /// The largest degree of the accelerations as polynomials of positions and velocities; none if one is no polynomial.
     pub fn polynomial_degree(&self) -> Option<u32> {
         let states = 2 * self.degrees.len();
-        let degrees = self.accelerations.polynomial_degrees(|input| input < states);
+        let degrees = self.dynamics.accelerations().polynomial_degrees(|input| input < states);
         degrees.into_iter().try_fold(0, |most, degree| Some(most.max(degree?)))
-    }
-
-    /// Whether no acceleration depends on a velocity.
-    pub fn is_positional(&self) -> bool {
-        let d = self.degrees.len();
-        !self.accelerations.inputs_in_use().any(|input| (d..2 * d).contains(&input))
     }
 }

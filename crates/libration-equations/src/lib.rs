@@ -3,6 +3,7 @@
 //! This crate does no input or output, reads no clock and prints nothing.
 
 mod definitions;
+mod dynamics;
 mod equation_error;
 mod equations;
 mod error;
@@ -11,16 +12,19 @@ mod function;
 mod parser;
 mod program;
 mod program_builder;
+mod recording;
 mod resolver;
 mod step_program;
 mod step_trace;
 
 pub use definitions::{Definitions, MAX_DEFINITIONS, MAX_DEGREES};
+pub use dynamics::Dynamics;
 pub use equation_error::{EquationError, EquationErrorKind};
 pub use equations::{Degree, Equations};
 pub use error::{ExpressionError, ExpressionErrorKind};
 pub use expression::Expression;
 pub use function::Function;
 pub use parser::MAX_LENGTH;
-pub use program::{Evaluation, Program};
+pub use program::{Evaluation, Operation, Program, ValueId};
+pub use recording::Recorded;
 pub use step_program::StepProgram;

@@ -12,18 +12,26 @@ pub struct Program {
 }
 
 /// The index of a value.
-pub(crate) type ValueId = usize;
+pub type ValueId = usize;
 
 /// The origin of a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Operation {
+pub enum Operation {
+    /// An input.
     Input(usize),
+    /// A constant, rounded to the number type.
     Constant(f64),
+    /// `a + b`.
     Sum(ValueId, ValueId),
+    /// `a − b`.
     Difference(ValueId, ValueId),
+    /// `a·b`.
     Product(ValueId, ValueId),
+    /// `a/b`.
     Quotient(ValueId, ValueId),
+    /// `−a`.
     Negative(ValueId),
+    /// `1/a`.
     Reciprocal(ValueId),
     /// A value times one integer, divided by another.
     Ratio(ValueId, i32, i32),
@@ -35,7 +43,7 @@ pub(crate) enum Operation {
 
 impl Operation {
     /// The values that it takes.
-    pub(crate) fn operands(self) -> impl Iterator<Item = ValueId> {
+    pub fn operands(self) -> impl Iterator<Item = ValueId> {
         let (operands, count) = match self {
             Operation::Input(_) | Operation::Constant(_) => ([0; 4], 0),
             Operation::Sum(a, b)
@@ -73,6 +81,16 @@ impl Operation {
 }
 
 impl Program {
+    /// The values, each after its operands.
+    pub fn values(&self) -> &[Operation] {
+        &self.values
+    }
+
+    /// The indices of the outputs.
+    pub fn outputs(&self) -> &[ValueId] {
+        &self.outputs
+    }
+
     /// The number of operations of one evaluation, without inputs and constants.
     pub fn operations(&self) -> usize {
         let counts = |operation: &&Operation| operation.operands().next().is_some();

@@ -5,9 +5,11 @@ use std::collections::HashMap;
 use super::Function;
 use super::program::{Operation, Program, ValueId, choose};
 
-/// Collects the operations of a program, each once, and computes those of constants in `f64`.
+/// Collects the operations of a program, each once.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ProgramBuilder {
+    /// Whether operations of constants remain, to be computed in the number type. Otherwise they are computed here in `f64`.
+    keeps_constants: bool,
     inputs: usize,
     values: Vec<Operation>,
     known: HashMap<Key, ValueId>,
@@ -25,6 +27,11 @@ enum Key {
 }
 
 impl ProgramBuilder {
+    /// A builder that computes nothing: all operations are those of the number type.
+    pub(crate) fn literal() -> Self {
+        ProgramBuilder { keeps_constants: true, ..ProgramBuilder::default() }
+    }
+
     /// A new input.
     pub(crate) fn input(&mut self) -> ValueId {
         self.inputs += 1;
@@ -45,7 +52,7 @@ impl ProgramBuilder {
 
     /// The value of an operation: computed here if its operands are constants, and that of the same operation before if there is one.
     pub(crate) fn value(&mut self, operation: Operation) -> ValueId {
-        let operation = self.simplified(operation);
+        let operation = if self.keeps_constants { operation } else { self.simplified(operation) };
         let key = match operation {
             Operation::Input(i) => Key::Input(i),
             Operation::Constant(c) => Key::Constant(c.to_bits()),
@@ -145,23 +152,35 @@ impl ProgramBuilder {
 
     /// The program with these outputs, and without what they do not need.
     pub(crate) fn finish(self, outputs: &[ValueId]) -> Program {
-        let mut needed = vec![false; self.values.len()];
-        outputs.iter().for_each(|&output| needed[output] = true);
-        for i in (0..self.values.len()).rev() {
-            if needed[i] {
-                self.values[i].operands().for_each(|operand| needed[operand] = true);
-            }
+        without_unused(self.values, outputs)
+    }
+}
+
+/// The program of the values that these outputs need.
+fn without_unused(all: Vec<Operation>, outputs: &[ValueId]) -> Program {
+    let mut needed = vec![false; all.len()];
+    outputs.iter().for_each(|&output| needed[output] = true);
+    for i in (0..all.len()).rev() {
+        if needed[i] {
+            all[i].operands().for_each(|operand| needed[operand] = true);
         }
-        let mut places = vec![0; self.values.len()];
-        let mut values = Vec::new();
-        for (i, operation) in self.values.into_iter().enumerate() {
-            if needed[i] {
-                places[i] = values.len();
-                values.push(operation.moved(&places));
-            }
+    }
+    let mut places = vec![0; all.len()];
+    let mut values = Vec::new();
+    for (i, operation) in all.into_iter().enumerate() {
+        if needed[i] {
+            places[i] = values.len();
+            values.push(operation.moved(&places));
         }
-        let outputs = outputs.iter().map(|&output| places[output]).collect();
-        Program { values, outputs }
+    }
+    let outputs = outputs.iter().map(|&output| places[output]).collect();
+    Program { values, outputs }
+}
+
+impl Program {
+    /// The part of the program that computes these of its values.
+    pub fn part(&self, outputs: &[ValueId]) -> Program {
+        without_unused(self.values.clone(), outputs)
     }
 }
 

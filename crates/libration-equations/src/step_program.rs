@@ -2,7 +2,7 @@
 
 use libration_core::{Integrator, State};
 
-use super::Equations;
+use super::Dynamics;
 use super::program::{Operation, Program, ValueId};
 use super::program_builder::ProgramBuilder;
 use super::step_trace::{StepTrace, TracedSystem, VectorId, VectorOperation};
@@ -10,74 +10,102 @@ use super::step_trace::{StepTrace, TracedSystem, VectorId, VectorOperation};
 /// One step of an integrator on a system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepProgram {
-    /// From positions, velocities, inputs and the time step to positions and velocities.
     program: Program,
 }
 
 impl StepProgram {
-    /// A step of `integrator` on a system, whose inputs are constant during the step.
-    pub fn new(integrator: impl Integrator, equations: &Equations) -> Self {
+    /// A step of `integrator` on a system, whose inputs are constant during the step: from positions, velocities, inputs and the
+    /// time step to positions and velocities.
+    pub fn new(integrator: impl Integrator, dynamics: &Dynamics) -> Self {
         let trace = StepTrace::default();
-        let (operations, [q, v]) = {
+        let ends = {
             let start = State {
                 q: [trace.record(VectorOperation::Positions)],
                 v: [trace.record(VectorOperation::Velocities)],
             };
             let dt = trace.record(VectorOperation::TimeStep);
             let end = integrator.step(&TracedSystem(&trace), start, dt);
-            let ends = [trace.id(end.q[0]), trace.id(end.v[0])];
-            (trace.into_operations(), ends)
+            vec![trace.id(end.q[0]), trace.id(end.v[0])]
         };
-        let degrees = equations.degrees().len();
-        let mut builder = ProgramBuilder::default();
-        let mut inputs =
-            |count: usize| -> Vec<ValueId> { (0..count).map(|_| builder.input()).collect() };
-        let (positions, velocities) = (inputs(degrees), inputs(degrees));
-        let commands = inputs(equations.inputs().len());
-        let dt = inputs(1)[0];
-        let mut vectors: Vec<Vec<ValueId>> = Vec::with_capacity(operations.len());
-        for operation in operations {
-            let two = |a: VectorId, b: VectorId| {
-                vectors[a].iter().copied().zip(vectors[b].iter().copied())
-            };
-            let vector = match operation {
-                VectorOperation::Positions => positions.clone(),
-                VectorOperation::Velocities => velocities.clone(),
-                VectorOperation::TimeStep => vec![dt; degrees],
-                VectorOperation::Constant(c) => vec![builder.constant(c); degrees],
-                VectorOperation::Sum(a, b) => {
-                    two(a, b).map(|(a, b)| builder.value(Operation::Sum(a, b))).collect()
-                }
-                VectorOperation::Difference(a, b) => {
-                    two(a, b).map(|(a, b)| builder.value(Operation::Difference(a, b))).collect()
-                }
-                VectorOperation::Product(a, b) => {
-                    two(a, b).map(|(a, b)| builder.value(Operation::Product(a, b))).collect()
-                }
-                VectorOperation::Negative(a) => {
-                    vectors[a].iter().map(|&a| builder.value(Operation::Negative(a))).collect()
-                }
-                VectorOperation::Ratio(a, num, den) => vectors[a]
-                    .iter()
-                    .map(|&a| builder.value(Operation::Ratio(a, num, den)))
-                    .collect(),
-                VectorOperation::AccelerationsAt(q, v) => {
-                    let inputs: Vec<ValueId> = [&vectors[q], &vectors[v], &commands]
-                        .into_iter()
-                        .flatten()
-                        .copied()
-                        .collect();
-                    builder.inline(equations.accelerations(), &inputs)
-                }
-            };
-            vectors.push(vector);
-        }
-        let outputs: Vec<ValueId> = vectors[q].iter().chain(&vectors[v]).copied().collect();
-        StepProgram { program: builder.finish(&outputs) }
+        StepProgram { program: program(&trace.into_operations(), &ends, false, dynamics) }
     }
 
-    /// The program from positions, velocities, inputs and the time step to positions and velocities.
+    /// A step that takes the accelerations at its start and hands on those at its end, which saves an evaluation: from positions,
+    /// velocities, accelerations, inputs and the time step to positions, velocities and accelerations.
+    ///
+    /// None if the integrator [carries](Integrator::CARRIES) nothing or an acceleration depends on a velocity.
+    pub fn carrying<M: Integrator>(integrator: M, dynamics: &Dynamics) -> Option<Self> {
+        if !M::CARRIES || !dynamics.is_positional() {
+            return None;
+        }
+        let trace = StepTrace::default();
+        let ends = {
+            let start = State {
+                q: [trace.record(VectorOperation::Positions)],
+                v: [trace.record(VectorOperation::Velocities)],
+            };
+            let known = [trace.record(VectorOperation::Accelerations)];
+            let dt = trace.record(VectorOperation::TimeStep);
+            let (end, known) = integrator.carried(&TracedSystem(&trace), start, known, dt);
+            vec![trace.id(end.q[0]), trace.id(end.v[0]), trace.id(known[0])]
+        };
+        let program = program(&trace.into_operations(), &ends, true, dynamics);
+        Some(StepProgram { program })
+    }
+
+    /// The program.
     pub fn program(&self) -> &Program {
         &self.program
     }
+}
+
+/// The program of recorded operations on vectors.
+fn program(
+    operations: &[VectorOperation],
+    ends: &[VectorId],
+    carries: bool,
+    dynamics: &Dynamics,
+) -> Program {
+    let degrees = dynamics.degrees();
+    let mut builder = ProgramBuilder::literal();
+    let mut inputs =
+        |count: usize| -> Vec<ValueId> { (0..count).map(|_| builder.input()).collect() };
+    let (positions, velocities) = (inputs(degrees), inputs(degrees));
+    let known = inputs(if carries { degrees } else { 0 });
+    let commands = inputs(dynamics.inputs());
+    let dt = inputs(1)[0];
+    let mut vectors: Vec<Vec<ValueId>> = Vec::with_capacity(operations.len());
+    for operation in operations {
+        let of_two = |builder: &mut ProgramBuilder,
+                      a: VectorId,
+                      b: VectorId,
+                      operation: fn(ValueId, ValueId) -> Operation| {
+            let pairs = vectors[a].iter().zip(&vectors[b]);
+            pairs.map(|(&a, &b)| builder.value(operation(a, b))).collect()
+        };
+        let vector = match *operation {
+            VectorOperation::Positions => positions.clone(),
+            VectorOperation::Velocities => velocities.clone(),
+            VectorOperation::Accelerations => known.clone(),
+            VectorOperation::TimeStep => vec![dt; degrees],
+            VectorOperation::Constant(c) => vec![builder.constant(c); degrees],
+            VectorOperation::Sum(a, b) => of_two(&mut builder, a, b, Operation::Sum),
+            VectorOperation::Difference(a, b) => of_two(&mut builder, a, b, Operation::Difference),
+            VectorOperation::Product(a, b) => of_two(&mut builder, a, b, Operation::Product),
+            VectorOperation::Negative(a) => {
+                vectors[a].iter().map(|&a| builder.value(Operation::Negative(a))).collect()
+            }
+            VectorOperation::Ratio(a, num, den) => {
+                vectors[a].iter().map(|&a| builder.value(Operation::Ratio(a, num, den))).collect()
+            }
+            VectorOperation::AccelerationsAt(q, v) => {
+                let inputs = [&vectors[q], &vectors[v], &commands];
+                let inputs: Vec<ValueId> = inputs.into_iter().flatten().copied().collect();
+                builder.inline(dynamics.accelerations(), &inputs)
+            }
+        };
+        vectors.push(vector);
+    }
+    let outputs: Vec<ValueId> = ends.iter().flat_map(|&end| vectors[end].clone()).collect();
+    builder.finish(&outputs)
 }

@@ -21,6 +21,8 @@ pub(crate) type VectorId = usize;
 pub(crate) enum VectorOperation {
     Positions,
     Velocities,
+    /// The accelerations at the start of the step.
+    Accelerations,
     /// The time step in each entry.
     TimeStep,
     Constant(f64),

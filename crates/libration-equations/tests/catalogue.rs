@@ -25,7 +25,7 @@ fn check<S: Float, M: Model<D>, const D: usize>(
     equations: &Equations,
     start: State<f64, D>,
 ) {
-    let step = StepProgram::new(method, equations);
+    let step = StepProgram::new(method, equations.dynamics());
     let dt = S::from_f64(0.0123);
     let mut run = step.program().on::<S>();
     let mut state = start.map(S::from_f64);

@@ -24,7 +24,7 @@ fn value(text: &str) -> f64 {
         false => &[2.0, 0.0, 0.0, 5.0, 0.0, 7.0, 11.0],
         true => &[2.0, 0.0, 0.0, 13.0, 5.0, 0.0, 7.0, 1.0, 11.0],
     };
-    equations.accelerations().on::<f64>().run(inputs).next().unwrap_or(f64::NAN)
+    equations.dynamics().accelerations().on::<f64>().run(inputs).next().unwrap_or(f64::NAN)
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn a_thousand_parts_may_each_need_the_next() {
         ..Definitions::default()
     };
     let equations = Equations::new(&definitions).unwrap();
-    let found = equations.accelerations().on::<f64>().run(&[0.5, 0.0]).next();
+    let found = equations.dynamics().accelerations().on::<f64>().run(&[0.5, 0.0]).next();
     assert_eq!(found, Some(999.5));
 }
 

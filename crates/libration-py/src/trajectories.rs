@@ -128,8 +128,7 @@ impl Trajectories {
     /// Returns the energies per unit mass, `(len,)`, in the unit of a velocity squared.
     fn _energies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         fn energies<T: Number>(all: &dyn AnyEnsemble<T>) -> Vec<T> {
-            let none = || T::from_f64(f64::NAN);
-            (0..all.len()).map(|n| all.energy(n).unwrap_or_else(none)).collect()
+            all.energies().unwrap_or_else(|| vec![T::from_f64(f64::NAN); all.len()])
         }
         Ok(match &self.ensemble.lock(py)?.0 {
             AnyTrajectories::F32(all) => PyArray1::from_vec(py, energies(&**all)).into_any(),

@@ -11,9 +11,9 @@ use std::io::Write;
 use half::{bf16, f16};
 use serde_json::{Value, json};
 
-use crate::export::{Number, Rows};
+use crate::export::Rows;
 use crate::recording::{self, Recording};
-use crate::trajectory::{FloatType, Format, Monitor, Outcome, TrajectoryError};
+use crate::trajectory::{EnsembleFloat, FloatType, Format, Monitor, Outcome, TrajectoryError};
 
 pub use request::EquationRequest;
 
@@ -38,7 +38,7 @@ pub fn write(
     }
 }
 
-fn write_as<S: Number>(
+fn write_as<S: EnsembleFloat>(
     request: &EquationRequest,
     format: Format,
     out: &mut (dyn Write + Send),
@@ -48,13 +48,13 @@ fn write_as<S: Number>(
     recording::write::<S>(request, format, out, monitor)
 }
 
-impl<S: Number> Recording<S> for EquationRequest {
+impl<S: EnsembleFloat> Recording<S> for EquationRequest {
     fn columns(&self) -> Vec<(String, String)> {
         EquationRequest::columns(self)
     }
 
     fn is_ensemble(&self) -> bool {
-        false
+        self.ensemble.is_some()
     }
 
     fn rows(&self) -> u64 {
@@ -71,7 +71,7 @@ impl<S: Number> Recording<S> for EquationRequest {
             .iter()
             .map(|(k, v)| (k.clone(), (*v).into()))
             .collect();
-        vec![
+        let mut head = vec![
             ("schema", SCHEMA.into()),
             ("system", self.system.name.clone().into()),
             ("parameters", parameters.into()),
@@ -82,7 +82,11 @@ impl<S: Number> Recording<S> for EquationRequest {
             ("every", self.every.into()),
             ("columns", json!(names)),
             ("units", json!(units)),
-        ]
+        ];
+        if let Some(ensemble) = &self.ensemble {
+            head.extend([("count", ensemble.count.into()), ("spread", ensemble.spread.into())]);
+        }
+        head
     }
 
     fn run(
@@ -90,6 +94,9 @@ impl<S: Number> Recording<S> for EquationRequest {
         rows: &mut dyn Rows<S>,
         monitor: &dyn Monitor,
     ) -> Result<Outcome, TrajectoryError> {
-        run::run(self, rows, monitor)
+        match &self.ensemble {
+            Some(ensemble) => run::run_ensemble(self, ensemble, rows, monitor),
+            None => run::run(self, rows, monitor),
+        }
     }
 }

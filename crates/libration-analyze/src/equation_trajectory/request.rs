@@ -6,7 +6,7 @@ use libration::{Float, Method};
 use libration_settings::equations::EquationSystem;
 use libration_settings::limits;
 
-use crate::trajectory::{FloatType, TrajectoryError};
+use crate::trajectory::{EnsembleOptions, FloatType, TrajectoryError};
 
 /// Largest number of values in a table: 8 GB.
 const MOST_VALUES: u64 = 1_000_000_000;
@@ -26,31 +26,43 @@ pub struct EquationRequest {
     pub steps: u64,
     /// The interval of kept steps. The start and the last step are always kept.
     pub every: u64,
+    /// The ensemble; none for a single trajectory.
+    pub ensemble: Option<EnsembleOptions>,
 }
 
 impl EquationRequest {
+    /// The coordinates that are kept, by their places among positions and velocities, with their names.
+    pub(super) fn kept(&self) -> Vec<(usize, String)> {
+        let degrees = self.system.equations.degrees();
+        let position = |(i, degree): (usize, &Degree)| match degree {
+            Degree::Coordinate(name) => Some((i, name.clone())),
+            Degree::State(_) | Degree::Time => None,
+        };
+        let velocity = |(i, degree): (usize, &Degree)| match degree {
+            Degree::Coordinate(name) => Some((degrees.len() + i, format!("{name}'"))),
+            Degree::State(name) => Some((degrees.len() + i, name.clone())),
+            Degree::Time => None,
+        };
+        let positions = degrees.iter().enumerate().filter_map(position);
+        positions.chain(degrees.iter().enumerate().filter_map(velocity)).collect()
+    }
+
     /// Names and units of the columns, from left to right.
     pub fn columns(&self) -> Vec<(String, String)> {
-        let mut names = vec![("step".to_owned(), "1".to_owned()), ("t".to_owned(), "s".to_owned())];
-        let unnamed = |name: String| (name, String::new());
-        let degrees = self.system.equations.degrees();
-        names.extend(degrees.iter().filter_map(|degree| match degree {
-            Degree::Coordinate(name) => Some(unnamed(name.clone())),
-            Degree::State(_) | Degree::Time => None,
-        }));
-        names.extend(degrees.iter().filter_map(|degree| match degree {
-            Degree::Coordinate(name) => Some(unnamed(format!("{name}'"))),
-            Degree::State(name) => Some(unnamed(name.clone())),
-            Degree::Time => None,
-        }));
-        names.extend(self.system.equations.energy().map(|_| unnamed("energy".to_owned())));
+        let named = |name: &str, unit: &str| (name.to_owned(), unit.to_owned());
+        let mut names: Vec<_> = self.ensemble.iter().map(|_| named("trajectory", "1")).collect();
+        names.extend([named("step", "1"), named("t", "s")]);
+        names.extend(self.kept().iter().map(|(_, name)| named(name, "")));
+        names.extend(self.system.equations.dynamics().energy().map(|_| named("energy", "")));
         names
     }
 
     /// Number of rows if the state stays finite.
     pub fn rows(&self) -> u64 {
         let every = self.every.max(1);
-        (self.steps / every).saturating_add(1 + u64::from(!self.steps.is_multiple_of(every)))
+        let kept =
+            (self.steps / every).saturating_add(1 + u64::from(!self.steps.is_multiple_of(every)));
+        kept.saturating_mul(self.ensemble.map_or(1, |ensemble| ensemble.count as u64))
     }
 
     /// Checks every value, and that the float type `S` represents it.
@@ -72,6 +84,9 @@ impl EquationRequest {
             if let Some(x) = numbers.iter().find(|x| !S::from_f64(**x).is_finite()) {
                 return value(name, format!("{x:?}"), format!("finite in {}", S::NAME));
             }
+        }
+        if let Some(ensemble) = &self.ensemble {
+            ensemble.check()?;
         }
         let values = self.rows().saturating_mul(self.columns().len() as u64);
         if values > MOST_VALUES {

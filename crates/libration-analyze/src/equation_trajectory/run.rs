@@ -1,13 +1,34 @@
 //! Rows of a system by equations.
 
-use libration::equations::{Degree, StepProgram};
+use libration::equations::StepProgram;
 
 use super::EquationRequest;
 use crate::export::{Number, Rows};
-use crate::trajectory::{Divergence, Monitor, Outcome, TrajectoryError};
+use crate::trajectory::{
+    Divergence, EnsembleFloat, EnsembleOptions, EnsembleRun, Monitor, Outcome, TrajectoryError,
+};
 
 /// Steps between two checks of the monitor.
 const CHUNK: u64 = 1 << 12;
+
+/// Simulates the ensemble of a checked request in the float type `S`.
+pub(super) fn run_ensemble<S: EnsembleFloat>(
+    request: &EquationRequest,
+    ensemble: &EnsembleOptions,
+    rows: &mut dyn Rows<S>,
+    monitor: &dyn Monitor,
+) -> Result<Outcome, TrajectoryError> {
+    let EquationRequest { system, method, dt, steps, every, .. } = request;
+    let start: Vec<f64> = system.q.iter().chain(&system.v).copied().collect();
+    let kept: Vec<usize> = request.kept().into_iter().map(|(place, _)| place).collect();
+    // The velocity of time is 1 for all.
+    let scale = |n, i| if kept.contains(&i) { ensemble.scale(n) } else { 1.0 };
+    let start = |n: usize, i: usize| scale(n, i) * start[i];
+    let mut all = S::program_ensemble(system.equations.dynamics(), &start, ensemble)?;
+    let run = EnsembleRun { method: *method, dt: *dt, steps: *steps, every: *every, kept: &kept };
+    let lost = run.record(&mut *all, rows, monitor)?;
+    Ok(Outcome::of_ensemble(&lost, || None))
+}
 
 /// Simulates a checked request in the float type `S`.
 pub(super) fn run<S: Number>(
@@ -17,28 +38,23 @@ pub(super) fn run<S: Number>(
 ) -> Result<Outcome, TrajectoryError> {
     let EquationRequest { system, steps, every, .. } = request;
     let equations = &system.equations;
-    let program = StepProgram::new(request.method, equations);
+    let program = StepProgram::new(request.method, equations.dynamics());
     let mut step_of = program.program().on::<S>();
-    let mut energy_of = equations.energy().map(|energy| energy.on::<S>());
+    let mut energy_of = equations.dynamics().energy().map(|energy| energy.on::<S>());
     let d = equations.degrees().len();
+    let kept: Vec<usize> = request.kept().into_iter().map(|(place, _)| place).collect();
     let dt = S::from_f64(request.dt);
     // Positions, velocities, inputs, which are zero, and the time step.
     let mut inputs: Vec<S> = system.q.iter().chain(&system.v).map(|&x| S::from_f64(x)).collect();
     inputs.resize(2 * d + equations.inputs().len(), S::zero());
     inputs.push(dt);
-    let is_position = |degree: &Degree| matches!(degree, Degree::Coordinate(_));
-    let is_velocity = |degree: &Degree| !matches!(degree, Degree::Time);
     let (mut values, mut next) = (Vec::with_capacity(2 * d + 1), Vec::with_capacity(2 * d));
     let mut step = 0;
     loop {
         let time = step as f64 * dt.to_f64();
         if step % every == 0 || step == *steps {
             values.clear();
-            let degrees = || equations.degrees().iter();
-            let positions = degrees().zip(&inputs[..d]).filter(|(degree, _)| is_position(degree));
-            values.extend(positions.map(|(_, x)| *x));
-            let velocities = degrees().zip(&inputs[d..]).filter(|(degree, _)| is_velocity(degree));
-            values.extend(velocities.map(|(_, x)| *x));
+            values.extend(kept.iter().map(|&place| inputs[place]));
             values.extend(energy_of.iter_mut().flat_map(|energy| energy.run(&inputs)));
             rows.row(&[step], time, &values)?;
         }

@@ -2,7 +2,8 @@
 
 use half::{bf16, f16};
 use libration::Method;
-use libration::ensemble::{BatchFloat, InsufficientMemory};
+use libration::ensemble::{AnyEnsemble, BatchFloat, InsufficientMemory, ProgramEnsemble};
+use libration::equations::Dynamics;
 
 use super::{EnsembleOptions, Monitor, Outcome, Request, TrajectoryError, loops};
 use crate::export::{Number, Rows};
@@ -11,7 +12,7 @@ use crate::export::{Number, Rows};
 const CHUNK: u64 = 1 << 21;
 
 /// A float type of a simulation; only native floats have ensembles and loops.
-pub(super) trait EnsembleFloat: Number {
+pub(crate) trait EnsembleFloat: Number {
     /// Whether the processor has arithmetic of this type.
     const IS_NATIVE: bool;
 
@@ -33,6 +34,13 @@ pub(super) trait EnsembleFloat: Number {
         rows: &mut dyn Rows<Self>,
         monitor: &dyn Monitor,
     ) -> Result<Outcome, TrajectoryError>;
+
+    /// An ensemble of a system by its program, whose trajectory `n` begins with coordinate `i` at `start(n, i)`.
+    fn program_ensemble(
+        dynamics: &Dynamics,
+        start: &(dyn Fn(usize, usize) -> f64 + Sync),
+        ensemble: &EnsembleOptions,
+    ) -> Result<Box<dyn AnyEnsemble<Self>>, TrajectoryError>;
 }
 
 macro_rules! vectors {
@@ -56,6 +64,17 @@ macro_rules! vectors {
                 monitor: &dyn Monitor,
             ) -> Result<Outcome, TrajectoryError> {
                 loops::run::<$float>(request, rows, monitor)
+            }
+
+            fn program_ensemble(
+                dynamics: &Dynamics,
+                start: &(dyn Fn(usize, usize) -> f64 + Sync),
+                ensemble: &EnsembleOptions,
+            ) -> Result<Box<dyn AnyEnsemble<Self>>, TrajectoryError> {
+                let start = |n, i| start(n, i) as $float;
+                let dynamics = dynamics.clone();
+                let all = ProgramEnsemble::new(dynamics, ensemble.count, ensemble.execution()?, start)?;
+                Ok(Box::new(all))
             }
 
             fn check_memory(request: &Request, ensemble: &EnsembleOptions) -> Result<(), TrajectoryError> {
@@ -84,15 +103,23 @@ macro_rules! scalar_only {
             }
 
             fn run_loops(
-                request: &Request,
+                _: &Request,
                 _: &mut dyn Rows<Self>,
                 _: &dyn Monitor,
             ) -> Result<Outcome, TrajectoryError> {
-                Err(no_vectors(request))
+                Err(no_vectors::<Self>())
             }
 
-            fn check_memory(request: &Request, _: &EnsembleOptions) -> Result<(), TrajectoryError> {
-                Err(no_vectors(request))
+            fn program_ensemble(
+                _: &Dynamics,
+                _: &(dyn Fn(usize, usize) -> f64 + Sync),
+                _: &EnsembleOptions,
+            ) -> Result<Box<dyn AnyEnsemble<Self>>, TrajectoryError> {
+                Err(no_vectors::<Self>())
+            }
+
+            fn check_memory(_: &Request, _: &EnsembleOptions) -> Result<(), TrajectoryError> {
+                Err(no_vectors::<Self>())
             }
         }
     )*};
@@ -102,10 +129,10 @@ vectors!(f64 f32);
 scalar_only!(f16 bf16);
 
 /// The error of an ensemble or a loop in a float type without native arithmetic.
-fn no_vectors(request: &Request) -> TrajectoryError {
+fn no_vectors<S: Number>() -> TrajectoryError {
     TrajectoryError::Value {
         name: "float",
-        value: request.float.name().to_owned(),
+        value: S::NAME.to_owned(),
         allowed: "f64 or f32 for ensembles and loops".to_owned(),
     }
 }
@@ -125,33 +152,65 @@ fn run<S: BatchFloat + Number>(
     };
     let start = |n, i| S::from_f64(ensemble.scale(n) * coordinate(i).copied().unwrap_or(0.0));
     let mut all = S::ensemble(system, dimension, count, ensemble.execution()?, &start)?;
-    let mut values = Vec::with_capacity(2 * dimension + 1);
-    let at_once = (CHUNK / (count as u64).max(1)).max(1);
-    loop {
-        let step = all.step();
-        let time = step as f64 * S::from_f64(dt).to_f64();
-        if step.is_multiple_of(every) || step == steps {
-            for n in 0..count {
-                if monitor.should_stop() {
-                    return Err(TrajectoryError::Interrupted);
+    let kept: Vec<usize> = (0..2 * dimension).collect();
+    let run = EnsembleRun { method, dt, steps, every, kept: &kept };
+    let lost = run.record(&mut *all, rows, monitor)?;
+    Ok(Outcome::of::<S>(request, &lost))
+}
+
+/// The steps of an ensemble, and what is kept of them.
+pub(crate) struct EnsembleRun<'a> {
+    pub(crate) method: Method,
+    /// The time step in seconds.
+    pub(crate) dt: f64,
+    pub(crate) steps: u64,
+    /// The interval of kept steps.
+    pub(crate) every: u64,
+    /// The coordinates that are kept, by their places among positions and velocities.
+    pub(crate) kept: &'a [usize],
+}
+
+impl EnsembleRun<'_> {
+    /// Simulates, gives the rows of kept steps, and returns the trajectories that are not finite in the end.
+    pub(crate) fn record<S: Number>(
+        &self,
+        all: &mut dyn AnyEnsemble<S>,
+        rows: &mut dyn Rows<S>,
+        monitor: &dyn Monitor,
+    ) -> Result<Vec<usize>, TrajectoryError> {
+        let EnsembleRun { method, dt, steps, every, kept } = *self;
+        let (count, dimension) = (all.len(), all.dimension());
+        let mut values = Vec::with_capacity(kept.len() + 1);
+        let at_once = (CHUNK / (count as u64).max(1)).max(1);
+        loop {
+            let step = all.step();
+            let time = step as f64 * S::from_f64(dt).to_f64();
+            if step.is_multiple_of(every) || step == steps {
+                let energies = all.energies();
+                let plane = |&i: &usize| match i.checked_sub(dimension) {
+                    None => all.q(i),
+                    Some(i) => all.v(i),
+                };
+                let planes: Vec<&[S]> = kept.iter().filter_map(plane).collect();
+                for n in 0..count {
+                    if monitor.should_stop() {
+                        return Err(TrajectoryError::Interrupted);
+                    }
+                    values.clear();
+                    values.extend(planes.iter().map(|plane| plane[n]));
+                    values.extend(energies.as_ref().map(|energies| energies[n]));
+                    rows.row(&[n as u64, step], time, &values)?;
                 }
-                values.clear();
-                let planes =
-                    (0..dimension).map(|i| all.q(i)).chain((0..dimension).map(|i| all.v(i)));
-                values.extend(planes.flatten().filter_map(|plane| plane.get(n).copied()));
-                values.extend(all.energy(n));
-                rows.row(&[n as u64, step], time, &values)?;
             }
+            if step == steps {
+                return Ok(all.not_finite());
+            }
+            if monitor.should_stop() {
+                return Err(TrajectoryError::Interrupted);
+            }
+            let to_next_row = (every - step % every).min(steps - step);
+            all.advance(method, S::from_f64(dt), to_next_row.min(at_once));
+            monitor.on_step(all.step());
         }
-        if step == steps {
-            let lost = all.not_finite();
-            return Ok(Outcome::of::<S>(request, &lost));
-        }
-        if monitor.should_stop() {
-            return Err(TrajectoryError::Interrupted);
-        }
-        let to_next_row = (every - step % every).min(steps - step);
-        all.advance(method, S::from_f64(dt), to_next_row.min(at_once));
-        monitor.on_step(all.step());
     }
 }

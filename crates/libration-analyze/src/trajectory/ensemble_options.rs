@@ -1,8 +1,10 @@
 //! Options of an ensemble of trajectories.
 
-use libration::ensemble::{Execution, InstructionSet};
+use libration::catalog::Allowed;
+use libration::ensemble::{Execution, InstructionSet, MOST_THREADS};
 
 use super::TrajectoryError;
+use super::error::value_error;
 
 /// Number of trajectories, spread of their starts, and execution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +27,20 @@ impl EnsembleOptions {
             return 1.0;
         }
         1.0 + self.spread * (2.0 * n as f64 / (self.count - 1) as f64 - 1.0)
+    }
+
+    /// Checks every value.
+    pub(crate) fn check(&self) -> Result<(), TrajectoryError> {
+        if self.count == 0 {
+            return Err(value_error("count", 0, "at least 1"));
+        }
+        if !self.spread.is_finite() {
+            return Err(value_error("spread", format!("{:?}", self.spread), Allowed::Finite));
+        }
+        if self.threads > MOST_THREADS {
+            return Err(value_error("threads", self.threads, format!("at most {MOST_THREADS}")));
+        }
+        self.instruction_set().map(|_| ())
     }
 
     /// The instruction set; an error if this processor lacks it.

@@ -79,3 +79,11 @@ impl TrajectoryError {
         }
     }
 }
+
+pub(super) fn value_error(
+    name: &'static str,
+    value: impl ToString,
+    allowed: impl ToString,
+) -> TrajectoryError {
+    TrajectoryError::Value { name, value: value.to_string(), allowed: allowed.to_string() }
+}

@@ -20,7 +20,6 @@ mod run;
 use std::io::Write;
 use std::sync::atomic::AtomicBool;
 
-use ensemble::EnsembleFloat;
 use libration::control::{Feedback, Jitter, Latency};
 use libration_settings::units;
 use serde_json::{Value, json};
@@ -29,6 +28,7 @@ use crate::Timing;
 use crate::export::{Rows, Table};
 use crate::recording::{self, Recording};
 
+pub(crate) use ensemble::{EnsembleFloat, EnsembleRun};
 pub use ensemble_options::EnsembleOptions;
 pub use error::TrajectoryError;
 pub use float_type::FloatType;

@@ -27,12 +27,17 @@ pub enum Outcome {
 impl Outcome {
     /// The outcome of the ensemble of `request` with the trajectories `lost` that are not finite.
     pub(super) fn of<S: Float>(request: &Request, lost: &[usize]) -> Self {
+        Outcome::of_ensemble(lost, || overflow::cause::<S>(request))
+    }
+
+    /// The outcome of an ensemble with the trajectories `lost` that are not finite, if there are any, and its cause.
+    pub(crate) fn of_ensemble(lost: &[usize], cause: impl FnOnce() -> Option<String>) -> Self {
         match lost.len() {
             0 => Outcome::Complete,
             count => Outcome::NotFinite {
                 count,
                 first: lost.iter().copied().take(10).collect(),
-                reason: overflow::cause::<S>(request),
+                reason: cause(),
             },
         }
     }

@@ -1,10 +1,10 @@
 //! Requests for trajectories.
 
 use libration::catalog::{Actuation, Allowed};
-use libration::ensemble::MOST_THREADS;
 use libration::{AnySystem, Float, with_system};
 use libration_settings::{limits, units};
 
+use super::error::value_error;
 use super::exact_step::exact;
 use super::{EnsembleOptions, FloatType, TrajectoryError};
 use crate::{Stepping, Timing};
@@ -138,23 +138,14 @@ impl Request {
     }
 
     fn check_ensemble<S: Float>(&self, ensemble: &EnsembleOptions) -> Result<(), TrajectoryError> {
-        if ensemble.count == 0 {
-            return Err(value_error("count", 0, "at least 1"));
-        }
-        if !ensemble.spread.is_finite() {
-            return Err(value_error("spread", format!("{:?}", ensemble.spread), Allowed::Finite));
-        }
-        if ensemble.threads > MOST_THREADS {
-            let allowed = format!("at most {MOST_THREADS}");
-            return Err(value_error("threads", ensemble.threads, allowed));
-        }
+        ensemble.check()?;
         let furthest = 1.0 + ensemble.spread.abs();
         let all = self.q.iter().chain(&self.v);
         if !all.into_iter().all(|&x| S::from_f64(furthest * x).is_finite()) {
             let allowed = format!("small enough for finite starts in {}", S::NAME);
             return Err(value_error("spread", format!("{:?}", ensemble.spread), allowed));
         }
-        ensemble.instruction_set().map(|_| ())
+        Ok(())
     }
 
     fn check_timing(&self, flag: &'static str) -> Result<(), TrajectoryError> {
@@ -234,14 +225,6 @@ impl Request {
         );
         Err(value_error("every", self.every, allowed))
     }
-}
-
-fn value_error(
-    name: &'static str,
-    value: impl ToString,
-    allowed: impl ToString,
-) -> TrajectoryError {
-    TrajectoryError::Value { name, value: value.to_string(), allowed: allowed.to_string() }
 }
 
 fn list(values: &[f64]) -> String {

@@ -28,7 +28,7 @@ fn simulate(system: &EquationSystem, end: f64, steps: u32) -> (Vec<f64>, Option<
     inputs.resize(states + equations.inputs().len(), 0.0);
     inputs.push(end / f64::from(steps));
     let energy = |inputs: &[f64]| {
-        equations.energy().and_then(|energy| energy.on::<f64>().run(inputs).next())
+        equations.dynamics().energy().and_then(|energy| energy.on::<f64>().run(inputs).next())
     };
     let before = energy(&inputs);
     for _ in 0..steps {

@@ -1,17 +1,17 @@
-//! Ensembles of built-in systems, for callers that choose them at run time.
+//! Ensembles of systems that are chosen at run time.
 
 use core::fmt::Debug;
 
 use bytemuck::Pod;
 use libration_core::system::Oscillator;
-use libration_core::{AnySystem, Float, Hamiltonian, Method, Model, State, System, with_method};
+use libration_core::{AnySystem, Float, Method, Model, State, with_method, with_system};
+use libration_equations::Dynamics;
 
-use super::{All, Ensemble, EnsembleError, Execution, InsufficientMemory};
+use super::{All, Ensemble, EnsembleError, Execution, InsufficientMemory, ProgramEnsemble};
 
-/// An ensemble of a built-in system in some number of dimensions.
+/// An ensemble of a system in some number of dimensions.
 ///
-/// All kernels of the catalogue are compiled behind this trait, once: callers that go through it
-/// compile none of their own.
+/// Behind it are the kernels of the oscillator, compiled once, and the block machine for all other systems.
 pub trait AnyEnsemble<T>: Debug + Send {
     /// Number of trajectories.
     fn len(&self) -> usize;
@@ -39,18 +39,18 @@ pub trait AnyEnsemble<T>: Debug + Send {
     /// Velocity `i` of every trajectory, if there is one.
     fn v(&self, i: usize) -> Option<&[T]>;
 
-    /// The energy of trajectory `n` per unit mass, in J/kg, if there is one.
-    fn energy(&self, n: usize) -> Option<T>;
+    /// The energy of every trajectory, of a system of the catalogue per unit mass, in J/kg; none if the system has none.
+    fn energies(&self) -> Option<Vec<T>>;
 
     /// The trajectories with a coordinate that is infinite or not a number, in order.
     fn not_finite(&self) -> Vec<usize>;
 }
 
-/// A float type whose ensembles are compiled here: `f32` and `f64`.
+/// A float type of ensembles: `f32` and `f64`.
 pub trait BatchFloat: Float + Pod {
     /// Bytes that `len` trajectories in `dimension` degrees of freedom take.
     fn ensemble_bytes(dimension: usize, len: usize) -> u128 {
-        dimension as u128 * Ensemble::<Self, 1>::bytes(len)
+        ProgramEnsemble::<Self>::bytes(dimension, len)
     }
 
     /// `len` trajectories of `system`; the start of trajectory `n` is what `start(n, i)` says of its
@@ -65,14 +65,31 @@ pub trait BatchFloat: Float + Pod {
         len: usize,
         execution: Execution,
         start: &(dyn Fn(usize, usize) -> Self + Sync),
-    ) -> Result<Box<dyn AnyEnsemble<Self>>, EnsembleError>;
-}
+    ) -> Result<Box<dyn AnyEnsemble<Self>>, EnsembleError> {
+        let wrong = || EnsembleError::System(system.entry().wrong_dimension(dimension));
+        if let AnySystem::Oscillator(model) = system
+            && system.entry().dimensions.contains(&dimension)
+        {
+            return Self::oscillators(model, dimension, len, execution, start);
+        }
+        let dynamics = with_system!(
+            system,
+            dimension,
+            |model, D| Dynamics::of::<D>(&model, false),
+            return Err(wrong())
+        );
+        Ok(Box::new(ProgramEnsemble::new(dynamics, len, execution, start)?))
+    }
 
-/// The trajectories of a system that is known when this is compiled.
-#[derive(Debug)]
-struct Typed<T, Sys, const D: usize> {
-    system: Sys,
-    trajectories: Ensemble<T, D>,
+    /// `len` isotropic oscillators, by compiled kernels.
+    #[doc(hidden)]
+    fn oscillators(
+        model: Oscillator<f64>,
+        dimension: usize,
+        len: usize,
+        execution: Execution,
+        start: &(dyn Fn(usize, usize) -> Self + Sync),
+    ) -> Result<Box<dyn AnyEnsemble<Self>>, EnsembleError>;
 }
 
 /// An isotropic oscillator in several dimensions, integrated as independent one-dimensional
@@ -87,40 +104,23 @@ struct Isotropic<T> {
 macro_rules! batch_float {
     ($float:ident) => {
         impl BatchFloat for $float {
-            fn ensemble(
-                system: AnySystem,
+            fn oscillators(
+                model: Oscillator<f64>,
                 dimension: usize,
                 len: usize,
                 execution: Execution,
                 start: &(dyn Fn(usize, usize) -> Self + Sync),
             ) -> Result<Box<dyn AnyEnsemble<Self>>, EnsembleError> {
-                if !system.entry().dimensions.contains(&dimension) {
-                    return Err(EnsembleError::System(system.entry().wrong_dimension(dimension)));
-                }
-                Ok(match system {
-                    AnySystem::Oscillator(model) => {
-                        let coordinate = |number: usize| {
-                            let (i, n) = (number / len, number % len);
-                            State { q: [start(n, i)], v: [start(n, dimension + i)] }
-                        };
-                        let needed = Self::ensemble_bytes(dimension, len);
-                        let all = len.checked_mul(dimension);
-                        let all = all.ok_or(InsufficientMemory { needed, available: None })?;
-                        let coordinates = Ensemble::from_fn(all, execution, coordinate)?;
-                        let system = Model::<1>::on::<$float>(&model);
-                        Box::new(Isotropic { system, dimension, coordinates })
-                    }
-                    AnySystem::DampedOscillator(m) => {
-                        typed::<$float, _, 1>(m, len, execution, start)?
-                    }
-                    AnySystem::DrivenOscillator(m) => {
-                        typed::<$float, _, 2>(m, len, execution, start)?
-                    }
-                    AnySystem::Pendulum(m) => typed::<$float, _, 1>(m, len, execution, start)?,
-                    AnySystem::Duffing(m) => typed::<$float, _, 1>(m, len, execution, start)?,
-                    AnySystem::Kepler(m) => typed::<$float, _, 2>(m, len, execution, start)?,
-                    AnySystem::HenonHeiles(m) => typed::<$float, _, 2>(m, len, execution, start)?,
-                })
+                let coordinate = |number: usize| {
+                    let (i, n) = (number / len, number % len);
+                    State { q: [start(n, i)], v: [start(n, dimension + i)] }
+                };
+                let needed = Self::ensemble_bytes(dimension, len);
+                let all = len.checked_mul(dimension);
+                let all = all.ok_or(InsufficientMemory { needed, available: None })?;
+                let coordinates = Ensemble::from_fn(all, execution, coordinate)?;
+                let system = Model::<1>::on::<$float>(&model);
+                Ok(Box::new(Isotropic { system, dimension, coordinates }))
             }
         }
     };
@@ -129,62 +129,41 @@ macro_rules! batch_float {
 batch_float!(f32);
 batch_float!(f64);
 
-/// An ensemble of `model` behind its trait.
-fn typed<T: Float + Pod + Debug, M: Model<D>, const D: usize>(
-    model: M,
-    len: usize,
-    execution: Execution,
-    start: &(dyn Fn(usize, usize) -> T + Sync),
-) -> Result<Box<dyn AnyEnsemble<T>>, EnsembleError>
-where
-    M::On<T>: Send + Sync + Debug + 'static,
-{
-    let state = |n| State {
-        q: core::array::from_fn(|i| start(n, i)),
-        v: core::array::from_fn(|i| start(n, D + i)),
-    };
-    let trajectories = Ensemble::from_fn(len, execution, state)?;
-    Ok(Box::new(Typed { system: model.on::<T>(), trajectories }))
-}
-
-impl<T: Float + Pod, Sys, const D: usize> AnyEnsemble<T> for Typed<T, Sys, D>
-where
-    Sys: Hamiltonian<T, D> + Copy + Send + Sync + Debug,
-{
+impl<T: Float + Pod> AnyEnsemble<T> for ProgramEnsemble<T> {
     fn len(&self) -> usize {
-        self.trajectories.len()
+        self.len()
     }
 
     fn dimension(&self) -> usize {
-        D
+        self.degrees()
     }
 
     fn step(&self) -> u64 {
-        self.trajectories.step()
+        self.step()
     }
 
     fn advance(&mut self, method: Method, dt: T, steps: u64) {
-        advance(&mut self.trajectories, self.system, method, dt, steps);
+        self.advance(method, dt, steps);
     }
 
     fn execute(&mut self, execution: Execution) {
-        self.trajectories.execute(execution);
+        self.execute(execution);
     }
 
     fn q(&self, i: usize) -> Option<&[T]> {
-        (i < D).then(|| self.trajectories.q(i))
+        (i < self.degrees()).then(|| self.coordinate(i)).flatten()
     }
 
     fn v(&self, i: usize) -> Option<&[T]> {
-        (i < D).then(|| self.trajectories.v(i))
+        self.coordinate(self.degrees().checked_add(i)?)
     }
 
-    fn energy(&self, n: usize) -> Option<T> {
-        Some(self.system.energy(&self.trajectories.state(n)?))
+    fn energies(&self) -> Option<Vec<T>> {
+        self.energies()
     }
 
     fn not_finite(&self) -> Vec<usize> {
-        self.trajectories.not_finite().collect()
+        self.not_finite().collect()
     }
 }
 
@@ -202,7 +181,12 @@ impl<T: Float + Pod> AnyEnsemble<T> for Isotropic<T> {
     }
 
     fn advance(&mut self, method: Method, dt: T, steps: u64) {
-        advance(&mut self.coordinates, self.system, method, dt, steps);
+        let Isotropic { system, coordinates, .. } = self;
+        // The one place where kernels of an ensemble are made for all methods.
+        let outcome =
+            with_method!(method, |m| coordinates.advance(m, All(*system), All(dt), steps));
+        // One value for all is never too few or too many.
+        debug_assert_eq!(outcome, Ok(()));
     }
 
     fn execute(&mut self, execution: Execution) {
@@ -217,11 +201,12 @@ impl<T: Float + Pod> AnyEnsemble<T> for Isotropic<T> {
         self.coordinates.v(0).get(i * self.len()..(i + 1) * self.len())
     }
 
-    fn energy(&self, n: usize) -> Option<T> {
-        let of = |plane: Option<&[T]>| plane?.get(n).copied();
-        let q: Option<Vec<T>> = (0..self.dimension).map(|i| of(self.q(i))).collect();
-        let v: Option<Vec<T>> = (0..self.dimension).map(|i| of(self.v(i))).collect();
-        Some(self.system.energy_of(&q?, &v?))
+    fn energies(&self) -> Option<Vec<T>> {
+        let q: Vec<&[T]> = (0..self.dimension).filter_map(|i| self.q(i)).collect();
+        let v: Vec<&[T]> = (0..self.dimension).filter_map(|i| self.v(i)).collect();
+        let at =
+            |planes: &[&[T]], n: usize| planes.iter().map(|plane| plane[n]).collect::<Vec<T>>();
+        Some((0..self.len()).map(|n| self.system.energy_of(&at(&q, n), &at(&v, n))).collect())
     }
 
     fn not_finite(&self) -> Vec<usize> {
@@ -231,19 +216,4 @@ impl<T: Float + Pod> AnyEnsemble<T> for Isotropic<T> {
         lost.dedup();
         lost
     }
-}
-
-/// The one place where the kernels of the catalogue are made.
-fn advance<T: Float + Pod, Sys, const D: usize>(
-    trajectories: &mut Ensemble<T, D>,
-    system: Sys,
-    method: Method,
-    dt: T,
-    steps: u64,
-) where
-    Sys: System<T, D> + Copy + Send + Sync,
-{
-    let outcome = with_method!(method, |m| trajectories.advance(m, All(system), All(dt), steps));
-    // One value for all is never too few or too many.
-    debug_assert_eq!(outcome, Ok(()));
 }

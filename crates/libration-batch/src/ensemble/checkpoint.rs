@@ -15,8 +15,7 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
 
     fn load(&mut self, from: &mut Reader<'_>) {
         self.step = from.next();
-        let share = self.planes.share();
-        share.q.into_iter().chain(share.v).for_each(|plane| from.fill(plane));
+        self.planes.planes_mut().for_each(|plane| from.fill(plane));
     }
 }
 

@@ -22,6 +22,7 @@ mod loops;
 mod memory;
 mod observer;
 mod planes;
+mod program_ensemble;
 mod run;
 pub(crate) mod stream;
 
@@ -39,6 +40,7 @@ pub use instructions::{InstructionSet, Loop};
 pub use loops::{Loops, Setup};
 pub use memory::{InsufficientMemory, available_memory, installed_memory};
 pub use observer::{Copies, Drift, Lanes, MeanCost, MeanSquareError, Moments, Observer, Summary};
+pub use program_ensemble::ProgramEnsemble;
 pub use stream::{stream, stream_repeatedly};
 
 use libration_core::{Float, Integrator, State, System};
@@ -62,7 +64,7 @@ const MOVED: u64 = 5;
 /// Trajectories of a `D`-dimensional system, as structure of arrays.
 #[derive(Debug)]
 pub struct Ensemble<T, const D: usize> {
-    planes: Planes<T, D>,
+    planes: Planes<T>,
     step: u64,
     execution: Execution,
 }
@@ -86,7 +88,7 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
         execution: Execution,
         start: impl Fn(usize) -> State<T, D> + Sync,
     ) -> Result<Self, EnsembleError> {
-        let mut planes = Planes::new(len)?;
+        let mut planes = Planes::new(2 * D, len)?;
         let count = execution.threads_for(MOVED * D as u64 * len as u64);
         let shares = shares(planes.share(), count, GRAIN);
         execution.each(shares, |mut share| {
@@ -99,7 +101,7 @@ impl<T: Float + Pod, const D: usize> Ensemble<T, D> {
 
     /// Bytes that `len` trajectories take.
     pub fn bytes(len: usize) -> u128 {
-        Planes::<T, D>::bytes(len)
+        Planes::<T>::bytes(2 * D, len)
     }
 
     /// Number of trajectories.

@@ -16,24 +16,24 @@ const STAGGER: usize = 5 * 64;
 /// A page, and the unit of allocation.
 const PAGE: usize = 4096;
 
-/// `2·D` arrays of equal length in one piece of memory, each aligned to a cache line.
+/// Arrays of equal length in one piece of memory, each aligned to a cache line: positions, then velocities.
 #[derive(Debug)]
-pub(super) struct Planes<T, const D: usize> {
+pub(super) struct Planes<T> {
     memory: Buffer<T>,
     /// Elements from the beginning of one plane to that of the next.
     stride: usize,
     len: usize,
 }
 
-impl<T: Pod, const D: usize> Planes<T, D> {
+impl<T: Pod> Planes<T> {
     /// Zeros in untouched memory: the system allocates a page when it is first written.
     ///
     /// # Errors
     /// If there is not so much memory.
-    pub(super) fn new(len: usize) -> Result<Self, EnsembleError> {
-        let refused = || InsufficientMemory { needed: Self::bytes(len), available: None };
+    pub(super) fn new(count: usize, len: usize) -> Result<Self, EnsembleError> {
+        let refused = || InsufficientMemory { needed: Self::bytes(count, len), available: None };
         let stride = Self::plane(len).ok_or_else(refused)? / size_of::<T>();
-        let all = stride.checked_mul(2 * D).ok_or_else(refused)?;
+        let all = stride.checked_mul(count).ok_or_else(refused)?;
         let memory = Buffer::new(all, Pages::Huge)?;
         Ok(Planes { memory, stride, len })
     }
@@ -43,10 +43,10 @@ impl<T: Pod, const D: usize> Planes<T, D> {
         len.checked_mul(size_of::<T>())?.checked_next_multiple_of(PAGE)?.checked_add(STAGGER)
     }
 
-    /// Bytes that `len` trajectories take, as if there were room for any number.
-    pub(super) fn bytes(len: usize) -> u128 {
+    /// Bytes that `count` planes of `len` trajectories take, as if there were room for any number.
+    pub(super) fn bytes(count: usize, len: usize) -> u128 {
         let plane = (len as u128 * size_of::<T>() as u128).next_multiple_of(PAGE as u128);
-        (plane + STAGGER as u128) * 2 * D as u128
+        (plane + STAGGER as u128) * count as u128
     }
 
     pub(super) fn len(&self) -> usize {
@@ -59,10 +59,16 @@ impl<T: Pod, const D: usize> Planes<T, D> {
     }
 
     /// All planes.
-    pub(super) fn share(&mut self) -> Share<'_, T, D> {
+    pub(super) fn planes_mut(&mut self) -> impl Iterator<Item = &mut [T]> {
         let len = self.len;
-        let mut planes = self.memory.chunks_exact_mut(self.stride).map(|plane| &mut plane[..len]);
-        // There are 2·D chunks.
+        // Where nothing is stored, there is no chunk.
+        self.memory.chunks_exact_mut(self.stride.max(1)).map(move |plane| &mut plane[..len])
+    }
+
+    /// All planes of `D` positions and velocities.
+    pub(super) fn share<const D: usize>(&mut self) -> Share<'_, T, D> {
+        let mut planes = self.planes_mut();
+        // There are 2·D of them.
         let mut next = || planes.next().unwrap_or_default();
         let q = from_fn(|_| next());
         Share { first: 0, q, v: from_fn(|_| next()) }

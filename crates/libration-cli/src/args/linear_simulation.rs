@@ -128,8 +128,6 @@ impl SimulateArgs {
             Some(given) => given.values().to_vec(),
             None => vec![0.0; plant.states.len()],
         };
-        let instructions =
-            if self.count.is_some() { simd::instruction_set(self.simd)? } else { None };
         Ok(linear_trajectory::LinearRequest {
             start,
             reference: values("reference", "output", reference, &plant.outputs)?,
@@ -137,16 +135,21 @@ impl SimulateArgs {
             record: request.recorded_periods().map(<[f64]>::to_vec),
             steps: self.steps,
             every: self.every,
-            ensemble: self.count.map(|count| EnsembleOptions {
-                count,
-                spread: self.spread,
-                threads: self.threads,
-                instructions,
-            }),
+            ensemble: self.ensemble()?,
             seed: self.seed,
             linear: if *noise { linear.clone() } else { linear.without_noise() },
             timing,
         })
+    }
+}
+
+impl SimulateArgs {
+    /// The ensemble of `--count`; none without it.
+    pub(crate) fn ensemble(&self) -> Result<Option<EnsembleOptions>, Failure> {
+        let Some(count) = self.count else { return Ok(None) };
+        let instructions = simd::instruction_set(self.simd)?;
+        let (spread, threads) = (self.spread, self.threads);
+        Ok(Some(EnsembleOptions { count, spread, threads, instructions }))
     }
 }
 

@@ -32,7 +32,6 @@ pub(super) fn simulation(args: &SimulateArgs, file: &Path) -> Result<EquationReq
         ));
     };
     let unsupported = [
-        ("--count", args.count.is_some()),
         ("--time-stamps", args.time_stamps.is_some()),
         ("--q", options.q.is_some()),
         ("--v", options.v.is_some()),
@@ -48,5 +47,6 @@ pub(super) fn simulation(args: &SimulateArgs, file: &Path) -> Result<EquationReq
         dt: step.dt,
         steps: args.steps,
         every: args.every,
+        ensemble: args.ensemble()?,
     })
 }

@@ -13,13 +13,13 @@ use libration_analyze::export::ExportError;
 use libration_analyze::linear_trajectory;
 use libration_analyze::trajectory;
 use libration_analyze::trajectory::{
-    Divergence, EnsembleOptions, Format, Monitor, Outcome, Request, TrajectoryError,
+    Divergence, Format, Monitor, Outcome, Request, TrajectoryError,
 };
 use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::{Document, Fault};
 
 use super::{config_file, equation_file, time_stamps};
-use crate::args::{SimulateArgs, SystemArgs, simd};
+use crate::args::{SimulateArgs, SystemArgs};
 use crate::error::Failure;
 use crate::output_file::OutputFile;
 use crate::{interrupt, progress, terminal};
@@ -129,7 +129,6 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
         ));
     };
     let InitialValueProblem { system, actuation, q, v } = system.resolve()?;
-    let instructions = if args.count.is_some() { simd::instruction_set(args.simd)? } else { None };
     Ok(Request {
         actuation,
         system,
@@ -140,12 +139,7 @@ fn request(args: &SimulateArgs) -> Result<Request, Failure> {
         q,
         v,
         every: args.every,
-        ensemble: args.count.map(|count| EnsembleOptions {
-            count,
-            spread: args.spread,
-            threads: args.threads,
-            instructions,
-        }),
+        ensemble: args.ensemble()?,
         timing: args.timing.timing(),
         record: args.time_stamps.as_deref().map(|path| recorded(path, step.dt)).transpose()?,
         seed: args.seed,
