@@ -1,8 +1,8 @@
 //! Summaries of systems by equations.
 
+use libration::analysis::jacobian;
 use libration::equations::Degree;
-use libration::linear::{Matrix, eigenvalues};
-use libration::number::Dual;
+use libration::linear::eigenvalues;
 use libration_settings::equations::EquationSystem;
 use serde::Serialize;
 
@@ -43,6 +43,8 @@ pub struct EquationSummary {
 pub struct SummaryState {
     /// The name; that of a velocity has a prime.
     pub name: String,
+    /// The unit; empty without one.
+    pub unit: String,
     /// The value at the start.
     pub start: f64,
 }
@@ -63,19 +65,11 @@ impl EquationSummary {
     pub fn new(system: &EquationSystem) -> Self {
         let equations = &system.equations;
         let degrees = equations.degrees();
-        let d = degrees.len();
-        let start: Vec<f64> = system.q.iter().chain(&system.v).copied().collect();
-        let named = |i: usize| -> Option<String> {
-            match &degrees[i % d] {
-                Degree::Coordinate(name) if i < d => Some(name.clone()),
-                Degree::Coordinate(name) => Some(format!("{name}'")),
-                Degree::State(name) if i >= d => Some(name.clone()),
-                Degree::State(_) | Degree::Time => None,
-            }
-        };
-        let places: Vec<usize> = (0..2 * d).filter(|&i| named(i).is_some()).collect();
-        let states =
-            places.iter().filter_map(|&i| Some(SummaryState { name: named(i)?, start: start[i] }));
+        let states = system.states.iter().map(|state| SummaryState {
+            name: state.name.clone(),
+            unit: state.unit.clone(),
+            start: state.start,
+        });
         let parameters = system.definitions.parameters.iter().zip(&system.units);
         let parameter = |((name, value), unit): (&(String, f64), &String)| SummaryParameter {
             name: name.clone(),
@@ -83,7 +77,7 @@ impl EquationSummary {
             unit: unit.clone(),
         };
         let rates: Vec<f64> =
-            equations.dynamics().accelerations().on::<f64>().run(&start).collect();
+            equations.dynamics().accelerations().on::<f64>().run(&system.start()).collect();
         EquationSummary {
             name: system.name.clone(),
             description: system.description.clone(),
@@ -97,36 +91,18 @@ impl EquationSummary {
             energy: equations.dynamics().energy().is_some(),
             operations: equations.dynamics().accelerations().operations(),
             rate_at_start: rates.iter().fold(0.0, |most, rate| f64::max(most, rate.abs())),
-            eigenvalues_at_start: eigenvalues_at(system, &start, &places),
+            eigenvalues_at_start: eigenvalues_at(system, &system.start()),
         }
     }
 }
 
-/// The eigenvalues of the Jacobian at `start`, by dual numbers.
-fn eigenvalues_at(
-    system: &EquationSystem,
-    start: &[f64],
-    places: &[usize],
-) -> Option<Vec<[f64; 2]>> {
-    let d = start.len() / 2;
-    let mut accelerations = system.equations.dynamics().accelerations().on::<Dual<f64>>();
-    let mut column = |j: usize| -> Vec<f64> {
-        let seeded = start.iter().enumerate().map(|(i, &x)| match i == places[j] {
-            true => Dual::variable(x),
-            false => Dual::constant(x),
-        });
-        let inputs: Vec<Dual<f64>> = seeded.collect();
-        let rates: Vec<f64> = accelerations.run(&inputs).map(|rate| rate.du).collect();
-        let rate = |&i: &usize| match i < d {
-            true => f64::from(u8::from(places[j] == i + d)),
-            false => rates[i - d],
-        };
-        places.iter().map(rate).collect()
-    };
-    let columns: Vec<Vec<f64>> = (0..places.len()).map(&mut column).collect();
-    let jacobian = Matrix::from_fn(places.len(), places.len(), |i, j| columns[j][i]);
-    let mut values: Vec<[f64; 2]> =
-        eigenvalues(&jacobian)?.into_iter().map(|value| [value.re, value.im]).collect();
+/// The eigenvalues of the equations, linearised at the start.
+fn eigenvalues_at(system: &EquationSystem, start: &[f64]) -> Option<Vec<[f64; 2]>> {
+    let jacobian = jacobian(system.equations.dynamics(), start);
+    let mut values: Vec<[f64; 2]> = eigenvalues(&system.state_matrix(&jacobian))?
+        .into_iter()
+        .map(|value| [value.re, value.im])
+        .collect();
     values.sort_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])));
     Some(values)
 }

@@ -3,7 +3,8 @@
 use libration_core::system::CommandedSystem;
 use libration_core::{Hamiltonian, Model, State, System};
 
-use super::program::Program;
+use super::program::{Operation, Program, ValueId};
+use super::program_builder::ProgramBuilder;
 use super::recording::Recorded;
 
 /// The accelerations `a(q, v, u)` of a system whose number of degrees of freedom is known when the program runs.
@@ -49,6 +50,20 @@ impl Dynamics {
         });
         let energy = Program::record(2 * D, |x| vec![model.on::<Recorded>().energy(&state(x))]);
         Dynamics::new(D, inputs, accelerations, Some(energy))
+    }
+
+    /// The same with an input for each degree of freedom: an acceleration added to its own.
+    pub fn with_added_accelerations(&self) -> Self {
+        let mut builder = ProgramBuilder::literal();
+        let count = 2 * self.degrees + self.inputs;
+        let known: Vec<ValueId> = (0..count).map(|_| builder.input()).collect();
+        let added: Vec<ValueId> = (0..self.degrees).map(|_| builder.input()).collect();
+        let own = builder.inline(&self.accelerations, &known);
+        let sum = |(&own, &added): (&ValueId, &ValueId)| builder.value(Operation::Sum(own, added));
+        let sums: Vec<ValueId> = own.iter().zip(&added).map(sum).collect();
+        let accelerations = builder.finish(&sums);
+        let inputs = self.inputs + self.degrees;
+        Dynamics { inputs, accelerations, ..self.clone() }
     }
 
     /// Degrees of freedom.

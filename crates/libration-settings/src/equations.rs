@@ -3,9 +3,11 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use libration::analysis::rate_derivative;
 use libration::equations::{
     Definitions, Degree, EquationError, EquationErrorKind, Equations, ExpressionErrorKind, Function,
 };
+use libration::linear::Matrix;
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -22,12 +24,31 @@ pub struct EquationSystem {
     pub equations: Equations,
     /// The texts of the equations.
     pub definitions: Definitions,
+    /// The states by name.
+    pub states: Vec<NamedState>,
     /// The unit of each parameter, in the order of the definitions; empty without one.
     pub units: Vec<String>,
+    /// The unit of each input; empty without one.
+    pub input_units: Vec<String>,
+    /// The unit of the energy; empty without one.
+    pub energy_unit: String,
     /// Initial positions of all degrees of freedom.
     pub q: Vec<f64>,
     /// Initial velocities of all degrees of freedom.
     pub v: Vec<f64>,
+}
+
+/// A coordinate, a velocity or a state of first order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedState {
+    /// The place among all positions and velocities.
+    pub place: usize,
+    /// The name; that of a velocity has a prime.
+    pub name: String,
+    /// The unit; empty without one.
+    pub unit: String,
+    /// The value at the start.
+    pub start: f64,
 }
 
 #[derive(Deserialize)]
@@ -57,6 +78,8 @@ struct Table {
     rate: BTreeMap<Spanned<String>, Spanned<String>>,
     energy: Option<Spanned<String>>,
     #[serde(default)]
+    units: BTreeMap<Spanned<String>, String>,
+    #[serde(default)]
     start: BTreeMap<Spanned<String>, Spanned<Number>>,
 }
 
@@ -66,6 +89,15 @@ struct Table {
 enum Parameter {
     Value(Number),
     WithUnit { value: Number, unit: String },
+}
+
+/// Whether the text of a TOML file has a table `[system]` with equations.
+pub fn is_system(text: &str) -> bool {
+    let table: Option<toml::Table> = toml::from_str(text).ok();
+    let system = table.as_ref().and_then(|table| table.get("system"));
+    ["coordinates", "acceleration", "rate"].iter().any(|key| {
+        system.and_then(toml::Value::as_table).is_some_and(|system| system.contains_key(*key))
+    })
 }
 
 impl EquationSystem {
@@ -96,9 +128,71 @@ impl EquationSystem {
         let (q, v) = system
             .start(&equations)
             .map_err(|(span, message, help)| SettingsError::new(file, text, span, message, help))?;
+        let known_units = system.units(&definitions);
+        let known_units = known_units
+            .map_err(|(span, message, help)| SettingsError::new(file, text, span, message, help))?;
+        let unit = |name: &str| known_units.get(name).cloned().unwrap_or_default();
+        let states = named_states(&equations, &q, &v, &unit);
+        let input_units = definitions.inputs.iter().map(|name| unit(name)).collect();
+        let energy_unit = unit("energy");
         let (name, description) = (system.name, system.description);
-        Ok(EquationSystem { name, description, equations, definitions, units, q, v })
+        Ok(EquationSystem {
+            name,
+            description,
+            equations,
+            definitions,
+            states,
+            units,
+            input_units,
+            energy_unit,
+            q,
+            v,
+        })
     }
+}
+
+impl EquationSystem {
+    /// Positions and velocities at the start, and the inputs, which are zero.
+    pub fn start(&self) -> Vec<f64> {
+        let inputs = self.equations.inputs().iter().map(|_| 0.0);
+        self.q.iter().chain(&self.v).copied().chain(inputs).collect()
+    }
+
+    /// The derivatives of the rates of the [states](EquationSystem::states) by the states, from those of the accelerations by
+    /// positions, velocities and inputs.
+    pub fn state_matrix(&self, jacobian: &Matrix) -> Matrix {
+        let place = |i: usize| self.states[i].place;
+        Matrix::from_fn(self.states.len(), self.states.len(), |i, j| {
+            rate_derivative(jacobian, place(i), place(j))
+        })
+    }
+}
+
+/// Coordinates, then velocities and states of first order.
+fn named_states(
+    equations: &Equations,
+    q: &[f64],
+    v: &[f64],
+    unit: &dyn Fn(&str) -> String,
+) -> Vec<NamedState> {
+    let degrees = equations.degrees();
+    let position = |(i, degree): (usize, &Degree)| match degree {
+        Degree::Coordinate(name) => {
+            Some(NamedState { place: i, name: name.clone(), unit: unit(name), start: q[i] })
+        }
+        Degree::State(_) | Degree::Time => None,
+    };
+    let rate = |unit: String| if unit.is_empty() { unit } else { format!("{unit}/s") };
+    let velocity = |(i, degree): (usize, &Degree)| {
+        let (name, unit) = match degree {
+            Degree::Coordinate(name) => (format!("{name}'"), rate(unit(name))),
+            Degree::State(name) => (name.clone(), unit(name)),
+            Degree::Time => return None,
+        };
+        Some(NamedState { place: degrees.len() + i, name, unit, start: v[i] })
+    };
+    let positions = degrees.iter().enumerate().filter_map(position);
+    positions.chain(degrees.iter().enumerate().filter_map(velocity)).collect()
 }
 
 impl Table {
@@ -169,6 +263,27 @@ impl Table {
             _ => self.coordinates.first().map(Spanned::span),
         };
         place.unwrap_or_default()
+    }
+
+    /// Units by name: of coordinates, states of first order, inputs and the energy.
+    fn units(&self, definitions: &Definitions) -> Result<BTreeMap<String, String>, Wrong> {
+        let states = definitions.rates.iter().map(|(name, _)| name);
+        let known: Vec<&str> = definitions
+            .coordinates
+            .iter()
+            .chain(states)
+            .chain(&definitions.inputs)
+            .map(String::as_str)
+            .chain(definitions.energy.as_ref().map(|_| "energy"))
+            .collect();
+        for name in self.units.keys() {
+            if !known.contains(&name.get_ref().as_str()) {
+                let help = suggestions::suggest("names", name.get_ref(), known.iter().copied());
+                let message = format!("nothing with a unit has the name `{}`", name.get_ref());
+                return Err((name.span(), message, Some(help)));
+            }
+        }
+        Ok(self.units.iter().map(|(name, unit)| (name.get_ref().clone(), unit.clone())).collect())
     }
 
     /// Positions and velocities at the start; those that are not given are zero, and the velocity of time is 1.

@@ -1,7 +1,6 @@
 //! Requests for trajectories of systems by equations.
 
 use libration::catalog::Allowed;
-use libration::equations::Degree;
 use libration::{Float, Method};
 use libration_settings::equations::EquationSystem;
 use libration_settings::limits;
@@ -31,29 +30,14 @@ pub struct EquationRequest {
 }
 
 impl EquationRequest {
-    /// The coordinates that are kept, by their places among positions and velocities, with their names.
-    pub(super) fn kept(&self) -> Vec<(usize, String)> {
-        let degrees = self.system.equations.degrees();
-        let position = |(i, degree): (usize, &Degree)| match degree {
-            Degree::Coordinate(name) => Some((i, name.clone())),
-            Degree::State(_) | Degree::Time => None,
-        };
-        let velocity = |(i, degree): (usize, &Degree)| match degree {
-            Degree::Coordinate(name) => Some((degrees.len() + i, format!("{name}'"))),
-            Degree::State(name) => Some((degrees.len() + i, name.clone())),
-            Degree::Time => None,
-        };
-        let positions = degrees.iter().enumerate().filter_map(position);
-        positions.chain(degrees.iter().enumerate().filter_map(velocity)).collect()
-    }
-
     /// Names and units of the columns, from left to right.
     pub fn columns(&self) -> Vec<(String, String)> {
         let named = |name: &str, unit: &str| (name.to_owned(), unit.to_owned());
         let mut names: Vec<_> = self.ensemble.iter().map(|_| named("trajectory", "1")).collect();
         names.extend([named("step", "1"), named("t", "s")]);
-        names.extend(self.kept().iter().map(|(_, name)| named(name, "")));
-        names.extend(self.system.equations.dynamics().energy().map(|_| named("energy", "")));
+        names.extend(self.system.states.iter().map(|state| named(&state.name, &state.unit)));
+        let energy = self.system.equations.dynamics().energy();
+        names.extend(energy.map(|_| named("energy", &self.system.energy_unit)));
         names
     }
 

@@ -20,7 +20,7 @@ pub(super) fn run_ensemble<S: EnsembleFloat>(
 ) -> Result<Outcome, TrajectoryError> {
     let EquationRequest { system, method, dt, steps, every, .. } = request;
     let start: Vec<f64> = system.q.iter().chain(&system.v).copied().collect();
-    let kept: Vec<usize> = request.kept().into_iter().map(|(place, _)| place).collect();
+    let kept: Vec<usize> = system.states.iter().map(|state| state.place).collect();
     // The velocity of time is 1 for all.
     let scale = |n, i| if kept.contains(&i) { ensemble.scale(n) } else { 1.0 };
     let start = |n: usize, i: usize| scale(n, i) * start[i];
@@ -42,7 +42,7 @@ pub(super) fn run<S: Number>(
     let mut step_of = program.program().on::<S>();
     let mut energy_of = equations.dynamics().energy().map(|energy| energy.on::<S>());
     let d = equations.degrees().len();
-    let kept: Vec<usize> = request.kept().into_iter().map(|(place, _)| place).collect();
+    let kept: Vec<usize> = system.states.iter().map(|state| state.place).collect();
     let dt = S::from_f64(request.dt);
     // Positions, velocities, inputs, which are zero, and the time step.
     let mut inputs: Vec<S> = system.q.iter().chain(&system.v).map(|&x| S::from_f64(x)).collect();

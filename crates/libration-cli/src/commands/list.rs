@@ -122,7 +122,8 @@ fn summary_text(summary: &EquationSummary) -> String {
     text += "\nStates at the start\n";
     let width = states.iter().map(|state| state.name.chars().count()).max().unwrap_or_default();
     for state in states {
-        text += &format!("  {:width$}  {}\n", state.name, state.start);
+        let line = format!("  {:width$}  {} {}", state.name, state.start, state.unit);
+        text += &format!("{}\n", line.trim_end());
     }
     if !parameters.is_empty() {
         text += "\nParameters\n";

@@ -1,10 +1,10 @@
 //! Loops around linear plants in settings files.
 
 mod cascade_table;
-mod catalogue_plant;
 mod controller_table;
 mod design;
 mod loop_table;
+mod operating_point;
 mod part;
 mod part_table;
 mod pid_table;
@@ -15,10 +15,10 @@ mod state_space_table;
 mod weights_table;
 
 pub use cascade_table::{CascadeControllerTable, CascadePidTable, CascadeTable};
-pub use catalogue_plant::{Coordinates, OperatingPoint};
 pub use controller_table::{LinearControllerTable, StateFeedbackTable};
 pub use design::{Cascaded, Design};
 pub use loop_table::{Channels, LinearLoopTable};
+pub use operating_point::{Coordinates, OperatingPoint, OperatingValue, linearised_equations};
 pub use part::{Part, PartKind};
 pub use part_table::PartTable;
 pub use plant_file::{parse as parse_plant, read as read_plant};

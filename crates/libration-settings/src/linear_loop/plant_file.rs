@@ -8,14 +8,14 @@ use libration_data::{ArrayValues, NamedArray, read_mat, read_npz};
 use super::PlantTable;
 use super::plant_table::Rows;
 use crate::limits::SETTINGS_BYTES;
-use crate::{Document, Number, SettingsError};
+use crate::{Document, Number, SettingsError, equations};
 
 /// All arrays of a file together are as long as its text could be.
 const ARRAY_BYTES: usize = SETTINGS_BYTES as usize;
 
 /// Reads a plant from a file.
 ///
-/// `.toml` and `.json` have the keys of `[system.linear]`. A line of a `.csv` file has the name of a matrix and the numbers of one of
+/// `.toml` and `.json` have the keys of `[system.linear]`; a `.toml` file with equations is linearised at an equilibrium. A line of a `.csv` file has the name of a matrix and the numbers of one of
 /// its rows. `.npz` (NumPy) and `.mat` (MATLAB 5 to 7) have the matrices as arrays.
 ///
 /// # Errors
@@ -29,6 +29,9 @@ pub fn read(path: &Path) -> Result<PlantTable, String> {
             let text = text()?;
             let name = path.to_string_lossy();
             let document = Document::parse(&text, &name).map_err(|error| error.sentence())?;
+            if equations::is_system(&text) {
+                return Ok(PlantTable { of: Some(name.into_owned()), ..PlantTable::default() });
+            }
             if document.has_key("system") {
                 let message = "it is a request with the table [system.linear]; expected --config, or a file with the keys of that table alone";
                 return Err(message.to_owned());

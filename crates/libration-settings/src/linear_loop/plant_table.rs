@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use libration::linear::{LinearPlant, Matrix, PlantError, Signal};
 use serde::Deserialize;
 
-use super::catalogue_plant::{Coordinates, OperatingPoint, linearise};
+use super::operating_point::{Coordinates, OperatingPoint, linearise};
 use super::{plant_file, plant_keys};
 use crate::{Fault, Number};
 
@@ -15,11 +15,11 @@ use crate::{Fault, Number};
 pub struct PlantTable {
     /// A file with the same keys: `.toml`, `.json`, `.csv`, `.npz` or `.mat`.
     pub file: Option<String>,
-    /// A system of the catalogue, linearised at an equilibrium.
+    /// A system of the catalogue or a file with equations, linearised at an equilibrium.
     pub of: Option<String>,
     /// Its parameters.
     pub parameters: BTreeMap<String, Number>,
-    /// The coordinates at which the search for the equilibrium begins (default: zero).
+    /// The coordinates at which the search for the equilibrium begins (default: zero, of equations their start).
     pub at: Option<Coordinates>,
     /// The constant command at the equilibrium (default: zero).
     pub command: Option<Coordinates>,
@@ -94,7 +94,7 @@ impl PlantTable {
         }
         plant_keys::check(&self.given())?;
         let plant = match (&self.of, &self.a, &self.mass, &self.numerator) {
-            (Some(of), None, None, None) => self.of_catalogue(of)?.0,
+            (Some(of), None, None, None) => self.linearised(of)?.0,
             (None, Some(a), None, None) => self.by_matrices(a)?,
             (None, None, Some(mass), None) => self.mechanical(mass)?,
             (None, None, None, Some(numerator)) => self.by_transfer_functions(numerator)?,
@@ -111,7 +111,7 @@ impl PlantTable {
         }
     }
 
-    /// The equilibrium of a system of the catalogue; none of other plants.
+    /// The equilibrium of a linearised system; none of other plants.
     ///
     /// # Errors
     /// [`Fault`]: as for [`PlantTable::plant`].
@@ -122,7 +122,7 @@ impl PlantTable {
         };
         match (&self.file, &self.of) {
             (Some(file), _) => in_file(file),
-            (None, Some(of)) => Ok(Some(self.of_catalogue(of)?.1)),
+            (None, Some(of)) => Ok(Some(self.linearised(of)?.1)),
             (None, None) => Ok(None),
         }
     }
@@ -148,7 +148,7 @@ impl PlantTable {
         keys.into_iter().filter(|(_, given)| *given).map(|(key, _)| key).collect()
     }
 
-    fn of_catalogue(&self, name: &str) -> Result<(LinearPlant, OperatingPoint), Fault> {
+    fn linearised(&self, name: &str) -> Result<(LinearPlant, OperatingPoint), Fault> {
         linearise(name, &self.parameters, self.at.as_ref(), self.command.as_ref())
     }
 

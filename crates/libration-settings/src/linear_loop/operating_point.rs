@@ -1,0 +1,410 @@
+//! Systems, linearised at an equilibrium.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use libration::analysis::{Equilibrium, rate_derivative};
+use libration::equations::{Degree, Dynamics};
+use libration::linear::{LinearPlant, Matrix, Signal};
+use libration::{AnySystem, catalog, with_system};
+use serde::{Deserialize, Serialize};
+
+use crate::equations::EquationSystem;
+use crate::{Fault, Number, suggestions, units};
+
+/// Numbers of a state or of commands: one, one for each in order, or some by name.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(
+    untagged,
+    expecting = "expected a number, a list with one number for each coordinate, or a table by name"
+)]
+pub enum Coordinates {
+    /// Of a system with one.
+    One(Number),
+    /// One for each.
+    Each(Vec<Number>),
+    /// By name; others are zero.
+    Named(BTreeMap<String, Number>),
+}
+
+impl Coordinates {
+    /// The numbers of `names`, where `known` is what they are without this.
+    fn numbers(&self, key: &'static str, names: &[&str], known: &[f64]) -> Result<Vec<f64>, Fault> {
+        let numbers: Vec<f64> = match self {
+            Coordinates::One(Number(x)) => vec![*x],
+            Coordinates::Each(each) => each.iter().map(|x| x.0).collect(),
+            Coordinates::Named(some) => {
+                let mut numbers = known.to_vec();
+                for (name, x) in some {
+                    let Some(i) = names.iter().position(|own| own == name) else {
+                        let help = suggestions::suggest("names", name, names.iter().copied());
+                        return Err(Fault::new(key, format!("unknown name `{name}`")).help(help));
+                    };
+                    numbers[i] = x.0;
+                }
+                numbers
+            }
+        };
+        if let Some(x) = numbers.iter().find(|x| !x.is_finite()) {
+            return Err(Fault::new(key, format!("{x:?} is given; expected finite numbers")));
+        }
+        if numbers.len() != names.len() {
+            let short = key.rsplit('.').next().unwrap_or(key);
+            let message = format!(
+                "`{short}` has {} numbers; expected {}: {}",
+                numbers.len(),
+                names.len(),
+                names.join(", ")
+            );
+            return Err(Fault::new(key, message));
+        }
+        Ok(numbers)
+    }
+
+    fn len(&self) -> usize {
+        match self {
+            Coordinates::One(_) => 1,
+            Coordinates::Each(each) => each.len(),
+            Coordinates::Named(some) => some.len(),
+        }
+    }
+}
+
+/// The equilibrium at which a system is linearised.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OperatingPoint {
+    /// The name of the system.
+    pub system: String,
+    /// The coordinates and states of first order; all velocities are zero.
+    pub states: Vec<OperatingValue>,
+    /// The constant commands.
+    pub commands: Vec<OperatingValue>,
+    /// The largest absolute acceleration that is left, in units of coordinates per squared unit of time.
+    pub residual: f64,
+}
+
+/// A value at an operating point.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OperatingValue {
+    /// The name.
+    pub name: String,
+    /// The value.
+    pub value: f64,
+    /// The unit; empty without one.
+    pub unit: String,
+}
+
+impl OperatingPoint {
+    /// The operating point in a sentence.
+    pub fn sentence(&self) -> String {
+        let list = |values: &[OperatingValue]| {
+            let one = |OperatingValue { name, value, unit }: &OperatingValue| {
+                format!("{name} = {} {unit}", seven_digits(*value)).trim_end().to_owned()
+            };
+            values.iter().map(one).collect::<Vec<_>>().join(", ")
+        };
+        format!(
+            "The plant is the system {} linearised at {} under {}, where an acceleration of {:.1e} is left.",
+            self.system,
+            list(&self.states),
+            list(&self.commands),
+            self.residual
+        )
+    }
+}
+
+/// A number with seven digits, and an exponent if it is small or large.
+fn seven_digits(x: f64) -> String {
+    let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
+    format!("{rounded:?}")
+}
+
+/// A system that can be linearised.
+struct Subject {
+    name: String,
+    dynamics: Dynamics,
+    /// Names and units of positions, velocities and inputs.
+    signals: Vec<Signal>,
+    /// Positions, velocities and inputs at which the search begins.
+    start: Vec<f64>,
+    /// The places of coordinates and states of first order.
+    unknowns: Vec<usize>,
+    /// The places of the states of the plant.
+    states: Vec<usize>,
+    /// An input divided by this is that of the dynamics.
+    mass: f64,
+}
+
+/// The plant of a system of the catalogue or of the equations in a file, and the equilibrium at which Newton's method ends that begins
+/// `at`.
+///
+/// # Errors
+/// [`Fault`]: an unknown system or parameter, a system that depends on time, or no equilibrium.
+pub(super) fn linearise(
+    name: &str,
+    parameters: &BTreeMap<String, Number>,
+    at: Option<&Coordinates>,
+    command: Option<&Coordinates>,
+) -> Result<(LinearPlant, OperatingPoint), Fault> {
+    let parameters: Vec<(String, f64)> = parameters.iter().map(|(k, v)| (k.clone(), v.0)).collect();
+    let is_file = Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
+    let subject = match is_file {
+        true => Subject::of_file(name, &parameters)?,
+        false => Subject::of_catalogue(name, &parameters, at.map(Coordinates::len))?,
+    };
+    subject.linearised(at, command)
+}
+
+/// The plant of a system of equations, and the equilibrium at which Newton's method ends that begins at its start.
+///
+/// # Errors
+/// [`Fault`]: a system that depends on time, or no equilibrium.
+pub fn linearised_equations(
+    system: &EquationSystem,
+) -> Result<(LinearPlant, OperatingPoint), Fault> {
+    Subject::of_equations(system)?.linearised(None, None)
+}
+
+impl Subject {
+    fn of_catalogue(
+        name: &str,
+        parameters: &[(String, f64)],
+        dimension: Option<usize>,
+    ) -> Result<Self, Fault> {
+        let (system, actuation) = catalog::build(name, parameters).map_err(|error| {
+            let unknown = matches!(error, catalog::CatalogError::UnknownSystem { .. });
+            let key = if unknown { "system.linear.of" } else { "system.linear.parameters" };
+            let help = match unknown {
+                true => " It may also be a file NAME.toml with equations.",
+                false => "",
+            };
+            Fault::new(key, format!("{error}{}{help}", suggestions::catalog_help(&error)))
+        })?;
+        let entry = system.entry();
+        if matches!(system, AnySystem::DrivenOscillator(_)) {
+            return Err(depends_on_time(name));
+        }
+        let dimension = dimension.unwrap_or(*entry.dimensions.start());
+        let dynamics =
+            with_system!(system, dimension, |model, D| Dynamics::of::<D>(&model, true), {
+                let message = entry.wrong_dimension(dimension).to_string();
+                return Err(Fault::new("system.linear.at", message));
+            });
+        let units = units::of(system, actuation);
+        let named = |letter: &'static str, unit| {
+            (0..dimension).map(move |i| Signal::new(&format!("{letter}{i}"), unit))
+        };
+        let mut signals: Vec<Signal> =
+            named("q", units.position).chain(named("v", units.velocity)).collect();
+        match dimension {
+            1 => signals.push(Signal::new(actuation.name(), units.command)),
+            _ => signals.extend(named(actuation.name(), units.command)),
+        }
+        Ok(Subject {
+            name: entry.name.to_owned(),
+            dynamics,
+            start: vec![0.0; signals.len()],
+            signals,
+            unknowns: (0..dimension).collect(),
+            states: (0..2 * dimension).collect(),
+            mass: actuation.mass(),
+        })
+    }
+
+    fn of_file(path: &str, parameters: &[(String, f64)]) -> Result<Self, Fault> {
+        let wrong =
+            |why: String| Fault::new("system.linear.of", format!("cannot use `{path}`: {why}"));
+        let text = crate::read_text(Path::new(path)).map_err(|error| wrong(error.to_string()))?;
+        let system = EquationSystem::parse(&text, path, parameters)
+            .map_err(|error| wrong(error.sentence()))?;
+        Subject::of_equations(&system)
+    }
+
+    fn of_equations(system: &EquationSystem) -> Result<Self, Fault> {
+        let degrees = system.equations.degrees();
+        if degrees.contains(&Degree::Time) {
+            return Err(depends_on_time(&system.name));
+        }
+        let dynamics = match system.equations.inputs().is_empty() {
+            true => system.equations.dynamics().with_added_accelerations(),
+            false => system.equations.dynamics().clone(),
+        };
+        let d = degrees.len();
+        // Of a state of first order the position means nothing.
+        let mut signals = vec![Signal::new("", ""); 2 * d];
+        for state in &system.states {
+            signals[state.place] = Signal::new(&state.name, &state.unit);
+        }
+        let inputs = system.equations.inputs().iter().zip(&system.input_units);
+        signals.extend(inputs.map(|(name, unit)| Signal::new(name, unit)));
+        if system.equations.inputs().is_empty() {
+            let added = degrees.iter().zip(&signals[d..2 * d]).map(|(degree, velocity)| {
+                let unit = match velocity.unit.as_str() {
+                    "" => String::new(),
+                    unit => format!("{unit}/s"),
+                };
+                match degree {
+                    Degree::Coordinate(name) => Signal::new(&format!("{name}'' added"), &unit),
+                    Degree::State(name) => Signal::new(&format!("{name}' added"), &unit),
+                    Degree::Time => Signal::new("", ""),
+                }
+            });
+            let added: Vec<Signal> = added.collect();
+            signals.extend(added);
+        }
+        let mut start = system.q.clone();
+        start.extend(degrees.iter().zip(&system.v).map(|(degree, &v)| match degree {
+            Degree::State(_) => v,
+            Degree::Coordinate(_) | Degree::Time => 0.0,
+        }));
+        start.resize(signals.len(), 0.0);
+        let unknown = |(i, degree): (usize, &Degree)| match degree {
+            Degree::State(_) => d + i,
+            Degree::Coordinate(_) | Degree::Time => i,
+        };
+        Ok(Subject {
+            name: system.name.clone(),
+            dynamics,
+            signals,
+            start,
+            unknowns: degrees.iter().enumerate().map(unknown).collect(),
+            states: system.states.iter().map(|state| state.place).collect(),
+            mass: 1.0,
+        })
+    }
+
+    fn linearised(
+        self,
+        at: Option<&Coordinates>,
+        command: Option<&Coordinates>,
+    ) -> Result<(LinearPlant, OperatingPoint), Fault> {
+        let Subject { name, dynamics, signals, mut start, unknowns, states, mass } = self;
+        let d = dynamics.degrees();
+        let inputs: Vec<usize> = (2 * d..signals.len()).collect();
+        let set = |places: &[usize], given: Option<&Coordinates>, key, start: &mut Vec<f64>| {
+            let Some(given) = given else { return Ok(()) };
+            let names: Vec<&str> = places.iter().map(|&i| signals[i].name.as_str()).collect();
+            let known: Vec<f64> = places.iter().map(|&i| start[i]).collect();
+            let numbers = given.numbers(key, &names, &known)?;
+            places.iter().zip(numbers).for_each(|(&i, x)| start[i] = x);
+            Ok(())
+        };
+        set(&unknowns, at, "system.linear.at", &mut start)?;
+        set(&inputs, command, "system.linear.command", &mut start)?;
+        let value = |&i: &usize, x: f64| OperatingValue {
+            name: signals[i].name.clone(),
+            value: x,
+            unit: signals[i].unit.clone(),
+        };
+        let commands = inputs.iter().map(|i| value(i, start[*i])).collect();
+        inputs.iter().for_each(|&i| start[i] /= mass);
+        let found = Equilibrium::near(&dynamics, &start, &unknowns);
+        let Equilibrium { state, residual, jacobian } = found.map_err(|left| {
+            let values: Vec<String> = unknowns
+                .iter()
+                .map(|&i| format!("{} = {:?}", signals[i].name, left.state[i]))
+                .collect();
+            let message = format!(
+                "no equilibrium of `{name}` found: at {} an acceleration of {:.3e} is left",
+                values.join(", "),
+                left.residual
+            );
+            Fault::new("system.linear.at", message)
+                .help("begin `at` coordinates nearer to one, or change `command`".to_owned())
+        })?;
+        let n = states.len();
+        let a = Matrix::from_fn(n, n, |i, j| rate_derivative(&jacobian, states[i], states[j]));
+        let b = Matrix::from_fn(n, inputs.len(), |i, j| {
+            rate_derivative(&jacobian, states[i], inputs[j]) / mass
+        });
+        let of = |places: &[usize]| places.iter().map(|&i| signals[i].clone()).collect::<Vec<_>>();
+        let zero = Matrix::zeros(n, inputs.len());
+        let plant = LinearPlant::new(a, b, Matrix::identity(n), zero)
+            .and_then(|plant| plant.named(of(&states), of(&inputs), of(&states)))
+            .map_err(|error| Fault::new("system.linear.of", error.to_string()))?;
+        let states = unknowns.iter().map(|i| value(i, state[*i])).collect();
+        Ok((plant, OperatingPoint { system: name, states, commands, residual }))
+    }
+}
+
+fn depends_on_time(name: &str) -> Fault {
+    let message = format!("`{name}` depends on time, so it has no equilibrium");
+    Fault::new("system.linear.of", message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pendulum(at: f64, command: f64) -> Result<(LinearPlant, OperatingPoint), Fault> {
+        let parameters = BTreeMap::from([("omega2".to_owned(), Number(14.0))]);
+        let [at, command] = [at, command].map(|x| Coordinates::One(Number(x)));
+        linearise("pendulum", &parameters, Some(&at), Some(&command))
+    }
+
+    #[test]
+    fn an_inverted_pendulum_grows_at_the_rate_of_its_small_swings() {
+        let (plant, point) = pendulum(3.0, 0.0).unwrap();
+        assert!((point.states[0].value - core::f64::consts::PI).abs() < 1e-15);
+        // The sine of the double next to π is 1.2e-16, and the cosine is −1 to rounding.
+        assert!(point.residual < 4e-15, "{point:?}");
+        assert!((plant.a[(1, 0)] - 14.0).abs() < 1e-14 && plant.a[(0, 1)] == 1.0);
+        assert_eq!([plant.b[(0, 0)], plant.b[(1, 0)]], [0.0, 1.0]);
+        assert_eq!(plant.states[0], Signal::new("q0", "rad"));
+    }
+
+    #[test]
+    fn a_constant_command_moves_the_equilibrium() {
+        let (plant, point) = pendulum(0.1, 7.0).unwrap();
+        // sin q = 7/14, so q = 30°.
+        assert!((point.states[0].value - core::f64::consts::FRAC_PI_6).abs() < 1e-15);
+        assert!((plant.a[(1, 0)] + 14.0 * 0.75_f64.sqrt()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_command_that_no_pendulum_holds_is_refused_with_the_acceleration_that_is_left() {
+        let fault = pendulum(0.1, 15.0).unwrap_err();
+        assert_eq!(fault.key, "system.linear.at");
+        // At q = −90° gravity is 14 of the 15.
+        assert!(fault.message.contains("an acceleration of 1.000e0 is left"), "{fault}");
+        assert!(pendulum(0.0, 50.0).unwrap_err().message.contains("3.600e1 is left"));
+    }
+
+    #[test]
+    fn a_force_moves_the_mass_of_an_oscillator_and_damping_is_that_of_its_velocity() {
+        let given = [("m", 2.0), ("k", 8.0), ("gamma", 0.3)];
+        let parameters = given.map(|(name, x)| (name.to_owned(), Number(x))).into();
+        let command = Coordinates::One(Number(4.0));
+        let (plant, point) =
+            linearise("damped-oscillator", &parameters, None, Some(&command)).unwrap();
+        assert_eq!(point.states[0].value, 0.5);
+        assert_eq!([plant.a[(1, 0)], plant.a[(1, 1)], plant.b[(1, 0)]], [-4.0, -0.3, 0.5]);
+        assert_eq!(plant.inputs[0], Signal::new("force", "N"));
+    }
+
+    #[test]
+    fn the_saddles_of_henon_and_heiles_are_found() {
+        // q = (0, 1) with lambda 1: the accelerations are −x − 2xy and −y − x² + y².
+        let at = Coordinates::Each(vec![Number(0.1), Number(0.8)]);
+        let (plant, point) = linearise("henon-heiles", &BTreeMap::new(), Some(&at), None).unwrap();
+        assert!(
+            point.states[0].value.abs() < 1e-15 && (point.states[1].value - 1.0).abs() < 1e-15,
+            "{point:?}"
+        );
+        assert!((plant.a[(2, 0)] + 3.0).abs() < 1e-14 && (plant.a[(3, 1)] - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn systems_without_equilibrium_are_refused() {
+        for (name, key, message) in [
+            ("driven-oscillator", "system.linear.of", "depends on time"),
+            ("kepler", "system.linear.at", "no equilibrium of `kepler`"),
+            ("pendulm", "system.linear.of", "unknown system `pendulm`"),
+        ] {
+            let at = Coordinates::Each(vec![Number(1.0), Number(0.5)]);
+            let fault = linearise(name, &BTreeMap::new(), Some(&at), None).unwrap_err();
+            assert_eq!(fault.key, key);
+            assert!(fault.message.contains(message), "{fault}");
+        }
+    }
+}
