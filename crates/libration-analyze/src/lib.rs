@@ -2,6 +2,7 @@
 //!
 //! [`analyze`] derives stability, errors and costs of one step and of a control loop, and [`linear_analysis`] those of linear plants; [`trajectory`] and [`linear_trajectory`] simulate.
 
+mod equation_motion;
 mod equation_summary;
 pub mod equation_trajectory;
 pub mod export;
@@ -11,6 +12,7 @@ mod recording;
 mod step;
 pub mod trajectory;
 
+pub use equation_motion::{EnergyChange, EquationMotion, StateError};
 pub use equation_summary::{EquationSummary, SummaryParameter, SummaryState};
 pub use step::{
     Analysis, AnalyzeError, Criteria, Drift, LargestDt, LatencyOption, LoopAnalysis, LoopCost,

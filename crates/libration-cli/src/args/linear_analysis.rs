@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use libration_advise::linear::{AnalysisFile, LinearRequest, RequestFile};
-use libration_analyze::{LatencyOption, linear_analysis};
+use libration_analyze::{LatencyOption, Timing, linear_analysis};
+use libration_settings::Number;
 use libration_settings::linear_loop::WeightsTable;
 
-use super::AnalyzeArgs;
 use super::linear::{Gain, lqr, rows};
 use super::linear_simulation::{TimingOptions, controller_table, loop_of_plant, number};
 use super::timing::latency;
+use super::{AnalyzeArgs, SystemArgs};
 use crate::error::Failure;
 
 /// Arguments of a linear plant and the loop around it.
@@ -73,6 +74,37 @@ impl AnalyzeArgs {
             (None, None) => return None,
         };
         Some(request.and_then(|request| self.analysis(&request, &contents.borrow())))
+    }
+
+    /// The request for a system of equations about its equilibrium, in open loop.
+    pub(crate) fn equation_request(
+        &self,
+        path: &Path,
+        set: &[(String, f64)],
+    ) -> Result<linear_analysis::LinearRequest, Failure> {
+        let contents = RefCell::new(AnalysisFile::default());
+        let request = loop_of_plant(path, None, None, |file| {
+            let set = set.iter().map(|(name, value)| (name.clone(), Number(*value)));
+            file.system.linear.parameters = set.collect();
+            contents.replace(AnalysisFile::complete(file));
+        })?;
+        self.analysis(&request, &contents.borrow())
+    }
+
+    /// The first option that is not about steps of a system by equations.
+    pub(crate) fn unsupported_for_equations(&self) -> Option<&'static str> {
+        let SystemArgs { q, v, .. } = self.system.as_ref()?;
+        let given = [
+            ("--q", q.is_some()),
+            ("--v", v.is_some()),
+            ("a control loop", self.timing.timing() != Timing::default()),
+            ("--loss", self.cost.loss.is_some()),
+            ("--cost-weights", self.cost.cost_weights.is_some()),
+            ("--max-drift", self.max_drift.is_some()),
+            ("--max-amplitude", self.max_amplitude.is_some()),
+            ("--max-error", self.max_error.is_some()),
+        ];
+        given.into_iter().find(|(_, given)| *given).map(|(flag, _)| flag)
     }
 
     fn timing_options(&self) -> TimingOptions<'_> {

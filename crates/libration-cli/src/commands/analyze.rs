@@ -10,9 +10,9 @@ use libration_analyze::{
 use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::limits;
 
-use super::analyze_linear;
 use super::closed_loop::{dephasing, describe_loop};
 use super::simulate::linear_file;
+use super::{analyze_equations, analyze_linear};
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
 
@@ -20,6 +20,9 @@ use crate::error::Failure;
 pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     if let Some(request) = args.linear_request(linear_file) {
         return print(&analyze_linear::run(&request?, args.json)?);
+    }
+    if let Some(file) = args.system.as_ref().and_then(|system| system.file()) {
+        return print(&analyze_equations::run(args, file)?);
     }
     let (Some(system), Some(stepping), Some(dt)) = (&args.system, args.integrator, args.dt) else {
         return Err(Failure::usage("--system is required without --plant and --config"));

@@ -23,7 +23,7 @@ pub(super) fn run(request: &LinearRequest, json: bool) -> Result<String, Failure
 }
 
 /// Returns the analysis as text.
-fn describe(analysis: &LinearAnalysis, detail: bool) -> String {
+pub(super) fn describe(analysis: &LinearAnalysis, detail: bool) -> String {
     let mut text = String::new();
     plant(analysis, &mut text);
     modes(analysis, &mut text);

@@ -3,6 +3,7 @@
 mod advise;
 mod advise_linear;
 mod analyze;
+mod analyze_equations;
 mod analyze_linear;
 mod bench;
 mod closed_loop;

@@ -95,6 +95,20 @@ pub struct OperatingValue {
 }
 
 impl OperatingPoint {
+    /// Positions, velocities and inputs of a system of equations at this point.
+    pub fn state_of(&self, system: &EquationSystem) -> Vec<f64> {
+        let degrees = system.equations.degrees();
+        let mut state = vec![0.0; 2 * degrees.len()];
+        for ((i, degree), value) in degrees.iter().enumerate().zip(&self.states) {
+            let place = if matches!(degree, Degree::State(_)) { degrees.len() + i } else { i };
+            state[place] = value.value;
+        }
+        // Inputs that were added are no inputs of the system.
+        let inputs = self.commands.iter().take(system.equations.inputs().len());
+        state.extend(inputs.map(|command| command.value));
+        state
+    }
+
     /// The operating point in a sentence.
     pub fn sentence(&self) -> String {
         let list = |values: &[OperatingValue]| {
@@ -148,21 +162,30 @@ pub(super) fn linearise(
 ) -> Result<(LinearPlant, OperatingPoint), Fault> {
     let parameters: Vec<(String, f64)> = parameters.iter().map(|(k, v)| (k.clone(), v.0)).collect();
     let is_file = Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
-    let subject = match is_file {
-        true => Subject::of_file(name, &parameters)?,
-        false => Subject::of_catalogue(name, &parameters, at.map(Coordinates::len))?,
-    };
-    subject.linearised(at, command)
+    match is_file {
+        true => {
+            let subject = Subject::of_file(name, &parameters)?;
+            match (at, command) {
+                (None, None) => subject.linearised_near_start(),
+                _ => subject.linearised(at, command),
+            }
+        }
+        false => {
+            let dimension = at.map(Coordinates::len);
+            Subject::of_catalogue(name, &parameters, dimension)?.linearised(at, command)
+        }
+    }
 }
 
-/// The plant of a system of equations, and the equilibrium at which Newton's method ends that begins at its start.
+/// The plant of a system of equations at an equilibrium: of those that Newton's method finds from its start and from zero the one
+/// nearer to the start.
 ///
 /// # Errors
 /// [`Fault`]: a system that depends on time, or no equilibrium.
 pub fn linearised_equations(
     system: &EquationSystem,
 ) -> Result<(LinearPlant, OperatingPoint), Fault> {
-    Subject::of_equations(system)?.linearised(None, None)
+    Subject::of_equations(system)?.linearised_near_start()
 }
 
 impl Subject {
@@ -273,12 +296,29 @@ impl Subject {
         })
     }
 
+    /// At the nearer of two equilibria.
+    fn linearised_near_start(&self) -> Result<(LinearPlant, OperatingPoint), Fault> {
+        let zero = Coordinates::Each(vec![Number(0.0); self.unknowns.len()]);
+        let from_start = self.linearised(None, None);
+        let from_zero = self.linearised(Some(&zero), None);
+        let distance = |point: &OperatingPoint| -> f64 {
+            let values = point.states.iter().zip(&self.unknowns);
+            values.map(|(state, &place)| (state.value - self.start[place]).powi(2)).sum()
+        };
+        match (from_start, from_zero) {
+            (Ok(first), Ok(second)) if distance(&second.1) < distance(&first.1) => Ok(second),
+            (Err(_), Ok(second)) => Ok(second),
+            (first, _) => first,
+        }
+    }
+
     fn linearised(
-        self,
+        &self,
         at: Option<&Coordinates>,
         command: Option<&Coordinates>,
     ) -> Result<(LinearPlant, OperatingPoint), Fault> {
-        let Subject { name, dynamics, signals, mut start, unknowns, states, mass } = self;
+        let Subject { name, dynamics, signals, start, unknowns, states, mass } = self;
+        let (mut start, mass) = (start.clone(), *mass);
         let d = dynamics.degrees();
         let inputs: Vec<usize> = (2 * d..signals.len()).collect();
         let set = |places: &[usize], given: Option<&Coordinates>, key, start: &mut Vec<f64>| {
@@ -289,7 +329,7 @@ impl Subject {
             places.iter().zip(numbers).for_each(|(&i, x)| start[i] = x);
             Ok(())
         };
-        set(&unknowns, at, "system.linear.at", &mut start)?;
+        set(unknowns, at, "system.linear.at", &mut start)?;
         set(&inputs, command, "system.linear.command", &mut start)?;
         let value = |&i: &usize, x: f64| OperatingValue {
             name: signals[i].name.clone(),
@@ -298,7 +338,7 @@ impl Subject {
         };
         let commands = inputs.iter().map(|i| value(i, start[*i])).collect();
         inputs.iter().for_each(|&i| start[i] /= mass);
-        let found = Equilibrium::near(&dynamics, &start, &unknowns);
+        let found = Equilibrium::near(dynamics, &start, unknowns);
         let Equilibrium { state, residual, jacobian } = found.map_err(|left| {
             let values: Vec<String> = unknowns
                 .iter()
@@ -320,10 +360,10 @@ impl Subject {
         let of = |places: &[usize]| places.iter().map(|&i| signals[i].clone()).collect::<Vec<_>>();
         let zero = Matrix::zeros(n, inputs.len());
         let plant = LinearPlant::new(a, b, Matrix::identity(n), zero)
-            .and_then(|plant| plant.named(of(&states), of(&inputs), of(&states)))
+            .and_then(|plant| plant.named(of(states), of(&inputs), of(states)))
             .map_err(|error| Fault::new("system.linear.of", error.to_string()))?;
         let states = unknowns.iter().map(|i| value(i, state[*i])).collect();
-        Ok((plant, OperatingPoint { system: name, states, commands, residual }))
+        Ok((plant, OperatingPoint { system: name.clone(), states, commands, residual }))
     }
 }
 

@@ -1,0 +1,187 @@
+//! `libration analyze` for systems by equations.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use libration_analyze::linear_analysis::{self, LinearAnalysis};
+use libration_analyze::{AnalyzeError, EquationMotion, EquationSummary, Stepping};
+use libration_settings::equations::EquationSystem;
+use libration_settings::linear_loop::{OperatingPoint, linearised_equations};
+use serde::Serialize;
+
+use super::{analyze_linear, equation_file};
+use crate::args::AnalyzeArgs;
+use crate::error::Failure;
+use crate::interrupt;
+
+/// Version of the JSON format.
+const SCHEMA: &str = "libration.equation-analysis/1";
+
+/// The analysis of a system by equations; the fields are the keys of `--json`.
+#[derive(Serialize)]
+struct EquationAnalysis {
+    schema: &'static str,
+    system: EquationSummary,
+    /// The equilibrium at which the modes are those of the system.
+    operating_point: Option<OperatingPoint>,
+    /// The system about its equilibrium.
+    linear: Option<LinearAnalysis>,
+    /// The reason why there are no modes.
+    no_modes: Option<String>,
+    motion: EquationMotion,
+}
+
+/// Returns the analysis as text or as JSON.
+pub(super) fn run(args: &AnalyzeArgs, file: &Path) -> Result<String, Failure> {
+    let (Some(options), Some(stepping), Some(dt)) = (&args.system, args.integrator, args.dt) else {
+        return Err(Failure::usage("--integrator and --dt are required with --system"));
+    };
+    if let Some(flag) = args.unsupported_for_equations() {
+        return Err(Failure::usage(format!(
+            "{flag} requires a system of the catalogue; loops around `{0}` are analysed by --plant {0} with --lqr or --gain",
+            file.display()
+        )));
+    }
+    let Stepping::Method(method) = stepping else {
+        return Err(Failure::usage(
+            "--integrator exact: exact steps require a linear system of the catalogue or --plant",
+        ));
+    };
+    let system = equation_file::read(file, &options.set)?;
+    let stop = interrupt::listen();
+    let (operating_point, linear, no_modes) = match linearised_equations(&system) {
+        Ok((_, point)) => {
+            let request = args.equation_request(file, &options.set)?;
+            let analysis = linear_analysis::analyze(&request, stop).or_else(|_| {
+                // Integrators that do not apply to all plants with states of first order.
+                let all = linear_analysis::LinearRequest { integrator: None, ..request };
+                linear_analysis::analyze(&all, stop)
+            });
+            (Some(point), Some(analysis.map_err(Failure::usage)?), None)
+        }
+        Err(fault) => (None, None, Some(fault.message)),
+    };
+    let equilibrium = operating_point.as_ref().map(|point| point.state_of(&system));
+    let motion = EquationMotion::new(&system, method, dt, args.steps, equilibrium.as_deref(), stop);
+    let motion = motion.map_err(|error| match error {
+        AnalyzeError::Interrupted => Failure::Interrupted(error.to_string()),
+        error => Failure::usage(error),
+    })?;
+    let analysis = EquationAnalysis {
+        schema: SCHEMA,
+        system: EquationSummary::new(&system),
+        operating_point,
+        linear,
+        no_modes,
+        motion,
+    };
+    match args.json {
+        true => Ok(serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n"),
+        false => Ok(describe(&analysis, &system)),
+    }
+}
+
+fn describe(analysis: &EquationAnalysis, system: &EquationSystem) -> String {
+    let EquationAnalysis { operating_point, linear, no_modes, motion, .. } = analysis;
+    let mut text = format!("{}, {} with dt = {} s\n", system.name, motion.integrator, motion.dt);
+    describe_motion(motion, analysis.system.smooth, &mut text);
+    text += "\n";
+    if let Some(point) = operating_point {
+        text += &format!("{}\n", point.sentence());
+    }
+    if let Some(linear) = linear {
+        text += &analyze_linear::describe(linear, false);
+    }
+    if let Some(reason) = no_modes {
+        text += &format!("No modes: {reason}.\n");
+    }
+    text
+}
+
+// Writing into a string cannot fail.
+fn describe_motion(motion: &EquationMotion, is_smooth: bool, text: &mut String) {
+    let classical = motion.classical_order;
+    let order = match motion.order {
+        Some(order) if order == classical => format!("{order}, derived with 1024 bits"),
+        Some(order) if order < classical => format!(
+            "{order}, derived with 1024 bits; {classical} where forces depend on positions alone"
+        ),
+        Some(order) => format!("{order}, derived with 1024 bits; {classical} in general"),
+        None => "none: a step has no error, or no derivative".to_owned(),
+    };
+    let kinks = if is_smooth {
+        ""
+    } else {
+        "; the equations have kinks or jumps, beyond which it does not hold"
+    };
+    let _ = writeln!(text, "  order                {order}{kinks}");
+    let _ = writeln!(text, "  operations           {} a step", motion.operations_per_step);
+    if let Some(radius) = motion.spectral_radius {
+        let _ = writeln!(
+            text,
+            "  spectral radius      1 {:+.6e}, of the derivative of a step at the equilibrium below",
+            radius - 1.0
+        );
+    }
+    if let Some(step) = motion.diverged_at_step {
+        let _ = writeln!(text, "  a state is not finite after step {step}");
+    }
+    let ratio = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), |x| format!("{x:.4}"));
+    let time = motion.error_steps as f64 * motion.dt;
+    let _ = writeln!(
+        text,
+        "\nafter {} steps ({time} s)  {:>20} {:>12} {:>22} {:>12}",
+        motion.error_steps, "value", "error", "halved steps reduce by", "predicted"
+    );
+    let predicted = || match motion.predicted_reduction {
+        Some(least) => format!("{least:.0} or more"),
+        None => "-".to_owned(),
+    };
+    // Errors that fall by less than half of what is predicted are not those of small steps.
+    let is_small = |reduction: Option<f64>| {
+        reduction.is_none_or(|x| motion.predicted_reduction.is_none_or(|least| x > least / 2.0))
+    };
+    for state in &motion.errors {
+        let name = match state.unit.as_str() {
+            "" => state.name.clone(),
+            unit => format!("{} ({unit})", state.name),
+        };
+        let _ = writeln!(
+            text,
+            "  {name:<24} {:>20.12e} {:>12.2e} {:>22} {:>12}{}",
+            state.value,
+            state.error,
+            ratio(state.reduction),
+            predicted(),
+            if is_small(state.reduction) { "" } else { "  not resolved: take smaller steps" }
+        );
+    }
+    match &motion.energy {
+        Some(energy) => {
+            let part = match energy.start {
+                0.0 => String::new(),
+                start => format!(" ({:.2e} of the start)", energy.largest / start.abs()),
+            };
+            let _ = writeln!(
+                text,
+                "\nenergy: {:.9e} {} at the start; largest change over {} steps {:.3e}{part}, at step {}; in the end {:+.3e}",
+                energy.start,
+                energy.unit,
+                energy.steps,
+                energy.largest,
+                energy.largest_at_step,
+                energy.last
+            );
+            let _ = writeln!(
+                text,
+                "  halved steps reduce the largest change by {}, predicted {}{}",
+                ratio(energy.reduction),
+                predicted(),
+                if is_small(energy.reduction) { "" } else { "; not resolved: take smaller steps" }
+            );
+        }
+        None => {
+            let _ = writeln!(text, "\nenergy: the file has none, so nothing is said of its drift");
+        }
+    }
+}
