@@ -16,6 +16,7 @@ from . import datasets, policies
 from .analysis import Advice, Analysis, advise, analyze
 from .ensemble import Ensemble
 from .environments import Environments
+from .equations import EquationSystem
 from .laboratory import STUDIES, Finding, Results, run_lab
 from .linear import (
     LQG,
@@ -45,6 +46,7 @@ __all__ = [
     "Difference",
     "Ensemble",
     "Environments",
+    "EquationSystem",
     "Finding",
     "Gaussian",
     "INTEGRATORS",

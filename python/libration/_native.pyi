@@ -18,8 +18,11 @@ __all__ = [
     "__version__",
     "_advise",
     "_analyze",
+    "_analyze_equations",
     "_analyze_linear",
     "_dataset_settings",
+    "_equation_plant",
+    "_equation_summary",
     "_forked",
     "_integrators",
     "_linear_plant",
@@ -29,6 +32,7 @@ __all__ = [
     "_seconds_of_rollouts",
     "_seconds_of_steps",
     "_simulate",
+    "_simulate_equations",
     "_studies",
     "_systems",
     "_verify_dataset",
@@ -38,6 +42,7 @@ __all__ = [
 _Numbers = NDArray[Any]
 _System = tuple[str, Sequence[tuple[str, float]]]
 _Columns = dict[str, _Numbers]
+_Equations = tuple[str, str, Sequence[tuple[str, float]]]
 
 __version__: str
 _MOST_STEPS: int
@@ -61,6 +66,14 @@ def _program(
 def _simulate(
     step: Mapping[str, Any], looped: Mapping[str, Any], rows: Mapping[str, Any]
 ) -> tuple[_Columns, dict[str, str], dict[str, Any]]: ...
+def _equation_summary(system: _Equations) -> str: ...
+def _simulate_equations(
+    system: _Equations, integrator: str, dt: float, rows: Mapping[str, Any]
+) -> tuple[_Columns, dict[str, str], dict[str, Any]]: ...
+def _analyze_equations(system: _Equations, integrator: str, dt: float, steps: int) -> str: ...
+def _equation_plant(
+    system: _Equations,
+) -> tuple[list[list[list[float]]], list[list[tuple[str, str]]], list[list[float]], float]: ...
 def _analyze(
     step: Mapping[str, Any], looped: Mapping[str, Any], options: Mapping[str, Any]
 ) -> str: ...
@@ -102,6 +115,16 @@ class Trajectories:
         single: bool,
         threads: int,
     ) -> Self: ...
+    @staticmethod
+    def _of_equations(
+        system: _Equations,
+        integrator: str,
+        dt: float,
+        q: _Numbers,
+        v: _Numbers,
+        single: bool,
+        threads: int,
+    ) -> Trajectories: ...
     def _advance(self, steps: int) -> None: ...
     def _step(self) -> int: ...
     def _states(self) -> list[_Numbers]: ...

@@ -8,15 +8,16 @@ from pathlib import Path
 from typing import Any, Mapping
 
 from . import _native
-from ._requests import coordinates, loop_request, step_request, whole
+from ._requests import coordinates, loop_request, step_request, text, whole
 from ._keywords import check_keywords
 from ._progress import Progress, ProgressDisplay
 from ._settings import number
 from ._toml import text_of
+from .equations import EquationSystem
 from .linear import linear_request, plant_of, tolerance_table
 from .perturbations import LQR, PD, PID, Controller, Observer, law, numbers
 from .perturbations import latency as _latency
-from .systems import CustomSystem, System, known
+from .systems import System, known
 
 __all__ = ["Advice", "Analysis", "advise", "analyze"]
 
@@ -142,8 +143,8 @@ def analyze(
     Parameters
     ----------
     system:
-        A name or a :class:`~libration.System`, which requires ``integrator`` and ``dt``; or a linear plant, as in
-        :func:`~libration.advise`.
+        A name or a :class:`~libration.System`, which requires ``integrator`` and ``dt``; an :class:`~libration.EquationSystem`; or a
+        linear plant, as in :func:`~libration.advise`. With a controller a system by equations is its plant at an equilibrium.
     controller:
         Of a linear plant: as in :func:`~libration.advise`; without one its commands are zero.
     integrator, dt:
@@ -188,6 +189,13 @@ def analyze(
         "measurement_noise": measurement_noise,
         "clock": clock,
     }
+    if isinstance(system, EquationSystem) and controller is None and integrator is not None and dt is not None:
+        for name, value in (of_catalogue | of_loop | of_linear).items():
+            if value is not None and name != "steps":
+                raise TypeError(f"{name} cannot be combined with a system by equations")
+        step = number("dt", dt, "finite and greater than 0")
+        answer = _native._analyze_equations(system._text, text("integrator", integrator), step, whole("steps", steps))
+        return Analysis(json.loads(answer))
     if (plant := plant_of(system)) is not None:
         for name, value in of_catalogue.items():
             if value is not None:
@@ -224,8 +232,8 @@ def analyze(
 
 def _of_catalogue(system: Any) -> System:
     system = known(system)
-    if isinstance(system, CustomSystem):
-        raise ValueError("system is a CustomSystem; expected a system of the catalogue")
+    if not isinstance(system, System):
+        raise ValueError(f"system is {type(system).__name__}; expected a system of the catalogue")
     return system
 
 

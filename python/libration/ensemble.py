@@ -12,7 +12,8 @@ from . import _native
 from ._requests import rows, text
 from ._keywords import check_keywords
 from ._settings import count, positive
-from .systems import Program, System, known, seen
+from .equations import EquationSystem
+from .systems import CustomSystem, Program, System, known, seen
 
 __all__ = ["Ensemble"]
 
@@ -63,6 +64,8 @@ class Ensemble:
             raise ValueError(f"dtype is {self.dtype}, but it must be float64 or float32")
         at = rows("q", q)
         speed = np.zeros_like(at) if v is None else rows("v", v)
+        if isinstance(self.system, EquationSystem):
+            at, speed = self.system._starts(at, None if v is None else speed)
         if at.shape != speed.shape:
             raise ValueError(f"q has shape {at.shape} and v {speed.shape}, but they must be equal")
         if 0 in at.shape:
@@ -79,6 +82,11 @@ class Ensemble:
             self._trajectories: Any = _native.Trajectories(
                 request, self.integrator, self.dt, at, speed, single, threads
             )
+        elif isinstance(self.system, EquationSystem):
+            single = bool(self.dtype == np.float32)
+            self._trajectories = _native.Trajectories._of_equations(
+                self.system._text, self.integrator, self.dt, at, speed, single, threads
+            )
         else:
             self._trajectories = Program(self.integrator, self.system)
             # The engine has its own lock; this one is for NumPy arrays.
@@ -88,7 +96,7 @@ class Ensemble:
     @property
     def step(self) -> int:
         """Number of steps taken."""
-        return self._trajectories._step() if isinstance(self.system, System) else self._step
+        return self._step if isinstance(self.system, CustomSystem) else self._trajectories._step()
 
     @property
     def time(self) -> float:
@@ -98,17 +106,27 @@ class Ensemble:
     @property
     def q(self) -> NDArray[Any]:
         """Copy of the positions, ``(N, dimension)``."""
-        return self._trajectories._states()[0] if isinstance(self.system, System) else self._state[0].copy()
+        if isinstance(self.system, CustomSystem):
+            return self._state[0].copy()
+        q = self._trajectories._states()[0]
+        return q[:, : self.system._positions].copy() if isinstance(self.system, EquationSystem) else q
 
     @property
     def v(self) -> NDArray[Any]:
-        """Copy of the velocities, ``(N, dimension)``."""
-        return self._trajectories._states()[1] if isinstance(self.system, System) else self._state[1].copy()
+        """Copy of the velocities, ``(N, dimension)``; of a system by equations also of the states of first order."""
+        if isinstance(self.system, CustomSystem):
+            return self._state[1].copy()
+        v = self._trajectories._states()[1]
+        if not isinstance(self.system, EquationSystem):
+            return v
+        return v[:, : len(self.system.states) - self.system._positions].copy()
 
     @property
     def energy(self) -> NDArray[Any]:
         """Energies per unit mass, ``(N,)``, in J/kg."""
-        if isinstance(self.system, System):
+        if isinstance(self.system, EquationSystem) and not self.system.summary["energy"]:
+            raise ValueError(f"the system {self.system.name} has no energy")
+        if not isinstance(self.system, CustomSystem):
             return self._trajectories._energies()
         if self.system.energy is None:
             raise ValueError("the custom system has no energy")
@@ -132,7 +150,7 @@ class Ensemble:
             Between two steps, after Ctrl-C.
         """
         steps = count("steps", steps, 0, 2**62)
-        if isinstance(self.system, System):
+        if not isinstance(self.system, CustomSystem):
             self._trajectories._advance(steps)
             return
         dt = self.dtype.type(self.dt)

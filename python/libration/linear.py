@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from types import MethodType
 from typing import Any, Callable, Mapping, Sequence
 
 import numpy as np
@@ -335,6 +336,8 @@ def plant_of(system: Any) -> LinearPlant | None:
     """Return a linear plant for an object with the matrices of one; None for others."""
     if isinstance(system, LinearPlant):
         return system
+    if isinstance(plant := getattr(system, "plant", None), MethodType):
+        return plant()
     by_matrices = _has_matrices(system)
     fraction = None if by_matrices else of_object(system)
     if not by_matrices and fraction is None:

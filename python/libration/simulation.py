@@ -14,6 +14,7 @@ from ._requests import coordinates, text, loop_request, step_request, whole
 from ._keywords import check_keywords
 from ._settings import count as _whole_between, nearest, number
 from .ensemble import Ensemble
+from .equations import EquationSystem
 from .systems import CustomSystem, known
 
 __all__ = ["Trajectory", "simulate"]
@@ -72,7 +73,10 @@ class Trajectory(Mapping[str, np.ndarray]):
         return self["energy"]
 
     def _stacked(self, letter: str) -> NDArray[Any]:
-        return np.stack([self[name] for name in self if name[0] == letter and name[1:].isdigit()], axis=1)
+        found = [self[name] for name in self if name[0] == letter and name[1:].isdigit()]
+        if not found:
+            raise AttributeError(f"there are no columns {letter}0, {letter}1, …, only {', '.join(self)}")
+        return np.stack(found, axis=1)
 
     def to_pandas(self) -> Any:
         """Return a ``pandas.DataFrame`` of all columns."""
@@ -110,8 +114,9 @@ def simulate(
     Parameters
     ----------
     system:
-        A name, a :class:`~libration.System`, a :class:`~libration.CustomSystem` or a function ``a(q, v)``. The last two accept
-        ``integrator``, ``dt``, ``steps``, ``q``, ``v``, ``float`` and ``every`` only.
+        A name, a :class:`~libration.System`, an :class:`~libration.EquationSystem`, a :class:`~libration.CustomSystem` or a function
+        ``a(q, v)``. The last two accept ``integrator``, ``dt``, ``steps``, ``q``, ``v``, ``float`` and ``every`` only. The columns of a
+        system by equations have the names of its states.
     integrator:
         Name from :data:`~libration.INTEGRATORS`.
     dt:
@@ -163,23 +168,35 @@ def simulate(
             if value != 0:
                 raise ValueError(f"{name} is {value!r}, but it requires a system of the catalogue")
         return _custom(system, integrator, dt, steps, q, v, float, every)
+    rows = {
+        "steps": whole("steps", steps),
+        "float": text("float", float),
+        "every": whole("every", every, 0),
+        "count": None if count is None else whole("count", count, 0),
+        "spread": number("spread", spread, "finite"),
+        "threads": whole("threads", threads, 0),
+        "seed": whole("seed", seed, 0),
+        "time_stamps": coordinates("time_stamps", time_stamps),
+    }
     if count is None:
         for name, value in {"spread": spread, "threads": threads}.items():
             if value != 0:
                 raise ValueError(f"{name} is {value!r}, but there is no count of trajectories; it requires count")
+    if isinstance(system, EquationSystem):
+        for name, value in {"q": q, "v": v}.items():
+            if value is not None:
+                raise ValueError(f"{name} is given, but a system by equations has its start; it requires Ensemble")
+        loop = {"feedback": feedback, "latency": latency, "jitter": jitter, "skew": skew}
+        for name, value in (loop | {"time_stamps": time_stamps}).items():
+            if value is not None:
+                raise ValueError(f"{name} is given, but it requires a system of the catalogue")
+        step = number("dt", dt, "finite and greater than 0")
+        found = _native._simulate_equations(system._text, text("integrator", integrator), step, rows)
+        return Trajectory(*found)
     columns, units, ended = _native._simulate(
         step_request(system, integrator, dt, q, v),
         loop_request(feedback, latency, jitter, skew),
-        {
-            "steps": whole("steps", steps),
-            "float": text("float", float),
-            "every": whole("every", every, 0),
-            "count": None if count is None else whole("count", count, 0),
-            "spread": number("spread", spread, "finite"),
-            "threads": whole("threads", threads, 0),
-            "seed": whole("seed", seed, 0),
-            "time_stamps": coordinates("time_stamps", time_stamps),
-        },
+        rows,
     )
     return Trajectory(columns, units, ended)
 

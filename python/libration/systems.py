@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Callable, Mapping
@@ -10,6 +11,7 @@ import numpy as np
 
 from . import _native
 from ._settings import nearest, number
+from .equations import EquationSystem
 
 __all__ = ["CustomSystem", "INTEGRATORS", "SYSTEMS", "System"]
 
@@ -23,7 +25,7 @@ _DIMENSIONS = {name: range(least, most + 1) for name, _, least, most, _ in _nati
 
 
 class System:
-    """A system of the catalogue.
+    """A system of the catalogue; with ``acceleration`` or ``rate`` an :class:`~libration.EquationSystem`.
 
     Parameters
     ----------
@@ -43,7 +45,19 @@ class System:
     System('oscillator', m=2.0, k=20.0)
     """
 
-    def __init__(self, name: str, **parameters: float) -> None:
+    def __new__(cls, name: Any = None, **given: Any) -> Any:
+        if "acceleration" in given or "rate" in given:
+            if name is not None:
+                given["name"] = name
+            return EquationSystem(**given)
+        return super().__new__(cls)
+
+    @staticmethod
+    def from_toml(path: str | os.PathLike[str], **parameters: float) -> EquationSystem:
+        """Return the system of the equations in a file: :meth:`libration.EquationSystem.from_toml`."""
+        return EquationSystem.from_toml(path, **parameters)
+
+    def __init__(self, name: str, **parameters: Any) -> None:
         if not isinstance(name, str):
             raise TypeError(f"name must be a string, not {type(name).__name__}")
         given = [(key, number(key, value, "finite")) for key, value in parameters.items()]
@@ -100,9 +114,9 @@ class CustomSystem:
                 raise TypeError(f"{name} must be a function, not {type(function).__name__}")
 
 
-def known(system: Any) -> System | CustomSystem:
+def known(system: Any) -> System | CustomSystem | EquationSystem:
     """Return the system of a name, a function or a system."""
-    if isinstance(system, (System, CustomSystem)):
+    if isinstance(system, (System, CustomSystem, EquationSystem)):
         return system
     if isinstance(system, str):
         if system not in SYSTEMS:

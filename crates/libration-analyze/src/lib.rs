@@ -2,8 +2,7 @@
 //!
 //! [`analyze`] derives stability, errors and costs of one step and of a control loop, and [`linear_analysis`] those of linear plants; [`trajectory`] and [`linear_trajectory`] simulate.
 
-mod equation_motion;
-mod equation_summary;
+pub mod equation_analysis;
 pub mod equation_trajectory;
 pub mod export;
 pub mod linear_analysis;
@@ -12,8 +11,6 @@ mod recording;
 mod step;
 pub mod trajectory;
 
-pub use equation_motion::{EnergyChange, EquationMotion, StateError};
-pub use equation_summary::{EquationSummary, SummaryParameter, SummaryState};
 pub use step::{
     Analysis, AnalyzeError, Criteria, Drift, LargestDt, LatencyOption, LoopAnalysis, LoopCost,
     LoopGrowth, ModifiedHamiltonian, OrderOfWord, Request, RequestSummary, StableLatencies,

@@ -10,6 +10,7 @@ mod bench;
 mod catalogue;
 mod checked_mutex;
 mod datasets;
+mod equations;
 mod error;
 mod laboratory;
 mod linear_analysis;
@@ -40,6 +41,10 @@ mod _native {
     use crate::checked_mutex::_forked;
     #[pymodule_export]
     use crate::datasets::{_dataset_settings, _verify_dataset, _write_dataset};
+    #[pymodule_export]
+    use crate::equations::{
+        _analyze_equations, _equation_plant, _equation_summary, _simulate_equations,
+    };
     #[pymodule_export]
     use crate::laboratory::{_advise, _run_lab};
     #[pymodule_export]

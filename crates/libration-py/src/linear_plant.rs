@@ -10,7 +10,7 @@ use crate::error::{Raised, value_error};
 pub(crate) type Names = [Vec<(String, String)>; 3];
 
 /// The rows of a matrix.
-type Rows = Vec<Vec<f64>>;
+pub(crate) type Rows = Vec<Vec<f64>>;
 
 /// Returns the matrices A, B, C, D and G, and the names and units, of the plant that the text of a plant file describes.
 #[pyfunction]
@@ -29,6 +29,6 @@ pub(crate) fn names(plant: &LinearPlant) -> Names {
     })
 }
 
-fn rows(matrix: &Matrix) -> Rows {
+pub(crate) fn rows(matrix: &Matrix) -> Rows {
     (0..matrix.rows()).map(|i| matrix.row(i).to_vec()).collect()
 }

@@ -21,12 +21,29 @@ use crate::request::{Loop, Step, warn_of};
 pub(crate) struct Rows {
     steps: i64,
     float: String,
-    every: u64,
+    pub(crate) every: u64,
     count: Option<usize>,
     spread: f64,
     threads: usize,
     seed: u64,
     time_stamps: Option<Vec<f64>>,
+}
+
+impl Rows {
+    pub(crate) fn float(&self) -> PyResult<FloatType> {
+        FloatType::from_name(&self.float)
+            .ok_or_else(|| unknown("float", &self.float, FloatType::ALL.map(FloatType::name)))
+    }
+
+    pub(crate) fn ensemble(&self) -> Option<EnsembleOptions> {
+        let Rows { spread, threads, .. } = *self;
+        let of = |count| EnsembleOptions { count, spread, threads, instructions: None };
+        self.count.map(of)
+    }
+
+    pub(crate) fn steps(&self) -> PyResult<u64> {
+        limits::trajectory_steps("steps", self.steps.into()).map_err(value_error)
+    }
 }
 
 /// Options of an analysis.
@@ -46,20 +63,14 @@ pub(crate) fn _simulate<'py>(
     step: Step,
     looped: Loop,
     rows: Rows,
-) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+) -> PyResult<Simulated<'py>> {
     let setting = step.setting()?;
     let dt = step.dt()?;
-    let float = FloatType::from_name(&rows.float)
-        .ok_or_else(|| unknown("float", &rows.float, FloatType::ALL.map(FloatType::name)))?;
+    let (float, ensemble) = (rows.float()?, rows.ensemble());
+    let steps = rows.steps()?;
     let record = rows.time_stamps.map(|stamps| {
         Recorded::steps_in(&stamps, dt)
             .map_err(|error| value_error(format!("time_stamps: {error}")))
-    });
-    let ensemble = rows.count.map(|count| EnsembleOptions {
-        count,
-        spread: rows.spread,
-        threads: rows.threads,
-        instructions: None,
     });
     let request = Request {
         system: setting.system,
@@ -67,7 +78,7 @@ pub(crate) fn _simulate<'py>(
         stepping: step.stepping()?,
         float,
         dt,
-        steps: limits::trajectory_steps("steps", rows.steps.into()).map_err(value_error)?,
+        steps,
         q: setting.q,
         v: setting.v,
         every: rows.every,
@@ -81,7 +92,17 @@ pub(crate) fn _simulate<'py>(
     }
     let done =
         run_in_background(py, |stop| trajectory::simulate_until(&request, stop), |_| Ok(()))?;
-    let trajectory::Trajectory { table, outcome } = done.map_err(Raised::raised)?;
+    converted(py, done.map_err(Raised::raised)?)
+}
+
+/// Columns, their units, and how a simulation ended.
+pub(crate) type Simulated<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Bound<'py, PyDict>);
+
+pub(crate) fn converted(
+    py: Python<'_>,
+    trajectory: trajectory::Trajectory,
+) -> PyResult<Simulated<'_>> {
+    let trajectory::Trajectory { table, outcome } = trajectory;
     let (columns, units) = (PyDict::new(py), PyDict::new(py));
     for column in table.into_columns() {
         units.set_item(&*column.name, &*column.unit)?;

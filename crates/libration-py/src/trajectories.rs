@@ -1,6 +1,6 @@
 //! The Python class `Trajectories`: an ensemble of a catalogue system.
 
-use libration::ensemble::{AnyEnsemble, BatchFloat, EnsembleError, Execution};
+use libration::ensemble::{AnyEnsemble, BatchFloat, EnsembleError, Execution, ProgramEnsemble};
 use libration::rl::EnvironmentError;
 use libration::{AnySystem, Method};
 use numpy::{PyArray1, PyReadonlyArray2};
@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 
 use crate::array::{Array, Number, allocate, view_mut};
 use crate::checked_mutex::CheckedMutex;
+use crate::equations::{EquationText, equations};
 use crate::error::{Raised, value_error};
 use crate::request::{self, SystemRequest, method, warn_of};
 use crate::time_slices::run_in_slices;
@@ -71,6 +72,38 @@ impl Trajectories {
             })?)
         } else {
             AnyTrajectories::F64(made(system, [len, dimension], execution, &of)?)
+        };
+        let ensemble = CheckedMutex::new((ensemble, threads));
+        Ok(Trajectories { ensemble, method, dt })
+    }
+
+    /// Creates trajectories of a system by equations from `q` and `v`, `(len, degrees of freedom)` each.
+    #[staticmethod]
+    fn _of_equations(
+        system: EquationText,
+        integrator: &str,
+        dt: f64,
+        q: PyReadonlyArray2<'_, f64>,
+        v: PyReadonlyArray2<'_, f64>,
+        single: bool,
+        threads: usize,
+    ) -> PyResult<Self> {
+        let system = equations(&system)?;
+        let method = method(integrator)?;
+        let (q, v) = (q.as_array(), v.as_array());
+        let dynamics = system.equations.dynamics();
+        let [len, degrees] = [q.nrows(), dynamics.degrees()];
+        let of = |n: usize, i: usize| if i < degrees { q[[n, i]] } else { v[[n, i - degrees]] };
+        let execution = Execution::serial().threads(threads).map_err(Raised::raised)?;
+        let threads = Threads { count: execution.thread_count(), process: std::process::id() };
+        let refused = |error: EnsembleError| EnvironmentError::from(error).raised();
+        let ensemble = if single {
+            let start = |n, i| of(n, i) as f32;
+            let all = f32::program_ensemble(dynamics, len, execution, &start);
+            AnyTrajectories::F32(all.map_err(refused)?)
+        } else {
+            let all = f64::program_ensemble(dynamics, len, execution, &of);
+            AnyTrajectories::F64(all.map_err(refused)?)
         };
         let ensemble = CheckedMutex::new((ensemble, threads));
         Ok(Trajectories { ensemble, method, dt })

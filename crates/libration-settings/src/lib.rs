@@ -3,6 +3,7 @@
 //! Each limit is defined once, for files and flags. An error names the position in the file.
 
 mod document;
+mod equation_examples;
 pub mod equations;
 mod error;
 mod fault;
@@ -18,6 +19,7 @@ pub mod validation;
 mod value;
 
 pub use document::Document;
+pub use equation_examples::EquationExample;
 pub use error::SettingsError;
 pub use fault::Fault;
 pub use file::{read, read_text};

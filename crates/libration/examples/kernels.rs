@@ -6,7 +6,7 @@
 
 use std::error::Error;
 
-use libration::ensemble::{BatchFloat, Execution, InstructionSet};
+use libration::ensemble::{AnyEnsemble, BatchFloat, Execution, InstructionSet};
 use libration::{AnySystem, Method};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -45,15 +45,20 @@ fn run<T: BatchFloat>(
     };
     let execution = Execution::serial().instructions(set)?;
     let mut all = T::ensemble(system, dimension, trajectories, execution, &start)?;
-    let before = all.energy(0).map(T::to_f64);
+    let before = first_energy(&*all);
     all.advance(method, T::from_f64(0.01), steps);
     println!(
         "{trajectories} trajectories, {steps} steps of {} with {}",
         method.title(),
         set.name()
     );
-    if let (Some(before), Some(after)) = (before, all.energy(0).map(T::to_f64)) {
+    if let (Some(before), Some(after)) = (before, first_energy(&*all)) {
         println!("energy of the first before and after: {before} and {after} J/kg");
     }
     Ok(())
+}
+
+/// The energy of the first trajectory.
+fn first_energy<T: BatchFloat>(all: &dyn AnyEnsemble<T>) -> Option<f64> {
+    all.energies()?.first().copied().map(T::to_f64)
 }

@@ -1,4 +1,4 @@
-use libration::ensemble::{BatchFloat, Execution, ProgramEnsemble};
+use libration::ensemble::{BatchFloat, Execution};
 use libration::equations::Dynamics;
 use libration::system::*;
 use libration::{AnySystem, Method, Model};
@@ -24,20 +24,16 @@ fn one<T: BatchFloat + std::fmt::Debug, const D: usize>(
             let t = Instant::now();
             a.advance(method, dt, steps);
             tc = t.elapsed().as_secs_f64();
-            let mut b = ProgramEnsemble::<T>::new(
-                Dynamics::of(&model, false),
-                n,
-                Execution::serial(),
-                start,
-            )
-            .unwrap();
+            let mut b =
+                T::program_ensemble(&Dynamics::of(&model, false), n, Execution::serial(), &start)
+                    .unwrap();
             let t = Instant::now();
             b.advance(method, dt, steps);
             tm = t.elapsed().as_secs_f64();
             ratios.push(tc / tm);
             for i in 0..D {
-                assert_eq!(a.q(i).unwrap(), b.coordinate(i).unwrap());
-                assert_eq!(a.v(i).unwrap(), b.coordinate(D + i).unwrap());
+                assert_eq!(a.q(i).unwrap(), b.q(i).unwrap());
+                assert_eq!(a.v(i).unwrap(), b.v(i).unwrap());
             }
         }
         ratios.sort_by(f64::total_cmp);

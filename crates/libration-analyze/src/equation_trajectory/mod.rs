@@ -13,12 +13,39 @@ use serde_json::{Value, json};
 
 use crate::export::Rows;
 use crate::recording::{self, Recording};
-use crate::trajectory::{EnsembleFloat, FloatType, Format, Monitor, Outcome, TrajectoryError};
+use crate::trajectory::{
+    EnsembleFloat, FloatType, Format, Monitor, Outcome, Trajectory, TrajectoryError,
+};
 
 pub use request::EquationRequest;
 
 /// Version of the JSON format.
 pub const SCHEMA: &str = "libration.equation-trajectory/1";
+
+/// Simulates the request, until the end or until `monitor` stops it, and keeps all rows.
+///
+/// # Errors
+/// A [`TrajectoryError`], before any work if the request is invalid.
+pub fn simulate_until(
+    request: &EquationRequest,
+    monitor: &dyn Monitor,
+) -> Result<Trajectory, TrajectoryError> {
+    match request.float {
+        FloatType::F64 => simulate_as::<f64>(request, monitor),
+        FloatType::F32 => simulate_as::<f32>(request, monitor),
+        FloatType::F16 => simulate_as::<f16>(request, monitor),
+        FloatType::Bf16 => simulate_as::<bf16>(request, monitor),
+    }
+}
+
+fn simulate_as<S: EnsembleFloat>(
+    request: &EquationRequest,
+    monitor: &dyn Monitor,
+) -> Result<Trajectory, TrajectoryError> {
+    request.check::<S>()?;
+    let (table, outcome) = recording::table::<S>(request, monitor, |_, _| 0)?;
+    Ok(Trajectory { table, outcome })
+}
 
 /// Simulates the request and writes its rows into `out`, until the end or until `monitor` stops it.
 ///

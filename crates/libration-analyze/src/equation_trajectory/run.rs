@@ -24,7 +24,7 @@ pub(super) fn run_ensemble<S: EnsembleFloat>(
     // The velocity of time is 1 for all.
     let scale = |n, i| if kept.contains(&i) { ensemble.scale(n) } else { 1.0 };
     let start = |n: usize, i: usize| scale(n, i) * start[i];
-    let mut all = S::program_ensemble(system.equations.dynamics(), &start, ensemble)?;
+    let mut all = S::equation_ensemble(system.equations.dynamics(), &start, ensemble)?;
     let run = EnsembleRun { method: *method, dt: *dt, steps: *steps, every: *every, kept: &kept };
     let lost = run.record(&mut *all, rows, monitor)?;
     Ok(Outcome::of_ensemble(&lost, || None))

@@ -10,7 +10,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use libration::Method;
 use libration::analysis::{LinearStepper, without_rounding};
-use libration::linear::{Complex64, LinearLoop, LinearPlant, LoopTiming, ModeDetails, Signal};
+use libration::linear::{
+    Complex64, DiscreteController, LinearLoop, LinearPlant, LoopTiming, Matrix, ModeDetails, Signal,
+};
 use serde::Serialize;
 
 use crate::Stepping;
@@ -155,6 +157,21 @@ fn shapes(details: &[ModeDetails]) -> Vec<(Complex64, Vec<Complex64>)> {
 }
 
 impl LinearRequest {
+    /// A plant whose commands are zero, under steps of `dt` seconds of an integrator, or without one of all.
+    ///
+    /// # Errors
+    /// [`LinearAnalysisError`]: a plant that cannot be analysed.
+    pub fn open_loop(
+        plant: LinearPlant,
+        dt: f64,
+        integrator: Option<Stepping>,
+    ) -> Result<Self, LinearAnalysisError> {
+        let [n, m, p] = [&plant.states, &plant.inputs, &plant.outputs].map(Vec::len);
+        let silent = DiscreteController::gain(Matrix::zeros(m, p));
+        let linear = LinearLoop::new(plant, silent, dt, Matrix::identity(n + m), vec![0.0; p])?;
+        Ok(LinearRequest { linear, timing: None, dt: Some(dt), integrator, note: None })
+    }
+
     fn plant(&self) -> &LinearPlant {
         self.linear.plant()
     }

@@ -2,7 +2,7 @@
 
 use half::{bf16, f16};
 use libration::Method;
-use libration::ensemble::{AnyEnsemble, BatchFloat, InsufficientMemory, ProgramEnsemble};
+use libration::ensemble::{AnyEnsemble, BatchFloat, InsufficientMemory};
 use libration::equations::Dynamics;
 
 use super::{EnsembleOptions, Monitor, Outcome, Request, TrajectoryError, loops};
@@ -36,7 +36,7 @@ pub(crate) trait EnsembleFloat: Number {
     ) -> Result<Outcome, TrajectoryError>;
 
     /// An ensemble of a system by its program, whose trajectory `n` begins with coordinate `i` at `start(n, i)`.
-    fn program_ensemble(
+    fn equation_ensemble(
         dynamics: &Dynamics,
         start: &(dyn Fn(usize, usize) -> f64 + Sync),
         ensemble: &EnsembleOptions,
@@ -66,15 +66,14 @@ macro_rules! vectors {
                 loops::run::<$float>(request, rows, monitor)
             }
 
-            fn program_ensemble(
+            fn equation_ensemble(
                 dynamics: &Dynamics,
                 start: &(dyn Fn(usize, usize) -> f64 + Sync),
                 ensemble: &EnsembleOptions,
             ) -> Result<Box<dyn AnyEnsemble<Self>>, TrajectoryError> {
                 let start = |n, i| start(n, i) as $float;
-                let dynamics = dynamics.clone();
-                let all = ProgramEnsemble::new(dynamics, ensemble.count, ensemble.execution()?, start)?;
-                Ok(Box::new(all))
+                let (count, execution) = (ensemble.count, ensemble.execution()?);
+                Ok(BatchFloat::program_ensemble(dynamics, count, execution, &start)?)
             }
 
             fn check_memory(request: &Request, ensemble: &EnsembleOptions) -> Result<(), TrajectoryError> {
@@ -110,7 +109,7 @@ macro_rules! scalar_only {
                 Err(no_vectors::<Self>())
             }
 
-            fn program_ensemble(
+            fn equation_ensemble(
                 _: &Dynamics,
                 _: &(dyn Fn(usize, usize) -> f64 + Sync),
                 _: &EnsembleOptions,

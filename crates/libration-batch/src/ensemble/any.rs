@@ -65,27 +65,14 @@ pub trait BatchFloat: Float + Pod {
         len: usize,
         execution: Execution,
         start: &(dyn Fn(usize, usize) -> Self + Sync),
-    ) -> Result<Box<dyn AnyEnsemble<Self>>, EnsembleError> {
-        let wrong = || EnsembleError::System(system.entry().wrong_dimension(dimension));
-        if let AnySystem::Oscillator(model) = system
-            && system.entry().dimensions.contains(&dimension)
-        {
-            return Self::oscillators(model, dimension, len, execution, start);
-        }
-        let dynamics = with_system!(
-            system,
-            dimension,
-            |model, D| Dynamics::of::<D>(&model, false),
-            return Err(wrong())
-        );
-        Ok(Box::new(ProgramEnsemble::new(dynamics, len, execution, start)?))
-    }
+    ) -> Result<Box<dyn AnyEnsemble<Self>>, EnsembleError>;
 
-    /// `len` isotropic oscillators, by compiled kernels.
-    #[doc(hidden)]
-    fn oscillators(
-        model: Oscillator<f64>,
-        dimension: usize,
+    /// `len` trajectories of a system by its program, whose inputs are zero.
+    ///
+    /// # Errors
+    /// [`EnsembleError::Memory`].
+    fn program_ensemble(
+        dynamics: &Dynamics,
         len: usize,
         execution: Execution,
         start: &(dyn Fn(usize, usize) -> Self + Sync),
@@ -101,26 +88,36 @@ struct Isotropic<T> {
     coordinates: Ensemble<T, 1>,
 }
 
+// Functions of this crate, which compiles the machine once: provided methods would be compiled by each that calls them.
 macro_rules! batch_float {
     ($float:ident) => {
         impl BatchFloat for $float {
-            fn oscillators(
-                model: Oscillator<f64>,
+            fn ensemble(
+                system: AnySystem,
                 dimension: usize,
                 len: usize,
                 execution: Execution,
                 start: &(dyn Fn(usize, usize) -> Self + Sync),
             ) -> Result<Box<dyn AnyEnsemble<Self>>, EnsembleError> {
-                let coordinate = |number: usize| {
-                    let (i, n) = (number / len, number % len);
-                    State { q: [start(n, i)], v: [start(n, dimension + i)] }
-                };
-                let needed = Self::ensemble_bytes(dimension, len);
-                let all = len.checked_mul(dimension);
-                let all = all.ok_or(InsufficientMemory { needed, available: None })?;
-                let coordinates = Ensemble::from_fn(all, execution, coordinate)?;
-                let system = Model::<1>::on::<$float>(&model);
-                Ok(Box::new(Isotropic { system, dimension, coordinates }))
+                if !system.entry().dimensions.contains(&dimension) {
+                    return Err(EnsembleError::System(system.entry().wrong_dimension(dimension)));
+                }
+                if let AnySystem::Oscillator(model) = system {
+                    return Ok(Box::new(Isotropic::<$float>::new(
+                        model, dimension, len, execution, start,
+                    )?));
+                }
+                Self::program_ensemble(&dynamics(system, dimension), len, execution, start)
+            }
+
+            fn program_ensemble(
+                dynamics: &Dynamics,
+                len: usize,
+                execution: Execution,
+                start: &(dyn Fn(usize, usize) -> Self + Sync),
+            ) -> Result<Box<dyn AnyEnsemble<Self>>, EnsembleError> {
+                let dynamics = dynamics.clone();
+                Ok(Box::new(ProgramEnsemble::<$float>::new(dynamics, len, execution, start)?))
             }
         }
     };
@@ -128,6 +125,33 @@ macro_rules! batch_float {
 
 batch_float!(f32);
 batch_float!(f64);
+
+/// The program of a system in a dimension that it has.
+fn dynamics(system: AnySystem, dimension: usize) -> Dynamics {
+    with_system!(system, dimension, |model, D| Dynamics::of::<D>(&model, false), {
+        unreachable!("the dimension has been checked")
+    })
+}
+
+impl<T: Float + Pod> Isotropic<T> {
+    fn new(
+        model: Oscillator<f64>,
+        dimension: usize,
+        len: usize,
+        execution: Execution,
+        start: &(dyn Fn(usize, usize) -> T + Sync),
+    ) -> Result<Self, EnsembleError> {
+        let coordinate = |number: usize| {
+            let (i, n) = (number / len, number % len);
+            State { q: [start(n, i)], v: [start(n, dimension + i)] }
+        };
+        let needed = ProgramEnsemble::<T>::bytes(dimension, len);
+        let all = len.checked_mul(dimension);
+        let all = all.ok_or(InsufficientMemory { needed, available: None })?;
+        let coordinates = Ensemble::from_fn(all, execution, coordinate)?;
+        Ok(Isotropic { system: Model::<1>::on::<T>(&model), dimension, coordinates })
+    }
+}
 
 impl<T: Float + Pod> AnyEnsemble<T> for ProgramEnsemble<T> {
     fn len(&self) -> usize {

@@ -8,7 +8,7 @@
 //! Nothing is contracted or reordered, so a lane holds the bits of the lone scalar trajectory, for
 //! every instruction set, block width, number of threads and number of trajectories.
 
-// Its kernels take half a minute to compile, and no unit test needs them.
+// Its kernels take long to compile, and no unit test needs them.
 #[cfg(not(test))]
 mod any;
 mod assign;
@@ -22,6 +22,7 @@ mod loops;
 mod memory;
 mod observer;
 mod planes;
+#[cfg(not(test))]
 mod program_ensemble;
 mod run;
 pub(crate) mod stream;
@@ -40,11 +41,12 @@ pub use instructions::{InstructionSet, Loop};
 pub use loops::{Loops, Setup};
 pub use memory::{InsufficientMemory, available_memory, installed_memory};
 pub use observer::{Copies, Drift, Lanes, MeanCost, MeanSquareError, Moments, Observer, Summary};
-pub use program_ensemble::ProgramEnsemble;
 pub use stream::{stream, stream_repeatedly};
 
 use libration_core::{Float, Integrator, State, System};
 use planes::{Planes, Share};
+#[cfg(not(test))]
+use program_ensemble::ProgramEnsemble;
 use run::Run;
 
 /// The most trajectories, and the fewest but for the last ones, that an observer sees from the first step to the

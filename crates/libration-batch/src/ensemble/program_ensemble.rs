@@ -1,5 +1,7 @@
 //! Ensembles of systems that are known when the program runs.
 
+use std::sync::Arc;
+
 use bytemuck::Pod;
 use libration_core::{Float, Method, with_method};
 use libration_equations::{Dynamics, Program, StepProgram};
@@ -16,14 +18,17 @@ const SHORTEST: u64 = 3;
 /// The block machine steps them. A trajectory has the bits of the program of a step, run alone, and those of a compiled system with
 /// the same operations.
 #[derive(Debug)]
-pub struct ProgramEnsemble<T> {
+pub(super) struct ProgramEnsemble<T> {
     dynamics: Dynamics,
     planes: Planes<T>,
     step: u64,
     execution: Execution,
+    /// The steps that were used last, with and without [a carried acceleration](Step::first).
+    steps: [Option<(Method, Arc<Step>)>; 2],
 }
 
 /// A step for the machine, with its way from accelerations to accelerations where there is one.
+#[derive(Debug)]
 struct Step {
     step: BlockProgram,
     /// The program of the accelerations at the start, if the step takes them.
@@ -36,7 +41,7 @@ impl<T: Float + Pod> ProgramEnsemble<T> {
     ///
     /// # Errors
     /// [`EnsembleError::Memory`].
-    pub fn new(
+    pub(super) fn new(
         dynamics: Dynamics,
         len: usize,
         execution: Execution,
@@ -46,60 +51,60 @@ impl<T: Float + Pod> ProgramEnsemble<T> {
         for (i, plane) in planes.planes_mut().enumerate() {
             plane.iter_mut().enumerate().for_each(|(n, x)| *x = start(n, i));
         }
-        Ok(ProgramEnsemble { dynamics, planes, step: 0, execution })
+        Ok(ProgramEnsemble { dynamics, planes, step: 0, execution, steps: [None, None] })
     }
 
     /// Bytes that `len` trajectories with so many degrees of freedom take.
-    pub fn bytes(degrees: usize, len: usize) -> u128 {
+    pub(super) fn bytes(degrees: usize, len: usize) -> u128 {
         Planes::<T>::bytes(2 * degrees, len)
     }
 
     /// Number of trajectories.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.planes.len()
     }
 
     /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
+    pub(super) fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// Degrees of freedom.
-    pub fn degrees(&self) -> usize {
+    pub(super) fn degrees(&self) -> usize {
         self.dynamics.degrees()
     }
 
     /// Number of steps taken.
-    pub fn step(&self) -> u64 {
+    pub(super) fn step(&self) -> u64 {
         self.step
     }
 
     /// Sets the execution. Results do not depend on it.
-    pub fn execute(&mut self, execution: Execution) {
+    pub(super) fn execute(&mut self, execution: Execution) {
         self.execution = execution;
     }
 
     /// Coordinate `i` of `q₀ … q_{D−1}, v₀ … v_{D−1}` of every trajectory, if there is one.
-    pub fn coordinate(&self, i: usize) -> Option<&[T]> {
+    pub(super) fn coordinate(&self, i: usize) -> Option<&[T]> {
         (i < 2 * self.degrees()).then(|| self.planes.plane_of(i))
     }
 
     /// Takes `steps` steps of `dt` seconds with every trajectory.
-    pub fn advance(&mut self, method: Method, dt: T, steps: u64) {
+    pub(super) fn advance(&mut self, method: Method, dt: T, steps: u64) {
         if steps > 0 && !self.is_empty() {
-            let step = Step::new(method, &self.dynamics, steps);
+            let step = self.step_of(method, steps > 1);
             self.run(&step, dt, steps);
         }
         self.step = self.step.saturating_add(steps);
     }
 
     /// The energy of every trajectory; none if the system has none.
-    pub fn energies(&self) -> Option<Vec<T>> {
+    pub(super) fn energies(&self) -> Option<Vec<T>> {
         Some(self.map(self.dynamics.energy()?))
     }
 
     /// The trajectories with a coordinate that is infinite or not a number, in order.
-    pub fn not_finite(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn not_finite(&self) -> impl Iterator<Item = usize> + '_ {
         let is_lost =
             |n: &usize| (0..2 * self.degrees()).any(|i| !self.planes.plane_of(i)[*n].is_finite());
         (0..self.len()).filter(is_lost)
@@ -120,6 +125,19 @@ impl<T: Float + Pod> ProgramEnsemble<T> {
             block.store(rows, values);
         }
         values
+    }
+
+    /// The step of a method. It is kept, since to make it takes as long as some thousand steps.
+    fn step_of(&mut self, method: Method, carries: bool) -> Arc<Step> {
+        let known = &mut self.steps[usize::from(carries)];
+        match known {
+            Some((own, step)) if *own == method => step.clone(),
+            _ => {
+                let step = Arc::new(Step::new(method, &self.dynamics, carries));
+                *known = Some((method, step.clone()));
+                step
+            }
+        }
     }
 
     fn run(&mut self, step: &Step, dt: T, steps: u64) {
@@ -172,11 +190,11 @@ impl<T: Float + Pod> ProgramEnsemble<T> {
 }
 
 impl Step {
-    fn new(method: Method, dynamics: &Dynamics, steps: u64) -> Self {
+    /// To evaluate the accelerations at the start costs what a step saves: a single step is better off without.
+    fn new(method: Method, dynamics: &Dynamics, carries: bool) -> Self {
         let degrees = dynamics.degrees();
         let carrying = with_method!(method, |method| StepProgram::carrying(method, dynamics));
-        // To evaluate the accelerations at the start costs what a step saves.
-        match carrying.filter(|_| steps > 1) {
+        match carrying.filter(|_| carries) {
             Some(carrying) => {
                 let rows = 3 * degrees;
                 let targets: Vec<usize> = (0..rows).collect();

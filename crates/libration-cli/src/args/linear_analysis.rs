@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use libration_advise::linear::{AnalysisFile, LinearRequest, RequestFile};
 use libration_analyze::{LatencyOption, Timing, linear_analysis};
-use libration_settings::Number;
 use libration_settings::linear_loop::WeightsTable;
 
 use super::linear::{Gain, lqr, rows};
@@ -74,21 +73,6 @@ impl AnalyzeArgs {
             (None, None) => return None,
         };
         Some(request.and_then(|request| self.analysis(&request, &contents.borrow())))
-    }
-
-    /// The request for a system of equations about its equilibrium, in open loop.
-    pub(crate) fn equation_request(
-        &self,
-        path: &Path,
-        set: &[(String, f64)],
-    ) -> Result<linear_analysis::LinearRequest, Failure> {
-        let contents = RefCell::new(AnalysisFile::default());
-        let request = loop_of_plant(path, None, None, |file| {
-            let set = set.iter().map(|(name, value)| (name.clone(), Number(*value)));
-            file.system.linear.parameters = set.collect();
-            contents.replace(AnalysisFile::complete(file));
-        })?;
-        self.analysis(&request, &contents.borrow())
     }
 
     /// The first option that is not about steps of a system by equations.

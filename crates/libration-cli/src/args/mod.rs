@@ -21,6 +21,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
 use libration::ensemble::InstructionSet;
 use libration_lab::STUDIES;
+use libration_settings::EquationExample;
 use libration_study::Effort;
 
 use crate::error::Failure;
@@ -140,13 +141,41 @@ contains a complete report.";
 
 /// Arguments of `list`.
 #[derive(Args, Debug)]
+#[command(after_help = LIST_EXAMPLES)]
 pub(crate) struct ListArgs {
     /// File of equations to summarise [default: list studies, systems and integrators]
     #[arg(value_name = "FILE", value_parser = equation_file)]
     pub(crate) file: Option<PathBuf>,
+    /// List the example files of equations, or print the file of one
+    #[arg(
+        long,
+        value_name = "NAME",
+        num_args = 0..=1,
+        default_missing_value = "",
+        conflicts_with = "file",
+        value_parser = example,
+        hide_possible_values = true
+    )]
+    pub(crate) examples: Option<String>,
     /// Print the result as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+const LIST_EXAMPLES: &str = "\
+Examples:
+  libration list
+  libration list --examples
+  libration list --examples cart-pole > mine.toml
+  libration list mine.toml";
+
+/// Parses the name of an example; none stands for all.
+fn example(name: &str) -> Result<String, String> {
+    let names = EquationExample::ALL.map(|example| example.name);
+    if name.is_empty() || names.contains(&name) {
+        return Ok(name.to_owned());
+    }
+    Err(format!("unknown example; expected one of {}", names.join(", ")))
 }
 
 /// Parses the path of a file of equations.

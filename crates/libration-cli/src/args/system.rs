@@ -87,7 +87,7 @@ impl SystemArgs {
     pub(crate) fn resolve(&self) -> Result<InitialValueProblem, Failure> {
         if self.file().is_some() {
             return Err(Failure::usage(format!(
-                "--system `{}`: this command knows systems of the catalogue only; `simulate` and `list` read files of equations",
+                "--system `{0}`: this command takes systems of the catalogue; a file of equations is a plant, linearised at an equilibrium: --plant {0}",
                 self.system
             )));
         }

@@ -3,33 +3,13 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use libration_analyze::linear_analysis::{self, LinearAnalysis};
-use libration_analyze::{AnalyzeError, EquationMotion, EquationSummary, Stepping};
-use libration_settings::equations::EquationSystem;
-use libration_settings::linear_loop::{OperatingPoint, linearised_equations};
-use serde::Serialize;
+use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion, analyze};
+use libration_analyze::{AnalyzeError, Stepping};
 
 use super::{analyze_linear, equation_file};
 use crate::args::AnalyzeArgs;
 use crate::error::Failure;
 use crate::interrupt;
-
-/// Version of the JSON format.
-const SCHEMA: &str = "libration.equation-analysis/1";
-
-/// The analysis of a system by equations; the fields are the keys of `--json`.
-#[derive(Serialize)]
-struct EquationAnalysis {
-    schema: &'static str,
-    system: EquationSummary,
-    /// The equilibrium at which the modes are those of the system.
-    operating_point: Option<OperatingPoint>,
-    /// The system about its equilibrium.
-    linear: Option<LinearAnalysis>,
-    /// The reason why there are no modes.
-    no_modes: Option<String>,
-    motion: EquationMotion,
-}
 
 /// Returns the analysis as text or as JSON.
 pub(super) fn run(args: &AnalyzeArgs, file: &Path) -> Result<String, Failure> {
@@ -48,43 +28,21 @@ pub(super) fn run(args: &AnalyzeArgs, file: &Path) -> Result<String, Failure> {
         ));
     };
     let system = equation_file::read(file, &options.set)?;
-    let stop = interrupt::listen();
-    let (operating_point, linear, no_modes) = match linearised_equations(&system) {
-        Ok((_, point)) => {
-            let request = args.equation_request(file, &options.set)?;
-            let analysis = linear_analysis::analyze(&request, stop).or_else(|_| {
-                // Integrators that do not apply to all plants with states of first order.
-                let all = linear_analysis::LinearRequest { integrator: None, ..request };
-                linear_analysis::analyze(&all, stop)
-            });
-            (Some(point), Some(analysis.map_err(Failure::usage)?), None)
-        }
-        Err(fault) => (None, None, Some(fault.message)),
-    };
-    let equilibrium = operating_point.as_ref().map(|point| point.state_of(&system));
-    let motion = EquationMotion::new(&system, method, dt, args.steps, equilibrium.as_deref(), stop);
-    let motion = motion.map_err(|error| match error {
+    let analysis = analyze(&system, method, dt, args.steps, interrupt::listen());
+    let analysis = analysis.map_err(|error| match error {
         AnalyzeError::Interrupted => Failure::Interrupted(error.to_string()),
         error => Failure::usage(error),
     })?;
-    let analysis = EquationAnalysis {
-        schema: SCHEMA,
-        system: EquationSummary::new(&system),
-        operating_point,
-        linear,
-        no_modes,
-        motion,
-    };
     match args.json {
         true => Ok(serde_json::to_string_pretty(&analysis).map_err(Failure::run)? + "\n"),
-        false => Ok(describe(&analysis, &system)),
+        false => Ok(describe(&analysis)),
     }
 }
 
-fn describe(analysis: &EquationAnalysis, system: &EquationSystem) -> String {
-    let EquationAnalysis { operating_point, linear, no_modes, motion, .. } = analysis;
+fn describe(analysis: &EquationAnalysis) -> String {
+    let EquationAnalysis { system, operating_point, linear, no_modes, motion, .. } = analysis;
     let mut text = format!("{}, {} with dt = {} s\n", system.name, motion.integrator, motion.dt);
-    describe_motion(motion, analysis.system.smooth, &mut text);
+    describe_motion(motion, system.smooth, &mut text);
     text += "\n";
     if let Some(point) = operating_point {
         text += &format!("{}\n", point.sentence());

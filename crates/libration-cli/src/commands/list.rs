@@ -3,8 +3,10 @@
 use libration::Method;
 use libration::catalog::{ENTRIES, Entry};
 use libration::integrator::Exact;
-use libration_analyze::EquationSummary;
+use libration_analyze::equation_analysis::EquationSummary;
 use libration_lab::STUDIES;
+use libration_settings::EquationExample;
+use libration_settings::equations::EquationSystem;
 use libration_study::Study;
 use serde_json::{Value, json};
 
@@ -23,9 +25,31 @@ pub(crate) fn run(args: &ListArgs) -> Result<(), Failure> {
         };
         return Ok(terminal::print(&text)?);
     }
+    if let Some(name) = &args.examples {
+        return Ok(terminal::print(&examples(name, args.json)?)?);
+    }
     let listing = if args.json { format!("{:#}\n", as_json()) } else { as_text() };
     terminal::print(&listing)?;
     Ok(())
+}
+
+/// Returns the file of an example, or without a name one line for each.
+fn examples(name: &str, json: bool) -> Result<String, Failure> {
+    if let Some(example) = EquationExample::find(name) {
+        return Ok(example.text.to_owned());
+    }
+    let mut all = Vec::new();
+    for EquationExample { name, text } in EquationExample::ALL {
+        let system = EquationSystem::parse(text, name, &[]).map_err(Failure::run)?;
+        all.push((name, system.description));
+    }
+    let named: Vec<(&str, &str)> =
+        all.iter().map(|(name, about)| (*name, about.as_str())).collect();
+    let value = |(name, about): &(&str, &str)| json!({ "name": name, "description": about });
+    Ok(match json {
+        true => format!("{:#}\n", Value::Array(named.iter().map(value).collect())),
+        false => lines(&named),
+    })
 }
 
 fn as_json() -> Value {

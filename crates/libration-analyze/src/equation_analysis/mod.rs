@@ -1,0 +1,82 @@
+//! Analysis of systems by equations: the output of `libration list FILE` and `libration analyze --system FILE`.
+
+mod motion;
+mod summary;
+
+use std::sync::atomic::AtomicBool;
+
+use libration::simulation::SimulationError;
+use libration::{Float, Method};
+use libration_settings::equations::EquationSystem;
+use libration_settings::linear_loop::{OperatingPoint, linearised_equations};
+use serde::Serialize;
+
+use crate::AnalyzeError;
+use crate::linear_analysis::{self, LinearAnalysis, LinearAnalysisError, LinearRequest};
+use crate::step::Stepping;
+
+pub use motion::{EnergyChange, EquationMotion, StateError};
+pub use summary::{EquationSummary, SummaryParameter, SummaryState};
+
+/// Version of the JSON format.
+pub const SCHEMA: &str = "libration.equation-analysis/1";
+
+/// The analysis of a system by equations; the fields are the keys of `analyze --system FILE --json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct EquationAnalysis {
+    /// The version of this format.
+    pub schema: &'static str,
+    /// The system.
+    pub system: EquationSummary,
+    /// The motion from its start.
+    pub motion: EquationMotion,
+    /// The equilibrium near its start; none if none was found.
+    pub operating_point: Option<OperatingPoint>,
+    /// The system about the equilibrium.
+    pub linear: Option<LinearAnalysis>,
+    /// The reason why there are no modes, if there are none.
+    pub no_modes: Option<String>,
+}
+
+/// Analyses steps of `dt` seconds of a system from its start and about an equilibrium, until `stop` is set. The drift of the energy is
+/// that of `steps` steps, or of fewer where they take long.
+///
+/// # Errors
+/// [`AnalyzeError::Simulation`] for an invalid time step, and [`AnalyzeError::Interrupted`].
+pub fn analyze(
+    system: &EquationSystem,
+    method: Method,
+    dt: f64,
+    steps: u64,
+    stop: &AtomicBool,
+) -> Result<EquationAnalysis, AnalyzeError> {
+    if !(dt.is_finite() && dt > 0.0) {
+        return Err(SimulationError::TimeStep { dt, float: f64::NAME }.into());
+    }
+    let (operating_point, linear, no_modes) = match linearised_equations(system) {
+        Ok((plant, point)) => {
+            let integrator = Some(Stepping::Method(method));
+            let open_loop = LinearRequest::open_loop(plant, dt, integrator);
+            let analysis = open_loop.and_then(|request| {
+                linear_analysis::analyze(&request, stop).or_else(|error| match error {
+                    // With states of first order the theory of an integrator applies only if it treats all states alike.
+                    LinearAnalysisError::Integrator { .. } => {
+                        let all = LinearRequest { integrator: None, ..request };
+                        linear_analysis::analyze(&all, stop)
+                    }
+                    error => Err(error),
+                })
+            });
+            match analysis {
+                Ok(linear) => (Some(point), Some(linear), None),
+                Err(LinearAnalysisError::Interrupted) => return Err(AnalyzeError::Interrupted),
+                Err(error) => (Some(point), None, Some(error.to_string())),
+            }
+        }
+        Err(fault) => (None, None, Some(fault.message)),
+    };
+    let equilibrium = operating_point.as_ref().map(|point| point.state_of(system));
+    let motion = EquationMotion::new(system, method, dt, steps, equilibrium.as_deref(), stop)?;
+    let system = EquationSummary::new(system);
+    Ok(EquationAnalysis { schema: SCHEMA, system, motion, operating_point, linear, no_modes })
+}

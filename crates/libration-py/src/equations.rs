@@ -1,0 +1,84 @@
+//! Systems by equations in Python.
+
+use std::sync::atomic::AtomicBool;
+
+use libration::Method;
+use libration_analyze::equation_analysis::{self, EquationSummary};
+use libration_analyze::equation_trajectory::{self, EquationRequest};
+use libration_settings::equations::EquationSystem;
+use libration_settings::linear_loop::{OperatingPoint, linearised_equations};
+use pyo3::prelude::*;
+use serde_json::json;
+
+use crate::background::run_in_background;
+use crate::error::{Raised, value_error};
+use crate::linear_plant::{Names, Rows as MatrixRows, names, rows as rows_of};
+use crate::request::method;
+use crate::simulate::{Rows, Simulated, converted};
+
+/// The text of a file of equations, its name in messages, and other values of parameters.
+pub(crate) type EquationText = (String, String, Vec<(String, f64)>);
+
+pub(crate) fn equations((text, file, set): &EquationText) -> PyResult<EquationSystem> {
+    EquationSystem::parse(text, file, set).map_err(Raised::raised)
+}
+
+/// Returns what is known of a system, as JSON.
+#[pyfunction]
+pub(crate) fn _equation_summary(system: EquationText) -> PyResult<String> {
+    Ok(json!(EquationSummary::new(&equations(&system)?)).to_string())
+}
+
+/// Simulates. Gives columns, their units, and how it ended.
+#[pyfunction]
+pub(crate) fn _simulate_equations<'py>(
+    py: Python<'py>,
+    system: EquationText,
+    integrator: &str,
+    dt: f64,
+    rows: Rows,
+) -> PyResult<Simulated<'py>> {
+    let request = EquationRequest {
+        system: equations(&system)?,
+        method: method(integrator)?,
+        float: rows.float()?,
+        dt,
+        steps: rows.steps()?,
+        every: rows.every,
+        ensemble: rows.ensemble(),
+    };
+    let simulate = |stop: &AtomicBool| equation_trajectory::simulate_until(&request, stop);
+    let done = run_in_background(py, simulate, |_| Ok(()))?;
+    converted(py, done.map_err(Raised::raised)?)
+}
+
+/// Analyses steps. Gives JSON.
+#[pyfunction]
+pub(crate) fn _analyze_equations(
+    py: Python<'_>,
+    system: EquationText,
+    integrator: &str,
+    dt: f64,
+    steps: u64,
+) -> PyResult<String> {
+    let (system, method): (EquationSystem, Method) = (equations(&system)?, method(integrator)?);
+    let analyze = |stop: &AtomicBool| equation_analysis::analyze(&system, method, dt, steps, stop);
+    let done = run_in_background(py, analyze, |_| Ok(()))?;
+    Ok(json!(done.map_err(Raised::raised)?).to_string())
+}
+
+/// Returns the matrices and names of the plant at the equilibrium near the start, and the states and commands there.
+#[pyfunction]
+pub(crate) fn _equation_plant(
+    system: EquationText,
+) -> PyResult<([MatrixRows; 5], Names, [Vec<f64>; 2], f64)> {
+    let found = linearised_equations(&equations(&system)?);
+    let (plant, OperatingPoint { states, commands, residual, .. }) =
+        found.map_err(|fault| value_error(fault.message))?;
+    let matrices = [&plant.a, &plant.b, &plant.c, &plant.d, &plant.g];
+    // Velocities are zero.
+    let at = |name: &str| states.iter().find(|s| s.name == name).map_or(0.0, |s| s.value);
+    let x = plant.states.iter().map(|signal| at(&signal.name)).collect();
+    let u = commands.iter().map(|command| command.value).collect();
+    Ok((matrices.map(rows_of), names(&plant), [x, u], residual))
+}
