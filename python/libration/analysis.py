@@ -193,8 +193,12 @@ def analyze(
         for name, value in (of_catalogue | of_loop | of_linear).items():
             if value is not None and name != "steps":
                 raise TypeError(f"{name} cannot be combined with a system by equations")
-        step = number("dt", dt, "finite and greater than 0")
-        answer = _native._analyze_equations(system._text, text("integrator", integrator), step, whole("steps", steps))
+        answer = _native._analyze_equations(
+            system._text,
+            text("integrator", integrator),
+            number("dt", dt, "finite and greater than 0"),
+            whole("steps", steps),
+        )
         return Analysis(json.loads(answer))
     if (plant := plant_of(system)) is not None:
         for name, value in of_catalogue.items():

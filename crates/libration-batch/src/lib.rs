@@ -7,6 +7,8 @@
 pub mod checkpoint;
 pub mod ensemble;
 pub mod linear_loops;
+// No unit test needs it.
+#[cfg(not(test))]
 mod machine;
 pub mod replay;
 pub mod rl;

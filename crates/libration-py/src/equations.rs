@@ -67,11 +67,12 @@ pub(crate) fn _analyze_equations(
     Ok(json!(done.map_err(Raised::raised)?).to_string())
 }
 
+/// Matrices and names of a plant, the states and commands of its equilibrium, and the acceleration that is left there.
+type PlantAtEquilibrium = ([MatrixRows; 5], Names, [Vec<f64>; 2], f64);
+
 /// Returns the matrices and names of the plant at the equilibrium near the start, and the states and commands there.
 #[pyfunction]
-pub(crate) fn _equation_plant(
-    system: EquationText,
-) -> PyResult<([MatrixRows; 5], Names, [Vec<f64>; 2], f64)> {
+pub(crate) fn _equation_plant(system: EquationText) -> PyResult<PlantAtEquilibrium> {
     let found = linearised_equations(&equations(&system)?);
     let (plant, OperatingPoint { states, commands, residual, .. }) =
         found.map_err(|fault| value_error(fault.message))?;

@@ -1,6 +1,6 @@
 //! The Python class `Trajectories`: an ensemble of a catalogue system.
 
-use libration::ensemble::{AnyEnsemble, BatchFloat, EnsembleError, Execution, ProgramEnsemble};
+use libration::ensemble::{AnyEnsemble, BatchFloat, EnsembleError, Execution};
 use libration::rl::EnvironmentError;
 use libration::{AnySystem, Method};
 use numpy::{PyArray1, PyReadonlyArray2};

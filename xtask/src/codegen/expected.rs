@@ -1,6 +1,6 @@
 //! The expected kernels: a check without kernels must fail.
 
-use super::catalogue::{METHODS, SYSTEMS};
+use super::catalogue::{MACHINE, METHODS, SYSTEMS};
 use super::census::Census;
 use super::kernel::{Instructions, Kernel};
 
@@ -32,6 +32,17 @@ pub(super) fn complaints(found: &[(Kernel, Census)]) -> Vec<String> {
             }
         }
     }
+    for (instructions, float) in Instructions::ALL.into_iter().flat_map(|i| FLOATS.map(|f| (i, f)))
+    {
+        let is_it = |(kernel, _): &(Kernel, Census)| {
+            kernel.instructions == instructions
+                && kernel.float == float
+                && kernel.system == MACHINE[0]
+        };
+        if !found.iter().any(is_it) {
+            missing.push(format!("{instructions} {float} {}: not in the assembly", MACHINE[0]));
+        }
+    }
     missing
 }
 
@@ -42,7 +53,7 @@ mod tests {
     #[test]
     fn an_assembly_without_kernels_is_refused() {
         let missing = complaints(&[]);
-        assert_eq!(missing.len(), 2 * 2 * 2 * SYSTEMS.len() * METHODS.len());
+        assert_eq!(missing.len(), 2 * 2 * (2 * SYSTEMS.len() * METHODS.len() + 1));
         assert!(
             missing[0]
                 .starts_with("avx2 f32 oscillator explicit-euler (advance): not in the assembly")

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::catalogue::{METHODS, SYSTEMS};
+use super::catalogue::{MACHINE, METHODS, SYSTEMS};
 
 /// A kernel of a block, as `ensemble/kernel.rs` makes them.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -31,6 +31,15 @@ pub(super) enum Instructions {
 impl Instructions {
     pub(super) const ALL: [Instructions; 2] = [Instructions::Avx2, Instructions::Avx512];
 
+    /// Those for which a function is compiled, by the names of the types in its symbol.
+    fn of(shim: &str) -> Option<Instructions> {
+        match () {
+            () if shim.contains("::V4") => Some(Instructions::Avx512),
+            () if shim.contains("::V3") => Some(Instructions::Avx2),
+            () => None,
+        }
+    }
+
     /// The letter of its widest registers.
     pub(super) fn register(self) -> char {
         match self {
@@ -55,19 +64,28 @@ impl Kernel {
         if self.pass { "pass" } else { "advance" }
     }
 
+    /// The loops over lanes of the block machine.
+    fn of_machine((shim, arguments): (&str, &str)) -> Option<Kernel> {
+        let [float] = arguments_of(arguments)?.try_into().ok()?;
+        let instructions = Instructions::of(shim)?;
+        let [system, method] = MACHINE.map(str::to_owned);
+        // Its loops load and store, as those of a pass do.
+        let (pass, width) = (true, 16);
+        Some(Kernel { instructions, float: float.to_owned(), system, method, pass, width })
+    }
+
     /// The kernel of this symbol, if it is one for AVX2 or AVX-512.
     pub(super) fn of(symbol: &str) -> Option<Kernel> {
         let demangled = format!("{:#}", rustc_demangle::try_demangle(symbol).ok()?);
         let of = |name: &str| demangled.split_once(name);
+        if let Some(parts) = of("::runs::Runs<") {
+            return Kernel::of_machine(parts);
+        }
         let (pass, (shim, arguments)) = match of("::Advance<") {
             Some(parts) => (false, parts),
             None => (true, of("::Pass<")?),
         };
-        let instructions = match () {
-            () if shim.contains("::V4") => Instructions::Avx512,
-            () if shim.contains("::V3") => Instructions::Avx2,
-            () => return None,
-        };
+        let instructions = Instructions::of(shim)?;
         // The order of the parameters of both.
         let [float, method, _, _, system, _, width] = arguments_of(arguments)?.try_into().ok()?;
         let system = system.split('<').next().unwrap_or_default();

@@ -1,11 +1,11 @@
 //! Requests for trajectories of systems by equations.
 
+use libration::Method;
 use libration::catalog::Allowed;
-use libration::{Float, Method};
 use libration_settings::equations::EquationSystem;
 use libration_settings::limits;
 
-use crate::trajectory::{EnsembleOptions, FloatType, TrajectoryError};
+use crate::trajectory::{EnsembleFloat, EnsembleOptions, FloatType, TrajectoryError};
 
 /// Largest number of values in a table: 8 GB.
 const MOST_VALUES: u64 = 1_000_000_000;
@@ -50,7 +50,7 @@ impl EquationRequest {
     }
 
     /// Checks every value, and that the float type `S` represents it.
-    pub(super) fn check<S: Float>(&self) -> Result<(), TrajectoryError> {
+    pub(super) fn check<S: EnsembleFloat>(&self) -> Result<(), TrajectoryError> {
         let value = |name, value: String, allowed: String| {
             Err(TrajectoryError::Value { name, value, allowed })
         };
@@ -71,6 +71,7 @@ impl EquationRequest {
         }
         if let Some(ensemble) = &self.ensemble {
             ensemble.check()?;
+            S::check_ensemble(self.system.equations.degrees().len(), ensemble)?;
         }
         let values = self.rows().saturating_mul(self.columns().len() as u64);
         if values > MOST_VALUES {

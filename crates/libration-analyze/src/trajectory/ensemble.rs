@@ -17,7 +17,14 @@ pub(crate) trait EnsembleFloat: Number {
     const IS_NATIVE: bool;
 
     /// Checks that the ensemble of a request is supported and fits into memory.
-    fn check_memory(request: &Request, ensemble: &EnsembleOptions) -> Result<(), TrajectoryError>;
+    fn check_memory(request: &Request, ensemble: &EnsembleOptions) -> Result<(), TrajectoryError> {
+        // Loops have clocks, and both are built from lists of starts.
+        let factor = if request.loop_option().is_some() { 4 } else { 1 };
+        Self::check_ensemble(factor * request.q.len(), ensemble)
+    }
+
+    /// Checks that ensembles are supported, and that one with so many degrees of freedom fits into memory.
+    fn check_ensemble(degrees: usize, ensemble: &EnsembleOptions) -> Result<(), TrajectoryError>;
 
     /// Simulates the ensemble of a checked request.
     fn run_ensemble(
@@ -76,11 +83,12 @@ macro_rules! vectors {
                 Ok(BatchFloat::program_ensemble(dynamics, count, execution, &start)?)
             }
 
-            fn check_memory(request: &Request, ensemble: &EnsembleOptions) -> Result<(), TrajectoryError> {
-                let bytes = <$float>::ensemble_bytes(request.q.len(), ensemble.count);
-                // Loops have clocks, and both are built from lists of starts.
-                let factor = if request.loop_option().is_some() { 4 } else { 1 };
-                InsufficientMemory::check(factor * bytes).map_err(TrajectoryError::Memory)
+            fn check_ensemble(
+                degrees: usize,
+                ensemble: &EnsembleOptions,
+            ) -> Result<(), TrajectoryError> {
+                let bytes = <$float>::ensemble_bytes(degrees, ensemble.count);
+                InsufficientMemory::check(bytes).map_err(TrajectoryError::Memory)
             }
         }
     )*};
@@ -117,7 +125,7 @@ macro_rules! scalar_only {
                 Err(no_vectors::<Self>())
             }
 
-            fn check_memory(_: &Request, _: &EnsembleOptions) -> Result<(), TrajectoryError> {
+            fn check_ensemble(_: usize, _: &EnsembleOptions) -> Result<(), TrajectoryError> {
                 Err(no_vectors::<Self>())
             }
         }

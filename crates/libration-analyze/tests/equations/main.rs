@@ -21,7 +21,7 @@ fn read(name: &str) -> EquationSystem {
 /// Positions, velocities and states of first order after `steps` steps of RK4 to the time `end`, and the change of the energy.
 fn simulate(system: &EquationSystem, end: f64, steps: u32) -> (Vec<f64>, Option<f64>) {
     let equations = &system.equations;
-    let program = StepProgram::new(Method::Rk4, equations);
+    let program = StepProgram::new(Method::Rk4, equations.dynamics());
     let mut step = program.program().on::<f64>();
     let mut inputs: Vec<f64> = system.q.iter().chain(&system.v).copied().collect();
     let states = inputs.len();

@@ -122,9 +122,8 @@ fn describe_motion(motion: &EquationMotion, is_smooth: bool, text: &mut String) 
             };
             let _ = writeln!(
                 text,
-                "\nenergy: {:.9e} {} at the start; largest change over {} steps {:.3e}{part}, at step {}; in the end {:+.3e}",
-                energy.start,
-                energy.unit,
+                "\nenergy: {} at the start; largest change over {} steps {:.3e}{part}, at step {}; in the end {:+.3e}",
+                format!("{:.9e} {}", energy.start, energy.unit).trim_end(),
                 energy.steps,
                 energy.largest,
                 energy.largest_at_step,

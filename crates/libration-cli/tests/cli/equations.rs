@@ -106,15 +106,151 @@ fn wrong_files_and_options_name_the_place_and_what_is_allowed() {
     let step = ["--integrator", "rk4", "--dt", "0.01", "--steps", "10"];
     for (words, part) in [
         (
-            vec!["simulate", "--system", &cart_pole, "--count", "10"],
-            "--count requires a system of the catalogue",
+            vec!["simulate", "--system", &cart_pole, "--count", "10", "--float", "f16"],
+            "--float is f16",
         ),
         (vec!["simulate", "--system", &cart_pole, "--set", "pol=1"], "did you mean `pole`?"),
-        (vec!["analyze", "--system", &cart_pole], "knows systems of the catalogue only"),
+        (
+            vec!["analyze", "--system", &cart_pole, "--q", "1"],
+            "--q requires a system of the catalogue",
+        ),
         (vec!["simulate", "--system", "nowhere.toml"], "cannot read `nowhere.toml` (--system)"),
     ] {
         let steps = if words[0] == "simulate" { &step[..] } else { &step[..4] };
         let all: Vec<&str> = words.iter().copied().chain(steps.iter().copied()).collect();
         libration(&all).code(2).stderr(predicate::str::contains(part));
     }
+}
+
+#[test]
+fn examples_are_listed_and_printed_as_files_that_work() {
+    libration(&["list", "--examples"])
+        .success()
+        .stdout(predicate::str::contains("cart-pole"))
+        .stdout(predicate::str::contains("van-der-pol"));
+    let printed = libration(&["list", "--examples", "cart-pole"]).success();
+    let text = fs::read_to_string(example("cart_pole.toml")).unwrap();
+    assert_eq!(String::from_utf8_lossy(&printed.get_output().stdout), text);
+    libration(&["list", "--examples", "cartpole"])
+        .code(2)
+        .stderr(predicate::str::contains("expected one of cart-pole, chain"));
+}
+
+#[test]
+fn trajectories_of_an_ensemble_by_equations_are_single_ones_from_scaled_starts() {
+    let folder = tempfile::tempdir().unwrap();
+    // Time and a state of first order besides a coordinate.
+    let text = |x: f64, s: f64| {
+        format!(
+            "[system]\nname = \"mine\"\ncoordinates = [\"x\"]\nacceleration.x = \"sin(t) - x + s\"\n\
+             rate.s = \"-s*x\"\nenergy = \"x'^2/2 + x^2/2\"\nstart = {{ x = {x:?}, s = {s:?} }}\n"
+        )
+    };
+    let rows = |name: &str, x: f64, s: f64, more: &[&str]| -> Vec<String> {
+        let path = written(&folder, name, &text(x, s));
+        let words = ["simulate", "--system", path.to_str().unwrap()];
+        let step = ["--integrator", "velocity-verlet", "--dt", "0.01", "--steps", "30"];
+        let words: Vec<&str> = words.iter().chain(&step).chain(more).copied().collect();
+        let done = libration(&words).success();
+        String::from_utf8_lossy(&done.get_output().stdout).lines().map(str::to_owned).collect()
+    };
+    let all = rows("all.toml", 1.0, 0.5, &["--count", "3", "--spread", "0.5"]);
+    assert_eq!(all[0], "trajectory,step,t,x,x',s,energy");
+    for (n, scale) in [(0, 0.5), (1, 1.0), (2, 1.5)] {
+        let alone = rows("one.toml", scale, 0.5 * scale, &[]);
+        let own: Vec<&str> =
+            all.iter().filter_map(|row| row.strip_prefix(&format!("{n},"))).collect();
+        assert_eq!(own, alone[1..], "trajectory {n}");
+    }
+    libration(&["simulate", "--system", &example("lorenz.toml"), "--integrator", "rk4"])
+        .code(2)
+        .stderr(predicate::str::contains("--dt"));
+}
+
+#[test]
+fn an_analysis_of_equations_derives_the_order_and_measures_it() {
+    let analysis = |file: &str, method: &str, dt: &str| -> serde_json::Value {
+        let path = example(file);
+        let words = ["analyze", "--system", &path, "--integrator", method, "--dt", dt, "--json"];
+        let done = libration(&words).success();
+        serde_json::from_slice(&done.get_output().stdout).unwrap()
+    };
+    // Its forces depend on positions alone.
+    let chain = analysis("chain.toml", "yoshida4", "0.01");
+    assert_eq!(chain["motion"]["order"], 4);
+    // Halved steps reduce errors of order four by 16, to the next order of the step.
+    for error in chain["motion"]["errors"].as_array().unwrap() {
+        let reduction = error["reduction"].as_f64().unwrap();
+        assert!((reduction / 16.0 - 1.0).abs() < 1e-3, "{error}");
+    }
+    // A current and friction: integrators that kick and drift fall to order one.
+    let motor = analysis("dc_motor.toml", "velocity-verlet", "0.001");
+    assert_eq!(motor["motion"]["order"], 1);
+    assert_eq!(motor["motion"]["classical_order"], 2);
+    for error in motor["motion"]["errors"].as_array().unwrap() {
+        let reduction = error["reduction"].as_f64().unwrap();
+        assert!((reduction / 2.0 - 1.0).abs() < 0.02, "{error}");
+    }
+    // An upright pole falls at the rate of the linearised equations: (g/l)·(4/3 − m/M)⁻¹ under its square root.
+    let cart = analysis("cart_pole.toml", "rk4", "0.01");
+    let rate = cart["linear"]["modes"][0]["growth_rate"].as_f64().unwrap();
+    let wanted = (9.81 / 0.5 / (4.0 / 3.0 - 0.1 / 1.1_f64)).sqrt();
+    assert!((rate / wanted - 1.0).abs() < 1e-12, "{rate} {wanted}");
+    assert_eq!(cart["linear"]["states"][1]["name"], "theta");
+    let step = cart["motion"]["spectral_radius"].as_f64().unwrap();
+    let stability: f64 = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0]
+        .iter()
+        .rev()
+        .fold(0.0, |sum, c| sum * 0.01 * rate + c);
+    assert!((step - stability).abs() < 1e-12, "{step} {stability}");
+}
+
+#[test]
+fn an_analysis_of_equations_says_what_it_cannot_say() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[system]\nname = \"driven\"\ncoordinates = [\"x\"]\nacceleration.x = \"abs(sin(t)) - x\"\n";
+    let path = written(&folder, "driven.toml", text);
+    let path = path.to_str().unwrap();
+    let words = ["analyze", "--system", path, "--integrator", "rk4", "--dt", "0.01"];
+    libration(&words)
+        .success()
+        .stdout(predicate::str::contains("kinks or jumps"))
+        .stdout(predicate::str::contains("the file has none, so nothing is said of its drift"))
+        .stdout(predicate::str::contains("No modes: `driven` depends on time"));
+    let refused = |more: &[&str]| {
+        let words: Vec<&str> = words.iter().chain(more).copied().collect();
+        libration(&words).code(2)
+    };
+    refused(&["--feedback", "1,2"]).stderr(predicate::str::contains("--plant"));
+    refused(&["--max-drift", "1e-3"]).stderr(predicate::str::contains("--max-drift requires"));
+    let exact = ["analyze", "--system", path, "--integrator", "exact", "--dt", "0.01"];
+    libration(&exact).code(2).stderr(predicate::str::contains("exact steps require a linear"));
+}
+
+#[test]
+fn equations_are_a_plant_for_analyses_and_budgets_in_their_own_names() {
+    let path = example("cart_pole.toml");
+    libration(&["analyze", "--plant", &path])
+        .success()
+        .stdout(predicate::str::contains("theta', 0.25 theta"));
+    let folder = tempfile::tempdir().unwrap();
+    let config = |at: &str| {
+        format!(
+            "[system.linear]\nof = {path:?}\nparameters = {{ pole = 0.2 }}\n{at}\n\
+             [controller.lqr]\nstates = [1, 10, 0, 1]\ninputs = [0.1]\n[loop]\nperiod = 0.02\nlatency = 0.03\n"
+        )
+    };
+    let advised = |at: &str| {
+        let file = written(&folder, "loop.toml", &config(at));
+        libration(&["advise", "--config", file.to_str().unwrap()])
+    };
+    advised("").success().stdout(predicate::str::contains(
+        "the system cart-pole linearised at x = 0.0, theta = 0.0 under u = 0.0",
+    ));
+    // Hanging, by name.
+    advised("at = { theta = 3.0 }").success().stdout(predicate::str::contains("theta = 3.141593"));
+    advised("at = { tetha = 3.0 }")
+        .code(2)
+        .stderr(predicate::str::contains("did you mean `theta`"));
+    advised("at = [1, 2, 3]").code(2).stderr(predicate::str::contains("expected 2: x, theta"));
 }

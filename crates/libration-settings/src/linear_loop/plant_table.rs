@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use libration::linear::{LinearPlant, Matrix, PlantError, Signal};
 use serde::Deserialize;
 
-use super::operating_point::{Coordinates, OperatingPoint, linearise};
-use super::{plant_file, plant_keys};
+use super::linearisation::linearise;
+use super::{Coordinates, OperatingPoint, plant_file, plant_keys};
 use crate::{Fault, Number};
 
 /// The table `[system.linear]`: a plant by its matrices, by masses, dampers and springs, by transfer functions, or in a file.

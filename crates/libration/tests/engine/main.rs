@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod analysis;
+mod block_machine;
 mod catalog;
 mod dimensions;
 mod elementary;

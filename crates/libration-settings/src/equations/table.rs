@@ -1,69 +1,29 @@
-//! Systems by their equations, in files.
+//! The table `[system]` of a file with equations.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use libration::analysis::rate_derivative;
 use libration::equations::{
     Definitions, Degree, EquationError, EquationErrorKind, Equations, ExpressionErrorKind, Function,
 };
-use libration::linear::Matrix;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::{Document, Number, SettingsError, suggestions};
-
-/// A system by its equations, with its parameters and start.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EquationSystem {
-    /// The name in messages.
-    pub name: String,
-    /// A description in one sentence; empty without one.
-    pub description: String,
-    /// The equations.
-    pub equations: Equations,
-    /// The texts of the equations.
-    pub definitions: Definitions,
-    /// The states by name.
-    pub states: Vec<NamedState>,
-    /// The unit of each parameter, in the order of the definitions; empty without one.
-    pub units: Vec<String>,
-    /// The unit of each input; empty without one.
-    pub input_units: Vec<String>,
-    /// The unit of the energy; empty without one.
-    pub energy_unit: String,
-    /// Initial positions of all degrees of freedom.
-    pub q: Vec<f64>,
-    /// Initial velocities of all degrees of freedom.
-    pub v: Vec<f64>,
-}
-
-/// A coordinate, a velocity or a state of first order.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedState {
-    /// The place among all positions and velocities.
-    pub place: usize,
-    /// The name; that of a velocity has a prime.
-    pub name: String,
-    /// The unit; empty without one.
-    pub unit: String,
-    /// The value at the start.
-    pub start: f64,
-}
+use crate::{Number, suggestions};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
-    system: Table,
+pub(super) struct File {
+    pub(super) system: Table,
 }
 
 /// The table `[system]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Table {
-    name: String,
+pub(super) struct Table {
+    pub(super) name: String,
     #[serde(default)]
-    description: String,
+    pub(super) description: String,
     #[serde(default)]
     coordinates: Vec<Spanned<String>>,
     #[serde(default)]
@@ -91,112 +51,8 @@ enum Parameter {
     WithUnit { value: Number, unit: String },
 }
 
-/// Whether the text of a TOML file has a table `[system]` with equations.
-pub fn is_system(text: &str) -> bool {
-    let table: Option<toml::Table> = toml::from_str(text).ok();
-    let system = table.as_ref().and_then(|table| table.get("system"));
-    ["coordinates", "acceleration", "rate"].iter().any(|key| {
-        system.and_then(toml::Value::as_table).is_some_and(|system| system.contains_key(*key))
-    })
-}
-
-impl EquationSystem {
-    /// Reads a system from the text of a file, with other values of some parameters; `file` is its name in messages.
-    ///
-    /// # Errors
-    /// The first key or expression that is wrong.
-    pub fn parse(text: &str, file: &str, set: &[(String, f64)]) -> Result<Self, SettingsError> {
-        let document = Document::parse(text, file)?;
-        let File { system } = toml::from_str(text).map_err(|error| document.explain(&error))?;
-        let (mut definitions, units) = system.definitions();
-        for (name, value) in set {
-            let parameters = &mut definitions.parameters;
-            let Some((_, own)) = parameters.iter_mut().find(|(own, _)| own == name) else {
-                let known = parameters.iter().map(|(name, _)| name.as_str());
-                let help = suggestions::suggest("parameters", name, known);
-                let message = format!("unknown parameter `{name}` (--set)");
-                let span = system.key_place("parameters");
-                return Err(SettingsError::new(file, text, span, message, Some(help)));
-            };
-            *own = *value;
-        }
-        let equations = Equations::new(&definitions).map_err(|error| {
-            let span = system.place(&error, text).unwrap_or_else(|| system.key_place(&error.key));
-            let help = help(&error);
-            SettingsError::new(file, text, span, error.to_string(), help)
-        })?;
-        let (q, v) = system
-            .start(&equations)
-            .map_err(|(span, message, help)| SettingsError::new(file, text, span, message, help))?;
-        let known_units = system.units(&definitions);
-        let known_units = known_units
-            .map_err(|(span, message, help)| SettingsError::new(file, text, span, message, help))?;
-        let unit = |name: &str| known_units.get(name).cloned().unwrap_or_default();
-        let states = named_states(&equations, &q, &v, &unit);
-        let input_units = definitions.inputs.iter().map(|name| unit(name)).collect();
-        let energy_unit = unit("energy");
-        let (name, description) = (system.name, system.description);
-        Ok(EquationSystem {
-            name,
-            description,
-            equations,
-            definitions,
-            states,
-            units,
-            input_units,
-            energy_unit,
-            q,
-            v,
-        })
-    }
-}
-
-impl EquationSystem {
-    /// Positions and velocities at the start, and the inputs, which are zero.
-    pub fn start(&self) -> Vec<f64> {
-        let inputs = self.equations.inputs().iter().map(|_| 0.0);
-        self.q.iter().chain(&self.v).copied().chain(inputs).collect()
-    }
-
-    /// The derivatives of the rates of the [states](EquationSystem::states) by the states, from those of the accelerations by
-    /// positions, velocities and inputs.
-    pub fn state_matrix(&self, jacobian: &Matrix) -> Matrix {
-        let place = |i: usize| self.states[i].place;
-        Matrix::from_fn(self.states.len(), self.states.len(), |i, j| {
-            rate_derivative(jacobian, place(i), place(j))
-        })
-    }
-}
-
-/// Coordinates, then velocities and states of first order.
-fn named_states(
-    equations: &Equations,
-    q: &[f64],
-    v: &[f64],
-    unit: &dyn Fn(&str) -> String,
-) -> Vec<NamedState> {
-    let degrees = equations.degrees();
-    let position = |(i, degree): (usize, &Degree)| match degree {
-        Degree::Coordinate(name) => {
-            Some(NamedState { place: i, name: name.clone(), unit: unit(name), start: q[i] })
-        }
-        Degree::State(_) | Degree::Time => None,
-    };
-    let rate = |unit: String| if unit.is_empty() { unit } else { format!("{unit}/s") };
-    let velocity = |(i, degree): (usize, &Degree)| {
-        let (name, unit) = match degree {
-            Degree::Coordinate(name) => (format!("{name}'"), rate(unit(name))),
-            Degree::State(name) => (name.clone(), unit(name)),
-            Degree::Time => return None,
-        };
-        Some(NamedState { place: degrees.len() + i, name, unit, start: v[i] })
-    };
-    let positions = degrees.iter().enumerate().filter_map(position);
-    positions.chain(degrees.iter().enumerate().filter_map(velocity)).collect()
-}
-
 impl Table {
-    fn definitions(&self) -> (Definitions, Vec<String>) {
+    pub(super) fn definitions(&self) -> (Definitions, Vec<String>) {
         let texts = |table: &BTreeMap<Spanned<String>, Spanned<String>>| {
             // In the order of the file.
             let mut pairs: Vec<_> = table.iter().collect();
@@ -230,7 +86,7 @@ impl Table {
     }
 
     /// The place in the file of an error within an expression.
-    fn place(&self, error: &EquationError, text: &str) -> Option<Range<usize>> {
+    pub(super) fn place(&self, error: &EquationError, text: &str) -> Option<Range<usize>> {
         let inside = error.span.clone()?;
         let value = match error.key.split_once('.') {
             Some(("let", name)) => find(&self.parts, name),
@@ -246,7 +102,7 @@ impl Table {
     }
 
     /// The place of a key.
-    fn key_place(&self, key: &str) -> Range<usize> {
+    pub(super) fn key_place(&self, key: &str) -> Range<usize> {
         let (table, name) = key.split_once('.').unwrap_or((key, ""));
         let of = |table: &BTreeMap<Spanned<String>, Spanned<String>>| {
             let known = table.keys().find(|known| known.get_ref() == name);
@@ -266,7 +122,10 @@ impl Table {
     }
 
     /// Units by name: of coordinates, states of first order, inputs and the energy.
-    fn units(&self, definitions: &Definitions) -> Result<BTreeMap<String, String>, Wrong> {
+    pub(super) fn units(
+        &self,
+        definitions: &Definitions,
+    ) -> Result<BTreeMap<String, String>, Wrong> {
         let states = definitions.rates.iter().map(|(name, _)| name);
         let known: Vec<&str> = definitions
             .coordinates
@@ -287,7 +146,7 @@ impl Table {
     }
 
     /// Positions and velocities at the start; those that are not given are zero, and the velocity of time is 1.
-    fn start(&self, equations: &Equations) -> Result<(Vec<f64>, Vec<f64>), Wrong> {
+    pub(super) fn start(&self, equations: &Equations) -> Result<(Vec<f64>, Vec<f64>), Wrong> {
         let degrees = equations.degrees();
         let (mut q, mut v) = (vec![0.0; degrees.len()], vec![0.0; degrees.len()]);
         let mut known = Vec::new();
@@ -334,7 +193,7 @@ impl Table {
 }
 
 /// A place in the file, a message and a suggestion.
-type Wrong = (Range<usize>, String, Option<String>);
+pub(super) type Wrong = (Range<usize>, String, Option<String>);
 
 fn find<'a>(
     table: &'a BTreeMap<Spanned<String>, Spanned<String>>,
@@ -344,7 +203,7 @@ fn find<'a>(
 }
 
 /// A suggestion for a name that does not exist.
-fn help(error: &EquationError) -> Option<String> {
+pub(super) fn help(error: &EquationError) -> Option<String> {
     match &error.kind {
         EquationErrorKind::UnknownName { name, known } => {
             Some(suggestions::suggest("names", name, known.iter().map(String::as_str)))

@@ -1,0 +1,152 @@
+//! Systems by their equations, in files.
+
+mod table;
+
+use libration::analysis::rate_derivative;
+use libration::equations::{Definitions, Degree, Equations};
+use libration::linear::Matrix;
+use table::{File, help};
+
+use crate::{Document, SettingsError, suggestions};
+
+/// A system by its equations, with its parameters and start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EquationSystem {
+    /// The name in messages.
+    pub name: String,
+    /// A description in one sentence; empty without one.
+    pub description: String,
+    /// The equations.
+    pub equations: Equations,
+    /// The texts of the equations.
+    pub definitions: Definitions,
+    /// The states by name.
+    pub states: Vec<NamedState>,
+    /// The unit of each parameter, in the order of the definitions; empty without one.
+    pub units: Vec<String>,
+    /// The unit of each input; empty without one.
+    pub input_units: Vec<String>,
+    /// The unit of the energy; empty without one.
+    pub energy_unit: String,
+    /// Initial positions of all degrees of freedom.
+    pub q: Vec<f64>,
+    /// Initial velocities of all degrees of freedom.
+    pub v: Vec<f64>,
+}
+
+/// A coordinate, a velocity or a state of first order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedState {
+    /// The place among all positions and velocities.
+    pub place: usize,
+    /// The name; that of a velocity has a prime.
+    pub name: String,
+    /// The unit; empty without one.
+    pub unit: String,
+    /// The value at the start.
+    pub start: f64,
+}
+
+/// Whether the text of a TOML file has a table `[system]` with equations.
+pub fn is_system(text: &str) -> bool {
+    let table: Option<toml::Table> = toml::from_str(text).ok();
+    let system = table.as_ref().and_then(|table| table.get("system"));
+    ["coordinates", "acceleration", "rate"].iter().any(|key| {
+        system.and_then(toml::Value::as_table).is_some_and(|system| system.contains_key(*key))
+    })
+}
+
+impl EquationSystem {
+    /// Reads a system from the text of a file, with other values of some parameters; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// The first key or expression that is wrong.
+    pub fn parse(text: &str, file: &str, set: &[(String, f64)]) -> Result<Self, SettingsError> {
+        let document = Document::parse(text, file)?;
+        let File { system } = toml::from_str(text).map_err(|error| document.explain(&error))?;
+        let (mut definitions, units) = system.definitions();
+        for (name, value) in set {
+            let parameters = &mut definitions.parameters;
+            let Some((_, own)) = parameters.iter_mut().find(|(own, _)| own == name) else {
+                let known = parameters.iter().map(|(name, _)| name.as_str());
+                let help = suggestions::suggest("parameters", name, known);
+                let message = format!("unknown parameter `{name}` (--set)");
+                let span = system.key_place("parameters");
+                return Err(SettingsError::new(file, text, span, message, Some(help)));
+            };
+            *own = *value;
+        }
+        let equations = Equations::new(&definitions).map_err(|error| {
+            let span = system.place(&error, text).unwrap_or_else(|| system.key_place(&error.key));
+            let help = help(&error);
+            SettingsError::new(file, text, span, error.to_string(), help)
+        })?;
+        let (q, v) = system
+            .start(&equations)
+            .map_err(|(span, message, help)| SettingsError::new(file, text, span, message, help))?;
+        let known_units = system.units(&definitions);
+        let known_units = known_units
+            .map_err(|(span, message, help)| SettingsError::new(file, text, span, message, help))?;
+        let unit = |name: &str| known_units.get(name).cloned().unwrap_or_default();
+        let states = named_states(&equations, &q, &v, &unit);
+        let input_units = definitions.inputs.iter().map(|name| unit(name)).collect();
+        let energy_unit = unit("energy");
+        let (name, description) = (system.name, system.description);
+        Ok(EquationSystem {
+            name,
+            description,
+            equations,
+            definitions,
+            states,
+            units,
+            input_units,
+            energy_unit,
+            q,
+            v,
+        })
+    }
+}
+
+impl EquationSystem {
+    /// Positions and velocities at the start, and the inputs, which are zero.
+    pub fn start(&self) -> Vec<f64> {
+        let inputs = self.equations.inputs().iter().map(|_| 0.0);
+        self.q.iter().chain(&self.v).copied().chain(inputs).collect()
+    }
+
+    /// The derivatives of the rates of the [states](EquationSystem::states) by the states, from those of the accelerations by
+    /// positions, velocities and inputs.
+    pub fn state_matrix(&self, jacobian: &Matrix) -> Matrix {
+        let place = |i: usize| self.states[i].place;
+        Matrix::from_fn(self.states.len(), self.states.len(), |i, j| {
+            rate_derivative(jacobian, place(i), place(j))
+        })
+    }
+}
+
+/// Coordinates, then velocities and states of first order.
+fn named_states(
+    equations: &Equations,
+    q: &[f64],
+    v: &[f64],
+    unit: &dyn Fn(&str) -> String,
+) -> Vec<NamedState> {
+    let degrees = equations.degrees();
+    let position = |(i, degree): (usize, &Degree)| match degree {
+        Degree::Coordinate(name) => {
+            Some(NamedState { place: i, name: name.clone(), unit: unit(name), start: q[i] })
+        }
+        Degree::State(_) | Degree::Time => None,
+    };
+    let rate = |unit: String| if unit.is_empty() { unit } else { format!("{unit}/s") };
+    let velocity = |(i, degree): (usize, &Degree)| {
+        let (name, unit) = match degree {
+            Degree::Coordinate(name) => (format!("{name}'"), rate(unit(name))),
+            Degree::State(name) => (name.clone(), unit(name)),
+            Degree::Time => return None,
+        };
+        Some(NamedState { place: degrees.len() + i, name, unit, start: v[i] })
+    };
+    let positions = degrees.iter().enumerate().filter_map(position);
+    positions.chain(degrees.iter().enumerate().filter_map(velocity)).collect()
+}

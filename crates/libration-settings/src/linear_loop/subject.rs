@@ -1,0 +1,140 @@
+//! Systems that can be linearised.
+
+use std::path::Path;
+
+use libration::equations::{Degree, Dynamics};
+use libration::linear::Signal;
+use libration::{AnySystem, catalog, with_system};
+
+use crate::equations::EquationSystem;
+use crate::{Fault, suggestions, units};
+
+/// A system that can be linearised.
+pub(super) struct Subject {
+    pub(super) name: String,
+    pub(super) dynamics: Dynamics,
+    /// Names and units of positions, velocities and inputs.
+    pub(super) signals: Vec<Signal>,
+    /// Positions, velocities and inputs at which the search begins.
+    pub(super) start: Vec<f64>,
+    /// The places of coordinates and states of first order.
+    pub(super) unknowns: Vec<usize>,
+    /// The places of the states of the plant.
+    pub(super) states: Vec<usize>,
+    /// An input divided by this is that of the dynamics.
+    pub(super) mass: f64,
+}
+
+impl Subject {
+    pub(super) fn of_catalogue(
+        name: &str,
+        parameters: &[(String, f64)],
+        dimension: Option<usize>,
+    ) -> Result<Self, Fault> {
+        let (system, actuation) = catalog::build(name, parameters).map_err(|error| {
+            let unknown = matches!(error, catalog::CatalogError::UnknownSystem { .. });
+            let key = if unknown { "system.linear.of" } else { "system.linear.parameters" };
+            let help = match unknown {
+                true => " It may also be a file NAME.toml with equations.",
+                false => "",
+            };
+            Fault::new(key, format!("{error}{}{help}", suggestions::catalog_help(&error)))
+        })?;
+        let entry = system.entry();
+        if matches!(system, AnySystem::DrivenOscillator(_)) {
+            return Err(depends_on_time(name));
+        }
+        let dimension = dimension.unwrap_or(*entry.dimensions.start());
+        let dynamics =
+            with_system!(system, dimension, |model, D| Dynamics::of::<D>(&model, true), {
+                let message = entry.wrong_dimension(dimension).to_string();
+                return Err(Fault::new("system.linear.at", message));
+            });
+        let units = units::of(system, actuation);
+        let named = |letter: &'static str, unit| {
+            (0..dimension).map(move |i| Signal::new(&format!("{letter}{i}"), unit))
+        };
+        let mut signals: Vec<Signal> =
+            named("q", units.position).chain(named("v", units.velocity)).collect();
+        match dimension {
+            1 => signals.push(Signal::new(actuation.name(), units.command)),
+            _ => signals.extend(named(actuation.name(), units.command)),
+        }
+        Ok(Subject {
+            name: entry.name.to_owned(),
+            dynamics,
+            start: vec![0.0; signals.len()],
+            signals,
+            unknowns: (0..dimension).collect(),
+            states: (0..2 * dimension).collect(),
+            mass: actuation.mass(),
+        })
+    }
+
+    pub(super) fn of_file(path: &str, parameters: &[(String, f64)]) -> Result<Self, Fault> {
+        let wrong =
+            |why: String| Fault::new("system.linear.of", format!("cannot use `{path}`: {why}"));
+        let text = crate::read_text(Path::new(path)).map_err(|error| wrong(error.to_string()))?;
+        let system = EquationSystem::parse(&text, path, parameters)
+            .map_err(|error| wrong(error.sentence()))?;
+        Subject::of_equations(&system)
+    }
+
+    pub(super) fn of_equations(system: &EquationSystem) -> Result<Self, Fault> {
+        let degrees = system.equations.degrees();
+        if degrees.contains(&Degree::Time) {
+            return Err(depends_on_time(&system.name));
+        }
+        let dynamics = match system.equations.inputs().is_empty() {
+            true => system.equations.dynamics().with_added_accelerations(),
+            false => system.equations.dynamics().clone(),
+        };
+        let d = degrees.len();
+        // Of a state of first order the position means nothing.
+        let mut signals = vec![Signal::new("", ""); 2 * d];
+        for state in &system.states {
+            signals[state.place] = Signal::new(&state.name, &state.unit);
+        }
+        let inputs = system.equations.inputs().iter().zip(&system.input_units);
+        signals.extend(inputs.map(|(name, unit)| Signal::new(name, unit)));
+        if system.equations.inputs().is_empty() {
+            let added = degrees.iter().zip(&signals[d..2 * d]).map(|(degree, velocity)| {
+                let unit = match velocity.unit.as_str() {
+                    "" => String::new(),
+                    unit => format!("{unit}/s"),
+                };
+                match degree {
+                    Degree::Coordinate(name) => Signal::new(&format!("{name}'' added"), &unit),
+                    Degree::State(name) => Signal::new(&format!("{name}' added"), &unit),
+                    Degree::Time => Signal::new("", ""),
+                }
+            });
+            let added: Vec<Signal> = added.collect();
+            signals.extend(added);
+        }
+        let mut start = system.q.clone();
+        start.extend(degrees.iter().zip(&system.v).map(|(degree, &v)| match degree {
+            Degree::State(_) => v,
+            Degree::Coordinate(_) | Degree::Time => 0.0,
+        }));
+        start.resize(signals.len(), 0.0);
+        let unknown = |(i, degree): (usize, &Degree)| match degree {
+            Degree::State(_) => d + i,
+            Degree::Coordinate(_) | Degree::Time => i,
+        };
+        Ok(Subject {
+            name: system.name.clone(),
+            dynamics,
+            signals,
+            start,
+            unknowns: degrees.iter().enumerate().map(unknown).collect(),
+            states: system.states.iter().map(|state| state.place).collect(),
+            mass: 1.0,
+        })
+    }
+}
+
+fn depends_on_time(name: &str) -> Fault {
+    let message = format!("`{name}` depends on time, so it has no equilibrium");
+    Fault::new("system.linear.of", message)
+}
