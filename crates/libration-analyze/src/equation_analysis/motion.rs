@@ -85,6 +85,10 @@ const CHUNK: u64 = 1 << 12;
 /// steps that were much smaller, the rounding of weights of a method to `f64` would be its largest error.
 const SMALL: [i64; 2] = [-10, -11];
 
+/// Distances of the places at which the order is computed from the start. At the nearer one, functions are defined where they are at
+/// the start.
+const SHIFTS: [f64; 2] = [1.0, 0.01];
+
 /// Changes below this many roundings of a value are rounding.
 const ROUNDINGS: f64 = 1e4;
 
@@ -242,16 +246,20 @@ impl Run<'_> {
 }
 
 /// The order of a step on a system, from the error of a small step against two of half the length, and that of a smaller one. It is
-/// the least of all states, near the start, since in special states such as a turning point terms vanish.
+/// the least of all states at two places near the start, since in special states, such as at rest, terms of the error vanish.
 fn order(step: &StepProgram, system: &EquationSystem, dt: f64) -> Option<u32> {
+    SHIFTS.into_iter().filter_map(|shift| order_at(step, system, dt, shift)).min()
+}
+
+/// The order at a state that is the start but for parts of the golden ratio, `shift` times as large as a coordinate or as 1.
+fn order_at(step: &StepProgram, system: &EquationSystem, dt: f64, shift: f64) -> Option<u32> {
     let degrees = system.equations.degrees().len();
     let mut run = step.program().on::<Wide>();
     let mut state: Vec<Wide> = system.start().into_iter().map(Wide::from_f64).collect();
-    // No state that stands for something: parts of the golden ratio, a hundredth as large as the state or as 1.
     for named in &system.states {
         let part = (0.618_033_988_749_895 * (1.0 + named.place as f64)).fract() - 0.5;
-        let shift = 0.01 * part * named.start.abs().max(1.0);
-        state[named.place] = Wide::from_f64(named.start + shift);
+        let near = named.start + shift * part * named.start.abs().max(1.0);
+        state[named.place] = Wide::from_f64(near);
     }
     let inputs = state.split_off(2 * degrees);
     let dt = Wide::from_f64(dt);

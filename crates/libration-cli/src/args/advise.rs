@@ -116,11 +116,12 @@ pub(crate) struct AdviseArgs {
 }
 
 /// Options that conflict with a request file.
-const REQUEST_OPTIONS: [&str; 13] = [
+const REQUEST_OPTIONS: [&str; 14] = [
     "plant",
     "lqr",
     "gain",
     "system",
+    "force",
     "set",
     "q",
     "v",
@@ -166,7 +167,7 @@ impl AdviseArgs {
         };
         let InitialValueProblem { system, actuation, q, mut v } = {
             let mut given = system.clone();
-            one_degree_of_freedom(&given.system, self.feedback)?;
+            one_degree_of_freedom(given.system.as_deref().unwrap_or_default(), self.feedback)?;
             // The operating point of a loop is the origin by default.
             if self.feedback.is_some() && given.q.is_none() {
                 given.q = Some(super::number::Coordinates::origin());

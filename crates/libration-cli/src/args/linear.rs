@@ -39,8 +39,8 @@ pub(crate) struct LinearArgs {
 }
 
 /// Options that are about systems of the catalogue.
-const NOT_LINEAR: [&str; 8] =
-    ["system", "set", "q", "v", "feedback", "cost_weights", "deviation", "horizon"];
+const NOT_LINEAR: [&str; 9] =
+    ["system", "force", "set", "q", "v", "feedback", "cost_weights", "deviation", "horizon"];
 
 /// The value of `--gain`.
 #[derive(Clone, Debug)]

@@ -8,10 +8,10 @@ use libration_advise::linear::{AnalysisFile, LinearRequest, RequestFile};
 use libration_analyze::{LatencyOption, Timing, linear_analysis};
 use libration_settings::linear_loop::WeightsTable;
 
+use super::AnalyzeArgs;
 use super::linear::{Gain, lqr, rows};
 use super::linear_simulation::{TimingOptions, controller_table, loop_of_plant, number};
 use super::timing::latency;
-use super::{AnalyzeArgs, SystemArgs};
 use crate::error::Failure;
 
 /// Arguments of a linear plant and the loop around it.
@@ -38,8 +38,9 @@ pub(crate) struct LinearAnalysisArgs {
 }
 
 /// Options that are about systems of the catalogue.
-const NOT_LINEAR: [&str; 11] = [
+const NOT_LINEAR: [&str; 12] = [
     "system",
+    "force",
     "set",
     "q",
     "v",
@@ -77,10 +78,7 @@ impl AnalyzeArgs {
 
     /// The first option that is not about steps of a system by equations.
     pub(crate) fn unsupported_for_equations(&self) -> Option<&'static str> {
-        let SystemArgs { q, v, .. } = self.system.as_ref()?;
         let given = [
-            ("--q", q.is_some()),
-            ("--v", v.is_some()),
             ("a control loop", self.timing.timing() != Timing::default()),
             ("--loss", self.cost.loss.is_some()),
             ("--cost-weights", self.cost.cost_weights.is_some()),

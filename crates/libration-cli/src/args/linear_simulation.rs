@@ -63,8 +63,8 @@ pub(crate) struct LinearSimulationArgs {
 const LINEAR: &str = "loop";
 
 /// Options that are about systems of the catalogue.
-const NOT_LINEAR: [&str; 9] =
-    ["system", "set", "q", "v", "integrator", "dt", "float", "skew", "time_stamps"];
+const NOT_LINEAR: [&str; 10] =
+    ["system", "force", "set", "q", "v", "integrator", "dt", "float", "skew", "time_stamps"];
 
 impl SimulateArgs {
     /// Returns the request for a linear plant, if there is one.

@@ -33,6 +33,7 @@ pub(crate) use linear::LinearArgs;
 pub(crate) use linear_analysis::LinearAnalysisArgs;
 pub(crate) use linear_simulation::LinearSimulationArgs;
 pub(crate) use measure_jitter::MeasureJitterArgs;
+pub(crate) use number::Coordinates;
 pub(crate) use rollout::{RolloutArgs, VerifyArgs};
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use system::{StepArgs, SystemArgs};

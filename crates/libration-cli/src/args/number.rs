@@ -15,7 +15,7 @@ impl Coordinates {
     }
 
     /// Returns the numbers.
-    pub(super) fn values(&self) -> &[f64] {
+    pub(crate) fn values(&self) -> &[f64] {
         &self.0
     }
 }

@@ -20,7 +20,11 @@ use crate::error::Failure;
 pub(crate) struct SystemArgs {
     /// Name of the system, see `libration list`; or a file NAME.toml with its equations
     #[arg(long, value_name = "NAME", value_parser = NameOrFile, hide_possible_values = true)]
-    pub(crate) system: String,
+    pub(crate) system: Option<String>,
+    /// In place of a system the acceleration of a coordinate, of q0, v0, q1, … and parameters of --set: "-k*q0 - 0.1*v0^3";
+    /// once for each coordinate
+    #[arg(long, value_name = "EXPRESSION", conflicts_with = "system", allow_hyphen_values = true)]
+    pub(crate) force: Vec<String>,
     /// Parameter of the system, e.g. omega2=10; repeatable. With m= (kg) and k= (N/m), commands are forces
     #[arg(long, value_name = "KEY=VALUE", value_parser = assignment, allow_hyphen_values = true)]
     pub(crate) set: Vec<(String, f64)>,
@@ -77,7 +81,7 @@ pub(super) fn is_file(system: &str) -> bool {
 impl SystemArgs {
     /// The file of equations, if `--system` names one.
     pub(crate) fn file(&self) -> Option<&Path> {
-        is_file(&self.system).then(|| Path::new(&self.system))
+        self.system.as_deref().filter(|system| is_file(system)).map(Path::new)
     }
 
     /// Returns the system and its start. Missing values are those of the catalogue.
@@ -85,14 +89,19 @@ impl SystemArgs {
     /// # Errors
     /// If a parameter is unknown or not allowed, or the number of coordinates is wrong.
     pub(crate) fn resolve(&self) -> Result<InitialValueProblem, Failure> {
+        if !self.force.is_empty() {
+            return Err(Failure::usage(
+                "--force: this command takes systems of the catalogue; `simulate` and `analyze` take expressions",
+            ));
+        }
+        let Some(name) = &self.system else { return Err(Failure::usage("--system is required")) };
         if self.file().is_some() {
             return Err(Failure::usage(format!(
                 "--system `{0}`: this command takes systems of the catalogue; a file of equations is a plant, linearised at an equilibrium: --plant {0}",
-                self.system
+                name
             )));
         }
-        let (system, actuation) =
-            catalog::build(&self.system, &self.set).map_err(wrong_parameter)?;
+        let (system, actuation) = catalog::build(name, &self.set).map_err(wrong_parameter)?;
         let entry = system.entry();
         for (flag, given) in [("--q", &self.q), ("--v", &self.v)] {
             match given {

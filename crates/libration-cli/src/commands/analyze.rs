@@ -12,7 +12,7 @@ use libration_settings::limits;
 
 use super::closed_loop::{dephasing, describe_loop};
 use super::simulate::linear_file;
-use super::{analyze_equations, analyze_linear};
+use super::{analyze_equations, analyze_linear, equation_file};
 use crate::args::{AnalyzeArgs, CostArgs};
 use crate::error::Failure;
 
@@ -21,8 +21,8 @@ pub(crate) fn run(args: &AnalyzeArgs) -> Result<(), Failure> {
     if let Some(request) = args.linear_request(linear_file) {
         return print(&analyze_linear::run(&request?, args.json)?);
     }
-    if let Some(file) = args.system.as_ref().and_then(|system| system.file()) {
-        return print(&analyze_equations::run(args, file)?);
+    if let Some(system) = args.system.as_ref().and_then(equation_file::system) {
+        return print(&analyze_equations::run(args, &system?)?);
     }
     let (Some(system), Some(stepping), Some(dt)) = (&args.system, args.integrator, args.dt) else {
         return Err(Failure::usage("--system is required without --plant and --config"));

@@ -1,25 +1,24 @@
 //! `libration analyze` for systems by equations.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion, analyze};
 use libration_analyze::{AnalyzeError, Stepping};
+use libration_settings::equations::EquationSystem;
 
-use super::{analyze_linear, equation_file};
+use super::analyze_linear;
 use crate::args::AnalyzeArgs;
 use crate::error::Failure;
 use crate::interrupt;
 
 /// Returns the analysis as text or as JSON.
-pub(super) fn run(args: &AnalyzeArgs, file: &Path) -> Result<String, Failure> {
-    let (Some(options), Some(stepping), Some(dt)) = (&args.system, args.integrator, args.dt) else {
+pub(super) fn run(args: &AnalyzeArgs, system: &EquationSystem) -> Result<String, Failure> {
+    let (Some(stepping), Some(dt)) = (args.integrator, args.dt) else {
         return Err(Failure::usage("--integrator and --dt are required with --system"));
     };
     if let Some(flag) = args.unsupported_for_equations() {
         return Err(Failure::usage(format!(
-            "{flag} requires a system of the catalogue; loops around `{0}` are analysed by --plant {0} with --lqr or --gain",
-            file.display()
+            "{flag} requires a system of the catalogue; a loop around equations is that of their plant: --plant FILE with --lqr or --gain"
         )));
     }
     let Stepping::Method(method) = stepping else {
@@ -27,8 +26,7 @@ pub(super) fn run(args: &AnalyzeArgs, file: &Path) -> Result<String, Failure> {
             "--integrator exact: exact steps require a linear system of the catalogue or --plant",
         ));
     };
-    let system = equation_file::read(file, &options.set)?;
-    let analysis = analyze(&system, method, dt, args.steps, interrupt::listen());
+    let analysis = analyze(system, method, dt, args.steps, interrupt::listen());
     let analysis = analysis.map_err(|error| match error {
         AnalyzeError::Interrupted => Failure::Interrupted(error.to_string()),
         error => Failure::usage(error),

@@ -7,7 +7,7 @@ use libration_analyze::equation_trajectory::EquationRequest;
 use libration_analyze::{Stepping, Timing};
 use libration_settings::equations::EquationSystem;
 
-use crate::args::SimulateArgs;
+use crate::args::{Coordinates, SimulateArgs, SystemArgs};
 use crate::error::Failure;
 
 /// Reads the system of the equations in a file, with other values of some parameters.
@@ -20,12 +20,62 @@ pub(super) fn read(path: &Path, set: &[(String, f64)]) -> Result<EquationSystem,
         .map_err(|error| Failure::Shown(error.render_styled()))
 }
 
-/// The request for a system by the equations of a file.
-pub(super) fn simulation(args: &SimulateArgs, file: &Path) -> Result<EquationRequest, Failure> {
-    let (Some(options), Some(step)) = (&args.system, &args.step) else {
+/// The system of equations of `--system FILE` or `--force`; none of the catalogue.
+pub(super) fn system(options: &SystemArgs) -> Option<Result<EquationSystem, Failure>> {
+    if let Some(file) = options.file() {
+        let given = [("--q", options.q.is_some()), ("--v", options.v.is_some())];
+        return Some(match given.into_iter().find(|(_, given)| *given) {
+            Some((flag, _)) => Err(Failure::usage(format!(
+                "{flag} requires a system of the catalogue or --force; `{}` has its `start`",
+                file.display()
+            ))),
+            None => read(file, &options.set),
+        });
+    }
+    (!options.force.is_empty()).then(|| by_forces(options))
+}
+
+/// The system of the accelerations of `--force`, from `--q` (default: 1) and `--v` (default: 0).
+fn by_forces(options: &SystemArgs) -> Result<EquationSystem, Failure> {
+    let count = options.force.len();
+    let start = |flag, given: Option<&Coordinates>, default: f64| match given {
+        Some(given) if given.values().len() != count => Err(Failure::usage(format!(
+            "{flag} `{given}` has {} numbers for {count} of --force; expected equal numbers",
+            given.values().len()
+        ))),
+        Some(given) => Ok(given.values().to_vec()),
+        None => Ok(vec![default; count]),
+    };
+    let q = start("--q", options.q.as_ref(), 1.0)?;
+    let v = start("--v", options.v.as_ref(), 0.0)?;
+    // A TOML string is quoted as a JSON string is.
+    let quoted = |text: &str| serde_json::Value::from(text).to_string();
+    let all = |line: &dyn Fn(usize) -> String| -> String { (0..count).map(line).collect() };
+    let names: Vec<String> = (0..count).map(|i| quoted(&format!("q{i}"))).collect();
+    let text = format!(
+        "[system]\nname = \"force\"\ncoordinates = [{}]\n[system.acceleration]\n{}[system.let]\n{}[system.start]\n{}[system.parameters]\n{}",
+        names.join(", "),
+        all(&|i| format!("q{i} = {}\n", quoted(&options.force[i]))),
+        all(&|i| format!("v{i} = \"q{i}'\"\n")),
+        all(&|i| format!("q{i} = {:?}\n\"q{i}'\" = {:?}\n", q[i], v[i])),
+        options
+            .set
+            .iter()
+            .map(|(name, x)| format!("{} = {x:?}\n", quoted(name)))
+            .collect::<String>(),
+    );
+    EquationSystem::parse(&text, "--force", &[])
+        .map_err(|error| Failure::Shown(error.render_styled()))
+}
+
+/// The request for a system by equations.
+pub(super) fn simulation(
+    args: &SimulateArgs,
+    system: EquationSystem,
+) -> Result<EquationRequest, Failure> {
+    let Some(step) = &args.step else {
         return Err(Failure::usage("--integrator and --dt are required with --system"));
     };
-    let system = read(file, &options.set)?;
     let Stepping::Method(method) = step.integrator else {
         return Err(Failure::usage(
             "--integrator exact: exact steps require a linear system of the catalogue or --plant",
@@ -33,8 +83,6 @@ pub(super) fn simulation(args: &SimulateArgs, file: &Path) -> Result<EquationReq
     };
     let unsupported = [
         ("--time-stamps", args.time_stamps.is_some()),
-        ("--q", options.q.is_some()),
-        ("--v", options.v.is_some()),
         ("a control loop", args.timing.timing() != Timing::default()),
     ];
     if let Some(flag) = unsupported.iter().find(|(_, given)| *given).map(|(flag, _)| *flag) {

@@ -19,7 +19,7 @@ use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::{Document, Fault};
 
 use super::{config_file, equation_file, time_stamps};
-use crate::args::{SimulateArgs, SystemArgs};
+use crate::args::SimulateArgs;
 use crate::error::Failure;
 use crate::output_file::OutputFile;
 use crate::{interrupt, progress, terminal};
@@ -45,8 +45,8 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
             linear_trajectory::write(&request, format, out, watcher)
         });
     }
-    if let Some(file) = args.system.as_ref().and_then(SystemArgs::file) {
-        let request = equation_file::simulation(args, file)?;
+    if let Some(system) = args.system.as_ref().and_then(equation_file::system) {
+        let request = equation_file::simulation(args, system?)?;
         return write(args, quiet, format, &|out, watcher| {
             equation_trajectory::write(&request, format, out, watcher)
         });

@@ -245,7 +245,7 @@ fn equations_are_a_plant_for_analyses_and_budgets_in_their_own_names() {
         libration(&["advise", "--config", file.to_str().unwrap()])
     };
     advised("").success().stdout(predicate::str::contains(
-        "the system cart-pole linearised at x = 0.0, theta = 0.0 under u = 0.0",
+        "the system cart-pole linearised at x = 0.0 m, theta = 0.0 rad under u = 0.0 N",
     ));
     // Hanging, by name.
     advised("at = { theta = 3.0 }").success().stdout(predicate::str::contains("theta = 3.141593"));
@@ -253,4 +253,39 @@ fn equations_are_a_plant_for_analyses_and_budgets_in_their_own_names() {
         .code(2)
         .stderr(predicate::str::contains("did you mean `theta`"));
     advised("at = [1, 2, 3]").code(2).stderr(predicate::str::contains("expected 2: x, theta"));
+}
+
+#[test]
+fn an_expression_on_the_command_line_is_a_system() {
+    let step = ["--integrator", "rk4", "--dt", "0.01", "--steps", "50"];
+    let rows = |system: &[&str]| -> Vec<u8> {
+        let words: Vec<&str> = ["simulate"].iter().chain(system).chain(&step).copied().collect();
+        let output = libration(&words).success().get_output().stdout.clone();
+        // After the names of the columns.
+        output.splitn(2, |&byte| byte == b'\n').nth(1).unwrap().to_vec()
+    };
+    let expression = ["--force", "-k*q0 - c*v0", "--set", "k=10", "--set", "c=0.3", "--q", "2"];
+    let named = String::from_utf8(rows(&expression)).unwrap();
+    let known = ["--system", "damped-oscillator", "--set", "omega2=10", "--set", "gamma=0.3"];
+    let compiled =
+        String::from_utf8(rows(&[&known[..], &["--q", "2", "--v", "0"]].concat())).unwrap();
+    // The last column of the catalogue is its energy.
+    for (own, row) in named.lines().zip(compiled.lines()) {
+        assert_eq!(Some(own), row.rsplit_once(',').map(|(state, _)| state));
+    }
+    assert_eq!(named.lines().count(), 51);
+    for (words, part) in [
+        (vec!["--force", "-k*q0"], "unknown name `k`"),
+        (vec!["--force", "-q0", "--q", "1,2"], "has 2 numbers for 1 of --force"),
+        (vec!["--force", "-q0", "--system", "oscillator"], "cannot be used with"),
+    ] {
+        let words: Vec<&str> = ["simulate"].into_iter().chain(words).chain(step).collect();
+        libration(&words).code(2).stderr(predicate::str::contains(part));
+    }
+    // A cubic friction: an integrator that kicks and drifts has order one, though it starts at rest.
+    let words = ["analyze", "--force", "-10*q0 - 0.1*v0^3", "--integrator", "velocity-verlet"];
+    let words: Vec<&str> = words.into_iter().chain(["--dt", "0.01", "--json"]).collect();
+    let done = libration(&words).success();
+    let found: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+    assert_eq!(found["motion"]["order"], 1);
 }
