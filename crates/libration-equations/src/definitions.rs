@@ -46,6 +46,8 @@ impl Definitions {
                 "no name"
             } else if is_reserved(name) {
                 "a name of the language"
+            } else if (key == "coordinates" || key.starts_with("rate.")) && is_column(name) {
+                "the name of a column of each trajectory"
             } else if !taken.insert(name) {
                 "given twice"
             } else {
@@ -137,6 +139,11 @@ fn fault(key: &str, kind: EquationErrorKind) -> EquationError {
 fn is_name(name: &str) -> bool {
     let begins = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
     begins && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+/// Whether a column of each trajectory has the name.
+fn is_column(name: &str) -> bool {
+    ["step", "trajectory", "energy"].contains(&name)
 }
 
 /// Whether a name has a meaning in every expression.

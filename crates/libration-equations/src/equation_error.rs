@@ -35,7 +35,7 @@ pub enum EquationErrorKind {
     Circle(String),
     /// A name that is none, or that something else has.
     #[error(
-        "`{name}` is {reason}; expected a name of its own, with letters, digits and `_`, that begins with no digit"
+        "`{name}` is {reason}; expected a name of its own, with ASCII letters, digits and `_`, that begins with no digit"
     )]
     Name {
         /// The name.
@@ -52,7 +52,7 @@ pub enum EquationErrorKind {
         reason: &'static str,
     },
     /// Too many or too few states.
-    #[error("the system has {0} states; expected 1 to {max} degrees of freedom", max = crate::MAX_DEGREES)]
+    #[error("the system has {0} coordinates and states of first order; expected 1 to {max}", max = crate::MAX_DEGREES)]
     Degrees(usize),
     /// Too many definitions.
     #[error("there are {0} definitions; expected at most {max}", max = crate::MAX_DEFINITIONS)]

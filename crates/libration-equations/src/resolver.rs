@@ -63,7 +63,10 @@ impl Resolver {
                 .collect();
             known.retain(|name| name != ENERGY);
             known.extend(Function::ALL.map(|function| function.name().to_owned()));
+            // Time is a degree of freedom only where an equation has it.
+            known.extend(["t", "if"].map(str::to_owned));
             known.sort_unstable();
+            known.dedup();
             return Err(error(EquationErrorKind::UnknownName { name: full(), known }));
         };
         match core::mem::replace(meaning, Meaning::InProgress) {

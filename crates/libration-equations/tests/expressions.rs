@@ -159,10 +159,17 @@ fn wrong_names_are_refused() {
         (with(|d| d.inputs = vec!["x".into()]), ["`x`", "given twice"]),
         (with(|d| d.inputs = vec!["sin".into()]), ["`sin`", "a name of the language"]),
         (with(|d| d.inputs = vec!["2u".into()]), ["`2u`", "no name"]),
+        (
+            with(|d| {
+                d.coordinates = vec!["step".into()];
+                d.accelerations = vec![("step".into(), "1".into())];
+            }),
+            ["`step`", "the name of a column"],
+        ),
         (with(|d| d.coordinates.push("y".into())), ["`y`", "has no acceleration"]),
         (with(|d| d.accelerations.push(("z".into(), "1".into()))), ["`z`", "is no coordinate"]),
         (with(|d| d.parameters = vec![("k".into(), f64::NAN)]), ["`k`", "NaN"]),
-        (with(|d| d.coordinates.clear()), ["0 states", "1 to 256"]),
+        (with(|d| d.coordinates.clear()), ["0 coordinates and states", "1 to 256"]),
         (
             with(|d| d.parts = vec![("k".into(), "l".into()), ("l".into(), "k".into())]),
             ["`k`", "depends on itself"],

@@ -1,6 +1,7 @@
 //! Analysis of systems by equations: the output of `libration list FILE` and `libration analyze --system FILE`.
 
 mod motion;
+mod step;
 mod summary;
 
 use std::sync::atomic::AtomicBool;

@@ -185,7 +185,7 @@ fn summary_text(summary: &EquationSummary) -> String {
     match &summary.eigenvalues_at_start {
         None => text += "There a derivative is not finite.\n",
         Some(values) => {
-            text += "Linearised there, the eigenvalues in 1/s are\n";
+            text += "Linearised there, which need be no equilibrium, the eigenvalues in 1/s are\n";
             for [re, im] in values.iter().filter(|[_, im]| *im >= 0.0) {
                 let pair = if *im > 0.0 { format!(" ± {im:.6}i") } else { String::new() };
                 text += &format!("  {re:.6}{pair}\n");

@@ -135,7 +135,14 @@ impl Table {
             .map(String::as_str)
             .chain(definitions.energy.as_ref().map(|_| "energy"))
             .collect();
-        for name in self.units.keys() {
+        for (name, unit) in &self.units {
+            if unit.chars().any(char::is_control) {
+                let message = format!(
+                    "the unit of `{}` is {unit:?}; expected text on one line",
+                    name.get_ref()
+                );
+                return Err((name.span(), message, None));
+            }
             if !known.contains(&name.get_ref().as_str()) {
                 let help = suggestions::suggest("names", name.get_ref(), known.iter().copied());
                 let message = format!("nothing with a unit has the name `{}`", name.get_ref());

@@ -1,0 +1,76 @@
+//! The order and the eigenvalues of a step of a system by equations.
+
+use libration::equations::StepProgram;
+use libration::linear::{Matrix, eigenvalues};
+use libration::number::{Dual, Wide};
+use libration::{Elementary, Scalar};
+use libration_settings::equations::EquationSystem;
+
+/// The powers of two by which the time step is multiplied to find the order. The next term of the error is about 2⁻¹⁰ of the first; in
+/// steps that were much smaller, the rounding of weights of a method to `f64` would be its largest error.
+const SMALL: [i64; 2] = [-10, -11];
+
+/// Distances of the places at which the order is computed from the start. At the nearer one, functions are defined where they are at
+/// the start.
+const SHIFTS: [f64; 2] = [1.0, 0.01];
+
+/// The order of a step on a system, from the error of a small step against two of half the length, and that of a smaller one. It is
+/// the least of all states at two places near the start, since in special states, such as at rest, terms of the error vanish.
+pub(super) fn order(step: &StepProgram, system: &EquationSystem, dt: f64) -> Option<u32> {
+    SHIFTS.into_iter().filter_map(|shift| order_at(step, system, dt, shift)).min()
+}
+
+/// The order at a state that is the start but for parts of the golden ratio, `shift` times as large as a coordinate or as 1.
+fn order_at(step: &StepProgram, system: &EquationSystem, dt: f64, shift: f64) -> Option<u32> {
+    let degrees = system.equations.degrees().len();
+    let mut run = step.program().on::<Wide>();
+    let mut state: Vec<Wide> = system.start().into_iter().map(Wide::from_f64).collect();
+    for named in &system.states {
+        let part = (0.618_033_988_749_895 * (1.0 + named.place as f64)).fract() - 0.5;
+        let near = named.start + shift * part * named.start.abs().max(1.0);
+        state[named.place] = Wide::from_f64(near);
+    }
+    let inputs = state.split_off(2 * degrees);
+    let dt = Wide::from_f64(dt);
+    let mut after = |state: &[Wide], power: i64, count: u32| -> Vec<Wide> {
+        (0..count).fold(state.to_vec(), |state, _| {
+            let dt = dt.scaled(power);
+            let all: Vec<Wide> = state.iter().chain(&inputs).copied().chain([dt]).collect();
+            run.run(&all).collect()
+        })
+    };
+    let [larger, smaller] = SMALL.map(|power| -> Vec<Wide> {
+        let (one, two) = (after(&state, power, 1), after(&state, power - 1, 2));
+        one.iter().zip(&two).map(|(&one, &two)| one - two).collect()
+    });
+    let orders = system.states.iter().filter_map(|named| {
+        let [larger, smaller] = [larger[named.place], smaller[named.place]];
+        // Errors below 2⁻⁹⁰⁰ are rounding: the step has no other.
+        let is_error = larger.exponent().is_some_and(|exponent| exponent > -900);
+        let ratio = (larger * smaller.recip()).abs().to_f64();
+        (is_error && ratio.is_finite()).then(|| ratio.log2().round() - 1.0)
+    });
+    let least = orders.reduce(f64::min)?;
+    (least >= 0.0).then_some(least as u32)
+}
+
+/// The largest size of an eigenvalue of a step at a state: positions, velocities and inputs.
+pub(super) fn spectral_radius(
+    step: &StepProgram,
+    system: &EquationSystem,
+    at: &[f64],
+    dt: f64,
+) -> Option<f64> {
+    let mut run = step.program().on::<Dual<f64>>();
+    let mut inputs: Vec<Dual<f64>> = at.iter().map(|&x| Dual::constant(x)).collect();
+    inputs.push(Dual::constant(dt));
+    let mut columns: Vec<Vec<f64>> = Vec::new();
+    for named in &system.states {
+        inputs[named.place] = Dual::variable(at[named.place]);
+        let end: Vec<f64> = run.run(&inputs).map(|x| x.du).collect();
+        columns.push(system.states.iter().map(|state| end[state.place]).collect());
+        inputs[named.place] = Dual::constant(at[named.place]);
+    }
+    let matrix = Matrix::from_fn(columns.len(), columns.len(), |i, j| columns[j][i]);
+    eigenvalues(&matrix)?.into_iter().map(|value| value.norm()).reduce(f64::max)
+}
