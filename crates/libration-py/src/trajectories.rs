@@ -27,6 +27,15 @@ struct Threads {
     process: u32,
 }
 
+impl Threads {
+    /// Threads of this process (0: one per core).
+    fn start(count: usize) -> PyResult<(Execution, Self)> {
+        let execution = Execution::serial().threads(count).map_err(Raised::raised)?;
+        let threads = Threads { count: execution.thread_count(), process: std::process::id() };
+        Ok((execution, threads))
+    }
+}
+
 enum AnyTrajectories {
     F32(Box<dyn AnyEnsemble<f32>>),
     F64(Box<dyn AnyEnsemble<f64>>),
@@ -64,8 +73,7 @@ impl Trajectories {
         let (q, v) = (q.as_array(), v.as_array());
         let [len, dimension] = [q.nrows(), q.ncols()];
         let of = |n: usize, i: usize| if i < dimension { q[[n, i]] } else { v[[n, i - dimension]] };
-        let execution = Execution::serial().threads(threads).map_err(Raised::raised)?;
-        let threads = Threads { count: execution.thread_count(), process: std::process::id() };
+        let (execution, threads) = Threads::start(threads)?;
         let ensemble = if single {
             AnyTrajectories::F32(made(system, [len, dimension], execution, &|n, i| {
                 of(n, i) as f32
@@ -94,8 +102,7 @@ impl Trajectories {
         let dynamics = system.equations.dynamics();
         let [len, degrees] = [q.nrows(), dynamics.degrees()];
         let of = |n: usize, i: usize| if i < degrees { q[[n, i]] } else { v[[n, i - degrees]] };
-        let execution = Execution::serial().threads(threads).map_err(Raised::raised)?;
-        let threads = Threads { count: execution.thread_count(), process: std::process::id() };
+        let (execution, threads) = Threads::start(threads)?;
         let refused = |error: EnsembleError| EnvironmentError::from(error).raised();
         let ensemble = if single {
             let start = |n, i| of(n, i) as f32;

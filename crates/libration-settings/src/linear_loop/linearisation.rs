@@ -75,7 +75,8 @@ impl Subject {
         let Subject { name, dynamics, signals, start, unknowns, states, mass } = self;
         let (mut start, mass) = (start.clone(), *mass);
         let d = dynamics.degrees();
-        let inputs: Vec<usize> = (2 * d..signals.len()).collect();
+        let inputs: Vec<usize> =
+            (2 * d..signals.len()).filter(|&i| !signals[i].name.is_empty()).collect();
         let set = |places: &[usize], given: Option<&Coordinates>, key, start: &mut Vec<f64>| {
             let Some(given) = given else { return Ok(()) };
             let names: Vec<&str> = places.iter().map(|&i| signals[i].name.as_str()).collect();
@@ -184,6 +185,23 @@ mod tests {
             "{point:?}"
         );
         assert!((plant.a[(2, 0)] + 3.0).abs() < 1e-14 && (plant.a[(3, 1)] - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn an_energy_may_depend_on_time_where_accelerations_do_not() {
+        let parse = |acceleration: &str| {
+            let text = format!(
+                "[system]\nname = \"a\"\ncoordinates = [\"x\"]\nacceleration.x = \"{acceleration}\"\n\
+                 energy = \"x'^2/2 + 2*x^2 + 0.1*t\"\nstart = {{ x = 0.3 }}\n"
+            );
+            EquationSystem::parse(&text, "a.toml", &[]).unwrap()
+        };
+        let (plant, point) = linearised_equations(&parse("1 - 4*x")).unwrap();
+        assert_eq!(point.states[0].value, 0.25);
+        assert_eq!([plant.a[(1, 0)], plant.b[(1, 0)]], [-4.0, 1.0]);
+        assert_eq!([plant.states.len(), plant.inputs.len()], [2, 1]);
+        let fault = linearised_equations(&parse("sin(t) - 4*x")).unwrap_err();
+        assert!(fault.message.contains("depends on time"), "{fault}");
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::{Fault, suggestions, units};
 pub(super) struct Subject {
     pub(super) name: String,
     pub(super) dynamics: Dynamics,
-    /// Names and units of positions, velocities and inputs.
+    /// Names and units of positions, velocities and inputs; those of time and of what means nothing have no name.
     pub(super) signals: Vec<Signal>,
     /// Positions, velocities and inputs at which the search begins.
     pub(super) start: Vec<f64>,
@@ -82,7 +82,10 @@ impl Subject {
 
     pub(super) fn of_equations(system: &EquationSystem) -> Result<Self, Fault> {
         let degrees = system.equations.degrees();
-        if degrees.contains(&Degree::Time) {
+        // An energy may depend on time where the motion does not.
+        let time = degrees.iter().position(|degree| *degree == Degree::Time);
+        let mut in_use = system.equations.dynamics().accelerations().inputs_in_use();
+        if time.is_some_and(|time| in_use.any(|input| input == time)) {
             return Err(depends_on_time(&system.name));
         }
         let dynamics = match system.equations.inputs().is_empty() {
@@ -119,15 +122,16 @@ impl Subject {
         }));
         start.resize(signals.len(), 0.0);
         let unknown = |(i, degree): (usize, &Degree)| match degree {
-            Degree::State(_) => d + i,
-            Degree::Coordinate(_) | Degree::Time => i,
+            Degree::State(_) => Some(d + i),
+            Degree::Coordinate(_) => Some(i),
+            Degree::Time => None,
         };
         Ok(Subject {
             name: system.name.clone(),
             dynamics,
             signals,
             start,
-            unknowns: degrees.iter().enumerate().map(unknown).collect(),
+            unknowns: degrees.iter().enumerate().filter_map(unknown).collect(),
             states: system.states.iter().map(|state| state.place).collect(),
             mass: 1.0,
         })
