@@ -176,10 +176,10 @@ class EquationSystem:
             u=np.array(u),
             y=None,
             residual=residual,
-            relative_residual=0.0,
-            jacobian_error=0.0,
-            iterations=0,
-            scale=np.ones(len(x) + len(u)),
+            relative_residual=None,
+            jacobian_error=None,
+            iterations=None,
+            scale=None,
         )
         return LinearPlant(
             a, b, c, d, g, states=states, inputs=inputs, outputs=outputs, operating_point=point

@@ -31,23 +31,23 @@ class OperatingPoint:
     """Outputs, if the system has an output function."""
     residual: float
     """The largest absolute rate of a state; of a sampled system the largest change of a state in a step."""
-    relative_residual: float
-    """The residual as a shift of states and inputs that would cause it, relative to their scales."""
-    jacobian_error: float
-    """Estimated error of the Jacobians, relative to the largest entry of each row, with variables in units of their scales."""
-    iterations: int
-    """Iterations of Newton's method."""
-    scale: Array = field(repr=False)
-    """Scales of the states and then of the inputs."""
+    relative_residual: float | None
+    """The residual as a shift of states and inputs that would cause it, relative to their scales; None of equations."""
+    jacobian_error: float | None
+    """Estimated error of the Jacobians, relative to the largest entry of each row, with variables in units of their scales; None where
+    derivatives are exact."""
+    iterations: int | None
+    """Iterations of Newton's method; None of equations."""
+    scale: Array | None = field(repr=False)
+    """Scales of the states and then of the inputs; None of equations."""
 
     def __repr__(self) -> str:
         def numbers(values: Array) -> str:
             return "[" + ", ".join(f"{value:.6g}" for value in values) + "]"
 
-        return (
-            f"<OperatingPoint: x = {numbers(self.x)}, u = {numbers(self.u)}, residual {self.residual:.1e}, "
-            f"relative error of the Jacobian {self.jacobian_error:.1e}>"
-        )
+        error = self.jacobian_error
+        accuracy = "exact derivatives" if error is None else f"relative error of the Jacobian {error:.1e}"
+        return f"<OperatingPoint: x = {numbers(self.x)}, u = {numbers(self.u)}, residual {self.residual:.1e}, {accuracy}>"
 
 
 @dataclass(frozen=True)

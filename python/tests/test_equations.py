@@ -81,6 +81,7 @@ def test_equations_are_a_plant_for_budgets_and_analyses():
     plant = cart.plant()
     # Of the equations at rest: g/l over 4/3 - m/M.
     assert plant.A[3][1] == pytest.approx(9.81 / 0.5 / (4 / 3 - 0.1 / 1.1), rel=1e-14)
+    assert "exact derivatives" in repr(plant.operating_point) and plant.operating_point.x.tolist() == [0, 0, 0, 0]
     advice = libration.advise(cart, libration.LQR([1, 10, 0, 1], [0.1]), period=0.02, latency=0.03)
     same = libration.advise(plant, libration.LQR([1, 10, 0, 1], [0.1]), period=0.02, latency=0.03)
     assert advice.margin == same.margin > 1

@@ -80,7 +80,7 @@ const MOST_OPERATIONS: u64 = 1 << 31;
 /// Steps between two checks of the stop flag.
 const CHUNK: u64 = 1 << 12;
 
-/// Changes below this many roundings of a value are rounding.
+/// Changes below this many roundings of a value are rounding: each of up to 4000 steps rounds a state two times or more.
 const ROUNDINGS: f64 = 1e4;
 
 impl EquationMotion {

@@ -51,7 +51,8 @@ fn order_at(step: &StepProgram, system: &EquationSystem, dt: f64, shift: f64) ->
         (is_error && ratio.is_finite()).then(|| ratio.log2().round() - 1.0)
     });
     let least = orders.reduce(f64::min)?;
-    (least >= 0.0).then_some(least as u32)
+    // Without an order, halved steps promise nothing.
+    (least >= 1.0).then_some(least as u32)
 }
 
 /// The largest size of an eigenvalue of a step at a state: positions, velocities and inputs.

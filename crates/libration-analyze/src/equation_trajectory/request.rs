@@ -5,7 +5,7 @@ use libration::catalog::Allowed;
 use libration_settings::equations::EquationSystem;
 use libration_settings::limits;
 
-use crate::trajectory::{EnsembleFloat, EnsembleOptions, FloatType, TrajectoryError};
+use crate::trajectory::{EnsembleFloat, EnsembleOptions, FloatType, TrajectoryError, rows};
 
 /// Largest number of values in a table: 8 GB.
 const MOST_VALUES: u64 = 1_000_000_000;
@@ -43,10 +43,7 @@ impl EquationRequest {
 
     /// Number of rows if the state stays finite.
     pub fn rows(&self) -> u64 {
-        let every = self.every.max(1);
-        let kept =
-            (self.steps / every).saturating_add(1 + u64::from(!self.steps.is_multiple_of(every)));
-        kept.saturating_mul(self.ensemble.map_or(1, |ensemble| ensemble.count as u64))
+        rows(self.steps, self.every, self.ensemble.as_ref())
     }
 
     /// Checks every value, and that the float type `S` represents it.

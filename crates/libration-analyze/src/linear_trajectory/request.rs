@@ -3,7 +3,7 @@
 use libration::linear::{LinearLoop, LoopTiming};
 use libration_settings::limits;
 
-use crate::trajectory::{EnsembleOptions, TrajectoryError};
+use crate::trajectory::{EnsembleOptions, TrajectoryError, rows};
 
 /// Largest number of values in a table: 8 GB.
 const MOST_VALUES: u64 = 1_000_000_000;
@@ -53,10 +53,7 @@ impl LinearRequest {
 
     /// Number of rows if the states stay finite.
     pub fn rows(&self) -> u64 {
-        let every = self.every.max(1);
-        let kept =
-            (self.steps / every).saturating_add(1 + u64::from(!self.steps.is_multiple_of(every)));
-        kept.saturating_mul(self.ensemble.map_or(1, |ensemble| ensemble.count as u64))
+        rows(self.steps, self.every, self.ensemble.as_ref())
     }
 
     /// Checks every value.

@@ -8,7 +8,7 @@ use libration::equations::Dynamics;
 use super::{EnsembleOptions, Monitor, Outcome, Request, TrajectoryError, loops};
 use crate::export::{Number, Rows};
 
-/// Trajectory steps between two checks of the monitor: half a second of the slowest kernel.
+/// Steps of a degree of freedom between two checks of the monitor: half a second of the slowest kernel.
 const CHUNK: u64 = 1 << 21;
 
 /// A float type of a simulation; only native floats have ensembles and loops.
@@ -188,7 +188,7 @@ impl EnsembleRun<'_> {
         let EnsembleRun { method, dt, steps, every, kept } = *self;
         let (count, dimension) = (all.len(), all.dimension());
         let mut values = Vec::with_capacity(kept.len() + 1);
-        let at_once = (CHUNK / (count as u64).max(1)).max(1);
+        let at_once = (CHUNK / (count as u64 * dimension as u64).max(1)).max(1);
         loop {
             let step = all.step();
             let time = step as f64 * S::from_f64(dt).to_f64();

@@ -60,6 +60,13 @@ impl EnsembleOptions {
     }
 }
 
+/// Number of rows of so many steps if all states stay finite: the start, each `every`-th step and the last, of each trajectory.
+pub(crate) fn rows(steps: u64, every: u64, ensemble: Option<&EnsembleOptions>) -> u64 {
+    let every = every.max(1);
+    let kept = (steps / every).saturating_add(1 + u64::from(!steps.is_multiple_of(every)));
+    kept.saturating_mul(ensemble.map_or(1, |ensemble| ensemble.count as u64))
+}
+
 fn available() -> String {
     InstructionSet::available().map(InstructionSet::name).collect::<Vec<_>>().join(", ")
 }

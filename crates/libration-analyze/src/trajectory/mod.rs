@@ -30,6 +30,7 @@ use crate::recording::{self, Recording};
 
 pub(crate) use ensemble::{EnsembleFloat, EnsembleRun};
 pub use ensemble_options::EnsembleOptions;
+pub(crate) use ensemble_options::rows;
 pub use error::TrajectoryError;
 pub use float_type::FloatType;
 pub use format::Format;

@@ -4,6 +4,7 @@ use libration::catalog::{Actuation, Allowed};
 use libration::{AnySystem, Float, with_system};
 use libration_settings::{limits, units};
 
+use super::ensemble_options::rows;
 use super::error::value_error;
 use super::exact_step::exact;
 use super::{EnsembleOptions, FloatType, TrajectoryError};
@@ -80,15 +81,9 @@ impl Request {
         trajectory.chain(units::of_columns(self.system, self.q.len())).collect()
     }
 
-    /// Number of kept steps if the state stays finite.
-    fn kept_steps(&self) -> u64 {
-        let every = self.every.max(1);
-        (self.steps / every).saturating_add(1 + u64::from(!self.steps.is_multiple_of(every)))
-    }
-
     /// Number of rows if the state stays finite.
     pub fn rows(&self) -> u64 {
-        self.kept_steps().saturating_mul(self.ensemble.map_or(1, |ensemble| ensemble.count as u64))
+        rows(self.steps, self.every, self.ensemble.as_ref())
     }
 
     /// Checks every value, and that the float type `S` represents it.

@@ -130,13 +130,18 @@ fn a_chain_of_64_masses_has_the_bits_of_its_program_with_every_method() {
 
 #[test]
 fn outputs_that_are_inputs_or_constants_of_each_other_end_in_their_rows() {
-    // Positions that exchange their places through an acceleration, and velocities that are constant.
-    let equations = equations(
+    // Accelerations that are constants, a part of the state, and the position of each other, which is carried.
+    let constant = equations(
         vec![("x".to_owned(), "0".to_owned()), ("y".to_owned(), "0*k".to_owned())],
         vec![("s".to_owned(), "one".to_owned())],
     );
-    for method in Method::ALL {
-        let found = differing::<f64>(equations.dynamics(), method, 5, 3, &Execution::serial());
-        assert_eq!(found, Vec::<String>::new());
+    let pair = |x: &str, y: &str| {
+        equations(vec![("x".into(), x.into()), ("y".into(), y.into())], Vec::new())
+    };
+    for equations in [constant, pair("y", "x"), pair("x", "x"), pair("y'", "x'"), pair("x", "y")] {
+        for method in Method::ALL {
+            let found = differing::<f64>(equations.dynamics(), method, 5, 3, &Execution::serial());
+            assert_eq!(found, Vec::<String>::new());
+        }
     }
 }
