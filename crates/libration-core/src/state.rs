@@ -67,7 +67,7 @@ impl<S: Scalar, const D: usize> State<S, D> {
     }
 
     /// The coordinates `q₀ … q_{D−1}, v₀ … v_{D−1}`.
-    pub fn coordinates(&self) -> impl Iterator<Item = S> + '_ {
+    pub fn coordinates(&self) -> impl Iterator<Item = S> + Clone + '_ {
         self.q.iter().chain(&self.v).copied()
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use super::parser::BEFORE;
 use super::{EquationError, EquationErrorKind, Expression, Function};
 
 /// The most degrees of freedom of a system.
@@ -109,11 +110,8 @@ impl Definitions {
         named
             .chain(energy)
             .map(|(name, primes, key, text)| {
-                let expression = Expression::parse(text).map_err(|error| EquationError {
-                    key: key.clone(),
-                    span: Some(error.span.clone()),
-                    kind: EquationErrorKind::Expression(error),
-                })?;
+                let expression = Expression::parse(text)
+                    .map_err(|error| EquationError::of_expression(key.clone(), error))?;
                 Ok(NamedExpression { name, primes, key, expression })
             })
             .collect()
@@ -148,5 +146,5 @@ fn is_column(name: &str) -> bool {
 
 /// Whether a name has a meaning in every expression.
 fn is_reserved(name: &str) -> bool {
-    ["t", "pi", "if"].contains(&name) || Function::from_name(name).is_some()
+    ["t", "pi", "if", BEFORE].contains(&name) || Function::from_name(name).is_some()
 }

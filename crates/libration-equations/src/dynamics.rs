@@ -56,8 +56,7 @@ impl Dynamics {
     pub fn with_added_accelerations(&self) -> Self {
         let mut builder = ProgramBuilder::literal();
         let count = 2 * self.degrees + self.inputs;
-        let known: Vec<ValueId> = (0..count).map(|_| builder.input()).collect();
-        let added: Vec<ValueId> = (0..self.degrees).map(|_| builder.input()).collect();
+        let (known, added) = (builder.inputs(count), builder.inputs(self.degrees));
         let own = builder.inline(&self.accelerations, &known);
         let sum = |(&own, &added): (&ValueId, &ValueId)| builder.value(Operation::Sum(own, added));
         let sums: Vec<ValueId> = own.iter().zip(&added).map(sum).collect();

@@ -16,6 +16,14 @@ pub struct EquationError {
     pub kind: EquationErrorKind,
 }
 
+impl EquationError {
+    /// The error of an expression in a definition.
+    pub(crate) fn of_expression(key: String, error: ExpressionError) -> Self {
+        let span = Some(error.span.clone());
+        EquationError { key, span, kind: EquationErrorKind::Expression(error) }
+    }
+}
+
 /// The reason of an [`EquationError`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EquationErrorKind {
@@ -57,6 +65,9 @@ pub enum EquationErrorKind {
     /// Too many definitions.
     #[error("there are {0} definitions; expected at most {max}", max = crate::MAX_DEFINITIONS)]
     Definitions(usize),
+    /// Too many expressions of a task.
+    #[error("there are {0} expressions; expected at most {max}", max = crate::task::MAX_EXPRESSIONS)]
+    Expressions(usize),
     /// A parameter that is no number.
     #[error("the parameter `{name}` is {value}; expected a finite number")]
     Parameter {

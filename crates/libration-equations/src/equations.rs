@@ -46,28 +46,16 @@ impl Equations {
             degrees.push(Degree::Time);
         }
         let mut builder = ProgramBuilder::default();
-        let positions: Vec<ValueId> = degrees.iter().map(|_| builder.input()).collect();
-        let velocities: Vec<ValueId> = degrees.iter().map(|_| builder.input()).collect();
-        let commands: Vec<ValueId> = inputs.iter().map(|_| builder.input()).collect();
+        let (positions, velocities) =
+            (builder.inputs(degrees.len()), builder.inputs(degrees.len()));
+        let commands = builder.inputs(inputs.len());
+        let time = degrees.iter().position(|degree| *degree == Degree::Time).map(|i| positions[i]);
         let mut resolver = Resolver::new(builder);
-        let pi = resolver.builder.constant(core::f64::consts::PI);
-        resolver.define("pi", 0, pi);
-        for ((degree, &position), &velocity) in degrees.iter().zip(&positions).zip(&velocities) {
-            match degree {
-                Degree::Coordinate(name) => {
-                    resolver.define(name, 0, position);
-                    resolver.define(name, 1, velocity);
-                }
-                Degree::State(name) => resolver.define(name, 0, velocity),
-                Degree::Time => resolver.define("t", 0, position),
-            }
-        }
-        for (name, value) in parameters {
-            let value = resolver.builder.constant(*value);
-            resolver.define(name, 0, value);
-        }
-        for (name, command) in inputs.iter().zip(commands) {
-            resolver.define(name, 0, command);
+        define_parameters(&mut resolver, parameters);
+        define_states(&mut resolver, &degrees, (&positions, &velocities), str::to_owned);
+        define_values(&mut resolver, inputs, &commands);
+        if let Some(time) = time {
+            resolver.define("t", 0, time);
         }
         for own in expressions {
             resolver.define_expression(own);
@@ -117,5 +105,41 @@ impl Equations {
         let states = 2 * self.degrees.len();
         let degrees = self.dynamics.accelerations().polynomial_degrees(|input| input < states);
         degrees.into_iter().try_fold(0, |most, degree| Some(most.max(degree?)))
+    }
+}
+
+/// Gives parameters, and π, their values.
+pub(crate) fn define_parameters(resolver: &mut Resolver, parameters: &[(String, f64)]) {
+    let pi = resolver.builder.constant(core::f64::consts::PI);
+    resolver.define("pi", 0, pi);
+    for (name, value) in parameters {
+        let value = resolver.builder.constant(*value);
+        resolver.define(name, 0, value);
+    }
+}
+
+/// Gives coordinates, velocities and states of first order their values, by names that follow from their own.
+pub(crate) fn define_states(
+    resolver: &mut Resolver,
+    degrees: &[Degree],
+    (positions, velocities): (&[ValueId], &[ValueId]),
+    name_of: impl Fn(&str) -> String,
+) {
+    for ((degree, &position), &velocity) in degrees.iter().zip(positions).zip(velocities) {
+        match degree {
+            Degree::Coordinate(name) => {
+                resolver.define(&name_of(name), 0, position);
+                resolver.define(&name_of(name), 1, velocity);
+            }
+            Degree::State(name) => resolver.define(&name_of(name), 0, velocity),
+            Degree::Time => {}
+        }
+    }
+}
+
+/// Gives names their values.
+pub(crate) fn define_values(resolver: &mut Resolver, names: &[String], values: &[ValueId]) {
+    for (name, &value) in names.iter().zip(values) {
+        resolver.define(name, 0, value);
     }
 }

@@ -16,6 +16,7 @@ mod recording;
 mod resolver;
 mod step_program;
 mod step_trace;
+mod task;
 
 pub use definitions::{Definitions, MAX_DEFINITIONS, MAX_DEGREES};
 pub use dynamics::Dynamics;
@@ -28,3 +29,4 @@ pub use parser::MAX_LENGTH;
 pub use program::{Evaluation, Operation, Program, ValueId};
 pub use recording::Recorded;
 pub use step_program::StepProgram;
+pub use task::{TaskDefinitions, TaskPrograms};

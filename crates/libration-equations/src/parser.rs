@@ -20,6 +20,14 @@ pub const MAX_LENGTH: usize = 65_536;
 /// The most brackets, functions and powers within each other.
 const MAX_DEPTH: usize = 100;
 
+/// The function of a name that stands for the value before a step.
+pub(crate) const BEFORE: &str = "before";
+
+/// The name of the value of a state before a step. No expression can have it but by [`BEFORE`].
+pub(crate) fn name_before(name: &str) -> String {
+    format!("{BEFORE}({name})")
+}
+
 type Input<'a> = Stateful<LocatingSlice<&'a str>, Tree>;
 
 /// What is parsed so far.
@@ -56,12 +64,27 @@ impl Expression {
     /// # Errors
     /// [`ExpressionError`]: the text is no expression, or exceeds a limit.
     pub fn parse(text: &str) -> Result<Self, ExpressionError> {
+        Expression::parse_as(text, sum)
+    }
+
+    /// Parses a comparison of two expressions by `<`, `<=`, `>` or `>=`: an expression that is 1 where it holds, else 0.
+    ///
+    /// # Errors
+    /// As for [`parse`](Expression::parse).
+    pub fn parse_condition(text: &str) -> Result<Self, ExpressionError> {
+        Expression::parse_as(text, condition)
+    }
+
+    fn parse_as(
+        text: &str,
+        parser: fn(&mut Input<'_>) -> Parsed<NodeId>,
+    ) -> Result<Self, ExpressionError> {
         if text.len() > MAX_LENGTH {
             let kind = ExpressionErrorKind::Length(text.len());
             return Err(ExpressionError { span: 0..text.len(), kind });
         }
         let mut input = Input { input: LocatingSlice::new(text), state: Tree::default() };
-        let parsed = terminated(sum, space).parse_next(&mut input);
+        let parsed = terminated(parser, space).parse_next(&mut input);
         let parsed = parsed.and_then(|_| match input.peek_token() {
             None => Ok(()),
             Some(_) => Err(unexpected(&input, "an operator or the end")),
@@ -170,8 +193,10 @@ fn number(input: &mut Input<'_>) -> Parsed<NodeId> {
 
 /// The arguments of a function, behind its opening bracket.
 fn call(input: &mut Input<'_>, name: Range<usize>, text: &str) -> Parsed<NodeId> {
-    if text == "if" {
-        return choice(input, name.start);
+    match text {
+        "if" => return choice(input, name.start),
+        BEFORE => return before(input, name.start),
+        _ => {}
     }
     let Some(function) = Function::from_name(text) else {
         return Err(failure(name, ExpressionErrorKind::UnknownFunction { name: text.into() }));
@@ -188,6 +213,25 @@ fn call(input: &mut Input<'_>, name: Range<usize>, text: &str) -> Parsed<NodeId>
 
 /// `a < b, then, otherwise)`.
 fn choice(input: &mut Input<'_>, begin: usize) -> Parsed<NodeId> {
+    let (comparison, sides) = comparison(input)?;
+    expect(input, ',', "an operator or `,`")?;
+    let then = sum(input)?;
+    expect(input, ',', "an operator or `,`")?;
+    let otherwise = sum(input)?;
+    expect(input, ')', "an operator or `)`")?;
+    Ok(push(input, begin, NodeKind::Choice { comparison, sides, values: [then, otherwise] }))
+}
+
+/// `a < b`, as the choice between 1 and 0.
+fn condition(input: &mut Input<'_>) -> Parsed<NodeId> {
+    let begin = input.current_token_start();
+    let (comparison, sides) = comparison(input)?;
+    let values = [1.0, 0.0].map(|x| push(input, begin, NodeKind::Number(x)));
+    Ok(push(input, begin, NodeKind::Choice { comparison, sides, values }))
+}
+
+/// `a < b`.
+fn comparison(input: &mut Input<'_>) -> Parsed<(Comparison, [NodeId; 2])> {
     let a = sum(input)?;
     space(input)?;
     let comparison = alt((
@@ -200,13 +244,20 @@ fn choice(input: &mut Input<'_>, begin: usize) -> Parsed<NodeId> {
         return Err(unexpected(input, "an operator or a comparison `<`, `<=`, `>`, `>=`"));
     };
     let b = sum(input)?;
-    expect(input, ',', "an operator or `,`")?;
-    let then = sum(input)?;
-    expect(input, ',', "an operator or `,`")?;
-    let otherwise = sum(input)?;
-    expect(input, ')', "an operator or `)`")?;
-    let kind = NodeKind::Choice { comparison, sides: [a, b], values: [then, otherwise] };
-    Ok(push(input, begin, kind))
+    Ok((comparison, [a, b]))
+}
+
+/// `x)`: the name of a state, which stands for its value before a step.
+fn before(input: &mut Input<'_>, begin: usize) -> Parsed<NodeId> {
+    space(input)?;
+    let expected = "the name of a state, as in `before(x)`";
+    let Some(name) = opt(take_while(1.., is_name)).parse_next(input)? else {
+        return Err(unexpected(input, expected));
+    };
+    let name = name_before(name);
+    let primes = take_while(0.., '\'').map(str::len).parse_next(input)?;
+    expect(input, ')', "`)`")?;
+    Ok(push(input, begin, NodeKind::Name { name, primes }))
 }
 
 /// Runs a parser one level deeper.

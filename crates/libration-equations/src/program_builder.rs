@@ -38,6 +38,11 @@ impl ProgramBuilder {
         self.value(Operation::Input(self.inputs - 1))
     }
 
+    /// New inputs, in order.
+    pub(crate) fn inputs(&mut self, count: usize) -> Vec<ValueId> {
+        (0..count).map(|_| self.input()).collect()
+    }
+
     pub(crate) fn constant(&mut self, c: f64) -> ValueId {
         self.value(Operation::Constant(c))
     }

@@ -83,8 +83,12 @@ impl Resolver {
         }
     }
 
-    /// The value of an expression, node by node.
-    fn evaluate(&mut self, key: &str, expression: &Expression) -> Result<ValueId, EquationError> {
+    /// The value of an expression of the definition `key`, node by node.
+    pub(crate) fn evaluate(
+        &mut self,
+        key: &str,
+        expression: &Expression,
+    ) -> Result<ValueId, EquationError> {
         let mut values: Vec<ValueId> = Vec::with_capacity(expression.nodes.len());
         for node in &expression.nodes {
             let value = match &node.kind {

@@ -68,12 +68,10 @@ fn program(
 ) -> Program {
     let degrees = dynamics.degrees();
     let mut builder = ProgramBuilder::literal();
-    let mut inputs =
-        |count: usize| -> Vec<ValueId> { (0..count).map(|_| builder.input()).collect() };
-    let (positions, velocities) = (inputs(degrees), inputs(degrees));
-    let known = inputs(if carries { degrees } else { 0 });
-    let commands = inputs(dynamics.inputs());
-    let dt = inputs(1)[0];
+    let (positions, velocities) = (builder.inputs(degrees), builder.inputs(degrees));
+    let known = builder.inputs(if carries { degrees } else { 0 });
+    let commands = builder.inputs(dynamics.inputs());
+    let dt = builder.input();
     let mut vectors: Vec<Vec<ValueId>> = Vec::with_capacity(operations.len());
     for operation in operations {
         let of_two = |builder: &mut ProgramBuilder,

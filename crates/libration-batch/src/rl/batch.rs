@@ -141,7 +141,7 @@ where
                 return Err(EnsembleError::Length { what, values, len }.into());
             }
         }
-        let history = History::new(delays, substeps, D);
+        let history = History::new(delays, substeps, [2 * D, D]);
         let count = len.div_ceil(LANES);
         let blocks = try_fill(count, &block::empty::<T, E, O, D>())?;
         let past = try_fill(count.saturating_mul(history.len()), &T::zero())?;

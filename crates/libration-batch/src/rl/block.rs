@@ -120,7 +120,7 @@ pub(super) fn begin<T: Float, E: World<T, O, D>, const O: usize, const D: usize>
     (block.paid[l], block.banked[l], block.ended[l]) = (T::zero(), 0.0, 0);
     (block.began[l], block.episode[l]) = (now, episode.number);
     (block.seed[l], block.environment[l]) = (episode.seed, episode.environment);
-    history.begin(past, l, &state);
+    history.begin(past, l, state.coordinates());
 }
 
 impl<T: Scalar, C: Copy, V, const D: usize> Block<T, C, V, D> {

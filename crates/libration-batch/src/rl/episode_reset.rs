@@ -53,7 +53,7 @@ where
                 if self.autoreset == Autoreset::Disabled {
                     block.hold(stood, l);
                     let steps = place.step * self.substeps..step * self.substeps;
-                    self.history.hold(past, l, steps, &stood.state(l));
+                    self.history.hold(past, l, steps, stood.state(l).coordinates());
                 } else {
                     block::begin(block, self.history, past, self.world, l, episode, step);
                 }

@@ -33,6 +33,9 @@ mod lanes;
 mod observation;
 mod plan;
 pub mod policy;
+// As the machine that runs them.
+#[cfg(not(test))]
+mod program;
 mod rollout;
 mod rollout_row;
 mod rollout_run;
@@ -54,6 +57,10 @@ pub use error_scale::ErrorScale;
 pub use estimates::{Discounts, Estimates};
 pub use plan::{Layout, Plan, Writes};
 pub use policy::{ActionSample, Policy, StepIndex};
+#[cfg(not(test))]
+pub use program::{
+    EpisodeEnds, ProgramEnvironment, ProgramEnvironments, ProgramPolicy, ProgramRollout,
+};
 pub use rollout::Rollout;
 pub use rollout_run::StepBuffers;
 pub(crate) use rollout_slice::first_of;

@@ -32,6 +32,22 @@ pub struct StepBuffers<'a, T> {
     pub truncated: &'a mut [u8],
 }
 
+impl<T> StepBuffers<'_, T> {
+    /// Checks the lengths for so many environments and observed numbers of each.
+    pub(super) fn check(&self, [len, observations]: [usize; 2]) -> Result<(), EnvironmentError> {
+        let seen = len.saturating_mul(observations);
+        EnvironmentError::shape("observed numbers", self.seen.len(), seen)?;
+        for (name, found) in [
+            ("rewards", self.reward.len()),
+            ("termination flags", self.terminated.len()),
+            ("truncation flags", self.truncated.len()),
+        ] {
+            EnvironmentError::shape(name, found, len)?;
+        }
+        Ok(())
+    }
+}
+
 impl<T, E, const O: usize, const D: usize> Environments<T, E, O, D>
 where
     T: Float + Pod,
@@ -63,27 +79,9 @@ where
         rows: Range<usize>,
     ) -> Result<(), EnvironmentError> {
         let plan = rollout.plan();
-        let (horizon, len) = (plan.horizon, self.len);
-        EnvironmentError::shape("environments of the rollout", plan.environments, len)?;
-        EnvironmentError::shape("steps to be filled", rows.end, rows.end.min(horizon))?;
-        let parts = self.world.parts();
-        if parts.limit.is_some() && !plan.truncated {
-            let (why, field) = ("the environments have a time limit", "truncated");
-            return Err(EnvironmentError::Field { why, field });
-        }
-        // So many ends the limit makes, and to gather them takes as much again. To ask the system costs as long as a short rollout: it
-        // is requested where they are more than what the plan was requested for.
-        let cuts = parts.limit.map_or(0, |l| len as u128 * (rows.len() as u128 / u128::from(l)));
-        let needed = cuts.saturating_mul(2 * size_of::<EpisodeEnd<T, O>>() as u128);
-        if needed > plan.bytes(O, D, size_of::<T>()) {
-            InsufficientMemory::check(needed)?;
-        }
-        self.ready(policy, horizon, rows.len())?;
-        if rows.start == 0 {
-            rollout.pauses = parts.autoreset != Autoreset::SameStep;
-            rollout.idle = if rollout.pauses { self.stopped() } else { Vec::new() };
-            rollout.finals.clear();
-        }
+        self.expect_rows(&plan, &rows, [O, D])?;
+        self.ready(policy, plan.horizon, rows.len())?;
+        self.begin_rows(rollout, rows.start);
         let how = (plan.threads(&self.execution), plan.writes, rows.start);
         let mut ends = self.advance(policy, rollout.slice(&rows), how);
         if rollout.finals.is_empty() {
@@ -92,6 +90,45 @@ where
         }
         rollout.finals.append(&mut ends);
         Ok(())
+    }
+
+    /// Checks that there is room for these rows of a rollout with so many observations and actions.
+    pub(super) fn expect_rows(
+        &self,
+        plan: &Plan,
+        rows: &Range<usize>,
+        [observations, actions]: [usize; 2],
+    ) -> Result<(), EnvironmentError> {
+        let (horizon, len) = (plan.horizon, self.len);
+        EnvironmentError::shape("environments of the rollout", plan.environments, len)?;
+        EnvironmentError::shape("steps to be filled", rows.end, rows.end.min(horizon))?;
+        let limit = self.world.parts().limit;
+        if limit.is_some() && !plan.truncated {
+            let (why, field) = ("the environments have a time limit", "truncated");
+            return Err(EnvironmentError::Field { why, field });
+        }
+        // So many ends the limit makes, and to gather them takes as much again. To ask the system costs as long as a short rollout: it
+        // is requested where they are more than what the plan was requested for.
+        let cuts = limit.map_or(0, |l| len as u128 * (rows.len() as u128 / u128::from(l)));
+        let end = size_of::<EpisodeEnd<T, 0>>() + observations.saturating_mul(size_of::<T>());
+        let needed = cuts.saturating_mul(2 * end as u128);
+        if needed > plan.bytes(observations, actions, size_of::<T>()) {
+            InsufficientMemory::check(needed)?;
+        }
+        Ok(())
+    }
+
+    /// Makes a rollout ready for its rows from `row` on.
+    pub(super) fn begin_rows<const N: usize, const A: usize>(
+        &self,
+        rollout: &mut Rollout<T, N, A>,
+        row: usize,
+    ) {
+        if row == 0 {
+            rollout.pauses = self.world.parts().autoreset != Autoreset::SameStep;
+            rollout.idle = if rollout.pauses { self.stopped() } else { Vec::new() };
+            rollout.finals.clear();
+        }
     }
 
     /// Takes one action of each environment and writes the results. Returns the ends of episodes.
@@ -104,14 +141,7 @@ where
         to: StepBuffers<'_, T>,
     ) -> Result<Vec<EpisodeEnd<T, O>>, EnvironmentError> {
         let len = self.len;
-        EnvironmentError::shape("observed numbers", to.seen.len(), len.saturating_mul(O))?;
-        for (name, found) in [
-            ("rewards", to.reward.len()),
-            ("termination flags", to.terminated.len()),
-            ("truncation flags", to.truncated.len()),
-        ] {
-            EnvironmentError::shape(name, found, len)?;
-        }
+        to.check([len, O])?;
         self.ready(policy, 1, 1)?;
         let slice = RolloutSlice {
             observation: from_fn(|_| rows_of(&mut [], 1)),

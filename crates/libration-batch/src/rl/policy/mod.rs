@@ -5,7 +5,7 @@ mod exploration;
 mod linear;
 mod network;
 mod perceptron;
-mod random;
+pub(in crate::rl) mod random;
 
 pub use action_sequence::ActionSequence;
 pub use exploration::GaussianExploration;
@@ -138,7 +138,7 @@ impl<T: Float, const O: usize, const D: usize> Policy<T, O, D> for Constant<D> {
 }
 
 /// Returns an error unless all numbers are finite, in the float type as well.
-fn all_finite<T: Float>(
+pub(in crate::rl) fn all_finite<T: Float>(
     name: &'static str,
     numbers: impl IntoIterator<Item = f64>,
 ) -> Result<(), EnvironmentError> {

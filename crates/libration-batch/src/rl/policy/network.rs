@@ -39,20 +39,38 @@ impl<T> Network<'_, T> {
     }
 }
 
+impl<T: Float + Elementary> Network<'_, T> {
+    /// Checks the parameters for so many observed numbers and actions.
+    pub(in crate::rl) fn check_sizes(
+        &self,
+        observation: usize,
+        action: usize,
+    ) -> Result<(), EnvironmentError> {
+        let most = observation.min(Self::WIDEST);
+        EnvironmentError::shape("inputs of a network", observation, most)?;
+        EnvironmentError::shape("outputs of a network", action, action.min(Self::WIDEST))?;
+        for &width in self.hidden {
+            let allowed = width.clamp(1, Self::WIDEST);
+            EnvironmentError::shape("neurons of a hidden layer", width, allowed)?;
+        }
+        let wanted = Self::parameters(observation, self.hidden, action);
+        EnvironmentError::shape("parameters of the network", self.parameters.len(), wanted)?;
+        let parameters = self.parameters.iter().map(|x| x.to_f64());
+        all_finite::<T>("parameter of the network", parameters)
+    }
+
+    /// The actions of `W` environments.
+    pub(in crate::rl) fn forward<const W: usize>(&self, seen: &[[T; W]], actions: &mut [[T; W]]) {
+        self.instructions.vectorize(Forward { network: self, seen, actions });
+    }
+}
+
 impl<T, const O: usize, const D: usize> Policy<T, O, D> for Network<'_, T>
 where
     T: Float + Elementary,
 {
     fn check(&self, _: usize, _: usize) -> Result<(), EnvironmentError> {
-        EnvironmentError::shape("inputs of a network", O, O.min(Self::WIDEST))?;
-        for &width in self.hidden {
-            let allowed = width.clamp(1, Self::WIDEST);
-            EnvironmentError::shape("neurons of a hidden layer", width, allowed)?;
-        }
-        let wanted = Self::parameters(O, self.hidden, D);
-        EnvironmentError::shape("parameters of the network", self.parameters.len(), wanted)?;
-        let parameters = self.parameters.iter().map(|x| x.to_f64());
-        all_finite::<T>("parameter of the network", parameters)
+        self.check_sizes(O, D)
     }
 
     #[inline(always)]
@@ -75,18 +93,18 @@ where
         log_probabilities: &mut [T; W],
     ) {
         *log_probabilities = [T::zero(); W];
-        self.instructions.vectorize(Forward { network: self, seen, actions });
+        self.forward(seen, actions);
     }
 }
 
 /// The forward pass of a network for a block.
-struct Forward<'a, 'n, T, const O: usize, const D: usize, const W: usize> {
+struct Forward<'a, 'n, T, const W: usize> {
     network: &'a Network<'n, T>,
-    seen: &'a [[T; W]; O],
-    actions: &'a mut [[T; W]; D],
+    seen: &'a [[T; W]],
+    actions: &'a mut [[T; W]],
 }
 
-impl<T, const O: usize, const D: usize, const W: usize> Loop for Forward<'_, '_, T, O, D, W>
+impl<T, const W: usize> Loop for Forward<'_, '_, T, W>
 where
     T: Float + Elementary,
 {
@@ -103,13 +121,13 @@ where
             for (row, seen) in inputs.iter_mut().zip(seen) {
                 row[..count].copy_from_slice(&seen[first..first + count]);
             }
-            let (mut width, mut rest) = (O, parameters);
+            let (mut width, mut rest) = (seen.len(), parameters);
             for &next in hidden {
                 rest = layer(rest, &inputs[..width], &mut outputs[..next]);
                 perceptron::activate(activation, &mut outputs[..next]);
                 (inputs, outputs, width) = (outputs, inputs, next);
             }
-            layer(rest, &inputs[..width], &mut outputs[..D]);
+            layer(rest, &inputs[..width], &mut outputs[..actions.len()]);
             for (action, row) in actions.iter_mut().zip(outputs.iter()) {
                 action[first..first + count].copy_from_slice(&row[..count]);
             }

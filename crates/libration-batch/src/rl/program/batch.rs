@@ -1,0 +1,327 @@
+//! A batch of environments by programs.
+
+use core::ops::Range;
+
+use bytemuck::Pod;
+use libration_core::control::Clock;
+use libration_core::{Elementary, Float};
+use ndarray::ArrayViewMut3;
+
+use super::block_step::{BlockStep, Row};
+use super::episodes::Episodes;
+use super::horizon::{Horizon, Share, Transitions};
+use super::state::{Beginning, Programs};
+use super::{EpisodeEnds, ProgramEnvironment, ProgramPolicy, ProgramRollout};
+use crate::checkpoint::{Checkpoint, CheckpointError, Reader, Trait};
+use crate::ensemble::{Execution, InsufficientMemory};
+use crate::rl::block_size::LANES;
+use crate::rl::history::History;
+use crate::rl::rollout_slice::{first_of, rows_of};
+use crate::rl::{EnvironmentError, StepBuffers};
+
+/// Instructions of the shortest step of an ensemble.
+const SHORTEST: u64 = 3;
+
+/// A batch of [`ProgramEnvironment`]s that are stepped together: [`Environments`](crate::rl::Environments) with any number of states,
+/// inputs and observations.
+#[derive(Debug)]
+pub struct ProgramEnvironments<T: Float> {
+    definition: ProgramEnvironment,
+    programs: Programs,
+    episodes: Episodes<T>,
+    /// Positions, then velocities, of each block.
+    states: Vec<Row<T>>,
+    history: History,
+    past: Vec<T>,
+}
+
+impl<T: Float + Elementary + Pod> ProgramEnvironments<T> {
+    /// `len` environments from number `first` of a larger batch on, each at the start of its first episode. `seed` determines all
+    /// random numbers.
+    ///
+    /// # Errors
+    /// As for [`Environments::shard`](crate::rl::Environments::shard), and [`EnvironmentError::Shape`] for a wrong number of ranges,
+    /// limits or laws.
+    pub fn shard(
+        definition: ProgramEnvironment,
+        first: usize,
+        len: usize,
+        seed: u64,
+        execution: Execution,
+    ) -> Result<Self, EnvironmentError> {
+        definition.check::<T>()?;
+        let world = definition.world();
+        let episodes = Episodes::shard(world, first, len, seed, execution)?;
+        let ProgramEnvironment { delays, substeps, ref dynamics, .. } = definition;
+        let sizes = [definition.coordinates(), dynamics.inputs()];
+        let history = History::new(delays, substeps, sizes);
+        let blocks = len.div_ceil(LANES);
+        let rows = blocks.saturating_mul(sizes[0]);
+        let numbers = rows.saturating_mul(LANES) + blocks.saturating_mul(history.len());
+        InsufficientMemory::check(numbers as u128 * size_of::<T>() as u128)?;
+        let mut all = ProgramEnvironments {
+            programs: Programs::new(&definition),
+            states: vec![[T::zero(); LANES]; rows],
+            past: vec![T::zero(); blocks * history.len()],
+            definition,
+            episodes,
+            history,
+        };
+        (0..len).for_each(|n| all.place(n));
+        Ok(all)
+    }
+
+    /// The number of environments.
+    pub fn len(&self) -> usize {
+        self.episodes.len()
+    }
+
+    /// Whether the batch is empty.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The number of actions of each environment so far.
+    pub fn step(&self) -> u64 {
+        self.episodes.step()
+    }
+
+    /// Sets the execution. Results do not depend on it.
+    pub fn execute(&mut self, execution: Execution) {
+        self.episodes.execute(execution);
+    }
+
+    /// The definition of the environments.
+    pub fn definition(&self) -> &ProgramEnvironment {
+        &self.definition
+    }
+
+    /// Positions, then velocities, of environment `n`; none if `n` is out of range.
+    pub fn state(&self, n: usize) -> Option<Vec<T>> {
+        let rows = self.definition.coordinates();
+        let block = (n < self.len()).then(|| &self.states[n / LANES * rows..][..rows])?;
+        Some(block.iter().map(|row| row[n % LANES]).collect())
+    }
+
+    /// Begins a new episode in every environment whose flag is `true`.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] if the number of flags is not the number of environments.
+    pub fn reset(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
+        self.episodes.reset(which)?;
+        (0..self.len()).filter(|&n| which[n]).for_each(|n| self.place(n));
+        Ok(())
+    }
+
+    /// Terminates the episode of every environment whose flag is `true`, as if its task had in the step before.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] if the number of flags is not the number of environments.
+    pub fn end(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
+        self.episodes.end(which)?;
+        if self.definition.autoreset == crate::rl::Autoreset::SameStep {
+            (0..self.len()).filter(|&n| which[n]).for_each(|n| self.place(n));
+        }
+        Ok(())
+    }
+
+    /// Begins a first episode in every environment with a seed.
+    ///
+    /// # Errors
+    /// See [`Environments::seed`](crate::rl::Environments::seed).
+    pub fn seed(&mut self, seeds: &[Option<u64>]) -> Result<(), EnvironmentError> {
+        self.episodes.seed(seeds)?;
+        (0..self.len()).filter(|&n| seeds[n].is_some()).for_each(|n| self.place(n));
+        Ok(())
+    }
+
+    /// Puts environment `n` at the start of its episode.
+    fn place(&mut self, n: usize) {
+        let (b, l) = (n / LANES, n % LANES);
+        let ProgramEnvironments { definition, episodes, history, states, past, .. } = self;
+        let episode = episodes.blocks[b].episode(l);
+        let beginning = Beginning { definition, world: &episodes.world, history: *history };
+        let rows = definition.coordinates();
+        let past = &mut past[b * history.len()..][..history.len()];
+        beginning.place(&mut states[b * rows..][..rows], past, l, episode);
+    }
+
+    /// Writes the observations before the next action: `[n, i]`.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Shape`] if that is not the length of `to`.
+    pub fn observe(&mut self, to: &mut [T]) -> Result<(), EnvironmentError> {
+        let wanted = self.len().saturating_mul(self.definition.observations());
+        EnvironmentError::shape("observed numbers", to.len(), wanted)?;
+        let nothing = transitions(&mut [], [0, self.len()]);
+        self.run(ProgramPolicy::ActionSequence(&[]), nothing, to, 0);
+        Ok(())
+    }
+
+    /// Fills `rollout` with the transitions of all environments under `policy`.
+    ///
+    /// # Errors
+    /// See [`Environments::rollout`](crate::rl::Environments::rollout).
+    pub fn rollout(
+        &mut self,
+        policy: ProgramPolicy<'_, T>,
+        rollout: &mut ProgramRollout<T>,
+    ) -> Result<(), EnvironmentError> {
+        let horizon = rollout.transitions.plan().horizon;
+        self.fill(policy, rollout, 0..horizon)
+    }
+
+    /// Fills a range of rows of `rollout`; the rows before must be full.
+    ///
+    /// # Errors
+    /// See [`Environments::fill`](crate::rl::Environments::fill).
+    pub fn fill(
+        &mut self,
+        policy: ProgramPolicy<'_, T>,
+        rollout: &mut ProgramRollout<T>,
+        rows: Range<usize>,
+    ) -> Result<(), EnvironmentError> {
+        let plan = rollout.transitions.plan();
+        let [observations, actions] = rollout.sizes();
+        let wanted = self.definition.observations();
+        EnvironmentError::shape("observed numbers of the rollout", observations, wanted)?;
+        let wanted = self.definition.dynamics.inputs();
+        EnvironmentError::shape("actions of the rollout", actions, wanted)?;
+        self.episodes.expect_rows(&plan, &rows, rollout.sizes())?;
+        self.ready(policy, plan.horizon)?;
+        self.episodes.begin_rows(&mut rollout.transitions, rows.start);
+        if rows.start == 0 {
+            rollout.last.clear();
+        }
+        let ends = self.run(policy, rollout.rows(&rows), &mut [], rows.start);
+        rollout.transitions.finals.extend(ends.ends);
+        rollout.last.extend(ends.observations);
+        Ok(())
+    }
+
+    /// Takes one action of each environment and writes the results. Returns the ends of episodes.
+    ///
+    /// # Errors
+    /// See [`Environments::act`](crate::rl::Environments::act).
+    pub fn act(
+        &mut self,
+        policy: ProgramPolicy<'_, T>,
+        to: StepBuffers<'_, T>,
+    ) -> Result<EpisodeEnds<T>, EnvironmentError> {
+        let len = self.len();
+        to.check([len, self.definition.observations()])?;
+        self.ready(policy, 1)?;
+        let mut step = transitions(to.reward, [1, len]);
+        step.terminated = rows_of(to.terminated, 1);
+        step.truncated = rows_of(to.truncated, 1);
+        Ok(self.run(policy, step, to.seen, 0))
+    }
+
+    fn ready(&self, policy: ProgramPolicy<'_, T>, horizon: usize) -> Result<(), EnvironmentError> {
+        let sizes = [self.definition.observations(), self.definition.dynamics.inputs()];
+        policy.check(sizes, [self.len(), horizon])
+    }
+
+    /// Runs all steps, from row `row` of the rollout on, and writes the observations after them.
+    fn run<'a>(
+        &'a mut self,
+        policy: ProgramPolicy<'_, T>,
+        mut to: Transitions<'a, T>,
+        mut next: &'a mut [T],
+        row: usize,
+    ) -> EpisodeEnds<T> {
+        let len = self.len();
+        let steps = to.reward.nrows() as u64;
+        let ProgramEnvironments { definition, programs, episodes, states, history, past } = self;
+        let definition = &*definition;
+        let (coordinates, observations) = (definition.coordinates(), definition.observations());
+        let Episodes { world, blocks, draws: [times, looks, acts], step, .. } = episodes;
+        let substeps = u64::from(definition.substeps);
+        let words = if definition.is_even() { 0 } else { Clock::<T>::words(&world.clock) };
+        let times = times.prepare(blocks, [*step, substeps], steps, words);
+        let laws = definition.noise.iter().map(libration_core::control::clock::Noise::words);
+        let words = if definition.is_noisy() { laws.sum() } else { 0 };
+        let looks = looks.prepare(blocks, [*step, 1], steps, words);
+        let acts = acts.prepare(blocks, [*step, 1], steps, policy.words());
+
+        let work = (len as u64).saturating_mul(steps.max(1));
+        let each = programs.instructions(definition.substeps).div_ceil(SHORTEST);
+        let threads = episodes.execution.threads_for(work.saturating_mul(each));
+        let size = len.div_ceil(threads).next_multiple_of(LANES).max(LANES);
+        let mut rest = (&mut blocks[..], &mut states[..], &mut past[..], [times, looks, acts]);
+        let mut shares = Vec::with_capacity(threads);
+        for first in (0..len).step_by(size) {
+            let len = size.min(len - first);
+            let count = len.div_ceil(LANES);
+            let (head, tail) = to.split_off(len);
+            to = tail;
+            shares.push(Share {
+                first,
+                len,
+                blocks: first_of(&mut rest.0, count),
+                states: first_of(&mut rest.1, count * coordinates),
+                past: first_of(&mut rest.2, count * history.len()),
+                words: rest.3.each_mut().map(|words| first_of(words, count)),
+                to: head,
+                next: first_of(&mut next, len * observations),
+            });
+        }
+        let instructions = episodes.execution.instruction_set();
+        let beginning = Beginning { definition, world, history: *history };
+        let horizon = Horizon { beginning, policy, environments: len, step: *step, row };
+        let each = episodes.execution.each(shares, |share| {
+            let mut work = BlockStep::new(definition, programs, *history, instructions, share.len);
+            horizon.run(&mut work, share)
+        });
+        *step = step.saturating_add(steps);
+        EpisodeEnds::in_order(each, observations)
+    }
+}
+
+/// Transitions of which only rewards are written, for `[t, n]`.
+fn transitions<T>(reward: &mut [T], [steps, len]: [usize; 2]) -> Transitions<'_, T> {
+    let nothing = || ArrayViewMut3::from_shape((steps, len, 0), &mut [][..]).expect("no numbers");
+    Transitions {
+        observation: nothing(),
+        action: nothing(),
+        reward: rows_of(reward, steps),
+        terminated: rows_of(&mut [], steps),
+        truncated: rows_of(&mut [], steps),
+        log_probability: rows_of(&mut [], steps),
+    }
+}
+
+impl<T: Float + Elementary + Pod> Checkpoint for ProgramEnvironments<T> {
+    fn traits(&self) -> Vec<Trait> {
+        let mut traits = self.episodes.traits();
+        traits.push(("number of states", self.definition.coordinates().to_string()));
+        traits.push(("number of inputs", self.definition.dynamics.inputs().to_string()));
+        traits.push(("number of numbers on their way", self.history.len().to_string()));
+        traits
+    }
+
+    fn save<X>(&self, mut sink: impl FnMut(&[u8]) -> Result<(), X>) -> Result<(), X> {
+        self.episodes.save(&mut sink)?;
+        // Of lanes that are no environments nobody knows what they are.
+        let mut save = |rows: &[T], each: usize| {
+            let (whole, last) = rows.split_at(self.len() / LANES * each);
+            sink(bytemuck::cast_slice(whole))?;
+            let mut last = last.to_vec();
+            last.chunks_mut(LANES).for_each(|row| row[self.len() % LANES..].fill(T::zero()));
+            sink(bytemuck::cast_slice(&last))
+        };
+        save(self.states.as_flattened(), self.definition.coordinates() * LANES)?;
+        save(&self.past, self.history.len())
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), CheckpointError> {
+        let own = size_of_val(&self.states[..]) + size_of_val(&self.past[..]);
+        let whole = state.len().saturating_sub(own);
+        let (episodes, rest) = state.split_at(whole);
+        let mut from = Reader::new(rest, own)?;
+        self.episodes.restore(episodes)?;
+        from.fill(self.states.as_flattened_mut());
+        from.fill(&mut self.past);
+        Ok(())
+    }
+}

@@ -1,0 +1,280 @@
+//! The parts of a step of a block.
+
+use bytemuck::Pod;
+use libration_core::control::clock::Noise;
+use libration_core::control::{Clock, Memory};
+use libration_core::random::{Purpose, Streams};
+use libration_core::{Elementary, Float};
+
+use super::ProgramPolicy;
+use super::environment::World;
+use super::episodes::EpisodeBlock;
+use super::row_program::ProgramRows;
+use super::state::Programs;
+use crate::ensemble::InstructionSet;
+use crate::rl::block::{ClockMemory, LOST};
+use crate::rl::block_size::LANES;
+use crate::rl::deviation::scale_deviation;
+use crate::rl::episode_streams::begin_epochs;
+use crate::rl::history::History;
+use crate::rl::{ProgramEnvironment, StepIndex};
+
+/// A row of a block.
+pub(super) type Row<T> = [T; LANES];
+
+/// What all blocks and steps of a thread share, with the rows that a step fills.
+pub(super) struct BlockStep<'s, T> {
+    pub(super) definition: &'s ProgramEnvironment,
+    pub(super) history: History,
+    world: World,
+    instructions: InstructionSet,
+    dt: T,
+    /// The time from action to action, in seconds.
+    span: f64,
+    saturation: Vec<T>,
+    step: ProgramRows<'s, T>,
+    observation: ProgramRows<'s, T>,
+    verdict: ProgramRows<'s, T>,
+    pub(super) seen: Vec<Row<T>>,
+    pub(super) actions: Vec<Row<T>>,
+    pub(super) log_probabilities: Row<T>,
+    pub(super) rewards: Row<T>,
+    pub(super) overs: [u8; LANES],
+    commands: Vec<Row<T>>,
+    held: Vec<Row<T>>,
+    /// Positions and velocities at other times than now.
+    other: Vec<Row<T>>,
+    lengths: Row<T>,
+    times: Row<T>,
+    judged: [Row<T>; 2],
+}
+
+/// A block with its positions and velocities and with what is on its way.
+pub(super) struct BlockState<'a, T: Float> {
+    pub(super) episodes: &'a mut EpisodeBlock<T>,
+    /// Positions, then velocities.
+    pub(super) states: &'a mut [Row<T>],
+    pub(super) past: &'a mut [T],
+}
+
+impl<'s, T: Float + Elementary + Pod> BlockStep<'s, T> {
+    pub(super) fn new(
+        definition: &'s ProgramEnvironment,
+        programs: &'s Programs,
+        history: History,
+        instructions: InstructionSet,
+        environments: usize,
+    ) -> Self {
+        let zeros = [T::zero(); LANES];
+        let rows = |count: usize| vec![zeros; count];
+        let lanes = environments.min(LANES);
+        let dt = T::from_f64(definition.dt);
+        let inputs = definition.dynamics.inputs();
+        BlockStep {
+            definition,
+            history,
+            world: definition.world(),
+            instructions,
+            dt,
+            span: definition.dt * f64::from(definition.substeps),
+            saturation: definition.saturation.iter().map(|&most| T::from_f64(most)).collect(),
+            step: programs.step.rows(lanes, dt),
+            observation: programs.observation.rows(lanes, T::zero()),
+            verdict: programs.verdict.rows(lanes, T::zero()),
+            seen: rows(definition.observations()),
+            actions: rows(inputs),
+            log_probabilities: zeros,
+            rewards: zeros,
+            overs: [0; LANES],
+            commands: rows(inputs),
+            held: rows(inputs),
+            other: rows(definition.coordinates()),
+            lengths: [dt; LANES],
+            times: zeros,
+            judged: [zeros; 2],
+        }
+    }
+
+    fn substeps(&self) -> u64 {
+        self.definition.substeps.into()
+    }
+
+    /// Computes the observations at the beginning of step `now`.
+    pub(super) fn observe(
+        &mut self,
+        now: u64,
+        block: &mut BlockState<'_, T>,
+        words: &mut Streams<LANES>,
+    ) {
+        let noisy = self.definition.is_noisy();
+        if noisy {
+            begin_epochs(words, block.episodes, [now, 1, 0], Purpose::Observation);
+        }
+        self.pass(now, block);
+        let mut states = &*block.states;
+        if self.history.delays_observations() {
+            let (q, v) = self.other.split_at_mut(states.len() / 2);
+            let late = &block.episodes.delays[0];
+            self.history.seen(block.past, now * u64::from(self.definition.substeps), late, q, v);
+            states = &self.other;
+        }
+        set_times(&mut self.times, now, &block.episodes.began, self.span);
+        let times = &self.times;
+        let input = |i: usize| states.get(i).unwrap_or(times);
+        self.observation.run(input, &mut self.seen, self.instructions);
+        if !noisy {
+            return;
+        }
+        let scale = &block.episodes.error_scale[1];
+        for (row, noise) in self.seen.iter_mut().zip(&self.definition.noise) {
+            for (l, x) in row.iter_mut().enumerate() {
+                let measured = *x + noise.draw(&mut || words.next(l));
+                *x = scale_deviation(measured, *x, scale[l]);
+            }
+        }
+    }
+
+    /// Stores states for delayed observations.
+    pub(super) fn pass(&self, now: u64, block: &mut BlockState<'_, T>) {
+        if self.history.delays_observations() {
+            let (q, v) = block.states.split_at(block.states.len() / 2);
+            self.history.pass(block.past, now * self.substeps(), q, v);
+        }
+    }
+
+    /// Computes the actions.
+    pub(super) fn act(
+        &mut self,
+        policy: &ProgramPolicy<'_, T>,
+        place: StepIndex,
+        block: &BlockState<'_, T>,
+        words: &mut Streams<LANES>,
+    ) {
+        if policy.words() > 0 {
+            begin_epochs(words, block.episodes, [place.step, 1, 0], Purpose::Action);
+        }
+        policy.act(place, &self.seen, words, &mut self.actions, &mut self.log_probabilities);
+    }
+
+    /// Advances the states and computes rewards and terminations. Returns whether an episode of the first `count` lanes ended.
+    pub(super) fn advance(
+        &mut self,
+        now: u64,
+        count: usize,
+        block: &mut BlockState<'_, T>,
+        words: &mut Streams<LANES>,
+    ) -> bool {
+        let substeps = self.substeps();
+        self.saturate();
+        self.held.copy_from_slice(&self.commands);
+        self.other.copy_from_slice(block.states);
+        if self.history.delays_actions() {
+            self.history.act(block.past, now, &self.held);
+        }
+        for substep in 0..substeps {
+            if self.history.delays_actions() {
+                let late = &block.episodes.delays[1];
+                self.history.effective(block.past, now, substep, late, &mut self.held);
+            }
+            if substep > 0 && self.history.delays_observations() {
+                let (q, v) = block.states.split_at(block.states.len() / 2);
+                self.history.pass(block.past, now * substeps + substep, q, v);
+            }
+            if !self.definition.is_even() {
+                self.draw_lengths([now, substeps, substep], block.episodes, words);
+            }
+            self.integrate(block.states);
+        }
+        self.judge(now, block.states, &block.episodes.began);
+        let mut ended = false;
+        for l in 0..count {
+            let (reward, over) = self.outcome(l, block.states);
+            (self.rewards[l], self.overs[l]) = (reward, over);
+            block.episodes.paid[l] = block.episodes.paid[l] + reward;
+            ended |= over != 0;
+        }
+        ended
+    }
+
+    /// The commands of the actions after saturation. NaN stays NaN.
+    fn saturate(&mut self) {
+        for ((to, from), &most) in self.commands.iter_mut().zip(&self.actions).zip(&self.saturation)
+        {
+            for (to, &x) in to.iter_mut().zip(from) {
+                let low = if x < -most { -most } else { x };
+                *to = if low > most { most } else { low };
+            }
+        }
+    }
+
+    /// Draws the lengths of a step of the integrator.
+    fn draw_lengths(
+        &mut self,
+        now: [u64; 3],
+        block: &mut EpisodeBlock<T>,
+        words: &mut Streams<LANES>,
+    ) {
+        begin_epochs(words, block, now, Purpose::StepTime);
+        let [step, substeps, substep] = now;
+        let clock = self.world.clock;
+        let beat = Clock::<T>::beat(&clock, step * substeps + substep);
+        for l in 0..LANES {
+            let mut memory = ClockMemory::<T, World, 0, 0>::lane(&block.clock, l);
+            let ratio: T = clock.ratio(&mut memory, beat, &mut || words.next(l));
+            ClockMemory::<T, World, 0, 0>::set_lane(&mut block.clock, l, memory);
+            let ratio = scale_deviation(ratio, T::one(), block.error_scale[0][l]);
+            let ratio = if ratio < T::zero() { T::zero() } else { ratio };
+            self.lengths[l] = self.dt * ratio;
+        }
+    }
+
+    /// A step of the integrator.
+    fn integrate(&mut self, states: &mut [Row<T>]) {
+        // The program writes other rows than it reads.
+        let before = states.to_vec();
+        let (held, lengths) = (&self.held, &self.lengths);
+        let input = |i: usize| match i.checked_sub(before.len()) {
+            None => &before[i],
+            Some(i) => held.get(i).unwrap_or(lengths),
+        };
+        self.step.run(input, states, self.instructions);
+    }
+
+    /// Computes rewards and terminations of the step from [`other`](BlockStep::other) to these states.
+    fn judge(&mut self, now: u64, states: &[Row<T>], began: &[u64; LANES]) {
+        set_times(&mut self.times, now + 1, began, self.span);
+        let (other, commands, times) = (&self.other, &self.commands, &self.times);
+        let rows = [&other[..], commands, states];
+        let input = |mut i: usize| {
+            for rows in rows {
+                if let Some(row) = rows.get(i) {
+                    return row;
+                }
+                i -= rows.len();
+            }
+            times
+        };
+        self.verdict.run(input, &mut self.judged, self.instructions);
+    }
+
+    /// The reward and the flags of a lane. A step that is not finite is [`LOST`] and has reward 0: a number that is not finite times
+    /// zero is not zero.
+    fn outcome(&self, l: usize, states: &[Row<T>]) -> (T, u8) {
+        let [reward, over] = self.judged.each_ref().map(|row| row[l]);
+        let mut none = reward * T::zero();
+        for row in states.iter().chain(&self.actions) {
+            none = none + row[l] * T::zero();
+        }
+        let lost = none != T::zero();
+        let over = u8::from(over > T::zero()) | (u8::from(lost) * LOST);
+        (if lost { T::zero() } else { reward }, over)
+    }
+}
+
+/// Sets the times since the episodes began, in seconds of an ideal clock.
+fn set_times<T: Float>(times: &mut Row<T>, now: u64, began: &[u64; LANES], span: f64) {
+    for (time, began) in times.iter_mut().zip(began) {
+        // Lanes that are no environments have no age.
+        *time = T::from_f64(f64::from(now.saturating_sub(*began) as u32) * span);
+    }
+}

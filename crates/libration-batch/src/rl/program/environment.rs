@@ -1,0 +1,145 @@
+//! The definition of environments by programs.
+
+use libration_core::control::clock::{Jittered, Skewed};
+use libration_core::control::error::{ensure, ensure_finite, ensure_not_negative};
+use libration_core::control::{ControlError, Jitter};
+use libration_core::{Float, Method};
+use libration_equations::{Dynamics, TaskPrograms};
+
+use super::episodes::{NoStart, NoSystem, NoTask};
+use crate::ensemble::All;
+use crate::rl::start::uniform;
+use crate::rl::{Autoreset, Delays, Environment, EnvironmentError, ErrorScale};
+
+/// Environments of a system and a task by their programs. The actions are the inputs of the system.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProgramEnvironment {
+    /// The system, with at least one input and at most [`MAX_DEGREES`](ProgramEnvironment::MAX_DEGREES) degrees of freedom.
+    pub dynamics: Dynamics,
+    /// Observation, reward and termination.
+    pub task: TaskPrograms,
+    /// The integrator.
+    pub method: Method,
+    /// Its step, in seconds.
+    pub dt: f64,
+    /// Steps of the integrator for which an action is held; at least 1.
+    pub substeps: u32,
+    /// The range of each position, then of each velocity, from which the start of an episode is drawn uniformly.
+    pub start: Vec<[f64; 2]>,
+    /// The time limit: the number of actions after which an episode is truncated.
+    pub limit: Option<u32>,
+    /// The reset after the end of an episode.
+    pub autoreset: Autoreset,
+    /// The latencies of observations and actions.
+    pub delays: Delays,
+    /// The largest command of each input, of either sign; the reward uses the saturated command. Infinite for no limit.
+    pub saturation: Vec<f64>,
+    /// The law of `δ` in `Δt·(1 + δ)`, drawn per episode.
+    pub skew: Jitter,
+    /// The law of `ε` in `Δt·(1 + ε)`, drawn per step of the integrator.
+    pub jitter: Jitter,
+    /// The law of the noise of each observed number; empty without noise.
+    pub noise: Vec<Jitter>,
+    /// The error scales of the clock and of the sensor, drawn for every episode.
+    pub error_scale: ErrorScale,
+}
+
+/// The clock of the environments.
+pub(super) type Clock = (Skewed, Jittered<Jitter>);
+
+/// What environments have besides system, task and start.
+pub(super) type World = Environment<NoSystem, All<NoSystem>, Method, NoTask, NoStart, Clock>;
+
+impl ProgramEnvironment {
+    /// The most degrees of freedom: an episode has an address for the start of each position and velocity.
+    pub const MAX_DEGREES: usize = 32;
+
+    /// An ideal environment without a time limit that starts at zero and whose actions are held for one step of `dt` seconds.
+    pub fn new(dynamics: Dynamics, task: TaskPrograms, method: Method, dt: f64) -> Self {
+        let none = Jitter::Gaussian(0.0);
+        ProgramEnvironment {
+            start: vec![[0.0; 2]; 2 * dynamics.degrees()],
+            saturation: vec![f64::INFINITY; dynamics.inputs()],
+            dynamics,
+            task,
+            method,
+            dt,
+            substeps: 1,
+            limit: None,
+            autoreset: Autoreset::SameStep,
+            delays: Delays::default(),
+            skew: none,
+            jitter: none,
+            noise: Vec::new(),
+            error_scale: ErrorScale::default(),
+        }
+    }
+
+    /// The number of observed numbers.
+    pub fn observations(&self) -> usize {
+        self.task.observation.outputs().len()
+    }
+
+    /// The number of positions and velocities.
+    pub(super) fn coordinates(&self) -> usize {
+        2 * self.dynamics.degrees()
+    }
+
+    /// Whether each step is `Δt` long.
+    pub(super) fn is_even(&self) -> bool {
+        self.skew.rms() == 0.0 && self.jitter.rms() == 0.0
+    }
+
+    /// Whether observations have noise.
+    pub(super) fn is_noisy(&self) -> bool {
+        self.noise.iter().any(|law| law.rms() != 0.0)
+    }
+
+    pub(super) fn world(&self) -> World {
+        let mut world = Environment::new(All(NoSystem), self.method, self.dt, NoTask, NoStart)
+            .substeps(self.substeps)
+            .autoreset(self.autoreset)
+            .delays(self.delays)
+            .error_scale(self.error_scale)
+            .clock((Skewed(self.skew), Jittered(self.jitter)));
+        world.limit = self.limit;
+        world
+    }
+
+    /// Checks what the [world](ProgramEnvironment::world) does not have.
+    pub(super) fn check<T: Float>(&self) -> Result<(), EnvironmentError> {
+        let (degrees, inputs) = (self.dynamics.degrees(), self.dynamics.inputs());
+        let allowed = degrees.min(Self::MAX_DEGREES);
+        EnvironmentError::shape("degrees of freedom of an environment", degrees, allowed)?;
+        EnvironmentError::shape("inputs of the system", inputs, inputs.max(1))?;
+        EnvironmentError::shape("ranges of the start", self.start.len(), 2 * degrees)?;
+        EnvironmentError::shape("largest commands", self.saturation.len(), inputs)?;
+        if !self.noise.is_empty() {
+            EnvironmentError::shape("laws of noise", self.noise.len(), self.observations())?;
+        }
+        let most = |program: &libration_equations::Program| {
+            program.inputs_in_use().max().map_or(0, |input| input + 1)
+        };
+        for (name, found, wanted) in [
+            ("inputs of the observation", most(&self.task.observation), 2 * degrees + 1),
+            ("inputs of the verdict", most(&self.task.verdict), 4 * degrees + inputs + 1),
+        ] {
+            EnvironmentError::shape(name, found, found.min(wanted))?;
+        }
+        EnvironmentError::shape("outputs of the verdict", self.task.verdict.outputs().len(), 2)?;
+        for end in self.start.iter().flatten() {
+            ensure_finite::<T>("end of the start", *end)?;
+        }
+        uniform::check("range of the start", self.start.iter().map(|[low, high]| (*low, *high)))?;
+        let indexed = |index: usize| move |error| ControlError { index: Some(index), ..error };
+        for (index, &most) in self.saturation.iter().enumerate() {
+            ensure("saturation", most, "above 0", |most| T::from_f64(most) > T::zero())
+                .map_err(indexed(index))?;
+        }
+        for (index, law) in self.noise.iter().enumerate() {
+            ensure_not_negative::<T>("the rms of the noise of observation", law.rms())
+                .map_err(indexed(index))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,20 @@
+//! Environments of systems and tasks that are known when the program runs.
+//!
+//! A [`ProgramEnvironment`] has a system, a task and an integrator as programs, and any number of states, inputs and observations.
+//! The block machine runs them. Episodes, delays, clocks and random numbers are those of [`Environments`](super::Environments), and
+//! an environment has the bits of a compiled one with the same operations.
+
+mod batch;
+mod block_step;
+mod environment;
+mod episodes;
+mod horizon;
+mod policy;
+mod rollout;
+mod row_program;
+mod state;
+
+pub use batch::ProgramEnvironments;
+pub use environment::ProgramEnvironment;
+pub use policy::ProgramPolicy;
+pub use rollout::{EpisodeEnds, ProgramRollout};

@@ -1,0 +1,84 @@
+//! The state of environments: blocks, and the programs that step them.
+
+use libration_core::{Float, with_method};
+use libration_equations::StepProgram;
+
+use super::ProgramEnvironment;
+use super::block_step::{BlockState, Row};
+use super::environment::World;
+use super::row_program::RowProgram;
+use crate::rl::history::History;
+use crate::rl::start::uniform;
+use crate::rl::{Episode, block};
+use libration_core::random::Purpose;
+
+/// The programs of environments.
+#[derive(Debug)]
+pub(super) struct Programs {
+    pub(super) step: RowProgram,
+    pub(super) observation: RowProgram,
+    pub(super) verdict: RowProgram,
+}
+
+impl Programs {
+    pub(super) fn new(definition: &ProgramEnvironment) -> Self {
+        let ProgramEnvironment { dynamics, task, method, .. } = definition;
+        let step = with_method!(method, |method| StepProgram::new(method, dynamics));
+        let (coordinates, inputs) = (definition.coordinates(), dynamics.inputs());
+        let dt = coordinates + inputs;
+        let uniform = definition.is_even().then_some(dt);
+        Programs {
+            step: RowProgram::new(step.program(), dt + 1, uniform),
+            observation: RowProgram::new(&task.observation, coordinates + 1, None),
+            verdict: RowProgram::new(&task.verdict, 2 * coordinates + inputs + 1, None),
+        }
+    }
+
+    /// Instructions of an action.
+    pub(super) fn instructions(&self, substeps: u32) -> u64 {
+        let step = (self.step.instructions() as u64).saturating_mul(substeps.into());
+        step + (self.observation.instructions() + self.verdict.instructions()) as u64
+    }
+}
+
+/// What begins an episode.
+#[derive(Clone, Copy)]
+pub(super) struct Beginning<'a> {
+    pub(super) definition: &'a ProgramEnvironment,
+    pub(super) world: &'a World,
+    pub(super) history: History,
+}
+
+impl Beginning<'_> {
+    /// Begins an episode in lane `l` of a block, with the step `now`.
+    pub(super) fn begin<T: Float>(
+        &self,
+        block: &mut BlockState<'_, T>,
+        l: usize,
+        episode: Episode,
+        now: u64,
+    ) {
+        block::begin(block.episodes, no_history(), &mut [], self.world, l, episode, now);
+        self.place(block.states, block.past, l, episode);
+    }
+
+    /// Puts lane `l` at the start of an episode.
+    pub(super) fn place<T: Float>(
+        &self,
+        states: &mut [Row<T>],
+        past: &mut [T],
+        l: usize,
+        episode: Episode,
+    ) {
+        for (i, (row, &[low, high])) in states.iter_mut().zip(&self.definition.start).enumerate() {
+            let share = episode.address(Purpose::Start, i).uniform()[0];
+            row[l] = uniform::at((low, high), share);
+        }
+        self.history.begin(past, l, states.iter().map(|row| row[l]));
+    }
+}
+
+/// The past of blocks without states.
+fn no_history() -> History {
+    History::new(crate::rl::Delays::default(), 1, [0, 0])
+}
