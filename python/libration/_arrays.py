@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Sequence
 
 import numpy as np
 
 
-def actions(given: Any, num_envs: int, dtype: str) -> np.ndarray:
+def actions(given: Any, shape: Sequence[int], dtype: str) -> np.ndarray:
     """Return actions as an array for the engine. Arrays that the engine reads directly bypass this function.
 
     Raises
@@ -15,7 +15,7 @@ def actions(given: Any, num_envs: int, dtype: str) -> np.ndarray:
     TypeError
         If they are not real numbers.
     ValueError
-        If there is not exactly one per environment.
+        If there are not exactly as many as ``shape`` says, ``(num_envs, n)``.
     """
     if not isinstance(given, np.ndarray) and hasattr(given, "__dlpack__"):
         try:
@@ -32,9 +32,10 @@ def actions(given: Any, num_envs: int, dtype: str) -> np.ndarray:
             f"actions have dtype {array.dtype}, but they must be real numbers: "
             f"an array of {dtype} is read without a copy"
         )
-    if array.shape not in ((num_envs,), (num_envs, 1)):
+    allowed = [tuple(shape)] + [(shape[0],)] * (shape[1] == 1)
+    if array.shape not in allowed:
         raise ValueError(
-            f"actions have shape {array.shape}, but it must be ({num_envs}, 1) or ({num_envs},)"
+            f"actions have shape {array.shape}, but it must be {' or '.join(map(str, allowed))}"
         )
     # Values too large for the dtype become infinite; the engine rejects them.
     with np.errstate(over="ignore"):

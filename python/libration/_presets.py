@@ -30,6 +30,8 @@ class Preset:
     costs: Mapping[str, float] = field(default_factory=dict)
     """Numbers of the task, in the order of the engine."""
 
+    actions: tuple[str, ...] = ("acceleration",)
+
     @property
     def limits(self) -> tuple[float, ...]:
         """Largest magnitude of each number that is observed without noise."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import numbers
-from typing import Any, Iterable, Sequence
+from typing import Any, Container, Iterable, Sequence
 
 from ._native import _systems
 from ._presets import Preset
@@ -165,6 +165,10 @@ OPTIONS = (
     "max_action",
     "start_position",
     "start_velocity",
+    "observe",
+    "reward",
+    "terminated",
+    "start",
     "dtype",
     "threads",
     "copy",
@@ -172,12 +176,15 @@ OPTIONS = (
     "render_mode",
 )
 
+TASK_OPTIONS = ("observe", "reward", "terminated", "start")
+"""Options of environments of systems by equations."""
+
 CATALOGUE = {name: tuple(entry[0] for entry in all) for name, _, _, _, all in _systems()}
 """Parameters of each system."""
 
 
 def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
-    """Return the settings of environments in the format of the engine.
+    """Return the settings of environments of the catalogue in the format of the engine.
 
     Raises
     ------
@@ -188,11 +195,10 @@ def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
     parameters = given.pop("parameters")
     of_system = CATALOGUE[preset.system]
     taken = set(of_system) | set(preset.costs)
-    known = set(OPTIONS) | taken
-    for name in parameters:
-        # An option in ``parameters`` belongs to another class and has no effect here.
-        if name not in taken:
-            raise TypeError(f"unexpected keyword argument {name!r}: {nearest(name, known)}")
+    refuse_others(parameters, taken, set(OPTIONS) | taken)
+    for name in TASK_OPTIONS:
+        if given.pop(name) is not None:
+            raise TypeError(f"{name} belongs to environments of a System, not to {preset.name!r}")
     system = {name: parameters[name] for name in of_system if name in parameters}
     if not {"m", "k"} & set(system):
         system = {**preset.parameters, **system}
@@ -204,8 +210,31 @@ def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
             task.append(number(name, value, "greater than 0", lambda x: x > 0))
         else:
             task.append(number(name, value, "finite"))
-    either = lambda name: getattr(preset, name) if given[name] is None else given[name]  # noqa: E731
-    dt = positive("dt", either("dt"))
+    for name in ("dt", "max_episode_steps", "max_action", "start_position", "start_velocity"):
+        given[name] = getattr(preset, name) if given[name] is None else given[name]
+    settings = common(given)
+    most = number("max_action", given["max_action"], "greater than 0", lambda x: x > 0)
+    settings["subject"] = {
+        "catalogued": (preset.system, list(system.items())),
+        "task": (preset.task, task),
+        "start": [ends(name, given[name]) for name in ("start_position", "start_velocity")],
+        "saturation": most,
+        "noise": law("observation_noise", given["observation_noise"]),
+    }
+    return settings
+
+
+def refuse_others(given: Iterable[str], taken: Container[str], known: Iterable[str]) -> None:
+    """Raise a TypeError for the first keyword that is not taken."""
+    for name in given:
+        # An option here belongs to another class and has no effect.
+        if name not in taken:
+            raise TypeError(f"unexpected keyword argument {name!r}: {nearest(name, known)}")
+
+
+def common(given: dict[str, Any]) -> dict[str, Any]:
+    """Return the settings that environments of all systems have."""
+    dt = positive("dt", given["dt"])
     substeps = given["substeps"]
     if substeps is not None:
         substeps = count("substeps", substeps, 1, 1_000_000)
@@ -214,11 +243,9 @@ def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
         name: ends(name, given[name], least=0.0) for name in ("observation_delay", "action_delay")
     }
     substeps, late_steps = delays(dt, substeps, late)
-    limit = either("max_episode_steps")
+    limit = given["max_episode_steps"]
     unlimited = isinstance(limit, numbers.Real) and limit == math.inf
     limit = None if unlimited else count("max_episode_steps", limit, 1, 2**32 - 1)
-    max_action = either("max_action")
-    max_action = number("max_action", max_action, "greater than 0", lambda x: x > 0)
     integrator, dtype = given["integrator"], given["dtype"]
     if not isinstance(integrator, str):
         raise TypeError(f"integrator must be a string, not {type(integrator).__name__}")
@@ -231,13 +258,8 @@ def native(preset: Preset, given: dict[str, Any]) -> dict[str, Any]:
         "dt": dt / substeps,
         "substeps": substeps,
         "limit": limit,
-        "saturation": max_action,
-        "system": (preset.system, list(system.items())),
-        "task": (preset.task, task),
-        "start": [ends(name, either(name)) for name in ("start_position", "start_velocity")],
         "observation_delay": late_steps["observation_delay"],
         "action_delay": late_steps["action_delay"],
         "jitter": law("jitter", given["jitter"]),
         "skew": law("skew", given["skew"]),
-        "noise": law("observation_noise", given["observation_noise"]),
     }

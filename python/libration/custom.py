@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ._arrays import actions as read
 from .envs import VectorEnv
+from .equations import EquationSystem
 
 __all__ = ["CustomTaskVectorEnv"]
 
@@ -44,7 +45,7 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
 
     def __init__(
         self,
-        name: str,
+        name: str | EquationSystem,
         num_envs: int = 1,
         *,
         task: Callable[[np.ndarray, np.ndarray, np.ndarray], Any],
@@ -57,6 +58,11 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
             if price in given:
                 raise TypeError(f"unexpected keyword argument {price!r}: the task determines rewards")
         endless: dict[str, Any] = {} if name == "Pendulum" else {"bound": np.inf}
+        if isinstance(name, EquationSystem):
+            for own in ("reward", "terminated"):
+                if own in given:
+                    raise TypeError(f"unexpected keyword argument {own!r}: the task determines rewards")
+            endless = {"reward": "0", "terminated": []}
         mode = getattr(autoreset_mode, "value", autoreset_mode)
         # Under SAME_STEP this class resets: the task decides after the inner step whether an episode has ended.
         inner = "Disabled" if mode == "SameStep" else mode
@@ -72,7 +78,7 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         for space in ("action_space", "observation_space"):
             setattr(self, space, getattr(self.inner, space))
             setattr(self, f"single_{space}", getattr(self.inner, f"single_{space}"))
-        self._most = self.inner._settings["saturation"]
+        self._most = np.array(self.inner._settings["subject"]["saturation"])
         self._ended = np.zeros(self.num_envs, bool)
         self._turn = threading.RLock()
 
@@ -105,7 +111,8 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         observations, rewards, lost, truncated, infos = self.inner.step(actions)
         # Terminations of the engine hold even if the task fails.
         self._ended = lost | truncated
-        taken = read(actions, self.num_envs, rewards.dtype.name).reshape(self.num_envs, 1)
+        shape = self.action_space.shape
+        taken = read(actions, shape, rewards.dtype.name).reshape(shape)
         try:
             paid = self.task(before, np.clip(taken, -self._most, self._most), self.states)
             given, over = paid if isinstance(paid, tuple) else (paid, np.zeros(self.num_envs, bool))

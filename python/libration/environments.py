@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
 import numpy as np
 
@@ -11,6 +11,8 @@ from . import _native
 from ._keywords import check_keywords
 from ._presets import PRESETS, Preset
 from ._settings import AUTORESET, count, native, nearest
+from ._tasks import EquationPreset, native_equations
+from .equations import EquationSystem
 from .policies import Policy
 from .rollout import Rollout
 
@@ -26,7 +28,8 @@ class Environments(_native.Batch):
     Parameters
     ----------
     name:
-        ``"Oscillator"``, ``"Pendulum"`` or ``"Duffing"``.
+        ``"Oscillator"``, ``"Pendulum"`` or ``"Duffing"``, or a system by equations (:class:`libration.EquationSystem`), whose inputs
+        are the actions.
     num_envs:
         Number of environments.
     max_episode_steps:
@@ -51,9 +54,15 @@ class Environments(_native.Batch):
         Noise of each observed number, in its unit; as ``jitter``.
     max_action:
         Largest absolute action: an acceleration in m/s² (pendulum: rad/s²), or a force in N for a system with ``m`` and ``k``. Larger
-        actions are clipped, and their cost is that of the clipped action.
+        actions are clipped, and their cost is that of the clipped action. Of a system by equations one number, or one for each input.
     start_position, start_velocity:
         Start of an episode in m and m/s (pendulum: rad and rad/s): a number, or a pair ``(low, high)``.
+    observe, reward, terminated:
+        The task on a system by equations: expressions of the observed numbers (default: all states), the reward, and comparisons that
+        end an episode. They have the names of the system and ``t``, the time since the episode began. ``reward`` also has the inputs,
+        and ``before(x)`` for a state before the step. Default: the table ``[task]`` of the system's file.
+    start:
+        Start of an episode of a system by equations: a number or a pair ``(low, high)`` for each state by its name.
     dtype:
         Float type of all operations: ``"float32"`` or ``"float64"``.
     threads:
@@ -72,7 +81,7 @@ class Environments(_native.Batch):
         For an invalid value; the message has the name of the parameter and the allowed values.
     """
 
-    preset: Preset
+    preset: Preset | EquationPreset
     num_envs: int
 
     _reset_needed: type[Exception] = RuntimeError
@@ -80,7 +89,7 @@ class Environments(_native.Batch):
 
     def __init__(
         self,
-        name: str,
+        name: str | EquationSystem,
         num_envs: int = 1,
         *,
         max_episode_steps: float | None = None,
@@ -96,13 +105,17 @@ class Environments(_native.Batch):
         max_action: float | None = None,
         start_position: Any = None,
         start_velocity: Any = None,
+        observe: Sequence[str] | None = None,
+        reward: str | None = None,
+        terminated: Sequence[str] | None = None,
+        start: Mapping[str, Any] | None = None,
         dtype: Any = "float32",
         threads: int = 1,
         copy: bool = True,
         buffers: int = 2,
         **parameters: Any,
     ) -> None:
-        if name not in PRESETS:
+        if not isinstance(name, EquationSystem) and name not in PRESETS:
             raise ValueError(f"unknown environment {name!r}: {nearest(str(name), PRESETS)}")
         mode = getattr(autoreset_mode, "value", autoreset_mode)
         if mode not in AUTORESET:
@@ -124,14 +137,23 @@ class Environments(_native.Batch):
             "max_action": max_action,
             "start_position": start_position,
             "start_velocity": start_velocity,
+            "observe": observe,
+            "reward": reward,
+            "terminated": terminated,
+            "start": start,
             "dtype": _name_of(dtype),
             "threads": threads,
             "copy": copy,
             "buffers": buffers,
         }
-        self.preset = PRESETS[name]
         self._arguments = (name, {**given, **parameters})
-        self._settings: Mapping[str, Any] = native(self.preset, {**given, "parameters": parameters})
+        self._settings: Mapping[str, Any]
+        if isinstance(name, EquationSystem):
+            found = native_equations(name, {**given, "parameters": parameters})
+            self.preset, self._settings = found
+        else:
+            self.preset = PRESETS[name]
+            self._settings = native(self.preset, {**given, "parameters": parameters})
         self._seeder: np.random.Generator | None = None
         self.num_envs = self._settings["num_envs"]
         kept = 0 if copy else count("buffers", buffers, 1, 1_000_000)
@@ -260,7 +282,7 @@ class Environments(_native.Batch):
             raise TypeError(
                 f"policy must be one of libration.policies, not {type(policy).__name__}; help: a Python function can act through step"
             )
-        request = policy._request(observations)
+        request = policy._request(observations, len(self.preset.actions))
         if out is None:
             horizon = count("horizon", horizon, 1, 2**40)
             out = Rollout(self._memory(horizon, bool(log_probabilities), bool(values)))
@@ -277,7 +299,7 @@ class Environments(_native.Batch):
 
     @property
     def states(self) -> np.ndarray:
-        """True positions and velocities, ``(num_envs, 2)``, without noise and latency."""
+        """True positions and velocities, ``(num_envs, 2)``, without noise and latency; of a system by equations its states."""
         return self._states()
 
     def __reduce__(self) -> Any:
@@ -288,7 +310,7 @@ class Environments(_native.Batch):
         return {}
 
     @classmethod
-    def _construct(cls, name: str, given: dict[str, Any]) -> Environments:
+    def _construct(cls, name: str | EquationSystem, given: dict[str, Any]) -> Environments:
         return cls(name, **given)
 
     def __copy__(self) -> Environments:

@@ -12,7 +12,9 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from ._presets import PRESETS, Preset
+from ._tasks import EquationPreset
 from .environments import Environments
+from .equations import EquationSystem
 
 __all__ = [
     "DuffingEnv",
@@ -21,6 +23,8 @@ __all__ = [
     "OscillatorVectorEnv",
     "PendulumEnv",
     "PendulumVectorEnv",
+    "SystemEnv",
+    "SystemVectorEnv",
     "VectorEnv",
     "register",
 ]
@@ -29,18 +33,22 @@ NAMESPACE = "libration"
 METADATA = {"render_modes": ["rgb_array"], "render_fps": 30}
 
 
-def _spaces(preset: Preset, settings: dict[str, Any]) -> tuple[Box, Box]:
+def _spaces(preset: Preset | EquationPreset, settings: dict[str, Any]) -> tuple[Box, Box]:
     """Return the observation space and the action space of one environment."""
-    dtype = np.dtype(settings["dtype"])
-    noisy = settings["noise"][1] > 0
-    high = np.array([np.inf if noisy else limit for limit in preset.limits], dtype=dtype)
-    most = settings["saturation"]
-    return Box(-high, high, dtype=dtype), Box(-most, most, shape=(1,), dtype=dtype)
+    dtype, subject = np.dtype(settings["dtype"]), settings["subject"]
+    noise = subject["noise"]
+    laws = noise if isinstance(noise, list) else [noise] * len(preset.seen)
+    high = [np.inf if law[1] > 0 else limit for law, limit in zip(laws, preset.limits)]
+    most = np.broadcast_to(np.array(subject["saturation"], dtype=dtype), len(preset.actions))
+    high = np.array(high, dtype=dtype)
+    return Box(-high, high, dtype=dtype), Box(-most, most, dtype=dtype)
 
 
-def _render_mode(render_mode: str | None) -> str | None:
+def _render_mode(name: str | EquationSystem, render_mode: str | None) -> str | None:
     if render_mode not in (None, "rgb_array"):
         raise ValueError(f"render_mode is {render_mode!r}, but it must be 'rgb_array' or None")
+    if render_mode is not None and isinstance(name, EquationSystem):
+        raise ValueError(f"render_mode is {render_mode!r}, but it must be None: a system by equations has no picture")
     return render_mode
 
 
@@ -55,9 +63,14 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
     _closed_error = ClosedEnvironmentError
 
     def __init__(
-        self, name: str, num_envs: int = 1, *, render_mode: str | None = None, **given: Any
+        self,
+        name: str | EquationSystem,
+        num_envs: int = 1,
+        *,
+        render_mode: str | None = None,
+        **given: Any,
     ) -> None:
-        self.render_mode = _render_mode(render_mode)
+        self.render_mode = _render_mode(name, render_mode)
         super().__init__(name, num_envs, **given)
         self.metadata = {
             **METADATA,
@@ -95,8 +108,8 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
         return {name: self.__dict__[name] for name in names if name in self.__dict__}
 
     @classmethod
-    def _construct(cls, name: str, given: dict[str, Any]) -> Environments:
-        return cls(name, **given) if cls is VectorEnv else cls(**given)
+    def _construct(cls, name: str | EquationSystem, given: dict[str, Any]) -> Environments:
+        return cls(name, **given) if cls in (VectorEnv, SystemVectorEnv) else cls(**given)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.preset.name}, num_envs={self.num_envs})"
@@ -110,11 +123,13 @@ class Env(gymnasium.Env):
 
     metadata = METADATA
 
-    def __init__(self, name: str, *, render_mode: str | None = None, **given: Any) -> None:
+    def __init__(
+        self, name: str | EquationSystem, *, render_mode: str | None = None, **given: Any
+    ) -> None:
         for unknown in ("num_envs", "autoreset_mode", "copy", "buffers", "max_episode_steps"):
             if unknown in given:
                 raise TypeError(f"unexpected keyword argument {unknown!r}: it belongs to vector environments")
-        self.render_mode = _render_mode(render_mode)
+        self.render_mode = _render_mode(name, render_mode)
         self._all = Environments(
             name, max_episode_steps=np.inf, autoreset_mode="Disabled", **given
         )
@@ -146,6 +161,26 @@ class Env(gymnasium.Env):
         self._all._close()
 
 
+class SystemEnv(Env):
+    """Single environment ``libration/System-v0`` of a system by equations."""
+
+    def __init__(self, system: EquationSystem, **given: Any) -> None:
+        super().__init__(_system(system), **given)
+
+
+class SystemVectorEnv(VectorEnv):
+    """Vector environment ``libration/System-v0`` of a system by equations."""
+
+    def __init__(self, system: EquationSystem, num_envs: int = 1, **given: Any) -> None:
+        super().__init__(_system(system), num_envs, **given)
+
+
+def _system(system: Any) -> EquationSystem:
+    if not isinstance(system, EquationSystem):
+        raise TypeError(f"system must be a libration.EquationSystem, not {type(system).__name__}")
+    return system
+
+
 def _classes(preset: Preset) -> tuple[type[Env], type[VectorEnv]]:
     """Return the single and the vector environment class of a preset."""
 
@@ -173,12 +208,13 @@ DuffingEnv, DuffingVectorEnv = _classes(PRESETS["Duffing"])
 
 def register() -> None:
     """Register the environments with Gymnasium; the import of the package does this."""
-    for preset in PRESETS.values():
-        known = f"{NAMESPACE}/{preset.name}-v0"
+    limits: dict[str, int | None] = {preset.name: preset.max_episode_steps for preset in PRESETS.values()}
+    for name, limit in {**limits, "System": None}.items():
+        known = f"{NAMESPACE}/{name}-v0"
         if known not in gymnasium.registry:
             gymnasium.register(
                 id=known,
-                entry_point=f"libration.envs:{preset.name}Env",
-                vector_entry_point=f"libration.envs:{preset.name}VectorEnv",
-                max_episode_steps=preset.max_episode_steps,
+                entry_point=f"libration.envs:{name}Env",
+                vector_entry_point=f"libration.envs:{name}VectorEnv",
+                max_episode_steps=limit,
             )

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _native
 from ._keywords import check_keywords
 from ._settings import count, number
+from ._tasks import EquationPreset
 from .environments import Environments
 from .rollout import Rollout
 
@@ -95,6 +96,8 @@ class ReplayBuffer:
     ) -> None:
         if not isinstance(environments, Environments):
             raise TypeError(f"environments must be Environments, not {type(environments).__name__}")
+        if isinstance(environments.preset, EquationPreset):
+            raise TypeError("a ReplayBuffer takes environments of the catalogue, not of a system by equations")
         settings = environments._settings
         self.seed = count("seed", seed, 0, 2**64 - 1)
         #: Number of the next draw.

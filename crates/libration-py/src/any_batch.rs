@@ -5,13 +5,16 @@ use std::ops::Range;
 use libration::checkpoint::CheckpointError;
 use libration::ensemble::Execution;
 use libration::rl::policy::ActionSequence;
-use libration::rl::{EnvironmentError, Plan, Rollout, StepBuffers};
+use libration::rl::{
+    EnvironmentError, Plan, ProgramEnvironment, ProgramEnvironments, Rollout, StepBuffers,
+};
 use libration_env::environments::{
     AnyEnvironments, AnyPolicy, EnvironmentSettings, EnvironmentsVisitor,
 };
 
 use crate::array::Number;
 use crate::policy::Policy;
+use crate::program_batch::ProgramBatch;
 use crate::tensors::Tensors;
 
 /// Episodes that ended in a step, by environment.
@@ -27,6 +30,11 @@ pub(crate) struct Ends<T> {
 /// [`AnyEnvironments`] with any number of observed numbers.
 pub(crate) trait DynBatch<T>: Send {
     fn observations(&self) -> usize;
+
+    /// The numbers of an action.
+    fn actions(&self) -> usize {
+        1
+    }
 
     fn act(&mut self, actions: &[T], to: StepBuffers<'_, T>) -> Result<Ends<T>, EnvironmentError>;
 
@@ -49,7 +57,13 @@ pub(crate) trait DynBatch<T>: Send {
 
     fn execute(&mut self, execution: Execution);
 
-    fn state(&self, n: usize) -> Option<[T; 2]>;
+    /// The numbers of a state.
+    fn states(&self) -> usize {
+        2
+    }
+
+    /// Writes the state of environment `n`.
+    fn write_state(&self, n: usize, to: &mut [T]);
 
     fn to_bytes(&self) -> Vec<u8>;
 
@@ -108,8 +122,8 @@ impl<T: Number, const O: usize> DynBatch<T> for Box<dyn AnyEnvironments<T, O>> {
         (**self).execute(execution);
     }
 
-    fn state(&self, n: usize) -> Option<[T; 2]> {
-        (**self).state(n)
+    fn write_state(&self, n: usize, to: &mut [T]) {
+        to.copy_from_slice(&(**self).state(n).unwrap_or([T::zero(); 2]));
     }
 
     fn to_bytes(&self) -> Vec<u8> {
@@ -151,7 +165,7 @@ impl<T: Number> EnvironmentsVisitor<T> for Keep {
 
 impl AnyBatch {
     /// Returns environments of these settings.
-    pub(crate) fn new(
+    pub(crate) fn catalogued(
         environments: &EnvironmentSettings,
         single: bool,
         len: usize,
@@ -161,6 +175,31 @@ impl AnyBatch {
             AnyBatch::F32(environments.with([0, len], 0, execution, Keep)?)
         } else {
             AnyBatch::F64(environments.with([0, len], 0, execution, Keep)?)
+        })
+    }
+
+    /// Returns environments of a definition, whose states have these places among positions and velocities.
+    pub(crate) fn by_program(
+        definition: ProgramEnvironment,
+        places: Vec<usize>,
+        single: bool,
+        len: usize,
+        execution: &Execution,
+    ) -> Result<Self, EnvironmentError> {
+        fn batch<T: Number>(
+            definition: ProgramEnvironment,
+            places: Vec<usize>,
+            len: usize,
+            execution: &Execution,
+        ) -> Result<Box<dyn DynBatch<T>>, EnvironmentError> {
+            let environments =
+                ProgramEnvironments::shard(definition, 0, len, 0, execution.clone())?;
+            Ok(Box::new(ProgramBatch { environments, places }))
+        }
+        Ok(if single {
+            AnyBatch::F32(batch(definition, places, len, execution)?)
+        } else {
+            AnyBatch::F64(batch(definition, places, len, execution)?)
         })
     }
 }

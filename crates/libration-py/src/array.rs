@@ -161,18 +161,22 @@ pub(crate) fn bytes_of<'a>(array: &'a Bound<'_, Array<bool, 1>>) -> &'a mut [u8]
     unsafe { from_raw_parts_mut(array.data().cast(), array.len()) }
 }
 
-/// Returns the data of an array of actions, `[n]` or `[n, 1]`, if it is contiguous and aligned.
+/// Returns the data of an array of actions, `[n, width]`, or `[n]` if there is one each, if it is contiguous and aligned.
 pub(crate) fn contiguous_actions<'a, T: Number>(
     actions: &'a Bound<'_, PyAny>,
-    len: usize,
+    [len, width]: [usize; 2],
 ) -> Option<&'a [T]> {
     // A class of its own may mean something else by its numbers, as a masked array does.
     let array = actions.cast_exact::<PyArray<T, IxDyn>>().ok()?;
-    let fits = matches!(*array.shape(), [n] | [n, 1] if n == len);
+    let fits = match *array.shape() {
+        [n] => n == len && width == 1,
+        [n, each] => n == len && each == width,
+        _ => false,
+    };
     // SAFETY: the array is contiguous and aligned, and lives as long as the call that reads it. Whoever writes it meanwhile, from another
     // thread, gives one action or the other.
     (fits && array.is_c_contiguous() && is_aligned(array))
-        .then(|| unsafe { from_raw_parts(array.data(), len) })
+        .then(|| unsafe { from_raw_parts(array.data(), len * width) })
 }
 
 /// Whether all numbers are finite: zero times a finite number is zero, and vectors add faster than they compare.

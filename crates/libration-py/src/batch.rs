@@ -44,19 +44,17 @@ impl Batch {
 
     /// Creates the environments; `buffers` is the number of reused arrays, or 0 for new arrays in every step.
     fn _set_up(&self, py: Python<'_>, settings: Settings, buffers: usize) -> PyResult<()> {
-        let (environments, execution) = (settings.environments()?, settings.execution()?);
-        let len = settings.num_envs;
-        let batch = AnyBatch::new(&environments, settings.single()?, len, &execution);
         *self.inner.lock(py)? = Some(Inner {
-            batch: batch.map_err(Raised::raised)?,
-            episodes: EpisodeStates::new(&environments, len, buffers),
+            batch: settings.batch()?,
+            episodes: EpisodeStates::new(&settings, buffers)?,
             process: std::process::id(),
-            threads: execution.thread_count(),
+            threads: settings.execution()?.thread_count(),
         });
         Ok(())
     }
 
-    /// Takes one step with an action per environment: an array of shape `(num_envs, 1)` or `(num_envs,)`, in the unit of an acceleration.
+    /// Takes one step with an action per environment: an array of shape `(num_envs, 1)` or `(num_envs,)`, in the unit of an acceleration;
+    /// of a system by equations `(num_envs, n)` with a number for each input.
     ///
     /// Returns observations `(num_envs, n)`, rewards, terminations and truncations `(num_envs,)`, and a dictionary with the ended episodes
     /// (`final_obs`, `final_info`, with `"SameStep"`) and the environments whose state is not finite (`lost`).
@@ -145,16 +143,17 @@ impl Batch {
         with_batch!(batch, environments => step::observe_copy(slf.py(), &mut **environments, episodes))
     }
 
-    /// Returns positions and velocities, `(num_envs, 2)`.
+    /// Returns positions and velocities, `(num_envs, 2)`; of a system by equations its states.
     fn _states<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         fn states<'py, T: Number>(
             py: Python<'py>,
             environments: &dyn DynBatch<T>,
             len: usize,
         ) -> PyResult<Bound<'py, PyAny>> {
-            let all: Bound<'py, Array<T, 2>> = allocate(py, [len, 2])?;
-            for (n, row) in view_mut(&all).chunks_exact_mut(2).enumerate() {
-                row.copy_from_slice(&environments.state(n).unwrap_or([T::zero(); 2]));
+            let width = environments.states();
+            let all: Bound<'py, Array<T, 2>> = allocate(py, [len, width])?;
+            for (n, row) in view_mut(&all).chunks_exact_mut(width).enumerate() {
+                environments.write_state(n, row);
             }
             Ok(all.into_any())
         }

@@ -14,13 +14,8 @@ use crate::settings::Settings;
 /// Seconds that so many steps take under actions of zero, in memory that is used again.
 #[pyfunction]
 pub(crate) fn _seconds_of_steps(py: Python<'_>, settings: Settings, steps: usize) -> PyResult<f64> {
-    let (environments, execution) = (settings.environments()?, settings.execution()?);
-    let (len, single) = (settings.num_envs, settings.single()?);
-    py.detach(|| {
-        let mut batch =
-            AnyBatch::new(&environments, single, len, &execution).map_err(Raised::raised)?;
-        with_batch!(&mut batch, environments => timed(&mut **environments, len, steps))
-    })
+    let (len, mut batch) = (settings.num_envs, settings.batch()?);
+    py.detach(|| with_batch!(&mut batch, environments => timed(&mut **environments, len, steps)))
 }
 
 /// Seconds of each of so many rollouts under a policy, into memory that is used again.
@@ -48,11 +43,8 @@ pub(crate) fn _seconds_of_rollouts(
         };
         (0..rollouts).map(timed).collect()
     }
-    let (environments, execution) = (settings.environments()?, settings.execution()?);
-    let len = settings.num_envs;
-    let batch = AnyBatch::new(&environments, settings.single()?, len, &execution);
-    let plan = Plan::new(horizon, len).truncated();
-    let done = match batch.map_err(Raised::raised)? {
+    let plan = Plan::new(horizon, settings.num_envs).truncated();
+    let done = match settings.batch()? {
         AnyBatch::F32(mut environments) => {
             let acts = Policy::new(&policy)?;
             py.detach(|| each(&mut *environments, &acts, plan, rollouts))
@@ -68,9 +60,9 @@ pub(crate) fn _seconds_of_rollouts(
 fn timed<T: Number>(environments: &mut dyn DynBatch<T>, len: usize, steps: usize) -> PyResult<f64> {
     let seeds: Vec<Option<u64>> = (0..len as u64).map(Some).collect();
     environments.seed(&seeds).map_err(Raised::raised)?;
-    let actions = vec![T::zero(); len];
+    let actions = vec![T::zero(); len * environments.actions()];
     let (mut seen, mut reward) =
-        (vec![T::zero(); len * environments.observations()], actions.clone());
+        (vec![T::zero(); len * environments.observations()], vec![T::zero(); len]);
     let (mut terminated, mut truncated) = (vec![0; len], vec![0; len]);
     let start = Instant::now();
     for _ in 0..steps {

@@ -18,6 +18,7 @@ mod linear_loops;
 mod linear_plant;
 mod policy;
 mod program;
+mod program_batch;
 mod replay;
 mod request;
 mod rollout;

@@ -1,8 +1,11 @@
 //! Policies of rollouts.
 
+use std::array::from_fn;
+
 use libration::ensemble::InstructionSet;
-use libration::rl::policy::{Activation, Network};
-use libration_env::environments::{AnyPolicy, PolicySettings};
+use libration::rl::ProgramPolicy;
+use libration::rl::policy::{Activation, Constant, Linear, Network, Random};
+use libration_env::environments::AnyPolicy;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 
@@ -19,23 +22,29 @@ pub(crate) struct PolicyRequest<'py> {
     activation: String,
 }
 
-/// A policy of the engine.
+/// A policy of the engine, for any number of observations and actions.
 pub(crate) enum Policy<T> {
-    Plain(PolicySettings),
-    Network { parameters: Vec<T>, hidden: Vec<usize>, activation: Activation },
+    /// Weights, a row for each action, then biases.
+    Linear(Vec<f64>),
+    /// Lower ends, then upper ends.
+    Random(Vec<f64>),
+    Constant(Vec<f64>),
+    Network {
+        parameters: Vec<T>,
+        hidden: Vec<usize>,
+        activation: Activation,
+    },
 }
 
 impl<T: Number> Policy<T> {
-    /// The one that was request.
+    /// The requested policy.
     pub(crate) fn new(request: &PolicyRequest<'_>) -> PyResult<Self> {
         let numbers = request.numbers.to_vec()?;
-        Ok(match (request.name.as_str(), numbers.as_slice()) {
-            ("linear", [weights @ .., bias]) => {
-                Policy::Plain(PolicySettings::Linear { weights: weights.to_vec(), bias: *bias })
-            }
-            ("random", &[low, high]) => Policy::Plain(PolicySettings::Random { low, high }),
-            ("constant", &[action]) => Policy::Plain(PolicySettings::Constant(action)),
-            ("network", _) => Policy::Network {
+        Ok(match request.name.as_str() {
+            "linear" => Policy::Linear(numbers),
+            "random" => Policy::Random(numbers),
+            "constant" => Policy::Constant(numbers),
+            "network" => Policy::Network {
                 parameters: numbers.iter().map(|&x| T::from_f64(x)).collect(),
                 hidden: request.hidden.clone(),
                 activation: match request.activation.as_str() {
@@ -48,20 +57,51 @@ impl<T: Number> Policy<T> {
                     }
                 },
             },
-            (other, _) => return Err(value_error(format!("{other:?} is no policy of the engine"))),
+            other => return Err(value_error(format!("{other:?} is no policy of the engine"))),
         })
     }
 
-    /// Returns the policy as an actor of the engine.
+    /// Returns the policy for environments with one action; missing numbers are 0.
     pub(crate) fn actor<const O: usize>(&self) -> AnyPolicy<'_, T, O> {
+        let number = |numbers: &[f64], i: usize| numbers.get(i).copied().unwrap_or(0.0);
         match self {
-            Policy::Plain(acting) => AnyPolicy::new(acting),
-            Policy::Network { parameters, hidden, activation } => AnyPolicy::Network(Network {
-                parameters,
-                hidden,
-                activation: *activation,
-                instructions: InstructionSet::widest(),
+            Policy::Linear(numbers) => AnyPolicy::Linear(Linear {
+                weights: [from_fn(|i| number(numbers, i))],
+                bias: [number(numbers, O)],
             }),
+            Policy::Random(ends) => {
+                AnyPolicy::Random(Random::between([number(ends, 0)], [number(ends, 1)]))
+            }
+            Policy::Constant(action) => AnyPolicy::Constant(Constant([number(action, 0)])),
+            Policy::Network { parameters, hidden, activation } => {
+                AnyPolicy::Network(Self::network(parameters, hidden, *activation))
+            }
         }
+    }
+
+    /// Returns the policy for environments with so many actions.
+    pub(crate) fn by_program(&self, actions: usize) -> ProgramPolicy<'_, T> {
+        match self {
+            Policy::Linear(numbers) => {
+                let (weights, bias) = numbers.split_at(numbers.len().saturating_sub(actions));
+                ProgramPolicy::Linear { weights, bias }
+            }
+            Policy::Random(ends) => {
+                let (low, high) = ends.split_at(ends.len() / 2);
+                ProgramPolicy::Random { low, high }
+            }
+            Policy::Constant(action) => ProgramPolicy::Constant(action),
+            Policy::Network { parameters, hidden, activation } => {
+                ProgramPolicy::Network(Self::network(parameters, hidden, *activation))
+            }
+        }
+    }
+
+    fn network<'a>(
+        parameters: &'a [T],
+        hidden: &'a [usize],
+        activation: Activation,
+    ) -> Network<'a, T> {
+        Network { parameters, hidden, activation, instructions: InstructionSet::widest() }
     }
 }

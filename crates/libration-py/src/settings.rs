@@ -2,10 +2,13 @@
 
 use libration::ensemble::Execution;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
-use libration::rl::{Autoreset, Delays};
+use libration::rl::{Autoreset, Delays, ProgramEnvironment};
 use libration_env::environments::{EnvironmentSettings, Noise, SingleDofSystem, Task};
+use libration_settings::equations::EquationTask;
 use pyo3::prelude::*;
 
+use crate::any_batch::AnyBatch;
+use crate::equations::{EquationText, equations};
 use crate::error::{Raised, unknown, value_error};
 use crate::request::{SystemRequest, law, method, system};
 
@@ -19,17 +22,35 @@ pub(crate) struct Settings {
     autoreset: String,
     integrator: String,
     dt: f64,
-    substeps: u32,
+    pub(crate) substeps: u32,
     limit: Option<u32>,
-    saturation: f64,
-    system: SystemRequest,
-    task: (String, Vec<f64>),
-    start: [[f64; 2]; 2],
     observation_delay: [u32; 2],
     action_delay: [u32; 2],
     jitter: (String, f64),
     skew: (String, f64),
-    noise: (String, f64),
+    subject: Subject,
+}
+
+/// What the environments are of.
+#[derive(FromPyObject)]
+enum Subject {
+    /// A system of the catalogue with one of the engine's tasks.
+    #[pyo3(from_item_all)]
+    Catalogue {
+        catalogued: SystemRequest,
+        task: (String, Vec<f64>),
+        start: [[f64; 2]; 2],
+        saturation: f64,
+        noise: (String, f64),
+    },
+    /// A system by equations with a task by expressions: the text of a table `[task]`, or none for that of the system's file.
+    #[pyo3(from_item_all)]
+    Equations {
+        equations: EquationText,
+        task: Option<String>,
+        saturation: Vec<f64>,
+        noise: Vec<(String, f64)>,
+    },
 }
 
 impl Settings {
@@ -56,48 +77,97 @@ impl Settings {
         execution.map_err(|error| libration::rl::EnvironmentError::from(error).raised())
     }
 
-    pub(crate) fn environments(&self) -> PyResult<EnvironmentSettings> {
-        let method = method(&self.integrator)?;
-        let (system, actuation) = system(&self.system)?;
-        let system = SingleDofSystem::new(system).ok_or_else(|| {
-            let name = &self.system.0;
+    /// Environments of these settings.
+    pub(crate) fn batch(&self) -> PyResult<AnyBatch> {
+        let (single, execution) = (self.single()?, self.execution()?);
+        let batch = match &self.subject {
+            Subject::Catalogue { .. } => {
+                AnyBatch::catalogued(&self.catalogued()?, single, self.num_envs, &execution)
+            }
+            Subject::Equations { .. } => {
+                let (definition, states) = self.by_equations()?;
+                AnyBatch::by_program(definition, states, single, self.num_envs, &execution)
+            }
+        };
+        batch.map_err(Raised::raised)
+    }
+
+    fn delays(&self) -> Delays {
+        Delays { observation: self.observation_delay, action: self.action_delay }
+    }
+
+    fn catalogued(&self) -> PyResult<EnvironmentSettings> {
+        let Subject::Catalogue { catalogued, task, start, saturation, noise } = &self.subject
+        else {
+            return Err(value_error("the environments are those of equations".to_owned()));
+        };
+        let (found, actuation) = system(catalogued)?;
+        let system = SingleDofSystem::new(found).ok_or_else(|| {
+            let name = &catalogued.0;
             value_error(format!("system is {name}, but it must have a single degree of freedom"))
         })?;
         Ok(EnvironmentSettings {
             system,
             actuation,
-            method,
+            method: method(&self.integrator)?,
             dt: self.dt,
             substeps: self.substeps,
-            task: self.task()?,
-            start: self.start,
+            task: catalogued_task(task)?,
+            start: *start,
             limit: self.limit,
             autoreset: self.autoreset()?,
-            delays: Delays { observation: self.observation_delay, action: self.action_delay },
-            saturation: self.saturation,
+            delays: self.delays(),
+            saturation: *saturation,
             noise: Noise {
                 jitter: law("jitter", &self.jitter.0, self.jitter.1)?,
                 skew: law("skew", &self.skew.0, self.skew.1)?,
-                observation: law("observation_noise", &self.noise.0, self.noise.1)?,
+                observation: law("observation_noise", &noise.0, noise.1)?,
             },
         })
     }
+    /// The definition of environments of equations, and the places of their states among positions and velocities.
+    fn by_equations(&self) -> PyResult<(ProgramEnvironment, Vec<usize>)> {
+        let Subject::Equations { equations: text, task, saturation, noise } = &self.subject else {
+            return Err(value_error("the environments are those of the catalogue".to_owned()));
+        };
+        let system = equations(text)?;
+        let task = match task {
+            Some(task) => EquationTask::parse(task, "task", &system).map_err(Raised::raised)?,
+            None => system.task.clone().ok_or_else(|| {
+                let text = "reward is required: the file of the system has no table [task]";
+                value_error(text.to_owned())
+            })?,
+        };
+        let noise = noise.iter().map(|(kind, rms)| law("observation_noise", kind, *rms));
+        let dynamics = system.equations.dynamics().clone();
+        let definition = ProgramEnvironment {
+            substeps: self.substeps,
+            start: task.start,
+            limit: self.limit,
+            autoreset: self.autoreset()?,
+            delays: self.delays(),
+            saturation: saturation.clone(),
+            skew: law("skew", &self.skew.0, self.skew.1)?,
+            jitter: law("jitter", &self.jitter.0, self.jitter.1)?,
+            noise: noise.collect::<PyResult<_>>()?,
+            ..ProgramEnvironment::new(dynamics, task.programs, method(&self.integrator)?, self.dt)
+        };
+        Ok((definition, system.states.iter().map(|state| state.place).collect()))
+    }
+}
 
-    fn task(&self) -> PyResult<Task> {
-        let (name, numbers) = &self.task;
-        Ok(match (name.as_str(), numbers.as_slice()) {
-            ("regulate", &[position, velocity, effort, bound]) => {
-                Task::Regulate(Regulate { position, velocity, effort, bound })
-            }
-            ("swing-up", &[velocity, effort]) => Task::SwingUp(SwingUp { velocity, effort }),
-            (
-                "track",
-                &[amplitude, angular_frequency, phase, position, velocity, effort, bound],
-            ) => Task::Track(Track {
+fn catalogued_task((name, numbers): &(String, Vec<f64>)) -> PyResult<Task> {
+    Ok(match (name.as_str(), numbers.as_slice()) {
+        ("regulate", &[position, velocity, effort, bound]) => {
+            Task::Regulate(Regulate { position, velocity, effort, bound })
+        }
+        ("swing-up", &[velocity, effort]) => Task::SwingUp(SwingUp { velocity, effort }),
+        ("track", &[amplitude, angular_frequency, phase, position, velocity, effort, bound]) => {
+            Task::Track(Track {
                 reference: Sine { amplitude, angular_frequency, phase },
                 regulate: Regulate { position, velocity, effort, bound },
-            }),
-            _ => return Err(unknown("task", name, ["regulate", "swing-up", "track"])),
-        })
-    }
+            })
+        }
+        _ => return Err(unknown("task", name, ["regulate", "swing-up", "track"])),
+    })
 }

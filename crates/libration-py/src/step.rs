@@ -3,7 +3,6 @@
 use std::iter::repeat_with;
 
 use libration::rl::{Autoreset, StepBuffers};
-use libration_env::environments::EnvironmentSettings;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -16,6 +15,7 @@ use crate::array::{
 };
 use crate::batch::{Batch, raise};
 use crate::error::{Raised, value_error};
+use crate::settings::Settings;
 
 /// Episode state and arrays of environments.
 pub(crate) struct EpisodeStates {
@@ -52,18 +52,19 @@ const IN_HAND: usize = 2;
 const WORTH_A_LOCK: usize = 512;
 
 impl EpisodeStates {
-    pub(crate) fn new(environments: &EnvironmentSettings, len: usize, buffers: usize) -> Self {
+    pub(crate) fn new(settings: &Settings, buffers: usize) -> PyResult<Self> {
         let rows = if buffers > 0 { buffers } else { IN_HAND };
-        EpisodeStates {
+        let len = settings.num_envs;
+        Ok(EpisodeStates {
             len,
-            autoreset: environments.autoreset,
+            autoreset: settings.autoreset()?,
             untouched: true,
             standing: vec![0; len],
             rows: repeat_with(Default::default).take(rows).collect(),
             turn: 0,
             shared: buffers > 0,
-            substeps: environments.substeps as usize,
-        }
+            substeps: settings.substeps as usize,
+        })
     }
 
     /// Nothing, if all can take an action.
@@ -157,20 +158,23 @@ pub(crate) fn take<'py, T: Number>(
     given: &Bound<'py, PyAny>,
 ) -> PyResult<Step<'py>> {
     let made;
-    let actions: &[T] = match contiguous_actions(given, episodes.len) {
+    let shape = [episodes.len, environments.actions()];
+    let actions: &[T] = match contiguous_actions(given, shape) {
         Some(actions) => actions,
         None => {
-            made = helper(py, &ACTIONS, "actions")?.call1((given, episodes.len, T::NUMPY))?;
+            made = helper(py, &ACTIONS, "actions")?.call1((given, shape, T::NUMPY))?;
             let error = || PyTypeError::new_err("actions are no array");
-            contiguous_actions(&made, episodes.len).ok_or_else(error)?
+            contiguous_actions(&made, shape).ok_or_else(error)?
         }
     };
     if !are_finite(actions) {
         let n = actions.iter().position(|action| !action.is_finite()).unwrap_or(0);
-        return Err(value_error(format!(
-            "actions[{n}] is {:?}, but it must be finite",
-            actions[n]
-        )));
+        let index = match shape[1] {
+            1 => n.to_string(),
+            width => format!("{}, {}", n / width, n % width),
+        };
+        let text = format!("actions[{index}] is {:?}, but it must be finite", actions[n]);
+        return Err(value_error(text));
     }
     let row = episodes.row::<T>(py, environments.observations())?;
     let Row { seen, reward, terminated, truncated } = &row;

@@ -47,6 +47,20 @@ pub(crate) struct Ended<T> {
     pub(crate) seen: Vec<T>,
 }
 
+impl<T> Ended<T> {
+    /// The columns of episodes with these final observations.
+    pub(crate) fn new<X, const O: usize>(ends: &[EpisodeEnd<X, O>], seen: Vec<T>) -> Self {
+        Ended {
+            steps: ends.iter().map(|end| end.step).collect(),
+            environments: ends.iter().map(|end| end.environment).collect(),
+            lengths: ends.iter().map(|end| end.length).collect(),
+            returns: ends.iter().map(|end| end.episode_return).collect(),
+            lost: ends.iter().map(|end| end.lost).collect(),
+            seen,
+        }
+    }
+}
+
 impl<T: Number, const O: usize> Tensors<T> for Rollout<T, O, 1> {
     fn plan(&self) -> Plan {
         Rollout::plan(self)
@@ -71,27 +85,12 @@ impl<T: Number, const O: usize> Tensors<T> for Rollout<T, O, 1> {
     }
 
     fn ends(&self) -> Ended<T> {
-        fn column<X, T, const O: usize>(
-            ends: &[EpisodeEnd<T, O>],
-            of: impl Fn(&EpisodeEnd<T, O>) -> X,
-        ) -> Vec<X> {
-            ends.iter().map(of).collect()
-        }
         let ends = self.finals();
-        Ended {
-            steps: column(ends, |end| end.step),
-            environments: column(ends, |end| end.environment),
-            lengths: column(ends, |end| end.length),
-            returns: column(ends, |end| end.episode_return),
-            lost: column(ends, |end| end.lost),
-            seen: ends.iter().flat_map(|end| end.observation).collect(),
-        }
+        Ended::new(ends, ends.iter().flat_map(|end| end.observation).collect())
     }
 
     fn transitions(&self) -> Vec<bool> {
-        let Plan { horizon, environments, .. } = Rollout::plan(self);
-        let all = (0..horizon).flat_map(|t| (0..environments).map(move |n| (t, n)));
-        all.map(|(t, n)| self.is_transition(t, n)).collect()
+        Rollout::transitions(self)
     }
 
     fn estimate(

@@ -17,7 +17,7 @@ use crate::linear_analysis::{self, LinearAnalysis, LinearAnalysisError, LinearRe
 use crate::step::Stepping;
 
 pub use motion::{EnergyChange, EquationMotion, StateError};
-pub use summary::{EquationSummary, SummaryParameter, SummaryState};
+pub use summary::{EquationSummary, SummaryParameter, SummaryState, SummaryTask};
 
 /// Version of the JSON format.
 pub const SCHEMA: &str = "libration.equation-analysis/1";

@@ -1,9 +1,11 @@
 //! Summaries of systems by equations.
 
+use std::collections::BTreeMap;
+
 use libration::analysis::jacobian;
-use libration::equations::Degree;
+use libration::equations::{Degree, TaskDefinitions};
 use libration::linear::eigenvalues;
-use libration_settings::equations::EquationSystem;
+use libration_settings::equations::{EquationSystem, EquationTask, NamedState};
 use serde::Serialize;
 
 /// The properties of a system that follow from its equations.
@@ -36,6 +38,30 @@ pub struct EquationSummary {
     /// The eigenvalues of the equations, linearised at the start, in 1/s: real and imaginary parts, slowest first. None where a
     /// derivative is not finite.
     pub eigenvalues_at_start: Option<Vec<[f64; 2]>>,
+    /// The task of environments, if the file has one.
+    pub task: Option<SummaryTask>,
+}
+
+/// A task of environments.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SummaryTask {
+    /// The observed numbers.
+    pub observe: Vec<String>,
+    /// The reward.
+    pub reward: String,
+    /// The conditions that end an episode.
+    pub terminated: Vec<String>,
+    /// The range of each state at the start, by name.
+    pub start: BTreeMap<String, [f64; 2]>,
+}
+
+impl SummaryTask {
+    fn new(system: &EquationSystem, task: &EquationTask) -> Self {
+        let TaskDefinitions { observe, reward, terminated } = task.definitions.clone();
+        let range = |state: &NamedState| (state.name.clone(), task.start[state.place]);
+        let start = system.states.iter().map(range).collect();
+        SummaryTask { observe, reward, terminated, start }
+    }
 }
 
 /// A state.
@@ -92,6 +118,7 @@ impl EquationSummary {
             operations: equations.dynamics().accelerations().operations(),
             rate_at_start: rates.iter().fold(0.0, |most, rate| f64::max(most, rate.abs())),
             eigenvalues_at_start: eigenvalues_at(system, &system.start()),
+            task: system.task.as_ref().map(|task| SummaryTask::new(system, task)),
         }
     }
 }

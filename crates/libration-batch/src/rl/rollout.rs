@@ -125,6 +125,13 @@ impl<T: Pod, const O: usize, const D: usize> Rollout<T, O, D> {
         idle[0] == 0
     }
 
+    /// Whether each step is a transition: `[t, n]`.
+    pub fn transitions(&self) -> Vec<bool> {
+        let Plan { horizon, environments, .. } = self.plan;
+        let all = (0..horizon).flat_map(|t| (0..environments).map(move |n| (t, n)));
+        all.map(|(t, n)| self.is_transition(t, n)).collect()
+    }
+
     /// Whether there may be steps that are no transitions.
     pub(crate) fn pauses(&self) -> bool {
         self.pauses

@@ -3,7 +3,7 @@
 use libration::Method;
 use libration::catalog::{ENTRIES, Entry};
 use libration::integrator::Exact;
-use libration_analyze::equation_analysis::EquationSummary;
+use libration_analyze::equation_analysis::{EquationSummary, SummaryTask};
 use libration_lab::STUDIES;
 use libration_settings::EquationExample;
 use libration_settings::equations::EquationSystem;
@@ -191,6 +191,13 @@ fn summary_text(summary: &EquationSummary) -> String {
                 text += &format!("  {re:.6}{pair}\n");
             }
         }
+    }
+    if let Some(SummaryTask { observe, reward, terminated, .. }) = &summary.task {
+        text += &format!("\nTask: observes {}; reward {reward}", observe.join(", "));
+        if !terminated.is_empty() {
+            text += &format!("; over where {}", terminated.join(" or "));
+        }
+        text += "\n";
     }
     text
 }

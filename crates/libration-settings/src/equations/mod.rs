@@ -1,11 +1,13 @@
 //! Systems by their equations, in files.
 
 mod table;
+mod task;
 
 use libration::analysis::rate_derivative;
 use libration::equations::{Definitions, Degree, Equations};
 use libration::linear::Matrix;
 use table::{File, help};
+pub use task::EquationTask;
 
 use crate::{Document, SettingsError, suggestions};
 
@@ -32,6 +34,8 @@ pub struct EquationSystem {
     pub q: Vec<f64>,
     /// Initial velocities of all degrees of freedom.
     pub v: Vec<f64>,
+    /// The task of environments, if the file has one.
+    pub task: Option<EquationTask>,
 }
 
 /// A coordinate, a velocity or a state of first order.
@@ -63,7 +67,8 @@ impl EquationSystem {
     /// The first key or expression that is wrong.
     pub fn parse(text: &str, file: &str, set: &[(String, f64)]) -> Result<Self, SettingsError> {
         let document = Document::parse(text, file)?;
-        let File { system } = toml::from_str(text).map_err(|error| document.explain(&error))?;
+        let File { system, task } =
+            toml::from_str(text).map_err(|error| document.explain(&error))?;
         let (mut definitions, units) = system.definitions();
         for (name, value) in set {
             let parameters = &mut definitions.parameters;
@@ -92,7 +97,7 @@ impl EquationSystem {
         let input_units = definitions.inputs.iter().map(|name| unit(name)).collect();
         let energy_unit = unit("energy");
         let (name, description) = (system.name, system.description);
-        Ok(EquationSystem {
+        let mut read = EquationSystem {
             name,
             description,
             equations,
@@ -103,7 +108,15 @@ impl EquationSystem {
             energy_unit,
             q,
             v,
-        })
+            task: None,
+        };
+        if let Some(task) = task {
+            let found = task.read(&read, text);
+            read.task = Some(found.map_err(|(span, message, help)| {
+                SettingsError::new(file, text, span, message, help)
+            })?);
+        }
+        Ok(read)
     }
 }
 

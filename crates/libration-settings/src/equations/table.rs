@@ -9,12 +9,14 @@ use libration::equations::{
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::task::TaskTable;
 use crate::{Number, suggestions};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct File {
     pub(super) system: Table,
+    pub(super) task: Option<TaskTable>,
 }
 
 /// The table `[system]`.

@@ -1,0 +1,148 @@
+//! Tasks of environments by expressions, in files.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use libration::equations::{EquationError, TaskDefinitions, TaskPrograms};
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use toml::Spanned;
+
+use super::EquationSystem;
+use super::table::{Wrong, help};
+use crate::{Document, Number, SettingsError, suggestions};
+
+/// A task on a system by equations: what is observed, the reward, when an episode is over, and where it starts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EquationTask {
+    /// The texts of the expressions.
+    pub definitions: TaskDefinitions,
+    /// The programs.
+    pub programs: TaskPrograms,
+    /// The unit of each observed number; empty where it is not known.
+    pub units: Vec<String>,
+    /// The range of each position, then of each velocity, from which an episode starts.
+    pub start: Vec<[f64; 2]>,
+}
+
+/// A file with a task.
+#[derive(Deserialize)]
+struct File {
+    #[serde(rename = "system", default)]
+    _system: IgnoredAny,
+    task: TaskTable,
+}
+
+/// The table `[task]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TaskTable {
+    observe: Option<Vec<Spanned<String>>>,
+    reward: Spanned<String>,
+    #[serde(default)]
+    terminated: Vec<Spanned<String>>,
+    #[serde(default)]
+    start: BTreeMap<Spanned<String>, Spanned<Start>>,
+}
+
+/// A number, or the ends of a range.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(untagged, expecting = "expected a number, or the two ends of a range")]
+enum Start {
+    At(Number),
+    Between([Number; 2]),
+}
+
+impl EquationTask {
+    /// Reads a task on `system` from the table `[task]` of a file; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// The first key or expression that is wrong.
+    pub fn parse(text: &str, file: &str, system: &EquationSystem) -> Result<Self, SettingsError> {
+        let document = Document::parse(text, file)?;
+        let File { task, .. } = toml::from_str(text).map_err(|error| document.explain(&error))?;
+        task.read(system, text)
+            .map_err(|(span, message, help)| SettingsError::new(file, text, span, message, help))
+    }
+}
+
+impl TaskTable {
+    /// The task on a system; `text` is that of the file.
+    pub(super) fn read(&self, system: &EquationSystem, text: &str) -> Result<EquationTask, Wrong> {
+        let texts = |all: &[Spanned<String>]| -> Vec<String> {
+            all.iter().map(|text| text.get_ref().clone()).collect()
+        };
+        let states = || system.states.iter().map(|state| state.name.clone()).collect();
+        let definitions = TaskDefinitions {
+            observe: self.observe.as_deref().map_or_else(states, texts),
+            reward: self.reward.get_ref().clone(),
+            terminated: texts(&self.terminated),
+        };
+        if definitions.observe.is_empty() {
+            let span = self.reward.span();
+            let message = "`observe` is empty; expected at least one expression, or no `observe` for all states";
+            return Err((span, message.into(), None));
+        }
+        let programs = TaskPrograms::new(&definitions, &system.definitions, &system.equations)
+            .map_err(|error| (self.place(&error, text), error.to_string(), help(&error)))?;
+        let unit = |text: &String| {
+            let state = system.states.iter().find(|state| state.name == *text);
+            state.map_or_else(String::new, |state| state.unit.clone())
+        };
+        Ok(EquationTask {
+            units: definitions.observe.iter().map(unit).collect(),
+            start: self.start(system)?,
+            definitions,
+            programs,
+        })
+    }
+
+    /// The place in the file of an error of an expression.
+    fn place(&self, error: &EquationError, text: &str) -> Range<usize> {
+        let mut keys = error.key.split('.').skip(1);
+        let (key, index) = (keys.next(), keys.next().and_then(|index| index.parse().ok()));
+        let texts = match key {
+            Some("observe") => self.observe.as_deref().unwrap_or_default(),
+            Some("terminated") => &self.terminated[..],
+            _ => std::slice::from_ref(&self.reward),
+        };
+        let Some(value) = texts.get(index.unwrap_or(0)) else { return self.reward.span() };
+        let inside = error.span.clone().and_then(|inside| {
+            // An escape is longer in the file than in the expression.
+            let begin =
+                value.span().start + text.get(value.span())?.find(value.get_ref().as_str())?;
+            Some(begin + inside.start..begin + inside.end)
+        });
+        inside.unwrap_or_else(|| value.span())
+    }
+
+    /// The ranges of positions and velocities; those that are not given start where the system does.
+    fn start(&self, system: &EquationSystem) -> Result<Vec<[f64; 2]>, Wrong> {
+        let mut ranges: Vec<[f64; 2]> = system.q.iter().chain(&system.v).map(|&x| [x, x]).collect();
+        for (name, start) in &self.start {
+            let Some(state) = system.states.iter().find(|state| state.name == *name.get_ref())
+            else {
+                let known = system.states.iter().map(|state| state.name.as_str());
+                let help = suggestions::suggest("states", name.get_ref(), known);
+                return Err((
+                    name.span(),
+                    format!("unknown state `{}`", name.get_ref()),
+                    Some(help),
+                ));
+            };
+            let [low, high] = match *start.get_ref() {
+                Start::At(x) => [x.0; 2],
+                Start::Between(ends) => ends.map(|x| x.0),
+            };
+            if !(low <= high && (high - low).is_finite()) {
+                let message = format!(
+                    "`{}` starts from {low} to {high}; expected finite numbers of which the first is not the larger",
+                    name.get_ref()
+                );
+                return Err((start.span(), message, None));
+            }
+            ranges[state.place] = [low, high];
+        }
+        Ok(ranges)
+    }
+}
