@@ -30,7 +30,12 @@ __all__ = [
 ]
 
 NAMESPACE = "libration"
-METADATA = {"render_modes": ["rgb_array"], "render_fps": 30}
+METADATA: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 30}
+
+
+def _metadata(name: str | EquationSystem) -> dict[str, Any]:
+    """Return what is known of an environment; a system by equations has no picture."""
+    return {"render_modes": []} if isinstance(name, EquationSystem) else METADATA
 
 
 def _spaces(preset: Preset | EquationPreset, settings: dict[str, Any]) -> tuple[Box, Box]:
@@ -73,7 +78,7 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
         self.render_mode = _render_mode(name, render_mode)
         super().__init__(name, num_envs, **given)
         self.metadata = {
-            **METADATA,
+            **_metadata(name),
             "autoreset_mode": AutoresetMode(self._settings["autoreset"]),
         }
         spaces = _spaces(self.preset, dict(self._settings))
@@ -130,6 +135,7 @@ class Env(gymnasium.Env):
             if unknown in given:
                 raise TypeError(f"unexpected keyword argument {unknown!r}: it belongs to vector environments")
         self.render_mode = _render_mode(name, render_mode)
+        self.metadata = _metadata(name)
         self._all = Environments(
             name, max_episode_steps=np.inf, autoreset_mode="Disabled", **given
         )
@@ -164,12 +170,16 @@ class Env(gymnasium.Env):
 class SystemEnv(Env):
     """Single environment ``libration/System-v0`` of a system by equations."""
 
+    metadata = {"render_modes": []}
+
     def __init__(self, system: EquationSystem, **given: Any) -> None:
         super().__init__(_system(system), **given)
 
 
 class SystemVectorEnv(VectorEnv):
     """Vector environment ``libration/System-v0`` of a system by equations."""
+
+    metadata = {"render_modes": []}
 
     def __init__(self, system: EquationSystem, num_envs: int = 1, **given: Any) -> None:
         super().__init__(_system(system), num_envs, **given)

@@ -5,7 +5,8 @@ use std::sync::atomic::AtomicBool;
 use libration::Method;
 use libration_analyze::equation_analysis::{self, EquationSummary};
 use libration_analyze::equation_trajectory::{self, EquationRequest};
-use libration_settings::equations::EquationSystem;
+use libration_settings::SettingsError;
+use libration_settings::equations::{EquationSystem, EquationTask};
 use libration_settings::linear_loop::{OperatingPoint, linearised_equations};
 use pyo3::prelude::*;
 use serde_json::json;
@@ -20,7 +21,17 @@ use crate::simulate::{Rows, Simulated, converted};
 pub(crate) type EquationText = (String, String, Vec<(String, f64)>);
 
 pub(crate) fn equations((text, file, set): &EquationText) -> PyResult<EquationSystem> {
-    EquationSystem::parse(text, file, set).map_err(Raised::raised)
+    EquationSystem::parse(text, file, set).map_err(located)
+}
+
+/// The task of a text with a table `[task]`.
+pub(crate) fn task(text: &str, system: &EquationSystem) -> PyResult<EquationTask> {
+    EquationTask::parse(text, "task", system).map_err(located)
+}
+
+/// An exception that shows the line: the texts of expressions are somewhere in it.
+fn located(error: SettingsError) -> PyErr {
+    value_error(error.to_string())
 }
 
 /// Returns what is known of a system, as JSON.

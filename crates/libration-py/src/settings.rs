@@ -4,11 +4,10 @@ use libration::ensemble::Execution;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Delays, ProgramEnvironment};
 use libration_env::environments::{EnvironmentSettings, Noise, SingleDofSystem, Task};
-use libration_settings::equations::EquationTask;
 use pyo3::prelude::*;
 
 use crate::any_batch::AnyBatch;
-use crate::equations::{EquationText, equations};
+use crate::equations::{self, EquationText};
 use crate::error::{Raised, unknown, value_error};
 use crate::request::{SystemRequest, law, method, system};
 
@@ -130,9 +129,9 @@ impl Settings {
         let Subject::Equations { equations: text, task, saturation, noise } = &self.subject else {
             return Err(value_error("the environments are those of the catalogue".to_owned()));
         };
-        let system = equations(text)?;
+        let system = equations::equations(text)?;
         let task = match task {
-            Some(task) => EquationTask::parse(task, "task", &system).map_err(Raised::raised)?,
+            Some(text) => equations::task(text, &system)?,
             None => system.task.clone().ok_or_else(|| {
                 let text = "reward is required: the file of the system has no table [task]";
                 value_error(text.to_owned())
