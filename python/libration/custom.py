@@ -111,7 +111,7 @@ class CustomTaskVectorEnv(gymnasium.vector.VectorEnv):
         observations, rewards, lost, truncated, infos = self.inner.step(actions)
         # Terminations of the engine hold even if the task fails.
         self._ended = lost | truncated
-        shape = self.action_space.shape
+        shape = (self.num_envs, len(self.inner.preset.actions))
         taken = read(actions, shape, rewards.dtype.name).reshape(shape)
         try:
             paid = self.task(before, np.clip(taken, -self._most, self._most), self.states)

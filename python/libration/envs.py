@@ -43,9 +43,9 @@ def _spaces(preset: Preset | EquationPreset, settings: dict[str, Any]) -> tuple[
     dtype, subject = np.dtype(settings["dtype"]), settings["subject"]
     noise = subject["noise"]
     laws = noise if isinstance(noise, list) else [noise] * len(preset.seen)
-    high = [np.inf if law[1] > 0 else limit for law, limit in zip(laws, preset.limits)]
+    limits = [np.inf if law[1] > 0 else limit for law, limit in zip(laws, preset.limits)]
+    high = np.array(limits, dtype=dtype)
     most = np.broadcast_to(np.array(subject["saturation"], dtype=dtype), len(preset.actions))
-    high = np.array(high, dtype=dtype)
     return Box(-high, high, dtype=dtype), Box(-most, most, dtype=dtype)
 
 
@@ -103,7 +103,9 @@ class VectorEnv(Environments, gymnasium.vector.VectorEnv):
             return None
         from ._render import picture
 
-        return tuple(picture(self.preset, *state) for state in self.states.astype(float))
+        preset = self.preset
+        assert isinstance(preset, Preset), "a system by equations has no render mode"
+        return tuple(picture(preset, *state) for state in self.states.astype(float))
 
     def close_extras(self, **kwargs: Any) -> None:
         self._close()
@@ -161,7 +163,9 @@ class Env(gymnasium.Env):
             return None
         from ._render import picture
 
-        return picture(self._all.preset, *self._all.states[0].astype(float))
+        preset = self._all.preset
+        assert isinstance(preset, Preset), "a system by equations has no render mode"
+        return picture(preset, *self._all.states[0].astype(float))
 
     def close(self) -> None:
         self._all._close()
