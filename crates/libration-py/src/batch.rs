@@ -2,12 +2,13 @@
 
 use libration::ensemble::Execution;
 use libration::rl::{EnvironmentError, Plan};
+use libration_env::environments::AnyEnvironments;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 
-use crate::any_batch::{AnyBatch, DynBatch, with_batch};
+use crate::any_batch::{AnyBatch, with_batch};
 use crate::array::{Array, Number, allocate, view_mut};
 use crate::checked_mutex::{CheckedGuard, CheckedMutex};
 use crate::error::{Raised, value_error};
@@ -28,6 +29,8 @@ pub(crate) struct Batch {
 struct Inner {
     batch: AnyBatch,
     episodes: EpisodeStates,
+    /// The places of the numbers of a state among positions and velocities.
+    places: Vec<usize>,
     /// The process that has its threads.
     process: u32,
     threads: usize,
@@ -47,6 +50,7 @@ impl Batch {
         *self.inner.lock(py)? = Some(Inner {
             batch: settings.batch()?,
             episodes: EpisodeStates::new(&settings, buffers)?,
+            places: settings.places()?,
             process: std::process::id(),
             threads: settings.execution()?.thread_count(),
         });
@@ -147,19 +151,21 @@ impl Batch {
     fn _states<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         fn states<'py, T: Number>(
             py: Python<'py>,
-            environments: &dyn DynBatch<T>,
+            environments: &dyn AnyEnvironments<T>,
             len: usize,
+            places: &[usize],
         ) -> PyResult<Bound<'py, PyAny>> {
-            let width = environments.states();
+            let width = places.len();
             let all: Bound<'py, Array<T, 2>> = allocate(py, [len, width])?;
             for (n, row) in view_mut(&all).chunks_exact_mut(width).enumerate() {
-                environments.write_state(n, row);
+                let state = environments.state(n).unwrap_or_default();
+                row.iter_mut().zip(places).for_each(|(x, &place)| *x = state[place]);
             }
             Ok(all.into_any())
         }
         let mut guard = slf.get().inner.lock(slf.py())?;
-        let Inner { batch, episodes, .. } = open(slf, &mut guard)?;
-        with_batch!(batch, environments => states(slf.py(), &**environments, episodes.len))
+        let Inner { batch, episodes, places, .. } = open(slf, &mut guard)?;
+        with_batch!(batch, environments => states(slf.py(), &**environments, episodes.len, places))
     }
 
     /// Returns the state, for environments with the same settings.

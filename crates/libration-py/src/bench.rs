@@ -2,10 +2,11 @@
 
 use std::time::Instant;
 
-use libration::rl::{EnvironmentError, Plan, StepBuffers};
+use libration::rl::{EnvironmentError, Plan, ProgramPolicy, StepBuffers};
+use libration_env::environments::AnyEnvironments;
 use pyo3::prelude::*;
 
-use crate::any_batch::{AnyBatch, DynBatch, with_batch};
+use crate::any_batch::{AnyBatch, with_batch};
 use crate::array::Number;
 use crate::error::Raised;
 use crate::policy::{Policy, PolicyRequest};
@@ -28,17 +29,18 @@ pub(crate) fn _seconds_of_rollouts(
     rollouts: usize,
 ) -> PyResult<Vec<f64>> {
     fn each<T: Number>(
-        environments: &mut dyn DynBatch<T>,
+        environments: &mut dyn AnyEnvironments<T>,
         acts: &Policy<T>,
         plan: Plan,
         rollouts: usize,
     ) -> Result<Vec<f64>, EnvironmentError> {
-        let mut tensors = environments.tensors(plan)?;
+        let mut tensors = environments.new_rollout(plan)?;
         let seeds: Vec<Option<u64>> = (0..plan.environments as u64).map(Some).collect();
         environments.seed(&seeds)?;
         let timed = |_| {
             let start = Instant::now();
-            environments.fill(acts, &mut *tensors, 0..plan.horizon)?;
+            let policy = acts.sized(environments.sizes()[1]);
+            environments.fill(policy, &mut *tensors, 0..plan.horizon)?;
             Ok(start.elapsed().as_secs_f64())
         };
         (0..rollouts).map(timed).collect()
@@ -57,12 +59,16 @@ pub(crate) fn _seconds_of_rollouts(
     done.map_err(Raised::raised)
 }
 
-fn timed<T: Number>(environments: &mut dyn DynBatch<T>, len: usize, steps: usize) -> PyResult<f64> {
+fn timed<T: Number>(
+    environments: &mut dyn AnyEnvironments<T>,
+    len: usize,
+    steps: usize,
+) -> PyResult<f64> {
     let seeds: Vec<Option<u64>> = (0..len as u64).map(Some).collect();
     environments.seed(&seeds).map_err(Raised::raised)?;
-    let actions = vec![T::zero(); len * environments.actions()];
-    let (mut seen, mut reward) =
-        (vec![T::zero(); len * environments.observations()], vec![T::zero(); len]);
+    let [observations, actions] = environments.sizes();
+    let actions = vec![T::zero(); len * actions];
+    let (mut seen, mut reward) = (vec![T::zero(); len * observations], vec![T::zero(); len]);
     let (mut terminated, mut truncated) = (vec![0; len], vec![0; len]);
     let start = Instant::now();
     for _ in 0..steps {
@@ -72,7 +78,7 @@ fn timed<T: Number>(environments: &mut dyn DynBatch<T>, len: usize, steps: usize
             terminated: &mut terminated,
             truncated: &mut truncated,
         };
-        environments.act(&actions, to).map_err(Raised::raised)?;
+        environments.act(ProgramPolicy::ActionSequence(&actions), to).map_err(Raised::raised)?;
     }
     Ok(start.elapsed().as_secs_f64())
 }

@@ -18,14 +18,12 @@ mod linear_loops;
 mod linear_plant;
 mod policy;
 mod program;
-mod program_batch;
 mod replay;
 mod request;
 mod rollout;
 mod settings;
 mod simulate;
 mod step;
-mod tensors;
 mod time_slices;
 mod trajectories;
 

@@ -1,11 +1,8 @@
 //! Policies of rollouts.
 
-use std::array::from_fn;
-
 use libration::ensemble::InstructionSet;
 use libration::rl::ProgramPolicy;
-use libration::rl::policy::{Activation, Constant, Linear, Network, Random};
-use libration_env::environments::AnyPolicy;
+use libration::rl::policy::{Activation, Network};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 
@@ -61,26 +58,8 @@ impl<T: Number> Policy<T> {
         })
     }
 
-    /// Returns the policy for environments with one action; missing numbers are 0.
-    pub(crate) fn actor<const O: usize>(&self) -> AnyPolicy<'_, T, O> {
-        let number = |numbers: &[f64], i: usize| numbers.get(i).copied().unwrap_or(0.0);
-        match self {
-            Policy::Linear(numbers) => AnyPolicy::Linear(Linear {
-                weights: [from_fn(|i| number(numbers, i))],
-                bias: [number(numbers, O)],
-            }),
-            Policy::Random(ends) => {
-                AnyPolicy::Random(Random::between([number(ends, 0)], [number(ends, 1)]))
-            }
-            Policy::Constant(action) => AnyPolicy::Constant(Constant([number(action, 0)])),
-            Policy::Network { parameters, hidden, activation } => {
-                AnyPolicy::Network(Self::network(parameters, hidden, *activation))
-            }
-        }
-    }
-
-    /// Returns the policy for environments with so many actions.
-    pub(crate) fn by_program(&self, actions: usize) -> ProgramPolicy<'_, T> {
+    /// Returns the policy of the engine for environments with so many actions.
+    pub(crate) fn sized(&self, actions: usize) -> ProgramPolicy<'_, T> {
         match self {
             Policy::Linear(numbers) => {
                 let (weights, bias) = numbers.split_at(numbers.len().saturating_sub(actions));
@@ -92,16 +71,9 @@ impl<T: Number> Policy<T> {
             }
             Policy::Constant(action) => ProgramPolicy::Constant(action),
             Policy::Network { parameters, hidden, activation } => {
-                ProgramPolicy::Network(Self::network(parameters, hidden, *activation))
+                let (activation, instructions) = (*activation, InstructionSet::widest());
+                ProgramPolicy::Network(Network { parameters, hidden, activation, instructions })
             }
         }
-    }
-
-    fn network<'a>(
-        parameters: &'a [T],
-        hidden: &'a [usize],
-        activation: Activation,
-    ) -> Network<'a, T> {
-        Network { parameters, hidden, activation, instructions: InstructionSet::widest() }
     }
 }

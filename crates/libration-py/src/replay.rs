@@ -4,6 +4,7 @@ use bytemuck::cast_slice_mut;
 use libration::ensemble::Execution;
 use libration::replay::{Capacity, Columns, Draw, Lookahead, ReplayBuffer, ReplayError, Sequences};
 use libration::rl::{EnvironmentError, Rollout};
+use libration_env::environments::AnyRollout;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -12,7 +13,6 @@ use crate::array::{Array, Number, allocate, bytes_of, view_mut};
 use crate::checked_mutex::CheckedMutex;
 use crate::error::{Raised, check_memory, value_error};
 use crate::rollout::{AnyTensors, Memory};
-use crate::tensors::Tensors;
 
 /// The last transitions of many environments, of which batches are drawn.
 #[pyclass(frozen, module = "libration._native")]
@@ -52,7 +52,7 @@ struct SampleRequest {
 trait Store<T>: Send {
     fn len(&self) -> u64;
 
-    fn insert(&mut self, tensors: &mut dyn Tensors<T>, next: &[T]) -> Result<(), ReplayError>;
+    fn insert(&mut self, tensors: &mut dyn AnyRollout<T>, next: &[T]) -> Result<(), ReplayError>;
 
     fn sample<'py>(&self, py: Python<'py>, request: SampleRequest) -> PyResult<Bound<'py, PyDict>>;
 
@@ -75,8 +75,8 @@ impl<T: Number, const O: usize> Store<T> for ReplayBuffer<T, O, 1> {
         ReplayBuffer::len(self)
     }
 
-    fn insert(&mut self, tensors: &mut dyn Tensors<T>, next: &[T]) -> Result<(), ReplayError> {
-        let found = tensors.observations();
+    fn insert(&mut self, tensors: &mut dyn AnyRollout<T>, next: &[T]) -> Result<(), ReplayError> {
+        let found = tensors.sizes()[0];
         let Some(rollout) = tensors.as_any().downcast_mut::<Rollout<T, O, 1>>() else {
             let name = "numbers that an environment of the rollout shows";
             return Err(EnvironmentError::Shape { name, found, wanted: O }.into());
@@ -219,7 +219,7 @@ impl Buffer {
     fn _insert(&self, py: Python<'_>, memory: &Memory, next: &Bound<'_, PyAny>) -> PyResult<()> {
         fn taken<T: Number>(
             store: &mut dyn Store<T>,
-            tensors: &mut dyn Tensors<T>,
+            tensors: &mut dyn AnyRollout<T>,
             next: &Bound<'_, PyAny>,
         ) -> PyResult<()> {
             let next = next.call_method0("ravel")?;

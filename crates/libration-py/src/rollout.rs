@@ -1,16 +1,16 @@
 //! Rollouts in Python: memory of the engine as NumPy arrays.
 
-use libration::rl::{Discounts, Estimates, Plan};
-use numpy::{PyArray1, PyArrayMethods};
+use libration::rl::{Discounts, EpisodeEnd, EpisodeEnds, Estimates, Plan};
+use libration_env::environments::{AnyEnvironments, AnyRollout};
+use numpy::{Element, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::any_batch::{AnyBatch, DynBatch};
+use crate::any_batch::AnyBatch;
 use crate::array::{Array, Number, allocate, view, view_mut, view_of_flags};
 use crate::checked_mutex::{CheckedGuard, CheckedMutex};
 use crate::error::{Raised, value_error};
 use crate::policy::{Policy, PolicyRequest};
-use crate::tensors::Tensors;
 use crate::time_slices::run_in_slices;
 
 /// Memory of a rollout, allocated once and reused.
@@ -21,8 +21,8 @@ pub(crate) struct Memory {
 
 /// Tensors of either float type.
 pub(crate) enum AnyTensors {
-    F32(Box<dyn Tensors<f32>>),
-    F64(Box<dyn Tensors<f64>>),
+    F32(Box<dyn AnyRollout<f32>>),
+    F64(Box<dyn AnyRollout<f64>>),
 }
 
 /// Evaluates an expression for the tensors of either float type.
@@ -43,10 +43,10 @@ impl Memory {
     pub(crate) fn new(batch: &AnyBatch, plan: Plan) -> PyResult<Self> {
         let tensors = match batch {
             AnyBatch::F32(environments) => {
-                AnyTensors::F32(environments.tensors(plan).map_err(Raised::raised)?)
+                AnyTensors::F32(environments.new_rollout(plan).map_err(Raised::raised)?)
             }
             AnyBatch::F64(environments) => {
-                AnyTensors::F64(environments.tensors(plan).map_err(Raised::raised)?)
+                AnyTensors::F64(environments.new_rollout(plan).map_err(Raised::raised)?)
             }
         };
         Ok(Memory { tensors: CheckedMutex::new(tensors) })
@@ -82,9 +82,9 @@ impl Memory {
 /// Fills tensors piece by piece. Gives which environments ended with the last step that was taken, and why it was the last.
 fn filled<T: Number>(
     py: Python<'_>,
-    environments: &mut dyn DynBatch<T>,
+    environments: &mut dyn AnyEnvironments<T>,
     policy: &Policy<T>,
-    tensors: &mut dyn Tensors<T>,
+    tensors: &mut dyn AnyRollout<T>,
     substeps: usize,
 ) -> (Vec<u8>, PyResult<()>) {
     let Plan { horizon, environments: count, .. } = tensors.plan();
@@ -92,13 +92,13 @@ fn filled<T: Number>(
     let mut taken = 0;
     let outcome = run_in_slices(py, horizon as u64, first as u64, |piece| {
         let rows = piece.start as usize..piece.end as usize;
+        let policy = policy.sized(tensors.sizes()[1]);
         py.detach(|| environments.fill(policy, tensors, rows)).map_err(Raised::raised)?;
         taken = piece.end as usize;
         Ok(())
     });
-    let [(_, terminated), (_, truncated)] = tensors.flags();
     let last = taken.saturating_sub(1) * count..taken * count;
-    let flags = terminated[last.clone()].iter().zip(&truncated[last]);
+    let flags = tensors.terminated()[last.clone()].iter().zip(&tensors.truncated()[last]);
     (flags.map(|(over, cut)| over | cut).collect(), outcome)
 }
 
@@ -108,11 +108,18 @@ impl Memory {
     fn _arrays<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         fn arrays<'py, T: Number>(
             owner: &Bound<'py, Memory>,
-            tensors: &dyn Tensors<T>,
+            tensors: &dyn AnyRollout<T>,
         ) -> PyResult<Bound<'py, PyDict>> {
             let Plan { horizon, environments, .. } = tensors.plan();
             let all = PyDict::new(owner.py());
-            for (name, numbers, each) in tensors.numbers() {
+            let [observations, actions] = tensors.sizes();
+            for (name, numbers, each) in [
+                ("observations", tensors.observation(), observations),
+                ("actions", tensors.action(), actions),
+                ("rewards", tensors.reward(), 0),
+                ("log_probabilities", tensors.log_probability(), 0),
+                ("values", tensors.value(), 0),
+            ] {
                 if numbers.is_empty() {
                     continue;
                 }
@@ -122,7 +129,9 @@ impl Memory {
                 };
                 all.set_item(name, array?)?;
             }
-            for (name, flags) in tensors.flags() {
+            for (name, flags) in
+                [("terminated", tensors.terminated()), ("truncated", tensors.truncated())]
+            {
                 let flags = view_of_flags(owner.as_any(), flags, [horizon, environments])?;
                 all.set_item(name, flags)?;
             }
@@ -135,18 +144,25 @@ impl Memory {
     fn _ends<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         fn ends<'py, T: Number>(
             py: Python<'py>,
-            tensors: &dyn Tensors<T>,
+            tensors: &dyn AnyRollout<T>,
         ) -> PyResult<Bound<'py, PyDict>> {
+            fn column<'py, X: Element, T>(
+                py: Python<'py>,
+                ended: &EpisodeEnds<T>,
+                of: impl Fn(&EpisodeEnd<T, 0>) -> X,
+            ) -> Bound<'py, PyArray1<X>> {
+                PyArray1::from_vec(py, ended.ends.iter().map(of).collect())
+            }
             let ended = tensors.ends();
             let seen: Bound<'py, Array<T, 2>> =
-                allocate(py, [ended.steps.len(), tensors.observations()])?;
-            view_mut(&seen).copy_from_slice(&ended.seen);
+                allocate(py, [ended.ends.len(), tensors.sizes()[0]])?;
+            view_mut(&seen).copy_from_slice(&ended.observations);
             let all = PyDict::new(py);
-            all.set_item("steps", PyArray1::from_vec(py, ended.steps))?;
-            all.set_item("environments", PyArray1::from_vec(py, ended.environments))?;
-            all.set_item("lengths", PyArray1::from_vec(py, ended.lengths))?;
-            all.set_item("returns", PyArray1::from_vec(py, ended.returns))?;
-            all.set_item("lost", PyArray1::from_vec(py, ended.lost))?;
+            all.set_item("steps", column(py, &ended, |end| end.step))?;
+            all.set_item("environments", column(py, &ended, |end| end.environment))?;
+            all.set_item("lengths", column(py, &ended, |end| end.length))?;
+            all.set_item("returns", column(py, &ended, |end| end.episode_return))?;
+            all.set_item("lost", column(py, &ended, |end| end.lost))?;
             all.set_item("final_observations", seen)?;
             Ok(all)
         }
@@ -172,7 +188,7 @@ impl Memory {
     ) -> PyResult<[Bound<'py, PyAny>; 2]> {
         fn estimates<'py, T: Number>(
             py: Python<'py>,
-            tensors: &dyn Tensors<T>,
+            tensors: &dyn AnyRollout<T>,
             discounts: Discounts,
             [next, last]: [Vec<f64>; 2],
         ) -> PyResult<[Bound<'py, PyAny>; 2]> {

@@ -3,7 +3,9 @@
 use libration::ensemble::Execution;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Delays, ProgramEnvironment};
-use libration_env::environments::{EnvironmentSettings, Noise, SingleDofSystem, Task};
+use libration_env::environments::{
+    AnyEnvironmentSettings, EnvironmentSettings, EquationEnvironment, Noise, SingleDofSystem, Task,
+};
 use pyo3::prelude::*;
 
 use crate::any_batch::AnyBatch;
@@ -33,23 +35,31 @@ pub(crate) struct Settings {
 /// What the environments are of.
 #[derive(FromPyObject)]
 enum Subject {
-    /// A system of the catalogue with one of the engine's tasks.
-    #[pyo3(from_item_all)]
-    Catalogue {
-        catalogued: SystemRequest,
-        task: (String, Vec<f64>),
-        start: [[f64; 2]; 2],
-        saturation: f64,
-        noise: (String, f64),
-    },
-    /// A system by equations with a task by expressions: the text of a table `[task]`, or none for that of the system's file.
-    #[pyo3(from_item_all)]
-    Equations {
-        equations: EquationText,
-        task: Option<String>,
-        saturation: Vec<f64>,
-        noise: Vec<(String, f64)>,
-    },
+    #[pyo3(transparent)]
+    Catalogue(CatalogueSubject),
+    #[pyo3(transparent)]
+    Equations(EquationSubject),
+}
+
+/// A system of the catalogue with one of the engine's tasks.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct CatalogueSubject {
+    catalogued: SystemRequest,
+    task: (String, Vec<f64>),
+    start: [[f64; 2]; 2],
+    saturation: f64,
+    noise: (String, f64),
+}
+
+/// A system by equations with a task by expressions: the text of a table `[task]`, or none for that of the system's file.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct EquationSubject {
+    equations: EquationText,
+    task: Option<String>,
+    saturation: Vec<f64>,
+    noise: Vec<(String, f64)>,
 }
 
 impl Settings {
@@ -78,28 +88,40 @@ impl Settings {
 
     /// Environments of these settings.
     pub(crate) fn batch(&self) -> PyResult<AnyBatch> {
-        let (single, execution) = (self.single()?, self.execution()?);
-        let batch = match &self.subject {
-            Subject::Catalogue { .. } => {
-                AnyBatch::catalogued(&self.catalogued()?, single, self.num_envs, &execution)
-            }
-            Subject::Equations { .. } => {
-                let (definition, states) = self.by_equations()?;
-                AnyBatch::by_program(definition, states, single, self.num_envs, &execution)
-            }
-        };
+        let batch =
+            AnyBatch::new(&self.settings()?, self.single()?, self.num_envs, &self.execution()?);
         batch.map_err(Raised::raised)
+    }
+
+    fn settings(&self) -> PyResult<AnyEnvironmentSettings> {
+        match &self.subject {
+            Subject::Catalogue(subject) => {
+                self.catalogued(subject).map(AnyEnvironmentSettings::Catalogued)
+            }
+            Subject::Equations(subject) => {
+                let settings = self.by_equations(subject)?;
+                Ok(AnyEnvironmentSettings::Equations(Box::new(settings)))
+            }
+        }
+    }
+
+    /// The places of the numbers of a state among positions and velocities.
+    pub(crate) fn places(&self) -> PyResult<Vec<usize>> {
+        match &self.subject {
+            Subject::Catalogue(_) => Ok(vec![0, 1]),
+            Subject::Equations(subject) => {
+                let system = equations::equations(&subject.equations)?;
+                Ok(system.states.iter().map(|state| state.place).collect())
+            }
+        }
     }
 
     fn delays(&self) -> Delays {
         Delays { observation: self.observation_delay, action: self.action_delay }
     }
 
-    fn catalogued(&self) -> PyResult<EnvironmentSettings> {
-        let Subject::Catalogue { catalogued, task, start, saturation, noise } = &self.subject
-        else {
-            return Err(value_error("the environments are those of equations".to_owned()));
-        };
+    fn catalogued(&self, subject: &CatalogueSubject) -> PyResult<EnvironmentSettings> {
+        let CatalogueSubject { catalogued, task, start, saturation, noise } = subject;
         let (found, actuation) = system(catalogued)?;
         let system = SingleDofSystem::new(found).ok_or_else(|| {
             let name = &catalogued.0;
@@ -124,12 +146,9 @@ impl Settings {
             },
         })
     }
-    /// The definition of environments of equations, and the places of their states among positions and velocities.
-    fn by_equations(&self) -> PyResult<(ProgramEnvironment, Vec<usize>)> {
-        let Subject::Equations { equations: text, task, saturation, noise } = &self.subject else {
-            return Err(value_error("the environments are those of the catalogue".to_owned()));
-        };
-        let system = equations::equations(text)?;
+    fn by_equations(&self, subject: &EquationSubject) -> PyResult<EquationEnvironment> {
+        let EquationSubject { equations: source, task, saturation, noise } = subject;
+        let system = equations::equations(source)?;
         let task = match task {
             Some(text) => equations::task(text, &system)?,
             None => system.task.clone().ok_or_else(|| {
@@ -141,7 +160,7 @@ impl Settings {
         let dynamics = system.equations.dynamics().clone();
         let definition = ProgramEnvironment {
             substeps: self.substeps,
-            start: task.start,
+            start: task.start.clone(),
             limit: self.limit,
             autoreset: self.autoreset()?,
             delays: self.delays(),
@@ -149,9 +168,15 @@ impl Settings {
             skew: law("skew", &self.skew.0, self.skew.1)?,
             jitter: law("jitter", &self.jitter.0, self.jitter.1)?,
             noise: noise.collect::<PyResult<_>>()?,
-            ..ProgramEnvironment::new(dynamics, task.programs, method(&self.integrator)?, self.dt)
+            ..ProgramEnvironment::new(
+                dynamics,
+                task.programs.clone(),
+                method(&self.integrator)?,
+                self.dt,
+            )
         };
-        Ok((definition, system.states.iter().map(|state| state.place).collect()))
+        let (text, _, parameters) = source.clone();
+        Ok(EquationEnvironment { system, text, parameters, task, definition })
     }
 }
 

@@ -2,13 +2,13 @@
 
 use std::iter::repeat_with;
 
-use libration::rl::{Autoreset, StepBuffers};
+use libration::rl::{Autoreset, EpisodeEnds, ProgramPolicy, StepBuffers};
+use libration_env::environments::AnyEnvironments;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 
-use crate::any_batch::{DynBatch, Ends};
 use crate::array::{
     Array, Number, ReusedArray, allocate, are_finite, bytes_of, contiguous_actions, lies_in,
     reuse_or_allocate, view_mut,
@@ -123,26 +123,26 @@ impl EpisodeStates {
 /// The current observations, in the array of a step.
 pub(crate) fn observe<'py, T: Number>(
     py: Python<'py>,
-    environments: &mut dyn DynBatch<T>,
+    environments: &mut dyn AnyEnvironments<T>,
     episodes: &mut EpisodeStates,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let Row { seen, .. } = episodes.row::<T>(py, environments.observations())?;
+    let Row { seen, .. } = episodes.row::<T>(py, environments.sizes()[0])?;
     shown(py, environments, seen)
 }
 
 /// The current observations, in an array of their own.
 pub(crate) fn observe_copy<'py, T: Number>(
     py: Python<'py>,
-    environments: &mut dyn DynBatch<T>,
+    environments: &mut dyn AnyEnvironments<T>,
     episodes: &EpisodeStates,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let seen = allocate(py, [episodes.len, environments.observations()])?;
+    let seen = allocate(py, [episodes.len, environments.sizes()[0]])?;
     shown(py, environments, seen)
 }
 
 fn shown<'py, T: Number>(
     py: Python<'py>,
-    environments: &mut dyn DynBatch<T>,
+    environments: &mut dyn AnyEnvironments<T>,
     seen: Bound<'py, Array<T, 2>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let to = view_mut(&seen);
@@ -153,12 +153,12 @@ fn shown<'py, T: Number>(
 /// Takes a step, and says what ended with it.
 pub(crate) fn take<'py, T: Number>(
     py: Python<'py>,
-    environments: &mut dyn DynBatch<T>,
+    environments: &mut dyn AnyEnvironments<T>,
     episodes: &mut EpisodeStates,
     given: &Bound<'py, PyAny>,
 ) -> PyResult<Step<'py>> {
     let made;
-    let shape = [episodes.len, environments.actions()];
+    let shape = [episodes.len, environments.sizes()[1]];
     let actions: &[T] = match contiguous_actions(given, shape) {
         Some(actions) => actions,
         None => {
@@ -176,7 +176,7 @@ pub(crate) fn take<'py, T: Number>(
         let text = format!("actions[{index}] is {:?}, but it must be finite", actions[n]);
         return Err(value_error(text));
     }
-    let row = episodes.row::<T>(py, environments.observations())?;
+    let row = episodes.row::<T>(py, environments.sizes()[0])?;
     let Row { seen, reward, terminated, truncated } = &row;
     // Who uses arrays again may ask for what an array of earlier steps says, and that is written now.
     let copied;
@@ -194,19 +194,19 @@ pub(crate) fn take<'py, T: Number>(
     let (seen, reward) = (view_mut(seen), view_mut(reward));
     let (terminated, truncated) = (bytes_of(terminated), bytes_of(truncated));
     let to = StepBuffers { seen, reward, terminated: &mut *terminated, truncated: &mut *truncated };
-    let act = || environments.act(actions, to);
+    let act = || environments.act(ProgramPolicy::ActionSequence(actions), to);
     let ends = if episodes.len.saturating_mul(episodes.substeps) > WORTH_A_LOCK {
         py.detach(act)
     } else {
         act()
     };
     let ends = ends.map_err(Raised::raised)?;
-    if episodes.autoreset == Autoreset::Disabled && !ends.environments.is_empty() {
+    if episodes.autoreset == Autoreset::Disabled && !ends.ends.is_empty() {
         let ended: Vec<u8> =
             terminated.iter().zip(&*truncated).map(|(over, cut)| over | cut).collect();
         episodes.stood(&ended);
     }
-    let infos = step_infos(py, &ends, episodes, environments.observations())?;
+    let infos = step_infos(py, &ends, episodes, environments.sizes()[0])?;
     let Row { seen, reward, terminated, truncated } = row;
     Ok((seen.into_any(), reward.into_any(), terminated.into_any(), truncated.into_any(), infos))
 }
@@ -214,17 +214,19 @@ pub(crate) fn take<'py, T: Number>(
 /// The contents of the dictionary of a step.
 fn step_infos<'py, T: Number>(
     py: Python<'py>,
-    ends: &Ends<T>,
+    ends: &EpisodeEnds<T>,
     episodes: &EpisodeStates,
     observations: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
     let same_step = episodes.autoreset == Autoreset::SameStep;
-    if ends.environments.is_empty() || !(same_step || ends.lost.contains(&true)) {
+    if ends.ends.is_empty() || !(same_step || ends.ends.iter().any(|end| end.lost)) {
         return Ok(PyDict::new(py));
     }
-    let seen: Bound<'py, Array<T, 2>> = allocate(py, [ends.environments.len(), observations])?;
-    view_mut(&seen).copy_from_slice(&ends.seen);
-    let arguments = (episodes.len, same_step, &ends.environments, seen, &ends.lost);
+    let seen: Bound<'py, Array<T, 2>> = allocate(py, [ends.ends.len(), observations])?;
+    view_mut(&seen).copy_from_slice(&ends.observations);
+    let who: Vec<usize> = ends.ends.iter().map(|end| end.environment).collect();
+    let lost: Vec<bool> = ends.ends.iter().map(|end| end.lost).collect();
+    let arguments = (episodes.len, same_step, who, seen, lost);
     Ok(helper(py, &INFOS, "infos")?.call1(arguments)?.cast_into()?)
 }
 

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::PathBuf;
 
-use libration::rl::{Layout, Rollout};
+use libration::rl::{EpisodeEnd, EpisodeEnds, Layout};
 use libration_data::{
     Column, NewFile, Table, TableError, Values, npy_array, write_npy, write_parquet,
 };
@@ -15,16 +15,18 @@ use super::group::{Group, Number};
 use super::minari;
 use super::minari::Totals;
 use super::settings::Dataset;
+use crate::environments::AnyRollout;
 
 /// The rollout of a chunk: some steps of a group.
-pub(super) struct ChunkRollout<T, const O: usize> {
+pub(super) struct ChunkRollout<T> {
     pub(super) group: Group,
     /// The number of the chunk in the group, and its first step.
     pub(super) chunk: u64,
     pub(super) first: u64,
-    pub(super) rollout: Rollout<T, O, 1>,
+    pub(super) rollout: Box<dyn AnyRollout<T>>,
+    pub(super) ends: EpisodeEnds<T>,
     /// The episodes that ended, for formats that store episodes.
-    pub(super) episodes: Vec<Episode<T, O>>,
+    pub(super) episodes: Vec<Episode<T>>,
     /// The observations after the last step, `[n, i]`.
     pub(super) next: Vec<T>,
     /// The index columns of a table, reused by the next chunk.
@@ -81,7 +83,7 @@ fn bytes(files: &[NamedFile<'_>]) -> u64 {
     files.iter().flat_map(|(_, pieces)| pieces).map(|piece| piece.len() as u64).sum()
 }
 
-impl<T: Number, const O: usize> ChunkRollout<T, O> {
+impl<T: Number> ChunkRollout<T> {
     /// The name of the chunk; names sort in the order of creation.
     pub(super) fn name(&self) -> String {
         format!("{:06}-{:08}", self.group.number, self.chunk)
@@ -100,7 +102,7 @@ impl<T: Number, const O: usize> ChunkRollout<T, O> {
             "environments": [self.group.first, self.group.first + self.group.len],
             "steps": [self.first, self.first + plan.horizon as u64],
             "transitions": plan.horizon * plan.environments,
-            "ends": self.rollout.finals().len(),
+            "ends": self.ends.ends.len(),
         });
         if format == DataFormat::Minari {
             let with = before.and(&self.episodes, 0);
@@ -158,7 +160,7 @@ impl<T: Number, const O: usize> ChunkRollout<T, O> {
                 }
             }
         }
-        let after = before.and::<T, O>(&[], bytes(&files));
+        let after = before.and::<T>(&[], bytes(&files));
         Ok(Files { files, after })
     }
 
@@ -181,10 +183,11 @@ impl<T: Number, const O: usize> ChunkRollout<T, O> {
     /// Name, type, numbers per transition (0 for a scalar) and bytes of each tensor.
     fn arrays(&self) -> [(&'static str, &'static str, usize, &[u8]); 5] {
         let rollout = &self.rollout;
+        let [observations, actions] = rollout.sizes();
         let bytes = |numbers| bytemuck::cast_slice::<T, u8>(numbers);
         [
-            ("observation", T::NUMPY, O, bytes(rollout.observation())),
-            ("action", T::NUMPY, 1, bytes(rollout.action())),
+            ("observation", T::NUMPY, observations, bytes(rollout.observation())),
+            ("action", T::NUMPY, actions, bytes(rollout.action())),
             ("reward", T::NUMPY, 0, bytes(rollout.reward())),
             ("terminated", "|b1", 0, rollout.terminated()),
             ("truncated", "|b1", 0, rollout.truncated()),
@@ -200,13 +203,18 @@ impl<T: Number, const O: usize> ChunkRollout<T, O> {
             column("step", "1", Values::U64(step.into())),
             column("environment", "1", Values::U32(environments.into())),
         ];
-        for (i, &(name, unit)) in dataset.environment.observed().iter().enumerate() {
-            // One plane after the other, as Parquet is written.
-            debug_assert_eq!(rollout.plan().layout, Layout::Planes);
-            columns.push(column(name, unit, T::view(&rollout.observation()[i * all..][..all])));
+        // One plane after the other, as Parquet is written.
+        debug_assert_eq!(rollout.plan().layout, Layout::Planes);
+        let named = [
+            (dataset.environment.observed(), rollout.observation()),
+            (dataset.environment.actions(), rollout.action()),
+        ];
+        for (names, numbers) in named {
+            for (i, (name, unit)) in names.into_iter().enumerate() {
+                columns.push(column(name, unit, T::view(&numbers[i * all..][..all])));
+            }
         }
         columns.extend([
-            column("u0", dataset.environment.units()[2], T::view(rollout.action())),
             column("reward", "1", T::view(rollout.reward())),
             column("terminated", "1", Values::Bool(rollout.terminated().into())),
             column("truncated", "1", Values::Bool(rollout.truncated().into())),
@@ -223,8 +231,8 @@ impl<T: Number, const O: usize> ChunkRollout<T, O> {
             flag(rollout.terminated(), last + i) | flag(rollout.truncated(), last + i) == 0
         };
         let open: Vec<usize> = (0..n).filter(goes_on).collect();
-        let finals = rollout.finals();
-        let at = |end: &libration::rl::EpisodeEnd<T, O>| end.step * n + end.environment;
+        let finals = &self.ends.ends;
+        let at = |end: &EpisodeEnd<T, 0>| end.step * n + end.environment;
         let both = |a: Vec<u8>, b: u8| {
             Values::Bool(
                 a.into_iter().chain(core::iter::repeat_n(b, open.len())).collect::<Vec<_>>().into(),
@@ -239,9 +247,10 @@ impl<T: Number, const O: usize> ChunkRollout<T, O> {
             column("step", "1", Values::U64(steps.into())),
             column("environment", "1", Values::U32(who.into())),
         ];
-        for (k, &(name, unit)) in dataset.environment.observed().iter().enumerate() {
-            let seen = finals.iter().map(|end| end.observation[k]);
-            let seen = seen.chain(open.iter().map(|&i| self.next[i * O + k])).collect();
+        let width = rollout.sizes()[0];
+        for (k, (name, unit)) in dataset.environment.observed().into_iter().enumerate() {
+            let seen = self.ends.observations.iter().skip(k).step_by(width).copied();
+            let seen = seen.chain(open.iter().map(|&i| self.next[i * width + k])).collect();
             columns.push(column(name, unit, T::column(seen)));
         }
         let paid = finals.iter().map(|end| end.episode_return);
@@ -267,6 +276,10 @@ impl<T: Number, const O: usize> ChunkRollout<T, O> {
 }
 
 /// A column of a table.
-pub(super) fn column<'a>(name: &'static str, unit: &'static str, values: Values<'a>) -> Column<'a> {
+pub(super) fn column<'a>(
+    name: impl Into<Cow<'static, str>>,
+    unit: impl Into<Cow<'static, str>>,
+    values: Values<'a>,
+) -> Column<'a> {
     Column { name: name.into(), unit: unit.into(), values }
 }

@@ -1,26 +1,28 @@
 //! Episodes of environments.
 
 use libration::ensemble::InsufficientMemory;
-use libration::rl::Rollout;
+use libration::rl::EpisodeEnds;
 
 use super::group::Number;
+use crate::environments::AnyRollout;
 
 /// An episode, or a part of a long one.
 #[derive(Clone, Debug)]
-pub(super) struct Episode<T, const O: usize> {
+pub(super) struct Episode<T> {
     /// The environment.
     pub(super) environment: usize,
     /// The step of its first action.
     pub(super) first: u64,
     /// The observations before each action and after the last.
     pub(super) observation: Vec<T>,
+    /// `[t, i]`.
     pub(super) action: Vec<T>,
     pub(super) reward: Vec<T>,
     /// Whether it was terminated; otherwise it was truncated.
     pub(super) terminated: bool,
 }
 
-impl<T, const O: usize> Episode<T, O> {
+impl<T> Episode<T> {
     fn new(environment: usize) -> Self {
         Episode {
             environment,
@@ -33,35 +35,37 @@ impl<T, const O: usize> Episode<T, O> {
     }
 
     /// Reserves memory for one more step.
-    fn grow(&mut self) -> Result<(), InsufficientMemory> {
+    fn grow(&mut self, [observations, actions]: [usize; 2]) -> Result<(), InsufficientMemory> {
         let grown = self
             .observation
-            .try_reserve(2 * O)
-            .and_then(|()| self.action.try_reserve(1))
+            .try_reserve(2 * observations)
+            .and_then(|()| self.action.try_reserve(actions))
             .and_then(|()| self.reward.try_reserve(1));
-        let needed =
-            2 * (self.observation.capacity() + 2 * self.action.capacity()) * size_of::<T>();
+        let numbers = self.observation.capacity() + self.action.capacity() + self.reward.capacity();
+        let needed = 2 * numbers * size_of::<T>();
         grown.map_err(|_| InsufficientMemory { needed: needed as u128, available: None })
     }
 
     /// The number of actions.
     pub(super) fn len(&self) -> usize {
-        self.action.len()
+        self.reward.len()
     }
 }
 
 /// The open episodes of a group, one per environment.
 #[derive(Debug)]
-pub(super) struct Episodes<T, const O: usize> {
-    open: Vec<Episode<T, O>>,
+pub(super) struct Episodes<T> {
+    open: Vec<Episode<T>>,
     /// The largest number of actions of an episode, at which it is truncated.
     most: usize,
+    /// The numbers of observations and actions.
+    sizes: [usize; 2],
 }
 
-impl<T: Number, const O: usize> Episodes<T, O> {
+impl<T: Number> Episodes<T> {
     /// Empty episodes of `len` environments from number `first` on.
-    pub(super) fn new(first: usize, len: usize, most: usize) -> Self {
-        Episodes { open: (first..first + len).map(Episode::new).collect(), most }
+    pub(super) fn new(first: usize, len: usize, most: usize, sizes: [usize; 2]) -> Self {
+        Episodes { open: (first..first + len).map(Episode::new).collect(), most, sizes }
     }
 
     /// Appends a rollout that begins at step `first` and returns the ended episodes in the order of their ends.
@@ -73,33 +77,36 @@ impl<T: Number, const O: usize> Episodes<T, O> {
     pub(super) fn take(
         &mut self,
         first: u64,
-        rollout: &Rollout<T, O, 1>,
-    ) -> Result<Vec<Episode<T, O>>, InsufficientMemory> {
+        rollout: &dyn AnyRollout<T>,
+        ends: &EpisodeEnds<T>,
+    ) -> Result<Vec<Episode<T>>, InsufficientMemory> {
         let n = self.open.len();
+        let [observations, actions] = self.sizes;
         let mut ended = Vec::new();
-        let mut finals = rollout.finals().iter().peekable();
-        let (seen, _) = rollout.observation().as_chunks::<O>();
+        let last = ends.observations.chunks_exact(observations);
+        let mut finals = ends.ends.iter().zip(last).peekable();
         for (t, step) in (first..).zip(0..rollout.plan().horizon) {
             for (i, open) in self.open.iter_mut().enumerate() {
                 let at = step * n + i;
+                let seen = &rollout.observation()[at * observations..][..observations];
                 if open.len() == self.most {
-                    ended.extend(close(open, &seen[at], false));
+                    ended.extend(close(open, seen, false));
                 }
                 if open.len() == 0 {
                     open.first = t;
                 }
-                open.grow()?;
-                open.observation.extend(&seen[at]);
-                let end = finals.next_if(|end| (end.step, end.environment) == (step, i));
-                if end.is_some_and(|end| end.lost) {
+                open.grow(self.sizes)?;
+                open.observation.extend(seen);
+                let end = finals.next_if(|(end, _)| (end.step, end.environment) == (step, i));
+                if end.is_some_and(|(end, _)| end.lost) {
                     ended.extend(close(open, &[], false));
                     continue;
                 }
-                open.action.push(rollout.action()[at]);
+                open.action.extend(&rollout.action()[at * actions..][..actions]);
                 open.reward.push(rollout.reward()[at]);
-                if let Some(end) = end {
+                if let Some((_, last)) = end {
                     let terminated = rollout.terminated()[at] != 0;
-                    ended.extend(close(open, &end.observation, terminated));
+                    ended.extend(close(open, last, terminated));
                 }
             }
         }
@@ -107,19 +114,14 @@ impl<T: Number, const O: usize> Episodes<T, O> {
     }
 
     /// Truncates the open episodes; `next` has their final observations.
-    pub(super) fn cut(&mut self, next: &[T]) -> Vec<Episode<T, O>> {
-        let (next, _) = next.as_chunks::<O>();
-        let open = self.open.iter_mut().zip(next);
+    pub(super) fn cut(&mut self, next: &[T]) -> Vec<Episode<T>> {
+        let open = self.open.iter_mut().zip(next.chunks_exact(self.sizes[0]));
         open.filter_map(|(open, seen)| close(open, seen, false)).collect()
     }
 }
 
 /// Closes an episode and begins another; returns it if it has actions.
-fn close<T: Number, const O: usize>(
-    open: &mut Episode<T, O>,
-    seen: &[T],
-    terminated: bool,
-) -> Option<Episode<T, O>> {
+fn close<T: Number>(open: &mut Episode<T>, seen: &[T], terminated: bool) -> Option<Episode<T>> {
     let next = Episode::new(open.environment);
     let mut episode = std::mem::replace(open, next);
     episode.observation.extend(seen);

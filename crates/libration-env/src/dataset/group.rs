@@ -6,8 +6,7 @@ use libration_analyze::trajectory::FloatType;
 use libration_data::Values;
 
 use super::settings::Dataset;
-use crate::environments;
-use crate::environments::{AnyEnvironments, AnyPolicy, EnvironmentFloat, PolicySettings};
+use crate::environments::{AnyEnvironments, EnvironmentFloat};
 
 /// A float type of data sets.
 pub(super) trait Number: EnvironmentFloat {
@@ -51,11 +50,7 @@ pub(super) trait GroupVisitor {
     type Output;
 
     /// Runs the operation.
-    fn visit<T: Number, const O: usize>(
-        self,
-        all: Box<dyn AnyEnvironments<T, O>>,
-        actor: AnyPolicy<'static, T, O>,
-    ) -> Self::Output;
+    fn visit<T: Number>(self, all: Box<dyn AnyEnvironments<T>>) -> Self::Output;
 }
 
 /// A group of neighbouring environments.
@@ -86,23 +81,10 @@ impl Dataset {
         execution: &Execution,
         visit: V,
     ) -> Result<V::Output, EnvironmentError> {
-        let visit = WithPolicy(visit, &self.policy);
-        match self.float {
-            FloatType::F64 => {
-                self.environment.with::<f64, _>([first, len], self.seed, execution, visit)
-            }
-            _ => self.environment.with::<f32, _>([first, len], self.seed, execution, visit),
-        }
-    }
-}
-
-/// An operation with the policy of a data set.
-struct WithPolicy<'a, V>(V, &'a PolicySettings);
-
-impl<T: Number, V: GroupVisitor> environments::EnvironmentsVisitor<T> for WithPolicy<'_, V> {
-    type Output = V::Output;
-
-    fn visit<const O: usize>(self, all: Box<dyn AnyEnvironments<T, O>>) -> V::Output {
-        self.0.visit(all, AnyPolicy::new(self.1))
+        let which = ([first, len], self.seed, execution);
+        Ok(match self.float {
+            FloatType::F64 => visit.visit::<f64>(self.environment.build(which)?),
+            _ => visit.visit::<f32>(self.environment.build(which)?),
+        })
     }
 }

@@ -1,44 +1,42 @@
 //! The rollout of a group of environments.
 
-use libration::rl::{Plan, Rollout};
+use libration::rl::{EpisodeEnds, Plan};
 
 use super::chunk_files::{ChunkRollout, Rows};
 use super::episodes::Episodes;
 use super::group::{Group, Number};
 use super::memory_check::not_enough_memory;
 use super::{DataFormat, Dataset, DatasetError};
-use crate::environments::{AnyEnvironments, AnyPolicy};
+use crate::environments::AnyEnvironments;
 
 /// The rollout of a group, computed chunk by chunk into memory that is used again.
-pub(super) struct GroupRollout<'a, T: Number, const O: usize> {
+pub(super) struct GroupRollout<'a, T: Number> {
     pub(super) dataset: &'a Dataset,
     pub(super) group: Group,
-    pub(super) all: Box<dyn AnyEnvironments<T, O>>,
-    pub(super) actor: AnyPolicy<'static, T, O>,
+    pub(super) all: Box<dyn AnyEnvironments<T>>,
     format: DataFormat,
     /// The open episodes, for formats that store episodes.
-    episodes: Option<Episodes<T, O>>,
+    episodes: Option<Episodes<T>>,
 }
 
-impl<'a, T: Number, const O: usize> GroupRollout<'a, T, O> {
+impl<'a, T: Number> GroupRollout<'a, T> {
     /// The rollout of a group from the first step on.
     pub(super) fn new(
         dataset: &'a Dataset,
         format: DataFormat,
         group: Group,
-        all: Box<dyn AnyEnvironments<T, O>>,
-        actor: AnyPolicy<'static, T, O>,
+        all: Box<dyn AnyEnvironments<T>>,
     ) -> Self {
-        let episodes = || Episodes::new(group.first, group.len, dataset.longest());
+        let episodes = || Episodes::new(group.first, group.len, dataset.longest(), all.sizes());
         let episodes = (format == DataFormat::Minari).then(episodes);
-        GroupRollout { dataset, group, all, actor, format, episodes }
+        GroupRollout { dataset, group, all, format, episodes }
     }
 
     /// Computes the next chunk, in the memory of an older one of the same size.
     pub(super) fn next(
         &mut self,
-        used: Option<ChunkRollout<T, O>>,
-    ) -> Result<ChunkRollout<T, O>, DatasetError> {
+        used: Option<ChunkRollout<T>>,
+    ) -> Result<ChunkRollout<T>, DatasetError> {
         let Dataset { chunk, steps, .. } = *self.dataset;
         let first = self.all.step();
         let horizon = (steps - first).min(chunk.steps as u64) as usize;
@@ -50,17 +48,19 @@ impl<'a, T: Number, const O: usize> GroupRollout<'a, T, O> {
                 group: self.group,
                 chunk: 0,
                 first: 0,
-                rollout: Rollout::new(plan)?,
+                rollout: self.all.new_rollout(plan)?,
+                ends: EpisodeEnds::default(),
                 episodes: Vec::new(),
-                next: vec![T::zero(); self.group.len * O],
+                next: vec![T::zero(); self.group.len * self.all.sizes()[0]],
                 rows: Rows::default(),
             },
         };
         (done.chunk, done.first) = (first / chunk.steps as u64, first);
-        self.all.rollout(self.actor, &mut done.rollout)?;
+        self.all.fill(self.dataset.policy.policy(), &mut *done.rollout, 0..horizon)?;
+        done.ends = done.rollout.ends();
         self.all.observe(&mut done.next)?;
         if let Some(episodes) = &mut self.episodes {
-            let ended = episodes.take(first, &done.rollout);
+            let ended = episodes.take(first, &*done.rollout, &done.ends);
             done.episodes = ended.map_err(|shortage| not_enough_memory(self.dataset, shortage))?;
             if self.all.step() == steps {
                 done.episodes.extend(episodes.cut(&done.next));

@@ -1,11 +1,15 @@
 //! Settings in manifests.
 
+use libration::equations::TaskDefinitions;
+use libration::rl::ProgramEnvironment;
 use libration::rl::task::{Regulate, Track};
 use serde_json::{Map, Value, json};
 
 use super::DataFormat;
 use super::settings::Dataset;
-use crate::environments::{EnvironmentSettings, Noise, PolicySettings, Task};
+use crate::environments::{
+    AnyEnvironmentSettings, EnvironmentSettings, EquationEnvironment, Noise, PolicySettings, Task,
+};
 
 /// Version of the manifest format.
 const SCHEMA: &str = "libration.dataset/1";
@@ -42,61 +46,125 @@ impl Dataset {
 
     /// The keys of the settings file.
     fn data(&self) -> Value {
-        // JSON has no infinite numbers.
-        let number = |x: f64| if x.is_finite() { json!(x) } else { json!(x.to_string()) };
-        let EnvironmentSettings {
-            system, actuation, method, dt, substeps, task, start, limit, ..
-        } = &self.environment;
-        let EnvironmentSettings { delays, noise, .. } = &self.environment;
-        let system = system.any();
-        let parameters = actuation.parameters(system).into_iter();
-        let parameters: Map<String, Value> =
-            parameters.map(|(name, value)| (name.to_owned(), number(value))).collect();
-        let regulate = |r: &Regulate, mut more: Value| {
-            for (name, value) in [
-                ("position", r.position),
-                ("velocity", r.velocity),
-                ("effort", r.effort),
-                ("bound", r.bound),
-            ] {
-                more[name] = number(value);
-            }
-            more
-        };
-        let numbers = match task {
-            Task::Regulate(r) => regulate(r, json!({})),
-            Task::SwingUp(s) => json!({ "velocity": s.velocity, "effort": s.effort }),
-            Task::Track(Track { reference, regulate: r }) => {
-                let reference = json!({
-                    "amplitude": reference.amplitude,
-                    "angular_frequency": reference.angular_frequency,
-                    "phase": reference.phase,
-                });
-                regulate(r, reference)
-            }
-        };
         let policy = match &self.policy {
-            PolicySettings::Linear { weights, bias } => json!({ "weights": weights, "bias": bias }),
-            PolicySettings::Random { low, high } => json!({ "low": low, "high": high }),
-            PolicySettings::Constant(action) => json!({ "action": action }),
+            PolicySettings::Linear { weights, bias } => {
+                json!({ "weights": weights, "bias": one_or_each(bias) })
+            }
+            PolicySettings::Random { low, high } => {
+                json!({ "low": one_or_each(low), "high": one_or_each(high) })
+            }
+            PolicySettings::Constant(action) => json!({ "action": one_or_each(action) }),
         };
-        let Noise { jitter, skew, observation } = noise;
-        json!({
+        let (common, own) = match &self.environment {
+            AnyEnvironmentSettings::Catalogued(settings) => {
+                let EnvironmentSettings { dt, substeps, limit, delays, noise, .. } = *settings;
+                ((dt, substeps, limit, delays, noise), catalogued(settings))
+            }
+            AnyEnvironmentSettings::Equations(settings) => {
+                let ProgramEnvironment { dt, substeps, limit, delays, skew, jitter, .. } =
+                    settings.definition;
+                let observation = settings.definition.noise.first().copied();
+                let observation = observation.unwrap_or(Noise::NONE.observation);
+                let noise = Noise { jitter, skew, observation };
+                ((dt, substeps, limit, delays, noise), by_equations(settings))
+            }
+        };
+        let (dt, substeps, limit, delays, Noise { jitter, skew, observation }) = common;
+        let mut data = json!({
             "seed": self.seed,
             "float": self.float.name(),
             "environments": self.environments,
             "steps": self.steps,
-            "integrator": method.name(),
+            "integrator": self.environment.method().name(),
             "dt": dt,
             "substeps": substeps,
             "limit": limit.unwrap_or(0),
             "chunk": { "environments": self.chunk.environments, "steps": self.chunk.steps },
-            "system": { system.name(): parameters },
-            "task": { task.name(): numbers },
-            "start": { "q": start[0], "v": start[1] },
-            "delays": { "observation": delays.observation, "action": delays.action },
-            "noise": { "jitter": jitter.rms(), "skew": skew.rms(), "observation": observation.rms() },
-            "policy": { self.policy.name(): policy },
-        })
+        });
+        for (key, value) in own {
+            data[key] = value;
+        }
+        data["delays"] = json!({ "observation": delays.observation, "action": delays.action });
+        let noise = json!({
+            "jitter": jitter.rms(), "skew": skew.rms(), "observation": observation.rms(),
+        });
+        data["noise"] = noise;
+        data["policy"] = json!({ self.policy.name(): policy });
+        data
     }
+}
+
+/// A number for JSON, which has no infinite ones.
+fn number(x: f64) -> Value {
+    if x.is_finite() { json!(x) } else { json!(x.to_string()) }
+}
+
+/// The number of the only action, or a list.
+fn one_or_each(numbers: &[f64]) -> Value {
+    match numbers {
+        [x] => number(*x),
+        all => all.iter().map(|&x| number(x)).collect(),
+    }
+}
+
+/// System, task and start of the catalogue.
+fn catalogued(settings: &EnvironmentSettings) -> Vec<(&'static str, Value)> {
+    let EnvironmentSettings { system, actuation, task, start, .. } = settings;
+    let system = system.any();
+    let parameters = actuation.parameters(system).into_iter();
+    let parameters: Map<String, Value> =
+        parameters.map(|(name, value)| (name.to_owned(), number(value))).collect();
+    let regulate = |r: &Regulate, mut more: Value| {
+        for (name, value) in [
+            ("position", r.position),
+            ("velocity", r.velocity),
+            ("effort", r.effort),
+            ("bound", r.bound),
+        ] {
+            more[name] = number(value);
+        }
+        more
+    };
+    let numbers = match task {
+        Task::Regulate(r) => regulate(r, json!({})),
+        Task::SwingUp(s) => json!({ "velocity": s.velocity, "effort": s.effort }),
+        Task::Track(Track { reference, regulate: r }) => {
+            let reference = json!({
+                "amplitude": reference.amplitude,
+                "angular_frequency": reference.angular_frequency,
+                "phase": reference.phase,
+            });
+            regulate(r, reference)
+        }
+    };
+    vec![
+        ("system", json!({ system.name(): parameters })),
+        ("task", json!({ task.name(): numbers })),
+        ("start", json!({ "q": start[0], "v": start[1] })),
+    ]
+}
+
+/// System and task by equations: all of it, so that a manifest needs no other file.
+fn by_equations(settings: &EquationEnvironment) -> Vec<(&'static str, Value)> {
+    let EquationEnvironment { system, text, parameters, task, definition } = settings;
+    let parameters: Map<String, Value> =
+        parameters.iter().map(|(name, value)| (name.clone(), number(*value))).collect();
+    let start: Map<String, Value> = system
+        .states
+        .iter()
+        .map(|state| (state.name.clone(), json!(task.start[state.place])))
+        .collect();
+    let TaskDefinitions { observe, reward, terminated } = &task.definitions;
+    let equations = json!({
+        "text": text,
+        "parameters": parameters,
+        "max_action": one_or_each(&definition.saturation),
+    });
+    let expressions = json!({
+        "observe": observe, "reward": reward, "terminated": terminated, "start": start,
+    });
+    vec![
+        ("system", json!({ "equations": equations })),
+        ("task", json!({ "expressions": expressions })),
+    ]
 }

@@ -1,13 +1,13 @@
 //! Check of the memory of a data set.
 
 use libration::ensemble::InsufficientMemory;
-use libration::rl::{Plan, Rollout};
+use libration::rl::Plan;
 use libration_data::parquet_bytes;
 
 use super::group::{GroupVisitor, Number};
 use super::settings::Chunk;
 use super::{DataFormat, Dataset, DatasetError};
-use crate::environments::{AnyEnvironments, AnyPolicy};
+use crate::environments::AnyEnvironments;
 
 /// A trial step that checks the memory of the chunks in flight and the policy.
 pub(super) struct TrialStep<'a> {
@@ -49,18 +49,16 @@ pub(super) fn not_enough_memory(dataset: &Dataset, shortage: InsufficientMemory)
 impl GroupVisitor for TrialStep<'_> {
     type Output = Result<(), DatasetError>;
 
-    fn visit<T: Number, const O: usize>(
-        self,
-        mut all: Box<dyn AnyEnvironments<T, O>>,
-        actor: AnyPolicy<'static, T, O>,
-    ) -> Self::Output {
+    fn visit<T: Number>(self, mut all: Box<dyn AnyEnvironments<T>>) -> Self::Output {
         let Dataset { chunk, steps, .. } = *self.dataset;
         let horizon = steps.min(chunk.steps as u64) as usize;
         let plan = Plan::new(horizon, all.len()).truncated();
-        let needed = self.bytes(plan.transitions() as u64, plan.bytes(O, 1, size_of::<T>()));
+        let [observations, actions] = all.sizes();
+        let chunk = plan.bytes(observations, actions, size_of::<T>());
+        let needed = self.bytes(plan.transitions() as u64, chunk);
         InsufficientMemory::check(needed)
             .map_err(|shortage| not_enough_memory(self.dataset, shortage))?;
-        let mut rollout = Rollout::new(Plan::new(1, all.len()).truncated())?;
-        Ok(all.rollout(actor, &mut rollout)?)
+        let mut rollout = all.new_rollout(Plan::new(1, all.len()).truncated())?;
+        Ok(all.fill(self.dataset.policy.policy(), &mut *rollout, 0..1)?)
     }
 }

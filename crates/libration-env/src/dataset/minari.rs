@@ -60,11 +60,7 @@ impl Totals {
     }
 
     /// The totals with one more chunk of these episodes and bytes.
-    pub(super) fn and<T: Number, const O: usize>(
-        self,
-        episodes: &[Episode<T, O>],
-        bytes: u64,
-    ) -> Self {
+    pub(super) fn and<T: Number>(self, episodes: &[Episode<T>], bytes: u64) -> Self {
         let actions: u64 = episodes.iter().map(|episode| episode.len() as u64).sum();
         Totals {
             chunks: self.chunks + 1,
@@ -76,8 +72,8 @@ impl Totals {
 }
 
 /// The files of some episodes; the first has the number `first`.
-pub(super) fn files<T: Number, const O: usize>(
-    episodes: &[Episode<T, O>],
+pub(super) fn files<T: Number>(
+    episodes: &[Episode<T>],
     first: u64,
     threads: usize,
     dataset: &Dataset,
@@ -101,25 +97,28 @@ pub(super) fn files<T: Number, const O: usize>(
 }
 
 /// A table with a row per action and a final row.
-fn rows<'a, T: Number, const O: usize>(
-    episode: &'a Episode<T, O>,
+fn rows<'a, T: Number>(
+    episode: &'a Episode<T>,
     dataset: &Dataset,
 ) -> Result<Table<'a>, TableError> {
-    let with_last = |numbers: &[T]| T::column([numbers, &[T::zero()]].concat());
+    let with_last =
+        |numbers: &[T], width: usize| T::column([numbers, &vec![T::zero(); width]].concat());
     let end = |is: bool| {
         let mut flags = vec![0; episode.len() + 1];
         flags[episode.len() - 1] = u8::from(is);
         Values::Bool(flags.into())
     };
-    let units: Vec<_> = dataset.environment.observed().iter().map(|&(_, unit)| unit).collect();
-    let list = |of| Values::Lists(1, Box::new(of));
-    let mut seen =
-        column("observations", "1", Values::Lists(O, Box::new(T::view(&episode.observation))));
-    seen.unit = units.join(", ").into();
+    let (observed, actions) = (dataset.environment.observed(), dataset.environment.actions());
+    let units = |all: &[(String, String)]| {
+        all.iter().map(|(_, unit)| unit.as_str()).collect::<Vec<_>>().join(", ")
+    };
+    let lists = |width: usize, of| Values::Lists(width, Box::new(of));
+    let seen = lists(observed.len(), T::view(&episode.observation));
+    let acted = lists(actions.len(), with_last(&episode.action, actions.len()));
     Table::new(vec![
-        seen,
-        column("actions", dataset.environment.units()[2], list(with_last(&episode.action))),
-        column("rewards", "1", with_last(&episode.reward)),
+        column("observations", units(&observed), seen),
+        column("actions", units(&actions), acted),
+        column("rewards", "1", with_last(&episode.reward, 1)),
         column("terminations", "1", end(episode.terminated)),
         column("truncations", "1", end(!episode.terminated)),
     ])
@@ -127,9 +126,8 @@ fn rows<'a, T: Number, const O: usize>(
 
 /// The metadata file of a data set.
 pub(super) fn metadata(dataset: &Dataset, all: Totals) -> String {
-    let (system, task) = (dataset.environment.system.any().name(), dataset.environment.task.name());
     let about = json!({
-        "dataset_id": format!("libration/{system}-{task}-v0"),
+        "dataset_id": format!("libration/{}-v0", dataset.environment.name()),
         "minari_version": VERSION,
         "data_format": "parquet",
         "jpeg_encoding": false,
@@ -138,27 +136,26 @@ pub(super) fn metadata(dataset: &Dataset, all: Totals) -> String {
         // In MB, to a tenth.
         "dataset_size": (all.bytes as f64 / 1e5).round() / 10.0,
         "observation_space": space(dataset, &bounds(dataset)),
-        "action_space": space(dataset, &[actions(&dataset.policy)]),
+        "action_space": space(dataset, &actions(dataset)),
         "algorithm_name": dataset.policy.name(),
         "libration": dataset.settings(DataFormat::Minari),
     });
     about.to_string()
 }
 
-/// The bounds of the observations: one for cosines and sines without noise, else infinite.
+/// The bounds of the observations.
 fn bounds(dataset: &Dataset) -> Vec<[f64; 2]> {
-    let exact = dataset.environment.noise.observation.rms() == 0.0;
-    let circle = |name: &str| exact && (name.starts_with("cos_") || name.starts_with("sin_"));
-    let bound = |name| if circle(name) { 1.0 } else { f64::INFINITY };
-    dataset.environment.observed().iter().map(|&(name, _)| [-bound(name), bound(name)]).collect()
+    dataset.environment.bounds().into_iter().map(|bound| [-bound, bound]).collect()
 }
 
 /// The bounds of the actions.
-fn actions(policy: &PolicySettings) -> [f64; 2] {
-    match *policy {
-        PolicySettings::Random { low, high } => [low, high],
+fn actions(dataset: &Dataset) -> Vec<[f64; 2]> {
+    match &dataset.policy {
+        PolicySettings::Random { low, high } => {
+            low.iter().zip(high).map(|(&low, &high)| [low, high]).collect()
+        }
         PolicySettings::Linear { .. } | PolicySettings::Constant(_) => {
-            [-f64::INFINITY, f64::INFINITY]
+            vec![[-f64::INFINITY, f64::INFINITY]; dataset.environment.actions().len()]
         }
     }
 }

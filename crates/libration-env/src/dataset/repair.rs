@@ -11,7 +11,7 @@ use super::group::{Group, GroupVisitor, Number};
 use super::group_rollout::GroupRollout;
 use super::minari::Totals;
 use super::{DataFormat, Dataset, DatasetError, Monitor};
-use crate::environments::{AnyEnvironments, AnyPolicy};
+use crate::environments::AnyEnvironments;
 
 /// The part of a data set in a folder: its format and groups of environments.
 pub(super) struct DatasetPart<'a> {
@@ -107,14 +107,10 @@ struct Recomputation<'a> {
 impl GroupVisitor for Recomputation<'_> {
     type Output = Result<(), DatasetError>;
 
-    fn visit<T: Number, const O: usize>(
-        self,
-        all: Box<dyn AnyEnvironments<T, O>>,
-        actor: AnyPolicy<'static, T, O>,
-    ) -> Self::Output {
+    fn visit<T: Number>(self, all: Box<dyn AnyEnvironments<T>>) -> Self::Output {
         let Recomputation { dataset, format, group, folder, execution, monitor, lost, .. } = self;
         let chunks = &folder.manifest().chunks;
-        let mut rollout = GroupRollout::new(dataset, format, group, all, actor);
+        let mut rollout = GroupRollout::new(dataset, format, group, all);
         let mut used = None;
         for number in self.numbers {
             if monitor.should_stop() {

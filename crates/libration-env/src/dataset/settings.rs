@@ -4,7 +4,7 @@ use libration_analyze::trajectory::FloatType;
 use libration_settings::{Document, SettingsError};
 
 use super::tables::File;
-use crate::environments::{EnvironmentSettings, PolicySettings};
+use crate::environments::{AnyEnvironmentSettings, PolicySettings};
 
 /// The default settings with comments, ready to edit: the case of the source report.
 pub const DEFAULT: &str = include_str!("default.toml");
@@ -17,7 +17,7 @@ pub struct Dataset {
     pub(super) environments: usize,
     pub(super) steps: u64,
     pub(super) chunk: Chunk,
-    pub(super) environment: EnvironmentSettings,
+    pub(super) environment: AnyEnvironmentSettings,
     pub(super) policy: PolicySettings,
 }
 
@@ -52,7 +52,7 @@ impl Default for Dataset {
 impl Dataset {
     /// The caveat about the integrator on the system, if there is one.
     pub fn caveat(&self) -> Option<String> {
-        self.environment.system.any().caveat(self.environment.method)
+        self.environment.caveat()
     }
 
     /// The same data set with `transitions` transitions, rounded up to whole steps of all environments.

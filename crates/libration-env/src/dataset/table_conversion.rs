@@ -1,17 +1,25 @@
 //! Conversion of the tables of a settings file into settings.
 
+use std::path::Path;
+
 use libration::catalog::Actuation;
 use libration::control::Jitter;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
-use libration::rl::{Autoreset, Delays};
+use libration::rl::{Autoreset, Delays, ProgramEnvironment};
 use libration::{Method, catalog};
 use libration_analyze::trajectory::FloatType;
+use libration_settings::equations::{EquationSystem, EquationTask};
 use libration_settings::limits::{TIME_STEP, within};
-use libration_settings::{Count, Fault, Number, suggestions};
+use libration_settings::{Count, Fault, Number, SettingsError, suggestions};
 
 use super::settings::{Chunk, Dataset, STEPS};
-use super::tables::{File, PolicyTable, TaskTable};
-use crate::environments::{EnvironmentSettings, Noise, PolicySettings, SingleDofSystem, Task};
+use super::tables::{
+    EquationsTable, File, Numbers, PolicyTable, StartTable, SystemTables, TaskTable,
+};
+use crate::environments::{
+    AnyEnvironmentSettings, EnvironmentSettings, EquationEnvironment, Noise, PolicySettings,
+    SingleDofSystem, Task,
+};
 
 /// Checks that `count` is in a range.
 fn count(
@@ -80,9 +88,64 @@ impl TryFrom<File> for Dataset {
             }
             Ok([low, high])
         };
-        let task = task(file.task)?;
-        let (lone, actuation) = system(&file)?;
         let rms = |key, number| Ok(Jitter::Gaussian(non_negative(key, number)?));
+        let noise = Noise {
+            jitter: rms("noise.jitter", file.noise.jitter)?,
+            skew: rms("noise.skew", file.noise.skew)?,
+            observation: rms("noise.observation", file.noise.observation)?,
+        };
+        let delays = Delays { observation: observation?, action: action? };
+        let substeps = count("substeps", file.substeps, 1..=1_000_000)? as u32;
+        let limit = Some(limit).filter(|&limit| limit > 0);
+        let environment = match &file.system.equations {
+            None => {
+                let (system, actuation) = system(&file.system)?;
+                let StartTable { q, v } = file.start.unwrap_or_default();
+                AnyEnvironmentSettings::Catalogued(EnvironmentSettings {
+                    system,
+                    actuation,
+                    method,
+                    dt,
+                    substeps,
+                    task: task(file.task.unwrap_or_default())?,
+                    start: [ends("start.q", q)?, ends("start.v", v)?],
+                    limit,
+                    autoreset: Autoreset::SameStep,
+                    delays,
+                    saturation: f64::INFINITY,
+                    noise,
+                })
+            }
+            Some(equations) => {
+                if file.start.is_some() {
+                    let message = "`start` belongs to systems of the catalogue; expected `start` in [task.expressions], by the names of states";
+                    return Err(Fault::new("start", message));
+                }
+                if !file.system.catalogued.is_empty() {
+                    return Err(Fault::new("system", ONE_SYSTEM));
+                }
+                let mut environment = equation_environment(equations, file.task, (method, dt))?;
+                environment.definition = ProgramEnvironment {
+                    substeps,
+                    limit,
+                    delays,
+                    skew: noise.skew,
+                    jitter: noise.jitter,
+                    noise: vec![noise.observation; environment.definition.observations()],
+                    ..environment.definition
+                };
+                AnyEnvironmentSettings::Equations(Box::new(environment))
+            }
+        };
+        let sizes = [environment.observed().len(), environment.actions().len()];
+        let missing = || {
+            let message = "`policy` is missing; expected [policy.linear], [policy.random] or [policy.constant]";
+            Fault::new("policy", message)
+        };
+        let acting = match (file.policy, &environment) {
+            (None, AnyEnvironmentSettings::Equations(_)) => return Err(missing()),
+            (table, _) => policy(table.unwrap_or_default(), sizes)?,
+        };
         Ok(Dataset {
             seed: count("seed", file.seed, 0..=u64::MAX)?,
             float,
@@ -93,33 +156,93 @@ impl TryFrom<File> for Dataset {
                     as usize,
                 steps: count("chunk.steps", file.chunk.steps, 1..=1_000_000)? as usize,
             },
-            environment: EnvironmentSettings {
-                system: lone,
-                actuation,
-                method,
-                dt,
-                substeps: count("substeps", file.substeps, 1..=1_000_000)? as u32,
-                task,
-                start: [ends("start.q", file.start.q)?, ends("start.v", file.start.v)?],
-                limit: Some(limit).filter(|&limit| limit > 0),
-                autoreset: Autoreset::SameStep,
-                delays: Delays { observation: observation?, action: action? },
-                saturation: f64::INFINITY,
-                noise: Noise {
-                    jitter: rms("noise.jitter", file.noise.jitter)?,
-                    skew: rms("noise.skew", file.noise.skew)?,
-                    observation: rms("noise.observation", file.noise.observation)?,
-                },
-            },
-            policy: policy(file.policy, task.observations())?,
+            environment,
+            policy: acting,
         })
     }
 }
 
-fn system(file: &File) -> Result<(SingleDofSystem, Actuation), Fault> {
-    let mut systems = file.system.iter();
+const ONE_SYSTEM: &str = "`system` must be one table, as [system.oscillator]";
+
+/// Environments of a system by equations, ideal and without limits but of the actions.
+fn equation_environment(
+    table: &EquationsTable,
+    task: Option<TaskTable>,
+    (method, dt): (Method, f64),
+) -> Result<EquationEnvironment, Fault> {
+    let fault = |why: String| Fault::new("system.equations", why);
+    let (text, file) = match (&table.of, &table.text) {
+        (Some(path), None) => {
+            let wrong = |error| fault(format!("cannot read `{path}`: {error}"));
+            (libration_settings::read_text(Path::new(path)).map_err(wrong)?, path.as_str())
+        }
+        (None, Some(text)) => (text.clone(), "text"),
+        _ => return Err(fault("[system.equations] requires `of`, the name of a file".to_owned())),
+    };
+    let parameters: Vec<(String, f64)> =
+        table.parameters.iter().map(|(name, value)| (name.clone(), value.0)).collect();
+    let wrong = |error: SettingsError| format!("cannot use `{file}`: {}", error.sentence());
+    let system = EquationSystem::parse(&text, file, &parameters).map_err(|e| fault(wrong(e)))?;
+    let task = match task {
+        None => system.task.clone().ok_or_else(|| {
+            let message = format!("`{file}` has no table [task]; expected [task.expressions] here");
+            Fault::new("task", message)
+        })?,
+        Some(TaskTable::Expressions(table)) => {
+            let mut whole = toml::Table::new();
+            whole.insert("task".to_owned(), table.into());
+            EquationTask::parse(&whole.to_string(), "task", &system).map_err(|error| {
+                let help = error.help().map_or_else(String::new, |help| format!("; help: {help}"));
+                Fault::new("task", format!("[task.expressions]: {}{help}", error.message()))
+            })?
+        }
+        Some(_) => {
+            let message = "a system by equations has a task by expressions; expected [task.expressions], or no task for that of its file";
+            return Err(Fault::new("task", message));
+        }
+    };
+    let inputs = system.equations.inputs().len();
+    if inputs == 0 {
+        let message = format!("`{file}` has no inputs, but actions need at least one");
+        return Err(fault(message));
+    }
+    let dynamics = system.equations.dynamics().clone();
+    let ideal = ProgramEnvironment::new(dynamics, task.programs.clone(), method, dt);
+    let most = table.max_action.clone().unwrap_or(Numbers::One(Number(f64::INFINITY)));
+    let saturation = each("system.equations.max_action", most, inputs, |x| x > 0.0, "above 0")?;
+    let definition = ProgramEnvironment { start: task.start.clone(), saturation, ..ideal };
+    Ok(EquationEnvironment { system, text, parameters, task, definition })
+}
+
+/// A number for each action.
+fn each(
+    key: &'static str,
+    numbers: Numbers,
+    actions: usize,
+    holds: fn(f64) -> bool,
+    allowed: &str,
+) -> Result<Vec<f64>, Fault> {
+    let all: Vec<f64> = match numbers {
+        Numbers::One(x) => vec![x.0; actions],
+        Numbers::Each(all) => all.into_iter().map(|x| x.0).collect(),
+    };
+    if all.len() != actions {
+        let found = all.len();
+        let message = format!(
+            "`{key}` has {found} numbers; expected one, or one for each of {actions} actions"
+        );
+        return Err(Fault::new(key, message));
+    }
+    match all.iter().find(|x| !holds(**x)) {
+        Some(x) => Err(Fault::new(key, format!("`{key}` is {x:?}; expected a number {allowed}"))),
+        None => Ok(all),
+    }
+}
+
+fn system(tables: &SystemTables) -> Result<(SingleDofSystem, Actuation), Fault> {
+    let mut systems = tables.catalogued.iter();
     let (Some((name, parameters)), None) = (systems.next(), systems.next()) else {
-        return Err(Fault::new("system", "`system` must be one table, as [system.oscillator]"));
+        return Err(Fault::new("system", ONE_SYSTEM));
     };
     let parameters: Vec<_> = parameters.iter().map(|(name, value)| (name, value.0)).collect();
     let (system, actuation) = catalog::build(name, &parameters)
@@ -158,36 +281,42 @@ fn task(table: TaskTable) -> Result<Task, Fault> {
             },
             regulate: regulate([t.position, t.velocity, t.effort, t.bound])?,
         }),
+        TaskTable::Expressions(_) => {
+            let message =
+                "a task by expressions needs a system by equations; expected [system.equations]";
+            return Err(Fault::new("task", message));
+        }
     })
 }
 
-fn policy(table: PolicyTable, seen: usize) -> Result<PolicySettings, Fault> {
-    let key = "policy";
+fn policy(table: PolicyTable, [seen, actions]: [usize; 2]) -> Result<PolicySettings, Fault> {
+    let finite_each = |numbers| each("policy", numbers, actions, f64::is_finite, "that is finite");
     Ok(match table {
         PolicyTable::Linear(t) => {
-            if t.weights.len() != seen {
-                let found = t.weights.len();
+            if t.weights.len() != seen * actions {
+                let (found, wanted) = (t.weights.len(), seen * actions);
+                let rows = if actions == 1 { "" } else { ", a row for each action" };
                 let message = format!(
-                    "`weights` has {found} numbers, but it must have {seen}: one per observation"
+                    "`weights` has {found} numbers, but it must have {wanted}: one per observation{rows}"
                 );
                 return Err(Fault::new("policy.linear.weights", message));
             }
-            let weights = t.weights.into_iter().map(|weight| finite(key, weight));
+            let weights = t.weights.into_iter().map(|weight| finite("policy", weight));
             PolicySettings::Linear {
                 weights: weights.collect::<Result<_, _>>()?,
-                bias: finite(key, t.bias)?,
+                bias: finite_each(t.bias)?,
             }
         }
         PolicyTable::Random(t) => {
-            let (low, high) = (finite(key, t.low)?, finite(key, t.high)?);
-            if low >= high {
+            let (low, high) = (finite_each(t.low)?, finite_each(t.high)?);
+            if let Some((low, high)) = low.iter().zip(&high).find(|(low, high)| low >= high) {
                 let message = format!(
                     "`low` is {low:?} and `high` is {high:?}, but `low` must be below `high`"
                 );
-                return Err(Fault::new(key, message));
+                return Err(Fault::new("policy", message));
             }
             PolicySettings::Random { low, high }
         }
-        PolicyTable::Constant(t) => PolicySettings::Constant(finite(key, t.action)?),
+        PolicyTable::Constant(t) => PolicySettings::Constant(finite_each(t.action)?),
     })
 }

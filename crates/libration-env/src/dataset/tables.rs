@@ -1,9 +1,11 @@
 //! Tables of settings files.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use libration_settings::{Count, Number};
-use serde::Deserialize;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 
 /// A settings file.
 #[derive(Deserialize)]
@@ -18,12 +20,12 @@ pub(super) struct File {
     pub(super) substeps: Count,
     pub(super) limit: Count,
     pub(super) chunk: ChunkTable,
-    pub(super) system: BTreeMap<String, BTreeMap<String, Number>>,
-    pub(super) task: TaskTable,
-    pub(super) start: StartTable,
+    pub(super) system: SystemTables,
+    pub(super) task: Option<TaskTable>,
+    pub(super) start: Option<StartTable>,
     pub(super) delays: DelaysTable,
     pub(super) noise: NoiseTable,
-    pub(super) policy: PolicyTable,
+    pub(super) policy: Option<PolicyTable>,
 }
 
 /// The size of chunks.
@@ -34,13 +36,74 @@ pub(super) struct ChunkTable {
     pub(super) steps: Count,
 }
 
+/// The tables of `[system]`: equations, or systems of the catalogue with their parameters.
+#[derive(Default)]
+pub(super) struct SystemTables {
+    pub(super) equations: Option<EquationsTable>,
+    pub(super) catalogued: BTreeMap<String, BTreeMap<String, Number>>,
+}
+
+/// A system by equations: the name of a file, or its text.
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct EquationsTable {
+    pub(super) of: Option<String>,
+    /// In manifests, which need no other file.
+    pub(super) text: Option<String>,
+    pub(super) parameters: BTreeMap<String, Number>,
+    pub(super) max_action: Option<Numbers>,
+}
+
+impl<'de> Deserialize<'de> for SystemTables {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader;
+
+        // Not an untagged enum, whose errors have no place.
+        impl<'de> Visitor<'de> for Reader {
+            type Value = SystemTables;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a table, as [system.oscillator]")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<SystemTables, A::Error> {
+                let mut tables = SystemTables::default();
+                while let Some(name) = map.next_key::<String>()? {
+                    if name == "equations" {
+                        tables.equations = Some(map.next_value()?);
+                    } else {
+                        tables.catalogued.insert(name, map.next_value()?);
+                    }
+                }
+                Ok(tables)
+            }
+        }
+        deserializer.deserialize_map(Reader)
+    }
+}
+
+/// A number, or one for each action.
+#[derive(Clone, Deserialize)]
+#[serde(untagged, expecting = "expected a number, or a list with one for each action")]
+pub(super) enum Numbers {
+    One(Number),
+    Each(Vec<Number>),
+}
+
+impl Numbers {
+    const fn one(x: f64) -> Self {
+        Numbers::One(Number(x))
+    }
+}
+
 /// The task.
-#[derive(Clone, Copy, Deserialize)]
+#[derive(Clone, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum TaskTable {
     Regulate(RegulateTable),
     SwingUp(SwingUpTable),
     Track(TrackTable),
+    Expressions(toml::Table),
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -107,20 +170,20 @@ pub(super) enum PolicyTable {
 #[serde(default, deny_unknown_fields)]
 pub(super) struct LinearTable {
     pub(super) weights: Vec<Number>,
-    pub(super) bias: Number,
+    pub(super) bias: Numbers,
 }
 
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct RandomTable {
-    pub(super) low: Number,
-    pub(super) high: Number,
+    pub(super) low: Numbers,
+    pub(super) high: Numbers,
 }
 
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct ConstantTable {
-    pub(super) action: Number,
+    pub(super) action: Numbers,
 }
 
 impl Default for File {
@@ -137,13 +200,28 @@ impl Default for File {
             substeps: Count(1),
             limit: Count(0),
             chunk: ChunkTable::default(),
-            system: [("oscillator".to_owned(), parameters.into())].into(),
-            task: TaskTable::Regulate(RegulateTable::default()),
-            start: StartTable::default(),
+            system: SystemTables {
+                equations: None,
+                catalogued: [("oscillator".to_owned(), parameters.into())].into(),
+            },
+            task: None,
+            start: None,
             delays: DelaysTable::default(),
             noise: NoiseTable::default(),
-            policy: PolicyTable::Linear(LinearTable::default()),
+            policy: None,
         }
+    }
+}
+
+impl Default for TaskTable {
+    fn default() -> Self {
+        TaskTable::Regulate(RegulateTable::default())
+    }
+}
+
+impl Default for PolicyTable {
+    fn default() -> Self {
+        PolicyTable::Linear(LinearTable::default())
     }
 }
 
@@ -195,18 +273,18 @@ impl Default for NoiseTable {
 
 impl Default for LinearTable {
     fn default() -> Self {
-        LinearTable { weights: [-2.0, 0.0].map(Number).to_vec(), bias: Number(0.0) }
+        LinearTable { weights: [-2.0, 0.0].map(Number).to_vec(), bias: Numbers::one(0.0) }
     }
 }
 
 impl Default for RandomTable {
     fn default() -> Self {
-        RandomTable { low: Number(-1.0), high: Number(1.0) }
+        RandomTable { low: Numbers::one(-1.0), high: Numbers::one(1.0) }
     }
 }
 
 impl Default for ConstantTable {
     fn default() -> Self {
-        ConstantTable { action: Number(0.0) }
+        ConstantTable { action: Numbers::one(0.0) }
     }
 }

@@ -17,7 +17,7 @@ use super::minari::Totals;
 use super::repair::{DatasetPart, find_broken, repair};
 use super::tables::File;
 use super::{DataFormat, Dataset, DatasetError, Monitor};
-use crate::environments::{AnyEnvironments, AnyPolicy};
+use crate::environments::AnyEnvironments;
 
 /// Options of a verification beyond the comparison of checksums.
 #[derive(Clone, Copy, Debug, Default)]
@@ -181,13 +181,9 @@ struct Compare<'a> {
 impl GroupVisitor for Compare<'_> {
     type Output = Result<(), DatasetError>;
 
-    fn visit<T: Number, const O: usize>(
-        self,
-        all: Box<dyn AnyEnvironments<T, O>>,
-        actor: AnyPolicy<'static, T, O>,
-    ) -> Self::Output {
+    fn visit<T: Number>(self, all: Box<dyn AnyEnvironments<T>>) -> Self::Output {
         let Compare { dataset, format, group, execution, monitor, flaws, .. } = self;
-        let mut rollout = GroupRollout::new(dataset, format, group, all, actor);
+        let mut rollout = GroupRollout::new(dataset, format, group, all);
         let mut used = None;
         let mut before = Totals::of_chunks(&self.all[..self.chunks.start]);
         for chunk in &self.all[self.chunks] {

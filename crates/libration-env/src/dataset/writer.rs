@@ -18,7 +18,7 @@ use super::memory_check::TrialStep;
 use super::minari::Totals;
 use super::repair::{DatasetPart, find_broken, repair};
 use super::{DataFormat, Dataset, DatasetError, Monitor};
-use crate::environments::{AnyEnvironments, AnyPolicy};
+use crate::environments::AnyEnvironments;
 
 /// A data set to write.
 #[derive(Clone, Debug)]
@@ -116,13 +116,9 @@ struct Stream<'a> {
 impl GroupVisitor for Stream<'_> {
     type Output = Result<(), DatasetError>;
 
-    fn visit<T: Number, const O: usize>(
-        self,
-        all: Box<dyn AnyEnvironments<T, O>>,
-        actor: AnyPolicy<'static, T, O>,
-    ) -> Self::Output {
+    fn visit<T: Number>(self, all: Box<dyn AnyEnvironments<T>>) -> Self::Output {
         let Stream { dataset, format, group, from, folder, threads, monitor } = self;
-        let mut rollout = GroupRollout::new(dataset, format, group, all, actor);
+        let mut rollout = GroupRollout::new(dataset, format, group, all);
         // Recomputing the state is faster than reading it.
         let mut used = None;
         for _ in 0..from {
@@ -133,13 +129,13 @@ impl GroupVisitor for Stream<'_> {
         }
         let mut before = Totals::of_chunks(&folder.manifest().chunks);
         let path = folder.path().to_owned();
-        let write = |done: ChunkRollout<T, O>, before: Totals| {
+        let write = |done: ChunkRollout<T>, before: Totals| {
             stored(done, before, dataset, format, threads, &path)
         };
         let write = &write;
         thread::scope(|scope| {
             // Up to three chunks are encoded and written while one is computed, so that the disk and the cores stay busy.
-            let (send, turns) = sync_channel::<Turn<'_, T, O>>(1);
+            let (send, turns) = sync_channel::<Turn<'_, T>>(1);
             let (give_back, free) = channel();
             let tell = move || {
                 for turn in turns {
@@ -189,12 +185,11 @@ fn no_thread(error: io::Error) -> DatasetError {
 }
 
 /// The thread that writes a chunk.
-type Turn<'scope, T, const O: usize> =
-    ScopedJoinHandle<'scope, Result<Written<T, O>, DatasetError>>;
+type Turn<'scope, T> = ScopedJoinHandle<'scope, Result<Written<T>, DatasetError>>;
 
 /// A chunk with its files on the disk.
-struct Written<T, const O: usize> {
-    done: ChunkRollout<T, O>,
+struct Written<T> {
+    done: ChunkRollout<T>,
     /// The totals before the next chunk.
     after: Totals,
     holds: Map<String, Value>,
@@ -202,14 +197,14 @@ struct Written<T, const O: usize> {
 }
 
 /// Writes the files of a chunk.
-fn stored<T: Number, const O: usize>(
-    mut done: ChunkRollout<T, O>,
+fn stored<T: Number>(
+    mut done: ChunkRollout<T>,
     before: Totals,
     dataset: &Dataset,
     format: DataFormat,
     threads: usize,
     folder: &Path,
-) -> Result<Written<T, O>, DatasetError> {
+) -> Result<Written<T>, DatasetError> {
     let holds = done.manifest_entry(dataset, format, before);
     let files = done.files(dataset, format, threads, before)?;
     let (after, files) = (files.after, write_files(folder, &files.list())?);

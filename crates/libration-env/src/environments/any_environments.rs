@@ -5,13 +5,17 @@ use std::ops::Range;
 use bytemuck::Pod;
 use libration::checkpoint::{Checkpoint, CheckpointError};
 use libration::ensemble::Execution;
-use libration::rl::{EnvironmentError, Environments, EpisodeEnd, Rollout, StepBuffers, World};
+use libration::rl::{
+    EnvironmentError, Environments, EpisodeEnds, Plan, ProgramEnvironments, ProgramPolicy,
+    ProgramRollout, Rollout, StepBuffers, World,
+};
 use libration::{Elementary, Float};
 
-use super::AnyPolicy;
+use super::AnyRollout;
+use super::policy::SizedPolicy;
 
-/// [`Environments`] of any type with `O` observations.
-pub trait AnyEnvironments<T, const O: usize>: Send + Sync {
+/// [`Environments`] or [`ProgramEnvironments`].
+pub trait AnyEnvironments<T>: Send + Sync {
     /// The number of environments.
     fn len(&self) -> usize;
 
@@ -23,24 +27,23 @@ pub trait AnyEnvironments<T, const O: usize>: Send + Sync {
     /// The number of actions per environment so far.
     fn step(&self) -> u64;
 
-    /// Fills `rollout`.
+    /// The numbers of observations and of actions of an environment.
+    fn sizes(&self) -> [usize; 2];
+
+    /// Allocates a rollout.
     ///
     /// # Errors
-    /// See [`Environments::rollout`].
-    fn rollout(
-        &mut self,
-        actor: AnyPolicy<'_, T, O>,
-        rollout: &mut Rollout<T, O, 1>,
-    ) -> Result<(), EnvironmentError>;
+    /// See [`Rollout::new`].
+    fn new_rollout(&self, plan: Plan) -> Result<Box<dyn AnyRollout<T>>, EnvironmentError>;
 
-    /// Fills the rows `rows` of `rollout`; the rows before must be full.
+    /// Fills the rows `rows` of a rollout of [`new_rollout`](Self::new_rollout); the rows before must be full.
     ///
     /// # Errors
     /// See [`Environments::fill`].
     fn fill(
         &mut self,
-        actor: AnyPolicy<'_, T, O>,
-        rollout: &mut Rollout<T, O, 1>,
+        policy: ProgramPolicy<'_, T>,
+        rollout: &mut dyn AnyRollout<T>,
         rows: Range<usize>,
     ) -> Result<(), EnvironmentError>;
 
@@ -50,9 +53,9 @@ pub trait AnyEnvironments<T, const O: usize>: Send + Sync {
     /// See [`Environments::act`].
     fn act(
         &mut self,
-        actor: AnyPolicy<'_, T, O>,
+        policy: ProgramPolicy<'_, T>,
         to: StepBuffers<'_, T>,
-    ) -> Result<Vec<EpisodeEnd<T, O>>, EnvironmentError>;
+    ) -> Result<EpisodeEnds<T>, EnvironmentError>;
 
     /// Writes the current observations, `[n, i]`.
     ///
@@ -81,8 +84,8 @@ pub trait AnyEnvironments<T, const O: usize>: Send + Sync {
     /// Sets the execution of later steps.
     fn execute(&mut self, execution: Execution);
 
-    /// Position and velocity of environment `n`, if it exists.
-    fn state(&self, n: usize) -> Option<[T; 2]>;
+    /// Positions, then velocities, of environment `n`, if it exists.
+    fn state(&self, n: usize) -> Option<Vec<T>>;
 
     /// The complete state as bytes.
     fn to_bytes(&self) -> Vec<u8>;
@@ -94,73 +97,126 @@ pub trait AnyEnvironments<T, const O: usize>: Send + Sync {
     fn restore(&mut self, state: &[u8]) -> Result<(), CheckpointError>;
 }
 
-impl<T, E, const O: usize> AnyEnvironments<T, O> for Environments<T, E, O, 1>
+/// The methods that environments of each type have by the same name.
+macro_rules! environments {
+    () => {
+        fn len(&self) -> usize {
+            self.len()
+        }
+
+        fn step(&self) -> u64 {
+            self.step()
+        }
+
+        fn observe(&mut self, to: &mut [T]) -> Result<(), EnvironmentError> {
+            self.observe(to)
+        }
+
+        fn reset(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
+            self.reset(which)
+        }
+
+        fn end(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
+            self.end(which)
+        }
+
+        fn seed(&mut self, seeds: &[Option<u64>]) -> Result<(), EnvironmentError> {
+            self.seed(seeds)
+        }
+
+        fn execute(&mut self, execution: Execution) {
+            self.execute(execution);
+        }
+
+        fn to_bytes(&self) -> Vec<u8> {
+            Checkpoint::to_bytes(self)
+        }
+
+        fn restore(&mut self, state: &[u8]) -> Result<(), CheckpointError> {
+            Checkpoint::restore(self, state)
+        }
+    };
+}
+
+/// The rollout with its type.
+fn downcast<T, R: 'static>(
+    rollout: &mut dyn AnyRollout<T>,
+    wanted: [usize; 2],
+) -> Result<&mut R, EnvironmentError> {
+    let name = "numbers that an environment of the rollout shows";
+    let error = EnvironmentError::Shape { name, found: rollout.sizes()[0], wanted: wanted[0] };
+    rollout.as_any().downcast_mut().ok_or(error)
+}
+
+impl<T, E, const O: usize> AnyEnvironments<T> for Environments<T, E, O, 1>
 where
     T: Float + Elementary + Pod,
     E: World<T, O, 1>,
 {
-    fn len(&self) -> usize {
-        Environments::len(self)
+    environments!();
+
+    fn sizes(&self) -> [usize; 2] {
+        [O, 1]
     }
 
-    fn step(&self) -> u64 {
-        Environments::step(self)
-    }
-
-    fn rollout(
-        &mut self,
-        actor: AnyPolicy<'_, T, O>,
-        rollout: &mut Rollout<T, O, 1>,
-    ) -> Result<(), EnvironmentError> {
-        Environments::rollout(self, actor, rollout)
+    fn new_rollout(&self, plan: Plan) -> Result<Box<dyn AnyRollout<T>>, EnvironmentError> {
+        Ok(Box::new(Rollout::<T, O, 1>::new(plan)?))
     }
 
     fn fill(
         &mut self,
-        actor: AnyPolicy<'_, T, O>,
-        rollout: &mut Rollout<T, O, 1>,
+        policy: ProgramPolicy<'_, T>,
+        rollout: &mut dyn AnyRollout<T>,
         rows: Range<usize>,
     ) -> Result<(), EnvironmentError> {
-        Environments::fill(self, actor, rollout, rows)
+        let rollout: &mut Rollout<T, O, 1> = downcast(rollout, [O, 1])?;
+        self.fill(SizedPolicy::<T, O>::new(policy)?, rollout, rows)
     }
 
     fn act(
         &mut self,
-        actor: AnyPolicy<'_, T, O>,
+        policy: ProgramPolicy<'_, T>,
         to: StepBuffers<'_, T>,
-    ) -> Result<Vec<EpisodeEnd<T, O>>, EnvironmentError> {
-        Environments::act(self, actor, to)
+    ) -> Result<EpisodeEnds<T>, EnvironmentError> {
+        Ok(self.act(SizedPolicy::<T, O>::new(policy)?, to)?.as_slice().into())
     }
 
-    fn observe(&mut self, to: &mut [T]) -> Result<(), EnvironmentError> {
-        Environments::observe(self, to)
+    fn state(&self, n: usize) -> Option<Vec<T>> {
+        self.state(n).map(|state| state.coordinates().collect())
+    }
+}
+
+impl<T: Float + Elementary + Pod> AnyEnvironments<T> for ProgramEnvironments<T> {
+    environments!();
+
+    fn sizes(&self) -> [usize; 2] {
+        let definition = self.definition();
+        [definition.observations(), definition.dynamics.inputs()]
     }
 
-    fn reset(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
-        Environments::reset(self, which)
+    fn new_rollout(&self, plan: Plan) -> Result<Box<dyn AnyRollout<T>>, EnvironmentError> {
+        Ok(Box::new(ProgramRollout::new(plan, self.sizes())?))
     }
 
-    fn end(&mut self, which: &[bool]) -> Result<(), EnvironmentError> {
-        Environments::end(self, which)
+    fn fill(
+        &mut self,
+        policy: ProgramPolicy<'_, T>,
+        rollout: &mut dyn AnyRollout<T>,
+        rows: Range<usize>,
+    ) -> Result<(), EnvironmentError> {
+        let sizes = self.sizes();
+        self.fill(policy, downcast(rollout, sizes)?, rows)
     }
 
-    fn seed(&mut self, seeds: &[Option<u64>]) -> Result<(), EnvironmentError> {
-        Environments::seed(self, seeds)
+    fn act(
+        &mut self,
+        policy: ProgramPolicy<'_, T>,
+        to: StepBuffers<'_, T>,
+    ) -> Result<EpisodeEnds<T>, EnvironmentError> {
+        self.act(policy, to)
     }
 
-    fn execute(&mut self, execution: Execution) {
-        Environments::execute(self, execution);
-    }
-
-    fn state(&self, n: usize) -> Option<[T; 2]> {
-        Environments::state(self, n).map(|state| [state.q[0], state.v[0]])
-    }
-
-    fn to_bytes(&self) -> Vec<u8> {
-        Checkpoint::to_bytes(self)
-    }
-
-    fn restore(&mut self, state: &[u8]) -> Result<(), CheckpointError> {
-        Checkpoint::restore(self, state)
+    fn state(&self, n: usize) -> Option<Vec<T>> {
+        self.state(n)
     }
 }

@@ -6,70 +6,60 @@ use libration::control::clock::{Jittered, Skewed};
 use libration::ensemble::{All, Execution};
 use libration::rl::sensor::Noisy;
 use libration::rl::start::UniformStart;
-use libration::rl::task::{Regulate, Sine, SwingUp, Track};
-use libration::rl::{Environment, EnvironmentError, Environments};
+use libration::rl::{
+    Environment, EnvironmentError, Environments, ProgramEnvironment, ProgramEnvironments,
+};
 use libration::{Elementary, Float, State, rl};
 
 use super::system::EnvironmentSystem;
 use super::{AnyEnvironments, EnvironmentSettings, Task};
 
-/// An operation on environments with any number of observations.
-pub trait EnvironmentsVisitor<T> {
-    /// The result of the operation.
-    type Output;
-
-    /// Runs the operation.
-    fn visit<const O: usize>(self, all: Box<dyn AnyEnvironments<T, O>>) -> Self::Output;
-}
-
-/// Environments of one task, or the error of their settings.
-type EnvironmentsResult<T, const O: usize> =
-    Result<Box<dyn AnyEnvironments<T, O>>, EnvironmentError>;
-
 /// The first environment and their number, the seed and the execution.
-type Selection<'a> = ([usize; 2], u64, &'a Execution);
+pub type Selection<'a> = ([usize; 2], u64, &'a Execution);
 
 /// A float type whose environment kernels are compiled in this crate.
 pub trait EnvironmentFloat: Float + Elementary + Pod {
-    /// Environments of the task to rest at the origin.
+    /// Environments of a system of the catalogue.
     ///
     /// # Errors
-    /// If the settings are invalid; likewise below.
-    fn regulate(
+    /// If the settings are invalid.
+    fn catalogued(
         settings: &EnvironmentSettings,
-        task: Regulate,
         which: Selection<'_>,
-    ) -> EnvironmentsResult<Self, 2>;
+    ) -> Result<Box<dyn AnyEnvironments<Self>>, EnvironmentError>;
 
-    /// Environments of the task to swing a pendulum up.
-    fn swing_up(
-        settings: &EnvironmentSettings,
-        task: SwingUp,
+    /// Environments by programs.
+    ///
+    /// # Errors
+    /// If the definition is invalid.
+    fn by_program(
+        definition: ProgramEnvironment,
         which: Selection<'_>,
-    ) -> EnvironmentsResult<Self, 3>;
-
-    /// Environments of the task to track a sine.
-    fn track(
-        settings: &EnvironmentSettings,
-        task: Track<Sine>,
-        which: Selection<'_>,
-    ) -> EnvironmentsResult<Self, 4>;
+    ) -> Result<Box<dyn AnyEnvironments<Self>>, EnvironmentError>;
 }
 
 macro_rules! environment_floats {
     ($($float:ident)*) => {$(
         // Not generic, so that it is compiled in this crate.
         impl EnvironmentFloat for $float {
-            fn regulate(settings: &EnvironmentSettings, task: Regulate, which: Selection<'_>) -> EnvironmentsResult<Self, 2> {
-                settings.build(task, which)
+            fn catalogued(
+                settings: &EnvironmentSettings,
+                which: Selection<'_>,
+            ) -> Result<Box<dyn AnyEnvironments<Self>>, EnvironmentError> {
+                match settings.task {
+                    Task::Regulate(task) => settings.build::<$float, _, 2>(task, which),
+                    Task::SwingUp(task) => settings.build::<$float, _, 3>(task, which),
+                    Task::Track(task) => settings.build::<$float, _, 4>(task, which),
+                }
             }
 
-            fn swing_up(settings: &EnvironmentSettings, task: SwingUp, which: Selection<'_>) -> EnvironmentsResult<Self, 3> {
-                settings.build(task, which)
-            }
-
-            fn track(settings: &EnvironmentSettings, task: Track<Sine>, which: Selection<'_>) -> EnvironmentsResult<Self, 4> {
-                settings.build(task, which)
+            fn by_program(
+                definition: ProgramEnvironment,
+                ([first, len], seed, execution): Selection<'_>,
+            ) -> Result<Box<dyn AnyEnvironments<Self>>, EnvironmentError> {
+                let execution = execution.clone();
+                let all = ProgramEnvironments::<$float>::shard(definition, first, len, seed, execution)?;
+                Ok(Box::new(all))
             }
         }
     )*};
@@ -78,30 +68,11 @@ macro_rules! environment_floats {
 environment_floats!(f32 f64);
 
 impl EnvironmentSettings {
-    /// Builds `len` environments from number `first` on, at their start, and runs an operation on them.
-    ///
-    /// # Errors
-    /// If the settings are invalid.
-    pub fn with<T: EnvironmentFloat, V: EnvironmentsVisitor<T>>(
-        &self,
-        [first, len]: [usize; 2],
-        seed: u64,
-        execution: &Execution,
-        visit: V,
-    ) -> Result<V::Output, EnvironmentError> {
-        let which = ([first, len], seed, execution);
-        Ok(match self.task {
-            Task::Regulate(task) => visit.visit(T::regulate(self, task, which)?),
-            Task::SwingUp(task) => visit.visit(T::swing_up(self, task, which)?),
-            Task::Track(task) => visit.visit(T::track(self, task, which)?),
-        })
-    }
-
     fn build<T: Float + Elementary + Pod, K: rl::Task<T, 1, O> + 'static, const O: usize>(
         &self,
         task: K,
         ([first, len], seed, execution): Selection<'_>,
-    ) -> EnvironmentsResult<T, O> {
+    ) -> Result<Box<dyn AnyEnvironments<T>>, EnvironmentError> {
         for (name, value) in self.system.any().parameters() {
             if !T::from_f64(value).is_finite() {
                 let allowed = "small enough for the float type";

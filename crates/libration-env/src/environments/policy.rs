@@ -2,28 +2,28 @@
 
 use libration::random::Streams;
 use libration::rl::policy::{ActionSequence, Constant, Linear, Network, Random};
-use libration::rl::{ActionSample, EnvironmentError, Policy, StepIndex};
+use libration::rl::{ActionSample, EnvironmentError, Policy, ProgramPolicy, StepIndex};
 use libration::{Elementary, Float};
 
-/// A policy with its parameters.
+/// A policy with its parameters, for any number of observations and actions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PolicySettings {
     /// The weighted sum of the observations plus a bias.
     Linear {
-        /// One weight per observation.
+        /// One weight per observation, a row for each action.
         weights: Vec<f64>,
-        /// The bias.
-        bias: f64,
+        /// The bias of each action.
+        bias: Vec<f64>,
     },
     /// Uniform random actions.
     Random {
-        /// The lower end.
-        low: f64,
-        /// The upper end.
-        high: f64,
+        /// The lower ends.
+        low: Vec<f64>,
+        /// The upper ends.
+        high: Vec<f64>,
     },
     /// A constant action.
-    Constant(f64),
+    Constant(Vec<f64>),
 }
 
 impl PolicySettings {
@@ -35,36 +35,57 @@ impl PolicySettings {
             PolicySettings::Constant(_) => "constant",
         }
     }
+
+    /// The policy of the engine.
+    pub fn policy<T>(&self) -> ProgramPolicy<'_, T> {
+        match self {
+            PolicySettings::Linear { weights, bias } => ProgramPolicy::Linear { weights, bias },
+            PolicySettings::Random { low, high } => ProgramPolicy::Random { low, high },
+            PolicySettings::Constant(action) => ProgramPolicy::Constant(action),
+        }
+    }
 }
 
-/// One of the engine's policies.
+/// One of the engine's policies for `O` observations and one action.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AnyPolicy<'a, T, const O: usize> {
-    /// See [`Linear`].
+pub(super) enum SizedPolicy<'a, T, const O: usize> {
     Linear(Linear<O, 1>),
-    /// See [`Random`].
     Random(Random<1>),
-    /// See [`Constant`].
     Constant(Constant<1>),
-    /// See [`ActionSequence`].
     ActionSequence(ActionSequence<'a, T>),
-    /// See [`Network`].
     Network(Network<'a, T>),
 }
 
-impl<T, const O: usize> AnyPolicy<'_, T, O> {
-    /// The policy of these settings; missing weights are 0.
-    pub fn new(acting: &PolicySettings) -> Self {
-        match acting {
-            PolicySettings::Linear { weights, bias } => {
-                let weights = core::array::from_fn(|i| weights.get(i).copied().unwrap_or(0.0));
-                AnyPolicy::Linear(Linear { weights: [weights], bias: [*bias] })
-            }
-            PolicySettings::Random { low, high } => {
-                AnyPolicy::Random(Random::between([*low], [*high]))
-            }
-            PolicySettings::Constant(action) => AnyPolicy::Constant(Constant([*action])),
+impl<'a, T, const O: usize> SizedPolicy<'a, T, O> {
+    /// The same policy for these sizes.
+    ///
+    /// # Errors
+    /// If it is for others.
+    pub(super) fn new(policy: ProgramPolicy<'a, T>) -> Result<Self, EnvironmentError> {
+        fn exactly<const N: usize>(
+            name: &'static str,
+            numbers: &[f64],
+        ) -> Result<[f64; N], EnvironmentError> {
+            let error = EnvironmentError::Shape { name, found: numbers.len(), wanted: N };
+            numbers.try_into().map_err(|_| error)
         }
+        Ok(match policy {
+            ProgramPolicy::Linear { weights, bias } => SizedPolicy::Linear(Linear {
+                weights: [exactly("weights of the policy", weights)?],
+                bias: exactly("biases of the policy", bias)?,
+            }),
+            ProgramPolicy::Random { low, high } => SizedPolicy::Random(Random::between(
+                exactly("lower ends of the random action", low)?,
+                exactly("upper ends of the random action", high)?,
+            )),
+            ProgramPolicy::Constant(action) => {
+                SizedPolicy::Constant(Constant(exactly("numbers of the constant action", action)?))
+            }
+            ProgramPolicy::ActionSequence(actions) => {
+                SizedPolicy::ActionSequence(ActionSequence(actions))
+            }
+            ProgramPolicy::Network(network) => SizedPolicy::Network(network),
+        })
     }
 }
 
@@ -72,16 +93,16 @@ impl<T, const O: usize> AnyPolicy<'_, T, O> {
 macro_rules! with {
     ($actor:expr, $policy:ident => $work:expr) => {
         match $actor {
-            AnyPolicy::Linear($policy) => $work,
-            AnyPolicy::Random($policy) => $work,
-            AnyPolicy::Constant($policy) => $work,
-            AnyPolicy::ActionSequence($policy) => $work,
-            AnyPolicy::Network($policy) => $work,
+            SizedPolicy::Linear($policy) => $work,
+            SizedPolicy::Random($policy) => $work,
+            SizedPolicy::Constant($policy) => $work,
+            SizedPolicy::ActionSequence($policy) => $work,
+            SizedPolicy::Network($policy) => $work,
         }
     };
 }
 
-impl<T: Float + Elementary, const O: usize> Policy<T, O, 1> for AnyPolicy<'_, T, O> {
+impl<T: Float + Elementary, const O: usize> Policy<T, O, 1> for SizedPolicy<'_, T, O> {
     const DRAWS: bool = true;
 
     fn check(&self, environments: usize, horizon: usize) -> Result<(), EnvironmentError> {

@@ -1,21 +1,18 @@
 //! Environments by programs against the compiled ones.
 
 use libration::catalog::Actuation;
-use libration::checkpoint::Checkpoint;
 use libration::control::Jitter;
 use libration::ensemble::{Execution, InstructionSet};
 use libration::equations::{Definitions, Equations, TaskDefinitions, TaskPrograms};
 use libration::random::{Address, Purpose};
-use libration::rl::policy::{ActionSequence, Activation, Constant, Linear, Network, Random};
+use libration::rl::policy::{Activation, Network};
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{
-    Autoreset, Delays, Plan, ProgramEnvironment, ProgramEnvironments, ProgramPolicy,
-    ProgramRollout, Rollout, StepBuffers,
+    Autoreset, Delays, Layout, Plan, ProgramEnvironment, ProgramPolicy, StepBuffers,
 };
 use libration::{AnySystem, Method};
 use libration_env::environments::{
-    AnyEnvironments, AnyPolicy, EnvironmentFloat, EnvironmentSettings, EnvironmentsVisitor, Noise,
-    SingleDofSystem, Task,
+    AnyEnvironments, EnvironmentFloat, EnvironmentSettings, Noise, SingleDofSystem, Task,
 };
 
 /// A task on a system, compiled and by its equations.
@@ -174,13 +171,6 @@ impl Case {
     }
 }
 
-/// Runs both under several policies and fails at the first difference.
-struct Compare<'a> {
-    definition: &'a ProgramEnvironment,
-    what: String,
-    execution: &'a Execution,
-}
-
 const SEED: u64 = 11;
 const HORIZON: usize = 48;
 
@@ -190,120 +180,113 @@ fn drawn(n: usize) -> f64 {
     2.0 * place.uniform()[0] - 1.0
 }
 
-fn policies<'a, T: EnvironmentFloat, const O: usize>(
+fn policies<'a, T: EnvironmentFloat>(
+    observations: usize,
     numbers: &'a [f64],
     parameters: &'a [T],
-) -> Vec<(AnyPolicy<'a, T, O>, ProgramPolicy<'a, T>)> {
-    let weights = core::array::from_fn(|i| numbers[i]);
+) -> [ProgramPolicy<'a, T>; 4] {
     let network = Network {
-        parameters: &parameters[..Network::<T>::parameters(O, &[7], 1)],
+        parameters: &parameters[..Network::<T>::parameters(observations, &[7], 1)],
         hidden: &[7],
         activation: Activation::Tanh,
         instructions: InstructionSet::widest(),
     };
-    vec![
-        (
-            AnyPolicy::Linear(Linear { weights: [weights], bias: [0.1] }),
-            ProgramPolicy::Linear { weights: &numbers[..O], bias: &[0.1] },
-        ),
-        (
-            AnyPolicy::Random(Random::between([-1.0], [1.5])),
-            ProgramPolicy::Random { low: &[-1.0], high: &[1.5] },
-        ),
-        (AnyPolicy::Network(network), ProgramPolicy::Network(network)),
-        (AnyPolicy::Constant(Constant([0.25])), ProgramPolicy::Constant(&[0.25])),
+    [
+        ProgramPolicy::Linear { weights: &numbers[..observations], bias: &[0.1] },
+        ProgramPolicy::Random { low: &[-1.0], high: &[1.5] },
+        ProgramPolicy::Network(network),
+        ProgramPolicy::Constant(&[0.25]),
     ]
 }
 
-impl<T: EnvironmentFloat> EnvironmentsVisitor<T> for Compare<'_> {
-    type Output = ();
+/// Runs both and fails at the first difference.
+fn compare<T: EnvironmentFloat>(case: &Case, setting: &Setting, execution: &Execution, what: &str) {
+    let which = |execution| ([3, setting.environments], SEED, execution);
+    let definition = case.by_program(setting);
+    let mut compiled = T::catalogued(&case.compiled(setting), which(&Execution::serial())).unwrap();
+    let mut found = T::by_program(definition.clone(), which(execution)).unwrap();
+    rollouts(&mut *compiled, &mut *found, what);
+    let begin = || T::by_program(definition.clone(), which(execution)).unwrap();
+    steps(&mut *compiled, found, &begin, what);
+}
 
-    fn visit<const O: usize>(self, mut compiled: Box<dyn AnyEnvironments<T, O>>) {
-        let len = compiled.len();
-        let execution = self.execution.clone();
-        let mut found =
-            ProgramEnvironments::<T>::shard(self.definition.clone(), 3, len, SEED, execution)
-                .unwrap();
-        let numbers: Vec<f64> = (0..200).map(drawn).collect();
-        let parameters: Vec<T> = numbers.iter().map(|&x| T::from_f64(x)).collect();
-        let plan = Plan::new(HORIZON, len).truncated().log_probabilities();
-        let mut rollout = Rollout::<T, O, 1>::new(plan).unwrap();
-        let mut other = ProgramRollout::<T>::new(plan, [O, 1]).unwrap();
-        for (i, (policy, by_program)) in policies(&numbers, &parameters).into_iter().enumerate() {
-            let what = format!("{} (policy {i})", self.what);
-            compiled.rollout(policy, &mut rollout).unwrap();
-            found.fill(by_program, &mut other, 0..20).unwrap();
-            found.fill(by_program, &mut other, 20..HORIZON).unwrap();
-            assert!(other.observation() == rollout.observation(), "observations of {what}");
-            assert!(other.action() == rollout.action(), "actions of {what}");
-            let rest = other.transitions();
-            assert!(rest.reward() == rollout.reward(), "rewards of {what}");
-            assert_eq!(rest.terminated(), rollout.terminated(), "terminations of {what}");
-            assert_eq!(rest.truncated(), rollout.truncated(), "truncations of {what}");
-            assert!(rest.log_probability() == rollout.log_probability(), "densities of {what}");
-            let last: Vec<T> = rollout.finals().iter().flat_map(|end| end.observation).collect();
-            assert!(other.final_observations() == last, "final observations of {what}");
-            assert_eq!(rest.finals().len(), rollout.finals().len(), "{what}");
-            for (found, end) in rest.finals().iter().zip(rollout.finals()) {
-                let place = (found.step, found.environment, found.length, found.lost);
-                assert_eq!(place, (end.step, end.environment, end.length, end.lost), "{what}");
-                assert_eq!(found.episode_return, end.episode_return, "{what}");
-            }
-            for n in 0..len {
-                assert_eq!(found.state(n).unwrap(), compiled.state(n).unwrap(), "{what}");
-            }
+fn rollouts<T: EnvironmentFloat>(
+    compiled: &mut dyn AnyEnvironments<T>,
+    found: &mut dyn AnyEnvironments<T>,
+    what: &str,
+) {
+    let len = compiled.len();
+    let numbers: Vec<f64> = (0..200).map(drawn).collect();
+    let parameters: Vec<T> = numbers.iter().map(|&x| T::from_f64(x)).collect();
+    let plan = Plan::new(HORIZON, len).truncated().log_probabilities();
+    let mut rollout = compiled.new_rollout(plan).unwrap();
+    let mut other = found.new_rollout(plan.layout(Layout::Planes)).unwrap();
+    let [observations, _] = compiled.sizes();
+    for (i, policy) in policies(observations, &numbers, &parameters).into_iter().enumerate() {
+        let what = format!("{what} (policy {i})");
+        compiled.fill(policy, &mut *rollout, 0..HORIZON).unwrap();
+        found.fill(policy, &mut *other, 0..20).unwrap();
+        found.fill(policy, &mut *other, 20..HORIZON).unwrap();
+        for i in 0..observations {
+            let all = rollout.observation().iter().skip(i).step_by(observations);
+            let plane = &other.observation()[i * HORIZON * len..][..HORIZON * len];
+            assert!(all.eq(plane), "observation {i} of {what}");
         }
-        self.steps(&mut *compiled, &mut found);
+        assert!(other.action() == rollout.action(), "actions of {what}");
+        assert!(other.reward() == rollout.reward(), "rewards of {what}");
+        assert_eq!(other.terminated(), rollout.terminated(), "terminations of {what}");
+        assert_eq!(other.truncated(), rollout.truncated(), "truncations of {what}");
+        assert!(other.log_probability() == rollout.log_probability(), "densities of {what}");
+        assert!(other.ends() == rollout.ends(), "ends of {what}");
+        assert_eq!(other.transitions(), rollout.transitions(), "transitions of {what}");
+        for n in 0..len {
+            assert_eq!(found.state(n).unwrap(), compiled.state(n).unwrap(), "{what}");
+        }
     }
 }
 
-impl Compare<'_> {
-    /// Steps by actions from outside, with resets between, and a state that is restored.
-    fn steps<T: EnvironmentFloat, const O: usize>(
-        &self,
-        compiled: &mut dyn AnyEnvironments<T, O>,
-        found: &mut ProgramEnvironments<T>,
-    ) {
-        let len = compiled.len();
-        let zeros = || (vec![T::zero(); len * O], vec![T::zero(); len], vec![0; len], vec![0; len]);
-        let (mut wanted, mut got) = (zeros(), zeros());
-        fn buffers<T>(to: &mut (Vec<T>, Vec<T>, Vec<u8>, Vec<u8>)) -> StepBuffers<'_, T> {
-            let (seen, reward, terminated, truncated) = to;
-            StepBuffers { seen, reward, terminated, truncated }
-        }
-        for t in 0..60 {
-            let actions: Vec<T> = (0..len).map(|n| T::from_f64(drawn(n + 1000 * t))).collect();
-            let sequence = AnyPolicy::ActionSequence(ActionSequence(&actions));
-            let ends = compiled.act(sequence, buffers(&mut wanted)).unwrap();
-            let sequence = ProgramPolicy::ActionSequence(&actions);
-            let other = found.act(sequence, buffers(&mut got)).unwrap();
-            assert!(got == wanted, "step {t} of {}", self.what);
-            let last: Vec<T> = ends.iter().flat_map(|end| end.observation).collect();
-            assert!(other.observations == last, "ends of step {t} of {}", self.what);
-            if t == 20 {
-                let which: Vec<bool> = (0..len).map(|n| n % 3 == 0).collect();
-                compiled.reset(&which).unwrap();
-                found.reset(&which).unwrap();
-                let seeds: Vec<_> = (0..len).map(|n| (n % 5 == 1).then_some(n as u64)).collect();
-                compiled.seed(&seeds).unwrap();
-                found.seed(&seeds).unwrap();
-                let ends: Vec<bool> = (0..len).map(|n| n % 7 == 2).collect();
-                compiled.end(&ends).unwrap();
-                found.end(&ends).unwrap();
+/// Steps by actions from outside, with resets between, and a state that is restored.
+fn steps<T: EnvironmentFloat>(
+    compiled: &mut dyn AnyEnvironments<T>,
+    mut found: Box<dyn AnyEnvironments<T>>,
+    begin: &dyn Fn() -> Box<dyn AnyEnvironments<T>>,
+    what: &str,
+) {
+    let (len, [observations, _]) = (compiled.len(), compiled.sizes());
+    let zeros =
+        || (vec![T::zero(); len * observations], vec![T::zero(); len], vec![0; len], vec![0; len]);
+    let (mut wanted, mut got) = (zeros(), zeros());
+    fn buffers<T>(to: &mut (Vec<T>, Vec<T>, Vec<u8>, Vec<u8>)) -> StepBuffers<'_, T> {
+        let (seen, reward, terminated, truncated) = to;
+        StepBuffers { seen, reward, terminated, truncated }
+    }
+    for t in 0..60 {
+        let actions: Vec<T> = (0..len).map(|n| T::from_f64(drawn(n + 1000 * t))).collect();
+        let sequence = ProgramPolicy::ActionSequence(&actions);
+        let ends = compiled.act(sequence, buffers(&mut wanted)).unwrap();
+        let other = found.act(sequence, buffers(&mut got)).unwrap();
+        assert!(got == wanted, "step {t} of {what}");
+        assert!(other == ends, "ends of step {t} of {what}");
+        if t == 20 {
+            let which: Vec<bool> = (0..len).map(|n| n % 3 == 0).collect();
+            let seeds: Vec<_> = (0..len).map(|n| (n % 5 == 1).then_some(n as u64)).collect();
+            let ends: Vec<bool> = (0..len).map(|n| n % 7 == 2).collect();
+            for environments in [&mut *compiled, &mut *found] {
+                environments.reset(&which).unwrap();
+                environments.seed(&seeds).unwrap();
+                environments.end(&ends).unwrap();
             }
-            if t == 40 {
-                let state = found.to_bytes();
-                let execution = self.execution.clone();
-                let definition = self.definition.clone();
-                *found = ProgramEnvironments::shard(definition, 3, len, SEED, execution).unwrap();
-                found.restore(&state).unwrap();
-                assert!(found.to_bytes() == state);
-            }
-            let (mut seen, mut looked) = (wanted.0.clone(), got.0.clone());
-            compiled.observe(&mut seen).unwrap();
-            found.observe(&mut looked).unwrap();
-            assert!(seen == looked, "observations after step {t} of {}", self.what);
         }
+        if t == 40 {
+            let state = found.to_bytes();
+            found = begin();
+            found.restore(&state).unwrap();
+            assert!(found.to_bytes() == state);
+        }
+        let (mut seen, mut looked) = (wanted.0.clone(), got.0.clone());
+        compiled.observe(&mut seen).unwrap();
+        found.observe(&mut looked).unwrap();
+        assert!(seen == looked, "observations after step {t} of {what}");
     }
 }
 
@@ -312,14 +295,9 @@ fn environments_by_equations_have_the_bits_of_the_compiled_ones() {
     let parallel = Execution::serial().threads(2).unwrap().worth(1);
     for case in &CASES {
         for (i, setting) in SETTINGS.iter().enumerate() {
-            let definition = case.by_program(setting);
             let what = format!("{} under setting {i}", case.system.0);
-            let at = |execution| Compare { definition: &definition, what: what.clone(), execution };
-            let compiled = case.compiled(setting);
-            let which = [3, setting.environments];
-            let serial = Execution::serial();
-            compiled.with::<f32, _>(which, SEED, &serial, at(&parallel)).unwrap();
-            compiled.with::<f64, _>(which, SEED, &serial, at(&serial)).unwrap();
+            compare::<f32>(case, setting, &parallel, &what);
+            compare::<f64>(case, setting, &Execution::serial(), &what);
         }
     }
 }

@@ -69,7 +69,7 @@ impl<T: Float + Elementary + Pod> Horizon<'_, T> {
             || work.definition.is_noisy();
         let past_len = work.history.len();
         let mut none = [Streams::<LANES>::none(); 3];
-        let mut ends = EpisodeEnds::new(observations);
+        let mut ends = EpisodeEnds::default();
         for (b, episodes) in blocks.iter_mut().enumerate() {
             let count = (len - b * LANES).min(LANES);
             let mut block = BlockState {

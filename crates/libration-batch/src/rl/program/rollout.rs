@@ -7,7 +7,7 @@ use ndarray::{ArrayViewMut3, ShapeBuilder};
 use super::horizon::Transitions;
 use crate::ensemble::{Buffer, InsufficientMemory, Pages};
 use crate::rl::rollout_slice::RolloutSlice;
-use crate::rl::{Discounts, EnvironmentError, EpisodeEnd, Estimates, Layout, Plan, Rollout};
+use crate::rl::{EnvironmentError, EpisodeEnd, Layout, Plan, Rollout};
 
 /// The transitions of [`ProgramEnvironments`](super::ProgramEnvironments) over a horizon: a [`Rollout`] with any number of observations
 /// and actions.
@@ -29,14 +29,28 @@ pub struct EpisodeEnds<T> {
     pub ends: Vec<EpisodeEnd<T, 0>>,
     /// Their final observations, before the next episodes began: `[k, i]`.
     pub observations: Vec<T>,
-    width: usize,
+}
+
+impl<T> Default for EpisodeEnds<T> {
+    fn default() -> Self {
+        EpisodeEnds { ends: Vec::new(), observations: Vec::new() }
+    }
+}
+
+impl<T: Copy, const O: usize> From<&[EpisodeEnd<T, O>]> for EpisodeEnds<T> {
+    fn from(ends: &[EpisodeEnd<T, O>]) -> Self {
+        let without = |end: &EpisodeEnd<T, O>| {
+            let EpisodeEnd { step, environment, episode_return, length, lost, .. } = *end;
+            EpisodeEnd { step, environment, observation: [], episode_return, length, lost }
+        };
+        EpisodeEnds {
+            ends: ends.iter().map(without).collect(),
+            observations: ends.iter().flat_map(|end| end.observation).collect(),
+        }
+    }
 }
 
 impl<T: Copy> EpisodeEnds<T> {
-    pub(super) fn new(width: usize) -> Self {
-        EpisodeEnds { ends: Vec::new(), observations: Vec::new(), width }
-    }
-
     pub(super) fn push(&mut self, end: EpisodeEnd<T, 0>, observation: impl Iterator<Item = T>) {
         self.ends.push(end);
         self.observations.extend(observation);
@@ -55,7 +69,6 @@ impl<T: Copy> EpisodeEnds<T> {
                 .flat_map(|&k| observations[k * width..][..width].iter().copied())
                 .collect(),
             ends: order.iter().map(|&k| ends[k]).collect(),
-            width,
         }
     }
 }
@@ -111,24 +124,10 @@ impl<T: Float + Pod> ProgramRollout<T> {
         &self.action
     }
 
-    /// The final observations of the [finals](Rollout::finals): `[k, i]`.
-    pub fn final_observations(&self) -> &[T] {
-        &self.last
-    }
-
-    /// Fills advantages and returns.
-    ///
-    /// # Errors
-    /// See [`Estimates::fill`].
-    pub fn estimate(
-        &self,
-        to: &mut Estimates<T>,
-        discounts: Discounts,
-        next: &[T],
-        last: &[T],
-        execution: &crate::ensemble::Execution,
-    ) -> Result<(), EnvironmentError> {
-        to.fill(discounts, &self.transitions, next, last, execution)
+    /// The episodes that ended, by step and environment.
+    pub fn ends(&self) -> EpisodeEnds<T> {
+        let ends = self.transitions.finals().to_vec();
+        EpisodeEnds { ends, observations: self.last.clone() }
     }
 
     /// A range of its rows, to be written.
