@@ -137,3 +137,108 @@ fn settings_are_read_back_from_a_manifest_whatever_they_are() {
     }
     assert_eq!(Dataset::default().len(), 4096 * 1024);
 }
+
+/// The settings above with a system and a task by equations that have the operations of the compiled ones.
+fn by_equations(system: &Path) -> String {
+    let file = "\
+[system]
+name = 'swing'
+coordinates = ['x']
+inputs = ['u']
+parameters = { omega2 = 1.0 }
+acceleration.x = '-omega2*sin(x) + u'
+start = { x = 0.0 }
+";
+    fs::write(system, file).unwrap();
+    let task = "\
+[system.equations]
+of = '<FILE>'
+parameters = { omega2 = 4.0 }
+[task.expressions]
+observe = ['-cos(x)', '-sin(x)', \"x'\"]
+reward = \"-cos(before(x)) - 1 - 0.2*before(x')^2 - 0.01*u^2\"
+start = { x = [-0.5, 0.5] }
+";
+    let task = task.replace("<FILE>", system.to_str().unwrap());
+    let (head, tail) = SETTINGS.split_once("[system.pendulum]").unwrap();
+    let (_, policy) = tail.split_once("[policy.linear]").unwrap();
+    format!("{head}{task}[policy.linear]{policy}")
+}
+
+#[test]
+fn a_data_set_of_equations_holds_the_bits_of_the_compiled_system_in_each_format() {
+    let dir = tempfile::tempdir().unwrap();
+    let system = dir.path().join("swing.toml");
+    let text = by_equations(&system);
+    let compiled = SETTINGS.replace("q = [-0.5, 0.5]", "q = [-0.5, 0.5]\nv = [0.0, 0.0]");
+    for format in [DataFormat::Npy, DataFormat::Parquet, DataFormat::Minari] {
+        let write_all = |name: &str, text: &str| {
+            let out = dir.path().join(format!("{name}-{}", format.name()));
+            let dataset = parse(text, "set.toml").unwrap();
+            let execution = Execution::serial();
+            let job = WriteJob {
+                dataset: &dataset,
+                format,
+                shard: [1, 1],
+                out: &out,
+                resume: false,
+                execution,
+            };
+            write(&job, &Count::default()).unwrap();
+            out
+        };
+        let (wanted, found) = (write_all("compiled", &compiled), write_all("equations", &text));
+        if format == DataFormat::Npy {
+            for folder in ["observation", "action", "reward", "terminated", "truncated"] {
+                for entry in fs::read_dir(wanted.join(folder)).unwrap() {
+                    let name = entry.unwrap().file_name();
+                    let [wanted, found] = [&wanted, &found]
+                        .map(|out| fs::read(out.join(folder).join(&name)).unwrap());
+                    assert!(wanted == found, "{folder}/{name:?}");
+                }
+            }
+        }
+        // A manifest needs no other file.
+        fs::rename(&system, dir.path().join("elsewhere")).unwrap();
+        let execution = Execution::serial();
+        let how = VerifyOptions { replay: Some(&execution), repair: None };
+        let (_, flaws) = verify(&found, how, &Count::default()).unwrap();
+        assert!(flaws.is_empty(), "{flaws:?}");
+        fs::rename(dir.path().join("elsewhere"), &system).unwrap();
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_data_set_of_equations_is_said() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = by_equations(&dir.path().join("swing.toml"));
+    for (old, new, wanted) in [
+        ("swing.toml", "swong.toml", "cannot read"),
+        ("omega2 = 4.0", "omega = 4.0", "unknown parameter `omega`"),
+        ("-cos(before(x))", "-cos(before(y))", "unknown name `before(y)`"),
+        ("{ x = [-0.5, 0.5] }", "{ y = 1 }", "unknown state `y`"),
+        (
+            "[policy.linear]\nweights = [1.0, 0.5, -0.25]",
+            "[policy.linear]\nweights = [1]",
+            "it must have 3",
+        ),
+        ("[policy.linear]\nweights = [1.0, 0.5, -0.25]\nbias = 0.125\n", "", "`policy` is missing"),
+        ("bias = 0.125", "bias = [1, 2]", "`policy` has 2 numbers"),
+        (
+            "[system.equations]",
+            "[start]\nq = [0, 1]\n[system.equations]",
+            "`start` belongs to systems",
+        ),
+        (
+            "[system.equations]",
+            "[system.pendulum]\n[system.equations]",
+            "`system` must be one table",
+        ),
+        ("[task.expressions]", "[task.regulate]\n[task.expressions]", "expected"),
+    ] {
+        let bad = text.replace(old, new);
+        assert_ne!(bad, text, "{old}");
+        let error = parse(&bad, "set.toml").unwrap_err().to_string();
+        assert!(error.contains(wanted) && error.contains("set.toml:"), "{error}");
+    }
+}

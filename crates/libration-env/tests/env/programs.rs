@@ -203,7 +203,8 @@ fn policies<'a, T: EnvironmentFloat>(
 fn compare<T: EnvironmentFloat>(case: &Case, setting: &Setting, execution: &Execution, what: &str) {
     let which = |execution| ([3, setting.environments], SEED, execution);
     let definition = case.by_program(setting);
-    let mut compiled = T::catalogued(&case.compiled(setting), which(&Execution::serial())).unwrap();
+    let serial = Execution::serial();
+    let mut compiled = T::catalogued(&case.compiled(setting), which(&serial)).unwrap();
     let mut found = T::by_program(definition.clone(), which(execution)).unwrap();
     rollouts(&mut *compiled, &mut *found, what);
     let begin = || T::by_program(definition.clone(), which(execution)).unwrap();
