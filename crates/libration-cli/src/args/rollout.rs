@@ -6,7 +6,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args};
 use libration_env::dataset::DataFormat;
 
-use super::number::whole_number;
+use super::number::{assignment, whole_number};
 
 /// Arguments of `rollout`.
 #[derive(Args, Debug)]
@@ -15,6 +15,18 @@ pub(crate) struct RolloutArgs {
     /// Settings file [default: the settings of the report]
     #[arg(long, value_name = "FILE")]
     pub(crate) config: Option<PathBuf>,
+    /// File of a system by equations with a task, in place of the system of the settings
+    #[arg(long, value_name = "FILE")]
+    pub(crate) system: Option<PathBuf>,
+    /// Parameter of --system, e.g. pole=0.2; repeatable
+    #[arg(
+        long,
+        value_name = "KEY=VALUE",
+        value_parser = assignment,
+        requires = "system",
+        allow_hyphen_values = true
+    )]
+    pub(crate) set: Vec<(String, f64)>,
     /// Output folder of the data set
     #[arg(long, value_name = "DIR", required_unless_present = "print_config")]
     pub(crate) out: Option<PathBuf>,
@@ -34,7 +46,7 @@ pub(crate) struct RolloutArgs {
     #[arg(long, value_name = "N", default_value = "0")]
     pub(crate) threads: usize,
     /// Print the default settings with comments, and exit
-    #[arg(long, conflicts_with_all = ["config", "out", "transitions", "shard", "resume", "threads"])]
+    #[arg(long, conflicts_with_all = ["config", "system", "out", "transitions", "shard", "resume", "threads"])]
     pub(crate) print_config: bool,
 }
 
@@ -43,6 +55,7 @@ Examples:
   libration rollout --out swings
   libration rollout --print-config > mine.toml
   libration rollout --config mine.toml --out data --transitions 1e9 --format npy
+  libration rollout --system cart_pole.toml --set pole=0.2 --out falls
   libration rollout --config mine.toml --out data --transitions 1e9 --format npy --resume
   libration rollout --config mine.toml --out part-2 --shard 2/3
 

@@ -23,9 +23,14 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
     let Some(out) = &args.out else {
         return Err(Failure::usage("--out is missing; expected a folder"));
     };
+    let parse = |text: &str, name: &str| match &args.system {
+        Some(system) => dataset::parse_of(system, &args.set, text, name),
+        None => dataset::parse(text, name),
+    };
     let dataset = match &args.config {
-        Some(path) => config_file::read(path, dataset::parse)?,
-        None => Dataset::default(),
+        Some(path) => config_file::read(path, parse)?,
+        None if args.system.is_none() => Dataset::default(),
+        None => parse("", "defaults").map_err(|error| Failure::usage(error.message()))?,
     };
     let dataset = match args.transitions {
         Some(count) => dataset.transitions(count).map_err(|error| {

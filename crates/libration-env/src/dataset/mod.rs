@@ -25,6 +25,6 @@ pub use error::DatasetError;
 pub use format::DataFormat;
 pub use libration_data::{DataError, Flaw};
 pub use monitor::Monitor;
-pub use settings::{DEFAULT, Dataset, parse};
+pub use settings::{DEFAULT, Dataset, parse, parse_of};
 pub use verification::{VerifyOptions, verify};
 pub use writer::{WriteJob, write};

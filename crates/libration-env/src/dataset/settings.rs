@@ -1,5 +1,7 @@
 //! Settings of data sets.
 
+use std::path::Path;
+
 use libration_analyze::trajectory::FloatType;
 use libration_settings::{Document, SettingsError};
 
@@ -36,9 +38,31 @@ pub(super) const STEPS: u64 = 1_000_000_000_000;
 /// # Errors
 /// The error with its position; `file_name` is the name in messages.
 pub fn parse(text: &str, file_name: &str) -> Result<Dataset, SettingsError> {
+    parse_changed(text, file_name, |_| {})
+}
+
+/// Parses settings with the system by equations of a file in place of theirs, and other values of some of its parameters.
+///
+/// # Errors
+/// As for [`parse`].
+pub fn parse_of(
+    system: &Path,
+    parameters: &[(String, f64)],
+    text: &str,
+    file_name: &str,
+) -> Result<Dataset, SettingsError> {
+    parse_changed(text, file_name, |file| file.replace_system(system, parameters))
+}
+
+fn parse_changed(
+    text: &str,
+    file_name: &str,
+    change: impl FnOnce(&mut File),
+) -> Result<Dataset, SettingsError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let document = Document::parse(text, file_name)?;
-    let file: File = toml::from_str(text).map_err(|error| document.explain(&error))?;
+    let mut file: File = toml::from_str(text).map_err(|error| document.explain(&error))?;
+    change(&mut file);
     Dataset::try_from(file).map_err(|fault| document.locate(fault))
 }
 

@@ -14,7 +14,7 @@ use libration_settings::{Count, Fault, Number, SettingsError, suggestions};
 
 use super::settings::{Chunk, Dataset, STEPS};
 use super::tables::{
-    EquationsTable, File, Numbers, PolicyTable, StartTable, SystemTables, TaskTable,
+    ConstantTable, EquationsTable, File, Numbers, PolicyTable, StartTable, SystemTables, TaskTable,
 };
 use crate::environments::{
     AnyEnvironmentSettings, EnvironmentSettings, EquationEnvironment, Noise, PolicySettings,
@@ -138,14 +138,12 @@ impl TryFrom<File> for Dataset {
             }
         };
         let sizes = [environment.observed().len(), environment.actions().len()];
-        let missing = || {
-            let message = "`policy` is missing; expected [policy.linear], [policy.random] or [policy.constant]";
-            Fault::new("policy", message)
+        // The default of the catalogue is for an oscillator.
+        let default = match &environment {
+            AnyEnvironmentSettings::Catalogued(_) => PolicyTable::default(),
+            AnyEnvironmentSettings::Equations(_) => PolicyTable::Constant(ConstantTable::default()),
         };
-        let acting = match (file.policy, &environment) {
-            (None, AnyEnvironmentSettings::Equations(_)) => return Err(missing()),
-            (table, _) => policy(table.unwrap_or_default(), sizes)?,
-        };
+        let acting = policy(file.policy.unwrap_or(default), sizes)?;
         Ok(Dataset {
             seed: count("seed", file.seed, 0..=u64::MAX)?,
             float,

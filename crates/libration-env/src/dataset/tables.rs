@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::Path;
 
 use libration_settings::{Count, Number};
 use serde::de::{MapAccess, Visitor};
@@ -184,6 +185,24 @@ pub(super) struct RandomTable {
 #[serde(default, deny_unknown_fields)]
 pub(super) struct ConstantTable {
     pub(super) action: Numbers,
+}
+
+impl File {
+    /// Puts the equations of a file in place of the system and of what belongs to systems of the catalogue.
+    pub(super) fn replace_system(&mut self, path: &Path, parameters: &[(String, f64)]) {
+        let own = self.system.equations.take();
+        let parameters =
+            parameters.iter().map(|(name, value)| (name.clone(), Number(*value))).collect();
+        let equations = EquationsTable {
+            of: Some(path.to_string_lossy().into_owned()),
+            text: None,
+            parameters,
+            max_action: own.and_then(|own| own.max_action),
+        };
+        self.system = SystemTables { equations: Some(equations), catalogued: BTreeMap::new() };
+        self.start = None;
+        self.task = self.task.take().filter(|task| matches!(task, TaskTable::Expressions(_)));
+    }
 }
 
 impl Default for File {

@@ -222,7 +222,6 @@ fn what_is_wrong_with_a_data_set_of_equations_is_said() {
             "[policy.linear]\nweights = [1]",
             "it must have 3",
         ),
-        ("[policy.linear]\nweights = [1.0, 0.5, -0.25]\nbias = 0.125\n", "", "`policy` is missing"),
         ("bias = 0.125", "bias = [1, 2]", "`policy` has 2 numbers"),
         (
             "[system.equations]",

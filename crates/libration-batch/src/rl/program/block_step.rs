@@ -32,6 +32,8 @@ pub(super) struct BlockStep<'s, T> {
     /// The time from action to action, in seconds.
     span: f64,
     saturation: Vec<T>,
+    /// Whether observation and verdict depend on time.
+    is_timed: [bool; 2],
     step: ProgramRows<'s, T>,
     observation: ProgramRows<'s, T>,
     verdict: ProgramRows<'s, T>,
@@ -78,6 +80,7 @@ impl<'s, T: Float + Elementary + Pod> BlockStep<'s, T> {
             dt,
             span: definition.dt * f64::from(definition.substeps),
             saturation: definition.saturation.iter().map(|&most| T::from_f64(most)).collect(),
+            is_timed: programs.is_timed(),
             step: programs.step.rows(lanes, dt),
             observation: programs.observation.rows(lanes, T::zero()),
             verdict: programs.verdict.rows(lanes, T::zero()),
@@ -118,7 +121,9 @@ impl<'s, T: Float + Elementary + Pod> BlockStep<'s, T> {
             self.history.seen(block.past, now * u64::from(self.definition.substeps), late, q, v);
             states = &self.other;
         }
-        set_times(&mut self.times, now, &block.episodes.began, self.span);
+        if self.is_timed[0] {
+            set_times(&mut self.times, now, &block.episodes.began, self.span);
+        }
         let times = &self.times;
         let input = |i: usize| states.get(i).unwrap_or(times);
         self.observation.run(input, &mut self.seen, self.instructions);
@@ -186,14 +191,11 @@ impl<'s, T: Float + Elementary + Pod> BlockStep<'s, T> {
             self.integrate(block.states);
         }
         self.judge(now, block.states, &block.episodes.began);
-        let mut ended = false;
-        for l in 0..count {
-            let (reward, over) = self.outcome(l, block.states);
-            (self.rewards[l], self.overs[l]) = (reward, over);
-            block.episodes.paid[l] = block.episodes.paid[l] + reward;
-            ended |= over != 0;
+        self.settle(block.states);
+        for (paid, &reward) in block.episodes.paid.iter_mut().zip(&self.rewards) {
+            *paid = *paid + reward;
         }
-        ended
+        self.overs[..count].iter().fold(0, |all, over| all | over) != 0
     }
 
     /// The commands of the actions after saturation. NaN stays NaN.
@@ -230,19 +232,16 @@ impl<'s, T: Float + Elementary + Pod> BlockStep<'s, T> {
 
     /// A step of the integrator.
     fn integrate(&mut self, states: &mut [Row<T>]) {
-        // The program writes other rows than it reads.
-        let before = states.to_vec();
         let (held, lengths) = (&self.held, &self.lengths);
-        let input = |i: usize| match i.checked_sub(before.len()) {
-            None => &before[i],
-            Some(i) => held.get(i).unwrap_or(lengths),
-        };
-        self.step.run(input, states, self.instructions);
+        let rest = |i: usize| held.get(i).unwrap_or(lengths);
+        self.step.run_in_place(states, rest, self.instructions);
     }
 
     /// Computes rewards and terminations of the step from [`other`](BlockStep::other) to these states.
     fn judge(&mut self, now: u64, states: &[Row<T>], began: &[u64; LANES]) {
-        set_times(&mut self.times, now + 1, began, self.span);
+        if self.is_timed[1] {
+            set_times(&mut self.times, now + 1, began, self.span);
+        }
         let (other, commands, times) = (&self.other, &self.commands, &self.times);
         let rows = [&other[..], commands, states];
         let input = |mut i: usize| {
@@ -257,17 +256,19 @@ impl<'s, T: Float + Elementary + Pod> BlockStep<'s, T> {
         self.verdict.run(input, &mut self.judged, self.instructions);
     }
 
-    /// The reward and the flags of a lane. A step that is not finite is [`LOST`] and has reward 0: a number that is not finite times
-    /// zero is not zero.
-    fn outcome(&self, l: usize, states: &[Row<T>]) -> (T, u8) {
-        let [reward, over] = self.judged.each_ref().map(|row| row[l]);
-        let mut none = reward * T::zero();
+    /// Sets rewards and flags. A step that is not finite is [`LOST`] and has reward 0: a number that is not finite times zero is not
+    /// zero.
+    fn settle(&mut self, states: &[Row<T>]) {
+        let [rewards, overs] = &self.judged;
+        let mut none = rewards.map(|reward| reward * T::zero());
         for row in states.iter().chain(&self.actions) {
-            none = none + row[l] * T::zero();
+            none.iter_mut().zip(row).for_each(|(none, &x)| *none = *none + x * T::zero());
         }
-        let lost = none != T::zero();
-        let over = u8::from(over > T::zero()) | (u8::from(lost) * LOST);
-        (if lost { T::zero() } else { reward }, over)
+        for l in 0..LANES {
+            let lost = none[l] != T::zero();
+            self.overs[l] = u8::from(overs[l] > T::zero()) | (u8::from(lost) * LOST);
+            self.rewards[l] = if lost { T::zero() } else { rewards[l] };
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use bytemuck::Pod;
 use libration_core::random::Streams;
 use libration_core::{Elementary, Float};
-use ndarray::{ArrayViewMut2, ArrayViewMut3, Axis};
+use ndarray::{ArrayViewMut2, ArrayViewMut3, Axis, s};
 
 use super::block_step::{BlockState, BlockStep, Row};
 use super::episodes::EpisodeBlock;
@@ -260,17 +260,23 @@ impl<'a, T: Float> Transitions<'a, T> {
         cuts: &[u8; LANES],
     ) {
         fn row<X: Copy>(to: &mut ArrayViewMut2<'_, X>, [t, first, count]: [usize; 3], from: &[X]) {
-            let mut row = to.index_axis_mut(Axis(0), t);
-            row.iter_mut().skip(first).take(count).zip(from).for_each(|(to, &x)| *to = x);
+            if to.is_empty() {
+                return;
+            }
+            let mut part = to.slice_mut(s![t, first..first + count]);
+            part.iter_mut().zip(from).for_each(|(to, &x)| *to = x);
         }
         fn rows<X: Copy>(
             to: &mut ArrayViewMut3<'_, X>,
             [t, first, count]: [usize; 3],
             from: &[Row<X>],
         ) {
-            let mut step = to.index_axis_mut(Axis(0), t);
-            for (mut column, from) in step.columns_mut().into_iter().zip(from) {
-                column.iter_mut().skip(first).take(count).zip(from).for_each(|(to, &x)| *to = x);
+            if to.is_empty() {
+                return;
+            }
+            let mut part = to.slice_mut(s![t, first..first + count, ..]);
+            for (mut column, from) in part.columns_mut().into_iter().zip(from) {
+                column.iter_mut().zip(from).for_each(|(to, &x)| *to = x);
             }
         }
         let place = [t, first, count];

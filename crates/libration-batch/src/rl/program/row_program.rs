@@ -44,6 +44,13 @@ impl RowProgram {
     }
 }
 
+impl RowProgram {
+    /// Whether the program reads its last input.
+    pub(super) fn reads_last(&self) -> bool {
+        self.rows.last() == Some(&(self.inputs - 1))
+    }
+}
+
 /// Rows that a program runs on.
 #[derive(Debug)]
 pub(super) struct ProgramRows<'p, T> {
@@ -53,6 +60,33 @@ pub(super) struct ProgramRows<'p, T> {
 }
 
 impl<T: Float> ProgramRows<'_, T> {
+    /// Runs the program on rows that it replaces by its outputs; `rest` are the inputs after them.
+    pub(super) fn run_in_place<'a>(
+        &mut self,
+        rows: &mut [[T; LANES]],
+        rest: impl Fn(usize) -> &'a [T; LANES],
+        instructions: InstructionSet,
+    ) where
+        T: 'a,
+    {
+        let ProgramRows { program, block, lanes } = self;
+        let width = block.lanes();
+        for first in (0..*lanes).step_by(width) {
+            let lanes = first..(first + width).min(*lanes);
+            for (row, &i) in program.rows.iter().enumerate() {
+                let values = match i.checked_sub(rows.len()) {
+                    None => &rows[i],
+                    Some(i) => rest(i),
+                };
+                block.load(row, &values[lanes.clone()]);
+            }
+            block.run(1, instructions);
+            for (i, to) in rows.iter_mut().enumerate() {
+                block.store(program.first_output + i, &mut to[lanes.clone()]);
+            }
+        }
+    }
+
     /// Runs the program and writes the lanes of its outputs, as many as there are.
     pub(super) fn run<'a>(
         &mut self,

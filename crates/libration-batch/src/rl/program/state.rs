@@ -34,6 +34,11 @@ impl Programs {
         }
     }
 
+    /// Whether observation and verdict depend on time, the last input of each.
+    pub(super) fn is_timed(&self) -> [bool; 2] {
+        [&self.observation, &self.verdict].map(RowProgram::reads_last)
+    }
+
     /// Instructions of an action.
     pub(super) fn instructions(&self, substeps: u32) -> u64 {
         let step = (self.step.instructions() as u64).saturating_mul(substeps.into());
