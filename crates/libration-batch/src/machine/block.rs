@@ -54,22 +54,28 @@ impl<'p, T: Float> Block<'p, T> {
     /// Sets a row; lanes beyond the last value repeat it.
     pub(crate) fn load(&mut self, row: usize, values: &[T]) {
         let groups = &mut self.rows[row * self.width..][..self.width];
-        let last = values.last().copied().unwrap_or_else(T::zero);
         let (full, rest) = values.as_chunks::<LANES>();
-        let mut padded = [last; LANES];
-        padded[..rest.len()].copy_from_slice(rest);
-        let beyond = [last; LANES];
-        let padding = core::iter::once(&padded).chain(core::iter::repeat(&beyond));
-        for (Lanes(lanes), values) in groups.iter_mut().zip(full.iter().chain(padding)) {
+        for (Lanes(lanes), values) in groups.iter_mut().zip(full) {
             *lanes = *values;
+        }
+        if full.len() < groups.len() {
+            let last = values.last().copied().unwrap_or_else(T::zero);
+            let beyond = &mut groups[full.len()..];
+            beyond.fill(Lanes([last; LANES]));
+            beyond[0].0[..rest.len()].copy_from_slice(rest);
         }
     }
 
     /// Copies a row into `values`, as many as there are.
     pub(crate) fn store(&self, row: usize, values: &mut [T]) {
         let groups = &self.rows[row * self.width..][..self.width];
-        for (Lanes(lanes), values) in groups.iter().zip(values.chunks_mut(LANES)) {
-            values.copy_from_slice(&lanes[..values.len()]);
+        let (full, rest) = values.as_chunks_mut::<LANES>();
+        let count = full.len();
+        for (Lanes(lanes), values) in groups.iter().zip(full) {
+            *values = *lanes;
+        }
+        if let Some(Lanes(lanes)) = groups.get(count) {
+            rest.copy_from_slice(&lanes[..rest.len()]);
         }
     }
 

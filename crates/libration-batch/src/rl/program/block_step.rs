@@ -171,10 +171,9 @@ impl<'s, T: Float + Elementary + Pod> BlockStep<'s, T> {
     ) -> bool {
         let substeps = self.substeps();
         self.saturate();
-        self.held.copy_from_slice(&self.commands);
         self.other.copy_from_slice(block.states);
         if self.history.delays_actions() {
-            self.history.act(block.past, now, &self.held);
+            self.history.act(block.past, now, &self.commands);
         }
         for substep in 0..substeps {
             if self.history.delays_actions() {
@@ -232,7 +231,8 @@ impl<'s, T: Float + Elementary + Pod> BlockStep<'s, T> {
 
     /// A step of the integrator.
     fn integrate(&mut self, states: &mut [Row<T>]) {
-        let (held, lengths) = (&self.held, &self.lengths);
+        let held = if self.history.delays_actions() { &self.held } else { &self.commands };
+        let lengths = &self.lengths;
         let rest = |i: usize| held.get(i).unwrap_or(lengths);
         self.step.run_in_place(states, rest, self.instructions);
     }

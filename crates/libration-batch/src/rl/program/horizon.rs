@@ -3,7 +3,7 @@
 use bytemuck::Pod;
 use libration_core::random::Streams;
 use libration_core::{Elementary, Float};
-use ndarray::{ArrayViewMut2, ArrayViewMut3, Axis, s};
+use ndarray::{ArrayViewMut2, ArrayViewMut3, Axis};
 
 use super::block_step::{BlockState, BlockStep, Row};
 use super::episodes::EpisodeBlock;
@@ -93,10 +93,8 @@ impl<T: Float + Elementary + Pod> Horizon<'_, T> {
             if !next.is_empty() {
                 let now = self.step + steps as u64;
                 work.observe(now, &mut block, &mut looks.clone());
-                let next = &mut next[b * LANES * observations..];
-                for (l, seen) in next.chunks_exact_mut(observations).take(count).enumerate() {
-                    seen.iter_mut().zip(&work.seen).for_each(|(x, row)| *x = row[l]);
-                }
+                let next = &mut next[b * LANES * observations..][..count * observations];
+                interleave(&work.seen, next);
             }
         }
         ends
@@ -260,11 +258,11 @@ impl<'a, T: Float> Transitions<'a, T> {
         cuts: &[u8; LANES],
     ) {
         fn row<X: Copy>(to: &mut ArrayViewMut2<'_, X>, [t, first, count]: [usize; 3], from: &[X]) {
-            if to.is_empty() {
-                return;
+            // Neighbours lie side by side.
+            if let Some(row) = to.index_axis_mut(Axis(0), t).into_slice().filter(|r| !r.is_empty())
+            {
+                row[first..first + count].copy_from_slice(&from[..count]);
             }
-            let mut part = to.slice_mut(s![t, first..first + count]);
-            part.iter_mut().zip(from).for_each(|(to, &x)| *to = x);
         }
         fn rows<X: Copy>(
             to: &mut ArrayViewMut3<'_, X>,
@@ -274,9 +272,20 @@ impl<'a, T: Float> Transitions<'a, T> {
             if to.is_empty() {
                 return;
             }
-            let mut part = to.slice_mut(s![t, first..first + count, ..]);
-            for (mut column, from) in part.columns_mut().into_iter().zip(from) {
-                column.iter_mut().zip(from).for_each(|(to, &x)| *to = x);
+            let mut step = to.index_axis_mut(Axis(0), t);
+            match step.as_slice_mut() {
+                Some(records) => {
+                    let records = &mut records[first * from.len()..][..count * from.len()];
+                    interleave(from, records);
+                }
+                // One plane after the other.
+                None => {
+                    for (column, from) in step.columns_mut().into_iter().zip(from) {
+                        if let Some(plane) = column.into_slice() {
+                            plane[first..first + count].copy_from_slice(&from[..count]);
+                        }
+                    }
+                }
             }
         }
         let place = [t, first, count];
@@ -286,5 +295,18 @@ impl<'a, T: Float> Transitions<'a, T> {
         row(&mut self.terminated, place, &work.overs);
         row(&mut self.truncated, place, cuts);
         row(&mut self.log_probability, place, &work.log_probabilities);
+    }
+}
+
+/// Writes the numbers of each lane side by side, for as many lanes as there is room.
+fn interleave<X: Copy>(rows: &[Row<X>], records: &mut [X]) {
+    match rows {
+        [row] => records.copy_from_slice(&row[..records.len()]),
+        rows => {
+            for (i, row) in rows.iter().enumerate() {
+                let numbers = records.iter_mut().skip(i).step_by(rows.len());
+                numbers.zip(row).for_each(|(number, &x)| *number = x);
+            }
+        }
     }
 }

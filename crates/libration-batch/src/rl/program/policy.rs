@@ -96,9 +96,11 @@ impl<T: Float + Elementary> ProgramPolicy<'_, T> {
             ProgramPolicy::ActionSequence(all) => {
                 let first = (place.row * place.environments + place.environment) * actions.len();
                 let rest = &all[first.min(all.len())..];
+                let width = actions.len();
                 // Lanes beyond the last environment find nothing.
-                for (l, action) in rest.chunks_exact(actions.len()).take(LANES).enumerate() {
-                    actions.iter_mut().zip(action).for_each(|(row, &x)| row[l] = x);
+                for (i, row) in actions.iter_mut().enumerate() {
+                    let numbers = rest.iter().skip(i).step_by(width);
+                    row.iter_mut().zip(numbers).for_each(|(to, &x)| *to = x);
                 }
             }
             ProgramPolicy::Constant(action) => {
