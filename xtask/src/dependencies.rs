@@ -3,13 +3,14 @@
 use crate::{Outcome, command};
 
 /// The engine, and what it depends on directly.
-const ALLOWED: [&str; 20] = [
+const ALLOWED: [&str; 21] = [
     "libration",
     "libration-analysis",
     "libration-batch",
     "libration-core",
     "libration-equations",
     "libration-linear",
+    "libration-linear-loops",
     "bnum",
     "bytemuck",
     "half",

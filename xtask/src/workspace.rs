@@ -25,13 +25,14 @@ pub(crate) fn built(program: &str) -> PathBuf {
 }
 
 /// The crates of the engine: numbers and physics, which do no input or output.
-pub(crate) const ENGINE: [&str; 6] = [
+pub(crate) const ENGINE: [&str; 7] = [
     "libration",
     "libration-analysis",
     "libration-batch",
     "libration-core",
     "libration-equations",
     "libration-linear",
+    "libration-linear-loops",
 ];
 
 /// Whether a file is a source of the engine.

@@ -6,7 +6,6 @@
 
 pub mod checkpoint;
 pub mod ensemble;
-pub mod linear_loops;
 // No unit test needs it.
 #[cfg(not(test))]
 mod machine;

@@ -11,6 +11,9 @@ pub const MAX_DEGREES: usize = 256;
 /// The most parts, parameters and inputs of a system.
 pub const MAX_DEFINITIONS: usize = 1000;
 
+/// The most observed numbers and the most comparisons of a task.
+pub const MAX_EXPRESSIONS: usize = 1000;
+
 /// The equations of a system, as text.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Definitions {

@@ -66,7 +66,7 @@ pub enum EquationErrorKind {
     #[error("there are {0} definitions; expected at most {max}", max = crate::MAX_DEFINITIONS)]
     Definitions(usize),
     /// Too many expressions of a task.
-    #[error("there are {0} expressions; expected at most {max}", max = crate::task::MAX_EXPRESSIONS)]
+    #[error("there are {0} expressions; expected at most {max}", max = crate::MAX_EXPRESSIONS)]
     Expressions(usize),
     /// A parameter that is no number.
     #[error("the parameter `{name}` is {value}; expected a finite number")]

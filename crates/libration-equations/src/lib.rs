@@ -10,6 +10,7 @@ mod error;
 mod expression;
 mod function;
 mod parser;
+mod parser_input;
 mod program;
 mod program_builder;
 mod recording;
@@ -18,7 +19,7 @@ mod step_program;
 mod step_trace;
 mod task;
 
-pub use definitions::{Definitions, MAX_DEFINITIONS, MAX_DEGREES};
+pub use definitions::{Definitions, MAX_DEFINITIONS, MAX_DEGREES, MAX_EXPRESSIONS};
 pub use dynamics::Dynamics;
 pub use equation_error::{EquationError, EquationErrorKind};
 pub use equations::{Degree, Equations};

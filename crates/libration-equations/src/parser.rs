@@ -6,19 +6,20 @@ use winnow::ascii::{digit0, digit1};
 use winnow::combinator::{
     Infix, alt, dispatch, empty, expression, fail, opt, preceded, repeat, separated, terminated,
 };
-use winnow::error::{ErrMode, ParserError};
+use winnow::error::ErrMode;
 use winnow::prelude::*;
-use winnow::stream::{LocatingSlice, Location, Stateful, Stream};
+use winnow::stream::{LocatingSlice, Location, Stream};
 use winnow::token::{any, one_of, take_while};
 
-use super::expression::{Comparison, Expression, Node, NodeId, NodeKind, Operator};
+use super::expression::{Comparison, Expression, NodeId, NodeKind, Operator};
+use super::parser_input::{
+    Failure, Input, Parsed, Tree, deeper, expect, failure, found, operation, push, space,
+    unexpected,
+};
 use super::{ExpressionError, ExpressionErrorKind, Function};
 
 /// The most bytes of an expression.
 pub const MAX_LENGTH: usize = 65_536;
-
-/// The most brackets, functions and powers within each other.
-const MAX_DEPTH: usize = 100;
 
 /// The function of a name that stands for the value before a step.
 pub(crate) const BEFORE: &str = "before";
@@ -27,33 +28,6 @@ pub(crate) const BEFORE: &str = "before";
 pub(crate) fn name_before(name: &str) -> String {
     format!("{BEFORE}({name})")
 }
-
-type Input<'a> = Stateful<LocatingSlice<&'a str>, Tree>;
-
-/// What is parsed so far.
-#[derive(Debug, Default)]
-struct Tree {
-    nodes: Vec<Node>,
-    depth: usize,
-}
-
-/// An error; none where an alternative does not apply.
-#[derive(Debug)]
-struct Failure(Option<ExpressionError>);
-
-impl<'a> ParserError<Input<'a>> for Failure {
-    type Inner = Self;
-
-    fn from_input(_: &Input<'a>) -> Self {
-        Failure(None)
-    }
-
-    fn into_inner(self) -> Result<Self::Inner, Self> {
-        Ok(self)
-    }
-}
-
-type Parsed<T> = Result<T, ErrMode<Failure>>;
 
 impl Expression {
     /// Parses an expression.
@@ -258,56 +232,4 @@ fn before(input: &mut Input<'_>, begin: usize) -> Parsed<NodeId> {
     let primes = take_while(0.., '\'').map(str::len).parse_next(input)?;
     expect(input, ')', "`)`")?;
     Ok(push(input, begin, NodeKind::Name { name, primes }))
-}
-
-/// Runs a parser one level deeper.
-fn deeper(input: &mut Input<'_>, parser: fn(&mut Input<'_>) -> Parsed<NodeId>) -> Parsed<NodeId> {
-    if input.state.depth == MAX_DEPTH {
-        let place = input.current_token_start();
-        return Err(failure(place..place + 1, ExpressionErrorKind::Depth(MAX_DEPTH)));
-    }
-    input.state.depth += 1;
-    let node = parser(input)?;
-    input.state.depth -= 1;
-    Ok(node)
-}
-
-fn space(input: &mut Input<'_>) -> Parsed<()> {
-    take_while(0.., char::is_whitespace).void().parse_next(input)
-}
-
-fn expect(input: &mut Input<'_>, token: char, expected: &'static str) -> Parsed<()> {
-    space(input)?;
-    match opt(token).parse_next(input)? {
-        Some(_) => Ok(()),
-        None => Err(unexpected(input, expected)),
-    }
-}
-
-/// Adds a node that begins there and ends at the last byte that is not a space.
-fn push(input: &mut Input<'_>, begin: usize, kind: NodeKind) -> NodeId {
-    let span = begin..input.previous_token_end();
-    input.state.nodes.push(Node { kind, span });
-    input.state.nodes.len() - 1
-}
-
-fn operation(input: &mut Input<'_>, operator: Operator, a: NodeId, b: NodeId) -> Parsed<NodeId> {
-    let begin = input.state.nodes[a].span.start;
-    Ok(push(input, begin, NodeKind::Operation(operator, [a, b])))
-}
-
-fn failure(span: Range<usize>, kind: ExpressionErrorKind) -> ErrMode<Failure> {
-    ErrMode::Cut(Failure(Some(ExpressionError { span, kind })))
-}
-
-/// What stands where something else is expected.
-fn found(input: &Input<'_>, expected: &'static str) -> ExpressionErrorKind {
-    let found = input.peek_token().map_or_else(|| "the end".into(), |c| format!("`{c}`"));
-    ExpressionErrorKind::Unexpected { found, expected }
-}
-
-fn unexpected(input: &Input<'_>, expected: &'static str) -> ErrMode<Failure> {
-    let begin = input.current_token_start();
-    let length = input.peek_token().map_or(0, char::len_utf8);
-    failure(begin..begin + length, found(input, expected))
 }

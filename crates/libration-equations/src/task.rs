@@ -1,5 +1,6 @@
 //! Tasks of environments from text.
 
+use super::definitions::MAX_EXPRESSIONS;
 use super::equations::{define_parameters, define_states, define_values};
 use super::parser::name_before;
 use super::program::{Operation, Program, ValueId};
@@ -21,9 +22,6 @@ pub struct TaskDefinitions {
     /// Comparisons of expressions of the state after a step, one of which ends an episode.
     pub terminated: Vec<String>,
 }
-
-/// The most observed numbers and the most comparisons of a task.
-pub(crate) const MAX_EXPRESSIONS: usize = 1000;
 
 /// A task as programs.
 #[derive(Clone, Debug, PartialEq)]

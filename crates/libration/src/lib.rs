@@ -5,11 +5,12 @@
 //! polynomials it yields its own update matrix.
 //!
 //! This crate is the front of the engine: [`libration_core`] has numbers, integrators, systems and the parts of control loops,
-//! [`libration_linear`] loops as matrices, [`libration_equations`] systems from text, [`libration_analysis`] what is derived from a step, [`libration_batch`] what runs many trajectories at once. None of them does
-//! input or output, reads a clock or prints.
+//! [`libration_linear`] loops as matrices, [`libration_equations`] systems from text, [`libration_analysis`] what is derived from a
+//! step, [`libration_batch`] what runs many trajectories at once, and [`libration_linear_loops`] many loops. None of them does input or
+//! output, reads a clock or prints.
 
 pub use libration_analysis as analysis;
-pub use libration_batch::{Ensemble, checkpoint, ensemble, linear_loops, replay, rl};
+pub use libration_batch::{Ensemble, checkpoint, ensemble, replay, rl};
 pub use libration_core::{
     AnySystem, CatalogError, Elementary, Float, Hamiltonian, Integrator, Method, Model, Scalar,
     State, System, catalog, control, elementary, integrator, number, random, simulation, system,
@@ -17,3 +18,4 @@ pub use libration_core::{
 };
 pub use libration_equations as equations;
 pub use libration_linear as linear;
+pub use libration_linear_loops as linear_loops;

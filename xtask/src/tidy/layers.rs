@@ -4,10 +4,11 @@ use super::finding::Finding;
 use super::source::Source;
 
 /// The crates of each floor, the lowest first.
-const FLOORS: [&[&str]; 12] = [
+const FLOORS: [&[&str]; 13] = [
     &["libration-core"],
     &["libration-equations", "libration-linear"],
     &["libration-analysis", "libration-batch"],
+    &["libration-linear-loops"],
     &["libration"],
     &["libration-data", REPORT, "libration-work"],
     &["libration-settings"],
@@ -20,7 +21,7 @@ const FLOORS: [&[&str]; 12] = [
 ];
 
 /// The floor of the engine's front; the rest of the engine is below.
-const FRONT: usize = 3;
+const FRONT: usize = 4;
 
 /// Records, findings, figures and pages.
 const REPORT: &str = "libration-report";

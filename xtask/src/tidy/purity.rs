@@ -86,7 +86,9 @@ mod tests {
             "libration-analysis",
             "libration-batch",
             "libration-core",
+            "libration-equations",
             "libration-linear",
+            "libration-linear-loops",
         ] {
             for file in ["lib.rs", "a/b.rs"] {
                 assert_eq!(lines(&format!("crates/{name}/src/{file}"), "use std::fs;"), [1]);

@@ -64,7 +64,7 @@ impl Execution {
     }
 
     /// The number of threads for so many of the shortest steps.
-    pub(crate) fn threads_for(&self, steps: u64) -> usize {
+    pub fn threads_for(&self, steps: u64) -> usize {
         let worth = usize::try_from(steps / self.worth).unwrap_or(usize::MAX).max(1);
         worth.min(self.thread_count())
     }

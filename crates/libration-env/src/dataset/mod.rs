@@ -6,6 +6,7 @@
 mod chunk_files;
 mod chunk_order;
 mod episodes;
+mod equation_tables;
 mod error;
 mod format;
 mod group;
@@ -16,6 +17,7 @@ mod minari;
 mod monitor;
 mod repair;
 mod settings;
+mod system_tables;
 mod table_conversion;
 mod tables;
 mod verification;

@@ -1,24 +1,20 @@
 //! Conversion of the tables of a settings file into settings.
 
-use std::path::Path;
-
 use libration::catalog::Actuation;
 use libration::control::Jitter;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Delays, ProgramEnvironment};
 use libration::{Method, catalog};
 use libration_analyze::trajectory::FloatType;
-use libration_settings::equations::{EquationSystem, EquationTask};
 use libration_settings::limits::{TIME_STEP, within};
-use libration_settings::{Count, Fault, Number, SettingsError, suggestions};
+use libration_settings::{Count, Fault, Number, suggestions};
 
+use super::equation_tables::equation_environment;
 use super::settings::{Chunk, Dataset, STEPS};
-use super::tables::{
-    ConstantTable, EquationsTable, File, Numbers, PolicyTable, StartTable, SystemTables, TaskTable,
-};
+use super::system_tables::{Numbers, SystemTables};
+use super::tables::{ConstantTable, File, PolicyTable, StartTable, TaskTable};
 use crate::environments::{
-    AnyEnvironmentSettings, EnvironmentSettings, EquationEnvironment, Noise, PolicySettings,
-    SingleDofSystem, Task,
+    AnyEnvironmentSettings, EnvironmentSettings, Noise, PolicySettings, SingleDofSystem, Task,
 };
 
 /// Checks that `count` is in a range.
@@ -162,58 +158,8 @@ impl TryFrom<File> for Dataset {
 
 const ONE_SYSTEM: &str = "`system` must be one table, as [system.oscillator]";
 
-/// Environments of a system by equations, ideal and without limits but of the actions.
-fn equation_environment(
-    table: &EquationsTable,
-    task: Option<TaskTable>,
-    (method, dt): (Method, f64),
-) -> Result<EquationEnvironment, Fault> {
-    let fault = |why: String| Fault::new("system.equations", why);
-    let (text, file) = match (&table.of, &table.text) {
-        (Some(path), None) => {
-            let wrong = |error| fault(format!("cannot read `{path}`: {error}"));
-            (libration_settings::read_text(Path::new(path)).map_err(wrong)?, path.as_str())
-        }
-        (None, Some(text)) => (text.clone(), "text"),
-        _ => return Err(fault("[system.equations] requires `of`, the name of a file".to_owned())),
-    };
-    let parameters: Vec<(String, f64)> =
-        table.parameters.iter().map(|(name, value)| (name.clone(), value.0)).collect();
-    let wrong = |error: SettingsError| format!("cannot use `{file}`: {}", error.sentence());
-    let system = EquationSystem::parse(&text, file, &parameters).map_err(|e| fault(wrong(e)))?;
-    let task = match task {
-        None => system.task.clone().ok_or_else(|| {
-            let message = format!("`{file}` has no table [task]; expected [task.expressions] here");
-            Fault::new("task", message)
-        })?,
-        Some(TaskTable::Expressions(table)) => {
-            let mut whole = toml::Table::new();
-            whole.insert("task".to_owned(), table.into());
-            EquationTask::parse(&whole.to_string(), "task", &system).map_err(|error| {
-                let help = error.help().map_or_else(String::new, |help| format!("; help: {help}"));
-                Fault::new("task", format!("[task.expressions]: {}{help}", error.message()))
-            })?
-        }
-        Some(_) => {
-            let message = "a system by equations has a task by expressions; expected [task.expressions], or no task for that of its file";
-            return Err(Fault::new("task", message));
-        }
-    };
-    let inputs = system.equations.inputs().len();
-    if inputs == 0 {
-        let message = format!("`{file}` has no inputs, but actions need at least one");
-        return Err(fault(message));
-    }
-    let dynamics = system.equations.dynamics().clone();
-    let ideal = ProgramEnvironment::new(dynamics, task.programs.clone(), method, dt);
-    let most = table.max_action.clone().unwrap_or(Numbers::One(Number(f64::INFINITY)));
-    let saturation = each("system.equations.max_action", most, inputs, |x| x > 0.0, "above 0")?;
-    let definition = ProgramEnvironment { start: task.start.clone(), saturation, ..ideal };
-    Ok(EquationEnvironment { system, text, parameters, task, definition })
-}
-
 /// A number for each action.
-fn each(
+pub(super) fn each(
     key: &'static str,
     numbers: Numbers,
     actions: usize,

@@ -1,10 +1,8 @@
 //! Environments by programs against the compiled ones.
-
 use libration::catalog::Actuation;
 use libration::control::Jitter;
 use libration::ensemble::{Execution, InstructionSet};
 use libration::equations::{Definitions, Equations, TaskDefinitions, TaskPrograms};
-use libration::random::{Address, Purpose};
 use libration::rl::policy::{Activation, Network};
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{
@@ -174,10 +172,8 @@ impl Case {
 const SEED: u64 = 11;
 const HORIZON: usize = 48;
 
-/// A number from −1 to 1.
 fn drawn(n: usize) -> f64 {
-    let place = Address { seed: 5, trajectory: 0, step: n as u64, purpose: Purpose::Action };
-    2.0 * place.uniform()[0] - 1.0
+    (n as f64 * 0.754_877_666).sin()
 }
 
 fn policies<'a, T: EnvironmentFloat>(
@@ -203,8 +199,8 @@ fn policies<'a, T: EnvironmentFloat>(
 fn compare<T: EnvironmentFloat>(case: &Case, setting: &Setting, execution: &Execution, what: &str) {
     let which = |execution| ([3, setting.environments], SEED, execution);
     let definition = case.by_program(setting);
-    let serial = Execution::serial();
-    let mut compiled = T::catalogued(&case.compiled(setting), which(&serial)).unwrap();
+    let (serial, settings) = (Execution::serial(), case.compiled(setting));
+    let mut compiled = T::catalogued(&settings, which(&serial)).unwrap();
     let mut found = T::by_program(definition.clone(), which(execution)).unwrap();
     rollouts(&mut *compiled, &mut *found, what);
     let begin = || T::by_program(definition.clone(), which(execution)).unwrap();
@@ -217,8 +213,8 @@ fn rollouts<T: EnvironmentFloat>(
     what: &str,
 ) {
     let len = compiled.len();
-    let numbers: Vec<f64> = (0..200).map(drawn).collect();
-    let parameters: Vec<T> = numbers.iter().map(|&x| T::from_f64(x)).collect();
+    let numbers: [f64; 200] = core::array::from_fn(drawn);
+    let parameters = numbers.map(T::from_f64);
     let plan = Plan::new(HORIZON, len).truncated().log_probabilities();
     let mut rollout = compiled.new_rollout(plan).unwrap();
     let mut other = found.new_rollout(plan.layout(Layout::Planes)).unwrap();
@@ -253,10 +249,10 @@ fn steps<T: EnvironmentFloat>(
     begin: &dyn Fn() -> Box<dyn AnyEnvironments<T>>,
     what: &str,
 ) {
-    let (len, [observations, _]) = (compiled.len(), compiled.sizes());
-    let zeros =
-        || (vec![T::zero(); len * observations], vec![T::zero(); len], vec![0; len], vec![0; len]);
-    let (mut wanted, mut got) = (zeros(), zeros());
+    let len = compiled.len();
+    let zeros = |count: usize| vec![T::zero(); count];
+    let mut wanted = (zeros(len * compiled.sizes()[0]), zeros(len), vec![0; len], vec![0; len]);
+    let mut got = wanted.clone();
     fn buffers<T>(to: &mut (Vec<T>, Vec<T>, Vec<u8>, Vec<u8>)) -> StepBuffers<'_, T> {
         let (seen, reward, terminated, truncated) = to;
         StepBuffers { seen, reward, terminated, truncated }
@@ -269,9 +265,9 @@ fn steps<T: EnvironmentFloat>(
         assert!(got == wanted, "step {t} of {what}");
         assert!(other == ends, "ends of step {t} of {what}");
         if t == 20 {
-            let which: Vec<bool> = (0..len).map(|n| n % 3 == 0).collect();
+            let every = |n: usize, rest| (0..len).map(|l| l % n == rest).collect::<Vec<_>>();
+            let (which, ends) = (every(3, 0), every(7, 2));
             let seeds: Vec<_> = (0..len).map(|n| (n % 5 == 1).then_some(n as u64)).collect();
-            let ends: Vec<bool> = (0..len).map(|n| n % 7 == 2).collect();
             for environments in [&mut *compiled, &mut *found] {
                 environments.reset(&which).unwrap();
                 environments.seed(&seeds).unwrap();

@@ -9,10 +9,10 @@ use ndarray::ArrayViewMut3;
 
 use super::block_step::{BlockStep, Row};
 use super::episodes::Episodes;
-use super::horizon::{Horizon, Share, Transitions};
+use super::horizon::{Horizon, Share};
 use super::state::{Beginning, Programs};
+use super::transitions::Transitions;
 use super::{EpisodeEnds, ProgramEnvironment, ProgramPolicy, ProgramRollout};
-use crate::checkpoint::{Checkpoint, CheckpointError, Reader, Trait};
 use crate::ensemble::{Execution, InsufficientMemory};
 use crate::rl::block_size::LANES;
 use crate::rl::history::History;
@@ -26,13 +26,13 @@ const SHORTEST: u64 = 3;
 /// inputs and observations.
 #[derive(Debug)]
 pub struct ProgramEnvironments<T: Float> {
-    definition: ProgramEnvironment,
+    pub(super) definition: ProgramEnvironment,
     programs: Programs,
-    episodes: Episodes<T>,
+    pub(super) episodes: Episodes<T>,
     /// Positions, then velocities, of each block.
-    states: Vec<Row<T>>,
-    history: History,
-    past: Vec<T>,
+    pub(super) states: Vec<Row<T>>,
+    pub(super) history: History,
+    pub(super) past: Vec<T>,
 }
 
 impl<T: Float + Elementary + Pod> ProgramEnvironments<T> {
@@ -288,40 +288,5 @@ fn transitions<T>(reward: &mut [T], [steps, len]: [usize; 2]) -> Transitions<'_,
         terminated: rows_of(&mut [], steps),
         truncated: rows_of(&mut [], steps),
         log_probability: rows_of(&mut [], steps),
-    }
-}
-
-impl<T: Float + Elementary + Pod> Checkpoint for ProgramEnvironments<T> {
-    fn traits(&self) -> Vec<Trait> {
-        let mut traits = self.episodes.traits();
-        traits.push(("number of states", self.definition.coordinates().to_string()));
-        traits.push(("number of inputs", self.definition.dynamics.inputs().to_string()));
-        traits.push(("number of numbers on their way", self.history.len().to_string()));
-        traits
-    }
-
-    fn save<X>(&self, mut sink: impl FnMut(&[u8]) -> Result<(), X>) -> Result<(), X> {
-        self.episodes.save(&mut sink)?;
-        // Of lanes that are no environments nobody knows what they are.
-        let mut save = |rows: &[T], each: usize| {
-            let (whole, last) = rows.split_at(self.len() / LANES * each);
-            sink(bytemuck::cast_slice(whole))?;
-            let mut last = last.to_vec();
-            last.chunks_mut(LANES).for_each(|row| row[self.len() % LANES..].fill(T::zero()));
-            sink(bytemuck::cast_slice(&last))
-        };
-        save(self.states.as_flattened(), self.definition.coordinates() * LANES)?;
-        save(&self.past, self.history.len())
-    }
-
-    fn restore(&mut self, state: &[u8]) -> Result<(), CheckpointError> {
-        let own = size_of_val(&self.states[..]) + size_of_val(&self.past[..]);
-        let whole = state.len().saturating_sub(own);
-        let (episodes, rest) = state.split_at(whole);
-        let mut from = Reader::new(rest, own)?;
-        self.episodes.restore(episodes)?;
-        from.fill(self.states.as_flattened_mut());
-        from.fill(&mut self.past);
-        Ok(())
     }
 }

@@ -3,12 +3,12 @@
 use bytemuck::Pod;
 use libration_core::random::Streams;
 use libration_core::{Elementary, Float};
-use ndarray::{ArrayViewMut2, ArrayViewMut3, Axis};
 
 use super::block_step::{BlockState, BlockStep, Row};
 use super::episodes::EpisodeBlock;
 use super::rollout::EpisodeEnds;
 use super::state::Beginning;
+use super::transitions::{Transitions, interleave};
 use super::{ProgramEnvironment, ProgramPolicy};
 use crate::rl::block::{LOST, TERMINATED, TRUNCATED};
 use crate::rl::block_size::LANES;
@@ -26,16 +26,6 @@ pub(super) struct Share<'a, T: Float> {
     pub(super) to: Transitions<'a, T>,
     /// The observations after the last step, `[n, i]`; empty if they are not requested.
     pub(super) next: &'a mut [T],
-}
-
-/// The destination of transitions of neighbouring environments: `[t, n]`, or `[t, n, i]`. What is not requested has no columns.
-pub(super) struct Transitions<'a, T> {
-    pub(super) observation: ArrayViewMut3<'a, T>,
-    pub(super) action: ArrayViewMut3<'a, T>,
-    pub(super) reward: ArrayViewMut2<'a, T>,
-    pub(super) terminated: ArrayViewMut2<'a, u8>,
-    pub(super) truncated: ArrayViewMut2<'a, u8>,
-    pub(super) log_probability: ArrayViewMut2<'a, T>,
 }
 
 /// The steps of the environments of a share over a horizon.
@@ -216,97 +206,4 @@ struct Stood<T: Float> {
     episodes: EpisodeBlock<T>,
     states: Vec<Row<T>>,
     words: [Streams<LANES>; 3],
-}
-
-impl<'a, T: Float> Transitions<'a, T> {
-    /// Takes off the first `count` environments.
-    pub(super) fn split_off(self, count: usize) -> (Self, Self) {
-        fn flags<X>(all: ArrayViewMut2<'_, X>, count: usize) -> [ArrayViewMut2<'_, X>; 2] {
-            let count = count.min(all.ncols());
-            all.split_at(Axis(1), count).into()
-        }
-        fn numbers<X>(all: ArrayViewMut3<'_, X>, count: usize) -> [ArrayViewMut3<'_, X>; 2] {
-            let count = count.min(all.dim().1);
-            all.split_at(Axis(1), count).into()
-        }
-        let [observation, observations] = numbers(self.observation, count);
-        let [action, actions] = numbers(self.action, count);
-        let [reward, rewards] = flags(self.reward, count);
-        let [terminated, terminations] = flags(self.terminated, count);
-        let [truncated, truncations] = flags(self.truncated, count);
-        let [log_probability, log_probabilities] = flags(self.log_probability, count);
-        let head =
-            Transitions { observation, action, reward, terminated, truncated, log_probability };
-        let tail = Transitions {
-            observation: observations,
-            action: actions,
-            reward: rewards,
-            terminated: terminations,
-            truncated: truncations,
-            log_probability: log_probabilities,
-        };
-        (head, tail)
-    }
-
-    /// Writes step `t` of `count` environments from the `first` on.
-    fn write(
-        &mut self,
-        t: usize,
-        first: usize,
-        count: usize,
-        work: &BlockStep<'_, T>,
-        cuts: &[u8; LANES],
-    ) {
-        fn row<X: Copy>(to: &mut ArrayViewMut2<'_, X>, [t, first, count]: [usize; 3], from: &[X]) {
-            // Neighbours lie side by side.
-            if let Some(row) = to.index_axis_mut(Axis(0), t).into_slice().filter(|r| !r.is_empty())
-            {
-                row[first..first + count].copy_from_slice(&from[..count]);
-            }
-        }
-        fn rows<X: Copy>(
-            to: &mut ArrayViewMut3<'_, X>,
-            [t, first, count]: [usize; 3],
-            from: &[Row<X>],
-        ) {
-            if to.is_empty() {
-                return;
-            }
-            let mut step = to.index_axis_mut(Axis(0), t);
-            match step.as_slice_mut() {
-                Some(records) => {
-                    let records = &mut records[first * from.len()..][..count * from.len()];
-                    interleave(from, records);
-                }
-                // One plane after the other.
-                None => {
-                    for (column, from) in step.columns_mut().into_iter().zip(from) {
-                        if let Some(plane) = column.into_slice() {
-                            plane[first..first + count].copy_from_slice(&from[..count]);
-                        }
-                    }
-                }
-            }
-        }
-        let place = [t, first, count];
-        rows(&mut self.observation, place, &work.seen);
-        rows(&mut self.action, place, &work.actions);
-        row(&mut self.reward, place, &work.rewards);
-        row(&mut self.terminated, place, &work.overs);
-        row(&mut self.truncated, place, cuts);
-        row(&mut self.log_probability, place, &work.log_probabilities);
-    }
-}
-
-/// Writes the numbers of each lane side by side, for as many lanes as there is room.
-fn interleave<X: Copy>(rows: &[Row<X>], records: &mut [X]) {
-    match rows {
-        [row] => records.copy_from_slice(&row[..records.len()]),
-        rows => {
-            for (i, row) in rows.iter().enumerate() {
-                let numbers = records.iter_mut().skip(i).step_by(rows.len());
-                numbers.zip(row).for_each(|(number, &x)| *number = x);
-            }
-        }
-    }
 }

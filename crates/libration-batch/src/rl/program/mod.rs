@@ -6,6 +6,7 @@
 
 mod batch;
 mod block_step;
+mod checkpoint;
 mod environment;
 mod episodes;
 mod horizon;
@@ -13,6 +14,7 @@ mod policy;
 mod rollout;
 mod row_program;
 mod state;
+mod transitions;
 
 pub use batch::ProgramEnvironments;
 pub use environment::ProgramEnvironment;

@@ -4,7 +4,7 @@ use bytemuck::Pod;
 use libration_core::Float;
 use ndarray::{ArrayViewMut3, ShapeBuilder};
 
-use super::horizon::Transitions;
+use super::transitions::Transitions;
 use crate::ensemble::{Buffer, InsufficientMemory, Pages};
 use crate::rl::rollout_slice::RolloutSlice;
 use crate::rl::{EnvironmentError, EpisodeEnd, Layout, Plan, Rollout};

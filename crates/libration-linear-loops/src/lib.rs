@@ -16,9 +16,9 @@ mod tests;
 
 use libration_linear::{LinearLoop, LoopTiming};
 
-use crate::ensemble::{Execution, InsufficientMemory};
 pub use error::LinearLoopsError;
 use kernel::{Action, Commands, Common, Scratch, Tile};
+use libration_batch::ensemble::{Execution, InsufficientMemory};
 use plan::{Parts, Plan};
 use row::{LANES, Row};
 

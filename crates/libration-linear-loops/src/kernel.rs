@@ -6,7 +6,7 @@ use libration_linear::MissingCommand;
 use super::length_part::LengthPart;
 use super::plan::{Parts, Plan};
 use super::row::{LANES, Map, Row};
-use crate::ensemble::Loop;
+use libration_batch::ensemble::Loop;
 
 /// Where commands come from.
 #[derive(Clone, Copy, Debug)]

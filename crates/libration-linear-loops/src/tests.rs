@@ -6,7 +6,7 @@ use libration_linear::{
 };
 
 use super::*;
-use crate::ensemble::InstructionSet;
+use libration_batch::ensemble::InstructionSet;
 
 /// Uniform numbers, each with a number of its own.
 fn draw(setting: u64, number: u64, [low, high]: [f64; 2]) -> f64 {

@@ -3,7 +3,7 @@
 use libration_linear::LinearLoopError;
 use thiserror::Error;
 
-use crate::ensemble::InsufficientMemory;
+use libration_batch::ensemble::InsufficientMemory;
 
 /// Error of a batch of linear loops.
 #[derive(Clone, Debug, Error, PartialEq)]
