@@ -11,7 +11,7 @@ use libration_lab::output::Output;
 use libration_lab::{STUDIES, session};
 use libration_report::Record;
 use libration_study::{Lab, Silent};
-use libration_study_motion::{Convergence, Nonlinear, Problem, Subject};
+use libration_study_motion::{Convergence, Nonlinear, Problem};
 
 /// `θ̈ = (Ω² cos θ − ω²) sin θ`, with ω² = g/r and the hoop turning at Ω about its diameter.
 ///
@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .titled("bead on a hoop")
         .with_equilibrium(State { q: [rest], v: [0.0] });
 
-    let own: [&dyn Subject; 1] = [&bead];
+    let own = [bead];
     let stop = AtomicBool::new(false);
     let lab = Lab::new(&config, config.effort, &Silent, &stop);
     let results = session::run(&lab, &[&Convergence::of(&own), &Nonlinear::of(&own)], &output)?;

@@ -20,10 +20,10 @@ pub use drift::{Drift, DriftSettings};
 pub use efficiency::{Efficiency, EfficiencySettings};
 pub use error::{Error, ErrorSettings};
 pub use nonlinear::{Nonlinear, NonlinearSettings};
-pub use precision::{Precision, PrecisionSettings};
+pub use precision::{Precision, PrecisionSettings, SystemPrecision};
 pub use spectrum::{Spectrum, SpectrumSettings};
-pub use stability::{Stability, StabilitySettings};
+pub use stability::{Stability, StabilitySettings, SystemStability};
 pub use subject::{
     Change, Changes, Errors, Halvings, Horizon, Kind, Law, Orbits, Portrait, Problem, SYSTEMS,
-    Subject, Symmetry,
+    StabilityLimit, StudiedState, Symmetry,
 };

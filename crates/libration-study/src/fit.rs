@@ -64,6 +64,14 @@ impl Fit {
         (2.0 * self.standard_error + self.bend).min(WIDEST)
     }
 
+    /// Returns the tolerance of an order on a system of which nothing is known beforehand.
+    pub fn order_tolerance() -> Tolerance {
+        Tolerance::absolute(
+            WIDEST,
+            "orders are whole numbers, which a fifth of their distance tells apart on any system",
+        )
+    }
+
     /// Returns the uncertainty as a tolerance with its reason.
     pub fn tolerance(&self) -> Tolerance {
         Tolerance::absolute(

@@ -17,6 +17,7 @@ use crate::linear_analysis::{self, LinearAnalysis, LinearAnalysisError, LinearRe
 use crate::step::Stepping;
 
 pub use motion::{EnergyChange, EquationMotion, StateError};
+pub use step::{spectral_radius, step_order};
 pub use summary::{EquationSummary, SummaryParameter, SummaryState, SummaryTask};
 
 /// Version of the JSON format.

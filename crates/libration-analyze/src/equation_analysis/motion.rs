@@ -7,7 +7,7 @@ use libration::{Float, Method};
 use libration_settings::equations::EquationSystem;
 use serde::Serialize;
 
-use super::step::{order, spectral_radius};
+use super::step::{spectral_radius, step_order};
 use crate::AnalyzeError;
 
 /// The motion from the start of a system.
@@ -103,7 +103,8 @@ impl EquationMotion {
         let most = (MOST_OPERATIONS / (operations.max(1) as u64 * 7)).max(1);
         let steps = steps.min(most);
         let error_steps = steps.min(ERROR_STEPS);
-        let order = order(&step, system, dt);
+        let places: Vec<usize> = system.states.iter().map(|state| state.place).collect();
+        let order = step_order(&step, &system.start(), &places, dt);
         let predicted_reduction = order.map(|order| 2_f64.powi(order as i32));
         let runs = [0, 1, 2].map(|halvings| Run {
             system,

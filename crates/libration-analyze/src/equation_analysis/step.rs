@@ -16,21 +16,29 @@ const SHIFTS: [f64; 2] = [1.0, 0.01];
 
 /// The order of a step on a system, from the error of a small step against two of half the length, and that of a smaller one. It is
 /// the least of all states at two places near the start, since in special states, such as at rest, terms of the error vanish.
-pub(super) fn order(step: &StepProgram, system: &EquationSystem, dt: f64) -> Option<u32> {
-    SHIFTS.into_iter().filter_map(|shift| order_at(step, system, dt, shift)).min()
+///
+/// `start` has positions, velocities and inputs, and `places` those of the states that count.
+pub fn step_order(step: &StepProgram, start: &[f64], places: &[usize], dt: f64) -> Option<u32> {
+    SHIFTS.into_iter().filter_map(|shift| order_at(step, start, places, dt, shift)).min()
 }
 
 /// The order at a state that is the start but for parts of the golden ratio, `shift` times as large as a coordinate or as 1.
-fn order_at(step: &StepProgram, system: &EquationSystem, dt: f64, shift: f64) -> Option<u32> {
-    let degrees = system.equations.degrees().len();
+fn order_at(
+    step: &StepProgram,
+    start: &[f64],
+    places: &[usize],
+    dt: f64,
+    shift: f64,
+) -> Option<u32> {
+    let states = step.program().outputs().len();
     let mut run = step.program().on::<Wide>();
-    let mut state: Vec<Wide> = system.start().into_iter().map(Wide::from_f64).collect();
-    for named in &system.states {
-        let part = (0.618_033_988_749_895 * (1.0 + named.place as f64)).fract() - 0.5;
-        let near = named.start + shift * part * named.start.abs().max(1.0);
-        state[named.place] = Wide::from_f64(near);
+    let mut state: Vec<Wide> = start.iter().map(|&x| Wide::from_f64(x)).collect();
+    for &place in places {
+        let part = (0.618_033_988_749_895 * (1.0 + place as f64)).fract() - 0.5;
+        let near = start[place] + shift * part * start[place].abs().max(1.0);
+        state[place] = Wide::from_f64(near);
     }
-    let inputs = state.split_off(2 * degrees);
+    let inputs = state.split_off(states);
     let dt = Wide::from_f64(dt);
     let mut after = |state: &[Wide], power: i64, count: u32| -> Vec<Wide> {
         (0..count).fold(state.to_vec(), |state, _| {
@@ -43,8 +51,8 @@ fn order_at(step: &StepProgram, system: &EquationSystem, dt: f64, shift: f64) ->
         let (one, two) = (after(&state, power, 1), after(&state, power - 1, 2));
         one.iter().zip(&two).map(|(&one, &two)| one - two).collect()
     });
-    let orders = system.states.iter().filter_map(|named| {
-        let [larger, smaller] = [larger[named.place], smaller[named.place]];
+    let orders = places.iter().filter_map(|&place| {
+        let [larger, smaller] = [larger[place], smaller[place]];
         // Errors below 2⁻⁹⁰⁰ are rounding: the step has no other.
         let is_error = larger.exponent().is_some_and(|exponent| exponent > -900);
         let ratio = (larger * smaller.recip()).abs().to_f64();
@@ -56,7 +64,7 @@ fn order_at(step: &StepProgram, system: &EquationSystem, dt: f64, shift: f64) ->
 }
 
 /// The largest size of an eigenvalue of a step at a state: positions, velocities and inputs.
-pub(super) fn spectral_radius(
+pub fn spectral_radius(
     step: &StepProgram,
     system: &EquationSystem,
     at: &[f64],

@@ -5,9 +5,12 @@ use core::fmt::Debug;
 use bytemuck::Pod;
 use libration_core::system::Oscillator;
 use libration_core::{AnySystem, Float, Method, Model, State, with_method, with_system};
-use libration_equations::Dynamics;
+use libration_equations::{Dynamics, Program};
 
-use super::{All, Ensemble, EnsembleError, Execution, InsufficientMemory, ProgramEnsemble};
+use super::{
+    All, Ensemble, EnsembleError, Execution, InstructionSet, InsufficientMemory, ProgramEnsemble,
+    iterated_program,
+};
 
 /// An ensemble of a system in some number of dimensions.
 ///
@@ -77,6 +80,10 @@ pub trait BatchFloat: Float + Pod {
         execution: Execution,
         start: &(dyn Fn(usize, usize) -> Self + Sync),
     ) -> Result<Box<dyn AnyEnsemble<Self>>, EnsembleError>;
+
+    /// Runs a program `times` times on its own results, in each lane alike: row `i` has input `i` of every lane, and output `i`
+    /// in the end. Rows have equal lengths, and the program has an output for each of them.
+    fn iterate(program: &Program, rows: &mut [Vec<Self>], times: u64, set: InstructionSet);
 }
 
 /// An isotropic oscillator in several dimensions, integrated as independent one-dimensional
@@ -118,6 +125,10 @@ macro_rules! batch_float {
             ) -> Result<Box<dyn AnyEnsemble<Self>>, EnsembleError> {
                 let dynamics = dynamics.clone();
                 Ok(Box::new(ProgramEnsemble::<$float>::new(dynamics, len, execution, start)?))
+            }
+
+            fn iterate(program: &Program, rows: &mut [Vec<Self>], times: u64, set: InstructionSet) {
+                iterated_program::iterate(program, rows, times, set);
             }
         }
     };

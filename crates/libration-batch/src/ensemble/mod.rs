@@ -17,6 +17,8 @@ mod checkpoint;
 mod error;
 mod execution;
 pub(crate) mod instructions;
+#[cfg(not(test))]
+mod iterated_program;
 pub(crate) mod kernel;
 mod loops;
 mod memory;

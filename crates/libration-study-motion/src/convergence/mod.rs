@@ -6,6 +6,8 @@ mod settings;
 mod source_claims;
 mod splitting_order;
 mod start_at_equilibrium;
+mod state_orders;
+mod symmetries;
 
 pub use self::settings::ConvergenceSettings;
 use self::source_claims::SOURCE_CLAIMS;
@@ -15,12 +17,12 @@ use libration_report::page::Page;
 use libration_report::record::{Cell, Finding, RecordError, Relation, Series, Table, Tolerance};
 use libration_study::{Fit, Lab, Section, SourceClaim, Study, StudyError};
 
-use super::subject::{Errors, Halvings, Kind, Law, ROUNDING, Subject, configured};
+use super::subject::{Errors, Halvings, Kind, Law, Problem, configured};
 
 /// The study `convergence`.
 #[derive(Clone, Copy)]
 pub struct Convergence<'a> {
-    own: &'a [&'a dyn Subject],
+    own: &'a [Problem],
 }
 
 impl Convergence<'static> {
@@ -30,7 +32,7 @@ impl Convergence<'static> {
 
 impl<'a> Convergence<'a> {
     /// Of systems of the user's own, whatever the configuration names.
-    pub fn of(own: &'a [&'a dyn Subject]) -> Self {
+    pub fn of(own: &'a [Problem]) -> Self {
         Convergence { own }
     }
 }
@@ -56,10 +58,9 @@ impl Study for Convergence<'_> {
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
         let mut record = Record::new(self.name(), self.question());
         let configured = configured(lab.config, &lab.config.get::<ConvergenceSettings>().systems)?;
-        let configured: Vec<&dyn Subject> = configured.iter().map(AsRef::as_ref).collect();
-        let subjects = if self.own.is_empty() { &configured } else { self.own };
-        orders(lab, subjects, &mut record)?;
-        symmetries(lab, subjects, &mut record)?;
+        let subjects = if self.own.is_empty() { &configured[..] } else { self.own };
+        orders(lab, subjects, !self.own.is_empty(), &mut record)?;
+        symmetries::measure(lab, subjects, &mut record)?;
         if self.own.is_empty() {
             start_at_equilibrium::measure(lab, &mut record)?;
             splitting_order::certify(lab, &mut record)?;
@@ -83,30 +84,46 @@ fn halvings(lab: &Lab<'_>) -> Halvings {
 
 /// One method on one system.
 struct Case<'a> {
-    subject: &'a dyn Subject,
-    law: Law,
+    subject: &'a Problem,
     method: Method,
+    /// The predicted order.
+    order: Option<u32>,
+    /// Whether the order is that of a step on the system, and not the method’s own.
+    is_derived: bool,
+    /// Whether the system is the user’s own.
+    is_own: bool,
 }
 
-/// The order that theory promises: `p` and `p + 1` of a step; none where the force depends on the
-/// velocity, since a kick is then no exact flow and splitting methods lose their order.
-fn promised(law: Law, method: Method, kind: Kind) -> Option<f64> {
+/// The predicted order of a method: its own; where the force depends on the velocity, the one that a single step in 1024 bits has
+/// on the system, since a kick is then no exact flow and splitting methods lose their order.
+fn predicted(subject: &Problem, law: Law, method: Method) -> Option<u32> {
+    match is_derived(law, method) {
+        true => subject.derived_order(method),
+        false => Some(method.order()),
+    }
+}
+
+fn is_derived(law: Law, method: Method) -> bool {
     let splits = !matches!(method, Method::ExplicitEuler | Method::Rk4);
-    let order = f64::from(method.order());
-    (!(splits && law.velocity_dependent)).then_some(match kind {
-        Kind::Global | Kind::FromStart => order,
-        Kind::Local => order + 1.0,
-    })
+    splits && law.velocity_dependent
 }
 
 /// Fits the order of every method on every system.
-fn orders(lab: &Lab<'_>, subjects: &[&dyn Subject], record: &mut Record) -> Result<(), StudyError> {
+fn orders(
+    lab: &Lab<'_>,
+    subjects: &[Problem],
+    is_own: bool,
+    record: &mut Record,
+) -> Result<(), StudyError> {
     let laws = lab.sweep("reference orbits", subjects, |subject| Ok(subject.law()))?;
     let trials: Vec<Case<'_>> = subjects
         .iter()
         .zip(laws)
-        .flat_map(|(&subject, law)| {
-            lab.config.integrators.iter().map(move |&method| Case { subject, law, method })
+        .flat_map(|(subject, law)| {
+            lab.config.integrators.iter().map(move |&method| {
+                let order = predicted(subject, law, method);
+                Case { subject, method, order, is_derived: is_derived(law, method), is_own }
+            })
         })
         .collect();
     let found = lab.sweep("errors at ever smaller steps", &trials, |trial| {
@@ -136,12 +153,15 @@ fn orders(lab: &Lab<'_>, subjects: &[&dyn Subject], record: &mut Record) -> Resu
     let per_subject = found.chunks(lab.config.integrators.len().max(1));
     for (subject, errors) in subjects.iter().zip(per_subject) {
         let smallest = errors.iter().flat_map(|[global, _]| &global.together);
-        record.find(reference(*subject, smallest.copied().fold(f64::INFINITY, f64::min)));
+        record.find(reference(subject, smallest.copied().fold(f64::INFINITY, f64::min)));
         for (kind, name) in [(0, "global"), (1, "local")] {
             let errors = errors.iter().map(|both| &both[kind]);
             let methods = lab.config.integrators.iter().copied().zip(errors);
             record.series.push(series(format!("{name}-{}", subject.name()), methods));
         }
+    }
+    if is_own {
+        state_orders::find(&trials, &found, lab.config.integrators.len(), record);
     }
     let titles = subjects.iter().map(|s| (s.name(), s.title()));
     let mut systems = Table::new("systems", &["name", "system"]);
@@ -164,7 +184,7 @@ impl Case<'_> {
         ];
         let mut cells = [const { None }; 4];
         for (cell, (suffix, part, errors_of)) in parts.into_iter().enumerate() {
-            let Some(fit) = Fit::new(&errors.dt, errors_of) else { continue };
+            let Some(fit) = self.fit(errors, errors_of) else { continue };
             cells[cell] = Some(fit.exponent);
             cells[3] = Some(fit.uncertainty());
             let (subject, method) = (self.subject, self.method);
@@ -175,19 +195,41 @@ impl Case<'_> {
                 method.title(),
                 subject.title()
             );
-            record.find(match promised(self.law, method, kind) {
+            let order = self.order.map(|order| match kind {
+                Kind::Global | Kind::FromStart => f64::from(order),
+                // Of a single step.
+                Kind::Local => f64::from(order) + 1.0,
+            });
+            // A derived order is that of the worst state: in others a step may be better.
+            let relation = match self.is_derived && !suffix.is_empty() {
+                true => Relation::AtLeast,
+                false => Relation::Equal,
+            };
+            record.find(match order {
                 Some(order) => {
-                    Finding::predicted(id, text, "1", order, fit.exponent, fit.tolerance())
+                    let tolerance = self.tolerance(fit);
+                    Finding::related(id, text, "1", relation, order, fit.exponent, tolerance)
                 }
                 None => Finding::measured(id, text, "1", fit.exponent),
             });
         }
         cells.map(Cell::from)
     }
+
+    /// The exponent of errors; none where the last are rounding of the reference.
+    fn fit(&self, errors: &Errors, errors_of: &[f64]) -> Option<Fit> {
+        let is_resolved = errors_of.last().is_none_or(|&last| last > self.subject.rounding());
+        Fit::new(&errors.dt, errors_of).filter(|_| is_resolved)
+    }
+
+    /// The tolerance of an order.
+    fn tolerance(&self, fit: Fit) -> Tolerance {
+        if self.is_own { Fit::order_tolerance() } else { fit.tolerance() }
+    }
 }
 
 /// The reference must be far better than the smallest error that is taken against it.
-fn reference(subject: &dyn Subject, smallest: f64) -> Finding {
+fn reference(subject: &Problem, smallest: f64) -> Finding {
     Finding::related(
         format!("convergence.{}.reference", subject.name()),
         format!(
@@ -230,44 +272,3 @@ fn series<'a>(name: String, methods: impl Iterator<Item = (Method, &'a Errors)>)
         .into_iter()
         .fold(Series::new(name).with("dt", "s", dt), |s, (name, x)| s.with(name, "", x))
 }
-
-/// The symmetries of velocity Verlet on nonlinear systems.
-fn symmetries(
-    lab: &Lab<'_>,
-    subjects: &[&dyn Subject],
-    record: &mut Record,
-) -> Result<(), StudyError> {
-    let method = Method::VelocityVerlet;
-    if !lab.config.integrators.contains(&method) {
-        return Ok(());
-    }
-    let found = lab.sweep("symmetries of Verlet", subjects, |subject| {
-        let law = subject.law();
-        Ok((!law.linear && !law.velocity_dependent)
-            .then(|| subject.symmetry(method, lab.config.get::<ConvergenceSettings>().coarsest)))
-    })?;
-    for (subject, symmetry) in subjects.iter().zip(found) {
-        let Some(symmetry) = symmetry else { continue };
-        for (quantity, what, measured) in [
-            ("symplecticity", "‖MᵀJM − J‖", symmetry.symplecticity),
-            ("reversibility", "‖M(−Δt)M(Δt) − 1‖", symmetry.reversibility),
-        ] {
-            record.find(Finding::predicted(
-                format!("convergence.{}.{}.{quantity}", subject.name(), method.name()),
-                format!(
-                    "{}, {}: {what} of the Jacobian of one step, in 1024 bits",
-                    method.title(),
-                    subject.title()
-                ),
-                "1",
-                0.0,
-                measured,
-                Tolerance::absolute(ROUNDING, SYMMETRY),
-            ));
-        }
-    }
-    Ok(())
-}
-
-/// Explanation of the bound on a zero defect.
-const SYMMETRY: &str = "2⁻⁹⁰⁰: 1024 bits, less what a step and its products can lose of them";

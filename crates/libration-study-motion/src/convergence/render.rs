@@ -6,6 +6,7 @@ use libration_report::notation::number;
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Record, RecordError, Series};
 
+use super::state_orders::table_name;
 use crate::method_color::method_color;
 
 /// Writes the chapter.
@@ -27,6 +28,16 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          local error of one step is one order higher than the global error of the orbit, since the \
          number of steps is proportional to 1/Δt.",
     );
+    for (name, title) in &systems {
+        if let Ok(table) = record.table(&table_name(name)) {
+            page.heading(format!("States of {title}"));
+            page.paragraph(
+                "Exponents of the error of each state over orbits. None is below the order; in single states the leading term of \
+                 the error may vanish.",
+            );
+            page.table(table, 4);
+        }
+    }
     page.figure(errors(record, &systems, "local")?);
     if let Ok(trap) = record.series("trap") {
         page.heading("Order from a start without force");

@@ -5,7 +5,7 @@ use libration_report::Record;
 use libration_report::record::{Finding, Series};
 use libration_study::{Fit, Lab, StudyError};
 
-use super::super::subject::{Kind, Problem, Subject};
+use super::super::subject::{Kind, Problem};
 use super::halvings;
 
 /// Symplectic Euler from the equilibrium of the oscillator, where `a(0) = 0`.

@@ -5,7 +5,7 @@ use libration_report::notation::{count, seconds};
 use libration_report::record::{Cell, Finding, Record, Series, Table, Tolerance};
 use libration_study::{Lab, StudyError};
 
-use super::super::subject::{Orbits, StabilityLimit};
+use super::super::subject::{Orbits, Portrait, StabilityLimit};
 use super::Case;
 use crate::stable_step::largest_stable;
 
@@ -29,14 +29,14 @@ pub(super) fn search(
         let small = match subject.frequency() {
             Some(omega) => {
                 let loss =
-                    subject.stability_limit(&execution, Orbits::Small, case.method, SMALL_STEPS)?;
+                    subject.stability_limit(&execution, Orbits::Small, case.method, SMALL_STEPS);
                 Some((linear / omega, omega, loss))
             }
             None => None,
         };
         // A method that is never stable loses every orbit, the later the smaller the step.
         let large = match linear > 0.0 {
-            true => subject.stability_limit(&execution, Orbits::Configured, case.method, steps)?,
+            true => subject.stability_limit(&execution, Orbits::Configured, case.method, steps),
             false => None,
         };
         Ok((small, large))
@@ -116,22 +116,17 @@ fn portraits(
         .sweep("portraits", cases, |case| case.subject.portrait(case.method, step(case), POINTS))?;
     for (case, portrait) in cases.iter().zip(found) {
         let n = portrait.x.len();
-        let named = |series: Series, x, y| match case.subject.dimension() {
-            1 => series.with("q", "", x).with("v·turn/2π", "", y),
-            _ => series.with("q₀", "", x).with("q₁", "", y),
+        let named = |series: Series, Portrait { x, y, axes: [abscissa, ordinate], units }| {
+            series.with(abscissa, &units[0], x).with(ordinate, &units[1], y)
         };
         let name = format!("portrait-{}-{}", case.subject.name(), case.method.name());
-        record.series.push(named(Series::new(name), portrait.x, portrait.y).with(
-            "dt",
-            "s",
-            vec![step(case); n],
-        ));
+        record.series.push(named(Series::new(name), portrait).with("dt", "s", vec![step(case); n]));
         let path = format!("path-{}", case.subject.name());
         if record.series(&path).is_err() {
             // RK4 at 400 steps a turn is the orbit itself, to the width of a line.
             let dt = case.subject.turn() / 400.0;
             let exact = case.subject.portrait(Method::Rk4, dt, 2 * POINTS)?;
-            record.series.push(named(Series::new(path), exact.x, exact.y));
+            record.series.push(named(Series::new(path), exact));
         }
     }
     Ok(())

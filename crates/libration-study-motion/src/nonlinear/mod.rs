@@ -11,15 +11,15 @@ pub use self::settings::NonlinearSettings;
 use libration::Method;
 use libration_report::Record;
 use libration_report::page::Page;
-use libration_report::record::{Finding, RecordError, Series, Table};
+use libration_report::record::{Finding, RecordError, Relation, Series, Table, Tolerance};
 use libration_study::{Fit, Lab, Section, Study, StudyError};
 
-use super::subject::{Change, Halvings, Law, Subject, Symmetry, configured};
+use super::subject::{Change, Halvings, Law, Problem, Symmetry, configured};
 
 /// The study `nonlinear`.
 #[derive(Clone, Copy)]
 pub struct Nonlinear<'a> {
-    own: &'a [&'a dyn Subject],
+    own: &'a [Problem],
 }
 
 impl Nonlinear<'static> {
@@ -29,7 +29,7 @@ impl Nonlinear<'static> {
 
 impl<'a> Nonlinear<'a> {
     /// Of systems of the user's own, whatever the configuration names.
-    pub fn of(own: &'a [&'a dyn Subject]) -> Self {
+    pub fn of(own: &'a [Problem]) -> Self {
         Nonlinear { own }
     }
 }
@@ -40,7 +40,12 @@ impl Study for Nonlinear<'_> {
     }
 
     fn question(&self) -> &'static str {
-        "Which results for the oscillator hold for nonlinear forces?"
+        match self.own {
+            [] => "Which results for the oscillator hold for nonlinear forces?",
+            _ => {
+                "How far does each integrator let the energy drift, and up to which time step does it keep the orbit?"
+            }
+        }
     }
 
     fn settings(&self) -> Option<Section> {
@@ -50,9 +55,8 @@ impl Study for Nonlinear<'_> {
     fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
         let mut record = Record::new(self.name(), self.question());
         let configured = configured(lab.config, &lab.config.get::<NonlinearSettings>().systems)?;
-        let configured: Vec<&dyn Subject> = configured.iter().map(AsRef::as_ref).collect();
-        let subjects = if self.own.is_empty() { &configured } else { self.own };
-        let cases = cases(lab, subjects)?;
+        let subjects = if self.own.is_empty() { &configured[..] } else { self.own };
+        let cases = cases(lab, subjects, !self.own.is_empty())?;
         growth::measure(lab, &cases, &mut record)?;
         exponents(lab, &cases, &mut record)?;
         symmetries::measure(lab, &cases, &mut record)?;
@@ -64,18 +68,23 @@ impl Study for Nonlinear<'_> {
     }
 
     fn render(&self, record: &Record, page: &mut Page) -> Result<(), RecordError> {
-        render::render(record, page)
+        let title = if self.own.is_empty() { "Nonlinear systems" } else { "Energy" };
+        render::render(record, page, title)
     }
 }
 
 /// One method on one system, and what is known of both beforehand.
 struct Case<'a> {
-    subject: &'a dyn Subject,
+    subject: &'a Problem,
     law: Law,
     closes: bool,
     method: Method,
     symplectic: bool,
     reversible: bool,
+    /// The order of the method on the system; none if its step has no error.
+    order: Option<u32>,
+    /// Whether the system is the user’s own.
+    is_own: bool,
 }
 
 impl Case<'_> {
@@ -92,25 +101,62 @@ impl Case<'_> {
         self.symplectic && !self.law.velocity_dependent
     }
 
+    /// Whether theory promises a mean change of the energy in a turn: positional forces and a closed orbit.
+    fn has_rate(&self) -> bool {
+        !self.law.velocity_dependent && self.closes
+    }
+
     /// A fitted exponent as a finding; a measurement where nothing is promised.
     fn exponent(&self, quantity: &str, what: &str, promised: Option<f64>, fit: Fit) -> Finding {
         let (id, text) = (self.id(quantity), self.text(what));
+        let tolerance = self.tolerance(fit);
         match promised {
-            Some(order) => Finding::predicted(id, text, "1", order, fit.exponent, fit.tolerance()),
+            Some(order) => Finding::predicted(id, text, "1", order, fit.exponent, tolerance),
             None => Finding::measured(id, text, "1", fit.exponent),
         }
+    }
+
+    /// A fitted exponent that theory bounds from below; a measurement where nothing is promised.
+    fn at_least(&self, quantity: &str, what: &str, promised: Option<f64>, fit: Fit) -> Finding {
+        let Some(order) = promised else { return self.exponent(quantity, what, None, fit) };
+        let (id, text) = (self.id(quantity), self.text(what));
+        let tolerance = self.tolerance(fit);
+        Finding::related(id, text, "1", Relation::AtLeast, order, fit.exponent, tolerance)
+    }
+
+    /// The tolerance of a fitted exponent.
+    fn tolerance(&self, fit: Fit) -> Tolerance {
+        if self.is_own { Fit::order_tolerance() } else { fit.tolerance() }
     }
 }
 
 /// Every method on every system.
-fn cases<'a>(lab: &Lab<'_>, subjects: &[&'a dyn Subject]) -> Result<Vec<Case<'a>>, StudyError> {
+fn cases<'a>(
+    lab: &Lab<'_>,
+    subjects: &'a [Problem],
+    is_own: bool,
+) -> Result<Vec<Case<'a>>, StudyError> {
     let known =
         lab.sweep("what theory says", subjects, |subject| Ok((subject.law(), subject.closes())))?;
     let mut cases = Vec::new();
-    for (&subject, (law, closes)) in subjects.iter().zip(known) {
+    for (subject, (law, closes)) in subjects.iter().zip(known) {
         for &method in &lab.config.integrators {
             let (symplectic, reversible) = Symmetry::of_method(method);
-            cases.push(Case { subject, law, closes, method, symplectic, reversible });
+            // A kick that depends on the velocity is no exact flow: the order is that of a step on the system.
+            let order = match law.velocity_dependent {
+                true => subject.derived_order(method),
+                false => Some(method.order()),
+            };
+            cases.push(Case {
+                subject,
+                law,
+                closes,
+                method,
+                symplectic,
+                reversible,
+                order,
+                is_own,
+            });
         }
     }
     Ok(cases)
@@ -125,7 +171,10 @@ fn halvings(lab: &Lab<'_>) -> Halvings {
 fn exponents(lab: &Lab<'_>, cases: &[Case<'_>], record: &mut Record) -> Result<(), StudyError> {
     let found = lab.sweep("energy at ever smaller steps", cases, |case| {
         let changes = |change| case.subject.changes(change, case.method, halvings(lab));
-        let rate = (!case.is_symplectic()).then(|| changes(Change::Rate)).transpose()?;
+        // Of a system of the user’s own only where theory promises a rate: it takes the longest of all.
+        let is_wanted = !case.is_own || case.has_rate();
+        let rate = (!case.is_symplectic() && is_wanted).then(|| changes(Change::Rate));
+        let rate = rate.transpose()?;
         Ok((changes(Change::Swing)?, rate))
     })?;
     for (case, (swing, rate)) in cases.iter().zip(found) {
@@ -140,12 +189,15 @@ fn exponents(lab: &Lab<'_>, cases: &[Case<'_>], record: &mut Record) -> Result<(
         let swinging = if case.law.linear && !case.symplectic { secular } else { order };
         if let Some(fit) = Fit::new(&swing.dt, &swing.size) {
             let what = "exponent of Δt in the largest energy drift within a turn";
-            record.find(case.exponent("swing-order", what, known.then_some(swinging), fit));
+            record.find(match known {
+                true => case.exponent("swing-order", what, Some(swinging), fit),
+                false => case.at_least("swing-order", what, case.order.map(f64::from), fit),
+            });
         }
         if let Some(rate) = rate {
             if let Some(fit) = Fit::new(&rate.dt, &rate.size) {
                 let what = "exponent of Δt in the mean energy change of a turn";
-                let promised = (known && case.closes).then_some(secular);
+                let promised = case.has_rate().then_some(secular);
                 record.find(case.exponent("rate-order", what, promised, fit));
             }
             record.series.push(

@@ -10,8 +10,8 @@ use super::captions::{growths, rates, step_of_portraits};
 use crate::method_color::method_color;
 
 /// Writes the chapter.
-pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
-    page.title = "Nonlinear systems".into();
+pub(super) fn render(record: &Record, page: &mut Page, title: &str) -> Result<(), RecordError> {
+    page.title = title.into();
     let systems = systems(record)?;
     summary(record, page, &systems)?;
     page.paragraph(
@@ -31,16 +31,19 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
              cancel. In a turn of a closed orbit the energy therefore drifts by {rates}."
         ));
     }
-    page.heading("One step");
-    page.paragraph(
-        "Dual numbers of 1024 bits give the Jacobian of each shipped step along the orbit. A defect is \
-         either zero to all bits, or a power of Δt; the sizes are those at 256 steps per turn.",
-    );
-    page.table(record.table("defects")?, 3);
+    let defects = record.table("defects")?;
+    if !defects.rows.is_empty() {
+        page.heading("One step");
+        page.paragraph(
+            "Dual numbers of 1024 bits give the Jacobian of each shipped step along the orbit. A defect is \
+             either zero to all bits, or a power of Δt; the sizes are those at 256 steps per turn.",
+        );
+        page.table(defects, 3);
+    }
     page.heading("Limits of stability");
     page.paragraph(
-        "Close to an equilibrium the stability limit is that of an oscillator with the same highest \
-         frequency, and simulation confirms it. From the configured start there is no prediction: a \
+        "Close to a stable equilibrium the limit is that of harmonic motion with the highest \
+         frequency of the modes, and simulation confirms it. From the configured start there is no prediction: a \
          search scans the time steps upward, and then below the first unstable step with a finer grid and \
          longer runs, since resonances cause narrow unstable ranges.",
     );

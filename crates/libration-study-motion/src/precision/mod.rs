@@ -12,6 +12,7 @@ mod orbits;
 mod render;
 mod settings;
 mod source_claims;
+mod system;
 mod textbook;
 mod types;
 mod verlet_run;
@@ -20,6 +21,7 @@ use libration_study::SourceClaim;
 
 pub use self::settings::PrecisionSettings;
 use self::source_claims::SOURCE_CLAIMS;
+pub use self::system::SystemPrecision;
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::RecordError;

@@ -6,12 +6,14 @@ mod largest;
 mod render;
 mod settings;
 mod source_claims;
+mod system;
 mod windows;
 
 use libration_study::SourceClaim;
 
 pub use self::settings::StabilitySettings;
 use self::source_claims::SOURCE_CLAIMS;
+pub use self::system::SystemStability;
 use libration_report::Record;
 use libration_report::page::Page;
 use libration_report::record::RecordError;

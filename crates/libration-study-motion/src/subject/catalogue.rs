@@ -3,27 +3,23 @@
 use libration::{AnySystem, CatalogError, Model, State};
 use libration_study::Config;
 
-use super::{Problem, Subject};
+use super::Problem;
 
 /// The systems that can be studied by name: those of the catalogue that conserve energy.
 pub const SYSTEMS: [&str; 5] = ["oscillator", "pendulum", "duffing", "henon-heiles", "kepler"];
 
 /// The named systems: the oscillator as it is configured, the others with the parameters and the
 /// start of the catalogue.
-pub(crate) fn configured(
-    config: &Config,
-    names: &[String],
-) -> Result<Vec<Box<dyn Subject>>, CatalogError> {
+pub(crate) fn configured(config: &Config, names: &[String]) -> Result<Vec<Problem>, CatalogError> {
     names.iter().map(|name| subject(config, name)).collect()
 }
 
-fn subject(config: &Config, name: &str) -> Result<Box<dyn Subject>, CatalogError> {
+fn subject(config: &Config, name: &str) -> Result<Problem, CatalogError> {
     let system = match name {
         "oscillator" => AnySystem::Oscillator(config.oscillator.system()),
         name => AnySystem::build(name, &[] as &[(&str, f64)])?,
     };
-    // Each in its smallest dimension: a subject for every dimension of the catalogue would be compiled
-    // and never made.
+    // Each in its smallest dimension.
     match system {
         AnySystem::Oscillator(model) => {
             let start = State { q: [config.start.q], v: [config.start.v] };
@@ -42,8 +38,8 @@ fn subject(config: &Config, name: &str) -> Result<Box<dyn Subject>, CatalogError
 /// With the start of the catalogue.
 fn catalogued<const D: usize>(
     system: AnySystem,
-    model: impl Model<D, On<f64>: Send + Sync> + 'static,
-) -> Result<Box<dyn Subject>, CatalogError> {
+    model: impl Model<D>,
+) -> Result<Problem, CatalogError> {
     let entry = system.entry();
     let start = entry.start::<D>().ok_or_else(|| entry.wrong_dimension(D))?;
     Ok(problem(system, model, start))
@@ -51,14 +47,14 @@ fn catalogued<const D: usize>(
 
 fn problem<const D: usize>(
     system: AnySystem,
-    model: impl Model<D, On<f64>: Send + Sync> + 'static,
+    model: impl Model<D>,
     start: State<f64, D>,
-) -> Box<dyn Subject> {
+) -> Problem {
     let (title, turn) = looks(system);
     let problem = Problem::new(system.name(), model, start, turn).titled(title);
     match rests_at_origin(system) {
-        true => Box::new(problem.with_equilibrium(State::origin())),
-        false => Box::new(problem),
+        true => problem.with_equilibrium(State::<f64, D>::origin()),
+        false => problem,
     }
 }
 

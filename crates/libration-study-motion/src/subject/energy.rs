@@ -1,10 +1,12 @@
 //! The energy error of a method over a turn and over a long horizon.
 
+use libration::equations::Evaluation;
 use libration::number::TwoFloat;
-use libration::simulation::{EnergyDrift, Sample, SimulationError};
-use libration::{Float, Hamiltonian, Method, Model, Scalar, State};
+use libration::simulation::SimulationError;
+use libration::{Float, Method, Scalar};
 use libration_study::{Fit, StudyError, log_spaced_steps};
 
+use super::flow::{Rates, distance, flow, size};
 use super::{Halvings, Problem};
 
 /// Turns over which the mean change of the energy is taken. A method of first order needs few,
@@ -48,8 +50,8 @@ pub struct Horizon {
 }
 
 /// The change of the energy until its order settles, or the steps are as small as they may be.
-pub(super) fn changes<M: Model<D>, const D: usize>(
-    problem: &Problem<M, D>,
+pub(super) fn changes(
+    problem: &Problem,
     change: Change,
     method: Method,
     halvings: Halvings,
@@ -59,10 +61,10 @@ pub(super) fn changes<M: Model<D>, const D: usize>(
     let finest = if first { FIRST_ORDER * halvings.finest } else { halvings.finest };
     for steps in (Halvings { finest, ..halvings }).steps() {
         let size = match (change, first) {
-            (Change::Swing, true) => swing::<f64, _, _>(problem, method, steps),
-            (Change::Swing, false) => swing::<TwoFloat, _, _>(problem, method, steps),
-            (Change::Rate, true) => rate::<f64, _, _>(problem, method, steps),
-            (Change::Rate, false) => rate::<TwoFloat, _, _>(problem, method, steps),
+            (Change::Swing, true) => swing::<f64>(problem, method, steps),
+            (Change::Swing, false) => swing::<TwoFloat>(problem, method, steps),
+            (Change::Rate, true) => rate::<f64>(problem, method, steps),
+            (Change::Rate, false) => rate::<TwoFloat>(problem, method, steps),
         };
         changes.dt.push(problem.step(steps));
         changes.size.push(match size {
@@ -76,76 +78,97 @@ pub(super) fn changes<M: Model<D>, const D: usize>(
     Ok(changes)
 }
 
-/// `(E − E₀)/|E₀|` with all digits of `S`; absolute where `E₀` is zero.
-fn drift<S: Float, const D: usize>(
-    system: impl Hamiltonian<S, D>,
-    start: &State<S, D>,
-) -> impl Fn(&State<S, D>) -> f64 {
-    let initial = system.energy(start);
-    let scale = match initial.to_f64().abs() {
-        0.0 => 1.0,
-        size => size,
-    };
-    move |state| (system.energy(state) - initial).to_f64() / scale
+/// `(E − E₀)/|E₀|` with all digits of `S`; absolute where `E₀` is zero. NaN without an energy.
+pub(super) struct Drift<'p, S> {
+    energy: Option<Evaluation<'p, S>>,
+    initial: S,
+    scale: f64,
 }
 
-fn swing<S: Float, M: Model<D>, const D: usize>(
-    problem: &Problem<M, D>,
-    method: Method,
-    steps: u64,
-) -> Result<f64, SimulationError> {
-    let start = problem.start.map(S::from_f64);
-    let drift = drift(problem.model.on::<S>(), &start);
+impl<'p, S: Float> Drift<'p, S> {
+    pub(super) fn new(problem: &'p Problem, start: &[S]) -> Self {
+        let energy = problem.dynamics.energy().map(|energy| energy.on::<S>());
+        let mut drift = Drift { energy, initial: S::zero(), scale: 1.0 };
+        drift.initial = drift.energy(start);
+        let size = drift.initial.to_f64().abs();
+        drift.scale = if size == 0.0 { 1.0 } else { size };
+        drift
+    }
+
+    /// The energy at the start.
+    pub(super) fn initial(&self) -> S {
+        self.initial
+    }
+
+    pub(super) fn energy(&mut self, state: &[S]) -> S {
+        let energy = self.energy.as_mut().and_then(|energy| energy.run(state).next());
+        energy.unwrap_or_else(|| S::from_f64(f64::NAN))
+    }
+
+    pub(super) fn of(&mut self, state: &[S]) -> f64 {
+        (self.energy(state) - self.initial).to_f64() / self.scale
+    }
+}
+
+/// The start on numbers of type `S`.
+fn start<S: Scalar>(problem: &Problem) -> Vec<S> {
+    problem.start.iter().map(|&x| S::from_f64(x)).collect()
+}
+
+fn swing<S: Float>(problem: &Problem, method: Method, steps: u64) -> Result<f64, SimulationError> {
+    let start = start::<S>(problem);
+    let mut drift = Drift::new(problem, &start);
     let mut largest = 0.0_f64;
-    let mut watch = |s: &Sample<S, D>| largest = largest.max(drift(&s.state).abs());
-    problem.run(method, start, problem.step(steps), steps, &mut watch)?;
+    let mut watch = |_, state: &[S]| largest = largest.max(drift.of(state).abs());
+    problem.run(method, &start, problem.step(steps), steps, &mut watch)?;
     Ok(largest)
 }
 
 /// The difference of two smooth means, half the horizon apart: what swings within a turn averages
 /// out of each, however the turn ends.
-fn rate<S: Float, M: Model<D>, const D: usize>(
-    problem: &Problem<M, D>,
-    method: Method,
-    steps: u64,
-) -> Result<f64, SimulationError> {
-    let start = problem.start.map(S::from_f64);
-    let drift = drift(problem.model.on::<S>(), &start);
+fn rate<S: Float>(problem: &Problem, method: Method, steps: u64) -> Result<f64, SimulationError> {
+    let start = start::<S>(problem);
+    let mut drift = Drift::new(problem, &start);
     let turns = turns(method);
     let all = steps * turns;
     let mut sums = [[0.0_f64; 2]; 2];
-    let mut watch = |s: &Sample<S, D>| {
-        let place = 2.0 * s.step as f64 / all as f64;
+    let mut watch = |step: u64, state: &[S]| {
+        let place = 2.0 * step as f64 / all as f64;
         let half = usize::from(place >= 1.0);
         // sin⁴ and its first three derivatives vanish at both ends of a half.
         let weight = (std::f64::consts::PI * place).sin().powi(4);
-        sums[half][0] += weight * drift(&s.state);
+        sums[half][0] += weight * drift.of(state);
         sums[half][1] += weight;
     };
-    problem.run(method, start, problem.step(steps), all, &mut watch)?;
+    problem.run(method, &start, problem.step(steps), all, &mut watch)?;
     let [early, late] = sums.map(|[sum, weight]| sum / weight);
     Ok((late - early).abs() / (turns as f64 / 2.0))
 }
 
 /// The running maximum over `turns` turns in `f64`.
-pub(super) fn horizon<M: Model<D>, const D: usize>(
-    problem: &Problem<M, D>,
+pub(super) fn horizon(
+    problem: &Problem,
     method: Method,
     steps: u64,
     turns: u64,
 ) -> Result<Horizon, StudyError> {
     let last = steps * turns;
     let step = log_spaced_steps(last, PER_DECADE);
-    let mut drift = EnergyDrift::new(problem.model.on::<f64>(), &problem.start);
+    let mut drift = Drift::new(problem, &problem.start);
+    let mut so_far = 0.0_f64;
     let mut largest = Vec::with_capacity(step.len());
-    let mut watch = |s: &Sample<f64, D>| {
-        libration::simulation::Observer::observe(&mut drift, s);
-        if step.get(largest.len()) == Some(&s.step) {
-            largest.push(drift.largest());
+    let mut watch = |n: u64, state: &[f64]| {
+        let size = drift.of(state).abs();
+        // What is no number is the largest.
+        if size > so_far || size.is_nan() {
+            so_far = size;
+        }
+        if step.get(largest.len()) == Some(&n) {
+            largest.push(so_far);
         }
     };
     // An overflow is a result: the maxima until then are kept.
-    match problem.run(method, problem.start, problem.step(steps), last, &mut watch) {
+    match problem.run(method, &problem.start, problem.step(steps), last, &mut watch) {
         Ok(_) | Err(SimulationError::NotFinite { .. }) => {}
         Err(error) => return Err(error.into()),
     }
@@ -153,12 +176,45 @@ pub(super) fn horizon<M: Model<D>, const D: usize>(
     Ok(Horizon { step, largest })
 }
 
-/// Whether the orbit returns to its start after a turn, or must return because it has one degree
-/// of freedom.
-pub(super) fn closes<M: Model<D>, const D: usize>(problem: &Problem<M, D>) -> bool {
-    let system = problem.model.on::<TwoFloat>();
-    let start = problem.start.map(TwoFloat::from_f64);
+/// The largest relative change of the energy along the reference orbit; none without an energy.
+pub(super) fn change_of_flow(problem: &Problem) -> Option<f64> {
+    problem.dynamics.energy()?;
+    let states = problem.orbit().states();
+    let mut drift = Drift::new(problem, &states[0]);
+    let changes = states.iter().map(|state| drift.of(state).abs());
+    Some(changes.fold(0.0, |most, x| if x > most || x.is_nan() { x } else { most }))
+}
+
+/// Turns within which an orbit in one degree of freedom is expected back.
+const RETURN_TURNS: u64 = 16;
+
+/// Steps a turn of that search.
+const RETURN_STEPS: u64 = 400;
+
+/// Whether the orbit is closed: in one degree of freedom if it comes back to its start, in more if it does so after a turn.
+pub(super) fn closes(problem: &Problem) -> bool {
+    if problem.degrees() == 1 {
+        return comes_back(problem);
+    }
+    let start = start::<TwoFloat>(problem);
     let turn = TwoFloat::from_f64(problem.turn);
-    let (end, _) = super::flow::flow(&system, start, turn);
-    D == 1 || super::flow::distance(&end, &start) < 1e-6 * super::flow::size(&start)
+    let (end, _) = flow(&mut Rates::new(&problem.dynamics), &start, turn);
+    distance(&end, &start) < 1e-6 * size(&start)
+}
+
+/// Whether an orbit in one degree of freedom crosses the line through its start, across the flow and near the start, in the
+/// direction of the flow.
+fn comes_back(problem: &Problem) -> bool {
+    let (start, omega) = (&problem.start, problem.omega());
+    let rate = Rates::new(&problem.dynamics).at(start);
+    let (mut furthest, mut ahead, mut is_back) = (0.0_f64, true, false);
+    let mut watch = |_, state: &[f64]| {
+        let (dq, dv) = (state[0] - start[0], (state[1] - start[1]) / omega);
+        let was_ahead = std::mem::replace(&mut ahead, dq * rate[0] + dv * rate[1] / omega >= 0.0);
+        let off = dq.hypot(dv);
+        furthest = furthest.max(off);
+        is_back |= ahead && !was_ahead && off < furthest / 4.0;
+    };
+    let (dt, steps) = (problem.step(RETURN_STEPS), RETURN_TURNS * RETURN_STEPS);
+    problem.run(Method::Rk4, start, dt, steps, &mut watch).is_ok() && is_back
 }

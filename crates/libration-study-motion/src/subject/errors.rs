@@ -2,11 +2,11 @@
 
 use libration::number::TwoFloat;
 use libration::simulation::SimulationError;
-use libration::{Float, Method, Model, State};
+use libration::{Float, Method};
 use libration_study::{Fit, StudyError};
 
-use super::flow::flow;
-use super::{Halvings, Problem};
+use super::flow::{Rates, flow};
+use super::{Halvings, Problem, StudiedState};
 
 /// Samples from which orbits start. The configured start itself may be special: where the force or
 /// the velocity vanishes, symplectic Euler is of order two in one of the coordinates. Of two points
@@ -37,25 +37,39 @@ pub struct Errors {
     pub velocity: Vec<f64>,
     /// Errors in phase space, with velocities times `turn/2π`.
     pub together: Vec<f64>,
+    /// Errors of each state.
+    pub states: Vec<Vec<f64>>,
 }
 
 impl Errors {
-    fn push(&mut self, dt: f64, [q, v]: [f64; 2], turn: f64) {
+    fn new(states: usize) -> Self {
+        Errors { states: vec![Vec::new(); states], ..Errors::default() }
+    }
+
+    /// Adds the mean squares of the errors of all states.
+    fn push(&mut self, problem: &Problem, dt: f64, squares: &[f64]) {
+        let root = |is_own: &dyn Fn(&StudiedState) -> bool| -> f64 {
+            let own = problem.states.iter().zip(squares).filter(|(state, _)| is_own(state));
+            own.map(|(_, square)| square).sum::<f64>().sqrt()
+        };
+        let q = root(&|state| state.place < problem.degrees());
+        let v = root(&|state| state.place >= problem.degrees());
         self.dt.push(dt);
         self.position.push(q);
         self.velocity.push(v);
-        self.together.push(q.hypot(v * turn / std::f64::consts::TAU));
+        self.together.push(q.hypot(v / problem.omega()));
+        self.states.iter_mut().zip(squares).for_each(|(errors, x)| errors.push(x.sqrt()));
     }
 }
 
 /// The errors of `method` until their order settles, or the steps are as small as they may be.
-pub(super) fn measure<M: Model<D>, const D: usize>(
-    problem: &Problem<M, D>,
+pub(super) fn measure(
+    problem: &Problem,
     kind: Kind,
     method: Method,
     halvings: Halvings,
 ) -> Result<Errors, StudyError> {
-    let mut errors = Errors::default();
+    let mut errors = Errors::new(problem.states.len());
     for steps in halvings.steps() {
         let found = match kind {
             Kind::Local => local(problem, method, steps),
@@ -64,10 +78,10 @@ pub(super) fn measure<M: Model<D>, const D: usize>(
         };
         let found = match found {
             // A step so large that the orbit overflows has no error that is a number.
-            Err(SimulationError::NotFinite { .. }) => [f64::NAN; 2],
+            Err(SimulationError::NotFinite { .. }) => vec![f64::NAN; problem.states.len()],
             other => other?,
         };
-        errors.push(problem.step::<f64>(steps), found, problem.turn);
+        errors.push(problem, problem.step::<f64>(steps), &found);
         if Fit::is_settled(&errors.dt, &errors.together) {
             break;
         }
@@ -75,61 +89,59 @@ pub(super) fn measure<M: Model<D>, const D: usize>(
     Ok(errors)
 }
 
-/// Position and velocity of the error at each sample, over all samples after each start.
-fn global<M: Model<D>, const D: usize>(
-    problem: &Problem<M, D>,
+/// The mean squares of the errors at each sample, over all samples after each start.
+fn global(
+    problem: &Problem,
     method: Method,
     steps: u64,
     starts: &[usize],
-) -> Result<[f64; 2], SimulationError> {
+) -> Result<Vec<f64>, SimulationError> {
     let dt = problem.step::<TwoFloat>(steps);
     let stride = steps / Halvings::SAMPLES;
     let exact = problem.orbit().states();
-    let mut mean = MeanSquare::default();
+    let mut mean = MeanSquares::new(&problem.states);
     for &start in starts {
-        let mut state = exact[start];
+        let mut state = exact[start].clone();
         for exact in &exact[start + 1..] {
-            state = problem.run(method, state, dt, stride, &mut |_| {})?;
+            state = problem.run(method, &state, dt, stride, &mut |_, _| {})?;
             mean.add(&state, exact);
         }
     }
-    Ok(mean.root())
+    Ok(mean.all())
 }
 
-/// Returns the error of a single step from each sample.
-fn local<M: Model<D>, const D: usize>(
-    problem: &Problem<M, D>,
-    method: Method,
-    steps: u64,
-) -> Result<[f64; 2], SimulationError> {
+/// The mean squares of the errors of a single step from each sample.
+fn local(problem: &Problem, method: Method, steps: u64) -> Result<Vec<f64>, SimulationError> {
     let dt = problem.step::<TwoFloat>(steps);
-    let system = problem.model.on::<TwoFloat>();
-    let mut mean = MeanSquare::default();
-    for &at in &problem.orbit().states()[1..] {
-        let stepped = problem.run(method, at, dt, 1, &mut |_| {})?;
-        mean.add(&stepped, &flow(&system, at, dt).0);
+    let mut rates = Rates::new(&problem.dynamics);
+    let mut mean = MeanSquares::new(&problem.states);
+    for at in &problem.orbit().states()[1..] {
+        let stepped = problem.run(method, at, dt, 1, &mut |_, _| {})?;
+        mean.add(&stepped, &flow(&mut rates, at, dt).0);
     }
-    Ok(mean.root())
+    Ok(mean.all())
 }
 
-/// The mean square of differences of position and velocity.
-#[derive(Default)]
-struct MeanSquare {
-    sums: [f64; 2],
+/// The mean squares of the differences of states.
+struct MeanSquares<'p> {
+    states: &'p [StudiedState],
+    sums: Vec<f64>,
     count: f64,
 }
 
-impl MeanSquare {
-    fn add<const D: usize>(&mut self, a: &State<TwoFloat, D>, b: &State<TwoFloat, D>) {
-        let square = |a: [TwoFloat; D], b: [TwoFloat; D]| -> f64 {
-            a.iter().zip(b).map(|(&a, b)| (a - b).to_f64().powi(2)).sum()
-        };
-        self.sums[0] += square(a.q, b.q);
-        self.sums[1] += square(a.v, b.v);
+impl<'p> MeanSquares<'p> {
+    fn new(states: &'p [StudiedState]) -> Self {
+        MeanSquares { states, sums: vec![0.0; states.len()], count: 0.0 }
+    }
+
+    fn add(&mut self, a: &[TwoFloat], b: &[TwoFloat]) {
+        for (sum, state) in self.sums.iter_mut().zip(self.states) {
+            *sum += (a[state.place] - b[state.place]).to_f64().powi(2);
+        }
         self.count += 1.0;
     }
 
-    fn root(&self) -> [f64; 2] {
-        self.sums.map(|sum| (sum / self.count).sqrt())
+    fn all(self) -> Vec<f64> {
+        self.sums.iter().map(|sum| sum / self.count).collect()
     }
 }

@@ -4,8 +4,9 @@
 //! of the extrapolation wins two orders (Gragg; Hairer, Nørsett, Wanner: Solving Ordinary
 //! Differential Equations I, §II.9). It shares no line with the integrators under study.
 
+use libration::equations::{Dynamics, Evaluation};
 use libration::number::TwoFloat;
-use libration::{Float, Scalar, State, System};
+use libration::{Elementary, Float, Scalar};
 
 /// Columns of the extrapolation: order 20.
 const COLUMNS: usize = 10;
@@ -16,18 +17,39 @@ const TARGET: f64 = 1e-28;
 /// Beyond this many pieces rounding would be worse than what is left.
 const MOST_PIECES: u32 = 1 << 10;
 
-/// A state of the flow, and its distance from the one with pieces twice as long.
-pub(super) type Flowed<const D: usize> = (State<TwoFloat, D>, f64);
+/// Positions, then velocities.
+pub(super) type Point = Vec<TwoFloat>;
 
-/// The state that `system` reaches from `start` after `time` seconds.
-pub(super) fn flow<const D: usize>(
-    system: &impl System<TwoFloat, D>,
-    start: State<TwoFloat, D>,
+/// The rates of change of positions and velocities, on numbers of type `S`.
+#[derive(Debug)]
+pub(super) struct Rates<'p, S> {
+    accelerations: Evaluation<'p, S>,
+}
+
+impl<'p, S: Elementary> Rates<'p, S> {
+    /// Those of a system whose inputs are zero.
+    pub(super) fn new(dynamics: &'p Dynamics) -> Self {
+        Rates { accelerations: dynamics.accelerations().on() }
+    }
+
+    /// The rates at positions and velocities.
+    pub(super) fn at(&mut self, state: &[S]) -> Vec<S> {
+        let mut rates = Vec::with_capacity(state.len());
+        rates.extend_from_slice(&state[state.len() / 2..]);
+        rates.extend(self.accelerations.run(state));
+        rates
+    }
+}
+
+/// The state that a system reaches from `start` after `time` seconds, and its distance from the one with pieces twice as long.
+pub(super) fn flow(
+    rates: &mut Rates<'_, TwoFloat>,
+    start: &[TwoFloat],
     time: TwoFloat,
-) -> Flowed<D> {
-    let after = |pieces: u32| {
+) -> (Point, f64) {
+    let mut after = |pieces: u32| {
         let piece = time.ratio(1, pieces as i32);
-        (0..pieces).fold(start, |state, _| extrapolated(system, state, piece))
+        (0..pieces).fold(start.to_vec(), |state, _| extrapolated(rates, &state, piece))
     };
     let (mut pieces, mut coarse) = (2, after(1));
     loop {
@@ -42,50 +64,49 @@ pub(super) fn flow<const D: usize>(
 }
 
 /// The largest coordinate.
-pub(super) fn size<const D: usize>(state: &State<TwoFloat, D>) -> f64 {
-    state.coordinates().fold(0.0, |size, x| size.max(x.to_f64().abs()))
+pub(super) fn size(state: &[TwoFloat]) -> f64 {
+    state.iter().fold(0.0, |size, x| size.max(x.to_f64().abs()))
 }
 
 /// The largest difference of a coordinate; NaN if one is.
-pub(super) fn distance<const D: usize>(a: &State<TwoFloat, D>, b: &State<TwoFloat, D>) -> f64 {
-    let differences = a.coordinates().zip(b.coordinates()).map(|(a, b)| (a - b).to_f64().abs());
+pub(super) fn distance(a: &[TwoFloat], b: &[TwoFloat]) -> f64 {
+    let differences = a.iter().zip(b).map(|(&a, &b)| (a - b).to_f64().abs());
     differences.fold(0.0, |size, x| if x > size || x.is_nan() { x } else { size })
 }
 
+/// `x + h·y`, entry by entry.
+fn plus(x: &[TwoFloat], h: TwoFloat, y: &[TwoFloat]) -> Point {
+    x.iter().zip(y).map(|(&x, &y)| x + h * y).collect()
+}
+
 /// One piece by Aitken's and Neville's scheme on `2, 4, 6, …` midpoint steps.
-fn extrapolated<const D: usize>(
-    system: &impl System<TwoFloat, D>,
-    start: State<TwoFloat, D>,
-    time: TwoFloat,
-) -> State<TwoFloat, D> {
-    let mut row: Vec<State<TwoFloat, D>> = Vec::with_capacity(COLUMNS);
+fn extrapolated(rates: &mut Rates<'_, TwoFloat>, start: &[TwoFloat], time: TwoFloat) -> Point {
+    let mut row: Vec<Point> = Vec::with_capacity(COLUMNS);
     for j in 1..=COLUMNS as i32 {
-        let mut value = midpoint(system, start, time, 2 * j);
+        let mut value = midpoint(rates, start, time, 2 * j);
         for k in 1..j {
             // Entry k − 1 still holds the row before; its step is j/(j − k) times as long.
-            let before = std::mem::replace(&mut row[k as usize - 1], value);
+            let before = std::mem::replace(&mut row[k as usize - 1], value.clone());
             let (short, long) = (j - k, j);
             let (num, den) = (short * short, long * long - short * short);
-            let gain = value.plus(-TwoFloat::one(), before).map(|x| x.ratio(num, den));
-            value = value + gain;
+            value.iter_mut().zip(&before).for_each(|(x, &before)| {
+                *x = *x + (*x - before).ratio(num, den);
+            });
         }
         row.push(value);
     }
-    row[COLUMNS - 1]
+    row.pop().unwrap_or_default()
 }
 
 /// An even number `n` of steps of the explicit midpoint rule, begun by one of Euler.
-fn midpoint<const D: usize>(
-    system: &impl System<TwoFloat, D>,
-    start: State<TwoFloat, D>,
-    time: TwoFloat,
-    n: i32,
-) -> State<TwoFloat, D> {
+fn midpoint(rates: &mut Rates<'_, TwoFloat>, start: &[TwoFloat], time: TwoFloat, n: i32) -> Point {
     let h = time.ratio(1, n);
     let two = h + h;
-    let (mut before, mut now) = (start, start.plus(h, system.rate(start)));
+    let first = plus(start, h, &rates.at(start));
+    let (mut before, mut now) = (start.to_vec(), first);
     for _ in 1..n {
-        (before, now) = (now, before.plus(two, system.rate(now)));
+        let next = plus(&before, two, &rates.at(&now));
+        (before, now) = (now, next);
     }
     now
 }
@@ -93,21 +114,20 @@ fn midpoint<const D: usize>(
 #[cfg(test)]
 mod tests {
     use libration::system::{Kepler, Oscillator};
-    use libration::{Elementary, Model};
 
     use super::*;
 
     #[test]
     fn the_oscillator_follows_its_closed_form() {
-        let oscillator = Model::<1>::on::<TwoFloat>(&Oscillator { omega2: 10.0 });
-        let start = State { q: [TwoFloat::from_f64(0.3)], v: [TwoFloat::from_f64(-1.2)] };
-        let (time, omega) = (TwoFloat::from_f64(1.7), oscillator.omega2.sqrt());
-        let (found, off) = flow(&oscillator, start, time);
+        let dynamics = Dynamics::of::<1>(&Oscillator { omega2: 10.0 }, false);
+        let start = [0.3, -1.2].map(TwoFloat::from_f64);
+        let (time, omega) = (TwoFloat::from_f64(1.7), TwoFloat::from_f64(10.0).sqrt());
+        let (found, off) = flow(&mut Rates::new(&dynamics), &start, time);
         let (sin, cos) = ((omega * time).sin(), (omega * time).cos());
-        let exact = State {
-            q: [start.q[0] * cos + start.v[0] * sin * omega.recip()],
-            v: [start.v[0] * cos - start.q[0] * omega * sin],
-        };
+        let exact = [
+            start[0] * cos + start[1] * sin * omega.recip(),
+            start[1] * cos - start[0] * omega * sin,
+        ];
         assert!(distance(&found, &exact) < 1e-27, "{:e}", distance(&found, &exact));
         assert!(off < 1e-27, "{off:e}");
     }
@@ -115,23 +135,23 @@ mod tests {
     /// `E − e sin E = t` gives the time of a place in closed form, without solving for it.
     #[test]
     fn kepler_follows_keplers_equation() {
-        let kepler = Kepler { mu: 1.0 };
-        let system = kepler.on::<TwoFloat>();
+        let dynamics = Dynamics::of::<2>(&Kepler { mu: 1.0 }, false);
         let constant = TwoFloat::from_f64;
         let (e, anomaly) = (constant(0.6), constant(2.0));
         let axis = constant(0.64).sqrt();
         let time = anomaly - e * anomaly.sin();
-        let perihelion = State {
-            q: [TwoFloat::one() - e, TwoFloat::zero()],
-            v: [TwoFloat::zero(), ((TwoFloat::one() + e) * (TwoFloat::one() - e).recip()).sqrt()],
-        };
-        let (found, _) = flow(&system, perihelion, time);
+        let speed = ((TwoFloat::one() + e) * (TwoFloat::one() - e).recip()).sqrt();
+        let perihelion = [TwoFloat::one() - e, TwoFloat::zero(), TwoFloat::zero(), speed];
+        let (found, _) = flow(&mut Rates::new(&dynamics), &perihelion, time);
         // 1 − 0.6² and 0.64 differ by rounding of the constants.
         let exact = [anomaly.cos() - e, axis * anomaly.sin()];
-        for (found, exact) in found.q.iter().zip(exact) {
+        for (found, exact) in found.iter().zip(exact) {
             assert!((*found - exact).to_f64().abs() < 1e-15);
         }
-        let energy = |s: &State<TwoFloat, 2>| libration::Hamiltonian::energy(&system, s);
+        let energy = |state: &[TwoFloat]| {
+            let energy = dynamics.energy().map(|energy| energy.on::<TwoFloat>().run(state).next());
+            energy.flatten().unwrap()
+        };
         let change = (energy(&found) - energy(&perihelion)).to_f64();
         assert!(change.abs() < 1e-27, "{change:e}");
     }

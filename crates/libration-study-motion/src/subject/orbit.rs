@@ -1,10 +1,10 @@
 //! The reference orbit of a problem.
 
+use libration::Scalar;
 use libration::number::TwoFloat;
-use libration::{Hamiltonian, Scalar, State};
 
 use super::Halvings;
-use super::flow::flow;
+use super::flow::{Point, Rates, flow};
 
 /// Samples of an orbit at which errors are taken: three quarters of a turn, so that no symmetry of
 /// a closed orbit falls on the end.
@@ -12,30 +12,26 @@ const SAMPLED: usize = 12;
 
 /// The exact orbit at evenly spaced times.
 #[derive(Clone, Debug)]
-pub(super) struct Orbit<const D: usize> {
+pub(super) struct Orbit {
     /// The start and the samples.
-    states: Vec<State<TwoFloat, D>>,
+    states: Vec<Point>,
     uncertainty: f64,
 }
 
-impl<const D: usize> Orbit<D> {
-    pub(super) fn new(
-        system: &impl Hamiltonian<TwoFloat, D>,
-        start: State<TwoFloat, D>,
-        turn: TwoFloat,
-    ) -> Self {
+impl Orbit {
+    pub(super) fn new(rates: &mut Rates<'_, TwoFloat>, start: Point, turn: TwoFloat) -> Self {
         let interval = turn.ratio(1, Halvings::SAMPLES as i32);
         let (mut states, mut uncertainty) = (vec![start], 0.0);
         for _ in 0..SAMPLED {
-            let (next, off) = flow(system, states[states.len() - 1], interval);
+            let (next, off) = flow(rates, &states[states.len() - 1], interval);
             states.push(next);
             uncertainty += off;
         }
         Orbit { states, uncertainty }
     }
 
-    /// The start and the samples.
-    pub(super) fn states(&self) -> &[State<TwoFloat, D>] {
+    /// The start and the samples: positions, then velocities.
+    pub(super) fn states(&self) -> &[Point] {
         &self.states
     }
 

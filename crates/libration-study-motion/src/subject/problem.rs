@@ -1,51 +1,101 @@
-//! A model with a start and the time of a turn.
+//! A system with a start and the time of a turn.
 
 use std::sync::OnceLock;
 
+use libration::equations::{Dynamics, StepProgram};
 use libration::number::TwoFloat;
-use libration::simulation::{Sample, SimulationError, Simulator};
-use libration::system::DynSystem;
-use libration::{Float, Method, Model, Scalar, State, System, with_method};
+use libration::simulation::SimulationError;
+use libration::{Float, Method, Model, Scalar, State};
 
+use super::flow::Rates;
 use super::orbit::Orbit;
+use super::stepper::Stepper;
 
 /// A system of any kind under study: all that the laboratory must know of it.
 ///
+/// It holds the program of the system, which has the bits of the compiled one on each number type, so that its instruments are
+/// compiled once for all systems.
+///
 /// ```
 /// use libration::{State, system::Duffing};
-/// use libration_study_motion::{Convergence, Nonlinear, Problem, Subject};
+/// use libration_study_motion::{Convergence, Nonlinear, Problem};
 ///
 /// let wells = Duffing { alpha: -1.0, beta: 1.0 };
-/// let problem = Problem::new("wells", wells, State { q: [1.5], v: [0.0] }, 4.4);
-/// let own = [&problem as &dyn Subject];
+/// let own = [Problem::new("wells", wells, State { q: [1.5], v: [0.0] }, 4.4)];
 /// let studies = (Convergence::of(&own), Nonlinear::of(&own));
 /// # let _ = studies;
 /// ```
 #[derive(Debug)]
-pub struct Problem<M, const D: usize> {
+pub struct Problem {
     pub(super) name: String,
     pub(super) title: String,
-    pub(super) model: M,
-    pub(super) start: State<f64, D>,
+    pub(super) dynamics: Dynamics,
+    /// Positions, then velocities.
+    pub(super) start: Vec<f64>,
     pub(super) turn: f64,
-    pub(super) equilibrium: Option<State<f64, D>>,
-    orbit: OnceLock<Orbit<D>>,
+    pub(super) equilibrium: Option<Vec<f64>>,
+    /// The states under study: all positions and velocities but for those that only carry time or an integral.
+    pub(super) states: Vec<StudiedState>,
+    orbit: OnceLock<Orbit>,
+    steps: [OnceLock<StepProgram>; Method::ALL.len()],
 }
 
-impl<M: Model<D>, const D: usize> Problem<M, D> {
+/// A position, a velocity or a state of first order.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StudiedState {
+    /// The place among all positions and velocities.
+    pub place: usize,
+    /// The name.
+    pub name: String,
+    /// The unit; empty without one.
+    pub unit: String,
+}
+
+impl Problem {
     /// `model` from `start`; a revolution takes about `turn` seconds.
     ///
     /// Characters of `name` other than letters and digits become hyphens.
-    pub fn new(name: &str, model: M, start: State<f64, D>, turn: f64) -> Self {
+    pub fn new<const D: usize>(
+        name: &str,
+        model: impl Model<D>,
+        start: State<f64, D>,
+        turn: f64,
+    ) -> Self {
+        let named = |letter: char| {
+            move |i: usize| match D {
+                1 => letter.to_string(),
+                _ => format!("{letter}{}", subscript(i)),
+            }
+        };
+        let names = (0..D).map(named('q')).chain((0..D).map(named('v')));
+        let states = names.enumerate().map(|(place, name)| StudiedState {
+            place,
+            name,
+            unit: String::new(),
+        });
+        let dynamics = Dynamics::of(&model, false);
+        Problem::of_program(name, dynamics, start.coordinates().collect(), turn, states.collect())
+    }
+
+    /// The system of a program whose inputs are zero, from positions and velocities.
+    pub(super) fn of_program(
+        name: &str,
+        dynamics: Dynamics,
+        start: Vec<f64>,
+        turn: f64,
+        states: Vec<StudiedState>,
+    ) -> Self {
         let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
         Problem {
             name: name.chars().map(plain).collect(),
             title: name.into(),
-            model,
+            dynamics,
             start,
             turn,
             equilibrium: None,
+            states,
             orbit: OnceLock::new(),
+            steps: [const { OnceLock::new() }; Method::ALL.len()],
         }
     }
 
@@ -56,19 +106,37 @@ impl<M: Model<D>, const D: usize> Problem<M, D> {
         self
     }
 
-    /// With a stable equilibrium, about which the step of lost stability is predicted.
+    /// With a stable equilibrium, about which the step of lost stability is predicted. It has the degrees of freedom of the start;
+    /// another one is ignored.
     #[must_use]
-    pub fn with_equilibrium(mut self, equilibrium: State<f64, D>) -> Self {
-        self.equilibrium = Some(equilibrium);
+    pub fn with_equilibrium<const D: usize>(mut self, equilibrium: State<f64, D>) -> Self {
+        let equilibrium: Vec<f64> = equilibrium.coordinates().collect();
+        self.equilibrium = Some(equilibrium).filter(|at| at.len() == self.start.len());
         self
     }
 
+    /// Degrees of freedom of the program.
+    pub(super) fn degrees(&self) -> usize {
+        self.dynamics.degrees()
+    }
+
+    /// The angular frequency of a turn, in rad/s.
+    pub(super) fn omega(&self) -> f64 {
+        std::f64::consts::TAU / self.turn
+    }
+
     /// The reference orbit, computed once.
-    pub(super) fn orbit(&self) -> &Orbit<D> {
+    pub(super) fn orbit(&self) -> &Orbit {
         self.orbit.get_or_init(|| {
-            let turn = TwoFloat::from_f64(self.turn);
-            Orbit::new(&self.model.on(), self.start.map(TwoFloat::from_f64), turn)
+            let start = self.start.iter().map(|&x| TwoFloat::from_f64(x)).collect();
+            Orbit::new(&mut Rates::new(&self.dynamics), start, TwoFloat::from_f64(self.turn))
         })
+    }
+
+    /// The program of a step, made once.
+    pub(super) fn step_program(&self, method: Method) -> &StepProgram {
+        let place = Method::ALL.iter().position(|&one| one == method).unwrap_or_default();
+        self.steps[place].get_or_init(|| StepProgram::new(method, &self.dynamics))
     }
 
     /// `turn / steps` on numbers of type `S`.
@@ -76,30 +144,37 @@ impl<M: Model<D>, const D: usize> Problem<M, D> {
         S::from_f64(self.turn).ratio(1, i32::try_from(steps).unwrap_or(i32::MAX))
     }
 
-    /// Runs `method` and gives the last state; `watch` sees every sample.
-    ///
-    /// But for `sweep` the one place in which a method becomes a type: what watches is dynamic.
+    /// Runs `method` and returns the last state; `watch` sees the start and every state after it with the number of its step.
     pub(super) fn run<S: Float>(
         &self,
         method: Method,
-        start: State<S, D>,
+        start: &[S],
         dt: S,
         steps: u64,
-        watch: &mut dyn FnMut(&Sample<S, D>),
-    ) -> Result<State<S, D>, SimulationError> {
-        let watch = &mut |sample: &Sample<S, D>| watch(sample);
-        if const { size_of::<S>() > size_of::<f64>() } {
-            // What each operation takes is more than a call.
-            let acceleration = |state: &State<S, D>| self.model.on::<S>().acceleration(state);
-            let mut simulator = Simulator::new(DynSystem(&acceleration), method, start, dt)?;
-            simulator.run(steps, watch)?;
-            return Ok(simulator.sample().state);
+        watch: &mut dyn FnMut(u64, &[S]),
+    ) -> Result<Vec<S>, SimulationError> {
+        if !(dt > S::zero() && dt.is_finite()) {
+            return Err(SimulationError::TimeStep { dt: dt.to_f64(), float: S::NAME });
         }
-        let system = self.model.on::<S>();
-        with_method!(method, |m| {
-            let mut simulator = Simulator::new(system, m, start, dt)?;
-            simulator.run(steps, watch)?;
-            Ok(simulator.sample().state)
-        })
+        let mut stepper = Stepper::new(self.step_program(method), &self.dynamics, start);
+        watch(0, stepper.state());
+        for step in 1..=steps {
+            stepper.step(dt);
+            if !stepper.state().iter().all(|x| x.is_finite()) {
+                let time = step as f64 * dt.to_f64();
+                return Err(SimulationError::NotFinite { step, time });
+            }
+            watch(step, stepper.state());
+        }
+        Ok(stepper.state().to_vec())
     }
+}
+
+/// A number in small digits below the line.
+fn subscript(n: usize) -> String {
+    let below = |digit: char| {
+        let digit = digit.to_digit(10).and_then(|digit| char::from_u32('₀' as u32 + digit));
+        digit.unwrap_or('ₙ')
+    };
+    n.to_string().chars().map(below).collect()
 }

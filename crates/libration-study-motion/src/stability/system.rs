@@ -1,0 +1,285 @@
+//! The study `stability` of a system of equations: its modes, and the time steps at which an integrator keeps them stable.
+
+use std::sync::atomic::AtomicBool;
+
+use libration::Method;
+use libration::equations::StepProgram;
+use libration_analyze::equation_analysis::spectral_radius;
+use libration_analyze::linear_analysis::{self, LinearAnalysis, LinearRequest, Mode, StepAnalysis};
+use libration_report::Record;
+use libration_report::figure::{Axis, Dash, Figure, Mark, Panel, Role};
+use libration_report::notation::{list, number, seconds};
+use libration_report::page::{Highlight, Page};
+use libration_report::record::{Cell, Finding, RecordError, Series, Table, Tolerance};
+use libration_settings::equations::EquationSystem;
+use libration_settings::linear_loop::linearised_equations;
+use libration_study::{Lab, Study, StudyError};
+
+use crate::method_color::method_color;
+
+/// Steps a turn of the table of multipliers.
+const STEPS_A_TURN: f64 = 64.0;
+
+/// Growth per step that counts: above the rounding that parts double eigenvalues by its root, some 10⁻⁸.
+const GROWTH: f64 = 1e-6;
+
+/// Points of a curve.
+const POINTS: usize = 160;
+
+/// Halvings of the interval in which the largest stable step is searched: to 10⁻¹² of it.
+const HALVINGS: usize = 40;
+
+/// The study `stability` of a system of equations at its equilibrium.
+#[derive(Clone, Copy, Debug)]
+pub struct SystemStability<'a> {
+    system: &'a EquationSystem,
+    turn: f64,
+}
+
+impl<'a> SystemStability<'a> {
+    /// Of a system with a turn of so many seconds.
+    pub fn new(system: &'a EquationSystem, turn: f64) -> Self {
+        SystemStability { system, turn }
+    }
+}
+
+impl Study for SystemStability<'_> {
+    fn name(&self) -> &'static str {
+        "stability"
+    }
+
+    fn question(&self) -> &'static str {
+        "Which modes does the system have at its equilibrium, and how large may a time step be there?"
+    }
+
+    fn run(&self, lab: &Lab<'_>) -> Result<Record, StudyError> {
+        let mut record = Record::new(self.name(), self.question());
+        let other = |error: String| StudyError::Other(error.into());
+        let dt = self.turn / STEPS_A_TURN;
+        let (plant, point) =
+            linearised_equations(self.system).map_err(|fault| other(fault.message))?;
+        let request = LinearRequest::open_loop(plant, dt, None);
+        let linear =
+            request.and_then(|request| linear_analysis::analyze(&request, &AtomicBool::new(false)));
+        let linear = linear.map_err(|error| other(error.to_string()))?;
+        let at = point.state_of(self.system);
+        record.tables.push(equilibrium(self.system, &at));
+        record.tables.push(modes(&linear.modes));
+        let methods = &lab.config.integrators;
+        let steps: Vec<OwnStep<'_>> =
+            methods.iter().map(|&method| OwnStep::new(self.system, method, &at, &linear)).collect();
+        let limits = lab.sweep("largest stable steps", &steps, |step| Ok(step.measured_limit()))?;
+        let mut table = Table::new(
+            "steps",
+            &[
+                "integrator",
+                "spectral radius: predicted",
+                "measured",
+                "largest stable step: predicted (s)",
+                "measured (s)",
+            ],
+        );
+        for (step, limit) in steps.iter().zip(limits) {
+            table.push(step.find(dt, limit, &mut record));
+        }
+        record.tables.push(table);
+        let curves = lab.sweep("spectral radii", &steps, |step| Ok(step.curve(self.turn)))?;
+        let dts = log_spaced(self.turn);
+        let series = Series::new("radius").with("dt", "s", dts);
+        let series = steps
+            .iter()
+            .zip(curves)
+            .fold(series, |series, (step, curve)| series.with(step.method.name(), "1", curve));
+        record.series.push(series);
+        Ok(record)
+    }
+
+    fn render(&self, record: &Record, page: &mut Page) -> Result<(), RecordError> {
+        render(record, page)
+    }
+}
+
+/// Time steps from a hundredth of a turn to a whole one.
+fn log_spaced(turn: f64) -> Vec<f64> {
+    let part = |i: usize| i as f64 / (POINTS - 1) as f64;
+    (0..POINTS).map(|i| turn * 100_f64.powf(part(i) - 1.0)).collect()
+}
+
+/// The states at the equilibrium.
+fn equilibrium(system: &EquationSystem, at: &[f64]) -> Table {
+    let mut table = Table::new("equilibrium", &["state", "value", "unit"]);
+    for state in &system.states {
+        let cells: [Cell; 3] =
+            [state.name.as_str().into(), at[state.place].into(), state.unit.as_str().into()];
+        table.push(cells);
+    }
+    table
+}
+
+fn modes(modes: &[Mode]) -> Table {
+    let columns = ["growth rate (1/s)", "frequency (Hz)", "damping ratio", "states that move most"];
+    let mut table = Table::new("modes", &columns);
+    for mode in modes {
+        let states: Vec<String> =
+            mode.states.iter().map(|(name, size)| format!("{name} {}", number(*size, 2))).collect();
+        table.push([
+            mode.growth_rate.into(),
+            mode.frequency.into(),
+            mode.damping_ratio.into(),
+            Cell::from(states.join(", ")),
+        ]);
+    }
+    table
+}
+
+/// Steps of a method about the equilibrium.
+struct OwnStep<'a> {
+    system: &'a EquationSystem,
+    method: Method,
+    at: &'a [f64],
+    program: StepProgram,
+    /// What theory predicts; none where it does not apply.
+    theory: Option<&'a StepAnalysis>,
+    /// Whether a mode of the system itself grows.
+    is_unstable: bool,
+}
+
+impl<'a> OwnStep<'a> {
+    fn new(
+        system: &'a EquationSystem,
+        method: Method,
+        at: &'a [f64],
+        linear: &'a LinearAnalysis,
+    ) -> Self {
+        let theory = linear.steps.iter().find(|step| step.integrator == method.name());
+        let is_unstable = linear.modes.iter().any(|mode| mode.growth_rate > 0.0);
+        let program = StepProgram::new(method, system.equations.dynamics());
+        OwnStep { system, method, at, program, theory, is_unstable }
+    }
+
+    /// The spectral radius of the derivative of a step.
+    fn radius(&self, dt: f64) -> f64 {
+        spectral_radius(&self.program, self.system, self.at, dt).unwrap_or(f64::NAN)
+    }
+
+    fn curve(&self, turn: f64) -> Vec<f64> {
+        log_spaced(turn).into_iter().map(|dt| self.radius(dt)).collect()
+    }
+
+    fn predicted_limit(&self) -> Option<f64> {
+        self.theory.filter(|_| !self.is_unstable)?.largest_stable_dt
+    }
+
+    /// The step about the predicted limit from which on a mode grows; zero if one grows in smaller steps already.
+    fn measured_limit(&self) -> Option<f64> {
+        let predicted = self.predicted_limit()?;
+        let is_stable = |dt: f64| self.radius(dt) <= 1.0 + GROWTH;
+        let (mut low, mut high) = (0.5 * predicted, 1.5 * predicted);
+        if !is_stable(low) {
+            return Some(0.0);
+        }
+        if is_stable(high) {
+            return Some(f64::INFINITY);
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if is_stable(middle) { low = middle } else { high = middle }
+        }
+        Some(low)
+    }
+
+    /// Adds what was found; returns the row of the table.
+    fn find(&self, dt: f64, limit: Option<f64>, record: &mut Record) -> Vec<Cell> {
+        let (name, title) = (self.method.name(), self.method.title());
+        let id = |what: &str| format!("stability.{name}.{what}");
+        let radius = self.radius(dt);
+        let text = format!(
+            "{title}: spectral radius of the derivative of a step of {} at the equilibrium",
+            seconds(dt, 3)
+        );
+        let predicted = self.theory.and_then(|theory| theory.predicted_spectral_radius);
+        record.find(match predicted {
+            Some(predicted) => {
+                let why = "rounding parts double eigenvalues by its root";
+                let tolerance = Tolerance::absolute(GROWTH, why);
+                Finding::predicted(id("radius"), text, "1", predicted, radius, tolerance)
+            }
+            None => Finding::measured(id("radius"), text, "1", radius),
+        });
+        if let (Some(predicted), Some(limit)) = (self.predicted_limit(), limit) {
+            let text = format!("{title}: largest time step at which no mode grows");
+            let why = "a growth of 10⁻⁶ a step counts, and beyond the limit the radius rises at least a tenth as fast as the step";
+            let tolerance = Tolerance::relative(10.0 * GROWTH, why);
+            record.find(Finding::predicted(id("limit"), text, "s", predicted, limit, tolerance));
+        }
+        let absent = || match (self.is_unstable, self.theory.is_some()) {
+            (true, _) => Cell::absent("a mode grows by itself"),
+            (false, false) => Cell::absent("no theory with states of first order"),
+            (false, true) => Cell::absent("none"),
+        };
+        let cell = |x: Option<f64>| x.map_or_else(absent, Cell::from);
+        vec![
+            title.into(),
+            predicted.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, 8)),
+            Cell::rounded(radius, 8),
+            cell(self.predicted_limit()),
+            cell(limit),
+        ]
+    }
+}
+
+fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
+    page.title = "Stability".into();
+    let limit = |method: Method| {
+        let limit = record.finding(&format!("stability.{}.limit", method.name())).ok()?;
+        Some((method.title(), seconds(limit.measured, 3)))
+    };
+    let limits: Vec<(&str, String)> = Method::ALL.into_iter().filter_map(limit).collect();
+    let words: Vec<String> = limits.iter().map(|(title, dt)| format!("{title} {dt}")).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    page.answer = match words.as_slice() {
+        [] => "No integrator has a largest stable step at the equilibrium: a mode grows by itself, or in steps of any length."
+            .to_owned(),
+        words => format!("Largest stable steps at the equilibrium: {}.", list(words)),
+    };
+    if let Some((title, dt)) = limits.last() {
+        page.highlights.push(Highlight {
+            value: dt.clone(),
+            text: format!("largest stable step of {title} at the equilibrium"),
+        });
+    }
+    page.paragraph(
+        "Newton’s method searches an equilibrium from the start and from zero; this one is nearer to the start. Inputs are zero, and \
+         derivatives are exact.",
+    );
+    page.table(record.table("equilibrium")?, 6);
+    page.heading("Modes");
+    page.table(record.table("modes")?, 5);
+    page.heading("Steps");
+    page.paragraph(
+        "Predictions follow from the eigenvalues of the linear equations and the polynomials of a step. Measurements are of the \
+         derivative of the step on the equations themselves, at the equilibrium.",
+    );
+    page.table(record.table("steps")?, 6);
+    page.figure(radii(record)?);
+    Ok(())
+}
+
+fn radii(record: &Record) -> Result<Figure, RecordError> {
+    let series = record.series("radius")?;
+    let dt = series.column("dt")?;
+    let axis = Axis::linear("spectral radius").range(0.0, 2.0);
+    let mut panel = Panel::new(Axis::log("time step Δt").unit("s"), axis)
+        .mark(Mark::horizontal(1.0).role(Role::Neutral).dash(Dash::Solid).width(0.8));
+    for method in Method::ALL {
+        let Ok(radius) = series.column(method.name()) else { continue };
+        let shown: Vec<f64> = radius.iter().map(|&r| if r <= 2.0 { r } else { f64::NAN }).collect();
+        panel = panel.mark(Mark::line(dt, shown).role(method_color(method)).label(method.title()));
+    }
+    Ok(Figure::new("system-stability", "Spectral radius of a step against its length")
+        .caption("Above 1 a mode grows from step to step.")
+        .description(
+            "The spectral radius of a step at the equilibrium against Δt, one line a method.",
+        )
+        .panel(panel))
+}

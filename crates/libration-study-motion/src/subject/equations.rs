@@ -1,0 +1,81 @@
+//! Systems by the equations of a file as subjects of studies.
+
+use libration::analysis::jacobian;
+use libration::linear::{Matrix, eigenvalues};
+use libration_settings::equations::EquationSystem;
+use libration_settings::linear_loop::linearised_equations;
+
+use super::{Problem, StudiedState};
+
+/// Part of the fastest rate below which a real part is rounding.
+const ROUNDING: f64 = 1e-9;
+
+impl Problem {
+    /// A system by its equations, from its start and with inputs that are zero.
+    ///
+    /// A turn is 2π over the largest eigenvalue of the equations, linearised at the start and at the equilibrium nearest to it. Where
+    /// all are zero it is the time in which the state changes by its own size, or 1 s.
+    pub fn of_equations(system: &EquationSystem) -> Self {
+        let dynamics = system.equations.dynamics().clone();
+        let start: Vec<f64> = system.q.iter().chain(&system.v).copied().collect();
+        let states = system.states.iter().map(|state| StudiedState {
+            place: state.place,
+            name: state.name.clone(),
+            unit: state.unit.clone(),
+        });
+        let at_start = system.state_matrix(&jacobian(&dynamics, &system.start()));
+        let equilibrium = linearised_equations(system).ok();
+        let fastest = |matrix: &Matrix| {
+            let values = eigenvalues(matrix).unwrap_or_default();
+            values.iter().map(|value| value.norm()).filter(|size| size.is_finite()).reduce(f64::max)
+        };
+        let at_rest = equilibrium.as_ref().and_then(|(plant, _)| fastest(&plant.a));
+        let rate = [fastest(&at_start), at_rest].into_iter().flatten().reduce(f64::max);
+        let rate = rate.filter(|&rate| rate > 0.0).or_else(|| rate_of_motion(system));
+        let turn = rate.map_or(1.0, |rate| std::f64::consts::TAU / rate);
+        let turn = if turn.is_normal() { turn } else { 1.0 };
+        let mut problem =
+            Problem::of_program(&system.name, dynamics, start, turn, states.collect());
+        problem.equilibrium = equilibrium
+            .filter(|(plant, _)| is_undamped(&plant.a))
+            .map(|(_, point)| point.state_of(system))
+            .map(|mut state| {
+                state.truncate(problem.start.len());
+                state
+            });
+        problem
+    }
+}
+
+/// The largest rate of a state, over the largest state; none if nothing moves.
+fn rate_of_motion(system: &EquationSystem) -> Option<f64> {
+    let start = system.start();
+    let degrees = system.equations.degrees().len();
+    let accelerations: Vec<f64> =
+        system.equations.dynamics().accelerations().on::<f64>().run(&start).collect();
+    let rate = |place: usize| match place.checked_sub(degrees) {
+        Some(i) => accelerations[i],
+        None => start[degrees + place],
+    };
+    let largest = |of: &dyn Fn(usize) -> f64| {
+        system.states.iter().map(|state| of(state.place).abs()).fold(0.0, f64::max)
+    };
+    let (rates, sizes) = (largest(&rate), largest(&|place| start[place]));
+    Some(rates / sizes).filter(|rate| rate.is_finite() && *rate > 0.0)
+}
+
+/// Whether all modes about an equilibrium oscillate, and none grows, decays or depends on velocities: there the stability limit of
+/// an integrator is that of the fastest mode.
+fn is_undamped(a: &Matrix) -> bool {
+    let n = a.rows() / 2;
+    let is_mechanical = a.rows().is_multiple_of(2)
+        && (0..n).all(|i| (0..2 * n).all(|j| a[(i, j)] == f64::from(u8::from(j == n + i))));
+    let is_positional = || (n..2 * n).all(|i| (n..2 * n).all(|j| a[(i, j)] == 0.0));
+    let oscillate = || {
+        let values = eigenvalues(a).unwrap_or_default();
+        let fastest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        let is_slow = |x: f64| x.abs() <= ROUNDING * fastest;
+        values.iter().all(|value| is_slow(value.re) && !is_slow(value.im))
+    };
+    n > 0 && is_mechanical && is_positional() && oscillate()
+}
