@@ -8,6 +8,9 @@ mod run_manifest;
 mod series;
 pub mod session;
 mod studies;
+mod system_page;
+mod system_studies;
 mod unjudged_claims;
 
 pub use studies::STUDIES;
+pub use system_studies::{NotApplicable, SystemStudies};

@@ -1,10 +1,12 @@
 //! Results of a run, as in `results.json`.
 
+use libration_analyze::equation_analysis::EquationSummary;
 use libration_report::Record;
 use libration_study::{Config, Machine, UnjudgedClaim};
 use serde::Serialize;
 
 use crate::claims_without_study::ClaimWithoutStudy;
+use crate::system_studies::NotApplicable;
 
 /// Version of the format of `results.json`.
 pub const SCHEMA: &str = "libration.results/1";
@@ -18,6 +20,9 @@ pub struct Results {
     pub machine: Machine,
     /// The configuration of the run.
     pub config: Config,
+    /// The system of equations under study; none without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub system: Option<StudiedSystem>,
     /// Wall-clock time so far in s.
     pub seconds: f64,
     /// Whether all requested studies are included.
@@ -26,6 +31,22 @@ pub struct Results {
     pub claims_without_study: &'static [ClaimWithoutStudy],
     /// Claims that studies try, but that none has judged in this run, and why.
     pub unjudged: Vec<UnjudgedClaim>,
+    /// The studies that do not apply to the system, with reasons.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub not_applicable: Vec<NotApplicable>,
     /// The records of the studies that have ended.
     pub studies: Vec<Record>,
+}
+
+/// A system of equations under study.
+#[derive(Clone, Debug, Serialize)]
+pub struct StudiedSystem {
+    /// Its properties.
+    #[serde(flatten)]
+    pub summary: EquationSummary,
+    /// Its turn in s, of which time steps are fractions.
+    pub turn: f64,
+    /// The command of its studies.
+    #[serde(skip)]
+    pub command: String,
 }

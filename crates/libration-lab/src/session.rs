@@ -14,6 +14,8 @@ use libration_study::StudyError;
 use crate::claims_table;
 use crate::output::{Output, OutputError};
 use crate::results::{Results, SCHEMA};
+use crate::system_page;
+use crate::system_studies::SystemStudies;
 pub use crate::unjudged_claims::unjudged;
 use libration_report::notation::{number, plural, seconds};
 use libration_report::report::Cover;
@@ -80,16 +82,54 @@ pub fn run(
     studies: &[&dyn Study],
     output: &Output,
 ) -> Result<Results, SessionError> {
-    let mut results = Results {
+    let results = Results {
+        claims_without_study: CLAIMS_WITHOUT_STUDY,
+        unjudged: unjudged(lab.config, &[], &[]),
+        ..empty(lab)
+    };
+    run_from(results, lab, studies, output)
+}
+
+/// Does the same with studies of a system of equations, of which the source report claims nothing.
+///
+/// # Errors
+/// See [`SessionError`].
+pub fn run_system(
+    lab: &Lab<'_>,
+    system: &SystemStudies<'_>,
+    studies: &[&dyn Study],
+    output: &Output,
+) -> Result<Results, SessionError> {
+    let results = Results {
+        system: Some(system.studied()),
+        not_applicable: system.not_applicable.clone(),
+        ..empty(lab)
+    };
+    run_from(results, lab, studies, output)
+}
+
+/// The results before any study has ended.
+fn empty(lab: &Lab<'_>) -> Results {
+    Results {
         schema: SCHEMA,
         machine: Machine::detect(),
         config: lab.config.clone(),
+        system: None,
         seconds: 0.0,
         complete: false,
-        claims_without_study: CLAIMS_WITHOUT_STUDY,
-        unjudged: unjudged(lab.config, &[], &[]),
+        claims_without_study: &[],
+        unjudged: Vec::new(),
+        not_applicable: Vec::new(),
         studies: Vec::new(),
-    };
+    }
+}
+
+fn run_from(
+    mut results: Results,
+    lab: &Lab<'_>,
+    studies: &[&dyn Study],
+    output: &Output,
+) -> Result<Results, SessionError> {
     match run_all(lab, studies, output, &mut results) {
         Ok(()) => Ok(results),
         Err(cause) => {
@@ -131,7 +171,9 @@ fn run_all(
         results.studies.push(record);
         results.seconds = started.elapsed().as_secs_f64();
         let ended = &studies[..results.studies.len()];
-        results.unjudged = unjudged(lab.config, ended, &results.studies);
+        if results.system.is_none() {
+            results.unjudged = unjudged(lab.config, ended, &results.studies);
+        }
         results.complete = results.studies.len() == studies.len();
         output.write(
             "report.html",
@@ -147,13 +189,15 @@ fn run_all(
 fn cover(results: &Results, chapters: &[Chapter]) -> Cover {
     let Results { config, machine, .. } = results;
     let (spring, start) = (config.oscillator, config.start);
+    let (subject, command) = match &results.system {
+        Some(system) => (system_page::subject(&system.summary), system.command.as_str()),
+        None => {
+            let [m, k, q, v] = [spring.m, spring.k, start.q, start.v].map(|x| number(x, 6));
+            (format!("Oscillator, m = {m} kg, k = {k} N/m, from ({q}, {v})"), "libration lab")
+        }
+    };
     let setting = format!(
-        "Oscillator, m = {} kg, k = {} N/m, from ({}, {}) · {} · {} · {} · \
-         `libration lab`",
-        number(spring.m, 6),
-        number(spring.k, 6),
-        number(start.q, 6),
-        number(start.v, 6),
+        "{subject} · {} · {} · {} · `{command}`",
         plural(config.integrators.len(), "integrator"),
         machine.cpu,
         seconds(results.seconds, 2),
@@ -167,12 +211,19 @@ fn cover(results: &Results, chapters: &[Chapter]) -> Cover {
         machine.version,
         seconds(results.seconds, 2),
     );
+    let system = results.system.as_ref();
     Cover {
+        headline: system.map(|system| system.summary.name.clone()).unwrap_or_default(),
+        command: command.to_owned(),
         setting,
         machine: host,
         complete: results.complete,
-        score: claims_table::score(results, chapters),
-        ledger: claims_table::render(results, chapters),
+        score: system.map_or_else(|| claims_table::score(results, chapters), |_| String::new()),
+        ledger: match system {
+            Some(system) => system_page::states(system),
+            None => claims_table::render(results, chapters),
+        },
+        scope: system_page::not_applicable(&results.not_applicable),
     }
 }
 

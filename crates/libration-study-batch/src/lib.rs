@@ -12,7 +12,7 @@ mod source_rollouts;
 mod storage;
 mod throughput;
 
-pub use determinism::Determinism;
+pub use determinism::{Determinism, SystemDeterminism};
 pub use memory::Memory;
 pub use rollout::{Rollout, RolloutSettings};
 pub use storage::{Storage, StorageSettings};

@@ -19,6 +19,8 @@ pub struct Config {
     pub simd: Option<InstructionSet>,
     /// Integrators, each once.
     pub integrators: Vec<Method>,
+    /// The name of the system of equations under study, in place of oscillator and start; none without one.
+    pub system: Option<String>,
     /// The simulated oscillator.
     pub oscillator: Spring,
     /// Initial state of trajectories.
@@ -40,6 +42,7 @@ impl Default for Config {
                 Method::VelocityVerlet,
                 Method::Rk4,
             ],
+            system: None,
             oscillator: Spring { m: 1.0, k: 10.0 },
             start: Start { q: 1.0, v: 0.0 },
             settings: AllSettings::default(),
@@ -118,10 +121,20 @@ impl Serialize for Config {
         map.serialize_entry("simd", libration_settings::instruction_set_name(self.simd))?;
         let integrators: Vec<_> = self.integrators.iter().map(|method| method.name()).collect();
         map.serialize_entry("integrators", &integrators)?;
-        map.serialize_entry("oscillator", &self.oscillator)?;
-        map.serialize_entry("start", &self.start)?;
+        match &self.system {
+            Some(system) => map.serialize_entry("system", system)?,
+            None => {
+                map.serialize_entry("oscillator", &self.oscillator)?;
+                map.serialize_entry("start", &self.start)?;
+            }
+        }
         for (name, value) in self.settings.values() {
-            map.serialize_entry(name, &value.map_err(S::Error::custom)?)?;
+            let mut value = value.map_err(S::Error::custom)?;
+            if self.system.is_some() {
+                // The systems of the catalogue that the study would have taken.
+                value.as_object_mut().and_then(|table| table.remove("systems"));
+            }
+            map.serialize_entry(name, &value)?;
         }
         map.end()
     }

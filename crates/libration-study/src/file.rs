@@ -107,6 +107,7 @@ impl TryFrom<File> for Config {
             effort,
             simd: simd(&file.simd)?,
             integrators,
+            system: None,
             oscillator: Spring { m: file.oscillator.m.0, k: file.oscillator.k.0 },
             start: Start { q: file.start.q.0, v: file.start.v.0 },
             settings: AllSettings::default(),

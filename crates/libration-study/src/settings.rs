@@ -94,6 +94,11 @@ impl AllSettings {
         }
     }
 
+    /// Keeps the settings of the studies with these names only.
+    pub fn keep(&mut self, names: &[&str]) {
+        self.0.retain(|settings| names.contains(&settings.name()));
+    }
+
     pub(crate) fn check(&self) -> Result<(), Fault> {
         self.0.iter().try_for_each(|settings| settings.check())
     }

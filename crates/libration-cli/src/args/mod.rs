@@ -60,6 +60,7 @@ Examples:
   libration lab drift --effort quick --open  one study in seconds, opened in the browser
   libration lab --print-config > mine.toml   the configuration, ready to edit
   libration lab --config mine.toml           all studies, with that configuration
+  libration lab --system pendulum.toml       the studies of a system by its equations
   libration simulate --system oscillator --integrator rk4 --dt 0.01 --steps 1000
                                              a trajectory as CSV
   libration analyze --system oscillator --integrator rk4 --dt 0.01
@@ -109,6 +110,18 @@ pub(crate) struct LabArgs {
     /// Configuration file [default: the settings of the report]
     #[arg(long, value_name = "FILE")]
     pub(crate) config: Option<PathBuf>,
+    /// File NAME.toml with the equations of a system: the studies that apply to it, in its names and units
+    #[arg(long, value_name = "FILE", value_parser = equation_file)]
+    pub(crate) system: Option<PathBuf>,
+    /// Parameter of the system of --system; repeatable
+    #[arg(
+        long,
+        value_name = "NAME=VALUE",
+        value_parser = number::assignment,
+        allow_hyphen_values = true,
+        requires = "system"
+    )]
+    pub(crate) set: Vec<(String, f64)>,
     /// Output folder of the report
     #[arg(long, value_name = "DIR", default_value = "libration-report")]
     pub(crate) out: PathBuf,
@@ -122,10 +135,10 @@ pub(crate) struct LabArgs {
     #[arg(long)]
     pub(crate) open: bool,
     /// Print the default configuration with comments, and exit
-    #[arg(long, conflicts_with_all = ["schema", "config", "studies", "effort", "simd", "open"])]
+    #[arg(long, conflicts_with_all = ["schema", "config", "system", "studies", "effort", "simd", "open"])]
     pub(crate) print_config: bool,
     /// Print the JSON schema of the configuration, and exit
-    #[arg(long, conflicts_with_all = ["config", "studies", "effort", "simd", "open"])]
+    #[arg(long, conflicts_with_all = ["config", "system", "studies", "effort", "simd", "open"])]
     pub(crate) schema: bool,
 }
 
@@ -134,6 +147,7 @@ Examples:
   libration lab
   libration lab spectrum drift --out my-report
   libration lab --config mine.toml --effort thorough
+  libration lab --system pendulum.toml --set length=0.5 --effort quick
 
 The output folder contains report.html, results.json, figures/*.svg and data/*.parquet.
 During a run the files are in the subfolder libration-unfinished. At the end they replace the files

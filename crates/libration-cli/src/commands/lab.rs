@@ -5,12 +5,14 @@ use std::path::Path;
 
 use libration_lab::output::{Output, OutputError};
 use libration_lab::results::Results;
-use libration_lab::session::Cause;
-use libration_lab::{STUDIES, session};
+use libration_lab::session::{Cause, SessionError};
+use libration_lab::{NotApplicable, STUDIES, SystemStudies, session};
 use libration_report::record::{Record, Verdict};
 use libration_study::{Config, Lab, Study};
+use libration_study_motion::Problem;
 
 use super::disagreements::check_findings;
+use super::equation_file;
 use crate::args::{LabArgs, simd};
 use crate::error::Failure;
 use crate::progress::Reporter;
@@ -25,8 +27,35 @@ pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
         return Ok(terminal::print(&format!("{:#}\n", STUDIES.schema()))?);
     }
     let config = configure(args)?;
-    let output = Output::open(&args.out).map_err(|error| unwritable(&args.out, &error))?;
-    let results = investigate(&config, &output, &Reporter::new(quiet))?;
+    let reporter = Reporter::new(quiet);
+    let open = || Output::open(&args.out).map_err(|error| unwritable(&args.out, &error));
+    let (results, output) = match &args.system {
+        None => {
+            let output = open()?;
+            let run = |lab: &Lab<'_>| session::run(lab, &chosen(&config), &output);
+            (investigate(&config, &reporter, run)?, output)
+        }
+        Some(file) => {
+            let system = equation_file::read(file, &args.set)?;
+            let problem = Problem::of_equations(&system);
+            let all = SystemStudies::new(&system, &problem).with_command(command(file, &args.set));
+            let studies = all.named(&config.studies).map_err(|left_out| {
+                let NotApplicable { study, because } = left_out;
+                Failure::usage(format!(
+                    "the study `{study}` does not apply to `{}`: {because}",
+                    file.display()
+                ))
+            })?;
+            let names = studies.iter().map(|study| study.name().to_owned()).collect();
+            let has_settings = studies.iter().filter(|study| study.settings().is_some());
+            let with_settings: Vec<&str> = has_settings.map(|study| study.name()).collect();
+            let mut config = Config { system: Some(system.name.clone()), studies: names, ..config };
+            config.settings.keep(&with_settings);
+            let output = open()?;
+            let run = |lab: &Lab<'_>| session::run_system(lab, &all, &studies, &output);
+            (investigate(&config, &reporter, run)?, output)
+        }
+    };
     let report = output.path("report.html");
     if !quiet {
         terminal::print(&summary(&results, &report))?;
@@ -35,6 +64,14 @@ pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
         show(&report);
     }
     check_findings(&results.studies)
+}
+
+/// The command of the studies of a system.
+fn command(file: &Path, set: &[(String, f64)]) -> String {
+    let file = file.to_string_lossy();
+    let file = shlex::try_quote(&file).unwrap_or_default();
+    let set: String = set.iter().map(|(name, value)| format!(" --set {name}={value:?}")).collect();
+    format!("libration lab --system {file}{set}")
 }
 
 /// Opens the report in the browser. A failure is only a warning.
@@ -86,10 +123,13 @@ fn chosen(config: &Config) -> Vec<&'static dyn Study> {
     config.studies.iter().filter_map(|name| STUDIES.by_name(name)).collect()
 }
 
-fn investigate(config: &Config, output: &Output, reporter: &Reporter) -> Result<Results, Failure> {
+fn investigate(
+    config: &Config,
+    reporter: &Reporter,
+    run: impl FnOnce(&Lab<'_>) -> Result<Results, SessionError>,
+) -> Result<Results, Failure> {
     let stop = interrupt::listen();
-    let lab = Lab::new(config, config.effort, reporter, stop);
-    let results = session::run(&lab, &chosen(config), output);
+    let results = run(&Lab::new(config, config.effort, reporter, stop));
     reporter.clear();
     results.map_err(|error| match *error.cause {
         Cause::Interrupted => Failure::Interrupted(error.to_string()),
@@ -142,10 +182,12 @@ mod tests {
             schema: libration_lab::results::SCHEMA,
             machine: Machine::detect(),
             config: STUDIES.config(),
+            system: None,
             seconds: 13.0,
             complete: true,
             claims_without_study: &[],
             unjudged: Vec::new(),
+            not_applicable: Vec::new(),
             studies: vec![first, second],
         }
     }

@@ -37,5 +37,6 @@ mod rollout;
 mod simulate;
 mod stability;
 mod steps;
+mod system_lab;
 mod timing;
 mod verify;

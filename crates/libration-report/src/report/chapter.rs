@@ -7,7 +7,7 @@ use crate::record::{Cell, Finding, Quantity, Table, Verdict};
 use crate::text::{escape, plain, render_html};
 
 /// Renders a chapter: question, evidence and all findings.
-pub(super) fn render(chapter: &Chapter) -> String {
+pub(super) fn render(chapter: &Chapter, command: &str) -> String {
     let (record, page) = (&chapter.record, &chapter.page);
     let name = escape(&record.name);
     let blocks: String = page.blocks.iter().map(block).collect();
@@ -23,8 +23,9 @@ pub(super) fn render(chapter: &Chapter) -> String {
     };
     format!(
         "<section>\n<h2 id=\"{name}\">{title}</h2>\n<p class=\"q\">{question}</p>\n{blocks}\
-         {findings}<p class=\"sub\">Recompute this chapter alone: <code>libration lab \
+         {findings}<p class=\"sub\">Recompute this chapter alone: <code>{command} \
          {name}</code>{shown}</p>\n</section>\n",
+        command = escape(command),
         title = render_html(&page.title),
         question = render_html(&record.question),
         findings = findings(&record.findings),

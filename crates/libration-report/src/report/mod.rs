@@ -12,6 +12,10 @@ const SCRIPT: &str = include_str!("../../assets/report.js");
 /// The parts of a report around its chapters.
 #[derive(Clone, Debug)]
 pub struct Cover {
+    /// The headline; that of a chapter if it is empty.
+    pub headline: String,
+    /// The command of the run, without names of studies.
+    pub command: String,
     /// The run, in a line of text.
     pub setting: String,
     /// The machine, in a line of text.
@@ -22,20 +26,31 @@ pub struct Cover {
     pub score: String,
     /// HTML of a section between answers and chapters; empty if there is none.
     pub ledger: String,
+    /// HTML of a section with the heading [`SCOPE_ID`] after the chapters; empty if there is none.
+    pub scope: String,
 }
+
+/// The identifier of the section of studies that were left out.
+pub const SCOPE_ID: &str = "scope";
 
 /// Renders the report: the cover and the chapters.
 pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
-    let headline = headline(chapters);
+    let headline = match cover.headline.as_str() {
+        "" => headline(chapters),
+        own => own.to_owned(),
+    };
     let mut links = String::from("<a href=\"#top\">The answer</a>");
-    if !cover.ledger.is_empty() {
+    if !cover.score.is_empty() {
         links += "<a href=\"#ledger\">Claims</a>";
     }
     let mut body = String::new();
     for chapter in chapters {
         let (name, title) = (escape(&chapter.record.name), render_html(&chapter.page.title));
         links += &format!("<a href=\"#{name}\">{title}</a>");
-        body += &chapter::render(chapter);
+        body += &chapter::render(chapter, &cover.command);
+    }
+    if !cover.scope.is_empty() {
+        links += &format!("<a href=\"#{SCOPE_ID}\">Other studies</a>");
     }
     links += "<a href=\"#machine\">This machine</a>";
     format!(
@@ -44,7 +59,7 @@ pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
          <title>{name}</title>\n<style>{STYLE}</style></head><body>\n\
          <nav aria-label=\"Chapters\"><b>Libration</b>{links}</nav>\n<main id=\"top\">\n\
          <h1>{title}</h1>\n<p class=\"sub\">{setting}</p>\n{alarm}{score}{answers}{numbers}{ledger}{body}\
-         {machine}</main>\n{scripts}<script>{SCRIPT}</script>\n</body></html>\n",
+         {scope}{machine}</main>\n{scripts}<script>{SCRIPT}</script>\n</body></html>\n",
         name = escape(&plain(&headline)),
         title = render_html(&headline),
         setting = render_html(&cover.setting),
@@ -53,6 +68,7 @@ pub fn render(cover: &Cover, chapters: &[Chapter]) -> String {
         answers = answers(chapters),
         numbers = numbers(chapters),
         ledger = cover.ledger,
+        scope = cover.scope,
         machine = machine(cover),
         scripts = figure::scripts(),
     )

@@ -11,7 +11,7 @@ use super::runs::{COUNT, DT, SPRING, differing, run_perturbed, run_plain, start,
 use crate::bit_comparison::add_row;
 
 /// Threads that are tried.
-const THREADS: [usize; 4] = [1, 2, 3, 4];
+pub(super) const THREADS: [usize; 4] = [1, 2, 3, 4];
 
 /// Compares runs that must be the same.
 pub(super) fn measure(lab: &Lab<'_>, record: &mut Record) -> Result<(), StudyError> {

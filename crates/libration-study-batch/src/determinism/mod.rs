@@ -6,6 +6,7 @@ mod render;
 mod runs;
 mod sensitivity;
 mod source_claims;
+mod system;
 
 use libration_report::Record;
 use libration_report::page::Page;
@@ -13,6 +14,7 @@ use libration_report::record::RecordError;
 use libration_study::{Lab, SourceClaim, Study, StudyError};
 
 use self::source_claims::SOURCE_CLAIMS;
+pub use self::system::SystemDeterminism;
 use crate::bit_comparison;
 
 /// The study `determinism`.

@@ -29,6 +29,9 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
          number of steps is proportional to 1/Δt.",
     );
     for (name, title) in &systems {
+        if let Some(text) = derived_orders(record, name, title) {
+            page.paragraph(text);
+        }
         if let Ok(table) = record.table(&table_name(name)) {
             page.heading(format!("States of {title}"));
             page.paragraph(
@@ -60,6 +63,24 @@ pub(super) fn render(record: &Record, page: &mut Page) -> Result<(), RecordError
         page.table(words, 3);
     }
     Ok(())
+}
+
+/// The orders that methods lose or win on a system, in a sentence.
+fn derived_orders(record: &Record, name: &str, title: &str) -> Option<String> {
+    let other = |method: Method| {
+        let id = format!("convergence.{name}.{}.global-order", method.name());
+        let order = record.finding(&id).ok()?.predicted?;
+        (order != f64::from(method.order()))
+            .then(|| format!("{} {}", method.title(), number(order, 1)))
+    };
+    let others: Vec<String> = Method::ALL.into_iter().filter_map(other).collect();
+    (!others.is_empty()).then(|| {
+        format!(
+            "Accelerations of {title} depend on velocities. A kick takes them at a velocity from before it, so that methods of kicks \
+             and drifts have another order, predicted from one step in 1024 bits: {}.",
+            others.join(", ")
+        )
+    })
 }
 
 /// The systems studied: name and title.
@@ -128,7 +149,13 @@ fn errors(
     .aspect(if systems.len() > 1 { 1.25 } else { 1.75 });
     for (name, title) in systems {
         let series = record.series(&format!("{kind}-{name}"))?;
-        figure = figure.panel(panel(series, title, kind == "local")?);
+        let order = |method: Method| {
+            let id = format!("convergence.{name}.{}.{kind}-order", method.name());
+            let predicted = record.finding(&id).ok().and_then(|f| f.predicted);
+            // Whole numbers.
+            predicted.map(|order| order as i32)
+        };
+        figure = figure.panel(panel(series, title, order)?);
     }
     Ok(figure)
 }
@@ -148,26 +175,32 @@ fn slopes(record: &Record, systems: &[(String, String)], kind: &str, rise: &str)
     }
 }
 
-fn panel(series: &Series, title: &str, local: bool) -> Result<Panel, RecordError> {
+/// The errors of all methods, with guides where an order is predicted.
+fn panel(
+    series: &Series,
+    title: &str,
+    order: impl Fn(Method) -> Option<i32>,
+) -> Result<Panel, RecordError> {
     let dt = series.column("dt")?;
     let mut panel =
         Panel::new(Axis::log("time step Δt").unit("s"), Axis::log("error")).title(title);
     for method in Method::ALL {
         let Ok(errors) = series.column(&format!("{} together", method.name())) else { continue };
-        let order = method.order() + u32::from(local);
-        let guide = guide(dt, errors, order);
-        panel = panel
-            .mark(Mark::line(dt, guide).role(Role::Theory).dash(Dash::Solid).width(0.8))
-            .mark(Mark::line(dt, errors).role(method_color(method)).label(method.title()));
+        if let Some(order) = order(method) {
+            let guide = guide(dt, errors, order);
+            panel =
+                panel.mark(Mark::line(dt, guide).role(Role::Theory).dash(Dash::Solid).width(0.8));
+        }
+        panel = panel.mark(Mark::line(dt, errors).role(method_color(method)).label(method.title()));
     }
     Ok(panel)
 }
 
 /// The power `order` of the step through the last error.
-fn guide(dt: &[f64], errors: &[f64], order: u32) -> Vec<f64> {
+fn guide(dt: &[f64], errors: &[f64], order: i32) -> Vec<f64> {
     let last = dt.iter().zip(errors).rfind(|(_, e)| e.is_finite());
     let Some((&at, &error)) = last else { return vec![f64::NAN; dt.len()] };
-    let law = |&h: &f64| error * (h / at).powi(order as i32);
+    let law = |&h: &f64| error * (h / at).powi(order);
     dt.iter().zip(errors).map(|(h, e)| if e.is_finite() { law(h) } else { f64::NAN }).collect()
 }
 

@@ -73,7 +73,11 @@ pub(super) fn step_of_portraits(record: &Record, systems: &[(String, String)]) -
         }
     };
     let mut words = step.to_owned();
-    if shown(Method::VelocityVerlet) {
+    let keeps_areas = |(name, _): &(String, String)| {
+        let id = format!("nonlinear.{name}.{}.symplecticity", Method::VelocityVerlet.name());
+        record.finding(&id).is_ok_and(|f| f.agrees() && f.predicted == Some(0.0))
+    };
+    if shown(Method::VelocityVerlet) && systems.iter().all(keeps_areas) {
         words += " Verlet preserves areas of phase space: its orbit may rotate or scatter, but does \
                   not spiral.";
     }

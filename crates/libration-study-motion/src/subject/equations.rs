@@ -79,3 +79,77 @@ fn is_undamped(a: &Matrix) -> bool {
     };
     n > 0 && is_mechanical && is_positional() && oscillate()
 }
+
+#[cfg(test)]
+mod tests {
+    use libration::Method;
+
+    use super::*;
+
+    fn problem(system: &str) -> Problem {
+        let text = format!("[system]\nname = \"own\"\n{system}\n");
+        Problem::of_equations(&EquationSystem::parse(&text, "own.toml", &[]).unwrap())
+    }
+
+    fn names(problem: &Problem) -> Vec<&str> {
+        problem.states().iter().map(|state| state.name.as_str()).collect()
+    }
+
+    #[test]
+    fn a_turn_is_that_of_the_fastest_mode_at_the_start_or_at_the_equilibrium() {
+        // Eigenvalues ±3i at the equilibrium; at the start, where the spring stiffens, ±√(9 + 3·4)·i.
+        let own =
+            problem("coordinates = [\"x\"]\nacceleration.x = \"-9*x - x^3\"\nstart = { x = 2 }");
+        assert!((own.turn() - std::f64::consts::TAU / 21_f64.sqrt()).abs() < 1e-12);
+        assert!((own.frequency().unwrap() - 3.0).abs() < 1e-12);
+        // Nothing is linear in a free fall: the state of 2 changes at a rate of 10.
+        let fall = problem("coordinates = [\"x\"]\nacceleration.x = \"-10\"\nstart = { x = 2 }");
+        assert!((fall.turn() - std::f64::consts::TAU / 5.0).abs() < 1e-12);
+        assert_eq!(fall.frequency(), None);
+    }
+
+    #[test]
+    fn time_and_the_integral_of_a_state_of_first_order_are_no_states_under_study() {
+        let own =
+            problem("coordinates = [\"x\"]\nacceleration.x = \"-x + i + cos(t)\"\nrate.i = \"-i\"");
+        assert_eq!(names(&own), ["x", "x'", "i"]);
+        let law = own.law();
+        assert!(law.velocity_dependent && !law.has_potential);
+    }
+
+    #[test]
+    fn friction_leaves_no_small_orbits_and_lowers_the_order_of_kicks() {
+        let own =
+            problem("coordinates = [\"x\"]\nacceleration.x = \"-x - 0.1*x'\"\nstart = { x = 1 }");
+        assert_eq!(own.frequency(), None);
+        assert_eq!(own.derived_order(Method::VelocityVerlet), Some(1));
+        assert_eq!(own.derived_order(Method::Rk4), Some(4));
+    }
+
+    #[test]
+    fn masses_that_differ_leave_the_form_of_positions_and_velocities() {
+        let chain = |mass: f64| {
+            problem(&format!(
+                "coordinates = [\"x\", \"y\"]\nparameters = {{ m = {mass} }}\n\
+                 acceleration.x = \"y - 2*x\"\nacceleration.y = \"(x - 2*y)/m\"\nstart = {{ x = 1 }}"
+            ))
+        };
+        assert!(chain(1.0).law().has_potential);
+        assert!(!chain(2.0).law().has_potential);
+    }
+
+    #[test]
+    fn an_orbit_in_one_degree_of_freedom_closes_if_it_comes_back() {
+        let own = |force: &str, v: f64| {
+            problem(&format!(
+                "coordinates = [\"x\"]\nacceleration.x = \"{force}\"\nstart = {{ x = 0.5, \"x'\" = {v} }}"
+            ))
+        };
+        assert!(own("-sin(x)", 1.0).closes());
+        // Over the top it turns for ever, and a throw falls.
+        assert!(!own("-sin(x)", 3.0).closes());
+        assert!(!own("-10", 5.0).closes());
+        // Beyond the barrier at 1 nothing comes back.
+        assert!(!own("-x + x^3", 1.0).closes());
+    }
+}

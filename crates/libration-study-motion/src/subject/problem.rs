@@ -178,3 +178,46 @@ fn subscript(n: usize) -> String {
     };
     n.to_string().chars().map(below).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use libration::simulation::Simulator;
+    use libration::system::{Kepler, Pendulum};
+
+    use super::*;
+
+    /// Whether a run has the bits of the compiled system, on numbers of type `S`.
+    fn has_bits_of_compiled<S: Float, const D: usize>(
+        problem: &Problem,
+        model: impl Model<D>,
+        start: State<f64, D>,
+        method: Method,
+    ) -> bool {
+        let (start, dt) = (start.map(S::from_f64), problem.step::<S>(64));
+        let mut compiled = Simulator::new(model.on::<S>(), method, start, dt).unwrap();
+        compiled.run(100, &mut ()).unwrap();
+        let start: Vec<S> = start.coordinates().collect();
+        let end = problem.run(method, &start, dt, 100, &mut |_, _| {}).unwrap();
+        end.into_iter().eq(compiled.sample().state.coordinates())
+    }
+
+    #[test]
+    fn a_program_has_the_bits_of_the_compiled_system_in_every_float_type() {
+        let (pendulum, swing) = (Pendulum { omega2: 9.81 }, State { q: [2.0], v: [0.3] });
+        let (kepler, perihelion) = (Kepler { mu: 1.1 }, State { q: [0.4, 0.0], v: [0.1, 2.0] });
+        let first = Problem::new("pendulum", pendulum, swing, 2.0);
+        let second = Problem::new("kepler", kepler, perihelion, 6.3);
+        for method in Method::ALL {
+            assert!(has_bits_of_compiled::<f64, 1>(&first, pendulum, swing, method), "{method:?}");
+            assert!(has_bits_of_compiled::<f32, 1>(&first, pendulum, swing, method), "{method:?}");
+            assert!(has_bits_of_compiled::<TwoFloat, 1>(&first, pendulum, swing, method));
+            assert!(has_bits_of_compiled::<f64, 2>(&second, kepler, perihelion, method));
+            assert!(has_bits_of_compiled::<TwoFloat, 2>(&second, kepler, perihelion, method));
+        }
+    }
+
+    #[test]
+    fn the_index_of_a_coordinate_is_below_the_line() {
+        assert_eq!(subscript(0) + &subscript(27), "₀₂₇");
+    }
+}

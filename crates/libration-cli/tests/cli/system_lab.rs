@@ -1,0 +1,127 @@
+//! `lab --system`, through the binary.
+
+use std::fs;
+use std::path::Path;
+
+use predicates::prelude::*;
+use predicates::str::contains;
+use serde_json::Value;
+
+use super::advise::libration;
+use super::linear::written;
+
+/// Runs studies of a file, and returns the page and the results.
+fn report(file: &str, words: &[&str]) -> (String, Value) {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let all = [&["--quiet", "lab", "--system", file, "--effort", "quick", "--out", out], words];
+    libration(&all.concat()).success();
+    let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    let results = fs::read(folder.path().join("results.json")).unwrap();
+    (page, serde_json::from_slice(&results).unwrap())
+}
+
+fn example(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/systems").join(name);
+    path.to_string_lossy().into_owned()
+}
+
+/// What a page about a system of equations never has: the oscillator of the configuration, systems of the catalogue, and claims.
+const FOREIGN: [&str; 8] = [
+    "Oscillator, m",
+    "k = 10",
+    "Hénon",
+    "Kepler",
+    "Duffing",
+    "source report",
+    "table of claims",
+    "#ledger",
+];
+
+fn has_only_its_own(page: &str, states: &[&str]) {
+    // The scripts of the figures know words of their own.
+    let text = page.split("<script").next().unwrap();
+    for word in FOREIGN {
+        assert!(!text.contains(word), "{word}");
+    }
+    for state in states {
+        assert!(text.contains(&format!("<td>{state}</td>")), "{state}");
+    }
+}
+
+fn not_applicable<'a>(results: &'a Value, study: &str) -> Option<&'a str> {
+    let all = results["not_applicable"].as_array().unwrap();
+    all.iter().find(|other| other["study"] == study)?["because"].as_str()
+}
+
+#[test]
+fn the_report_on_a_system_has_its_own_states_and_every_study_or_the_reason() {
+    let (page, results) = report(&example("van_der_pol.toml"), &["--set", "mu=0.8"]);
+    has_only_its_own(&page, &["x", "x'"]);
+    assert!(page.contains("--set mu=0.8"));
+    let studies = results["studies"].as_array().unwrap();
+    let ran: Vec<&str> = studies.iter().map(|study| study["name"].as_str().unwrap()).collect();
+    assert_eq!(ran, ["determinism", "precision", "convergence", "stability"]);
+    for study in libration_lab::STUDIES.studies {
+        let name = study.name();
+        assert_eq!(ran.contains(&name), not_applicable(&results, name).is_none(), "{name}");
+    }
+    assert_eq!(not_applicable(&results, "nonlinear"), Some("the file has no `energy`"));
+    assert!(not_applicable(&results, "latency").unwrap().contains("libration advise --plant"));
+    for key in ["oscillator", "start", "drift"] {
+        assert!(results["config"].get(key).is_none(), "{key}");
+    }
+    assert_eq!(results["config"]["system"], "Van der Pol");
+    assert_eq!(results["system"]["parameters"][0]["value"], 0.8);
+    // A state that is not there would not have been found.
+    let orders = studies.iter().flat_map(|study| study["findings"].as_array().unwrap());
+    let verlet = "convergence.Van-der-Pol.velocity-verlet.global-order";
+    let order = orders.clone().find(|finding| finding["id"] == verlet).unwrap();
+    assert_eq!(order["predicted"], 1.0);
+}
+
+#[test]
+fn the_energy_of_a_system_is_studied_if_its_motion_conserves_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = |friction: f64| {
+        format!(
+            "[system]\nname = \"swing\"\ncoordinates = [\"tilt\"]\nparameters = {{ g = 9.81, friction = {friction} }}\n\
+             acceleration.tilt = \"-g*sin(tilt) - friction*tilt'\"\n\
+             energy = \"tilt'^2/2 + g*(1 - cos(tilt))\"\nstart = {{ tilt = 1.5 }}\nunits = {{ tilt = \"rad\" }}\n"
+        )
+    };
+    let free = written(&folder, "free.toml", &text(0.0));
+    let (page, results) = report(free.to_str().unwrap(), &["nonlinear"]);
+    has_only_its_own(&page, &["tilt", "tilt'"]);
+    assert!(!page.split("<script").next().unwrap().contains("scillator"));
+    let findings = results["studies"][0]["findings"].as_array().unwrap();
+    let of = |id: &str| findings.iter().find(|finding| finding["id"] == id).unwrap();
+    assert_eq!(of("nonlinear.swing.rk4.rate-order")["predicted"], 5.0);
+    assert_eq!(of("nonlinear.swing.velocity-verlet.symplecticity")["predicted"], 0.0);
+    let damped = written(&folder, "damped.toml", &text(0.1));
+    libration(&["lab", "nonlinear", "--system", damped.to_str().unwrap()])
+        .code(2)
+        .stderr(contains("`nonlinear` does not apply").and(contains("does not conserve")));
+}
+
+#[test]
+fn wrong_systems_of_the_laboratory_are_shown_at_the_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[system]\nname = \"a\"\ncoordinates = [\"x\"]\nacceleration.x = \"-sin(y)\"\n";
+    let wrong = written(&folder, "wrong.toml", text);
+    libration(&["lab", "--system", wrong.to_str().unwrap()])
+        .code(2)
+        .stdout("")
+        .stderr(contains("unknown name `y`").and(contains("wrong.toml:4:24")).and(contains("^")));
+    let lorenz = example("lorenz.toml");
+    let cases: &[(&[&str], &str)] = &[
+        (&["lab", "latency", "--system", &lorenz], "libration advise --plant"),
+        (&["lab", "--system", &lorenz, "--set", "rh=28"], "unknown parameter `rh`"),
+        (&["lab", "--system", "pendulum"], "expected a file of equations"),
+        (&["lab", "--set", "rho=28"], "--system"),
+        (&["lab", "--system", "nowhere.toml"], "cannot read `nowhere.toml` (--system)"),
+    ];
+    for (words, message) in cases {
+        libration(words).code(2).stdout("").stderr(contains(*message));
+    }
+}
