@@ -178,6 +178,9 @@ fn keeps_energy(system: &EquationSystem, problem: &Problem) -> Result<(), String
 }
 
 fn stays_finite(problem: &Problem) -> Result<(), String> {
+    if problem.rests_at_start() {
+        return Err("nothing moves from the start, which is an equilibrium".to_owned());
+    }
     match problem.reference_error().is_nan() {
         true => Err("the motion from the start does not stay finite for three quarters of a turn"
             .to_owned()),

@@ -64,7 +64,13 @@ impl Fit {
         (2.0 * self.standard_error + self.bend).min(WIDEST)
     }
 
-    /// Returns the tolerance of an order on a system of which nothing is known beforehand.
+    /// Whether the exponent is known well enough to tell whole orders apart.
+    pub fn tells_orders_apart(&self) -> bool {
+        self.uncertainty() < WIDEST
+    }
+
+    /// Returns the tolerance of an order on a system of which nothing is known beforehand, if the exponent
+    /// [tells orders apart](Self::tells_orders_apart).
     pub fn order_tolerance() -> Tolerance {
         Tolerance::absolute(
             WIDEST,

@@ -152,8 +152,9 @@ fn orders(
     record.tables.push(table);
     let per_subject = found.chunks(lab.config.integrators.len().max(1));
     for (subject, errors) in subjects.iter().zip(per_subject) {
-        let smallest = errors.iter().flat_map(|[global, _]| &global.together);
-        record.find(reference(subject, smallest.copied().fold(f64::INFINITY, f64::min)));
+        let all = errors.iter().flat_map(|[global, _]| &global.together).copied();
+        let resolved = all.filter(|&error| error > subject.rounding());
+        record.find(reference(subject, resolved.fold(f64::INFINITY, f64::min)));
         for (kind, name) in [(0, "global"), (1, "local")] {
             let errors = errors.iter().map(|both| &both[kind]);
             let methods = lab.config.integrators.iter().copied().zip(errors);
@@ -205,7 +206,7 @@ impl Case<'_> {
                 true => Relation::AtLeast,
                 false => Relation::Equal,
             };
-            record.find(match order {
+            record.find(match order.filter(|_| self.can_judge(fit)) {
                 Some(order) => {
                     let tolerance = self.tolerance(fit);
                     Finding::related(id, text, "1", relation, order, fit.exponent, tolerance)
@@ -220,6 +221,12 @@ impl Case<'_> {
     fn fit(&self, errors: &Errors, errors_of: &[f64]) -> Option<Fit> {
         let is_resolved = errors_of.last().is_none_or(|&last| last > self.subject.rounding());
         Fit::new(&errors.dt, errors_of).filter(|_| is_resolved)
+    }
+
+    /// Whether an exponent can be judged: the errors of a system of the user’s own, or of one of its states, may settle at
+    /// steps that are smaller than all that are tried.
+    fn can_judge(&self, fit: Fit) -> bool {
+        !self.is_own || fit.tells_orders_apart()
     }
 
     /// The tolerance of an order.

@@ -49,7 +49,7 @@ impl Case<'_> {
             system.title(),
             state.name
         );
-        record.find(match self.order.map(f64::from) {
+        record.find(match self.order.map(f64::from).filter(|_| self.can_judge(fit)) {
             Some(order) => {
                 let (relation, tolerance) = (Relation::AtLeast, self.tolerance(fit));
                 Finding::related(id, text, "1", relation, order, fit.exponent, tolerance)

@@ -97,7 +97,8 @@ fn finding(case: &Case<'_>, grown: &Grown) -> Option<Finding> {
     if !exponent.is_finite() {
         return None;
     }
-    if case.law.velocity_dependent {
+    // Theory is about motion in a bounded part of space.
+    if case.law.velocity_dependent || !case.is_bounded {
         return Some(Finding::measured(id, text, "1", exponent));
     }
     if case.is_symplectic() {

@@ -17,6 +17,9 @@ use libration_study::{Lab, Study, StudyError};
 
 use crate::method_color::method_color;
 
+/// The name of an empty table that says that the equations have kinks or jumps.
+const KINKS: &str = "kinks";
+
 /// Steps a turn of the table of multipliers.
 const STEPS_A_TURN: f64 = 64.0;
 
@@ -65,6 +68,9 @@ impl Study for SystemStability<'_> {
         let at = point.state_of(self.system);
         record.tables.push(equilibrium(self.system, &at));
         record.tables.push(modes(&linear.modes));
+        if !self.system.equations.dynamics().accelerations().is_smooth() {
+            record.tables.push(Table::new(KINKS, &[]));
+        }
         let methods = &lab.config.integrators;
         let steps: Vec<OwnStep<'_>> =
             methods.iter().map(|&method| OwnStep::new(self.system, method, &at, &linear)).collect();
@@ -253,6 +259,12 @@ fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
          derivatives are exact.",
     );
     page.table(record.table("equilibrium")?, 6);
+    if record.table(KINKS).is_ok() {
+        page.note(
+            "The equations have kinks or jumps. Modes and stable steps are those of the derivatives at the equilibrium, which say \
+             nothing of motion beyond a kink.",
+        );
+    }
     page.heading("Modes");
     page.table(record.table("modes")?, 5);
     page.heading("Steps");

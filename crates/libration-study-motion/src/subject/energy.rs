@@ -19,6 +19,9 @@ fn turns(method: Method) -> u64 {
 /// is far below its errors.
 const FIRST_ORDER: u64 = 64;
 
+/// Changes below these are rounding of many thousands of steps: in double-double, and in `f64`.
+const ROUNDING: [f64; 2] = [1e-24, 1e-11];
+
 /// Samples of a running maximum for each decade of steps.
 const PER_DECADE: f64 = 16.0;
 
@@ -69,6 +72,8 @@ pub(super) fn changes(
         changes.dt.push(problem.step(steps));
         changes.size.push(match size {
             Err(SimulationError::NotFinite { .. }) => f64::NAN,
+            // Rounding of a run is no change.
+            Ok(size) if size < ROUNDING[usize::from(first)] => 0.0,
             other => other?,
         });
         if Fit::is_settled(&changes.dt, &changes.size) {
@@ -183,6 +188,25 @@ pub(super) fn change_of_flow(problem: &Problem) -> Option<f64> {
     let mut drift = Drift::new(problem, &states[0]);
     let changes = states.iter().map(|state| drift.of(state).abs());
     Some(changes.fold(0.0, |most, x| if x > most || x.is_nan() { x } else { most }))
+}
+
+/// Turns of the search for a bound.
+const BOUND_TURNS: u64 = 64;
+
+/// Whether no position in the second half of some turns is more than twice as far from the start as in the first half.
+pub(super) fn is_bounded(problem: &Problem) -> bool {
+    let (start, degrees) = (&problem.start, problem.degrees());
+    let (dt, steps) = (problem.step(RETURN_STEPS), BOUND_TURNS * RETURN_STEPS);
+    let places: Vec<usize> =
+        problem.states.iter().map(|state| state.place).filter(|&place| place < degrees).collect();
+    let mut furthest = [0.0_f64; 2];
+    let mut watch = |step: u64, state: &[f64]| {
+        let off = places.iter().map(|&i| (state[i] - start[i]).abs()).fold(0.0, f64::max);
+        let half = &mut furthest[usize::from(2 * step > steps)];
+        *half = half.max(off);
+    };
+    let is_finite = problem.run(Method::Rk4, start, dt, steps, &mut watch).is_ok();
+    is_finite && furthest[1] < 2.0 * furthest[0]
 }
 
 /// Turns within which an orbit in one degree of freedom is expected back.

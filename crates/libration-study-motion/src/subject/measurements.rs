@@ -155,6 +155,17 @@ impl Problem {
         &self.states
     }
 
+    /// Whether the orbit stays in a bounded part of space, as far as some turns show.
+    pub fn is_bounded(&self) -> bool {
+        energy::is_bounded(self)
+    }
+
+    /// Whether no state under study changes at the start.
+    pub fn rests_at_start(&self) -> bool {
+        let rates = flow::Rates::new(&self.dynamics).at(&self.start);
+        self.states.iter().all(|state| rates[state.place] == 0.0)
+    }
+
     /// The highest angular frequency of small oscillations about the equilibrium, in rad/s.
     pub fn frequency(&self) -> Option<f64> {
         stability::frequency(self)
@@ -178,6 +189,11 @@ impl Problem {
     /// If no time step or start is possible.
     pub fn portrait(&self, method: Method, dt: f64, steps: u64) -> Result<Portrait, StudyError> {
         portrait::trace(self, method, dt, steps)
+    }
+
+    /// The operations of the Jacobian of a step.
+    pub fn symmetry_operations(&self, method: Method) -> usize {
+        self.start.len() * self.step_program(method).program().operations()
     }
 
     /// The defects of one step at `steps` steps a turn, the root of their mean square along the
