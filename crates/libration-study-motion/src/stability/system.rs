@@ -29,8 +29,11 @@ const GROWTH: f64 = 1e-6;
 /// Points of a curve.
 const POINTS: usize = 160;
 
-/// Halvings of the interval in which the largest stable step is searched: to 10⁻¹² of it.
-const HALVINGS: usize = 40;
+/// Steps from a half to one and a half times the predicted limit that are tried for the first at which a mode grows.
+const TRIED: usize = 256;
+
+/// Halvings of the interval in which the limit is searched: to 10⁻¹² of it.
+const HALVINGS: usize = 32;
 
 /// The study `stability` of a system of equations at its equilibrium.
 #[derive(Clone, Copy, Debug)]
@@ -180,13 +183,13 @@ impl<'a> OwnStep<'a> {
     fn measured_limit(&self) -> Option<f64> {
         let predicted = self.predicted_limit()?;
         let is_stable = |dt: f64| self.radius(dt) <= 1.0 + GROWTH;
-        let (mut low, mut high) = (0.5 * predicted, 1.5 * predicted);
-        if !is_stable(low) {
-            return Some(0.0);
-        }
-        if is_stable(high) {
+        // Beyond the limit a step may be stable again.
+        let tried = |i: usize| predicted * (0.5 + i as f64 / TRIED as f64);
+        let Some(first) = (0..=TRIED).find(|&i| !is_stable(tried(i))) else {
             return Some(f64::INFINITY);
-        }
+        };
+        let Some(before) = first.checked_sub(1) else { return Some(0.0) };
+        let (mut low, mut high) = (tried(before), tried(first));
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
             if is_stable(middle) { low = middle } else { high = middle }

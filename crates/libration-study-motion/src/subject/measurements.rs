@@ -16,6 +16,10 @@ use super::{
 /// Part of the largest slope by which symmetric ones may differ: rounding of expressions that are equal in exact arithmetic.
 const ASYMMETRY: f64 = 1e-9;
 
+/// Steps a turn at which an order is derived: so small that a leading term with a small factor shows, and so large that the rounding of
+/// the weights of a method to `f64` does not.
+const ORDER_STEPS: u64 = 256;
+
 /// Part of the size of an orbit below which an error against the reference is its rounding.
 const RESOLVED: f64 = 1e-25;
 
@@ -114,7 +118,7 @@ impl Problem {
         let mut start = self.start.clone();
         start.resize(start.len() + self.dynamics.inputs(), 0.0);
         let places: Vec<usize> = self.states.iter().map(|state| state.place).collect();
-        step_order(self.step_program(method), &start, &places, self.step(Halvings::SAMPLES))
+        step_order(self.step_program(method), &start, &places, self.step(ORDER_STEPS))
     }
 
     /// Errors below this are rounding of the reference, which is known to some 10⁻²⁸ of its size.
