@@ -26,7 +26,7 @@ pub use equations::{Degree, Equations};
 pub use error::{ExpressionError, ExpressionErrorKind};
 pub use expression::Expression;
 pub use function::Function;
-pub use parser::MAX_LENGTH;
+pub use parser_input::MAX_LENGTH;
 pub use program::{Evaluation, Operation, Program, ValueId};
 pub use recording::Recorded;
 pub use step_program::StepProgram;

@@ -13,13 +13,10 @@ use winnow::token::{any, one_of, take_while};
 
 use super::expression::{Comparison, Expression, NodeId, NodeKind, Operator};
 use super::parser_input::{
-    Failure, Input, Parsed, Tree, deeper, expect, failure, found, operation, push, space,
-    unexpected,
+    Failure, Input, MAX_LENGTH, Parsed, Tree, deeper, expect, failure, found, operation, push,
+    space, unexpected,
 };
 use super::{ExpressionError, ExpressionErrorKind, Function};
-
-/// The most bytes of an expression.
-pub const MAX_LENGTH: usize = 65_536;
 
 /// The function of a name that stands for the value before a step.
 pub(crate) const BEFORE: &str = "before";

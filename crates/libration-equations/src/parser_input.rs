@@ -11,6 +11,9 @@ use winnow::token::take_while;
 use super::expression::{Node, NodeId, NodeKind, Operator};
 use super::{ExpressionError, ExpressionErrorKind};
 
+/// The most bytes of an expression.
+pub const MAX_LENGTH: usize = 65_536;
+
 /// The most brackets, functions and powers within each other.
 const MAX_DEPTH: usize = 100;
 

@@ -96,7 +96,8 @@ impl Settings {
     fn settings(&self) -> PyResult<AnyEnvironmentSettings> {
         match &self.subject {
             Subject::Catalogue(subject) => {
-                self.catalogued(subject).map(AnyEnvironmentSettings::Catalogued)
+                let settings = self.catalogued(subject)?;
+                Ok(AnyEnvironmentSettings::Catalogued(Box::new(settings)))
             }
             Subject::Equations(subject) => {
                 let settings = self.by_equations(subject)?;

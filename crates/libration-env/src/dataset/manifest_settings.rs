@@ -57,7 +57,7 @@ impl Dataset {
         };
         let (common, own) = match &self.environment {
             AnyEnvironmentSettings::Catalogued(settings) => {
-                let EnvironmentSettings { dt, substeps, limit, delays, noise, .. } = *settings;
+                let EnvironmentSettings { dt, substeps, limit, delays, noise, .. } = **settings;
                 ((dt, substeps, limit, delays, noise), catalogued(settings))
             }
             AnyEnvironmentSettings::Equations(settings) => {

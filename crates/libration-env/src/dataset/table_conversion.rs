@@ -97,7 +97,7 @@ impl TryFrom<File> for Dataset {
             None => {
                 let (system, actuation) = system(&file.system)?;
                 let StartTable { q, v } = file.start.unwrap_or_default();
-                AnyEnvironmentSettings::Catalogued(EnvironmentSettings {
+                AnyEnvironmentSettings::Catalogued(Box::new(EnvironmentSettings {
                     system,
                     actuation,
                     method,
@@ -110,7 +110,7 @@ impl TryFrom<File> for Dataset {
                     delays,
                     saturation: f64::INFINITY,
                     noise,
-                })
+                }))
             }
             Some(equations) => {
                 if file.start.is_some() {

@@ -11,7 +11,7 @@ use super::{
 #[derive(Clone, Debug, PartialEq)]
 pub enum AnyEnvironmentSettings {
     /// Of the catalogue.
-    Catalogued(EnvironmentSettings),
+    Catalogued(Box<EnvironmentSettings>),
     /// By equations.
     Equations(Box<EquationEnvironment>),
 }
