@@ -149,7 +149,39 @@ def machine(count: int, system=CART_POLE) -> libration.Ensemble:
     return libration.Ensemble(system, integrator="rk4", dt=DT, q=q, v=v, threads=1)
 
 
+def environments() -> None:
+    """Print the speed of environments by equations as a part of that of the presets with the same bits."""
+    oscillator = libration.System(acceleration={"q": "-10*q + u"}, inputs=["u"])
+    pendulum = libration.System(acceleration={"q": "-15*sin(q) + u"}, inputs=["u"])
+    cases = [
+        ("Oscillator", oscillator, {"reward": "-(q^2 + 0.1*q'^2 + 0.001*u^2)", "terminated": ["abs(q) > 10"]}, 0.01),
+        (
+            "Pendulum",
+            pendulum,
+            {"observe": ["-cos(q)", "-sin(q)", "q'"], "reward": "-cos(before(q)) - 1 - 0.1*before(q')^2 - 0.001*u^2"},
+            0.05,
+        ),
+    ]
+    count = 4096
+    for name, system, task, dt in cases:
+        preset = libration.Environments(name, count)
+        start = {"q": preset.preset.start_position, "q'": preset.preset.start_velocity}
+        limits = {"max_action": preset.preset.max_action, "max_episode_steps": preset.preset.max_episode_steps}
+        own = libration.Environments(system, count, dt=dt, start=start, **limits, **task)
+        actions = np.zeros((count, 1), np.float32)
+        policy = libration.policies.Linear(np.full(len(preset.preset.seen), -0.1))
+        times = []
+        for all_ in (preset, own):
+            all_.reset(seed=0)
+            step = seconds(lambda: [all_.step(actions) for _ in range(50)])
+            memory = all_.rollout(policy, 100)
+            times.append((step, seconds(lambda: all_.rollout(policy, 100, out=memory))))
+        ratios = [compiled / mine for compiled, mine in zip(*times)]
+        print(f"{f'{name} by equations / preset, f32':34} N = {count:6}  {ratios[0]:8.2f} (step) {ratios[1]:.2f} (rollout)")
+
+
 def main() -> None:
+    environments()
     numexpr.set_num_threads(1)
     count, steps = 100_000, 20
     own = machine(count)
