@@ -1,17 +1,11 @@
 //! The block machine on systems by equations.
 
 use libration::ensemble::{BatchFloat, Execution, InstructionSet};
-use libration::equations::{Definitions, Dynamics, Equations, StepProgram};
+use libration::equations::{Dynamics, StepProgram};
 use libration::{Method, with_method};
 use proptest::prelude::*;
 
-fn equations(accelerations: Vec<(String, String)>, rates: Vec<(String, String)>) -> Equations {
-    let coordinates = accelerations.iter().map(|(name, _)| name.clone()).collect();
-    let parameters = vec![("k".to_owned(), 1.3), ("one".to_owned(), 1.0)];
-    let definitions =
-        Definitions { coordinates, accelerations, rates, parameters, ..Definitions::default() };
-    Equations::new(&definitions).unwrap_or_else(|error| panic!("{error}"))
-}
+use super::random_expressions::{equations, expression};
 
 fn start<T: BatchFloat>(n: usize, i: usize) -> T {
     T::from_f64(0.37 * (1.0 + i as f64).sin() + 1e-3 * n as f64)
@@ -53,42 +47,6 @@ fn differing<T: BatchFloat>(
         }
     }
     found
-}
-
-/// Expressions of two coordinates, a state of first order, parameters and time.
-fn expression() -> impl Strategy<Value = String> {
-    let leaf = prop_oneof![
-        Just("x".to_owned()),
-        Just("y".to_owned()),
-        Just("x'".to_owned()),
-        Just("y'".to_owned()),
-        Just("s".to_owned()),
-        Just("k".to_owned()),
-        Just("one".to_owned()),
-        Just("t".to_owned()),
-        (-4.0..4.0_f64).prop_map(|c| format!("({c:.3})")),
-        (1..9_i32).prop_map(|c| c.to_string()),
-    ];
-    leaf.prop_recursive(5, 40, 4, |inner| {
-        let (a, b) = (inner.clone(), inner.clone());
-        let (c, d) = (inner.clone(), inner.clone());
-        let function = prop::sample::select(vec![
-            "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log",
-            "sqrt", "abs", "sign",
-        ]);
-        let pair = prop::sample::select(vec!["atan2", "min", "max"]);
-        let operator = prop::sample::select(vec!["+", "-", "*", "/"]);
-        let comparison = prop::sample::select(vec!["<", "<=", ">", ">="]);
-        prop_oneof![
-            4 => (a.clone(), operator, b.clone()).prop_map(|(a, o, b)| format!("({a} {o} {b})")),
-            1 => a.clone().prop_map(|a| format!("(-{a})")),
-            1 => (a.clone(), 2..5).prop_map(|(a, n)| format!("({a})^{n}")),
-            2 => (function, a.clone()).prop_map(|(f, a)| format!("{f}({a})")),
-            1 => (pair, a.clone(), b.clone()).prop_map(|(f, a, b)| format!("{f}({a}, {b})")),
-            1 => (a, comparison, b, c, d)
-                .prop_map(|(a, o, b, c, d)| format!("if({a} {o} {b}, {c}, {d})")),
-        ]
-    })
 }
 
 proptest! {
