@@ -10,9 +10,6 @@ use super::planes::Planes;
 use super::{EnsembleError, Execution, GRAIN, MOVED};
 use crate::machine::{Block, BlockProgram};
 
-/// Instructions of a step of symplectic Euler on an oscillator, the shortest there is.
-const SHORTEST: u64 = 3;
-
 /// Trajectories of a system by its program, as structure of arrays.
 ///
 /// The block machine steps them. A trajectory has the bits of the program of a step, run alone, and those of a compiled system with
@@ -146,7 +143,7 @@ impl<T: Float + Pod> ProgramEnsemble<T> {
         let mut inputs = vec![T::zero(); step.inputs(&self.dynamics)];
         inputs.push(dt);
         let instructions = self.execution.instruction_set();
-        let each = (step.step.instructions() as u64).div_ceil(SHORTEST).saturating_mul(steps);
+        let each = step.step.shortest_steps().saturating_mul(steps);
         let each = each.saturating_add(MOVED * degrees as u64);
         let threads = self.execution.threads_for((self.len() as u64).saturating_mul(each));
         let size = self.len().div_ceil(threads).next_multiple_of(GRAIN);

@@ -7,6 +7,9 @@ use super::instruction::Instruction;
 use super::lowering::{Lowering, Uniform};
 use super::row_assignment::RowAssignment;
 
+/// Instructions of a step of symplectic Euler on an oscillator.
+const SHORTEST: u64 = 3;
+
 /// A program as instructions on the rows of a block.
 #[derive(Debug)]
 pub(crate) struct BlockProgram {
@@ -60,9 +63,9 @@ impl BlockProgram {
         self.rows
     }
 
-    /// The number of instructions of a run.
-    pub(crate) fn instructions(&self) -> usize {
-        self.instructions.len()
+    /// The length of a run: the number of steps of symplectic Euler on an oscillator, the shortest there are, that take as long.
+    pub(crate) fn shortest_steps(&self) -> u64 {
+        (self.instructions.len() as u64).div_ceil(SHORTEST)
     }
 
     /// The uniform values for these inputs of the program, of which only the uniform ones count.

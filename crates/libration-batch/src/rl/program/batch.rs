@@ -19,11 +19,42 @@ use crate::rl::history::History;
 use crate::rl::rollout_slice::{first_of, rows_of};
 use crate::rl::{EnvironmentError, StepBuffers};
 
-/// Instructions of the shortest step of an ensemble.
-const SHORTEST: u64 = 3;
-
 /// A batch of [`ProgramEnvironment`]s that are stepped together: [`Environments`](crate::rl::Environments) with any number of states,
 /// inputs and observations.
+///
+/// ```
+/// use libration::Method;
+/// use libration::ensemble::Execution;
+/// use libration::equations::{Definitions, Equations, TaskDefinitions, TaskPrograms};
+/// use libration::rl::{Plan, ProgramEnvironment, ProgramEnvironments, ProgramPolicy, ProgramRollout};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let system = Definitions {
+///     coordinates: vec!["x".into()],
+///     accelerations: vec![("x".into(), "-10*sin(x) + u".into())],
+///     inputs: vec!["u".into()],
+///     ..Definitions::default()
+/// };
+/// let equations = Equations::new(&system)?;
+/// let task = TaskDefinitions {
+///     observe: vec!["x".into(), "x'".into()],
+///     reward: "-x^2 - 0.01*u^2".into(),
+///     terminated: vec!["abs(x) > 3".into()],
+/// };
+/// let task = TaskPrograms::new(&task, &system, &equations)?;
+/// let environment = ProgramEnvironment {
+///     start: vec![[-1.0, 1.0], [0.0, 0.0]],
+///     limit: Some(200),
+///     ..ProgramEnvironment::new(equations.dynamics().clone(), task, Method::Rk4, 0.01)
+/// };
+/// let mut all = ProgramEnvironments::<f32>::shard(environment, 0, 1000, 7, Execution::serial())?;
+/// let mut rollout = ProgramRollout::new(Plan::new(256, 1000).truncated(), [2, 1])?;
+/// all.rollout(ProgramPolicy::Linear { weights: &[-5.0, -1.0], bias: &[0.0] }, &mut rollout)?;
+/// // Every episode was cut off once.
+/// assert_eq!(rollout.ends().ends.len(), 1000);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 pub struct ProgramEnvironments<T: Float> {
     pub(super) definition: ProgramEnvironment,
@@ -245,7 +276,7 @@ impl<T: Float + Elementary + Pod> ProgramEnvironments<T> {
         let acts = acts.prepare(blocks, [*step, 1], steps, policy.words());
 
         let work = (len as u64).saturating_mul(steps.max(1));
-        let each = programs.instructions(definition.substeps).div_ceil(SHORTEST);
+        let each = programs.shortest_steps(definition.substeps);
         let threads = episodes.execution.threads_for(work.saturating_mul(each));
         let size = len.div_ceil(threads).next_multiple_of(LANES).max(LANES);
         let mut rest = (&mut blocks[..], &mut states[..], &mut past[..], [times, looks, acts]);

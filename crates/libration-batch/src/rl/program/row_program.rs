@@ -1,5 +1,7 @@
 //! Programs on rows of blocks of environments.
 
+use core::ops::Range;
+
 use libration_core::Float;
 use libration_equations::Program;
 
@@ -32,9 +34,9 @@ impl RowProgram {
         RowProgram { program, rows, first_output, inputs }
     }
 
-    /// The number of instructions of a run.
-    pub(super) fn instructions(&self) -> usize {
-        self.program.instructions()
+    /// See [`BlockProgram::shortest_steps`].
+    pub(super) fn shortest_steps(&self) -> u64 {
+        self.program.shortest_steps()
     }
 
     /// The rows for `lanes` lanes of a block, with this value of the uniform input.
@@ -60,33 +62,6 @@ pub(super) struct ProgramRows<'p, T> {
 }
 
 impl<T: Float> ProgramRows<'_, T> {
-    /// Runs the program on rows that it replaces by its outputs; `rest` are the inputs after them.
-    pub(super) fn run_in_place<'a>(
-        &mut self,
-        rows: &mut [[T; LANES]],
-        rest: impl Fn(usize) -> &'a [T; LANES],
-        instructions: InstructionSet,
-    ) where
-        T: 'a,
-    {
-        let ProgramRows { program, block, lanes } = self;
-        let width = block.lanes();
-        for first in (0..*lanes).step_by(width) {
-            let lanes = first..(first + width).min(*lanes);
-            for (row, &i) in program.rows.iter().enumerate() {
-                let values = match i.checked_sub(rows.len()) {
-                    None => &rows[i],
-                    Some(i) => rest(i),
-                };
-                block.load(row, &values[lanes.clone()]);
-            }
-            block.run(1, instructions);
-            for (i, to) in rows.iter_mut().enumerate() {
-                block.store(program.first_output + i, &mut to[lanes.clone()]);
-            }
-        }
-    }
-
     /// Runs the program and writes the lanes of its outputs, as many as there are.
     pub(super) fn run<'a>(
         &mut self,
@@ -96,17 +71,46 @@ impl<T: Float> ProgramRows<'_, T> {
     ) where
         T: 'a,
     {
-        let ProgramRows { program, block, lanes } = self;
-        let width = block.lanes();
-        for first in (0..*lanes).step_by(width) {
-            let lanes = first..(first + width).min(*lanes);
-            for (row, &i) in program.rows.iter().enumerate() {
-                block.load(row, &input(i)[lanes.clone()]);
-            }
-            block.run(1, instructions);
-            for (i, to) in to.iter_mut().enumerate() {
-                block.store(program.first_output + i, &mut to[lanes.clone()]);
-            }
+        for lanes in self.strips() {
+            self.load(&lanes, &input);
+            self.finish(&lanes, to, instructions);
+        }
+    }
+
+    /// Runs the program on rows that it replaces by its outputs; `rest` are the inputs after them.
+    pub(super) fn run_in_place<'a>(
+        &mut self,
+        rows: &mut [[T; LANES]],
+        rest: impl Fn(usize) -> &'a [T; LANES],
+        instructions: InstructionSet,
+    ) where
+        T: 'a,
+    {
+        for lanes in self.strips() {
+            self.load(&lanes, |i| rows.get(i).unwrap_or_else(|| rest(i - rows.len())));
+            self.finish(&lanes, rows, instructions);
+        }
+    }
+
+    /// Ranges of lanes that are run together.
+    fn strips(&self) -> impl Iterator<Item = Range<usize>> + use<T> {
+        let (lanes, width) = (self.lanes, self.block.lanes());
+        (0..lanes).step_by(width).map(move |first| first..(first + width).min(lanes))
+    }
+
+    fn load<'b>(&mut self, lanes: &Range<usize>, input: impl Fn(usize) -> &'b [T; LANES])
+    where
+        T: 'b,
+    {
+        for (row, &i) in self.program.rows.iter().enumerate() {
+            self.block.load(row, &input(i)[lanes.clone()]);
+        }
+    }
+
+    fn finish(&mut self, lanes: &Range<usize>, to: &mut [[T; LANES]], set: InstructionSet) {
+        self.block.run(1, set);
+        for (i, to) in to.iter_mut().enumerate() {
+            self.block.store(self.program.first_output + i, &mut to[lanes.clone()]);
         }
     }
 }

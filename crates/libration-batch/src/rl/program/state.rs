@@ -1,5 +1,6 @@
 //! The state of environments: blocks, and the programs that step them.
 
+use libration_core::random::Purpose;
 use libration_core::{Float, with_method};
 use libration_equations::StepProgram;
 
@@ -9,8 +10,7 @@ use super::environment::World;
 use super::row_program::RowProgram;
 use crate::rl::history::History;
 use crate::rl::start::uniform;
-use crate::rl::{Episode, block};
-use libration_core::random::Purpose;
+use crate::rl::{Delays, Episode, block};
 
 /// The programs of environments.
 #[derive(Debug)]
@@ -39,10 +39,10 @@ impl Programs {
         [&self.observation, &self.verdict].map(RowProgram::reads_last)
     }
 
-    /// Instructions of an action.
-    pub(super) fn instructions(&self, substeps: u32) -> u64 {
-        let step = (self.step.instructions() as u64).saturating_mul(substeps.into());
-        step + (self.observation.instructions() + self.verdict.instructions()) as u64
+    /// The length of an action in shortest steps of an ensemble.
+    pub(super) fn shortest_steps(&self, substeps: u32) -> u64 {
+        let steps = self.step.shortest_steps().saturating_mul(substeps.into());
+        steps + self.observation.shortest_steps() + self.verdict.shortest_steps()
     }
 }
 
@@ -85,5 +85,5 @@ impl Beginning<'_> {
 
 /// The past of blocks without states.
 fn no_history() -> History {
-    History::new(crate::rl::Delays::default(), 1, [0, 0])
+    History::new(Delays::default(), 1, [0, 0])
 }
