@@ -102,7 +102,7 @@ def test_equations_are_a_plant_for_budgets_and_analyses():
         (lambda: libration.simulate(pendulum(), integrator="rk4", dt=0.1, steps=1, latency=0.1), "latency is given"),
         (lambda: libration.Ensemble(pendulum(), dt=0.1, q=np.zeros((3, 2))), r"must be \(N, 1\): q"),
         (lambda: libration.analyze(pendulum(), integrator="exact", dt=0.1), "exact"),
-        (lambda: libration.Environments(pendulum(), 4), "unknown environment"),
+        (lambda: libration.Environments(pendulum(), 4), "has no inputs, but actions need at least one"),
     ],
 )
 def test_wrong_equations_and_options_are_refused_by_name(make, message):

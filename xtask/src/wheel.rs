@@ -82,10 +82,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tests_that_import_gymnasium_are_those_of_the_contract_and_of_custom_tasks() {
+    fn tests_that_import_gymnasium_are_those_of_the_contract_of_custom_tasks_and_of_equations() {
         let files = of_gymnasium(&workspace::root().join("python/tests")).unwrap();
         let names: Vec<_> = files.iter().filter_map(|file| file.file_name()?.to_str()).collect();
-        assert_eq!(names, ["test_custom.py", "test_vector.py"]);
+        assert_eq!(names, ["test_custom.py", "test_system_environments.py", "test_vector.py"]);
     }
 
     #[test]

@@ -26,11 +26,19 @@ pub struct LinearStepper {
 impl LinearStepper {
     /// That of a plant with the state matrix `a`; none if it has more than [`MOST_STATES`] states.
     pub fn new(a: &Matrix) -> Option<Self> {
+        LinearStepper::of_pairs(a, positions_and_velocities(a))
+    }
+
+    /// The same of a plant whose states are not taken for positions and velocities, even if they could be.
+    pub fn of_first_order(a: &Matrix) -> Option<Self> {
+        LinearStepper::of_pairs(a, None)
+    }
+
+    fn of_pairs(a: &Matrix, pairs: Option<Vec<(usize, usize)>>) -> Option<Self> {
         let n = a.rows();
         if n > MOST_STATES {
             return None;
         }
-        let pairs = positions_and_velocities(a);
         let is_mechanical = pairs.is_some();
         let (order, positions) = match pairs {
             Some(pairs) => {

@@ -52,8 +52,8 @@ impl LinearStepper {
     /// With a stability function they are exact, also if other modes of the plant grow. Of a mechanical plant without damping or with
     /// modal damping they are those of its oscillators, from exact polynomials. With other damping the spectral radius of the update
     /// matrix is searched up to about twice the limit of the fastest mode without damping, at distances of about a hundredth of it:
-    /// narrower windows and those beyond may be missed. None if the integrator does not apply, or if a mode grows and there is no
-    /// stability function.
+    /// narrower windows and those beyond may be missed. None if the integrator does not apply, or if a mode grows, or oscillates for ever
+    /// under forces of velocities that are no modal damping, and there is no stability function.
     pub fn stable_steps(&self, method: Method, values: &[Complex64]) -> Option<Vec<StepWindow>> {
         let values = without_rounding(values);
         if let Some(function) = StabilityFunction::new(method) {
@@ -81,6 +81,10 @@ impl LinearStepper {
         if let Some(exact) = exact {
             return Some(intersection(exact.into_iter()));
         }
+        // Of gyroscopic forces: where an exact mode neither grows nor decays, no search tells growth from rounding.
+        if values.iter().any(|value| value.re == 0.0 && value.im != 0.0) {
+            return None;
+        }
         let last = undamped.last().map_or(0.0, |window| window.to);
         Some(self.searched_windows(method, &values, 2.0 * last + 1.0))
     }
@@ -99,12 +103,15 @@ impl LinearStepper {
         apart.add_scaled(-1.0, &(&damping * &stiffness));
         let rounding = 1e-13 * stiffness.row_sum_norm() * damping.row_sum_norm();
         let oscillates = values.iter().all(|value| value.im != 0.0);
+        // A gyroscopic force commutes with equal stiffnesses, too.
+        let rates = eigenvalues(&damping)?;
+        let is_damping = rates.iter().all(|rate| rate.im.abs() <= PARTED * damping.row_sum_norm());
         let upper = values.iter().filter(|value| value.im > 0.0);
         let one = |value: &Complex64| DampedOscillator {
             omega2: value.norm_sqr(),
             gamma: -2.0 * value.re,
         };
-        (oscillates && apart.largest() <= rounding).then(|| upper.map(one).collect())
+        (oscillates && is_damping && apart.largest() <= rounding).then(|| upper.map(one).collect())
     }
 
     /// Where the spectral radius is at most 1, up to a step in which the fastest mode has `|hλ| = most`.
@@ -223,6 +230,31 @@ mod tests {
         let both = windows(&modal, Method::SymplecticEuler).unwrap();
         assert_eq!(both.len(), 1);
         assert!((both[0].to / one[0].to - 1.0).abs() < 1e-13, "{both:?} {one:?}");
+    }
+
+    #[test]
+    fn gyroscopic_forces_are_no_damping() {
+        // Charges in a magnetic field and a trap: eigenvalues ±0.0499i, ±20.05i in exact steps, and growth in each kick.
+        let gyroscopic = |field: f64, other: f64| {
+            Matrix::from_rows(&[
+                [0.0, 0.0, 1.0, 0.0],
+                [0.0, 0.0, 0.0, 1.0],
+                [-1.0, 0.0, 0.0, field],
+                [0.0, -other, -field, 0.0],
+            ])
+            .unwrap()
+        };
+        for (field, other) in [(10.0, 1.0), (0.1, 1.0), (10.0, 2.0)] {
+            let a = gyroscopic(field, other);
+            for method in [Method::SymplecticEuler, Method::VelocityVerlet] {
+                assert_eq!(windows(&a, method), None, "{field} {other} {method:?}");
+                let stepper = LinearStepper::new(&a).unwrap();
+                let step = stepper.with_step::<f64>(method, 0.05).unwrap();
+                let values = eigenvalues(&step.update_matrix()).unwrap();
+                assert!(values.iter().any(|value| value.norm() > 1.0 + 1e-9));
+            }
+            assert!(windows(&a, Method::Rk4).is_some_and(|windows| windows[0].to > 0.0));
+        }
     }
 
     #[test]

@@ -65,6 +65,11 @@ pub enum EquationErrorKind {
     /// Too many definitions.
     #[error("there are {0} definitions; expected at most {max}", max = crate::MAX_DEFINITIONS)]
     Definitions(usize),
+    /// An expression of states that depends on an input.
+    #[error(
+        "it depends on inputs through `{0}`; expected an expression of states, parameters and time"
+    )]
+    NeedsInput(String),
     /// Too many expressions of a task.
     #[error("there are {0} expressions; expected at most {max}", max = crate::MAX_EXPRESSIONS)]
     Expressions(usize),

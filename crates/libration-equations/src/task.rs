@@ -127,7 +127,14 @@ fn values(
         let key = format!("task.{key}.{i}");
         let expression =
             parse(text).map_err(|error| EquationError::of_expression(key.clone(), error))?;
-        resolver.evaluate(&key, &expression)
+        resolver.evaluate(&key, &expression).map_err(|error| match error.key == key {
+            true => error,
+            // The definitions of the system are right, but for inputs that are no names here.
+            false => {
+                let kind = EquationErrorKind::NeedsInput(error.key);
+                EquationError { key: key.clone(), span: None, kind }
+            }
+        })
     };
     texts.iter().enumerate().map(value).collect()
 }

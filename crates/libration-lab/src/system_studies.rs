@@ -40,6 +40,9 @@ const ORDER: [&str; 5] = ["determinism", "precision", "convergence", "nonlinear"
 /// The most that a reference orbit may be off, as a part of its size: far below any error that is taken against it.
 const REFERENCE: f64 = 1e-20;
 
+/// Why the reference orbit is none.
+const NO_REFERENCE: &str = "the reference orbit from the start does not stay finite for three quarters of a turn: the motion does not, or it is too stiff";
+
 /// The change of a conserved energy over the reference orbit, as a part of the energy: its rounding, and no friction.
 const CONSERVED: f64 = 1e-12;
 
@@ -104,10 +107,8 @@ fn study_of<'a>(
 ) -> Result<Box<dyn Study + 'a>, String> {
     let own = std::slice::from_ref(problem);
     match name {
-        "stability" => match linearised_equations(system) {
-            Ok(_) => Ok(Box::new(SystemStability::new(system, problem.turn()))),
-            Err(fault) => Err(fault.message),
-        },
+        "stability" => has_modes(system, problem)
+            .map(|()| Box::new(SystemStability::new(system, problem.turn())) as _),
         "convergence" => has_orbit(system, problem).map(|()| Box::new(Convergence::of(own)) as _),
         "nonlinear" => keeps_energy(system, problem).map(|()| Box::new(Nonlinear::of(own)) as _),
         "precision" => stays_finite(problem).map(|()| Box::new(SystemPrecision::new(problem)) as _),
@@ -143,8 +144,21 @@ fn reason(study: &str) -> &'static str {
     }
 }
 
+/// Whether there is an equilibrium at which the equations have a linear part.
+fn has_modes(system: &EquationSystem, problem: &Problem) -> Result<(), String> {
+    let (plant, _) = linearised_equations(system).map_err(|fault| fault.message)?;
+    if !plant.a.entries().iter().all(|x| x.is_finite()) {
+        return Err("at the equilibrium a derivative of the equations is not finite".to_owned());
+    }
+    match problem.has_linear_part(&plant.a) {
+        true => Ok(()),
+        false => Err("at the equilibrium the equations have no linear part".to_owned()),
+    }
+}
+
 /// Whether the orbit from the start has a reference.
 fn has_orbit(system: &EquationSystem, problem: &Problem) -> Result<(), String> {
+    moves(problem)?;
     if !system.equations.dynamics().accelerations().is_smooth() {
         return Err(
             "the equations have kinks or jumps, beyond which no method has an order".to_owned()
@@ -152,10 +166,7 @@ fn has_orbit(system: &EquationSystem, problem: &Problem) -> Result<(), String> {
     }
     match problem.reference_error() {
         error if error <= REFERENCE => Ok(()),
-        error if error.is_nan() => {
-            Err("the motion from the start does not stay finite for three quarters of a turn"
-                .to_owned())
-        }
+        error if error.is_nan() => Err(NO_REFERENCE.to_owned()),
         error => {
             Err(format!("the exact orbit from the start is known to {error:.0e} of its size only"))
         }
@@ -178,12 +189,16 @@ fn keeps_energy(system: &EquationSystem, problem: &Problem) -> Result<(), String
 }
 
 fn stays_finite(problem: &Problem) -> Result<(), String> {
-    if problem.rests_at_start() {
-        return Err("nothing moves from the start, which is an equilibrium".to_owned());
-    }
+    moves(problem)?;
     match problem.reference_error().is_nan() {
-        true => Err("the motion from the start does not stay finite for three quarters of a turn"
-            .to_owned()),
+        true => Err(NO_REFERENCE.to_owned()),
+        false => Ok(()),
+    }
+}
+
+fn moves(problem: &Problem) -> Result<(), String> {
+    match problem.rests_at_start() {
+        true => Err("nothing moves from the start, which is an equilibrium".to_owned()),
         false => Ok(()),
     }
 }

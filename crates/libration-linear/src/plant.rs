@@ -21,6 +21,8 @@ pub struct LinearPlant {
     pub g: Matrix,
     /// The period of a sampled plant, in s.
     pub sampling_period: Option<f64>,
+    /// Whether integrators step some states as velocities that are no velocities: those of first order of a system by equations.
+    pub has_first_order_states: bool,
     /// Names and units of the states.
     pub states: Vec<Signal>,
     /// Names and units of the inputs.
@@ -165,7 +167,18 @@ impl LinearPlant {
         let g = b.clone();
         let signals = [("x", n), ("u", m), ("y", p)];
         let [states, inputs, outputs] = signals.map(|(letter, n)| Signal::numbered(letter, n));
-        Ok(LinearPlant { a, b, c, d, g, sampling_period: None, states, inputs, outputs })
+        Ok(LinearPlant {
+            a,
+            b,
+            c,
+            d,
+            g,
+            sampling_period: None,
+            has_first_order_states: false,
+            states,
+            inputs,
+            outputs,
+        })
     }
 
     /// The plant with all its states as outputs, without a direct path.

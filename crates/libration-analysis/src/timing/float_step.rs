@@ -25,6 +25,7 @@ impl Plant<'_> {
             c: Matrix::identity(2),
             d: Matrix::zeros(2, 1),
             sampling_period: None,
+            has_first_order_states: false,
             states: signals(&["q", "v"]),
             inputs: signals(&["u"]),
             outputs: signals(&["q", "v"]),

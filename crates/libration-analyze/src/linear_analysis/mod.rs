@@ -190,8 +190,12 @@ impl LinearRequest {
                 }
             };
         }
-        let stepper =
-            LinearStepper::new(&self.plant().a).ok_or(LinearAnalysisError::Eigenvalues)?;
+        let plant = self.plant();
+        let stepper = match plant.has_first_order_states {
+            false => LinearStepper::new(&plant.a),
+            true => LinearStepper::of_first_order(&plant.a),
+        };
+        let stepper = stepper.ok_or(LinearAnalysisError::Eigenvalues)?;
         match self.integrator {
             Some(Stepping::Method(method)) if !stepper.applies(method) => {
                 let allowed = Method::ALL.into_iter().filter(|method| stepper.applies(*method));

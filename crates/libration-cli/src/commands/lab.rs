@@ -38,7 +38,7 @@ pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
         Some(file) => {
             let system = equation_file::read(file, &args.set)?;
             let problem = Problem::of_equations(&system);
-            let all = SystemStudies::new(&system, &problem).with_command(command(file, &args.set));
+            let all = SystemStudies::new(&system, &problem).with_command(command(file, args));
             let studies = all.named(&config.studies).map_err(|left_out| {
                 let NotApplicable { study, because } = left_out;
                 Failure::usage(format!(
@@ -67,11 +67,13 @@ pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
 }
 
 /// The command of the studies of a system.
-fn command(file: &Path, set: &[(String, f64)]) -> String {
+fn command(file: &Path, args: &LabArgs) -> String {
     let file = file.to_string_lossy();
     let file = shlex::try_quote(&file).unwrap_or_default();
-    let set: String = set.iter().map(|(name, value)| format!(" --set {name}={value:?}")).collect();
-    format!("libration lab --system {file}{set}")
+    let set = args.set.iter().map(|(name, value)| format!(" --set {name}={value:?}"));
+    let effort = args.effort.map(|effort| format!(" --effort {}", effort.name()));
+    let options: String = set.chain(effort).collect();
+    format!("libration lab --system {file}{options}")
 }
 
 /// Opens the report in the browser. A failure is only a warning.

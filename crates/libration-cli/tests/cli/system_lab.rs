@@ -125,3 +125,53 @@ fn wrong_systems_of_the_laboratory_are_shown_at_the_place() {
         libration(words).code(2).stdout("").stderr(contains(*message));
     }
 }
+
+#[test]
+fn ordinary_systems_have_no_study_that_disagrees() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, equations) in [
+        (
+            "light damping",
+            "acceleration.x = \"-x - 0.2*x'\"\ncoordinates = [\"x\"]\nstart = { x = 1 }",
+        ),
+        (
+            "hardly any",
+            "acceleration.x = \"-x - 0.001*x'\"\ncoordinates = [\"x\"]\nstart = { x = 1 }",
+        ),
+        ("first order", "rate.th = \"w\"\nrate.w = \"-9.81*sin(th)\"\nstart = { th = 1 }"),
+        ("prey", "rate.x = \"x*(1 - y)\"\nrate.y = \"y*(x - 1)\"\nstart = { x = 1.2, y = 1 }"),
+        (
+            "magnetic",
+            "acceleration.x = \"10*y' - x\"\nacceleration.y = \"-10*x' - y\"\ncoordinates = [\"x\", \"y\"]\nstart = { x = 1 }",
+        ),
+        ("no linear part", "acceleration.x = \"-x^3\"\ncoordinates = [\"x\"]\nstart = { x = 1 }"),
+    ] {
+        let text = format!("[system]\nname = \"{name}\"\n{equations}\n");
+        let file = written(folder.path(), "own.toml", &text);
+        let (_, results) = report(&file, &["precision"]);
+        let because = not_applicable(&results, "stability");
+        assert_eq!(because.is_some(), name == "no linear part", "{name}: {because:?}");
+        // A study that disagrees is a failed run.
+        if because.is_none() {
+            report(&file, &["stability"]);
+        }
+    }
+}
+
+#[test]
+fn what_does_not_move_and_what_time_moves_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let reasons = |equations: &str| {
+        let text = format!("[system]\nname = \"own\"\ncoordinates = [\"x\"]\n{equations}\n");
+        let file = written(folder.path(), "own.toml", &text);
+        let (_, results) = report(&file, &["determinism"]);
+        let reason = |study| not_applicable(&results, study).map(str::to_owned);
+        ["convergence", "precision", "stability"].map(reason)
+    };
+    let [convergence, precision, _] = reasons("acceleration.x = \"-4*x\"");
+    assert_eq!(convergence, precision);
+    assert!(convergence.unwrap().contains("nothing moves"));
+    let [convergence, precision, stability] = reasons("acceleration.x = \"-x + sin(t)\"");
+    assert_eq!([convergence, precision], [None, None]);
+    assert!(stability.unwrap().contains("depends on time"));
+}

@@ -12,6 +12,10 @@ use super::table_conversion::each;
 use super::tables::TaskTable;
 use crate::environments::EquationEnvironment;
 
+/// The columns that each data set has.
+const COLUMNS: [&str; 8] =
+    ["step", "environment", "reward", "terminated", "truncated", "return", "length", "lost"];
+
 /// Environments of a system by equations, ideal and without limits but of the actions.
 pub(super) fn equation_environment(
     table: &EquationsTable,
@@ -53,6 +57,17 @@ pub(super) fn equation_environment(
     if inputs == 0 {
         let message = format!("`{file}` has no inputs, but actions need at least one");
         return Err(fault(message));
+    }
+    let columns = task.definitions.observe.iter().chain(system.equations.inputs());
+    let mut known: Vec<&str> = COLUMNS.to_vec();
+    for name in columns {
+        if known.contains(&name.as_str()) {
+            let message = format!(
+                "`{name}` is the name of a column already; expected observations and inputs with names of their own, as in [task.expressions] observe = [\"1*{name}\"]"
+            );
+            return Err(Fault::new("task", message));
+        }
+        known.push(name);
     }
     let dynamics = system.equations.dynamics().clone();
     let ideal = ProgramEnvironment::new(dynamics, task.programs.clone(), method, dt);

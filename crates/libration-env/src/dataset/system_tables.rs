@@ -66,3 +66,21 @@ impl Numbers {
         Numbers::One(Number(x))
     }
 }
+
+/// Weights of a linear policy: in one row, or a row for each action.
+#[derive(Clone, Deserialize)]
+#[serde(untagged, expecting = "expected a list of numbers, or one such list for each action")]
+pub(super) enum Weights {
+    Flat(Vec<Number>),
+    Rows(Vec<Vec<Number>>),
+}
+
+impl Weights {
+    pub(super) fn flat(self) -> Vec<f64> {
+        let all = match self {
+            Weights::Flat(all) => all,
+            Weights::Rows(rows) => rows.concat(),
+        };
+        all.into_iter().map(|x| x.0).collect()
+    }
+}

@@ -237,15 +237,16 @@ fn policy(table: PolicyTable, [seen, actions]: [usize; 2]) -> Result<PolicySetti
     let finite_each = |numbers| each("policy", numbers, actions, f64::is_finite, "that is finite");
     Ok(match table {
         PolicyTable::Linear(t) => {
-            if t.weights.len() != seen * actions {
-                let (found, wanted) = (t.weights.len(), seen * actions);
+            let weights = t.weights.flat();
+            if weights.len() != seen * actions {
+                let (found, wanted) = (weights.len(), seen * actions);
                 let rows = if actions == 1 { "" } else { ", a row for each action" };
                 let message = format!(
                     "`weights` has {found} numbers, but it must have {wanted}: one per observation{rows}"
                 );
                 return Err(Fault::new("policy.linear.weights", message));
             }
-            let weights = t.weights.into_iter().map(|weight| finite("policy", weight));
+            let weights = weights.into_iter().map(|weight| finite("policy", Number(weight)));
             PolicySettings::Linear {
                 weights: weights.collect::<Result<_, _>>()?,
                 bias: finite_each(t.bias)?,

@@ -6,7 +6,7 @@ use std::path::Path;
 use libration_settings::{Count, Number};
 use serde::Deserialize;
 
-use super::system_tables::{EquationsTable, Numbers, SystemTables};
+use super::system_tables::{EquationsTable, Numbers, SystemTables, Weights};
 
 /// A settings file.
 #[derive(Deserialize)]
@@ -110,7 +110,7 @@ pub(super) enum PolicyTable {
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct LinearTable {
-    pub(super) weights: Vec<Number>,
+    pub(super) weights: Weights,
     pub(super) bias: Numbers,
 }
 
@@ -232,7 +232,10 @@ impl Default for NoiseTable {
 
 impl Default for LinearTable {
     fn default() -> Self {
-        LinearTable { weights: [-2.0, 0.0].map(Number).to_vec(), bias: Numbers::one(0.0) }
+        LinearTable {
+            weights: Weights::Flat([-2.0, 0.0].map(Number).to_vec()),
+            bias: Numbers::one(0.0),
+        }
     }
 }
 

@@ -212,6 +212,20 @@ fn a_data_set_of_equations_holds_the_bits_of_the_compiled_system_in_each_format(
 fn what_is_wrong_with_a_data_set_of_equations_is_said() {
     let dir = tempfile::tempdir().unwrap();
     let text = by_equations(&dir.path().join("swing.toml"));
+    // Weights may be rows.
+    let rows = text.replace("weights = [1.0, 0.5, -0.25]", "weights = [[1.0, 0.5, -0.25]]");
+    assert_eq!(parse(&rows, "set.toml").unwrap(), parse(&text, "set.toml").unwrap());
+    // A column of its own name.
+    let column = by_equations(&dir.path().join("column.toml"));
+    let file = dir.path().join("column.toml");
+    fs::write(
+        &file,
+        fs::read_to_string(&file).unwrap().replace("'u'", "'lost'").replace("+ u", "+ lost"),
+    )
+    .unwrap();
+    let column = column.replace("0.01*u^2", "0.01*lost^2");
+    let error = parse(&column, "set.toml").unwrap_err().to_string();
+    assert!(error.contains("`lost` is the name of a column already"), "{error}");
     for (old, new, wanted) in [
         ("swing.toml", "swong.toml", "cannot read"),
         ("omega2 = 4.0", "omega = 4.0", "unknown parameter `omega`"),
@@ -223,6 +237,17 @@ fn what_is_wrong_with_a_data_set_of_equations_is_said() {
             "it must have 3",
         ),
         ("bias = 0.125", "bias = [1, 2]", "`policy` has 2 numbers"),
+        (
+            "weights = [1.0, 0.5, -0.25]",
+            "weights = [[1, 2], [3, 4]]",
+            "has 4 numbers, but it must have 3",
+        ),
+        ("observe = ['-cos(x)'", "observe = ['x', 'x'", "`x` is the name of a column already"),
+        (
+            "observe = ['-cos(x)'",
+            "observe = [\"x''\"",
+            "depends on inputs through `acceleration.x`",
+        ),
         (
             "[system.equations]",
             "[start]\nq = [0, 1]\n[system.equations]",

@@ -136,7 +136,7 @@ impl TaskTable {
             };
             if !(low <= high && (high - low).is_finite()) {
                 let message = format!(
-                    "`{}` starts from {low} to {high}; expected finite numbers of which the first is not the larger",
+                    "`{}` starts from {low:?} to {high:?}; expected numbers with a finite distance, of which the first is not the larger",
                     name.get_ref()
                 );
                 return Err((start.span(), message, None));

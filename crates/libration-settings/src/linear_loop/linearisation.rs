@@ -72,7 +72,7 @@ impl Subject {
         at: Option<&Coordinates>,
         command: Option<&Coordinates>,
     ) -> Result<(LinearPlant, OperatingPoint), Fault> {
-        let Subject { name, dynamics, signals, start, unknowns, states, mass } = self;
+        let Subject { name, dynamics, signals, start, unknowns, states, mass, .. } = self;
         let (mut start, mass) = (start.clone(), *mass);
         let d = dynamics.degrees();
         let inputs: Vec<usize> =
@@ -118,6 +118,7 @@ impl Subject {
         let plant = LinearPlant::new(a, b, Matrix::identity(n), zero)
             .and_then(|plant| plant.named(of(states), of(&inputs), of(states)))
             .map_err(|error| Fault::new("system.linear.of", error.to_string()))?;
+        let plant = LinearPlant { has_first_order_states: self.has_first_order_states, ..plant };
         let states = unknowns.iter().map(|i| value(i, state[*i])).collect();
         Ok((plant, OperatingPoint { system: name.clone(), states, commands, residual }))
     }

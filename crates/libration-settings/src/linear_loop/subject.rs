@@ -21,6 +21,8 @@ pub(super) struct Subject {
     pub(super) unknowns: Vec<usize>,
     /// The places of the states of the plant.
     pub(super) states: Vec<usize>,
+    /// Whether some of them are states of first order.
+    pub(super) has_first_order_states: bool,
     /// An input divided by this is that of the dynamics.
     pub(super) mass: f64,
 }
@@ -67,6 +69,7 @@ impl Subject {
             signals,
             unknowns: (0..dimension).collect(),
             states: (0..2 * dimension).collect(),
+            has_first_order_states: false,
             mass: actuation.mass(),
         })
     }
@@ -133,6 +136,7 @@ impl Subject {
             start,
             unknowns: degrees.iter().enumerate().filter_map(unknown).collect(),
             states: system.states.iter().map(|state| state.place).collect(),
+            has_first_order_states: degrees.iter().any(|d| matches!(d, Degree::State(_))),
             mass: 1.0,
         })
     }

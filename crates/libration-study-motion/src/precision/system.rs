@@ -74,12 +74,13 @@ impl Study for SystemPrecision<'_> {
             };
             let title = method.title();
             let text = format!(
-                "{title}: change by steps of half the length {after}, as a part of the largest state"
+                "{title}: change by steps of half the length {after}, as a part of the largest value of a state"
             );
             let mut row = vec![title.into(), find("step", text, step)];
             for ((name, _), rounding) in FLOATS.iter().zip(roundings) {
-                let text =
-                    format!("{title}: rounding of {name} {after}, as a part of the largest state");
+                let text = format!(
+                    "{title}: rounding of {name} {after}, as a part of the largest value of a state"
+                );
                 row.push(find(name, text, rounding));
             }
             table.push(row);
@@ -117,7 +118,7 @@ impl Study for SystemPrecision<'_> {
         if let Ok(f32) = record.finding("precision.rk4.f32") {
             page.highlights.push(Highlight {
                 value: number(f32.measured, 2),
-                text: "rounding of f32 with RK4, as a part of the largest state".into(),
+                text: "rounding of f32 with RK4, as a part of the largest value of a state".into(),
             });
         }
         page.paragraph(

@@ -179,10 +179,19 @@ impl<'a> OwnStep<'a> {
         self.theory.filter(|_| !self.is_unstable)?.largest_stable_dt
     }
 
-    /// The step about the predicted limit from which on a mode grows; zero if one grows in smaller steps already.
-    fn measured_limit(&self) -> Option<f64> {
+    /// The step from which on a mode grows, and how uncertain it is: where growth begins slowly it depends on the growth that counts.
+    fn measured_limit(&self) -> Option<[f64; 2]> {
+        let [limit, earlier] = [GROWTH, 0.25 * GROWTH].map(|growth| self.limit_of_growth(growth));
+        let (limit, earlier) = (limit?, earlier?);
+        let is_clear = limit.is_finite() && limit > 0.0 && earlier > 0.0;
+        // Growth that begins as slowly as by a square is twice as far at four times the growth.
+        is_clear.then(|| [limit, 2.0 * (limit - earlier).abs()])
+    }
+
+    /// The step about the predicted limit from which on a mode grows by `growth` in each; zero if one does in smaller steps already.
+    fn limit_of_growth(&self, growth: f64) -> Option<f64> {
         let predicted = self.predicted_limit()?;
-        let is_stable = |dt: f64| self.radius(dt) <= 1.0 + GROWTH;
+        let is_stable = |dt: f64| self.radius(dt) <= 1.0 + growth;
         // Beyond the limit a step may be stable again.
         let tried = |i: usize| predicted * (0.5 + i as f64 / TRIED as f64);
         let Some(first) = (0..=TRIED).find(|&i| !is_stable(tried(i))) else {
@@ -198,7 +207,7 @@ impl<'a> OwnStep<'a> {
     }
 
     /// Adds what was found; returns the row of the table.
-    fn find(&self, dt: f64, limit: Option<f64>, record: &mut Record) -> Vec<Cell> {
+    fn find(&self, dt: f64, limit: Option<[f64; 2]>, record: &mut Record) -> Vec<Cell> {
         let (name, title) = (self.method.name(), self.method.title());
         let id = |what: &str| format!("stability.{name}.{what}");
         let radius = self.radius(dt);
@@ -215,10 +224,10 @@ impl<'a> OwnStep<'a> {
             }
             None => Finding::measured(id("radius"), text, "1", radius),
         });
-        if let (Some(predicted), Some(limit)) = (self.predicted_limit(), limit) {
+        if let (Some(predicted), Some([limit, uncertain])) = (self.predicted_limit(), limit) {
             let text = format!("{title}: largest time step at which no mode grows");
-            let why = "a growth of 10⁻⁶ a step counts, and beyond the limit the radius rises at least a tenth as fast as the step";
-            let tolerance = Tolerance::relative(10.0 * GROWTH, why);
+            let why = "a growth of 10⁻⁶ a step counts, and a fourth of it gives an earlier limit: twice their distance";
+            let tolerance = Tolerance::absolute(uncertain + GROWTH * predicted, why);
             record.find(Finding::predicted(id("limit"), text, "s", predicted, limit, tolerance));
         }
         let absent = || match (self.is_unstable, self.theory.is_some()) {
@@ -232,7 +241,7 @@ impl<'a> OwnStep<'a> {
             predicted.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, 8)),
             Cell::rounded(radius, 8),
             cell(self.predicted_limit()),
-            cell(limit),
+            cell(limit.map(|[limit, _]| limit)),
         ]
     }
 }

@@ -7,6 +7,9 @@ use libration_settings::linear_loop::linearised_equations;
 
 use super::{Problem, StudiedState};
 
+/// The angle in rad by which the fastest mode must turn in a turn of the motion.
+const NO_LINEAR_PART: f64 = 1e-6;
+
 /// Part of the fastest rate below which a real part is rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -25,10 +28,6 @@ impl Problem {
         });
         let at_start = system.state_matrix(&jacobian(&dynamics, &system.start()));
         let equilibrium = linearised_equations(system).ok();
-        let fastest = |matrix: &Matrix| {
-            let values = eigenvalues(matrix).unwrap_or_default();
-            values.iter().map(|value| value.norm()).filter(|size| size.is_finite()).reduce(f64::max)
-        };
         let at_rest = equilibrium.as_ref().and_then(|(plant, _)| fastest(&plant.a));
         let rate = [fastest(&at_start), at_rest].into_iter().flatten().reduce(f64::max);
         let rate = rate.filter(|&rate| rate > 0.0).or_else(|| rate_of_motion(system));
@@ -37,7 +36,7 @@ impl Problem {
         let mut problem =
             Problem::of_program(&system.name, dynamics, start, turn, states.collect());
         problem.equilibrium = equilibrium
-            .filter(|(plant, _)| is_undamped(&plant.a))
+            .filter(|(plant, _)| problem.has_linear_part(&plant.a) && is_undamped(&plant.a))
             .map(|(_, point)| point.state_of(system))
             .map(|mut state| {
                 state.truncate(problem.start.len());
@@ -45,6 +44,17 @@ impl Problem {
             });
         problem
     }
+
+    /// Whether equations with these derivatives have a linear part at an equilibrium, beside what Newton's method leaves of others.
+    pub fn has_linear_part(&self, a: &Matrix) -> bool {
+        fastest(a).is_some_and(|rate| rate * self.turn > NO_LINEAR_PART)
+    }
+}
+
+/// The largest eigenvalue by size; none if none is finite.
+fn fastest(matrix: &Matrix) -> Option<f64> {
+    let values = eigenvalues(matrix).unwrap_or_default();
+    values.iter().map(|value| value.norm()).filter(|size| size.is_finite()).reduce(f64::max)
 }
 
 /// The largest rate of a state, over the largest state; none if nothing moves.

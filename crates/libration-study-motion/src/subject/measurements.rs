@@ -167,7 +167,15 @@ impl Problem {
     /// Whether no state under study changes at the start.
     pub fn rests_at_start(&self) -> bool {
         let rates = flow::Rates::new(&self.dynamics).at(&self.start);
-        self.states.iter().all(|state| rates[state.place] == 0.0)
+        !self.depends_on_time() && self.states.iter().all(|state| rates[state.place] == 0.0)
+    }
+
+    /// Whether an acceleration depends on time, a degree of freedom of which nothing is under study.
+    fn depends_on_time(&self) -> bool {
+        let is_studied = |place| self.states.iter().any(|state| state.place == place);
+        let is_time = |i: usize| !is_studied(i) && !is_studied(self.degrees() + i);
+        let mut inputs = self.dynamics.accelerations().inputs_in_use();
+        inputs.any(|input| input < self.degrees() && is_time(input))
     }
 
     /// The highest angular frequency of small oscillations about the equilibrium, in rad/s.
