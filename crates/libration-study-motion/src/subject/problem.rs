@@ -87,7 +87,8 @@ impl Problem {
     ) -> Self {
         let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
         Problem {
-            name: name.chars().map(plain).collect(),
+            // Names of files have it.
+            name: name.chars().map(plain).take(LONGEST_NAME).collect(),
             title: name.into(),
             dynamics,
             start,
@@ -169,6 +170,9 @@ impl Problem {
         Ok(stepper.state().to_vec())
     }
 }
+
+/// The most characters of a name in identifiers and names of files.
+const LONGEST_NAME: usize = 60;
 
 /// A number in small digits below the line.
 fn subscript(n: usize) -> String {
