@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::Matrix;
+use crate::{Matrix, Signal};
 
 /// A linear plant: `ẋ = Ax + Bu + Gw` and `y = Cx + Du` with white noise `w` of unit intensity.
 ///
@@ -29,27 +29,6 @@ pub struct LinearPlant {
     pub inputs: Vec<Signal>,
     /// Names and units of the outputs.
     pub outputs: Vec<Signal>,
-}
-
-/// The name and the unit of a state, an input or an output.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Signal {
-    /// The name.
-    pub name: String,
-    /// The unit; empty if it is unknown.
-    pub unit: String,
-}
-
-impl Signal {
-    /// A signal of this name and unit.
-    pub fn new(name: &str, unit: &str) -> Self {
-        Signal { name: name.to_owned(), unit: unit.to_owned() }
-    }
-
-    /// `count` signals named `letter` and a number from 1.
-    pub fn numbered(letter: &str, count: usize) -> Vec<Signal> {
-        (1..=count).map(|i| Signal::new(&format!("{letter}{i}"), "")).collect()
-    }
 }
 
 /// Error of a plant.

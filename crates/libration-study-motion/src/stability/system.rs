@@ -5,16 +5,17 @@ use std::sync::atomic::AtomicBool;
 use libration::Method;
 use libration::equations::StepProgram;
 use libration_analyze::equation_analysis::spectral_radius;
-use libration_analyze::linear_analysis::{self, LinearAnalysis, LinearRequest, Mode, StepAnalysis};
+use libration_analyze::linear_analysis::{self, LinearAnalysis, LinearRequest, StepAnalysis};
 use libration_report::Record;
 use libration_report::figure::{Axis, Dash, Figure, Mark, Panel, Role};
-use libration_report::notation::{list, number, seconds};
+use libration_report::notation::{list, seconds};
 use libration_report::page::{Highlight, Page};
 use libration_report::record::{Cell, Finding, RecordError, Series, Table, Tolerance};
 use libration_settings::equations::EquationSystem;
 use libration_settings::linear_loop::linearised_equations;
 use libration_study::{Lab, Study, StudyError};
 
+use super::system_tables::{equilibrium, modes};
 use crate::method_color::method_color;
 
 /// The name of an empty table that says that the equations have kinks or jumps.
@@ -112,33 +113,6 @@ impl Study for SystemStability<'_> {
 fn log_spaced(turn: f64) -> Vec<f64> {
     let part = |i: usize| i as f64 / (POINTS - 1) as f64;
     (0..POINTS).map(|i| turn * 100_f64.powf(part(i) - 1.0)).collect()
-}
-
-/// The states at the equilibrium.
-fn equilibrium(system: &EquationSystem, at: &[f64]) -> Table {
-    let mut table = Table::new("equilibrium", &["state", "value", "unit"]);
-    for state in &system.states {
-        let cells: [Cell; 3] =
-            [state.name.as_str().into(), at[state.place].into(), state.unit.as_str().into()];
-        table.push(cells);
-    }
-    table
-}
-
-fn modes(modes: &[Mode]) -> Table {
-    let columns = ["growth rate (1/s)", "frequency (Hz)", "damping ratio", "states that move most"];
-    let mut table = Table::new("modes", &columns);
-    for mode in modes {
-        let states: Vec<String> =
-            mode.states.iter().map(|(name, size)| format!("{name} {}", number(*size, 2))).collect();
-        table.push([
-            mode.growth_rate.into(),
-            mode.frequency.into(),
-            mode.damping_ratio.into(),
-            Cell::from(states.join(", ")),
-        ]);
-    }
-    table
 }
 
 /// Steps of a method about the equilibrium.

@@ -21,40 +21,6 @@ use crate::rl::{EnvironmentError, StepBuffers};
 
 /// A batch of [`ProgramEnvironment`]s that are stepped together: [`Environments`](crate::rl::Environments) with any number of states,
 /// inputs and observations.
-///
-/// ```
-/// use libration::Method;
-/// use libration::ensemble::Execution;
-/// use libration::equations::{Definitions, Equations, TaskDefinitions, TaskPrograms};
-/// use libration::rl::{Plan, ProgramEnvironment, ProgramEnvironments, ProgramPolicy, ProgramRollout};
-///
-/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let system = Definitions {
-///     coordinates: vec!["x".into()],
-///     accelerations: vec![("x".into(), "-10*sin(x) + u".into())],
-///     inputs: vec!["u".into()],
-///     ..Definitions::default()
-/// };
-/// let equations = Equations::new(&system)?;
-/// let task = TaskDefinitions {
-///     observe: vec!["x".into(), "x'".into()],
-///     reward: "-x^2 - 0.01*u^2".into(),
-///     terminated: vec!["abs(x) > 3".into()],
-/// };
-/// let task = TaskPrograms::new(&task, &system, &equations)?;
-/// let environment = ProgramEnvironment {
-///     start: vec![[-1.0, 1.0], [0.0, 0.0]],
-///     limit: Some(200),
-///     ..ProgramEnvironment::new(equations.dynamics().clone(), task, Method::Rk4, 0.01)
-/// };
-/// let mut all = ProgramEnvironments::<f32>::shard(environment, 0, 1000, 7, Execution::serial())?;
-/// let mut rollout = ProgramRollout::new(Plan::new(256, 1000).truncated(), [2, 1])?;
-/// all.rollout(ProgramPolicy::Linear { weights: &[-5.0, -1.0], bias: &[0.0] }, &mut rollout)?;
-/// // Every episode was cut off once.
-/// assert_eq!(rollout.ends().ends.len(), 1000);
-/// # Ok(())
-/// # }
-/// ```
 #[derive(Debug)]
 pub struct ProgramEnvironments<T: Float> {
     pub(super) definition: ProgramEnvironment,

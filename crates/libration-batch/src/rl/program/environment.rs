@@ -12,6 +12,40 @@ use crate::rl::start::uniform;
 use crate::rl::{Autoreset, Delays, Environment, EnvironmentError, ErrorScale};
 
 /// Environments of a system and a task by their programs. The actions are the inputs of the system.
+///
+/// ```
+/// use libration::Method;
+/// use libration::ensemble::Execution;
+/// use libration::equations::{Definitions, Equations, TaskDefinitions, TaskPrograms};
+/// use libration::rl::{Plan, ProgramEnvironment, ProgramEnvironments, ProgramPolicy, ProgramRollout};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let system = Definitions {
+///     coordinates: vec!["x".into()],
+///     accelerations: vec![("x".into(), "-10*sin(x) + u".into())],
+///     inputs: vec!["u".into()],
+///     ..Definitions::default()
+/// };
+/// let equations = Equations::new(&system)?;
+/// let task = TaskDefinitions {
+///     observe: vec!["x".into(), "x'".into()],
+///     reward: "-x^2 - 0.01*u^2".into(),
+///     terminated: vec!["abs(x) > 3".into()],
+/// };
+/// let task = TaskPrograms::new(&task, &system, &equations)?;
+/// let environment = ProgramEnvironment {
+///     start: vec![[-1.0, 1.0], [0.0, 0.0]],
+///     limit: Some(200),
+///     ..ProgramEnvironment::new(equations.dynamics().clone(), task, Method::Rk4, 0.01)
+/// };
+/// let mut all = ProgramEnvironments::<f32>::shard(environment, 0, 1000, 7, Execution::serial())?;
+/// let mut rollout = ProgramRollout::new(Plan::new(256, 1000).truncated(), [2, 1])?;
+/// all.rollout(ProgramPolicy::Linear { weights: &[-5.0, -1.0], bias: &[0.0] }, &mut rollout)?;
+/// // Every episode was cut off once.
+/// assert_eq!(rollout.ends().ends.len(), 1000);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProgramEnvironment {
     /// The system, with at least one input and at most [`MAX_DEGREES`](ProgramEnvironment::MAX_DEGREES) degrees of freedom.
