@@ -33,6 +33,9 @@ const POINTS: usize = 160;
 /// Steps from a half to one and a half times the predicted limit that are tried for the first at which a mode grows.
 const TRIED: usize = 256;
 
+/// Steps beyond these, each twice as long, that are tried for growth that begins slowly.
+const DOUBLED: usize = 10;
+
 /// Halvings of the interval in which the limit is searched: to 10⁻¹² of it.
 const HALVINGS: usize = 32;
 
@@ -157,18 +160,22 @@ impl<'a> OwnStep<'a> {
     fn measured_limit(&self) -> Option<[f64; 2]> {
         let [limit, earlier] = [GROWTH, 0.25 * GROWTH].map(|growth| self.limit_of_growth(growth));
         let (limit, earlier) = (limit?, earlier?);
-        let is_clear = limit.is_finite() && limit > 0.0 && earlier > 0.0;
-        // Growth that begins as slowly as by a square is twice as far at four times the growth.
-        is_clear.then(|| [limit, 2.0 * (limit - earlier).abs()])
+        // No limit, or one at zero, is a result without uncertainty. Growth that begins as slowly as by a square is twice as far at
+        // four times the growth.
+        let is_slow = limit.is_finite() && earlier > 0.0;
+        Some([limit, if is_slow { 2.0 * (limit - earlier).abs() } else { 0.0 }])
     }
 
     /// The step about the predicted limit from which on a mode grows by `growth` in each; zero if one does in smaller steps already.
     fn limit_of_growth(&self, growth: f64) -> Option<f64> {
         let predicted = self.predicted_limit()?;
         let is_stable = |dt: f64| self.radius(dt) <= 1.0 + growth;
-        // Beyond the limit a step may be stable again.
-        let tried = |i: usize| predicted * (0.5 + i as f64 / TRIED as f64);
-        let Some(first) = (0..=TRIED).find(|&i| !is_stable(tried(i))) else {
+        // Beyond the limit a step may be stable again; where growth begins slowly, it counts far beyond.
+        let tried = |i: usize| match i.checked_sub(TRIED) {
+            None => predicted * (0.5 + i as f64 / TRIED as f64),
+            Some(i) => predicted * 1.5 * 2_f64.powi(i as i32),
+        };
+        let Some(first) = (0..=TRIED + DOUBLED).find(|&i| !is_stable(tried(i))) else {
             return Some(f64::INFINITY);
         };
         let Some(before) = first.checked_sub(1) else { return Some(0.0) };
@@ -205,7 +212,7 @@ impl<'a> OwnStep<'a> {
             record.find(Finding::predicted(id("limit"), text, "s", predicted, limit, tolerance));
         }
         let absent = || match (self.is_unstable, self.theory.is_some()) {
-            (true, _) => Cell::absent("a mode grows by itself"),
+            (true, _) => Cell::absent("the system has a growing mode"),
             (false, false) => Cell::absent("no theory with states of first order"),
             (false, true) => Cell::absent("none"),
         };
@@ -230,7 +237,7 @@ fn render(record: &Record, page: &mut Page) -> Result<(), RecordError> {
     let words: Vec<String> = limits.iter().map(|(title, dt)| format!("{title} {dt}")).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     page.answer = match words.as_slice() {
-        [] => "No integrator has a largest stable step at the equilibrium: a mode grows by itself, or in steps of any length."
+        [] => "No integrator has a largest stable step at the equilibrium: the system has a growing mode, or its modes grow in all steps."
             .to_owned(),
         words => format!("Largest stable steps at the equilibrium: {}.", list(words)),
     };
