@@ -3,7 +3,7 @@
 use libration_analyze::equation_analysis::EquationSummary;
 use libration_settings::equations::EquationSystem;
 use libration_settings::linear_loop::linearised_equations;
-use libration_study::Study;
+use libration_study::{Config, Effort, Study};
 use libration_study_batch::SystemDeterminism;
 use libration_study_motion::{Convergence, Nonlinear, Problem, SystemPrecision, SystemStability};
 use serde::Serialize;
@@ -18,6 +18,14 @@ pub struct NotApplicable {
     pub study: &'static str,
     /// The reason.
     pub because: String,
+}
+
+impl NotApplicable {
+    /// The study, the system by its name or file, and the reason.
+    pub fn sentence(&self, system: &str) -> String {
+        let NotApplicable { study, because } = self;
+        format!("the study `{study}` does not apply to `{system}`: {because}")
+    }
 }
 
 /// The studies of a system of equations, in the order of the report, and those that do not apply to it.
@@ -64,10 +72,14 @@ impl<'a> SystemStudies<'a> {
         all
     }
 
-    /// With the command that runs them.
+    /// With the command that runs them: on a file, with other values of some parameters.
     #[must_use]
-    pub fn with_command(self, command: String) -> Self {
-        SystemStudies { command, ..self }
+    pub fn with_command(self, file: &str, set: &[(String, f64)], effort: Option<Effort>) -> Self {
+        let file = shlex::try_quote(file).unwrap_or_default();
+        let set = set.iter().map(|(name, value)| format!(" --set {name}={value:?}"));
+        let effort = effort.map(|effort| format!(" --effort {}", effort.name()));
+        let options: String = set.chain(effort).collect();
+        SystemStudies { command: format!("libration lab --system {file}{options}"), ..self }
     }
 
     /// The system as results show it.
@@ -76,11 +88,39 @@ impl<'a> SystemStudies<'a> {
         StudiedSystem { summary, turn: self.problem.turn(), command: self.command.clone() }
     }
 
-    /// The studies of these names, in their order; all for none.
+    /// The studies that a configuration names, in its order, or all if it names none; and the configuration with nothing but what they use.
     ///
     /// # Errors
     /// The first that does not apply.
-    pub fn named(&self, names: &[String]) -> Result<Vec<&dyn Study>, &NotApplicable> {
+    pub fn configured(
+        &self,
+        mut config: Config,
+    ) -> Result<(Vec<&dyn Study>, Config), &NotApplicable> {
+        let studies = self.named(&config.studies)?;
+        config.system = Some(self.system.name.clone());
+        config.studies = studies.iter().map(|study| study.name().to_owned()).collect();
+        let has_settings = studies.iter().filter(|study| study.settings().is_some());
+        config.settings.keep(&has_settings.map(|study| study.name()).collect::<Vec<_>>());
+        Ok((studies, config))
+    }
+
+    /// Why a key of a configuration has no effect on these studies, such as `drift` or `convergence.systems`; none if it has one.
+    pub fn reason_without_effect(&self, key: &str) -> Option<String> {
+        let name = &self.system.name;
+        let (table, inner) = key.split_once('.').unwrap_or((key, ""));
+        if ["oscillator", "start"].contains(&table) || inner == "systems" {
+            return Some(format!("the system `{name}` takes its place"));
+        }
+        if let Some(other) = self.not_applicable.iter().find(|other| other.study == table) {
+            return Some(other.sentence(name));
+        }
+        let own = self.studies.iter().find(|study| study.name() == table)?;
+        let without = || format!("the study `{table}` of a system by equations has no settings");
+        own.settings().is_none().then(without)
+    }
+
+    /// The studies of these names, in their order; all for none.
+    fn named(&self, names: &[String]) -> Result<Vec<&dyn Study>, &NotApplicable> {
         if names.is_empty() {
             return Ok(self.studies.iter().map(AsRef::as_ref).collect());
         }

@@ -27,6 +27,14 @@ impl Registry {
         self.studies.iter().map(|study| study.name()).collect()
     }
 
+    /// Returns the studies that a configuration names, in its order; all if it names none.
+    pub fn chosen(&self, config: &Config) -> Vec<&'static dyn Study> {
+        match config.studies.as_slice() {
+            [] => self.studies.to_vec(),
+            names => names.iter().filter_map(|name| self.by_name(name)).collect(),
+        }
+    }
+
     /// Returns the default configuration, which is that of the source report (§4.3, §9.1).
     pub fn config(&self) -> Config {
         let mut config = Config::default();

@@ -6,9 +6,9 @@ use std::path::Path;
 use libration_lab::output::{Output, OutputError};
 use libration_lab::results::Results;
 use libration_lab::session::{Cause, SessionError};
-use libration_lab::{NotApplicable, STUDIES, SystemStudies, session};
+use libration_lab::{STUDIES, SystemStudies, session};
 use libration_report::record::{Record, Verdict};
-use libration_study::{Config, Lab, Study};
+use libration_study::{Config, Lab};
 use libration_study_motion::Problem;
 
 use super::disagreements::check_findings;
@@ -32,25 +32,18 @@ pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
     let (results, output) = match &args.system {
         None => {
             let output = open()?;
-            let run = |lab: &Lab<'_>| session::run(lab, &chosen(&config), &output);
+            let run = |lab: &Lab<'_>| session::run(lab, &STUDIES.chosen(&config), &output);
             (investigate(&config, &reporter, run)?, output)
         }
         Some(file) => {
             let system = equation_file::read(file, &args.set)?;
             let problem = Problem::of_equations(&system);
-            let all = SystemStudies::new(&system, &problem).with_command(command(file, args));
-            let studies = all.named(&config.studies).map_err(|left_out| {
-                let NotApplicable { study, because } = left_out;
-                Failure::usage(format!(
-                    "the study `{study}` does not apply to `{}`: {because}",
-                    file.display()
-                ))
-            })?;
-            let names = studies.iter().map(|study| study.name().to_owned()).collect();
-            let has_settings = studies.iter().filter(|study| study.settings().is_some());
-            let with_settings: Vec<&str> = has_settings.map(|study| study.name()).collect();
-            let mut config = Config { system: Some(system.name.clone()), studies: names, ..config };
-            config.settings.keep(&with_settings);
+            let name = file.to_string_lossy();
+            let all = SystemStudies::new(&system, &problem);
+            let all = all.with_command(&name, &args.set, args.effort);
+            let configured = all.configured(config);
+            let (studies, config) =
+                configured.map_err(|left_out| Failure::usage(left_out.sentence(&name)))?;
             let output = open()?;
             let run = |lab: &Lab<'_>| session::run_system(lab, &all, &studies, &output);
             (investigate(&config, &reporter, run)?, output)
@@ -64,16 +57,6 @@ pub(crate) fn run(args: &LabArgs, quiet: bool) -> Result<(), Failure> {
         show(&report);
     }
     check_findings(&results.studies)
-}
-
-/// The command of the studies of a system.
-fn command(file: &Path, args: &LabArgs) -> String {
-    let file = file.to_string_lossy();
-    let file = shlex::try_quote(&file).unwrap_or_default();
-    let set = args.set.iter().map(|(name, value)| format!(" --set {name}={value:?}"));
-    let effort = args.effort.map(|effort| format!(" --effort {}", effort.name()));
-    let options: String = set.chain(effort).collect();
-    format!("libration lab --system {file}{options}")
 }
 
 /// Opens the report in the browser. A failure is only a warning.
@@ -115,14 +98,6 @@ fn unwritable(folder: &Path, error: &OutputError) -> Failure {
         format!("`{}`: {}", error.path.display(), error.source)
     };
     Failure::usage(format!("cannot write into the folder `{}` (--out): {reason}", folder.display()))
-}
-
-/// Returns the studies of the configuration, in its order.
-fn chosen(config: &Config) -> Vec<&'static dyn Study> {
-    if config.studies.is_empty() {
-        return STUDIES.studies.to_vec();
-    }
-    config.studies.iter().filter_map(|name| STUDIES.by_name(name)).collect()
 }
 
 fn investigate(
