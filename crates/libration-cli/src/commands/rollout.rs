@@ -8,7 +8,9 @@ use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use libration::ensemble::Execution;
 use libration::rl::EnvironmentError;
 use libration_env::dataset;
-use libration_env::dataset::{Dataset, DatasetError, Flaw, Monitor, VerifyOptions, WriteJob};
+use libration_env::dataset::{
+    Dataset, DatasetError, EquationSource, Flaw, Monitor, VerifyOptions, WriteJob,
+};
 
 use super::config_file;
 use crate::args::{RolloutArgs, VerifyArgs};
@@ -24,7 +26,7 @@ pub(crate) fn run(args: &RolloutArgs, quiet: bool) -> Result<(), Failure> {
         return Err(Failure::usage("--out is missing; expected a folder"));
     };
     let parse = |text: &str, name: &str| match &args.system {
-        Some(system) => dataset::parse_of(system, &args.set, text, name),
+        Some(system) => dataset::parse_of(EquationSource::File(system), &args.set, text, name),
         None => dataset::parse(text, name),
     };
     let dataset = match &args.config {

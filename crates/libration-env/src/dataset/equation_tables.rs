@@ -28,7 +28,7 @@ pub(super) fn equation_environment(
             let wrong = |error| fault(format!("cannot read `{path}`: {error}"));
             (libration_settings::read_text(Path::new(path)).map_err(wrong)?, path.as_str())
         }
-        (None, Some(text)) => (text.clone(), "text"),
+        (None, Some(text)) => (text.clone(), table.name.as_deref().unwrap_or("text")),
         _ => return Err(fault("[system.equations] requires `of`, the name of a file".to_owned())),
     };
     let parameters: Vec<(String, f64)> =

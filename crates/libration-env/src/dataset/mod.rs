@@ -28,5 +28,6 @@ pub use format::DataFormat;
 pub use libration_data::{DataError, Flaw};
 pub use monitor::Monitor;
 pub use settings::{DEFAULT, Dataset, parse, parse_of};
+pub use system_tables::EquationSource;
 pub use verification::{VerifyOptions, verify};
 pub use writer::{WriteJob, write};

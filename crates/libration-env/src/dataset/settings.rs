@@ -1,10 +1,9 @@
 //! Settings of data sets.
 
-use std::path::Path;
-
 use libration_analyze::trajectory::FloatType;
 use libration_settings::{Document, SettingsError};
 
+use super::system_tables::EquationSource;
 use super::tables::File;
 use crate::environments::{AnyEnvironmentSettings, PolicySettings};
 
@@ -41,12 +40,12 @@ pub fn parse(text: &str, file_name: &str) -> Result<Dataset, SettingsError> {
     parse_changed(text, file_name, |_| {})
 }
 
-/// Parses settings with the system by equations of a file in place of theirs, and other values of some of its parameters.
+/// Parses settings with a system by equations in place of theirs, and other values of some of its parameters.
 ///
 /// # Errors
 /// As for [`parse`].
 pub fn parse_of(
-    system: &Path,
+    system: EquationSource<'_>,
     parameters: &[(String, f64)],
     text: &str,
     file_name: &str,

@@ -2,10 +2,25 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::Path;
 
 use libration_settings::Number;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
+
+/// The equations of a system.
+#[derive(Clone, Copy, Debug)]
+pub enum EquationSource<'a> {
+    /// In a file.
+    File(&'a Path),
+    /// The text of a file, with its name in messages.
+    Text {
+        /// The name.
+        name: &'a str,
+        /// The text.
+        text: &'a str,
+    },
+}
 
 /// The tables of `[system]`: equations, or systems of the catalogue with their parameters.
 #[derive(Default)]
@@ -21,8 +36,28 @@ pub(super) struct EquationsTable {
     pub(super) of: Option<String>,
     /// In manifests, which need no other file.
     pub(super) text: Option<String>,
+    /// The name of a text in messages.
+    #[serde(skip)]
+    pub(super) name: Option<String>,
     pub(super) parameters: BTreeMap<String, Number>,
     pub(super) max_action: Option<Numbers>,
+}
+
+impl EquationsTable {
+    /// The table of a source alone.
+    pub(super) fn of(source: EquationSource<'_>) -> Self {
+        match source {
+            EquationSource::File(path) => EquationsTable {
+                of: Some(path.to_string_lossy().into_owned()),
+                ..EquationsTable::default()
+            },
+            EquationSource::Text { name, text } => EquationsTable {
+                text: Some(text.to_owned()),
+                name: Some(name.to_owned()),
+                ..EquationsTable::default()
+            },
+        }
+    }
 }
 
 impl<'de> Deserialize<'de> for SystemTables {

@@ -1,12 +1,11 @@
 //! Tables of settings files.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use libration_settings::{Count, Number};
 use serde::Deserialize;
 
-use super::system_tables::{EquationsTable, Numbers, SystemTables, Weights};
+use super::system_tables::{EquationSource, EquationsTable, Numbers, SystemTables, Weights};
 
 /// A settings file.
 #[derive(Deserialize)]
@@ -128,17 +127,17 @@ pub(super) struct ConstantTable {
 }
 
 impl File {
-    /// Puts the equations of a file in place of the system and of what belongs to systems of the catalogue.
-    pub(super) fn replace_system(&mut self, path: &Path, parameters: &[(String, f64)]) {
+    /// Puts equations in place of the system and of what belongs to systems of the catalogue.
+    pub(super) fn replace_system(
+        &mut self,
+        source: EquationSource<'_>,
+        parameters: &[(String, f64)],
+    ) {
         let own = self.system.equations.take();
         let parameters =
             parameters.iter().map(|(name, value)| (name.clone(), Number(*value))).collect();
-        let equations = EquationsTable {
-            of: Some(path.to_string_lossy().into_owned()),
-            text: None,
-            parameters,
-            max_action: own.and_then(|own| own.max_action),
-        };
+        let max_action = own.and_then(|own| own.max_action);
+        let equations = EquationsTable { parameters, max_action, ..EquationsTable::of(source) };
         self.system = SystemTables { equations: Some(equations), catalogued: BTreeMap::new() };
         self.start = None;
         self.task = self.task.take().filter(|task| matches!(task, TaskTable::Expressions(_)));
