@@ -84,6 +84,7 @@ def _advise(
 ) -> tuple[str, bool, str | None]: ...
 def _run_lab(
     config: str,
+    system: Mapping[str, Any] | None,
     names: Sequence[str] | None,
     effort: str | None,
     out: PathLike[str],
@@ -93,6 +94,7 @@ def _forked() -> None: ...
 def _dataset_settings() -> str: ...
 def _write_dataset(
     settings: str,
+    system: _Equations | None,
     writing: Mapping[str, Any],
     progress: Callable[[int, int, int], Any] | None,
 ) -> tuple[int, int, int]: ...

@@ -12,11 +12,15 @@ from ._keywords import check_keywords
 from ._progress import Progress, ProgressDisplay
 from ._settings import count
 from ._toml import text_of
+from .equations import EquationSystem, check_system
 
 __all__ = ["Flaw", "SETTINGS", "Written", "verify", "write"]
 
 SETTINGS: str = _native._dataset_settings()
 """Default settings file, with comments."""
+
+_KEYS_OF_EQUATIONS = {"system": "equations", "system.equations": "max_action", "task": "expressions"}
+"""The only key of each table of the settings whose others a system by equations replaces."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +52,7 @@ def write(
     out: str | os.PathLike[str],
     settings: Mapping[str, Any] | str | os.PathLike[str] | None = None,
     *,
+    system: EquationSystem | None = None,
     transitions: int | None = None,
     format: str = "parquet",
     shard: tuple[int, int] = (1, 1),
@@ -63,6 +68,10 @@ def write(
         Output folder, created if it is missing.
     settings:
         A dictionary with the keys of :data:`SETTINGS`, or the path of a settings file (default: the settings of the report).
+    system:
+        A system by equations (:class:`libration.EquationSystem`) in place of that of the settings, as ``libration rollout --system FILE``. Its
+        task is ``{"task": {"expressions": {...}}}`` of the settings, or else its own. ``{"system": {"equations": {"max_action": 10.0}}}`` of
+        the settings limits actions. Keys of a dictionary that belong to systems of the catalogue are errors; those of a file are ignored.
     transitions:
         Number of transitions, rounded up to whole steps of all environments (default: that of the settings).
     format:
@@ -95,13 +104,41 @@ def write(
         "resume": bool(resume),
         "threads": count("threads", threads, 0, 1024),
     }
+    check_system("datasets.write", system, settings=settings)
+    if system is not None and isinstance(settings, Mapping):
+        _check_replaced(settings)
+    source = None if system is None else system._text
+    text = text_of("settings", settings)
     with ProgressDisplay(progress) as display:
 
         def report(done: int, total: int, size: int) -> None:
             display.update(done / max(total, 1), f"{done:,} transitions, {size / 1e9:.2f} GB")
 
-        counts = _native._write_dataset(text_of("settings", settings), writing, report if display.enabled else None)
+        counts = _native._write_dataset(text, source, writing, report if display.enabled else None)
     return Written(Path(out), *counts)
+
+
+def _check_replaced(settings: Mapping[str, Any]) -> None:
+    """Check that settings have no key that a system by equations replaces.
+
+    Raises
+    ------
+    ValueError
+        With the key and the one that is allowed in its place.
+    """
+    if settings.get("start") is not None:
+        raise ValueError(
+            "settings has 'start', which a system by equations replaces; expected 'task.expressions.start' or none"
+        )
+    for path, allowed in _KEYS_OF_EQUATIONS.items():
+        table: Any = settings
+        for key in path.split("."):
+            table = table.get(key) if isinstance(table, Mapping) else None
+        for key in table if isinstance(table, Mapping) else ():
+            if key != allowed:
+                raise ValueError(
+                    f"settings has '{path}.{key}', which a system by equations replaces; expected '{path}.{allowed}' or none"
+                )
 
 
 @check_keywords

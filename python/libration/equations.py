@@ -44,6 +44,8 @@ class EquationSystem:
         Values at the start by name, ``"x'"`` for a velocity (default: zero).
     units:
         Units of coordinates, states of first order, inputs, and of ``"energy"``.
+    task:
+        The task of environments and data sets: ``observe``, ``reward``, ``terminated`` and ``start``, as in the table ``[task]`` of a file.
     name, description:
         Shown in results.
 
@@ -70,11 +72,12 @@ class EquationSystem:
         energy: str | None = None,
         start: Mapping[str, float] | None = None,
         units: Mapping[str, str] | None = None,
+        task: Mapping[str, Any] | None = None,
         name: str = "system",
         description: str = "",
     ) -> None:
         tables = {"acceleration": acceleration, "rate": rate, "parameters": parameters, "let": let}
-        tables |= {"start": start, "units": units}
+        tables |= {"start": start, "units": units, "task": task}
         for key, table in tables.items():
             if table is not None and not isinstance(table, Mapping):
                 raise TypeError(f"{key} must be a dictionary, not {type(table).__name__}")
@@ -100,7 +103,7 @@ class EquationSystem:
             "start": {key: number(key, value, "finite") for key, value in (start or {}).items()},
             "units": units,
         }
-        self._read(text_of("system", {"system": system}), "system", [])
+        self._read(text_of("system", {"system": system, "task": task}), "system", [])
 
     def _read(self, text: str, file: str, given: list[tuple[str, float]]) -> None:
         self._text = (text, file, given)
@@ -214,3 +217,23 @@ class EquationSystem:
 
     def __reduce__(self) -> Any:
         return EquationSystem._again, self._text
+
+
+def check_system(function: str, system: Any, **others: Any) -> None:
+    """Check that ``system`` is by equations or None, and that no other argument is a system by equations.
+
+    Raises
+    ------
+    TypeError
+        With the name of the argument, and how to call ``function``.
+    """
+    for name, value in others.items():
+        if isinstance(value, EquationSystem):
+            raise TypeError(f"{name} is {value!r}, but a system is given by name: {function}(system=…)")
+    if system is None or isinstance(system, EquationSystem):
+        return
+    if isinstance(system, (str, os.PathLike)):
+        help = f"; help: System.from_toml({os.fspath(system)!r})"
+    else:
+        help = ", as of System(acceleration=…) or System.from_toml"
+    raise TypeError(f"system is {system!r}, but it must be a system by equations{help}")

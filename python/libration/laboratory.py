@@ -19,6 +19,7 @@ from . import _native
 from ._keywords import check_keywords
 from ._progress import Progress, ProgressDisplay
 from ._toml import text_of
+from .equations import EquationSystem, check_system
 
 __all__ = ["Finding", "Results", "STUDIES", "run_lab"]
 
@@ -79,7 +80,11 @@ class Results:
         ]
         """Findings of all studies, in the order of the report."""
         self.claims: list[dict[str, Any]] = [claim for study in found["studies"] for claim in study["claims"]]
-        """Claims of the source report with their verdicts."""
+        """Claims of the source report with their verdicts; none of a system by equations."""
+        self.not_applicable: dict[str, str] = {
+            other["study"]: other["because"] for other in found.get("not_applicable", ())
+        }
+        """Reason of each study that does not apply to a system by equations, by name."""
 
     @property
     def report(self) -> Path:
@@ -139,6 +144,7 @@ def _number(x: float | None) -> str:
 def run_lab(
     config: Mapping[str, Any] | str | os.PathLike[str] | None = None,
     *,
+    system: EquationSystem | None = None,
     studies: Iterable[str] | None = None,
     effort: str | None = None,
     out: str | os.PathLike[str] | None = None,
@@ -150,8 +156,11 @@ def run_lab(
     ----------
     config:
         A dictionary with the keys of a configuration file, or the path of one. Missing keys have the values of the source report.
+    system:
+        A system by equations (:class:`libration.EquationSystem`), as for ``libration lab --system FILE``: its studies in place of those of the
+        oscillator. Keys of a dictionary that have no effect on them are errors; those of a file are ignored.
     studies:
-        Names from :data:`STUDIES` (default: all).
+        Names from :data:`STUDIES` (default: all that apply; :attr:`Results.not_applicable` has the others).
     effort:
         ``"quick"``, ``"standard"`` or ``"thorough"``.
     out:
@@ -162,10 +171,11 @@ def run_lab(
     Raises
     ------
     TypeError, ValueError
-        For an invalid configuration, before any work.
+        For an invalid configuration, or a study that does not apply to the system, before any work.
     OSError
         If the folder cannot be written, or another run uses it.
     """
+    check_system("run_lab", system, config=config)
     config_text = text_of("config", config)
     names = None
     if studies is not None:
@@ -179,7 +189,7 @@ def run_lab(
     display = ProgressDisplay(progress)
     folder = Path(tempfile.mkdtemp(prefix="libration-") if out is None else out)
     try:
-        found = _run(config_text, names, effort, folder, display)
+        found = _run(config_text, _request(system, config), names, effort, folder, display)
     except BaseException:
         if out is None:
             shutil.rmtree(folder, ignore_errors=True)
@@ -190,8 +200,23 @@ def run_lab(
     return results
 
 
+def _request(system: EquationSystem | None, config: Any) -> dict[str, Any] | None:
+    """Return the system with the keys of a configuration that is a dictionary; of a table also ``table.key``."""
+    if system is None:
+        return None
+    tables = config if isinstance(config, Mapping) else {}
+    keys = [str(table) for table in tables]
+    keys += [f"{table}.{key}" for table, inner in tables.items() if isinstance(inner, Mapping) for key in inner]
+    return {"equations": system._text, "keys": keys}
+
+
 def _run(
-    config_text: str, names: list[str] | None, effort: str | None, folder: Path, display: ProgressDisplay
+    config_text: str,
+    system: dict[str, Any] | None,
+    names: list[str] | None,
+    effort: str | None,
+    folder: Path,
+    display: ProgressDisplay,
 ) -> tuple[dict[str, Any], Any]:
     with display:
 
@@ -199,5 +224,6 @@ def _run(
             part = (max(number - 1, 0) + done / max(total, 1)) / max(of, 1)
             display.update(part, f"{study} ({number} of {of}): {what}" if what else study)
 
-        found, series = _native._run_lab(config_text, names, effort, folder, report if display.enabled else None)
+        callback = report if display.enabled else None
+        found, series = _native._run_lab(config_text, system, names, effort, folder, callback)
     return json.loads(found), series

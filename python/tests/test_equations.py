@@ -1,5 +1,6 @@
 """Systems by equations."""
 
+import json
 import pickle
 from pathlib import Path
 
@@ -103,8 +104,157 @@ def test_equations_are_a_plant_for_budgets_and_analyses():
         (lambda: libration.Ensemble(pendulum(), dt=0.1, q=np.zeros((3, 2))), r"must be \(N, 1\): q"),
         (lambda: libration.analyze(pendulum(), integrator="exact", dt=0.1), "exact"),
         (lambda: libration.Environments(pendulum(), 4), "has no inputs, but actions need at least one"),
+        (lambda: pendulum(task="-q^2"), "task must be a dictionary"),
+        (lambda: pendulum(task={"reward": "-p^2"}), "unknown name `p`"),
+        (lambda: pendulum(task={"rewrad": "-q^2"}), "did you mean `reward`"),
     ],
 )
 def test_wrong_equations_and_options_are_refused_by_name(make, message):
     with pytest.raises((TypeError, ValueError), match=message):
         make()
+
+
+def test_the_laboratory_runs_the_studies_that_apply_to_a_system(tmp_path):
+    file = SYSTEMS / "van_der_pol.toml"
+    results = libration.run_lab(
+        {"convergence": {"coarsest": 128}},
+        system=libration.System.from_toml(file, mu=0.8),
+        studies=["convergence", "stability"],
+        effort="quick",
+        out=tmp_path,
+    )
+    assert list(results.seconds) == ["convergence", "stability"] and not results.disagreements
+    assert results["convergence.Van-der-Pol.velocity-verlet.global-order"].predicted == 1.0
+    assert results.json["system"]["parameters"][0]["value"] == 0.8
+    assert results.json["config"]["system"] == "Van der Pol" and "oscillator" not in results.json["config"]
+    applies = {"determinism", "precision", "convergence", "stability"}
+    assert set(results.not_applicable) == set(libration.STUDIES) - applies and results.claims == []
+    assert results.not_applicable["nonlinear"] == "the file has no `energy`"
+    stored = json.loads((tmp_path / "results.json").read_text())
+    assert [f["id"] for study in stored["studies"] for f in study["findings"]] == [f.id for f in results.findings]
+    assert all((tmp_path / "data" / f"{name}.parquet").exists() for name in results.series)
+    assert f"libration lab --system {file} --set mu=0.8 --effort quick" in results.report.read_text()
+
+
+def test_the_laboratory_finds_the_same_in_a_file_and_in_a_system_of_the_same_equations():
+    file = libration.System.from_toml(SYSTEMS / "van_der_pol.toml")
+    own = libration.System(
+        acceleration={"x": "mu*(1 - x^2)*x' - x"}, parameters={"mu": 1.0}, start={"x": 0.1}, name="Van der Pol"
+    ).replace(mu=file.parameters["mu"])
+    found = [
+        libration.run_lab(system=system, studies=["precision"], effort="quick", progress=False)
+        for system in (file, own)
+    ]
+    assert found[0].findings and found[0].findings == found[1].findings
+    assert "libration lab --system FILE --set mu=" in found[1].report.read_text()
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "message"),
+    [
+        ({"config": {"start": {"q": 2.0}}}, ValueError, "config has `start`, which has no effect: the system `system` takes"),
+        ({"config": {"drift": {"dt": [0.1]}}}, ValueError, "config has `drift`.*predictions are those of harmonic motion"),
+        ({"config": {"convergence": {"systems": ["kepler"]}}}, ValueError, "config has `convergence.systems`"),
+        ({"config": {"precision": {}}}, ValueError, "`precision` of a system by equations has no settings"),
+        ({"studies": ["determinism", "latency"]}, ValueError, "studies: the study `latency` does not apply to `system`"),
+        ({"studies": ["nonlinear"]}, ValueError, "changes by .* of its size"),
+        ({"studies": ["convergense"]}, ValueError, "did you mean `convergence`"),
+        ({"system": "mine.toml"}, TypeError, r"help: System.from_toml\('mine.toml'\)"),
+        ({"system": libration.System("pendulum")}, TypeError, "it must be a system by equations"),
+        ({"system": None, "config": pendulum()}, TypeError, r"config is <EquationSystem.*run_lab\(system=…\)"),
+    ],
+)
+def test_what_does_not_go_with_a_system_in_the_laboratory_is_refused_by_name(tmp_path, given, error, message):
+    damped = libration.System(acceleration={"q": "-q - 0.1*q'"}, energy="q'^2/2 + q^2/2", start={"q": 1.0})
+    with pytest.raises(error, match=message):
+        libration.run_lab(**{"system": damped, "out": tmp_path / "none", **given})
+    assert not (tmp_path / "none").exists()
+
+
+SETTINGS = {"environments": 6, "steps": 40, "dt": 0.02, "chunk": {"environments": 3, "steps": 10}}
+SETTINGS |= {"policy": {"random": {"low": -4.0, "high": 4.0}}}
+
+
+def write(out, settings=SETTINGS, **given):
+    return libration.datasets.write(out, settings, format="npy", **given)
+
+
+def files(folder):
+    return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def spring(**given):
+    return libration.System(acceleration={"q": "-k*q + u"}, parameters={"k": 10.0}, inputs=["u"], **given)
+
+
+TASK = {"observe": ["q", "q'"], "reward": "-q^2 - 0.01*u^2", "terminated": ["abs(q) > 2"], "start": {"q": (-1, 1)}}
+
+
+def test_a_data_set_of_a_system_has_the_bytes_of_one_of_its_file(tmp_path):
+    file, limit = SYSTEMS / "cart_pole.toml", {"max_action": 3.0}
+    of_file = {"of": file, "parameters": {"pole": 0.2}, **limit}
+    write(tmp_path / "file", {**SETTINGS, "system": {"equations": of_file}})
+    cart = libration.System.from_toml(file, pole=0.2)
+    written = write(tmp_path / "own", {**SETTINGS, "system": {"equations": limit}}, system=cart)
+    assert written.transitions == 240
+    assert files(tmp_path / "own") == files(tmp_path / "file")
+    write(tmp_path / "other", {**SETTINGS, "system": {"equations": limit}}, system=cart.replace(pole=0.3))
+    assert files(tmp_path / "other") != files(tmp_path / "file")
+
+
+def test_a_data_set_of_a_system_made_in_python_is_resumed_to_the_same_bytes(tmp_path):
+    system, part, whole = spring(task=TASK), tmp_path / "part", tmp_path / "whole"
+
+    class Stop(Exception):
+        pass
+
+    def stop(done, what):
+        raise Stop
+
+    long = {**SETTINGS, "steps": 2000}
+    with pytest.raises(Stop):
+        write(part, long, system=system, progress=stop)
+    (flaw,) = libration.datasets.verify(part)
+    assert "is unfinished" in flaw.what
+    with pytest.raises(ValueError, match="other"):
+        write(part, long, system=system.replace(k=11.0), resume=True)
+    write(part, long, system=system, resume=True)
+    write(whole, long, system=system)
+    assert files(part) == files(whole)
+    assert libration.datasets.verify(part, replay=True) == []
+
+
+def test_the_task_of_a_data_set_is_that_of_the_settings_or_of_the_system(tmp_path):
+    write(tmp_path / "own", system=spring(task=TASK))
+    write(tmp_path / "given", {**SETTINGS, "task": {"expressions": TASK}}, system=spring())
+    other = {**TASK, "reward": "1"}
+    write(tmp_path / "other", {**SETTINGS, "task": {"expressions": other}}, system=spring(task=TASK))
+    own, given, paid = (files(tmp_path / name) for name in ("own", "given", "other"))
+    manifest = Path("manifest.jsonl")
+    heads = [json.loads(all.pop(manifest).splitlines()[0])["data"] for all in (own, given, paid)]
+    assert heads[0]["task"] == heads[1]["task"] and own == given
+    assert heads[0]["task"]["expressions"]["start"] == {"q": [-1.0, 1.0], "q'": [0.0, 0.0]}
+    reward = next(path for path in own if path.parts[0] == "reward")
+    assert own[reward] != paid[reward]
+    assert set(np.load(tmp_path / "other" / reward).ravel()) == {1.0}
+
+
+@pytest.mark.parametrize(
+    ("settings", "given", "error", "message"),
+    [
+        ({"start": {"q": [1.0, 1.0]}}, {}, ValueError, "settings has 'start'"),
+        ({"system": {"oscillator": {"k": 1.0}}}, {}, ValueError, "settings has 'system.oscillator'"),
+        ({"system": {"equations": {"of": "mine.toml"}}}, {}, ValueError, "settings has 'system.equations.of'"),
+        ({"task": {"regulate": {"bound": 1.0}}}, {}, ValueError, "settings has 'task.regulate'"),
+        ({"task": {"expressions": {"reward": "-p"}}}, {}, ValueError, "unknown name `p`"),
+        ({"system": {"equations": {"max_action": [1.0, 2.0]}}}, {}, ValueError, "max_action.* has 2 numbers"),
+        ({}, {"system": spring()}, ValueError, r"has no table \[task\]"),
+        ({}, {"system": pendulum(task={"reward": "1"})}, ValueError, "has no inputs"),
+        ({}, {"system": libration.System("pendulum")}, TypeError, "it must be a system by equations"),
+        (spring(task=TASK), {"system": None}, TypeError, r"settings is <EquationSystem.*datasets.write\(system=…\)"),
+    ],
+)
+def test_what_does_not_go_with_a_system_in_a_data_set_is_refused_by_name(tmp_path, settings, given, error, message):
+    with pytest.raises(error, match=message):
+        write(tmp_path / "none", settings, **{"system": spring(task=TASK), **given})
+    assert not (tmp_path / "none").exists()

@@ -53,6 +53,15 @@ def test_environments_of_equations_have_the_bits_of_the_preset(dtype, mode):
             assert np.array_equal(column, found.episodes[name]), name
 
 
+def test_the_task_of_a_system_is_that_of_the_keywords():
+    own = libration.System(acceleration={"q": "-10*q + u"}, inputs=["u"], task=TASK)
+    by_system, by_keywords = libration.Environments(own, 9, dt=0.01), libration.Environments(SPRING, 9, dt=0.01, **TASK)
+    assert np.array_equal(by_system.reset(seed=5)[0], by_keywords.reset(seed=5)[0])
+    for _ in range(50):
+        for found, wanted in zip(by_system.step(np.full((9, 1), 3.0))[:4], by_keywords.step(np.full((9, 1), 3.0))[:4]):
+            assert np.array_equal(found, wanted)
+
+
 def test_the_task_of_a_file_is_that_of_its_expressions():
     environments = libration.Environments(cart(), 200, dt=0.02, integrator="rk4", dtype="float64", max_action=2.0)
     observations, _ = environments.reset(seed=1)

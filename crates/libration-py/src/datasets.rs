@@ -6,10 +6,13 @@ use std::sync::{Mutex, PoisonError};
 
 use libration::ensemble::Execution;
 use libration_env::dataset;
-use libration_env::dataset::{DataFormat, Dataset, Flaw, Monitor, VerifyOptions, WriteJob};
+use libration_env::dataset::{
+    DataFormat, Dataset, EquationSource, Flaw, Monitor, VerifyOptions, WriteJob,
+};
 use pyo3::prelude::*;
 
 use crate::background::run_in_background;
+use crate::equations::EquationText;
 use crate::error::{Raised, keywords, unknown, value_error};
 
 /// Progress of a data set.
@@ -63,10 +66,18 @@ pub(crate) struct Writing {
 pub(crate) fn _write_dataset(
     py: Python<'_>,
     settings: &str,
+    system: Option<EquationText>,
     writing: Writing,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(u64, u64, usize)> {
-    let mut dataset: Dataset = dataset::parse(settings, "settings.toml").map_err(Raised::raised)?;
+    let parsed = match &system {
+        None => dataset::parse(settings, "settings.toml"),
+        Some((text, name, set)) => {
+            let source = EquationSource::Text { name, text };
+            dataset::parse_of(source, set, settings, "settings.toml")
+        }
+    };
+    let mut dataset: Dataset = parsed.map_err(Raised::raised)?;
     if let Some(transitions) = writing.transitions {
         let with_name = |error| value_error(format!("transitions is {transitions}: {error}"));
         dataset = dataset.transitions(transitions).map_err(with_name)?;

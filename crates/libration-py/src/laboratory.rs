@@ -1,19 +1,23 @@
 //! The functions `run_lab` and `advise` for Python.
 
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
 use libration_advise as advise;
 use libration_advise::linear;
 use libration_lab::output::Output;
-use libration_lab::{STUDIES, session};
-use libration_study::{Effort, Lab, Progress, Study};
+use libration_lab::results::Results;
+use libration_lab::{STUDIES, SystemStudies, session};
+use libration_study::{Config, Effort, Lab, Progress};
+use libration_study_motion::Problem;
 use libration_work::Work;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::background::run_in_background;
+use crate::equations::{EquationText, equations};
 use crate::error::{Raised, unknown, value_error};
 
 /// Progress: study, its number, number of studies, current work, items done and number of items.
@@ -112,11 +116,20 @@ fn advise_linear(
 /// A series: its study, its name and its columns, each with its unit.
 type Series<'py> = (String, String, Bound<'py, PyDict>, Bound<'py, PyDict>);
 
+/// A system by equations, and the keys of a configuration that have to have an effect on its studies.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct LabSystem {
+    equations: EquationText,
+    keys: Vec<String>,
+}
+
 /// Runs studies and writes what they find into a folder. Gives what is in `results.json`, and all series.
 #[pyfunction]
 pub(crate) fn _run_lab<'py>(
     py: Python<'py>,
     config: &str,
+    system: Option<LabSystem>,
     names: Option<Vec<String>>,
     effort: Option<String>,
     out: PathBuf,
@@ -124,24 +137,23 @@ pub(crate) fn _run_lab<'py>(
 ) -> PyResult<(String, Vec<Series<'py>>)> {
     let mut config = STUDIES.parse(config, "config.toml").map_err(Raised::raised)?;
     config.studies = names.unwrap_or(config.studies);
-    config.effort = match effort {
-        Some(name) => Effort::from_name(&name)
-            .ok_or_else(|| unknown("effort", &name, Effort::ALL.map(Effort::name)))?,
-        None => config.effort,
-    };
+    let effort = effort.map(|name| {
+        let effort = Effort::from_name(&name);
+        effort.ok_or_else(|| unknown("effort", &name, Effort::ALL.map(Effort::name)))
+    });
+    let effort = effort.transpose()?;
+    config.effort = effort.unwrap_or(config.effort);
     STUDIES.check(&config).map_err(|error| value_error(error.to_string()))?;
-    let chosen: Vec<&'static dyn Study> = match config.studies.as_slice() {
-        [] => STUDIES.studies.to_vec(),
-        names => names.iter().filter_map(|name| STUDIES.by_name(name)).collect(),
-    };
-    let output = Output::open(out).map_err(Raised::raised)?;
     let state = ProgressState::default();
-    let results = run_in_background(
-        py,
-        |stop| session::run(&Lab::new(&config, config.effort, &state, stop), &chosen, &output),
-        |py| state.report(py, progress.as_ref()),
-    )?;
-    let results = results.map_err(Raised::raised)?;
+    let run = |stop: &AtomicBool| match &system {
+        None => {
+            let output = Output::open(out).map_err(Raised::raised)?;
+            let lab = Lab::new(&config, config.effort, &state, stop);
+            session::run(&lab, &STUDIES.chosen(&config), &output).map_err(Raised::raised)
+        }
+        Some(system) => run_on_system(system, (config, effort), out, (&state, stop)),
+    };
+    let results = run_in_background(py, run, |py| state.report(py, progress.as_ref()))??;
     let json = serde_json::to_string(&results).map_err(|error| value_error(error.to_string()))?;
     let mut all = Vec::new();
     for record in &results.studies {
@@ -155,4 +167,31 @@ pub(crate) fn _run_lab<'py>(
         }
     }
     Ok((json, all))
+}
+
+/// Runs the studies of a system by equations.
+fn run_on_system(
+    LabSystem { equations: source, keys }: &LabSystem,
+    (config, effort): (Config, Option<Effort>),
+    out: PathBuf,
+    (state, stop): (&ProgressState, &AtomicBool),
+) -> PyResult<Results> {
+    let (_, file, set) = source;
+    let system = equations(source)?;
+    let problem = Problem::of_equations(&system);
+    let all = SystemStudies::new(&system, &problem);
+    // A system that was made in Python has no file.
+    let file = if file.ends_with(".toml") { file } else { "FILE" };
+    let all = all.with_command(file, set, effort);
+    for key in keys {
+        if let Some(reason) = all.reason_without_effect(key) {
+            return Err(value_error(format!("config has `{key}`, which has no effect: {reason}")));
+        }
+    }
+    let (studies, config) = all
+        .configured(config)
+        .map_err(|other| value_error(format!("studies: {}", other.sentence(&system.name))))?;
+    let output = Output::open(out).map_err(Raised::raised)?;
+    let lab = Lab::new(&config, config.effort, state, stop);
+    session::run_system(&lab, &all, &studies, &output).map_err(Raised::raised)
 }
