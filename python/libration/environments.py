@@ -60,7 +60,7 @@ class Environments(_native.Batch):
     observe, reward, terminated:
         The task on a system by equations: expressions of the observed numbers (default: all states), the reward, and comparisons that
         end an episode. They have the names of the system and ``t``, the time since the episode began. ``reward`` also has the inputs,
-        and ``before(x)`` for a state before the step. Default: the table ``[task]`` of the system's file.
+        and ``before(x)`` for a state before the step. Default: the task of the system.
     start:
         Start of an episode of a system by equations: a number or a pair ``(low, high)`` for each state by its name.
     dtype:

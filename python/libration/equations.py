@@ -229,7 +229,7 @@ def check_system(function: str, system: Any, **others: Any) -> None:
     """
     for name, value in others.items():
         if isinstance(value, EquationSystem):
-            raise TypeError(f"{name} is {value!r}, but a system is given by name: {function}(system=…)")
+            raise TypeError(f"{name} is {value!r}, but a system has its own keyword: {function}(system=…)")
     if system is None or isinstance(system, EquationSystem):
         return
     if isinstance(system, (str, os.PathLike)):

@@ -153,7 +153,7 @@ impl Settings {
         let task = match task {
             Some(text) => equations::task(text, &system)?,
             None => system.task.clone().ok_or_else(|| {
-                let text = "reward is required: the file of the system has no table [task]";
+                let text = "reward is required: the system has no task";
                 value_error(text.to_owned())
             })?,
         };

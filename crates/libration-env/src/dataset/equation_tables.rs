@@ -37,7 +37,9 @@ pub(super) fn equation_environment(
     let system = EquationSystem::parse(&text, file, &parameters).map_err(|e| fault(wrong(e)))?;
     let task = match task {
         None => system.task.clone().ok_or_else(|| {
-            let message = format!("`{file}` has no table [task]; expected [task.expressions] here");
+            let message = format!(
+                "`{file}` has no table [task]; expected [task.expressions] in the settings"
+            );
             Fault::new("task", message)
         })?,
         Some(TaskTable::Expressions(table)) => {
