@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::budget::{Budget, FirstFailure};
 use super::combined_effect::CombinedEffect;
-use super::integrator_choice::{IntegratorChoice, evaluations, sort_by_cost};
+use super::integrator_choice::{IntegratorChoice, sort_by_cost};
 use super::request::{Measure, Request, Tolerance};
 use super::stabilising_changes::StabilisingChanges;
 use super::stability_map::StabilityMap;
@@ -21,9 +21,9 @@ pub struct Advice {
     /// The warnings, most urgent first.
     pub warnings: Vec<String>,
     /// The system.
-    pub system: &'static str,
+    pub system: String,
     /// Its parameters.
-    pub parameters: BTreeMap<&'static str, f64>,
+    pub parameters: BTreeMap<String, f64>,
     /// Initial positions, or those of the operating point.
     pub q: Vec<f64>,
     /// Initial velocities.
@@ -132,8 +132,11 @@ impl Advice {
         Advice {
             answer: String::new(),
             warnings: Vec::new(),
-            system: request.system.name(),
-            parameters: request.actuation.parameters(request.system).into_iter().collect(),
+            system: request.system.name().to_owned(),
+            parameters: {
+                let own = request.system.parameters().into_iter();
+                own.map(|(name, value)| (name.to_owned(), value)).collect()
+            },
             q: request.q.clone(),
             v: request.v.clone(),
             tolerance: ToleranceAnswer { of: of.name(), most },
@@ -170,7 +173,7 @@ impl Advice {
     pub(super) fn choose(&mut self, request: &Request, mut choices: Vec<IntegratorChoice>) {
         for choice in &mut choices {
             let method = Method::from_name(choice.integrator);
-            let each = method.and_then(|m| evaluations(request.system, &request.q, &request.v, m));
+            let each = method.and_then(|m| request.system.evaluations(&request.q, &request.v, m));
             choice.evaluations = each.zip(choice.dt).map(|(each, dt)| each as f64 / dt);
         }
         sort_by_cost(&mut choices);

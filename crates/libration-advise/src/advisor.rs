@@ -1,8 +1,7 @@
 //! Advice on simulations and loops.
 
 use libration::analysis::Imperfections;
-use libration::{Float, Method, Model, State, System};
-use libration_settings::units;
+use libration::{Float, Method, State, System};
 use libration_work::Work;
 
 use super::advice::{Advice, FloatChoice, LoopAdvice};
@@ -12,16 +11,17 @@ use super::integrator_choice::{best_possible, largest_step};
 use super::loop_simulation::{LoopSimulation, MOST_PERIODS};
 use super::loops::{Loop, LoopError, PlantModel};
 use super::request::{Measure, Request, Tolerance};
+use super::simulated_system::SimulatedSystem;
 use super::summary::{describe_integrator, describe_loop, loop_warnings};
 use super::{AdviseError, Budget, Throughput};
 
 /// The advice on a system without a controller.
-pub(super) fn advise_simulation<M: Model<D>, const D: usize>(
+pub(super) fn advise_simulation(
     work: &Work<'_>,
-    model: M,
+    system: &dyn SimulatedSystem,
     request: &Request,
 ) -> Result<Advice, AdviseError> {
-    let free = FreeMotion::new(work, model, request)?;
+    let free = FreeMotion::new(work, system, request)?;
     let mut advice = Advice::new(request);
     let most = request.tolerance.most;
     let mut choices =
@@ -156,17 +156,17 @@ pub(super) fn advise_loop<M: PlantModel>(
     let rest = State { q: [request.q[0]], v: [0.0] };
     let [held] = model.on::<f64>().acceleration(&rest);
     advice.warnings.splice(0..0, loop_warnings(&one, &combined));
-    let units = units::of(request.system, request.actuation);
+    let (actuation, units) = (request.system.actuation(), request.system.units());
     let looped = LoopAdvice {
         controller: one.describe_controller(),
-        command: request.actuation.name(),
+        command: actuation.name(),
         command_unit: units.command,
         gains: {
             let gains = one.given_gains();
             [gains.position, gains.velocity]
         },
         gain_units: [units.gains[0], units.gains[1]],
-        held_command: -held * request.actuation.mass(),
+        held_command: -held * actuation.mass(),
         period: control.period,
         stated: one.stated()? != Imperfections::NONE || control.record.is_some(),
         budgets,

@@ -6,6 +6,7 @@ use libration::{AnySystem, catalog};
 
 use libration_analyze::{LatencyOption, Stepping, Timing};
 
+use super::advised_system::AdvisedSystem;
 use super::control::{Control, Law};
 use super::loops::{Loop, PlantModel};
 use super::request::{Measure, Request, Tolerance};
@@ -70,8 +71,7 @@ fn random_loop(index: u64) -> Request {
         deviation: 0.1,
     };
     Request {
-        system,
-        actuation,
+        system: AdvisedSystem::Catalogued { system, actuation },
         q: vec![0.0],
         v: vec![0.0],
         control: Some(control),
@@ -154,7 +154,8 @@ fn compare(model: impl PlantModel, request: &Request) {
 fn analyze_and_advise_agree_on_loops_whose_commands_are_lost() {
     for index in 0..LOOPS {
         let request = random_loop(index);
-        match request.system {
+        let AdvisedSystem::Catalogued { system, .. } = request.system else { unreachable!() };
+        match system {
             AnySystem::Oscillator(model) => compare(model, &request),
             AnySystem::DampedOscillator(model) => compare(model, &request),
             _ => unreachable!(),

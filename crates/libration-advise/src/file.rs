@@ -11,6 +11,7 @@ use libration::{AnySystem, catalog};
 use libration_settings::{Count, Document, Fault, Number, SettingsError, suggestions};
 
 use super::AdviseError;
+use super::advised_system::AdvisedSystem;
 use super::control::{Control, Correction, Law, Regulator};
 use super::file_tables::{ControllerTable, LoopTable, ObserverTable, RequestFile};
 use super::request::{Measure, Request, Tolerance};
@@ -46,8 +47,7 @@ impl TryFrom<RequestFile> for Request {
             Some(table) => Some(control(law(table)?, file.looped.unwrap_or_default())?),
         };
         let request = Request {
-            system,
-            actuation,
+            system: AdvisedSystem::Catalogued { system, actuation },
             q: numbers(file.start.q),
             v: numbers(file.start.v),
             control,

@@ -1,8 +1,6 @@
 //! The choice of integrator and step: the cheapest that meets a tolerance.
 
-use libration::catalog::Actuation;
-use libration::{AnySystem, Method};
-use libration_analyze::{Criteria, Request, Stepping, Timing, analyze};
+use libration::Method;
 use libration_work::Work;
 
 use super::AdviseError;
@@ -114,22 +112,6 @@ pub(super) fn best_possible(
         dt /= 2.0;
     }
     Ok(choice)
-}
-
-/// Counted force evaluations per step.
-pub(super) fn evaluations(system: AnySystem, q: &[f64], v: &[f64], method: Method) -> Option<u64> {
-    let request = Request {
-        system,
-        actuation: Actuation::Acceleration,
-        stepping: Stepping::Method(method),
-        dt: 1e-6,
-        q: q.to_vec(),
-        v: v.to_vec(),
-        steps: 1,
-        criteria: Criteria::default(),
-        timing: Timing::default(),
-    };
-    analyze(&request).ok().map(|analysis| analysis.force_evaluations_per_step)
 }
 
 /// Sorts by cost; integrators without a step come last.

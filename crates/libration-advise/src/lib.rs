@@ -1,6 +1,7 @@
 //! Advice for simulations and control loops: the largest step of each integrator, and the budget of each timing imperfection.
 
 mod advice;
+mod advised_system;
 mod advisor;
 #[cfg(test)]
 mod analyze_agreement;
@@ -26,11 +27,13 @@ mod operating_point;
 mod page;
 mod region_of_attraction;
 mod request;
+mod simulated_system;
 mod stabilising_changes;
 mod stability_map;
 mod stability_window;
 mod subject;
 mod summary;
+mod system_by_program;
 mod throughput;
 mod timed_loop;
 
@@ -41,6 +44,7 @@ use libration::{AnySystem, with_system};
 use thiserror::Error;
 
 pub use advice::{Advice, FloatChoice, LoopAdvice, ToleranceAnswer};
+pub use advised_system::AdvisedSystem;
 pub use budget::{Budget, FirstFailure, rounded};
 pub use combined_effect::{CombinedEffect, SimulatedCost};
 pub use control::{Control, Correction, Law, Regulator};
@@ -58,6 +62,8 @@ pub use throughput::Throughput;
 
 use libration_settings::limits::SIZE;
 use libration_work::{Interrupted, Work};
+use simulated_system::Compiled;
+use system_by_program::SystemByProgram;
 
 /// Allowed angles of the fastest motion of a loop per period, in rad. Below, growth per period is lost to rounding; above, second
 /// moments under jitter cannot be derived.
@@ -111,7 +117,7 @@ pub enum AdviseError {
     #[error("{system} in {dimension} degrees of freedom: {allowed}")]
     Dimension {
         /// The system.
-        system: &'static str,
+        system: String,
         /// The degrees of freedom.
         dimension: usize,
         /// The allowed degrees of freedom, in words.
@@ -153,13 +159,24 @@ pub enum AdviseError {
 /// [`AdviseError`]; errors of the request are returned before any work.
 pub fn advise(work: &Work<'_>, request: &Request) -> Result<Advice, AdviseError> {
     request.check()?;
-    match (&request.control, request.system) {
+    let system = match &request.system {
+        AdvisedSystem::Catalogued { system, .. } => *system,
+        AdvisedSystem::Equations { .. } if request.control.is_some() => {
+            return dimension_error(request, "a loop requires a system of the catalogue");
+        }
+        AdvisedSystem::Equations { system, .. } => {
+            let states = system.states.iter().map(|state| state.place).collect();
+            let system = SystemByProgram::new(system.equations.dynamics(), states);
+            return advisor::advise_simulation(work, &system, request);
+        }
+    };
+    match (&request.control, system) {
         (None, system) => with_system!(
             system,
             request.q.len(),
             |model, D| {
                 if const { D <= 2 } {
-                    advisor::advise_simulation::<_, D>(work, model, request)
+                    advisor::advise_simulation(work, &Compiled::<_, D>::new(model), request)
                 } else {
                     dimension_error(request, "at most two are supported")
                 }
@@ -188,7 +205,10 @@ pub fn advise(work: &Work<'_>, request: &Request) -> Result<Advice, AdviseError>
 /// As of [`advise`].
 pub fn budgets(work: &Work<'_>, request: &Request) -> Result<Vec<Budget>, AdviseError> {
     request.check()?;
-    match (&request.control, request.system) {
+    let AdvisedSystem::Catalogued { system, .. } = request.system else {
+        return dimension_error(request, "a loop requires a system of the catalogue");
+    };
+    match (&request.control, system) {
         (Some(control), AnySystem::Oscillator(model)) if request.q.len() == 1 => {
             advisor::loop_budgets(work, model, control, request)
         }
@@ -206,6 +226,6 @@ pub fn budgets(work: &Work<'_>, request: &Request) -> Result<Vec<Budget>, Advise
 }
 
 fn dimension_error<T>(request: &Request, allowed: &'static str) -> Result<T, AdviseError> {
-    let (system, dimension) = (request.system.name(), request.q.len());
+    let (system, dimension) = (request.system.name().to_owned(), request.q.len());
     Err(AdviseError::Dimension { system, dimension, allowed })
 }

@@ -37,9 +37,8 @@ impl<M: PlantModel> Loop<M> {
             format!(" --cost-weights {},{},{}", w.position, w.velocity, w.command)
         });
         format!(
-            "libration analyze --system {}{} --q {} --integrator exact --dt {} --feedback {},{}{latency}{jitter}{loss}{weights}",
-            request.system.name(),
-            request.parameters(),
+            "libration analyze {} --q {} --integrator exact --dt {} --feedback {},{}{latency}{jitter}{loss}{weights}",
+            request.system.name_and_parameters(),
             request.q[0],
             self.control.period * (1.0 + skew),
             gains.position,

@@ -7,7 +7,6 @@ use libration::linear::{
     LinearLoop, LinearLoopError, LoopTiming, Matrix, MissingCommand, RedesignError,
 };
 use libration::{Float, Model, State, System};
-use libration_settings::units;
 use libration_settings::units::Units;
 
 use super::control::{Control, Correction, Law, Regulator};
@@ -131,8 +130,7 @@ impl<M: PlantModel> Loop<M> {
     /// The loop of `request` with its designed gains.
     pub(super) fn new(model: M, request: &Request, control: &Control) -> Result<Self, LoopError> {
         let at = request.q[0];
-        let (mass, units) =
-            (request.actuation.mass(), units::of(request.system, request.actuation));
+        let (mass, units) = (request.system.actuation().mass(), request.system.units());
         let model = ModelAtOperatingPoint { model, at: [at] };
         let plant = Plant::exact(model, ORIGIN, control.period);
         let [held] = model.model.on::<f64>().acceleration(&State { q: [at], v: [0.0] });

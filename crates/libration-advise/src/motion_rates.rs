@@ -2,33 +2,38 @@
 
 use std::f64::consts::TAU;
 
-use libration::integrator::{Exact, SUZUKI4};
-use libration::system::DynSystem;
-use libration::{Integrator, Model, State, System};
+use libration::Method;
 use libration_work::Work;
 
 use super::AdviseError;
 use super::free_motion::{FreeMotion, MOST_COMPARED};
 
-impl<M: Model<D>, const D: usize> FreeMotion<M, D> {
+/// A function that writes the accelerations of a state.
+type Accelerations<'a> = &'a mut dyn FnMut(&[f64], &mut [f64]);
+
+impl FreeMotion<'_> {
     /// The mean and the largest rate of the true motion, in rad/s: the largest velocity over the amplitude, and the rate of the
     /// stiffest place on its way. Steps of order four are halved until both are resolved.
     pub(super) fn rates(&self, work: &Work<'_>) -> Result<[f64; 2], AdviseError> {
         const SETTLED: f64 = 0.1;
         const TURN: f64 = 0.5;
         const MOTIONS: f64 = 200.0;
-        let begins = self.stiffness(&self.start);
-        if self.is_at_rest() {
+        let degrees = self.system.degrees();
+        let mut accelerations = self.system.accelerations();
+        let [by_positions, by_velocities] = self.stiffness(&mut accelerations, &self.start);
+        if self.is_at_rest(&mut accelerations) {
             return Err(
                 self.tolerance_error("nothing moves from this start; choose another `q` or `v`")
             );
         }
-        if let Some(damped) = Exact::angle(self.model, 1.0) {
-            let rate = if begins > 0.0 { begins } else { damped.max(self.horizon.recip()) };
+        if let Some(damped) = self.system.exact_rate() {
+            let rate = match by_positions > 0.0 {
+                true => by_positions,
+                false => damped.max(self.horizon.recip()),
+            };
             return Ok([rate, rate.max(damped)]);
         }
-        let acceleration = |state: &State<f64, D>| self.model.on::<f64>().acceleration(state);
-        let system = DynSystem(&acceleration);
+        let begins = by_positions.max(by_velocities);
         // A periodic motion is known before the horizon.
         let long = if begins > 0.0 { MOTIONS * TAU / begins } else { self.horizon };
         let long = self.horizon.min(long);
@@ -36,18 +41,22 @@ impl<M: Model<D>, const D: usize> FreeMotion<M, D> {
         while steps as f64 <= MOST_COMPARED {
             work.check()?;
             let dt = long / steps as f64;
-            let mut state = self.start;
-            let (mut low, mut high, mut speed) = (state.q, state.q, 0.0_f64);
-            let mut stiffest = begins;
+            let mut trajectory = self.system.steps(false, Method::Suzuki4, dt, &self.start);
+            let (mut low, mut high) = (self.start.clone(), self.start.clone());
+            let (mut speed, mut stiffest) = (0.0_f64, begins);
             for _ in 0..steps {
-                state = SUZUKI4.step(&system, state, dt);
-                stiffest = stiffest.max(self.stiffness(&state));
-                for i in 0..D {
-                    (low[i], high[i]) = (low[i].min(state.q[i]), high[i].max(state.q[i]));
-                    speed = speed.max(state.v[i].abs());
+                let state = trajectory.next();
+                let here = self.stiffness(&mut accelerations, state);
+                stiffest = here.into_iter().fold(stiffest, f64::max);
+                for &i in self.system.states() {
+                    (low[i], high[i]) = (low[i].min(state[i]), high[i].max(state[i]));
+                    if i >= degrees {
+                        speed = speed.max(state[i].abs());
+                    }
                 }
             }
-            let far = (0..D).map(|i| 0.5 * (high[i] - low[i])).fold(0.0, f64::max);
+            let positions = self.system.states().iter().filter(|&&i| i < degrees);
+            let far = positions.map(|&i| 0.5 * (high[i] - low[i])).fold(0.0, f64::max);
             let found = Some(speed / far).filter(|found| found.is_finite());
             let found = found.unwrap_or(stiffest).max(self.horizon.recip());
             if (found / before - 1.0).abs() < SETTLED && stiffest * dt < TURN {
@@ -60,27 +69,60 @@ impl<M: Model<D>, const D: usize> FreeMotion<M, D> {
         )))
     }
 
-    fn is_at_rest(&self) -> bool {
-        let at = self.model.on::<f64>().acceleration(&self.start);
-        self.start.v.iter().chain(&at).all(|x| *x == 0.0)
+    fn is_at_rest(&self, accelerations: Accelerations<'_>) -> bool {
+        let degrees = self.system.degrees();
+        let mut at = vec![0.0; degrees];
+        accelerations(&self.start, &mut at);
+        let moves = |&i: &usize| match i.checked_sub(degrees) {
+            Some(i) => at[i] != 0.0,
+            None => self.start[degrees + i] != 0.0,
+        };
+        !self.system.states().iter().any(moves)
+    }
+
+    /// Whether steps of order four change the energy the less the shorter they are.
+    pub(super) fn conserves_energy(&self, [omega, fastest]: [f64; 2]) -> bool {
+        // An error of about 10⁻¹¹ in a turn.
+        const ANGLE: f64 = 0.01;
+        const MOST: f64 = 65_536.0;
+        let Some(mut energy) = self.system.energy() else { return false };
+        let (first, long) = (energy(&self.start), self.horizon.min(TAU / omega));
+        let steps = (long * fastest / ANGLE).ceil().clamp(16.0, MOST);
+        let mut change = |steps: f64| {
+            let dt = long / steps;
+            let mut trajectory = self.system.steps(false, Method::Suzuki4, dt, &self.start);
+            let each = (0..steps as u64).map(|_| (energy(trajectory.next()) - first).abs());
+            each.fold(0.0, f64::max)
+        };
+        let [coarse, fine] = [steps, 2.0 * steps].map(&mut change);
+        // Rounding alone is less than a thousandth of this.
+        fine < 0.3 * coarse || fine < 1e-10 * first.abs()
     }
 
     fn tolerance_error(&self, why: &str) -> AdviseError {
         AdviseError::Tolerance { of: self.of, why: why.to_owned() }
     }
 
-    /// The square root of the norm of the stiffness matrix, in rad/s.
-    fn stiffness(&self, state: &State<f64, D>) -> f64 {
-        let model = self.model.on::<f64>();
-        let here = model.acceleration(state);
-        let size = state.q.iter().fold(0.0, |size: f64, x| size.hypot(*x));
-        let far = 1e-6 * size.max(1e-3);
-        let slope = |i: usize| {
-            let mut beside = *state;
-            beside.q[i] += far;
-            let there = model.acceleration(&beside);
-            here.iter().zip(there).map(|(a, b)| ((b - a) / far).powi(2)).sum::<f64>()
-        };
-        (0..D).map(slope).sum::<f64>().sqrt().sqrt()
+    /// The square root of the norm of the derivatives of accelerations by positions, and the norm of those by velocities, in rad/s.
+    fn stiffness(&self, accelerations: Accelerations<'_>, state: &[f64]) -> [f64; 2] {
+        let degrees = self.system.degrees();
+        let (positions, _) = state.split_at(degrees);
+        let mut here = vec![0.0; degrees];
+        accelerations(state, &mut here);
+        let mut there = here.clone();
+        let mut beside = state.to_vec();
+        let size = |part: &[f64]| part.iter().fold(0.0, |size: f64, x| size.hypot(*x));
+        let mut squares = [0.0; 2];
+        for &i in self.system.states() {
+            let of_velocity = i >= degrees;
+            let part = if of_velocity { &state[degrees..] } else { positions };
+            let far = 1e-6 * size(part).max(1e-3);
+            beside[i] += far;
+            accelerations(&beside, &mut there);
+            beside[i] = state[i];
+            let slope = here.iter().zip(&there).map(|(a, b)| ((b - a) / far).powi(2));
+            squares[usize::from(of_velocity)] += slope.sum::<f64>();
+        }
+        [squares[0].sqrt().sqrt(), squares[1].sqrt()]
     }
 }

@@ -1,20 +1,17 @@
 //! Requests for advice.
 
-use libration::AnySystem;
-use libration::catalog::Actuation;
 use libration::control::LqrWeights;
 use libration_settings::limits;
 
 use super::AdviseError;
+use super::advised_system::AdvisedSystem;
 use super::control::Control;
 
 /// A plant with its controller, a tolerance and a horizon.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
     /// The system.
-    pub system: AnySystem,
-    /// The quantity of its commands, and so the units of gains and limits of commands.
-    pub actuation: Actuation,
+    pub system: AdvisedSystem,
     /// Initial positions; for a loop those of the operating point.
     pub q: Vec<f64>,
     /// Initial velocities.
@@ -82,12 +79,6 @@ impl Measure {
 }
 
 impl Request {
-    /// The parameters of the system, as flags.
-    pub(super) fn parameters(&self) -> String {
-        let each = self.actuation.parameters(self.system).into_iter();
-        each.map(|(name, value)| format!(" --set {name}={value}")).collect()
-    }
-
     /// The command that takes the advised steps and, if possible, prints their error.
     pub(super) fn command(&self, integrator: &str, dt: f64, float: &str) -> String {
         match (&self.control, self.tolerance.of) {
@@ -111,13 +102,9 @@ impl Request {
     }
 
     fn steps(&self, integrator: &str, dt: f64) -> String {
-        let list = |x: &[f64]| x.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
         format!(
-            "--system {}{} --q {} --v {} --integrator {integrator} --dt {dt} --steps {}",
-            self.system.name(),
-            self.parameters(),
-            list(&self.q),
-            list(&self.v),
+            "{} --integrator {integrator} --dt {dt} --steps {}",
+            self.system.options(&self.q, &self.v),
             (self.horizon / dt).round().max(1.0)
         )
     }
@@ -134,9 +121,11 @@ impl Request {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         let above = "a finite number above 0";
         ensure("tolerance", self.tolerance.most, above, positive(self.tolerance.most))?;
-        let parameters = self.actuation.parameters(self.system);
-        if let Some((name, value)) = limits::find_out_of_range(parameters) {
-            return Err(AdviseError::Parameter { system: self.system.name(), name, value });
+        if let AdvisedSystem::Catalogued { system, actuation } = self.system {
+            let parameters = actuation.parameters(system);
+            if let Some((name, value)) = limits::find_out_of_range(parameters) {
+                return Err(AdviseError::Parameter { system: system.name(), name, value });
+            }
         }
         let time = |x: f64| limits::SIZE.contains(&x);
         let seconds = "from 1e-60 to 1e60 s";

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use libration::Method;
-use libration::ensemble::{BatchFloat, Execution};
+use libration::ensemble::BatchFloat;
 use libration::rl::Plan;
 use libration_work::Work;
 
@@ -47,9 +47,8 @@ impl Throughput {
             true => speed::<f32>(work, request, method, dt as f32)?,
             false => speed::<f64>(work, request, method, dt)?,
         };
-        let dimension = request.q.len();
-        let bytes =
-            Plan::new(steps, environments).bytes(2 * dimension, dimension, size_of::<f32>());
+        let [seen, commands] = request.system.sizes(request.q.len());
+        let bytes = Plan::new(steps, environments).bytes(seen, commands, size_of::<f32>());
         Ok(Throughput {
             environments,
             trajectories: environments.min(MOST),
@@ -69,12 +68,8 @@ fn speed<T: BatchFloat>(
 ) -> Result<f64, AdviseError> {
     let Request { system, q, v, rollout: [count, _], .. } = request;
     let count = (*count).clamp(1, MOST);
-    let start = |_: usize, i: usize| {
-        let coordinate = q.iter().chain(v).nth(i).copied().unwrap_or(0.0);
-        T::from_f64(coordinate)
-    };
-    let execution: Execution = work.serial()?;
-    let mut all = T::ensemble(*system, q.len(), count, execution, &start)?;
+    let start: Vec<f64> = q.iter().chain(v).copied().collect();
+    let mut all = system.ensemble::<T>(count, work.serial()?, &start)?;
     let mut steps = 16;
     loop {
         let begun = Instant::now();

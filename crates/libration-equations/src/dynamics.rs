@@ -1,7 +1,7 @@
 //! Accelerations of a system as a program.
 
 use libration_core::system::CommandedSystem;
-use libration_core::{Hamiltonian, Model, State, System};
+use libration_core::{Hamiltonian, Model, Scalar, State, System};
 
 use super::program::{Operation, Program, ValueId};
 use super::program_builder::ProgramBuilder;
@@ -28,23 +28,27 @@ impl Dynamics {
         Dynamics { degrees, inputs, accelerations, energy }
     }
 
-    /// A compiled system whose inputs are accelerations added to its own, recorded: on each number type it has the bits of the
-    /// system. Without inputs it has those of the system alone.
-    pub fn of<const D: usize>(model: &impl Model<D>, is_commanded: bool) -> Self {
+    /// A compiled system, recorded: on each number type it has the bits of the system. With a mobility its inputs are commands, one
+    /// in each degree of freedom, and mobility times command is added to its acceleration.
+    pub fn of<const D: usize>(model: &impl Model<D>, mobility: Option<f64>) -> Self {
         // The system is made within each recording, since its parameters are constants of the program.
         let state = |x: &[Recorded]| State {
             q: core::array::from_fn::<_, D, _>(|i| x[i]),
             v: core::array::from_fn(|i| x[D + i]),
         };
-        let inputs = if is_commanded { D } else { 0 };
+        let inputs = if mobility.is_some() { D } else { 0 };
         let accelerations = Program::record(2 * D + inputs, |x| {
             let system = model.on::<Recorded>();
-            let accelerations = match is_commanded {
-                true => {
-                    let command = core::array::from_fn(|i| x[2 * D + i]);
+            let accelerations = match mobility {
+                Some(mobility) => {
+                    let accelerated = |command| match mobility {
+                        1.0 => command,
+                        mobility => command * Recorded::from_f64(mobility),
+                    };
+                    let command = core::array::from_fn(|i| accelerated(x[2 * D + i]));
                     CommandedSystem { system, command }.acceleration(&state(x))
                 }
-                false => system.acceleration(&state(x)),
+                None => system.acceleration(&state(x)),
             };
             accelerations.to_vec()
         });

@@ -3,8 +3,8 @@
 use libration::AnySystem;
 use libration::catalog::Actuation;
 
-/// Units of a system's coordinates, of its commands, and of the gains of controllers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Units of a system's coordinates, of its commands, and of the gains of controllers; empty where none are known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Units {
     /// Unit of time.
     pub time: &'static str,

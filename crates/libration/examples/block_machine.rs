@@ -61,7 +61,7 @@ where
         |n: usize, i: usize| T::from_f64(0.3 * (0.5 + (n % 1000) as f64 * 1e-3 + 0.3 * i as f64));
     let (dt, system) = (T::from_f64(0.01), model.on::<T>());
     let state = |n| State { q: [start(n, 0)], v: [start(n, 1)] };
-    let dynamics = Dynamics::of(&model, false);
+    let dynamics = Dynamics::of(&model, None);
     let mut compiled = Ensemble::from_fn(TRAJECTORIES, Execution::serial(), state)?;
     let mut machine = T::program_ensemble(&dynamics, TRAJECTORIES, Execution::serial(), &start)?;
     let mut ratios: Vec<f64> = Vec::new();

@@ -1,7 +1,6 @@
 //! Loops and independent simulations of them.
 
 use libration::analysis::{Imperfections, Plant};
-use libration::catalog::Actuation;
 use libration::control::clock::{Jittered, Rates};
 use libration::control::controller::StateFeedback;
 use libration::control::{Clock, Controller, Feedback, Jitter, Latency, LqrWeights, Schedule};
@@ -28,8 +27,7 @@ pub(crate) struct Case {
 impl Case {
     pub(crate) fn request(self) -> Request {
         Request {
-            system: AnySystem::Oscillator(Oscillator { omega2: self.omega2 }),
-            actuation: Actuation::Acceleration,
+            system: AnySystem::Oscillator(Oscillator { omega2: self.omega2 }).into(),
             q: vec![0.0],
             v: vec![0.0],
             control: Some(Control {

@@ -61,7 +61,7 @@ fn a_linearisation_that_a_simulation_contradicts_is_told_loudly() {
         Case { omega2: 9.81, gains: Feedback { position: 0.0, velocity: 0.0 }, period: 0.01 };
     let request = |deviation: f64| {
         let mut request = case.request();
-        request.system = AnySystem::Pendulum(Pendulum { omega2: 9.81 });
+        request.system = AnySystem::Pendulum(Pendulum { omega2: 9.81 }).into();
         request.q = vec![std::f64::consts::PI];
         if let Some(control) = &mut request.control {
             control.law = Law::Pid(gains);

@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use libration::catalog::Actuation;
 use libration::control::Feedback;
 use libration::system::{Kepler, Oscillator, Pendulum};
 use libration::{AnySystem, Hamiltonian, Integrator, Method, State, System};
@@ -20,8 +19,7 @@ pub(crate) fn free(
     horizon: f64,
 ) -> Request {
     Request {
-        system,
-        actuation: Actuation::Acceleration,
+        system: system.into(),
         q: q.to_vec(),
         v: v.to_vec(),
         control: None,

@@ -4,13 +4,14 @@ use core::fmt::Debug;
 
 use bytemuck::Pod;
 use libration_core::system::Oscillator;
-use libration_core::{AnySystem, Float, Method, Model, State, with_method, with_system};
+use libration_core::{AnySystem, Method, Model, State, with_method, with_system};
 use libration_equations::{Dynamics, Program};
 
 use super::{
     All, Ensemble, EnsembleError, Execution, InstructionSet, InsufficientMemory, ProgramEnsemble,
     iterated_program,
 };
+use crate::machine::MachineFloat;
 
 /// An ensemble of a system in some number of dimensions.
 ///
@@ -50,7 +51,7 @@ pub trait AnyEnsemble<T>: Debug + Send {
 }
 
 /// A float type of ensembles: `f32` and `f64`.
-pub trait BatchFloat: Float + Pod {
+pub trait BatchFloat: MachineFloat + Pod {
     /// Bytes that `len` trajectories in `dimension` degrees of freedom take.
     fn ensemble_bytes(dimension: usize, len: usize) -> u128 {
         ProgramEnsemble::<Self>::bytes(dimension, len)
@@ -139,12 +140,12 @@ batch_float!(f64);
 
 /// The program of a system in a dimension that it has.
 fn dynamics(system: AnySystem, dimension: usize) -> Dynamics {
-    with_system!(system, dimension, |model, D| Dynamics::of::<D>(&model, false), {
+    with_system!(system, dimension, |model, D| Dynamics::of::<D>(&model, None), {
         unreachable!("the dimension has been checked")
     })
 }
 
-impl<T: Float + Pod> Isotropic<T> {
+impl<T: BatchFloat> Isotropic<T> {
     fn new(
         model: Oscillator<f64>,
         dimension: usize,
@@ -164,7 +165,7 @@ impl<T: Float + Pod> Isotropic<T> {
     }
 }
 
-impl<T: Float + Pod> AnyEnsemble<T> for ProgramEnsemble<T> {
+impl<T: BatchFloat> AnyEnsemble<T> for ProgramEnsemble<T> {
     fn len(&self) -> usize {
         self.len()
     }
@@ -202,7 +203,7 @@ impl<T: Float + Pod> AnyEnsemble<T> for ProgramEnsemble<T> {
     }
 }
 
-impl<T: Float + Pod> AnyEnsemble<T> for Isotropic<T> {
+impl<T: BatchFloat> AnyEnsemble<T> for Isotropic<T> {
     fn len(&self) -> usize {
         self.coordinates.len() / self.dimension
     }

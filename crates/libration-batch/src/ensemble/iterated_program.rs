@@ -1,13 +1,12 @@
 //! Programs that run on their own results.
 
-use libration_core::Float;
 use libration_equations::Program;
 
 use super::InstructionSet;
-use crate::machine::{Block, BlockProgram};
+use crate::machine::{Block, BlockProgram, MachineFloat};
 
 /// Runs a program `times` times on its own results in each lane: row `i` has input and output `i` of all of them.
-pub(super) fn iterate<T: Float>(
+pub(super) fn iterate<T: MachineFloat>(
     program: &Program,
     rows: &mut [Vec<T>],
     times: u64,

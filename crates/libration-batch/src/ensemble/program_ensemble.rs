@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use bytemuck::Pod;
-use libration_core::{Float, Method, with_method};
+use libration_core::{Method, with_method};
 use libration_equations::{Dynamics, Program, StepProgram};
 
 use super::planes::Planes;
-use super::{EnsembleError, Execution, GRAIN, MOVED};
+use super::{BatchFloat, EnsembleError, Execution, GRAIN, MOVED};
 use crate::machine::{Block, BlockProgram};
 
 /// Trajectories of a system by its program, as structure of arrays.
@@ -32,7 +31,7 @@ struct Step {
     first: Option<BlockProgram>,
 }
 
-impl<T: Float + Pod> ProgramEnsemble<T> {
+impl<T: BatchFloat> ProgramEnsemble<T> {
     /// `len` trajectories whose inputs are zero; the start of trajectory `n` is what `start(n, i)` says of its coordinates
     /// `q₀ … q_{D−1}, v₀ … v_{D−1}`.
     ///

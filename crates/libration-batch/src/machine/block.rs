@@ -2,8 +2,7 @@
 
 use core::cell::Cell;
 
-use libration_core::Float;
-
+use super::MachineFloat;
 use super::block_program::BlockProgram;
 use super::runs::Runs;
 use crate::ensemble::InstructionSet;
@@ -32,7 +31,7 @@ pub(crate) struct Block<'p, T> {
     width: usize,
 }
 
-impl<'p, T: Float> Block<'p, T> {
+impl<'p, T: MachineFloat> Block<'p, T> {
     /// A block for at most `lanes` lanes; `inputs` are those of the program, of which only the uniform ones count.
     pub(crate) fn new(program: &'p BlockProgram, lanes: usize, inputs: &[T]) -> Self {
         let row = LANES * size_of::<T>();
@@ -83,13 +82,7 @@ impl<'p, T: Float> Block<'p, T> {
     pub(crate) fn run(&mut self, times: u64, instructions: InstructionSet) {
         let Block { program, uniforms, rows, width } = self;
         let rows = Cell::from_mut(rows.as_mut_slice()).as_slice_of_cells();
-        let (instruction_list, width) = (&program.instructions, *width);
-        instructions.vectorize(Runs {
-            instructions: instruction_list,
-            uniforms,
-            rows,
-            width,
-            times,
-        });
+        let (list, width) = (&program.instructions, *width);
+        T::execute(Runs { instructions: list, uniforms, rows, width, times }, instructions);
     }
 }

@@ -14,3 +14,4 @@ mod runs;
 
 pub(crate) use block::Block;
 pub(crate) use block_program::BlockProgram;
+pub(crate) use runs::MachineFloat;

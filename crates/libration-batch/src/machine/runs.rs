@@ -7,10 +7,30 @@ use libration_equations::Function;
 
 use super::block::{LANES, Lanes};
 use super::instruction::{Action, Instruction, Operand};
-use crate::ensemble::Loop;
+use crate::ensemble::{InstructionSet, Loop};
+
+/// A float type of the machine.
+pub trait MachineFloat: Float {
+    /// Executes the runs.
+    fn execute(runs: Runs<'_, Self>, set: InstructionSet);
+}
+
+// Functions of this crate, so that it alone compiles the loops.
+macro_rules! machine_float {
+    ($float:ident) => {
+        impl MachineFloat for $float {
+            fn execute(runs: Runs<'_, Self>, set: InstructionSet) {
+                set.vectorize(runs);
+            }
+        }
+    };
+}
+
+machine_float!(f32);
+machine_float!(f64);
 
 /// Runs of a program on the rows of a block.
-pub(super) struct Runs<'a, T> {
+pub struct Runs<'a, T> {
     pub(super) instructions: &'a [Instruction],
     pub(super) uniforms: &'a [T],
     pub(super) rows: &'a [Cell<Lanes<T>>],

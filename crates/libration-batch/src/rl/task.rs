@@ -165,10 +165,12 @@ impl<T: Float + Elementary> Reference<T> for Sine {
 
     #[inline(always)]
     fn at(&self, time: T) -> [T; 2] {
-        let [amplitude, omega, phase] =
-            map([self.amplitude, self.angular_frequency, self.phase], T::from_f64);
+        let Sine { amplitude, angular_frequency, phase } = *self;
+        let speed = amplitude * angular_frequency;
+        let [amplitude, omega, phase, speed] =
+            map([amplitude, angular_frequency, phase, speed], T::from_f64);
         let angle = omega * time + phase;
-        [amplitude * Elementary::sin(angle), amplitude * omega * Elementary::cos(angle)]
+        [amplitude * Elementary::sin(angle), speed * Elementary::cos(angle)]
     }
 }
 

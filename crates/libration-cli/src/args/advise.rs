@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use libration::catalog;
 use libration::control::{Feedback, Jitter, LqrWeights};
-use libration_advise::{Control, Law, Measure, Request, Tolerance};
+use libration_advise::{AdvisedSystem, Control, Law, Measure, Request, Tolerance};
 use libration_analyze::LatencyOption;
+use libration_settings::equations::EquationSystem;
 use libration_settings::initial_value_problem::InitialValueProblem;
 
 use super::timing::{feedback, finite, latency, law, weights};
@@ -135,6 +136,7 @@ const REQUEST_OPTIONS: [&str; 14] = [
 
 const USAGE: &str = "\
 libration advise --system <NAME> [OPTIONS]
+       libration advise --system <FILE> [--lqr <STATES/INPUTS>] [OPTIONS]
        libration advise --plant <FILE> --lqr <STATES/INPUTS> [OPTIONS]
        libration advise --config <FILE> [OPTIONS]
        libration advise --print-config";
@@ -144,6 +146,8 @@ Examples:
   libration advise --system oscillator --set omega2=10 --feedback 10,2 --period 0.01 \\
       --latency 0.02 --jitter gaussian:0.05 --loss 0.01
   libration advise --system kepler --tolerance energy=1e-6 --horizon 100
+  libration advise --system cart_pole.toml --tolerance trajectory=1e-3 --horizon 5
+  libration advise --system cart_pole.toml --lqr 1,10,0,1/0.1 --period 0.02 --latency 0.03
   libration advise --plant drive.toml --lqr 10,1,0,0/0.1 --latency 0.003 --output-latency 0.001
   libration advise --print-config > mine.toml
   libration advise --config mine.toml --jitter-file robot.csv --page budget.html
@@ -158,6 +162,62 @@ integrator is accurate enough.";
 pub(super) struct ToleranceArg(pub(super) Tolerance);
 
 impl AdviseArgs {
+    /// The options of the system, if any is given.
+    pub(crate) fn system_options(&self) -> Option<&SystemArgs> {
+        self.system.as_ref()
+    }
+
+    /// Fails if an option requires a loop around a system of the catalogue.
+    pub(super) fn ensure_no_catalogue_options(&self) -> Result<(), Failure> {
+        let system = self.system.as_ref();
+        let given = [
+            ("--q", system.is_some_and(|system| system.q.is_some())),
+            ("--v", system.is_some_and(|system| system.v.is_some())),
+            ("--feedback", self.feedback.is_some()),
+        ];
+        match given.into_iter().find(|(_, given)| *given) {
+            Some((flag, _)) => Err(Failure::usage(format!(
+                "{flag} requires a system of the catalogue; a loop around equations takes --lqr or --gain at an equilibrium near their `start`"
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// Returns the request for a simulation of a system by equations.
+    pub(crate) fn equation_request(&self, system: EquationSystem) -> Result<Request, Failure> {
+        if self.feedback.is_some() || self.period.is_some() {
+            return Err(Failure::usage(
+                "--feedback and --period require a system of the catalogue; a loop around equations takes --lqr or --gain, and is that of --system FILE",
+            ));
+        }
+        let (q, v) = (system.q.clone(), system.v.clone());
+        let options = self.system.as_ref().map(SystemArgs::words).unwrap_or_default();
+        self.with_timing(self.request_of(
+            AdvisedSystem::Equations { system: Box::new(system), options },
+            (q, v),
+            None,
+        ))
+    }
+
+    fn request_of(
+        &self,
+        system: AdvisedSystem,
+        (q, v): (Vec<f64>, Vec<f64>),
+        control: Option<Control>,
+    ) -> Request {
+        Request {
+            system,
+            q,
+            v,
+            control,
+            tolerance: self.tolerance.0,
+            horizon: self.horizon,
+            rollout: [4096, 1024],
+            map: false,
+            invocation: String::new(),
+        }
+    }
+
     /// Returns the request that the options describe.
     pub(crate) fn request(&self) -> Result<Request, Failure> {
         let Some(system) = &self.system else {
@@ -188,18 +248,8 @@ impl AdviseArgs {
             weights: self.cost_weights,
             deviation: self.deviation,
         });
-        self.with_timing(Request {
-            system,
-            actuation,
-            q,
-            v,
-            control,
-            tolerance: self.tolerance.0,
-            horizon: self.horizon,
-            rollout: [4096, 1024],
-            map: false,
-            invocation: String::new(),
-        })
+        let system = AdvisedSystem::Catalogued { system, actuation };
+        self.with_timing(self.request_of(system, (q, v), control))
     }
 
     /// Returns the request with the timing options in place of its own.

@@ -1,6 +1,6 @@
 //! Arguments of loops around linear plants.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use libration::control::Jitter;
@@ -13,9 +13,9 @@ use libration_settings::linear_loop::{
 };
 use libration_settings::{Fault, Number};
 
-use super::AdviseArgs;
 use super::advise::seconds;
 use super::timing::{finite, latency};
+use super::{AdviseArgs, SystemArgs};
 use crate::error::Failure;
 
 /// Arguments of a loop around a linear plant.
@@ -25,10 +25,10 @@ pub(crate) struct LinearArgs {
     #[arg(long, value_name = "FILE", conflicts_with_all = NOT_LINEAR)]
     pub(crate) plant: Option<PathBuf>,
     /// Design a linear-quadratic regulator with these weights of the squares of states and inputs, e.g. 10,1/0.1
-    #[arg(long, value_name = "STATES/INPUTS", value_parser = lqr, requires = "plant", conflicts_with = "gain")]
+    #[arg(long, value_name = "STATES/INPUTS", value_parser = lqr, conflicts_with = "gain")]
     lqr: Option<WeightsTable>,
     /// Gain K of the state feedback u = −Kx, rows (inputs) separated by semicolons, e.g. "10,2;0,1"
-    #[arg(long, value_name = "ROWS", value_parser = rows, requires = "plant", allow_hyphen_values = true)]
+    #[arg(long, value_name = "ROWS", value_parser = rows, allow_hyphen_values = true)]
     gain: Option<Gain>,
     /// Latency of the measurements of a linear plant: of all, or of each [default: 0]
     #[arg(long, value_name = "TIME", value_parser = latency, value_delimiter = ',', allow_hyphen_values = true)]
@@ -47,16 +47,34 @@ const NOT_LINEAR: [&str; 9] =
 pub(super) struct Gain(pub(super) Rows);
 
 impl AdviseArgs {
-    /// Returns the request for a loop around the plant of `--plant`, if it is given.
+    /// Returns the request for a loop around the plant of `--plant`, or around that of a file of equations.
     pub(crate) fn linear_request(&self) -> Option<Result<LinearRequest, Failure>> {
-        let path = self.linear.plant.as_ref()?;
-        Some(self.linear_request_of(path))
+        if let Some(path) = &self.linear.plant {
+            return Some(self.linear_request_of(path, "--plant"));
+        }
+        let flag = match &self.linear {
+            LinearArgs { lqr: Some(_), .. } => "--lqr",
+            LinearArgs { gain: Some(_), .. } => "--gain",
+            _ => return None,
+        };
+        match self.system_options().and_then(SystemArgs::file) {
+            Some(path) => Some(
+                self.ensure_no_catalogue_options()
+                    .and_then(|()| self.linear_request_of(path, "--system")),
+            ),
+            None => Some(Err(Failure::usage(format!(
+                "{flag} is given without a plant; expected --plant FILE, or --system FILE with equations"
+            )))),
+        }
     }
 
-    fn linear_request_of(&self, path: &std::path::Path) -> Result<LinearRequest, Failure> {
-        let plant = read_plant(path).map_err(|why| {
-            Failure::usage(format!("cannot use `{}` (--plant): {why}", path.display()))
+    fn linear_request_of(&self, path: &Path, flag: &str) -> Result<LinearRequest, Failure> {
+        let mut plant = read_plant(path).map_err(|why| {
+            Failure::usage(format!("cannot use `{}` ({flag}): {why}", path.display()))
         })?;
+        if let Some(SystemArgs { set, .. }) = self.system_options() {
+            plant.parameters = set.iter().map(|(name, x)| (name.clone(), Number(*x))).collect();
+        }
         let controller = match (&self.linear.lqr, &self.linear.gain) {
             (Some(weights), _) => LinearControllerTable::Lqr(weights.clone()),
             (None, Some(Gain(gain))) => {

@@ -13,6 +13,7 @@ use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::suggestions;
 
 use super::number::{Coordinates, assignment, coordinates, time_step};
+use super::quoted::quoted;
 use crate::error::Failure;
 
 /// The system, its parameters and its start.
@@ -82,6 +83,19 @@ impl SystemArgs {
     /// The file of equations, if `--system` names one.
     pub(crate) fn file(&self) -> Option<&Path> {
         self.system.as_deref().filter(|system| is_file(system)).map(Path::new)
+    }
+
+    /// The options as words of a command line.
+    pub(crate) fn words(&self) -> String {
+        let SystemArgs { system, force, set, q, v } = self;
+        let mut words = Vec::new();
+        let mut option = |name: &str, value: String| words.extend([name.to_owned(), value]);
+        system.iter().for_each(|name| option("--system", name.clone()));
+        force.iter().for_each(|text| option("--force", text.clone()));
+        set.iter().for_each(|(name, value)| option("--set", format!("{name}={value}")));
+        q.iter().for_each(|list| option("--q", list.to_string()));
+        v.iter().for_each(|list| option("--v", list.to_string()));
+        quoted(words)
     }
 
     /// Returns the system and its start. Missing values are those of the catalogue.

@@ -9,8 +9,8 @@ use libration_advise::{Advice, AdviseError, LoopAdvice, Request, rounded};
 use libration_work::Work;
 use serde::Serialize;
 
-use super::{config_file, time_stamps};
-use crate::args::AdviseArgs;
+use super::{config_file, equation_file, time_stamps};
+use crate::args::{AdviseArgs, quoted};
 use crate::error::Failure;
 use crate::output_file::OutputFile;
 use crate::progress::Reporter;
@@ -69,7 +69,10 @@ fn load_request(args: &AdviseArgs) -> Result<Request, Failure> {
     args.ensure_no_linear_options()?;
     let mut request = match &args.config {
         Some(path) => args.with_timing(config_file::read(path, advise::parse)?)?,
-        None => args.request()?,
+        None => match args.system_options().and_then(equation_file::system) {
+            Some(system) => args.equation_request(system?)?,
+            None => args.request()?,
+        },
     };
     request.map = args.page.is_some();
     request.invocation = command_line();
@@ -115,14 +118,7 @@ pub(super) fn command_line() -> String {
             _ => words.push(word),
         }
     }
-    let plain =
-        |word: &str| word.chars().all(|c| c.is_ascii_alphanumeric() || "_-+=:,./@%".contains(c));
-    let quoted = words.into_iter().map(|word| match plain(&word) && !word.is_empty() {
-        true => word,
-        // No argument of a process has a NUL in it.
-        false => shlex::try_quote(&word).map(Into::into).unwrap_or_default(),
-    });
-    quoted.collect::<Vec<String>>().join(" ")
+    quoted(words)
 }
 
 /// Returns the answer as text.

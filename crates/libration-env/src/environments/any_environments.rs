@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bytemuck::Pod;
 use libration::checkpoint::{Checkpoint, CheckpointError};
-use libration::ensemble::Execution;
+use libration::ensemble::{BatchFloat, Execution};
 use libration::rl::{
     EnvironmentError, Environments, EpisodeEnds, Plan, ProgramEnvironments, ProgramPolicy,
     ProgramRollout, Rollout, StepBuffers, World,
@@ -186,7 +186,7 @@ where
     }
 }
 
-impl<T: Float + Elementary + Pod> AnyEnvironments<T> for ProgramEnvironments<T> {
+impl<T: BatchFloat> AnyEnvironments<T> for ProgramEnvironments<T> {
     environments!();
 
     fn sizes(&self) -> [usize; 2] {

@@ -1,10 +1,11 @@
 //! Environments chosen at run time: [`EnvironmentSettings`], and the [`AnyEnvironments`] built from them.
 //!
-//! Their kernels are compiled here once, for data sets and for Python.
+//! The few compiled kernels are compiled here once, for data sets and for Python; the block machine runs all others.
 
 mod any_environments;
 mod any_rollout;
 mod any_settings;
+mod catalogue_program;
 mod construction;
 mod equation_environment;
 mod policy;

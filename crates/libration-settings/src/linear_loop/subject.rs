@@ -48,7 +48,7 @@ impl Subject {
         }
         let dimension = dimension.unwrap_or(*entry.dimensions.start());
         let dynamics =
-            with_system!(system, dimension, |model, D| Dynamics::of::<D>(&model, true), {
+            with_system!(system, dimension, |model, D| Dynamics::of::<D>(&model, Some(1.0)), {
                 let message = entry.wrong_dimension(dimension).to_string();
                 return Err(Fault::new("system.linear.at", message));
             });

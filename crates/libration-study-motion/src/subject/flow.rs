@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn the_oscillator_follows_its_closed_form() {
-        let dynamics = Dynamics::of::<1>(&Oscillator { omega2: 10.0 }, false);
+        let dynamics = Dynamics::of::<1>(&Oscillator { omega2: 10.0 }, None);
         let start = [0.3, -1.2].map(TwoFloat::from_f64);
         let (time, omega) = (TwoFloat::from_f64(1.7), TwoFloat::from_f64(10.0).sqrt());
         let (found, off) = flow(&mut Rates::new(&dynamics), &start, time);
@@ -135,7 +135,7 @@ mod tests {
     /// `E − e sin E = t` gives the time of a place in closed form, without solving for it.
     #[test]
     fn kepler_follows_keplers_equation() {
-        let dynamics = Dynamics::of::<2>(&Kepler { mu: 1.0 }, false);
+        let dynamics = Dynamics::of::<2>(&Kepler { mu: 1.0 }, None);
         let constant = TwoFloat::from_f64;
         let (e, anomaly) = (constant(0.6), constant(2.0));
         let axis = constant(0.64).sqrt();

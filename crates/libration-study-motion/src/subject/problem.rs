@@ -73,7 +73,7 @@ impl Problem {
             name,
             unit: String::new(),
         });
-        let dynamics = Dynamics::of(&model, false);
+        let dynamics = Dynamics::of(&model, None);
         Problem::of_program(name, dynamics, start.coordinates().collect(), turn, states.collect())
     }
 

@@ -2,9 +2,8 @@
 
 use core::ops::Range;
 
-use bytemuck::Pod;
+use libration_core::Float;
 use libration_core::control::Clock;
-use libration_core::{Elementary, Float};
 use ndarray::ArrayViewMut3;
 
 use super::block_step::{BlockStep, Row};
@@ -13,7 +12,7 @@ use super::horizon::{Horizon, Share};
 use super::state::{Beginning, Programs};
 use super::transitions::Transitions;
 use super::{EpisodeEnds, ProgramEnvironment, ProgramPolicy, ProgramRollout};
-use crate::ensemble::{Execution, InsufficientMemory};
+use crate::ensemble::{BatchFloat, Execution, InsufficientMemory};
 use crate::rl::block_size::LANES;
 use crate::rl::history::History;
 use crate::rl::rollout_slice::{first_of, rows_of};
@@ -32,7 +31,7 @@ pub struct ProgramEnvironments<T: Float> {
     pub(super) past: Vec<T>,
 }
 
-impl<T: Float + Elementary + Pod> ProgramEnvironments<T> {
+impl<T: BatchFloat> ProgramEnvironments<T> {
     /// `len` environments from number `first` of a larger batch on, each at the start of its first episode. `seed` determines all
     /// random numbers.
     ///

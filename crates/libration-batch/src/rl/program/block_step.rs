@@ -1,17 +1,16 @@
 //! The parts of a step of a block.
 
-use bytemuck::Pod;
+use libration_core::Float;
 use libration_core::control::clock::Noise;
 use libration_core::control::{Clock, Memory};
 use libration_core::random::{Purpose, Streams};
-use libration_core::{Elementary, Float};
 
 use super::ProgramPolicy;
 use super::environment::World;
 use super::episodes::EpisodeBlock;
 use super::row_program::ProgramRows;
 use super::state::Programs;
-use crate::ensemble::InstructionSet;
+use crate::ensemble::{BatchFloat, InstructionSet};
 use crate::rl::block::{ClockMemory, LOST};
 use crate::rl::block_size::LANES;
 use crate::rl::deviation::scale_deviation;
@@ -59,7 +58,7 @@ pub(super) struct BlockState<'a, T: Float> {
     pub(super) past: &'a mut [T],
 }
 
-impl<'s, T: Float + Elementary + Pod> BlockStep<'s, T> {
+impl<'s, T: BatchFloat> BlockStep<'s, T> {
     pub(super) fn new(
         definition: &'s ProgramEnvironment,
         programs: &'s Programs,

@@ -1,13 +1,11 @@
 //! Checkpoints of environments by programs.
 
-use bytemuck::Pod;
-use libration_core::{Elementary, Float};
-
 use super::ProgramEnvironments;
 use crate::checkpoint::{Checkpoint, CheckpointError, Reader, Trait};
+use crate::ensemble::BatchFloat;
 use crate::rl::block_size::LANES;
 
-impl<T: Float + Elementary + Pod> Checkpoint for ProgramEnvironments<T> {
+impl<T: BatchFloat> Checkpoint for ProgramEnvironments<T> {
     fn traits(&self) -> Vec<Trait> {
         let mut traits = self.episodes.traits();
         traits.push(("number of states", self.definition.coordinates().to_string()));

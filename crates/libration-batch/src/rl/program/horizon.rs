@@ -1,8 +1,7 @@
 //! The transitions of environments over a horizon.
 
-use bytemuck::Pod;
+use libration_core::Float;
 use libration_core::random::Streams;
-use libration_core::{Elementary, Float};
 
 use super::block_step::{BlockState, BlockStep, Row};
 use super::episodes::EpisodeBlock;
@@ -10,6 +9,7 @@ use super::rollout::EpisodeEnds;
 use super::state::Beginning;
 use super::transitions::{Transitions, interleave};
 use super::{ProgramEnvironment, ProgramPolicy};
+use crate::ensemble::BatchFloat;
 use crate::rl::block::{LOST, TERMINATED, TRUNCATED};
 use crate::rl::block_size::LANES;
 use crate::rl::{Autoreset, EpisodeEnd, StepIndex};
@@ -47,7 +47,7 @@ struct Site<'w> {
     words: [&'w mut Streams<LANES>; 3],
 }
 
-impl<T: Float + Elementary + Pod> Horizon<'_, T> {
+impl<T: BatchFloat> Horizon<'_, T> {
     pub(super) fn run(&self, work: &mut BlockStep<'_, T>, share: Share<'_, T>) -> EpisodeEnds<T> {
         let Share { first, len, blocks, states, past, words: [times, looks, acts], .. } = share;
         let Share { mut to, next, .. } = share;

@@ -2,11 +2,10 @@
 
 use core::ops::Range;
 
-use libration_core::Float;
 use libration_equations::Program;
 
 use crate::ensemble::InstructionSet;
-use crate::machine::{Block, BlockProgram};
+use crate::machine::{Block, BlockProgram, MachineFloat};
 use crate::rl::block_size::LANES;
 
 /// A program for the block machine, with the rows of its inputs and outputs.
@@ -40,7 +39,7 @@ impl RowProgram {
     }
 
     /// The rows for `lanes` lanes of a block, with this value of the uniform input.
-    pub(super) fn rows<T: Float>(&self, lanes: usize, uniform: T) -> ProgramRows<'_, T> {
+    pub(super) fn rows<T: MachineFloat>(&self, lanes: usize, uniform: T) -> ProgramRows<'_, T> {
         let inputs = vec![uniform; self.inputs];
         ProgramRows { program: self, block: Block::new(&self.program, lanes, &inputs), lanes }
     }
@@ -61,7 +60,7 @@ pub(super) struct ProgramRows<'p, T> {
     lanes: usize,
 }
 
-impl<T: Float> ProgramRows<'_, T> {
+impl<T: MachineFloat> ProgramRows<'_, T> {
     /// Runs the program and writes the lanes of its outputs, as many as there are.
     pub(super) fn run<'a>(
         &mut self,

@@ -1,0 +1,93 @@
+//! Systems by their programs.
+
+use libration::equations::{Dynamics, Evaluation, StepProgram};
+use libration::{Float, Method};
+
+use super::simulated_system::{SimulatedSystem, Steps};
+
+/// A system by its program, whose inputs are zero.
+pub(super) struct SystemByProgram<'a> {
+    dynamics: &'a Dynamics,
+    states: Vec<usize>,
+    /// The steps of [all methods](Method::ALL).
+    steps: Vec<StepProgram>,
+}
+
+impl<'a> SystemByProgram<'a> {
+    /// The places `states` are compared; others only carry time or an integral.
+    pub(super) fn new(dynamics: &'a Dynamics, states: Vec<usize>) -> Self {
+        let steps = Method::ALL.map(|method| StepProgram::new(method, dynamics)).into();
+        SystemByProgram { dynamics, states, steps }
+    }
+
+    fn steps_on<S: Float>(&self, method: Method, dt: f64, start: &[f64]) -> ProgramSteps<'_, S> {
+        let place = Method::ALL.iter().position(|&other| other == method).unwrap_or_default();
+        let mut inputs: Vec<S> = start.iter().map(|&x| S::from_f64(x)).collect();
+        inputs.resize(start.len() + self.dynamics.inputs(), S::zero());
+        inputs.push(S::from_f64(dt));
+        let step = self.steps[place].program().on();
+        ProgramSteps { step, inputs, next: Vec::new(), shown: start.to_vec() }
+    }
+}
+
+impl SimulatedSystem for SystemByProgram<'_> {
+    fn degrees(&self) -> usize {
+        self.dynamics.degrees()
+    }
+
+    fn states(&self) -> &[usize] {
+        &self.states
+    }
+
+    fn exact_rate(&self) -> Option<f64> {
+        None
+    }
+
+    fn accelerations(&self) -> Box<dyn FnMut(&[f64], &mut [f64]) + '_> {
+        let mut accelerations = self.dynamics.accelerations().on::<f64>();
+        Box::new(move |state, to| {
+            to.iter_mut().zip(accelerations.run(state)).for_each(|(to, x)| *to = x);
+        })
+    }
+
+    fn energy(&self) -> Option<Box<dyn FnMut(&[f64]) -> f64 + '_>> {
+        let mut energy = self.dynamics.energy()?.on::<f64>();
+        Some(Box::new(move |state| energy.run(state).next().unwrap_or(f64::NAN)))
+    }
+
+    fn steps(
+        &self,
+        is_narrow: bool,
+        method: Method,
+        dt: f64,
+        start: &[f64],
+    ) -> Box<dyn Steps + '_> {
+        match is_narrow {
+            true => Box::new(self.steps_on::<f32>(method, dt, start)),
+            false => Box::new(self.steps_on::<f64>(method, dt, start)),
+        }
+    }
+
+    fn exact_steps(&self, _: f64, _: &[f64]) -> Option<Box<dyn Steps + '_>> {
+        None
+    }
+}
+
+struct ProgramSteps<'p, S> {
+    step: Evaluation<'p, S>,
+    /// Positions, velocities, inputs and the time step.
+    inputs: Vec<S>,
+    next: Vec<S>,
+    shown: Vec<f64>,
+}
+
+impl<S: Float> Steps for ProgramSteps<'_, S> {
+    fn next(&mut self) -> &[f64] {
+        let ProgramSteps { step, inputs, next, shown } = self;
+        next.clear();
+        next.extend(step.run(inputs));
+        inputs[..next.len()].copy_from_slice(next);
+        shown.iter_mut().zip(&*next).for_each(|(to, x)| *to = x.to_f64());
+        shown
+    }
+}
