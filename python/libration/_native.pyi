@@ -17,6 +17,7 @@ __all__ = [
     "_SETTINGS_BYTES",
     "__version__",
     "_advise",
+    "_advise_equations",
     "_analyze",
     "_analyze_equations",
     "_analyze_linear",
@@ -81,6 +82,13 @@ def _analyze_linear(config: str, dt: float | None, integrator: str | None) -> st
 def _linear_plant(text: str) -> tuple[list[list[list[float]]], list[list[tuple[str, str]]]]: ...
 def _advise(
     config: str, page: bool, redesign: bool, progress: Callable[[str, int, int, str, int, int], Any] | None
+) -> tuple[str, bool, str | None]: ...
+def _advise_equations(
+    system: _Equations,
+    tolerance: tuple[str, float],
+    horizon: float,
+    page: bool,
+    progress: Callable[[str, int, int, str, int, int], Any] | None,
 ) -> tuple[str, bool, str | None]: ...
 def _run_lab(
     config: str,

@@ -278,7 +278,8 @@ def advise(
     Parameters
     ----------
     system:
-        A name or a :class:`~libration.System`; or a linear plant: a :class:`~libration.LinearPlant`, or any object with ``A``,
+        A name or a :class:`~libration.System`, by equations without a controller for a simulation from its start and with one for a
+        loop at its equilibrium; or a linear plant: a :class:`~libration.LinearPlant`, or any object with ``A``,
         ``B``, ``C``, ``D`` and ``dt``, as ``control.ss`` and ``scipy.signal.StateSpace`` make them, or with ``num``, ``den`` and ``dt``,
         as ``control.tf`` and ``scipy.signal.TransferFunction`` do.
     controller:
@@ -347,6 +348,8 @@ def advise(
         request = text_of("config", config)
     elif system is None:
         raise TypeError("system and config are missing; expected one of them")
+    elif isinstance(system, EquationSystem) and controller is None:
+        return _advise_simulation(system, keywords, page, redesign, progress)
     elif (plant := plant_of(system)) is not None:
         for name in ("q", "v", "deviation", "horizon"):
             if keywords[name] is not None:
@@ -361,6 +364,25 @@ def advise(
         report = (lambda _, __, ___, what, done, total: display.update(done / max(total, 1), what)) if display.enabled else None
         answer, holds, html_page = _native._advise(request, bool(page), bool(redesign), report)
     return Advice(json.loads(answer), holds, request, html_page)
+
+
+def _advise_simulation(system: EquationSystem, keywords: dict[str, Any], page: bool, redesign: bool, progress: Progress) -> Advice:
+    """Advise on simulations of a system by equations."""
+    for name in ("q", "v"):
+        if keywords[name] is not None:
+            raise TypeError(f"{name} cannot be combined with a system by equations, which has its start")
+    loop = {**keywords, "redesign": redesign or None}
+    for name, value in loop.items():
+        if value is not None and name not in ("system", "tolerance", "horizon"):
+            raise TypeError(f"{name} requires a controller")
+    tolerance, horizon = keywords["tolerance"], keywords["horizon"]
+    kind, most = next(iter(tolerance_table(("trajectory", 1e-3) if tolerance is None else tolerance, "('energy', 1e-6)").items()))
+    seconds = number("horizon", 10.0 if horizon is None else horizon, "a number")
+    with ProgressDisplay(progress) as display:
+        report = (lambda _, __, ___, what, done, total: display.update(done / max(total, 1), what)) if display.enabled else None
+        found = _native._advise_equations(system._text, (kind, most), seconds, bool(page), report)
+    answer, holds, html_page = found
+    return Advice(json.loads(answer), holds, system._text[0], html_page)
 
 
 def _request(

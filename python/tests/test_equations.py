@@ -258,3 +258,19 @@ def test_what_does_not_go_with_a_system_in_a_data_set_is_refused_by_name(tmp_pat
     with pytest.raises(error, match=message):
         write(tmp_path / "none", settings, **{"system": spring(task=TASK), **given})
     assert not (tmp_path / "none").exists()
+
+
+def test_advice_on_a_simulation_of_equations_is_that_of_the_same_catalogue_system():
+    own = pendulum(start={"q": 1.2})
+    wanted = libration.advise(libration.System("pendulum", omega2=9.0), q=1.2, v=0, tolerance=("trajectory", 1e-2), horizon=4)
+    found = libration.advise(own, tolerance=("trajectory", 1e-2), horizon=4)
+    assert [(x["integrator"], x["dt"]) for x in found.integrators] == [(x["integrator"], x["dt"]) for x in wanted.integrators]
+    for keywords, message in (
+        ({"latency": 0.1}, "latency requires a controller"),
+        ({"redesign": True}, "redesign requires a controller"),
+        ({"q": 1.0}, "which has its start"),
+        ({"tolerance": ("distance", 1)}, "unknown tolerance `distance`"),
+        ({"tolerance": ("cost", 1e-3)}, "a cost requires a loop"),
+    ):
+        with pytest.raises((TypeError, ValueError), match=message):
+            libration.advise(own, **keywords)

@@ -23,11 +23,8 @@ pub(super) struct FreeMotion<'a> {
     fastest: f64,
 }
 
-/// Largest number of steps of a run; a search takes hundreds of runs.
-const MOST_STEPS: f64 = 2e7;
-
-/// Largest number of steps of a run with a reference of finer steps.
-pub(super) const MOST_COMPARED: f64 = 1e6;
+/// The angle of the fastest motion in a step below which errors fall with the step, in rad.
+const RESOLVED: f64 = 0.1;
 
 /// Reference steps of order four per compared step. Their error is 1/4096 of that of a method of order four.
 const FINER: u32 = 8;
@@ -97,8 +94,8 @@ impl<'a> FreeMotion<'a> {
 
     /// The shortest and the longest tried step.
     pub(super) fn steps(&self) -> [f64; 2] {
-        let compared = self.of != Measure::Energy && self.system.exact_rate().is_none();
-        let most = if compared { MOST_COMPARED } else { MOST_STEPS };
+        let is_compared = self.of != Measure::Energy && self.system.exact_rate().is_none();
+        let most = self.system.most_steps()[usize::from(is_compared)];
         let longest = (4.0 / self.fastest).min(self.horizon);
         [self.horizon / most, longest]
     }
@@ -123,8 +120,8 @@ impl<'a> FreeMotion<'a> {
             Some(exact) => self.reference_error(work, trajectory, most, (exact, 1)),
             None => {
                 let fine = dt / f64::from(FINER);
-                let reference = self.system.steps(false, Method::Suzuki4, fine, &self.start);
-                let reference = (reference, FINER);
+                let method = self.system.reference_method();
+                let reference = (self.system.steps(false, method, fine, &self.start), FINER);
                 Ok(self.reference_error(work, trajectory, most / WIDER, reference)? * WIDER)
             }
         }
@@ -193,6 +190,10 @@ impl StepTrial for FreeMotion<'_> {
         most: f64,
     ) -> Result<f64, AdviseError> {
         self.lost_in::<f64>(work, method, dt, most)
+    }
+
+    fn resolving_step(&self) -> f64 {
+        RESOLVED / self.fastest
     }
 }
 

@@ -46,10 +46,16 @@ pub(super) trait StepTrial: Sync {
     /// The error of `method` in steps of `dt` seconds; an error above `most` may be inexact.
     fn lost(&self, work: &Work<'_>, method: Method, dt: f64, most: f64)
     -> Result<f64, AdviseError>;
+
+    /// The step below which errors fall with the step.
+    fn resolving_step(&self) -> f64;
 }
 
 /// Ratio of neighbouring tried steps.
 const RATIO: f64 = 1.09;
+
+/// The same where errors fall with the step.
+const COARSE: f64 = 2.0;
 
 /// Relative accuracy of the largest step.
 const SHARP: f64 = 0.002;
@@ -70,7 +76,8 @@ pub(super) fn largest_step(
     let (mut above, mut low) = (most, most);
     let mut at = lost(low)?;
     while at > tolerance {
-        (above, low) = (low, low / RATIO);
+        let ratio = if low < trial.resolving_step() { COARSE } else { RATIO };
+        (above, low) = (low, low / ratio);
         if low < least {
             return Ok(choice);
         }

@@ -2,11 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use libration::Method;
 use libration_work::Work;
 
 use super::AdviseError;
-use super::free_motion::{FreeMotion, MOST_COMPARED};
+use super::free_motion::FreeMotion;
 
 /// A function that writes the accelerations of a state.
 type Accelerations<'a> = &'a mut dyn FnMut(&[f64], &mut [f64]);
@@ -37,11 +36,13 @@ impl FreeMotion<'_> {
         // A periodic motion is known before the horizon.
         let long = if begins > 0.0 { MOTIONS * TAU / begins } else { self.horizon };
         let long = self.horizon.min(long);
+        let method = self.system.reference_method();
         let (mut before, mut steps) = (f64::NAN, 1_u64 << 10);
-        while steps as f64 <= MOST_COMPARED {
+        let [_, most] = self.system.most_steps();
+        while steps as f64 <= most {
             work.check()?;
             let dt = long / steps as f64;
-            let mut trajectory = self.system.steps(false, Method::Suzuki4, dt, &self.start);
+            let mut trajectory = self.system.steps(false, method, dt, &self.start);
             let (mut low, mut high) = (self.start.clone(), self.start.clone());
             let (mut speed, mut stiffest) = (0.0_f64, begins);
             for _ in 0..steps {
@@ -65,7 +66,7 @@ impl FreeMotion<'_> {
             (before, steps) = (found, 2 * steps);
         }
         Err(self.tolerance_error(&format!(
-            "its motion is not resolved by {MOST_COMPARED:.0e} steps in {long:.3e} s: it is too fast or unbounded"
+            "its motion is not resolved by {most:.0e} steps in {long:.3e} s: it is too fast or unbounded"
         )))
     }
 
@@ -88,9 +89,10 @@ impl FreeMotion<'_> {
         let Some(mut energy) = self.system.energy() else { return false };
         let (first, long) = (energy(&self.start), self.horizon.min(TAU / omega));
         let steps = (long * fastest / ANGLE).ceil().clamp(16.0, MOST);
+        let method = self.system.reference_method();
         let mut change = |steps: f64| {
             let dt = long / steps;
-            let mut trajectory = self.system.steps(false, Method::Suzuki4, dt, &self.start);
+            let mut trajectory = self.system.steps(false, method, dt, &self.start);
             let each = (0..steps as u64).map(|_| (energy(trajectory.next()) - first).abs());
             each.fold(0.0, f64::max)
         };

@@ -1,6 +1,7 @@
 //! Requests for advice.
 
 use libration::control::LqrWeights;
+use libration_settings::equations::EquationSystem;
 use libration_settings::limits;
 
 use super::AdviseError;
@@ -79,6 +80,29 @@ impl Measure {
 }
 
 impl Request {
+    /// A request about a simulation of a system by equations from its start; `options` stand for it in command lines.
+    pub fn of_equations(
+        system: EquationSystem,
+        options: String,
+        tolerance: Tolerance,
+        horizon: f64,
+    ) -> Self {
+        Request {
+            q: system.q.clone(),
+            v: system.v.clone(),
+            system: AdvisedSystem::Equations { system: Box::new(system), options },
+            control: None,
+            tolerance,
+            horizon,
+            rollout: Request::ROLLOUT,
+            map: false,
+            invocation: String::new(),
+        }
+    }
+
+    /// The size of rollouts where a request states none.
+    pub const ROLLOUT: [usize; 2] = [4096, 1024];
+
     /// The command that takes the advised steps and, if possible, prints their error.
     pub(super) fn command(&self, integrator: &str, dt: f64, float: &str) -> String {
         match (&self.control, self.tolerance.of) {

@@ -12,6 +12,12 @@ pub(super) trait SimulatedSystem: Sync {
     /// The places of the states that are compared, rising.
     fn states(&self) -> &[usize];
 
+    /// The most steps of a run, and of one that is compared with finer steps: a search takes hundreds of runs.
+    fn most_steps(&self) -> [f64; 2];
+
+    /// A method that is of order four on this system: splitting methods lose order where forces depend on velocities.
+    fn reference_method(&self) -> Method;
+
     /// The largest angle of an exact step of a second, of a linear system that has exact steps, in rad.
     fn exact_rate(&self) -> Option<f64>;
 
@@ -27,6 +33,11 @@ pub(super) trait SimulatedSystem: Sync {
 
     /// Exact steps, of a linear system that has them.
     fn exact_steps(&self, dt: f64, start: &[f64]) -> Option<Box<dyn Steps + '_>>;
+}
+
+/// The method with the smaller error of those that are of order four.
+pub(super) fn reference_method(is_positional: bool) -> Method {
+    if is_positional { Method::Suzuki4 } else { Method::Rk4 }
 }
 
 /// A trajectory, step by step.
@@ -61,6 +72,14 @@ impl<M: Model<D>, const D: usize> SimulatedSystem for Compiled<M, D> {
 
     fn states(&self) -> &[usize] {
         &self.states
+    }
+
+    fn most_steps(&self) -> [f64; 2] {
+        [2e7, 1e6]
+    }
+
+    fn reference_method(&self) -> Method {
+        reference_method(<M::On<f64> as System<f64, D>>::POSITIONAL)
     }
 
     fn exact_rate(&self) -> Option<f64> {

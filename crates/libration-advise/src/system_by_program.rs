@@ -3,7 +3,7 @@
 use libration::equations::{Dynamics, Evaluation, StepProgram};
 use libration::{Float, Method};
 
-use super::simulated_system::{SimulatedSystem, Steps};
+use super::simulated_system::{SimulatedSystem, Steps, reference_method};
 
 /// A system by its program, whose inputs are zero.
 pub(super) struct SystemByProgram<'a> {
@@ -37,6 +37,15 @@ impl SimulatedSystem for SystemByProgram<'_> {
 
     fn states(&self) -> &[usize] {
         &self.states
+    }
+
+    fn most_steps(&self) -> [f64; 2] {
+        // A step by a program takes several times as long as a compiled one.
+        [2e6, 2e5]
+    }
+
+    fn reference_method(&self) -> Method {
+        reference_method(self.dynamics.is_positional())
     }
 
     fn exact_rate(&self) -> Option<f64> {

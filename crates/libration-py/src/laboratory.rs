@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
 use libration_advise as advise;
-use libration_advise::linear;
+use libration_advise::{Measure, Request, Tolerance, linear};
 use libration_lab::output::Output;
 use libration_lab::results::Results;
 use libration_lab::{STUDIES, SystemStudies, session};
@@ -82,15 +82,50 @@ pub(crate) fn _advise(
     }
     let mut request = advise::parse(config, "config.toml").map_err(Raised::raised)?;
     request.map = page;
+    advised(py, &request, page, progress)
+}
+
+/// The advice as JSON, whether it holds, and its page.
+fn advised(
+    py: Python<'_>,
+    request: &Request,
+    page: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(String, bool, Option<String>)> {
     let state = ProgressState::default();
     let advice = run_in_background(
         py,
-        |stop| advise::advise(&Work::new(&state, stop), &request),
+        |stop| advise::advise(&Work::new(&state, stop), request),
         |py| state.report(py, progress.as_ref()),
     )?;
     let advice = advice.map_err(Raised::raised)?;
     let json = serde_json::to_string(&advice).map_err(|error| value_error(error.to_string()))?;
     Ok((json, advice.holds(), page.then(|| advise::page(&advice))))
+}
+
+/// Advises on a simulation of a system by equations; `tolerance` is a measure and its largest value.
+#[pyfunction]
+pub(crate) fn _advise_equations(
+    py: Python<'_>,
+    system: EquationText,
+    tolerance: (String, f64),
+    horizon: f64,
+    page: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(String, bool, Option<String>)> {
+    let (measure, most) = tolerance;
+    let of = Measure::ALL.into_iter().find(|known| known.name() == measure);
+    let of = of.ok_or_else(|| unknown("tolerance", &measure, Measure::ALL.map(Measure::name)))?;
+    let (_, file, set) = &system;
+    let set: String = set.iter().map(|(name, x)| format!(" --set {name}={x}")).collect();
+    let file = if file.ends_with(".toml") { file } else { "FILE" };
+    let options = format!("--system {file}{set}");
+    let tolerance = Tolerance { of, most };
+    let request = Request {
+        invocation: format!("libration advise {options}"),
+        ..Request::of_equations(equations(&system)?, options, tolerance, horizon)
+    };
+    advised(py, &request, page, progress)
 }
 
 /// Advises on a loop around a linear plant.

@@ -45,7 +45,7 @@ mod _native {
         _analyze_equations, _equation_plant, _equation_summary, _simulate_equations,
     };
     #[pymodule_export]
-    use crate::laboratory::{_advise, _run_lab};
+    use crate::laboratory::{_advise, _advise_equations, _run_lab};
     #[pymodule_export]
     use crate::linear_analysis::_analyze_linear;
     #[pymodule_export]

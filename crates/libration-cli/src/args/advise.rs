@@ -187,35 +187,11 @@ impl AdviseArgs {
     pub(crate) fn equation_request(&self, system: EquationSystem) -> Result<Request, Failure> {
         if self.feedback.is_some() || self.period.is_some() {
             return Err(Failure::usage(
-                "--feedback and --period require a system of the catalogue; a loop around equations takes --lqr or --gain, and is that of --system FILE",
+                "--feedback and --period are given without a loop; a loop around a file of equations takes --lqr or --gain",
             ));
         }
-        let (q, v) = (system.q.clone(), system.v.clone());
         let options = self.system.as_ref().map(SystemArgs::words).unwrap_or_default();
-        self.with_timing(self.request_of(
-            AdvisedSystem::Equations { system: Box::new(system), options },
-            (q, v),
-            None,
-        ))
-    }
-
-    fn request_of(
-        &self,
-        system: AdvisedSystem,
-        (q, v): (Vec<f64>, Vec<f64>),
-        control: Option<Control>,
-    ) -> Request {
-        Request {
-            system,
-            q,
-            v,
-            control,
-            tolerance: self.tolerance.0,
-            horizon: self.horizon,
-            rollout: [4096, 1024],
-            map: false,
-            invocation: String::new(),
-        }
+        self.with_timing(Request::of_equations(system, options, self.tolerance.0, self.horizon))
     }
 
     /// Returns the request that the options describe.
@@ -248,8 +224,17 @@ impl AdviseArgs {
             weights: self.cost_weights,
             deviation: self.deviation,
         });
-        let system = AdvisedSystem::Catalogued { system, actuation };
-        self.with_timing(self.request_of(system, (q, v), control))
+        self.with_timing(Request {
+            system: AdvisedSystem::Catalogued { system, actuation },
+            q,
+            v,
+            control,
+            tolerance: self.tolerance.0,
+            horizon: self.horizon,
+            rollout: Request::ROLLOUT,
+            map: false,
+            invocation: String::new(),
+        })
     }
 
     /// Returns the request with the timing options in place of its own.

@@ -37,6 +37,7 @@ mod rollout;
 mod simulate;
 mod stability;
 mod steps;
+mod system_advice;
 mod system_lab;
 mod timing;
 mod verify;

@@ -21,7 +21,7 @@ fn report(file: &str, words: &[&str]) -> (String, Value) {
     (page, serde_json::from_slice(&results).unwrap())
 }
 
-fn example(name: &str) -> String {
+pub(super) fn example(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/systems").join(name);
     path.to_string_lossy().into_owned()
 }

@@ -1,0 +1,126 @@
+//! `advise --system FILE`, through the binary.
+
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::contains;
+use serde_json::Value;
+
+use super::advise::{json, libration};
+use super::linear::written;
+use super::system_lab::example;
+
+const PENDULUM: &str = "[system]\nname = \"pendulum\"\ncoordinates = [\"q\"]\nparameters = { omega2 = 4.0 }\n\
+    acceleration.q = \"-omega2*sin(q)\"\nstart = { q = 1.2 }\n";
+
+fn steps(advice: &Value) -> Vec<(String, Value, Value, Value)> {
+    let all = advice["integrators"].as_array().unwrap();
+    let known = |choice: &Value| {
+        let name = choice["integrator"].as_str().unwrap().to_owned();
+        (name, choice["dt"].clone(), choice["lost"].clone(), choice["evaluations"].clone())
+    };
+    all.iter().map(known).collect()
+}
+
+#[test]
+fn a_catalogue_system_as_equations_gets_the_same_advice() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = written(&folder, "pendulum.toml", PENDULUM);
+    let by_equations =
+        json(&["advise", "-q", "--system", file.to_str().unwrap(), "--set", "omega2=9.81"]);
+    let catalogued = json(&[
+        "advise",
+        "-q",
+        "--system",
+        "pendulum",
+        "--set",
+        "omega2=9.81",
+        "--q",
+        "1.2",
+        "--v",
+        "0",
+    ]);
+    assert_eq!(steps(&by_equations), steps(&catalogued));
+    assert_eq!(by_equations["floats"][0]["lost"], catalogued["floats"][0]["lost"]);
+    assert_eq!(by_equations["parameters"]["omega2"], 9.81);
+}
+
+#[test]
+fn the_error_of_states_of_first_order_is_that_of_an_independent_program() {
+    let advice = json(&["advise", "-q", "--system", &example("lorenz.toml")]);
+    let [rk4, ..] = &advice["integrators"].as_array().unwrap()[..] else { panic!("{advice}") };
+    assert_eq!(rk4["integrator"], "rk4");
+    // A loop of ten lines over NumPy with this step, against SciPy's DOP853 with tolerances of 1e-13: 9.95256e-4, and 3.06370e-3 with
+    // one 1.2 times as long. The program adds a thousandth for its reference, which is itself off by less than that.
+    assert!((rk4["dt"].as_f64().unwrap() - 0.007_739_058_043_290_371).abs() < 1e-12, "{rk4}");
+    for (key, wanted) in [("lost", 9.95256e-4), ("lost_beyond", 3.06370e-3)] {
+        let found = rk4[key].as_f64().unwrap() / wanted;
+        assert!((found - 1.001).abs() < 1e-3, "{key}: {found}");
+    }
+}
+
+#[test]
+fn the_advised_step_keeps_the_energy_where_forces_depend_on_velocities() {
+    let words = ["--tolerance", "energy=1e-6", "--horizon", "2"];
+    let advice =
+        json(&[&["advise", "-q", "--system", &example("cart_pole.toml")], &words[..]].concat());
+    // The advised command measures the drift itself.
+    let command = advice["command"].as_str().unwrap();
+    let analysis = json(&command.split_whitespace().skip(1).collect::<Vec<_>>());
+    let energy = |key: &str| analysis["motion"]["energy"][key].as_f64().unwrap();
+    let drift = energy("largest") / energy("start");
+    let lost = advice["integrators"][0]["lost"].as_f64().unwrap();
+    assert!((drift / lost - 1.0).abs() < 1e-9, "{drift} {lost}");
+}
+
+#[test]
+fn an_energy_that_is_lost_or_missing_is_no_measure() {
+    let damped =
+        PENDULUM.replace("sin(q)", "sin(q) - 1e-7*q'") + "energy = \"q'^2/2 - omega2*cos(q)\"\n";
+    let folder = tempfile::tempdir().unwrap();
+    let file = written(&folder, "damped.toml", &damped);
+    let tolerance = ["--tolerance", "energy=1e-6"];
+    let advise =
+        |file: &str| libration(&[&["advise", "-q", "--system", file], &tolerance[..]].concat());
+    advise(file.to_str().unwrap()).code(2).stderr(contains("the system does not conserve it"));
+    advise(&example("lorenz.toml")).code(2).stderr(contains("the system has no `energy`"));
+}
+
+#[test]
+fn a_loop_around_a_file_of_equations_is_that_of_its_plant() {
+    let cart = example("cart_pole.toml");
+    let lqr = ["--lqr", "1,10,0,1/0.1", "--period", "0.02", "--latency", "0.03"];
+    let budget = |flag: &str, more: &[&str]| {
+        let mut advice = json(&[&["advise", "-q", flag, &cart], &lqr[..], more].concat());
+        let object = advice.as_object_mut().unwrap();
+        object.retain(|key, _| key != "repeat_command" && key != "simulated");
+        object["budgets"].as_array_mut().unwrap().iter_mut().for_each(|budget| {
+            budget.as_object_mut().unwrap().remove("command");
+        });
+        advice
+    };
+    assert_eq!(budget("--system", &[]), budget("--plant", &[]));
+    let heavier = budget("--system", &["--set", "pole=0.4"]);
+    assert_ne!(heavier["budgets"], budget("--plant", &[])["budgets"]);
+}
+
+#[test]
+fn options_of_other_systems_are_refused_by_name() {
+    let cart = example("cart_pole.toml");
+    let refused = |words: &[&str], why: &str| {
+        libration(&[&["advise"], words].concat())
+            .code(2)
+            .stderr(contains(why).and(contains("panicked").not()));
+    };
+    refused(&["--system", &cart, "--feedback", "1,1"], "--lqr or --gain");
+    refused(&["--system", &cart, "--latency", "0.01"], "--latency is given, but there is no loop");
+    refused(
+        &["--system", &cart, "--lqr", "1/1", "--q", "1"],
+        "--q requires a system of the catalogue",
+    );
+    refused(&["--lqr", "1/1"], "--lqr is given without a plant");
+    refused(&["--system", "pendulum", "--gain", "1"], "--gain is given without a plant");
+    refused(&["--system", &cart, "--set", "mass=1"], "unknown parameter `mass`");
+    refused(
+        &["--system", &cart, "--tolerance", "phase=0.1"],
+        "a phase requires one degree of freedom",
+    );
+}
