@@ -6,9 +6,7 @@ use libration_work::Work;
 
 use super::AdviseError;
 use super::free_motion::FreeMotion;
-
-/// A function that writes the accelerations of a state.
-type Accelerations<'a> = &'a mut dyn FnMut(&[f64], &mut [f64]);
+use super::simulated_system::Accelerations;
 
 impl FreeMotion<'_> {
     /// The mean and the largest rate of the true motion, in rad/s: the largest velocity over the amplitude, and the rate of the
@@ -70,7 +68,7 @@ impl FreeMotion<'_> {
         )))
     }
 
-    fn is_at_rest(&self, accelerations: Accelerations<'_>) -> bool {
+    fn is_at_rest(&self, accelerations: &mut Accelerations<'_>) -> bool {
         let degrees = self.system.degrees();
         let mut at = vec![0.0; degrees];
         accelerations(&self.start, &mut at);
@@ -106,7 +104,7 @@ impl FreeMotion<'_> {
     }
 
     /// The square root of the norm of the derivatives of accelerations by positions, and the norm of those by velocities, in rad/s.
-    fn stiffness(&self, accelerations: Accelerations<'_>, state: &[f64]) -> [f64; 2] {
+    fn stiffness(&self, accelerations: &mut Accelerations<'_>, state: &[f64]) -> [f64; 2] {
         let degrees = self.system.degrees();
         let (positions, _) = state.split_at(degrees);
         let mut here = vec![0.0; degrees];

@@ -4,6 +4,12 @@ use libration::integrator::Exact;
 use libration::system::DynSystem;
 use libration::{Float, Hamiltonian, Integrator, Method, Model, State, System};
 
+/// A function that writes the accelerations of a state.
+pub(super) type Accelerations<'a> = Box<dyn FnMut(&[f64], &mut [f64]) + 'a>;
+
+/// A function of the energy of a state.
+pub(super) type Energy<'a> = Box<dyn FnMut(&[f64]) -> f64 + 'a>;
+
 /// A system with positions, then velocities, in one list.
 pub(super) trait SimulatedSystem: Sync {
     /// Degrees of freedom.
@@ -21,11 +27,11 @@ pub(super) trait SimulatedSystem: Sync {
     /// The largest angle of an exact step of a second, of a linear system that has exact steps, in rad.
     fn exact_rate(&self) -> Option<f64>;
 
-    /// A function that writes the accelerations of a state.
-    fn accelerations(&self) -> Box<dyn FnMut(&[f64], &mut [f64]) + '_>;
+    /// The accelerations.
+    fn accelerations(&self) -> Accelerations<'_>;
 
-    /// The function of the energy, if there is one.
-    fn energy(&self) -> Option<Box<dyn FnMut(&[f64]) -> f64 + '_>>;
+    /// The energy, if there is one.
+    fn energy(&self) -> Option<Energy<'_>>;
 
     /// Steps of an integrator in `f32` or `f64`.
     fn steps(&self, is_narrow: bool, method: Method, dt: f64, start: &[f64])
@@ -86,12 +92,12 @@ impl<M: Model<D>, const D: usize> SimulatedSystem for Compiled<M, D> {
         Exact::angle(self.model, 1.0)
     }
 
-    fn accelerations(&self) -> Box<dyn FnMut(&[f64], &mut [f64]) + '_> {
+    fn accelerations(&self) -> Accelerations<'_> {
         let system = self.model.on::<f64>();
         Box::new(move |state, to| to.copy_from_slice(&system.acceleration(&state_of::<D>(state))))
     }
 
-    fn energy(&self) -> Option<Box<dyn FnMut(&[f64]) -> f64 + '_>> {
+    fn energy(&self) -> Option<Energy<'_>> {
         let system = self.model.on::<f64>();
         Some(Box::new(move |state| system.energy(&state_of::<D>(state))))
     }

@@ -3,7 +3,7 @@
 use libration::equations::{Dynamics, Evaluation, StepProgram};
 use libration::{Float, Method};
 
-use super::simulated_system::{SimulatedSystem, Steps, reference_method};
+use super::simulated_system::{Accelerations, Energy, SimulatedSystem, Steps, reference_method};
 
 /// A system by its program, whose inputs are zero.
 pub(super) struct SystemByProgram<'a> {
@@ -52,14 +52,14 @@ impl SimulatedSystem for SystemByProgram<'_> {
         None
     }
 
-    fn accelerations(&self) -> Box<dyn FnMut(&[f64], &mut [f64]) + '_> {
+    fn accelerations(&self) -> Accelerations<'_> {
         let mut accelerations = self.dynamics.accelerations().on::<f64>();
         Box::new(move |state, to| {
             to.iter_mut().zip(accelerations.run(state)).for_each(|(to, x)| *to = x);
         })
     }
 
-    fn energy(&self) -> Option<Box<dyn FnMut(&[f64]) -> f64 + '_>> {
+    fn energy(&self) -> Option<Energy<'_>> {
         let mut energy = self.dynamics.energy()?.on::<f64>();
         Some(Box::new(move |state| energy.run(state).next().unwrap_or(f64::NAN)))
     }

@@ -7,7 +7,6 @@ use libration::catalog;
 use libration::control::{Feedback, Jitter, LqrWeights};
 use libration_advise::{AdvisedSystem, Control, Law, Measure, Request, Tolerance};
 use libration_analyze::LatencyOption;
-use libration_settings::equations::EquationSystem;
 use libration_settings::initial_value_problem::InitialValueProblem;
 
 use super::timing::{feedback, finite, latency, law, weights};
@@ -22,12 +21,12 @@ pub(crate) struct AdviseArgs {
     #[arg(long, value_name = "FILE", conflicts_with_all = REQUEST_OPTIONS)]
     pub(crate) config: Option<PathBuf>,
     #[command(flatten)]
-    system: Option<SystemArgs>,
+    pub(super) system: Option<SystemArgs>,
     #[command(flatten)]
     pub(crate) linear: LinearArgs,
     /// Gains of the feedback −KP·q − KD·v [default: no loop; in s⁻² and s⁻¹, with --set m= in N/m and N·s/m]
     #[arg(long, value_name = "KP,KD", value_parser = feedback, allow_hyphen_values = true)]
-    feedback: Option<Feedback>,
+    pub(super) feedback: Option<Feedback>,
     /// Sample period of the loop in s [default: 0.01, or that of a sampled plant]
     #[arg(long, value_name = "SECONDS", value_parser = number, allow_hyphen_values = true)]
     pub(super) period: Option<f64>,
@@ -104,7 +103,7 @@ pub(crate) struct AdviseArgs {
         default_value = "10",
         allow_hyphen_values = true
     )]
-    horizon: f64,
+    pub(super) horizon: f64,
     /// Write an HTML page with a stability map to FILE
     #[arg(long, value_name = "FILE")]
     pub(crate) page: Option<PathBuf>,
@@ -162,38 +161,6 @@ integrator is accurate enough.";
 pub(super) struct ToleranceArg(pub(super) Tolerance);
 
 impl AdviseArgs {
-    /// The options of the system, if any is given.
-    pub(crate) fn system_options(&self) -> Option<&SystemArgs> {
-        self.system.as_ref()
-    }
-
-    /// Fails if an option requires a loop around a system of the catalogue.
-    pub(super) fn ensure_no_catalogue_options(&self) -> Result<(), Failure> {
-        let system = self.system.as_ref();
-        let given = [
-            ("--q", system.is_some_and(|system| system.q.is_some())),
-            ("--v", system.is_some_and(|system| system.v.is_some())),
-            ("--feedback", self.feedback.is_some()),
-        ];
-        match given.into_iter().find(|(_, given)| *given) {
-            Some((flag, _)) => Err(Failure::usage(format!(
-                "{flag} requires a system of the catalogue; a loop around equations takes --lqr or --gain at an equilibrium near their `start`"
-            ))),
-            None => Ok(()),
-        }
-    }
-
-    /// Returns the request for a simulation of a system by equations.
-    pub(crate) fn equation_request(&self, system: EquationSystem) -> Result<Request, Failure> {
-        if self.feedback.is_some() || self.period.is_some() {
-            return Err(Failure::usage(
-                "--feedback and --period are given without a loop; a loop around a file of equations takes --lqr or --gain",
-            ));
-        }
-        let options = self.system.as_ref().map(SystemArgs::words).unwrap_or_default();
-        self.with_timing(Request::of_equations(system, options, self.tolerance.0, self.horizon))
-    }
-
     /// Returns the request that the options describe.
     pub(crate) fn request(&self) -> Result<Request, Failure> {
         let Some(system) = &self.system else {

@@ -3,6 +3,7 @@
 mod advise;
 mod analyze;
 mod bench;
+mod equation_advice;
 mod linear;
 mod linear_analysis;
 mod linear_simulation;
