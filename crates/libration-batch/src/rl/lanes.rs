@@ -1,8 +1,8 @@
 //! Steps of all lanes of a block with run-time dispatch: the dispatch is outside the loop, and each loop is compiled once for each
-//! system and integrator.
+//! integrator.
 
 use libration_core::integrator::WithIntegrator;
-use libration_core::system::{CommandedSystem, WithSystem};
+use libration_core::system::CommandedSystem;
 use libration_core::{Float, Integrator, State, System};
 
 use super::block_size::LANES;
@@ -10,7 +10,7 @@ use crate::ensemble::Loop;
 use crate::ensemble::instructions::Target;
 use crate::ensemble::kernel::{at, put};
 
-/// The state, commands and lengths of a step, without system and integrator.
+/// The state, commands and lengths of a step.
 pub(super) struct Lanes<'a, T, const D: usize> {
     pub(super) q: &'a mut [[T; LANES]; D],
     pub(super) v: &'a mut [[T; LANES]; D],
@@ -19,12 +19,11 @@ pub(super) struct Lanes<'a, T, const D: usize> {
     pub(super) dt: &'a [T; LANES],
 }
 
-/// Lanes during the dispatch of integrator and system.
-struct Dispatch<'a, T, I, Sys, M, const D: usize> {
+/// Lanes during the dispatch of the integrator.
+struct Dispatch<'a, T, I, Sys, const D: usize> {
     lanes: Lanes<'a, T, D>,
     target: I,
     system: Sys,
-    method: M,
 }
 
 impl<T: Float, const D: usize> Lanes<'_, T, D> {
@@ -35,11 +34,11 @@ impl<T: Float, const D: usize> Lanes<'_, T, D> {
         system: Sys,
         method: M,
     ) {
-        method.dispatch(Dispatch { lanes: self, target, system, method: () });
+        method.dispatch(Dispatch { lanes: self, target, system });
     }
 }
 
-impl<T, I, Sys, const D: usize> WithIntegrator for Dispatch<'_, T, I, Sys, (), D>
+impl<T, I, Sys, const D: usize> WithIntegrator for Dispatch<'_, T, I, Sys, D>
 where
     T: Float,
     I: Target,
@@ -49,19 +48,7 @@ where
 
     #[inline(always)]
     fn integrator<M: Integrator>(self, method: M) {
-        let Dispatch { lanes, target, system, .. } = self;
-        system.dispatch(Dispatch { lanes, target, system: (), method });
-    }
-}
-
-impl<T: Float, I: Target, M: Integrator, const D: usize> WithSystem<T, D>
-    for Dispatch<'_, T, I, (), M, D>
-{
-    type Output = ();
-
-    #[inline(always)]
-    fn system<Sys: System<T, D> + Copy>(self, system: Sys) {
-        let Dispatch { lanes, target, method, .. } = self;
+        let Dispatch { lanes, target, system } = self;
         target.vectorize(Known { lanes, system, method });
     }
 }

@@ -3,7 +3,7 @@
 use libration_core::control::{Clock, Memory};
 use libration_core::random::{Purpose, Streams};
 use libration_core::system::CommandedSystem;
-use libration_core::{Float, Integrator, State, System};
+use libration_core::{Float, Integrator, State};
 
 use super::block::{BlockOf, LOST, NumberLanes};
 use super::block_output::{BlockOutput, Step};
@@ -54,11 +54,8 @@ where
     E: World<T, O, D>,
     P: Policy<T, O, D>,
 {
-    /// Whether the loop over lanes dispatches over systems or integrators at run time.
-    const DISPATCHES: bool = {
-        let chosen = <E::System as System<T, D>>::DISPATCHES || E::Method::DISPATCHES;
-        chosen && E::Systems::UNIFORM && E::Variation::SAME
-    };
+    /// Whether the loop over lanes dispatches over integrators at run time.
+    const DISPATCHES: bool = E::Method::DISPATCHES && E::Systems::UNIFORM && E::Variation::SAME;
 
     pub(super) fn new(world: &'s E, policy: P, history: History) -> Self {
         let parts = world.parts();

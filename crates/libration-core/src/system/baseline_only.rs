@@ -5,7 +5,7 @@ use crate::{Scalar, State};
 
 /// A system whose batches are compiled for the baseline of the architecture alone: the same bits in a third of the code, for
 /// callers in which compile time matters more than wide vectors. Wrap the whole system: inside another one the constant has no
-/// effect. A system that [dispatches](System::DISPATCHES) is called without dispatch.
+/// effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaselineOnly<Sys>(
     /// The system.

@@ -46,18 +46,6 @@ pub trait System<S: Scalar, const D: usize> {
     /// the same bits. See [`BaselineOnly`].
     const BASELINE_ONLY: bool = false;
 
-    /// Whether the system dispatches over several systems at run time.
-    const DISPATCHES: bool = false;
-
-    /// Calls `with` with the concrete system, so that a loop is compiled for it alone.
-    #[inline(always)]
-    fn dispatch<W: WithSystem<S, D>>(&self, with: W) -> W::Output
-    where
-        Self: Copy,
-    {
-        with.system(*self)
-    }
-
     /// The acceleration `a(q, v)`.
     fn acceleration(&self, state: &State<S, D>) -> [S; D];
 
@@ -66,15 +54,6 @@ pub trait System<S: Scalar, const D: usize> {
     fn rate(&self, state: State<S, D>) -> State<S, D> {
         State { q: state.v, v: self.acceleration(&state) }
     }
-}
-
-/// A function of a system of any type.
-pub trait WithSystem<S: Scalar, const D: usize> {
-    /// The result.
-    type Output;
-
-    /// Calls the function.
-    fn system<Sys: System<S, D> + Copy>(self, system: Sys) -> Self::Output;
 }
 
 /// A system with an energy, conserved or not.
