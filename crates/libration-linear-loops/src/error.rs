@@ -24,6 +24,16 @@ pub enum LinearLoopsError {
         /// The longest period in s.
         longest: f64,
     },
+    /// The steps in a period are too many.
+    #[error(
+        "the longest step is {longest} s; expected at least 1e-7 of the longest period, {period} s"
+    )]
+    Steps {
+        /// The longest step in s.
+        longest: f64,
+        /// The longest period in s.
+        period: f64,
+    },
     /// The controller changes with each drawn period.
     #[error(
         "the controller measures the length of each period, and periods are uneven; expected the nominal period (`clock = \"nominal\"`), or no jitter"

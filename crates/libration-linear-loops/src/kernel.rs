@@ -47,7 +47,7 @@ impl Scratch {
         let [n, m, p] = plan.sizes();
         let rows = |count| vec![[0.0; LANES]; count];
         let largest = |of: fn(&LengthPart) -> usize| match &plan.parts {
-            Parts::Even(_) => 0,
+            Parts::Even(_) | Parts::ByProgram(_) => 0,
             Parts::Uneven { parts, .. } => parts.iter().map(of).max().unwrap_or(0),
         };
         let normals = (plan.noises + 1).max(p + 1);

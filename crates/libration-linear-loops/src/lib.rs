@@ -10,6 +10,7 @@ mod length_part;
 mod length_polynomials;
 mod motion;
 mod plan;
+mod program_motion;
 mod row;
 #[cfg(test)]
 mod tests;
@@ -19,7 +20,9 @@ use libration_linear::{LinearLoop, LoopTiming};
 pub use error::LinearLoopsError;
 use kernel::{Action, Commands, Common, Scratch, Tile};
 use libration_batch::ensemble::{Execution, InsufficientMemory};
-use plan::{Parts, Plan};
+use plan::{Lengths, Parts, Plan};
+pub use program_motion::ProgramMotion;
+use program_motion::ProgramParts;
 use row::{LANES, Row};
 
 /// Many loops around a linear plant. Loop `n` has the same bits for any number of loops and threads and for each instruction set.
@@ -74,6 +77,22 @@ impl LinearLoops {
         };
         all.reset(0, |_, _| 0.0);
         Ok(all)
+    }
+
+    /// The loops around a system by its program in place of the plant, which is its linearisation: states, inputs and measurements are
+    /// deviations from the operating point. There is no noise of the plant. They begin anew.
+    ///
+    /// # Errors
+    /// [`LinearLoopsError`]: sizes that are not those of the plant, or steps that are too short.
+    pub fn with_motion(
+        mut self,
+        linear: &LinearLoop,
+        motion: ProgramMotion,
+    ) -> Result<Self, LinearLoopsError> {
+        self.plan.parts = Parts::ByProgram(ProgramParts::new(&self.plan, linear, motion)?);
+        (self.plan.noises, self.plan.holds) = (0, false);
+        self.reset(self.seed, |_, _| 0.0);
+        Ok(self)
     }
 
     /// The loops without their controller: [`LinearLoops::advance_by`] gives the commands. They rest before commands are computed.
@@ -237,9 +256,9 @@ impl LinearLoops {
 
     /// The time of loop `n` in s.
     pub fn time(&self, n: usize) -> f64 {
-        match self.plan.parts {
-            Parts::Even(_) => self.step as f64 * self.plan.seconds,
-            Parts::Uneven { .. } => self.at(n, self.plan.rows.time),
+        match self.plan.lengths {
+            Lengths::Even => self.step as f64 * self.plan.seconds,
+            Lengths::Drawn(_) | Lengths::Recorded(_) => self.at(n, self.plan.rows.time),
         }
     }
 }

@@ -57,11 +57,26 @@ impl Tile<'_> {
                     normals += part.normals();
                     self.pass_events(k + 1);
                 }
-                let time = &mut self.rows[rows.time];
-                for l in 0..LANES {
-                    time[l] += lengths[l];
-                }
+                self.pass_time(&lengths);
             }
+            Parts::ByProgram(parts) => {
+                for k in 0..parts.count() {
+                    let mut cost = self.rows[rows.cost];
+                    let moved = &mut self.rows[..rows.inputs.end];
+                    parts.move_on(k, &lengths, self.lanes, moved, &mut cost);
+                    self.rows[rows.cost] = cost;
+                    self.pass_events(k + 1);
+                }
+                self.pass_time(&lengths);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn pass_time(&mut self, lengths: &Row) {
+        let time = &mut self.rows[self.common.plan.rows.time];
+        for l in 0..LANES {
+            time[l] += lengths[l];
         }
     }
 

@@ -11,6 +11,7 @@ use libration_linear::{
 use super::LinearLoopsError;
 use super::blocks::{above, beside, folded};
 use super::length_part::LengthPart;
+use super::program_motion::ProgramParts;
 use super::row::Map;
 
 /// A loop with a timing, as maps on the rows of a tile.
@@ -55,6 +56,8 @@ pub(super) enum Parts {
     Even(Vec<Part>),
     /// Of periods of any length in a range.
     Uneven { parts: Vec<LengthPart>, middle: f64, half: f64 },
+    /// Of periods of any length, in steps of a program.
+    ByProgram(ProgramParts),
 }
 
 /// A part of a period.
@@ -186,6 +189,11 @@ impl Plan {
         [self.rows.states.len(), self.rows.inputs.len(), self.rows.seen.len()]
     }
 
+    /// The length of the longest period in s.
+    pub(super) fn longest_period(&self) -> f64 {
+        self.seconds * self.lengths.range().map_or(1.0, |[_, longest]| longest)
+    }
+
     /// The work of a period of a loop, in multiples of the shortest step of an integrator.
     pub(super) fn work(&self) -> u64 {
         // A draw costs as much as a hundred operations.
@@ -195,6 +203,7 @@ impl Plan {
         let parts: usize = match &self.parts {
             Parts::Even(parts) => parts.iter().map(Part::work).sum(),
             Parts::Uneven { parts, .. } => parts.iter().map(LengthPart::work).sum(),
+            Parts::ByProgram(parts) => parts.work(),
         };
         (operations + parts + 50 * draws).div_ceil(4) as u64
     }

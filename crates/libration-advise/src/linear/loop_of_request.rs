@@ -2,12 +2,19 @@
 
 use libration::linear::{LinearLoop, LinearLoopError, LoopTiming};
 
+use libration_settings::linear_loop::OperatingPoint;
+
 use super::LinearRequest;
 
 impl LinearRequest {
     /// The loop, with the lags and filters of its channels.
     pub fn linear_loop(&self) -> &LinearLoop {
         &self.timed.linear
+    }
+
+    /// The operating point at which the plant is a linearisation, if it is one.
+    pub fn operating_point(&self) -> Option<&OperatingPoint> {
+        self.operating_point.as_ref()
     }
 
     /// The stated timing.

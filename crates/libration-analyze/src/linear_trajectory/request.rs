@@ -1,6 +1,7 @@
 //! Requests for trajectories of linear plants.
 
-use libration::linear::{LinearLoop, LoopTiming};
+use libration::linear::{LinearLoop, LoopTiming, Matrix};
+use libration::linear_loops::ProgramMotion;
 use libration_settings::limits;
 
 use crate::trajectory::{EnsembleOptions, TrajectoryError, rows};
@@ -31,6 +32,8 @@ pub struct LinearRequest {
     pub ensemble: Option<EnsembleOptions>,
     /// The seed of all random numbers.
     pub seed: u64,
+    /// The motion of the system of which the plant is the linearisation; none for that of the plant.
+    pub motion: Option<ProgramMotion>,
 }
 
 impl LinearRequest {
@@ -49,6 +52,22 @@ impl LinearRequest {
         }
         columns.push(one("cost", ""));
         columns
+    }
+
+    /// States, outputs and inputs at the operating point of a [motion](LinearRequest::motion); zero without one.
+    pub(super) fn operating_point(&self) -> [Vec<f64>; 3] {
+        let plant = self.linear.plant();
+        let Some(motion) = &self.motion else {
+            return [&plant.states, &plant.outputs, &plant.inputs].map(|all| vec![0.0; all.len()]);
+        };
+        let ProgramMotion { operating_point, places, .. } = motion;
+        let states: Vec<f64> = places.iter().map(|&place| operating_point[place]).collect();
+        let inputs = operating_point[operating_point.len() - plant.inputs.len()..].to_vec();
+        let product = |matrix: &Matrix, i: usize, x: &[f64]| -> f64 {
+            matrix.row(i).iter().zip(x).map(|(a, x)| a * x).sum()
+        };
+        let output = |j| product(&plant.c, j, &states) + product(&plant.d, j, &inputs);
+        [states.clone(), (0..plant.outputs.len()).map(output).collect(), inputs]
     }
 
     /// Number of rows if the states stay finite.
@@ -77,6 +96,13 @@ impl LinearRequest {
         }
         if !limits::TRAJECTORY_STEPS.contains(&self.steps) {
             return value("steps", self.steps.to_string(), limits::trajectory_steps_allowed());
+        }
+        if let Some(ProgramMotion { longest_step, .. }) = self.motion {
+            let least = 1e-6 * self.linear.period();
+            if longest_step < least || longest_step.is_nan() {
+                let allowed = format!("at least a millionth of the period, {least:e} s");
+                return value("dt", format!("{longest_step:e}"), allowed);
+            }
         }
         if self.every == 0 {
             return value("every", "0".to_owned(), "at least 1".to_owned());

@@ -30,6 +30,10 @@ pub(super) fn run(
         count,
         execution,
     )?;
+    if let Some(motion) = &request.motion {
+        all = all.with_motion(&request.linear, motion.clone())?;
+    }
+    let [states_at, outputs_at, inputs_at] = request.operating_point();
     all.set_reference(&request.reference)?;
     all.set_disturbance(&request.disturbance)?;
     all.reset(request.seed, |n, i| scale(n) * request.start[i]);
@@ -47,11 +51,11 @@ pub(super) fn run(
                 if monitor.should_stop() {
                     return Err(TrajectoryError::Interrupted);
                 }
-                let [states, inputs, outputs] = all.sizes();
                 values.clear();
-                values.extend((0..states).map(|i| all.state(n, i)));
-                values.extend((0..outputs).map(|j| all.measurement(n, j)));
-                values.extend((0..inputs).map(|i| all.input(n, i)));
+                values.extend(states_at.iter().enumerate().map(|(i, at)| at + all.state(n, i)));
+                let outputs = outputs_at.iter().enumerate();
+                values.extend(outputs.map(|(j, at)| at + all.measurement(n, j)));
+                values.extend(inputs_at.iter().enumerate().map(|(i, at)| at + all.input(n, i)));
                 values.push(all.cost(n));
                 let index = [n as u64, step];
                 let index = if ensemble.is_some() { &index[..] } else { &index[1..] };

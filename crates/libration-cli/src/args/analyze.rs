@@ -1,6 +1,6 @@
 //! Arguments of `analyze`.
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 
 use libration_analyze::Stepping;
 
@@ -11,7 +11,11 @@ use super::{LinearAnalysisArgs, SystemArgs};
 
 /// Arguments of `analyze`.
 #[derive(Args, Debug)]
-#[command(after_help = EXAMPLES, override_usage = USAGE)]
+#[command(
+    after_help = EXAMPLES,
+    override_usage = USAGE,
+    group(ArgGroup::new("timed").args(["plant", "config", "feedback"]).multiple(true))
+)]
 pub(crate) struct AnalyzeArgs {
     #[command(flatten)]
     pub(crate) system: Option<SystemArgs>,

@@ -68,7 +68,7 @@ impl AnalyzeArgs {
             (Some(path), _) => {
                 let LinearAnalysisArgs { lqr, gain, period, .. } = &self.linear;
                 let controller = controller_table(lqr.as_ref(), gain.as_ref());
-                loop_of_plant(path, controller, *period, change)
+                loop_of_plant((path, "--plant"), controller, *period, change)
             }
             (None, Some(path)) => read(path, &change),
             (None, None) => return None,

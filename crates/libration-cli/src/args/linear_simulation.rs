@@ -18,7 +18,7 @@ use super::advise::seconds;
 use super::linear::{Gain, lqr, named, rows};
 use super::number::{Coordinates, assignment, coordinates};
 use super::timing::{finite, latency};
-use super::{SimulateArgs, simd};
+use super::{SimulateArgs, SystemArgs, simd};
 use crate::error::Failure;
 
 /// Arguments of a linear plant and the loop around it.
@@ -31,28 +31,28 @@ pub(crate) struct LinearSimulationArgs {
     #[arg(long, value_name = "FILE", group = "loop", conflicts_with_all = NOT_LINEAR)]
     pub(crate) config: Option<PathBuf>,
     /// Design a linear-quadratic regulator with these weights of the squares of states and inputs, e.g. 10,1/0.1
-    #[arg(long, value_name = "STATES/INPUTS", value_parser = lqr, requires = "plant", conflicts_with_all = ["gain", "system"])]
+    #[arg(long, value_name = "STATES/INPUTS", value_parser = lqr, conflicts_with = "gain")]
     lqr: Option<WeightsTable>,
     /// Gain K of the state feedback u = −Kx, rows (inputs) separated by semicolons, e.g. "10,2;0,1"
-    #[arg(long, value_name = "ROWS", value_parser = rows, requires = "plant", conflicts_with = "system", allow_hyphen_values = true)]
+    #[arg(long, value_name = "ROWS", value_parser = rows, allow_hyphen_values = true)]
     gain: Option<Gain>,
     /// Period of the loop in s [default: 0.01]
-    #[arg(long, value_name = "SECONDS", value_parser = number, requires = "plant", conflicts_with = "system", allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = number, allow_hyphen_values = true)]
     period: Option<f64>,
     /// Latency of the measurements of a linear plant: of all, or of each [default: 0]
-    #[arg(long, value_name = "TIME", value_parser = latency, value_delimiter = ',', requires = LINEAR, conflicts_with = "system", allow_hyphen_values = true)]
+    #[arg(long, value_name = "TIME", value_parser = latency, value_delimiter = ',', allow_hyphen_values = true)]
     output_latency: Vec<LatencyOption>,
     /// Probability that the commands that arrive in a period are lost (0 to below 1), in a loop around a linear plant
-    #[arg(long, value_name = "P", value_parser = number, requires = LINEAR, conflicts_with = "system", allow_hyphen_values = true)]
+    #[arg(long, value_name = "P", value_parser = number, allow_hyphen_values = true)]
     loss: Option<f64>,
     /// Initial states of a linear plant, separated by commas [default: zeros]
     #[arg(long, value_name = "X,…", value_parser = coordinates, requires = LINEAR, conflicts_with = "system", allow_hyphen_values = true)]
     x0: Option<Coordinates>,
     /// Value that the controller subtracts from a measurement, by the name of the output; repeatable
-    #[arg(long, value_name = "OUTPUT=VALUE", value_parser = assignment, requires = LINEAR, conflicts_with = "system", allow_hyphen_values = true)]
+    #[arg(long, value_name = "OUTPUT=VALUE", value_parser = assignment, allow_hyphen_values = true)]
     reference: Vec<(String, f64)>,
     /// Constant that is added to the command of an input, by its name; in open loop the step of that input; repeatable
-    #[arg(long, value_name = "INPUT=VALUE", value_parser = assignment, requires = LINEAR, conflicts_with = "system", allow_hyphen_values = true)]
+    #[arg(long, value_name = "INPUT=VALUE", value_parser = assignment, allow_hyphen_values = true)]
     disturbance: Vec<(String, f64)>,
     /// Add the noise of the plant (its `g`, by default white noise of unit intensity at the inputs) and of the measurements
     #[arg(long, requires = LINEAR, conflicts_with = "system")]
@@ -76,7 +76,8 @@ impl SimulateArgs {
         let request = match (&self.linear.plant, &self.linear.config) {
             (Some(path), _) => self.of_plant(path),
             (None, Some(path)) => read(path, &change),
-            (None, None) => return None,
+            (None, None) if self.looped_file().is_some() => return None,
+            (None, None) => return self.ensure_no_loop().err().map(Err),
         };
         Some(request.and_then(|request| self.trajectory(&request)))
     }
@@ -85,7 +86,50 @@ impl SimulateArgs {
     fn of_plant(&self, path: &Path) -> Result<LinearRequest, Failure> {
         let LinearSimulationArgs { lqr, gain, period, .. } = &self.linear;
         let controller = controller_table(lqr.as_ref(), gain.as_ref());
-        loop_of_plant(path, controller, *period, |file| self.change(file))
+        loop_of_plant((path, "--plant"), controller, *period, |file| self.change(file))
+    }
+
+    /// The file of equations of `--system` around which `--lqr` or `--gain` closes a loop.
+    pub(crate) fn looped_file(&self) -> Option<&Path> {
+        let is_closed = self.linear.lqr.is_some() || self.linear.gain.is_some();
+        self.system.as_ref().and_then(SystemArgs::file).filter(|_| is_closed)
+    }
+
+    /// The loop around the linearisation of a file of equations with other values of some parameters, and the request for the plant.
+    pub(crate) fn loop_around(
+        &self,
+        path: &Path,
+        set: &[(String, f64)],
+    ) -> Result<(LinearRequest, linear_trajectory::LinearRequest), Failure> {
+        let LinearSimulationArgs { lqr, gain, period, .. } = &self.linear;
+        let controller = controller_table(lqr.as_ref(), gain.as_ref());
+        let request = loop_of_plant((path, "--system"), controller, *period, |file| {
+            let each = set.iter().map(|(name, value)| (name.clone(), Number(*value)));
+            file.system.linear.parameters = each.collect();
+            self.change(file);
+        })?;
+        let trajectory = self.trajectory(&request)?;
+        Ok((request, trajectory))
+    }
+
+    /// Fails if an option is about a loop, and there is none.
+    fn ensure_no_loop(&self) -> Result<(), Failure> {
+        let own = &self.linear;
+        let given = [
+            ("lqr", own.lqr.is_some()),
+            ("gain", own.gain.is_some()),
+            ("period", own.period.is_some()),
+            ("output-latency", !own.output_latency.is_empty()),
+            ("loss", own.loss.is_some()),
+            ("reference", !own.reference.is_empty()),
+            ("disturbance", !own.disturbance.is_empty()),
+        ];
+        match given.into_iter().find(|(_, given)| *given) {
+            Some((name, _)) => Err(Failure::usage(format!(
+                "--{name} is given, but there is no loop around a plant; expected --plant FILE, --config FILE, or --system FILE with equations and --lqr or --gain"
+            ))),
+            None => Ok(()),
+        }
     }
 
     /// Puts the options in place of what a file states.
@@ -139,6 +183,7 @@ impl SimulateArgs {
             seed: self.seed,
             linear: if *noise { linear.clone() } else { linear.without_noise() },
             timing,
+            motion: None,
         })
     }
 }
@@ -165,13 +210,13 @@ pub(super) fn controller_table(
 
 /// The loop around the plant of a file, which `change` changes.
 pub(super) fn loop_of_plant(
-    path: &Path,
+    (path, flag): (&Path, &str),
     controller: Option<LinearControllerTable>,
     period: Option<f64>,
     change: impl FnOnce(&mut RequestFile),
 ) -> Result<LinearRequest, Failure> {
     let plant = read_plant(path).map_err(|why| {
-        Failure::usage(format!("cannot use `{}` (--plant): {why}", path.display()))
+        Failure::usage(format!("cannot use `{}` ({flag}): {why}", path.display()))
     })?;
     let looped = LinearLoopTable { period: period.map(Number), ..Default::default() };
     let mut file = RequestFile { controller, looped, ..Default::default() };

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{ArgGroup, Args};
 use libration::ensemble::InstructionSet;
 use libration_analyze::trajectory::{FloatType, Format};
 
@@ -13,7 +13,11 @@ use super::{LinearSimulationArgs, StepArgs, SystemArgs, simd};
 
 /// Arguments of `simulate`.
 #[derive(Args, Debug)]
-#[command(after_help = EXAMPLES, override_usage = USAGE)]
+#[command(
+    after_help = EXAMPLES,
+    override_usage = USAGE,
+    group(ArgGroup::new("timed").args(["plant", "config", "feedback", "lqr", "gain"]).multiple(true))
+)]
 pub(crate) struct SimulateArgs {
     #[command(flatten)]
     pub(crate) system: Option<SystemArgs>,
@@ -21,7 +25,7 @@ pub(crate) struct SimulateArgs {
     pub(crate) step: Option<StepArgs>,
     #[command(flatten)]
     pub(crate) linear: LinearSimulationArgs,
-    /// Number of steps (with --plant or --config: of periods), up to 2^53; --every limits the number of rows
+    /// Number of steps (of a loop around a plant: of periods), up to 2^53; --every limits the number of rows
     #[arg(long, value_name = "N", value_parser = trajectory_steps, allow_hyphen_values = true)]
     pub(crate) steps: u64,
     /// Float type of the state, the parameters and every operation
@@ -73,6 +77,7 @@ pub(crate) struct SimulateArgs {
 const USAGE: &str = "\
 libration simulate --system <NAME> --integrator <NAME> --dt <SECONDS> --steps <N> [OPTIONS]
        libration simulate --plant <FILE> [--lqr <STATES/INPUTS>] --steps <N> [OPTIONS]
+       libration simulate --system <FILE> --lqr <STATES/INPUTS> --steps <N> [OPTIONS]
        libration simulate --config <FILE> --steps <N> [OPTIONS]";
 
 const EXAMPLES: &str = "\
@@ -84,11 +89,14 @@ Examples:
       --every 1e4 --count 1e5 --spread 0.5 --float f32 --output swings.npy
   libration simulate --system oscillator --integrator velocity-verlet --dt 0.01 --steps 2e3 \\
       --feedback 10,2 --latency 0.015 --jitter gaussian:0.1 --count 100 --seed 7 --output loop.csv
-  libration simulate --plant drive.toml --lqr 1,100,0,1/0.1 --period 0.001 --latency 0.0008 \
+  libration simulate --plant drive.toml --lqr 1,100,0,1/0.1 --period 0.001 --latency 0.0008 \\
       --reference \"load angle=1\" --steps 500 --output step.csv
 
+  libration simulate --system cart_pole.toml --lqr 1,10,0,1/0.1 --period 0.02 --latency 0.03 \\
+      --steps 200 --output balance.csv
+
 The columns are step, t, q0, …, v0, …, energy; with --count the first column is trajectory.
-With --plant or --config a row belongs to the beginning of a period. Its columns are step, t, the states,
+With --plant, --config, --lqr or --gain a row belongs to the beginning of a period. Its columns are step, t, the states,
 `measured NAME` (what the controller reads), `input NAME` (what acts), and the cost so far.
 If the state overflows, the rows end and a note says so. With --count, --feedback, --jitter, --skew
 or --time-stamps the rows continue, and the note states the number of overflows.

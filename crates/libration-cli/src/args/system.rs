@@ -41,12 +41,31 @@ pub(crate) struct SystemArgs {
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct StepArgs {
     /// Name of the integrator, or `exact` for a linear system; see `libration list`
-    #[arg(long, value_name = "NAME", value_parser = integrators(), hide_possible_values = true)]
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = integrators(),
+        hide_possible_values = true,
+        requires = "dt",
+        required = false,
+        required_unless_present_any = LOOPS
+    )]
     pub(crate) integrator: Stepping,
     /// Time step in s
-    #[arg(long, value_name = "SECONDS", value_parser = time_step, allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        value_parser = time_step,
+        allow_hyphen_values = true,
+        requires = "integrator",
+        required = false,
+        required_unless_present_any = LOOPS
+    )]
     pub(crate) dt: f64,
 }
+
+/// Options of loops around plants, which have steps of their own.
+const LOOPS: [&str; 4] = ["plant", "config", "lqr", "gain"];
 
 /// A name of the catalogue, or a path with the extension `toml`.
 #[derive(Clone)]

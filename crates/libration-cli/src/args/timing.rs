@@ -16,7 +16,7 @@ pub(crate) struct TimingArgs {
         long,
         value_name = "TIME",
         value_parser = latency,
-        requires = "loop",
+        requires = "timed",
         allow_hyphen_values = true
     )]
     pub(crate) latency: Option<LatencyOption>,
@@ -45,7 +45,7 @@ pub(crate) struct CostArgs {
         long,
         value_name = "P",
         value_parser = loss,
-        requires = "loop",
+        requires = "timed",
         allow_hyphen_values = true
     )]
     pub(crate) loss: Option<f64>,

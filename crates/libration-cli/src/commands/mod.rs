@@ -11,6 +11,7 @@ mod completions;
 mod config_file;
 mod disagreements;
 mod equation_file;
+mod equation_loop;
 mod lab;
 mod linear_closed_loop;
 mod list;

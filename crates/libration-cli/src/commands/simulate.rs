@@ -18,7 +18,7 @@ use libration_analyze::trajectory::{
 use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::{Document, Fault};
 
-use super::{config_file, equation_file, time_stamps};
+use super::{config_file, equation_file, equation_loop, time_stamps};
 use crate::args::SimulateArgs;
 use crate::error::Failure;
 use crate::output_file::OutputFile;
@@ -40,6 +40,12 @@ pub(crate) fn run(args: &SimulateArgs, quiet: bool) -> Result<(), Failure> {
         Ok(request)
     };
     if let Some(request) = args.linear_request(read) {
+        let request = request?;
+        return write(args, quiet, format, &|out, watcher| {
+            linear_trajectory::write(&request, format, out, watcher)
+        });
+    }
+    if let Some(request) = equation_loop::request(args) {
         let request = request?;
         return write(args, quiet, format, &|out, watcher| {
             linear_trajectory::write(&request, format, out, watcher)

@@ -39,5 +39,6 @@ mod stability;
 mod steps;
 mod system_advice;
 mod system_lab;
+mod system_loops;
 mod timing;
 mod verify;

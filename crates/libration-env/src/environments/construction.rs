@@ -45,8 +45,8 @@ macro_rules! environment_floats {
                 which: Selection<'_>,
             ) -> Result<Box<dyn AnyEnvironments<Self>>, EnvironmentError> {
                 settings.check::<$float>()?;
-                // Ideal environments of the two tasks that most begin with are up to three times as fast by compiled kernels.
-                // With noise random numbers take most of the time, and all others are by programs.
+                // Ideal environments of the two tasks that most begin with are two to three times as fast by compiled kernels. All
+                // others are by programs, which with noise reach half of that speed.
                 match (settings.system.any(), settings.task) {
                     (AnySystem::Oscillator(model), Task::Regulate(task)) if settings.noise.is_none() => {
                         settings.compiled(Model::<1>::on::<$float>(&model), task, which)
