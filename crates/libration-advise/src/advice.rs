@@ -217,6 +217,22 @@ impl Advice {
         self.integrators = choices;
     }
 
+    /// Warns of integrators whose search ended at the longest tried step.
+    pub(super) fn warn_of_limits(&mut self, longest: f64) {
+        let most = self.tolerance.most;
+        let ended =
+            |choice: &&IntegratorChoice| choice.lost_beyond.is_some_and(|lost| lost <= most);
+        let names: Vec<&str> =
+            self.integrators.iter().filter(ended).map(|c| c.integrator).collect();
+        if !names.is_empty() {
+            self.warnings.push(format!(
+                "steps of more than {longest:.4e} s were not tried: 4 rad of the fastest motion, or the horizon; longer ones of {} may meet \
+                 the tolerance, too",
+                names.join(", ")
+            ));
+        }
+    }
+
     /// The narrowest float that meets the tolerance.
     pub(super) fn float(&self) -> Option<&FloatChoice> {
         self.floats.iter().find(|float| float.meets)

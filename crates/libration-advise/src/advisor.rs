@@ -39,6 +39,14 @@ pub(super) fn advise_simulation(
         advice.tried_down_to = Some(shortest).filter(|_| ends);
     }
     advice.choose(request, choices);
+    advice.warn_of_limits(free.steps()[1]);
+    if !system.is_smooth() {
+        advice.warnings.push(
+            "the equations have kinks or jumps: errors are those of the steps that were tried, a shorter step may have a larger one, and \
+             what acts for less than a step may be missed"
+                .to_owned(),
+        );
+    }
     if let Some((_, dt)) = advice.chosen()
         && free.turn(dt) > 1.0
     {

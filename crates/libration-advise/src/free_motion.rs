@@ -7,6 +7,7 @@ use libration_work::Work;
 
 use super::AdviseError;
 use super::integrator_choice::StepTrial;
+use super::motion_rates::{EnergyKind, MotionRates};
 use super::request::{Measure, Request};
 use super::simulated_system::{SimulatedSystem, Steps};
 
@@ -17,10 +18,8 @@ pub(super) struct FreeMotion<'a> {
     pub(super) start: Vec<f64>,
     pub(super) horizon: f64,
     pub(super) of: Measure,
-    /// The mean rate of the motion, which scales velocities to lengths, in rad/s.
-    omega: f64,
-    /// The largest rate of the motion, in rad/s.
-    fastest: f64,
+    /// The mean one scales velocities to lengths.
+    rates: MotionRates,
 }
 
 /// The angle of the fastest motion in a step below which errors fall with the step, in rad.
@@ -50,30 +49,35 @@ impl<'a> FreeMotion<'a> {
                 "a cost requires a loop; add a controller, or set a tolerance of energy, phase or trajectory",
             );
         }
-        if of == Measure::Phase && !(system.degrees() == 1 && system.states().len() == 2) {
-            return tolerance_error("a phase requires one degree of freedom");
-        }
-        if of == Measure::Energy {
-            let Some(mut energy) = system.energy() else {
-                return tolerance_error(
-                    "the system has no `energy`; add one, or set a tolerance of trajectory or phase",
-                );
-            };
-            if energy(&start) == 0.0 {
-                return tolerance_error(
-                    "the energy at the start is zero, so a relative error is undefined",
-                );
-            }
-        }
-        let free =
-            FreeMotion { system, start, horizon: request.horizon, of, omega: 1.0, fastest: 1.0 };
-        let [omega, fastest] = free.rates(work)?;
-        if of == Measure::Energy && !free.conserves_energy([omega, fastest]) {
+        let is_plane = system.degrees() == 1 && system.states().len() == 2;
+        if of == Measure::Phase && !is_plane {
             return tolerance_error(
-                "the system does not conserve it; set a tolerance of trajectory or phase",
+                "a phase requires one degree of freedom, and forces without time",
             );
         }
-        let free = FreeMotion { omega, fastest, ..free };
+        if of == Measure::Energy && system.energy().is_none() {
+            return tolerance_error(
+                "the system has no `energy`; add one, or set a tolerance of trajectory",
+            );
+        }
+        let rates = MotionRates { mean: 1.0, fastest: 1.0, stiffest: 1.0 };
+        let free = FreeMotion { system, start, horizon: request.horizon, of, rates };
+        let free = FreeMotion { rates: free.rates(work)?, ..free };
+        if of == Measure::Energy {
+            match free.energy_kind(&free.rates) {
+                EnergyKind::Kept => {}
+                EnergyKind::Lost => {
+                    return tolerance_error(
+                        "the system does not conserve it; set a tolerance of trajectory",
+                    );
+                }
+                EnergyKind::Zero => {
+                    return tolerance_error(
+                        "the energy at the start is zero, so a relative error is undefined",
+                    );
+                }
+            }
+        }
         let [least, longest] = free.steps();
         if least > longest {
             let why = format!(
@@ -87,16 +91,16 @@ impl<'a> FreeMotion<'a> {
         Ok(free)
     }
 
-    /// The angle of the fastest motion in a step of `dt` seconds, in rad.
+    /// The angle of the fastest motion in a step of `dt` seconds, in rad; zero without forces that depend on the state.
     pub(super) fn turn(&self, dt: f64) -> f64 {
-        self.fastest * dt
+        self.rates.stiffest * dt
     }
 
     /// The shortest and the longest tried step.
     pub(super) fn steps(&self) -> [f64; 2] {
         let is_compared = self.of != Measure::Energy && self.system.exact_rate().is_none();
         let most = self.system.most_steps()[usize::from(is_compared)];
-        let longest = (4.0 / self.fastest).min(self.horizon);
+        let longest = (4.0 / self.rates.fastest).min(self.horizon);
         [self.horizon / most, longest]
     }
 
@@ -170,13 +174,13 @@ impl<'a> FreeMotion<'a> {
                 None => of_velocities += velocities[place - positions.len()].powi(2),
             }
         }
-        (of_positions + of_velocities / self.omega.powi(2)).sqrt()
+        (of_positions + of_velocities / self.rates.mean.powi(2)).sqrt()
     }
 
     /// The angle from one state of one degree of freedom to another in the plane of position and velocity.
     fn angle(&self, a: &[f64], b: &[f64]) -> f64 {
-        let (aq, av) = (a[0], a[1] / self.omega);
-        let (bq, bv) = (b[0], b[1] / self.omega);
+        let (aq, av) = (a[0], a[1] / self.rates.mean);
+        let (bq, bv) = (b[0], b[1] / self.rates.mean);
         (aq * bv - av * bq).atan2(aq * bq + av * bv)
     }
 }
@@ -193,7 +197,7 @@ impl StepTrial for FreeMotion<'_> {
     }
 
     fn resolving_step(&self) -> f64 {
-        RESOLVED / self.fastest
+        RESOLVED / self.rates.fastest
     }
 }
 

@@ -165,9 +165,7 @@ pub fn advise(work: &Work<'_>, request: &Request) -> Result<Advice, AdviseError>
             return dimension_error(request, "a loop requires a system of the catalogue");
         }
         AdvisedSystem::Equations { system, .. } => {
-            let states = system.states.iter().map(|state| state.place).collect();
-            let system = SystemByProgram::new(system.equations.dynamics(), states);
-            return advisor::advise_simulation(work, &system, request);
+            return advisor::advise_simulation(work, &SystemByProgram::new(system), request);
         }
     };
     match (&request.control, system) {

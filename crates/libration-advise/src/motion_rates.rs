@@ -6,33 +6,57 @@ use libration_work::Work;
 
 use super::AdviseError;
 use super::free_motion::FreeMotion;
-use super::simulated_system::Accelerations;
+use super::simulated_system::Slopes;
+
+/// What becomes of the energy of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum EnergyKind {
+    /// It is conserved: steps of order four change it the less the shorter they are.
+    Kept,
+    /// It is not conserved.
+    Lost,
+    /// It is conserved, and zero but for rounding.
+    Zero,
+}
+
+/// Rates of a motion in rad/s.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MotionRates {
+    /// The mean one: the largest velocity over the amplitude.
+    pub(super) mean: f64,
+    /// The largest one.
+    pub(super) fastest: f64,
+    /// That of the stiffest place on the way; zero without forces that depend on the state.
+    pub(super) stiffest: f64,
+}
+
+/// Derivatives that a run computes, about; of one or two degrees of freedom they are computed at each step.
+const LOOKED_AT: u64 = 1 << 14;
 
 impl FreeMotion<'_> {
-    /// The mean and the largest rate of the true motion, in rad/s: the largest velocity over the amplitude, and the rate of the
-    /// stiffest place on its way. Steps of order four are halved until both are resolved.
-    pub(super) fn rates(&self, work: &Work<'_>) -> Result<[f64; 2], AdviseError> {
+    /// The rates of the true motion. Steps of order four are halved until they are resolved.
+    pub(super) fn rates(&self, work: &Work<'_>) -> Result<MotionRates, AdviseError> {
         const SETTLED: f64 = 0.1;
         const TURN: f64 = 0.5;
         const MOTIONS: f64 = 200.0;
         let degrees = self.system.degrees();
-        let mut accelerations = self.system.accelerations();
-        let [by_positions, by_velocities] = self.stiffness(&mut accelerations, &self.start);
-        if self.is_at_rest(&mut accelerations) {
-            return Err(
-                self.tolerance_error("nothing moves from this start; choose another `q` or `v`")
-            );
+        let mut slopes = self.system.slopes();
+        let [by_positions, by_velocities] = self.stiffness(&mut slopes, &self.start);
+        if !self.system.depends_on_time() && self.is_at_rest() {
+            return Err(self.tolerance_error("nothing moves from this start; choose another start"));
         }
         if let Some(damped) = self.system.exact_rate() {
-            let rate = match by_positions > 0.0 {
+            let mean = match by_positions > 0.0 {
                 true => by_positions,
                 false => damped.max(self.horizon.recip()),
             };
-            return Ok([rate, rate.max(damped)]);
+            let fastest = mean.max(damped);
+            return Ok(MotionRates { mean, fastest, stiffest: fastest });
         }
         let begins = by_positions.max(by_velocities);
-        // A periodic motion is known before the horizon.
-        let long = if begins > 0.0 { MOTIONS * TAU / begins } else { self.horizon };
+        // A periodic motion is known before the horizon; what depends on time may begin late.
+        let is_periodic = begins > 0.0 && !self.system.depends_on_time();
+        let long = if is_periodic { MOTIONS * TAU / begins } else { self.horizon };
         let long = self.horizon.min(long);
         let method = self.system.reference_method();
         let (mut before, mut steps) = (f64::NAN, 1_u64 << 10);
@@ -43,10 +67,16 @@ impl FreeMotion<'_> {
             let mut trajectory = self.system.steps(false, method, dt, &self.start);
             let (mut low, mut high) = (self.start.clone(), self.start.clone());
             let (mut speed, mut stiffest) = (0.0_f64, begins);
-            for _ in 0..steps {
+            let stride = match degrees {
+                0..=2 => 1,
+                _ => (steps * 2 * degrees as u64 / LOOKED_AT).max(1),
+            };
+            for step in 0..steps {
                 let state = trajectory.next();
-                let here = self.stiffness(&mut accelerations, state);
-                stiffest = here.into_iter().fold(stiffest, f64::max);
+                if step.is_multiple_of(stride) {
+                    let here = self.stiffness(&mut slopes, state);
+                    stiffest = here.into_iter().fold(stiffest, f64::max);
+                }
                 for &i in self.system.states() {
                     (low[i], high[i]) = (low[i].min(state[i]), high[i].max(state[i]));
                     if i >= degrees {
@@ -54,24 +84,29 @@ impl FreeMotion<'_> {
                     }
                 }
             }
-            let positions = self.system.states().iter().filter(|&&i| i < degrees);
+            let states = self.system.states().iter();
+            if states.clone().all(|&i| low[i] == high[i]) && speed == 0.0 {
+                let why = "nothing moves from this start within the horizon; choose another start";
+                return Err(self.tolerance_error(why));
+            }
+            let positions = states.filter(|&&i| i < degrees);
             let far = positions.map(|&i| 0.5 * (high[i] - low[i])).fold(0.0, f64::max);
             let found = Some(speed / far).filter(|found| found.is_finite());
-            let found = found.unwrap_or(stiffest).max(self.horizon.recip());
-            if (found / before - 1.0).abs() < SETTLED && stiffest * dt < TURN {
-                return Ok([found, stiffest.max(found)]);
+            let mean = found.unwrap_or(stiffest).max(self.horizon.recip());
+            if (mean / before - 1.0).abs() < SETTLED && stiffest * dt < TURN {
+                return Ok(MotionRates { mean, fastest: stiffest.max(mean), stiffest });
             }
-            (before, steps) = (found, 2 * steps);
+            (before, steps) = (mean, 2 * steps);
         }
         Err(self.tolerance_error(&format!(
             "its motion is not resolved by {most:.0e} steps in {long:.3e} s: it is too fast or unbounded"
         )))
     }
 
-    fn is_at_rest(&self, accelerations: &mut Accelerations<'_>) -> bool {
+    fn is_at_rest(&self) -> bool {
         let degrees = self.system.degrees();
         let mut at = vec![0.0; degrees];
-        accelerations(&self.start, &mut at);
+        self.system.accelerations()(&self.start, &mut at);
         let moves = |&i: &usize| match i.checked_sub(degrees) {
             Some(i) => at[i] != 0.0,
             None => self.start[degrees + i] != 0.0,
@@ -79,24 +114,40 @@ impl FreeMotion<'_> {
         !self.system.states().iter().any(moves)
     }
 
-    /// Whether steps of order four change the energy the less the shorter they are.
-    pub(super) fn conserves_energy(&self, [omega, fastest]: [f64; 2]) -> bool {
+    /// What becomes of the energy.
+    pub(super) fn energy_kind(&self, rates: &MotionRates) -> EnergyKind {
         // An error of about 10⁻¹¹ in a turn.
         const ANGLE: f64 = 0.01;
         const MOST: f64 = 65_536.0;
-        let Some(mut energy) = self.system.energy() else { return false };
-        let (first, long) = (energy(&self.start), self.horizon.min(TAU / omega));
-        let steps = (long * fastest / ANGLE).ceil().clamp(16.0, MOST);
+        // Rounding alone is less than a thousandth of this part of the energy of the velocities.
+        const NOTHING: f64 = 1e-10;
+        let Some(mut energy) = self.system.energy() else { return EnergyKind::Lost };
+        let (first, long) = (energy(&self.start), self.horizon.min(TAU / rates.mean));
+        let steps = (long * rates.fastest / ANGLE).ceil().clamp(16.0, MOST);
         let method = self.system.reference_method();
+        let degrees = self.system.degrees();
         let mut change = |steps: f64| {
             let dt = long / steps;
             let mut trajectory = self.system.steps(false, method, dt, &self.start);
-            let each = (0..steps as u64).map(|_| (energy(trajectory.next()) - first).abs());
-            each.fold(0.0, f64::max)
+            let (mut change, mut moved) = (0.0_f64, first.abs());
+            for _ in 0..steps as u64 {
+                let state = trajectory.next();
+                let here = energy(state);
+                let mut still = state.to_vec();
+                still[degrees..].fill(0.0);
+                change = change.max((here - first).abs());
+                moved = moved.max((here - energy(&still)).abs());
+            }
+            [change, moved]
         };
-        let [coarse, fine] = [steps, 2.0 * steps].map(&mut change);
-        // Rounding alone is less than a thousandth of this.
-        fine < 0.3 * coarse || fine < 1e-10 * first.abs()
+        let [[coarse, _], [fine, moved]] = [steps, 2.0 * steps].map(&mut change);
+        if fine >= 0.3 * coarse && fine >= NOTHING * moved {
+            EnergyKind::Lost
+        } else if first.abs() <= NOTHING * moved {
+            EnergyKind::Zero
+        } else {
+            EnergyKind::Kept
+        }
     }
 
     fn tolerance_error(&self, why: &str) -> AdviseError {
@@ -104,24 +155,13 @@ impl FreeMotion<'_> {
     }
 
     /// The square root of the norm of the derivatives of accelerations by positions, and the norm of those by velocities, in rad/s.
-    fn stiffness(&self, accelerations: &mut Accelerations<'_>, state: &[f64]) -> [f64; 2] {
+    fn stiffness(&self, slopes: &mut Slopes<'_>, state: &[f64]) -> [f64; 2] {
         let degrees = self.system.degrees();
-        let (positions, _) = state.split_at(degrees);
-        let mut here = vec![0.0; degrees];
-        accelerations(state, &mut here);
-        let mut there = here.clone();
-        let mut beside = state.to_vec();
-        let size = |part: &[f64]| part.iter().fold(0.0, |size: f64, x| size.hypot(*x));
+        let mut slope = vec![0.0; degrees];
         let mut squares = [0.0; 2];
         for &i in self.system.states() {
-            let of_velocity = i >= degrees;
-            let part = if of_velocity { &state[degrees..] } else { positions };
-            let far = 1e-6 * size(part).max(1e-3);
-            beside[i] += far;
-            accelerations(&beside, &mut there);
-            beside[i] = state[i];
-            let slope = here.iter().zip(&there).map(|(a, b)| ((b - a) / far).powi(2));
-            squares[usize::from(of_velocity)] += slope.sum::<f64>();
+            slopes(state, i, &mut slope);
+            squares[usize::from(i >= degrees)] += slope.iter().map(|x| x * x).sum::<f64>();
         }
         [squares[0].sqrt().sqrt(), squares[1].sqrt()]
     }

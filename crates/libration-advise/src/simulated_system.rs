@@ -10,6 +10,9 @@ pub(super) type Accelerations<'a> = Box<dyn FnMut(&[f64], &mut [f64]) + 'a>;
 /// A function of the energy of a state.
 pub(super) type Energy<'a> = Box<dyn FnMut(&[f64]) -> f64 + 'a>;
 
+/// A function that writes the derivatives of the accelerations at a state by the coordinate at a place.
+pub(super) type Slopes<'a> = Box<dyn FnMut(&[f64], usize, &mut [f64]) + 'a>;
+
 /// A system with positions, then velocities, in one list.
 pub(super) trait SimulatedSystem: Sync {
     /// Degrees of freedom.
@@ -29,6 +32,15 @@ pub(super) trait SimulatedSystem: Sync {
 
     /// The accelerations.
     fn accelerations(&self) -> Accelerations<'_>;
+
+    /// The derivatives of the accelerations.
+    fn slopes(&self) -> Slopes<'_>;
+
+    /// Whether accelerations depend on time, which is no compared state.
+    fn depends_on_time(&self) -> bool;
+
+    /// Whether accelerations have no kinks and jumps.
+    fn is_smooth(&self) -> bool;
 
     /// The energy, if there is one.
     fn energy(&self) -> Option<Energy<'_>>;
@@ -95,6 +107,30 @@ impl<M: Model<D>, const D: usize> SimulatedSystem for Compiled<M, D> {
     fn accelerations(&self) -> Accelerations<'_> {
         let system = self.model.on::<f64>();
         Box::new(move |state, to| to.copy_from_slice(&system.acceleration(&state_of::<D>(state))))
+    }
+
+    fn slopes(&self) -> Slopes<'_> {
+        let system = self.model.on::<f64>();
+        Box::new(move |state, place, to| {
+            let size = |part: &[f64]| part.iter().fold(0.0, |size: f64, x| size.hypot(*x));
+            let part = if place < D { &state[..D] } else { &state[D..] };
+            let far = 1e-6 * size(part).max(1e-3);
+            let mut beside = state_of::<D>(state);
+            let here = system.acceleration(&beside);
+            let moved = if place < D { &mut beside.q[place] } else { &mut beside.v[place - D] };
+            *moved += far;
+            let there = system.acceleration(&beside);
+            to.iter_mut().enumerate().for_each(|(i, to)| *to = (there[i] - here[i]) / far);
+        })
+    }
+
+    fn depends_on_time(&self) -> bool {
+        // A system of the catalogue has time as a state that moves.
+        false
+    }
+
+    fn is_smooth(&self) -> bool {
+        true
     }
 
     fn energy(&self) -> Option<Energy<'_>> {

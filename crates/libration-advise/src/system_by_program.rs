@@ -1,23 +1,33 @@
 //! Systems by their programs.
 
-use libration::equations::{Dynamics, Evaluation, StepProgram};
+use libration::equations::{Degree, Dynamics, Evaluation, StepProgram};
+use libration::number::Dual;
 use libration::{Float, Method};
+use libration_settings::equations::EquationSystem;
 
-use super::simulated_system::{Accelerations, Energy, SimulatedSystem, Steps, reference_method};
+use super::simulated_system::{
+    Accelerations, Energy, SimulatedSystem, Slopes, Steps, reference_method,
+};
 
 /// A system by its program, whose inputs are zero.
 pub(super) struct SystemByProgram<'a> {
     dynamics: &'a Dynamics,
     states: Vec<usize>,
+    depends_on_time: bool,
     /// The steps of [all methods](Method::ALL).
     steps: Vec<StepProgram>,
 }
 
 impl<'a> SystemByProgram<'a> {
-    /// The places `states` are compared; others only carry time or an integral.
-    pub(super) fn new(dynamics: &'a Dynamics, states: Vec<usize>) -> Self {
-        let steps = Method::ALL.map(|method| StepProgram::new(method, dynamics)).into();
-        SystemByProgram { dynamics, states, steps }
+    pub(super) fn new(system: &'a EquationSystem) -> Self {
+        let dynamics = system.equations.dynamics();
+        SystemByProgram {
+            dynamics,
+            // Other places only carry time or an integral.
+            states: system.states.iter().map(|state| state.place).collect(),
+            depends_on_time: system.equations.degrees().contains(&Degree::Time),
+            steps: Method::ALL.map(|method| StepProgram::new(method, dynamics)).into(),
+        }
     }
 
     fn steps_on<S: Float>(&self, method: Method, dt: f64, start: &[f64]) -> ProgramSteps<'_, S> {
@@ -57,6 +67,25 @@ impl SimulatedSystem for SystemByProgram<'_> {
         Box::new(move |state, to| {
             to.iter_mut().zip(accelerations.run(state)).for_each(|(to, x)| *to = x);
         })
+    }
+
+    fn slopes(&self) -> Slopes<'_> {
+        let mut accelerations = self.dynamics.accelerations().on::<Dual<f64>>();
+        let mut inputs = Vec::new();
+        Box::new(move |state, place, to| {
+            inputs.clear();
+            inputs.extend(state.iter().map(|&x| Dual::constant(x)));
+            inputs[place].du = 1.0;
+            to.iter_mut().zip(accelerations.run(&inputs)).for_each(|(to, x)| *to = x.du);
+        })
+    }
+
+    fn depends_on_time(&self) -> bool {
+        self.depends_on_time
+    }
+
+    fn is_smooth(&self) -> bool {
+        self.dynamics.accelerations().is_smooth()
     }
 
     fn energy(&self) -> Option<Energy<'_>> {

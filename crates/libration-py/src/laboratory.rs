@@ -122,7 +122,9 @@ pub(crate) fn _advise_equations(
     let options = format!("--system {file}{set}");
     let tolerance = Tolerance { of, most };
     let request = Request {
-        invocation: format!("libration advise {options}"),
+        invocation: format!(
+            "libration advise {options} --tolerance {measure}={most:e} --horizon {horizon}"
+        ),
         ..Request::of_equations(equations(&system)?, options, tolerance, horizon)
     };
     advised(py, &request, page, progress)

@@ -104,7 +104,7 @@ impl AdviseArgs {
         {
             if given {
                 return Err(Failure::usage(format!(
-                    "--{name} is given, but the plant is a system of the catalogue; expected --plant, or [system.linear] in the file"
+                    "--{name} is given, but there is no loop around a linear plant; expected --plant FILE, or --system FILE with equations, and --lqr or --gain, or [system.linear] in the file of --config"
                 )));
             }
         }

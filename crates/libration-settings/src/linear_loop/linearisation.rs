@@ -120,7 +120,8 @@ impl Subject {
             .map_err(|error| Fault::new("system.linear.of", error.to_string()))?;
         let plant = LinearPlant { has_first_order_states: self.has_first_order_states, ..plant };
         let states = unknowns.iter().map(|i| value(i, state[*i])).collect();
-        Ok((plant, OperatingPoint { system: name.clone(), states, commands, residual }))
+        let is_smooth = dynamics.accelerations().is_smooth();
+        Ok((plant, OperatingPoint { system: name.clone(), states, commands, residual, is_smooth }))
     }
 }
 

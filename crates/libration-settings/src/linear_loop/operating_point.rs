@@ -16,6 +16,9 @@ pub struct OperatingPoint {
     pub commands: Vec<OperatingValue>,
     /// The largest absolute acceleration that is left, in units of coordinates per squared unit of time.
     pub residual: f64,
+    /// Whether the accelerations have no kinks and jumps.
+    #[serde(rename = "smooth")]
+    pub is_smooth: bool,
 }
 
 /// A value at an operating point.
@@ -52,8 +55,14 @@ impl OperatingPoint {
             };
             values.iter().map(one).collect::<Vec<_>>().join(", ")
         };
+        let kinks = match self.is_smooth {
+            true => "",
+            false => {
+                " Its equations have kinks or jumps: at one, and beyond, the linearisation does not hold."
+            }
+        };
         format!(
-            "The plant is the system {} linearised at {} under {}, where an acceleration of {:.1e} is left.",
+            "The plant is the system {} linearised at {} under {}, where an acceleration of {:.1e} is left.{kinks}",
             self.system,
             list(&self.states),
             list(&self.commands),
