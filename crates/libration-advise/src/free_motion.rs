@@ -55,10 +55,16 @@ impl<'a> FreeMotion<'a> {
                 "a phase requires one degree of freedom, and forces without time",
             );
         }
-        if of == Measure::Energy && system.energy().is_none() {
-            return tolerance_error(
-                "the system has no `energy`; add one, or set a tolerance of trajectory",
-            );
+        let zero = "the energy at the start is zero, so a relative error is undefined";
+        if of == Measure::Energy {
+            let Some(mut energy) = system.energy() else {
+                return tolerance_error(
+                    "the system has no `energy`; add one, or set a tolerance of trajectory",
+                );
+            };
+            if energy(&start) == 0.0 {
+                return tolerance_error(zero);
+            }
         }
         let rates = MotionRates { mean: 1.0, fastest: 1.0, stiffest: 1.0 };
         let free = FreeMotion { system, start, horizon: request.horizon, of, rates };
@@ -71,11 +77,7 @@ impl<'a> FreeMotion<'a> {
                         "the system does not conserve it; set a tolerance of trajectory",
                     );
                 }
-                EnergyKind::Zero => {
-                    return tolerance_error(
-                        "the energy at the start is zero, so a relative error is undefined",
-                    );
-                }
+                EnergyKind::Zero => return tolerance_error(zero),
             }
         }
         let [least, longest] = free.steps();

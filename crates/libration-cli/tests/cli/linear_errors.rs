@@ -158,8 +158,11 @@ fn plants_and_controllers_that_do_not_fit_are_usage_errors_that_name_the_key() {
         .stderr(predicate::str::contains("--lqr: `states` has 1 numbers; expected 2"));
     let oscillator = ["advise", "--system", "oscillator", "--feedback", "10,2"];
     for (rest, wanted) in [
-        (&["--output-latency", "0.1"][..], "--output-latency is given, but the plant is a system"),
-        (&["--redesign"], "--redesign is given, but the plant is a system"),
+        (
+            &["--output-latency", "0.1"][..],
+            "--output-latency is given, but there is no loop around a linear plant",
+        ),
+        (&["--redesign"], "--redesign is given, but there is no loop around a linear plant"),
         (&["--plant", plant], "cannot be used with"),
     ] {
         libration(&[&oscillator, rest].concat()).code(2).stderr(predicate::str::contains(wanted));
