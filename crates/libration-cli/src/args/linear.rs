@@ -72,8 +72,8 @@ impl AdviseArgs {
         let mut plant = read_plant(path).map_err(|why| {
             Failure::usage(format!("cannot use `{}` ({flag}): {why}", path.display()))
         })?;
-        if let Some(SystemArgs { set, .. }) = self.system_options() {
-            plant.parameters = set.iter().map(|(name, x)| (name.clone(), Number(*x))).collect();
+        if let Some(options) = self.system_options() {
+            plant.parameters = options.equation_parameters()?;
         }
         let controller = match (&self.linear.lqr, &self.linear.gain) {
             (Some(weights), _) => LinearControllerTable::Lqr(weights.clone()),

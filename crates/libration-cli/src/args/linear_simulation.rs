@@ -95,17 +95,17 @@ impl SimulateArgs {
         self.system.as_ref().and_then(SystemArgs::file).filter(|_| is_closed)
     }
 
-    /// The loop around the linearisation of a file of equations with other values of some parameters, and the request for the plant.
+    /// The loop around the linearisation of a file of equations with the parameters of these options, and the request for the plant.
     pub(crate) fn loop_around(
         &self,
         path: &Path,
-        set: &[(String, f64)],
+        options: &SystemArgs,
     ) -> Result<(LinearRequest, linear_trajectory::LinearRequest), Failure> {
         let LinearSimulationArgs { lqr, gain, period, .. } = &self.linear;
         let controller = controller_table(lqr.as_ref(), gain.as_ref());
+        let parameters = options.equation_parameters()?;
         let request = loop_of_plant((path, "--system"), controller, *period, |file| {
-            let each = set.iter().map(|(name, value)| (name.clone(), Number(*value)));
-            file.system.linear.parameters = each.collect();
+            file.system.linear.parameters = parameters;
             self.change(file);
         })?;
         let trajectory = self.trajectory(&request)?;

@@ -1,5 +1,6 @@
 //! Options of the system, its start and its step, which several commands share.
 
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::Path;
 
@@ -10,7 +11,7 @@ use libration::integrator::Exact;
 use libration::{CatalogError, Method, catalog};
 use libration_analyze::Stepping;
 use libration_settings::initial_value_problem::InitialValueProblem;
-use libration_settings::suggestions;
+use libration_settings::{Number, suggestions};
 
 use super::number::{Coordinates, assignment, coordinates, time_step};
 use super::quoted::quoted;
@@ -102,6 +103,25 @@ impl SystemArgs {
     /// The file of equations, if `--system` names one.
     pub(crate) fn file(&self) -> Option<&Path> {
         self.system.as_deref().filter(|system| is_file(system)).map(Path::new)
+    }
+
+    /// The parameters of `--set` for a system by equations.
+    ///
+    /// # Errors
+    /// If one is given twice or is not finite.
+    pub(crate) fn equation_parameters(&self) -> Result<BTreeMap<String, Number>, Failure> {
+        let mut all = BTreeMap::new();
+        for (name, value) in &self.set {
+            let expected = match value.is_finite() {
+                false => "expected a finite number",
+                true if all.insert(name.clone(), Number(*value)).is_some() => {
+                    "the parameter is given twice; expected once"
+                }
+                true => continue,
+            };
+            return Err(Failure::usage(format!("--set {name}={value}: {expected}")));
+        }
+        Ok(all)
     }
 
     /// The options as words of a command line.

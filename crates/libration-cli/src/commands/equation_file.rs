@@ -23,7 +23,7 @@ pub(super) fn read(path: &Path, set: &[(String, f64)]) -> Result<EquationSystem,
 /// The system of equations of `--system FILE` or `--force`; none of the catalogue.
 pub(super) fn system(options: &SystemArgs) -> Option<Result<EquationSystem, Failure>> {
     let is_of_equations = options.file().is_some() || !options.force.is_empty();
-    if let Some(error) = is_of_equations.then(|| check(&options.set).err()).flatten() {
+    if let Some(error) = is_of_equations.then(|| options.equation_parameters().err()).flatten() {
         return Some(Err(error));
     }
     if let Some(file) = options.file() {
@@ -37,21 +37,6 @@ pub(super) fn system(options: &SystemArgs) -> Option<Result<EquationSystem, Fail
         });
     }
     (!options.force.is_empty()).then(|| by_forces(options))
-}
-
-/// Fails if a parameter of `--set` is given twice or is not finite.
-fn check(set: &[(String, f64)]) -> Result<(), Failure> {
-    for (i, (name, value)) in set.iter().enumerate() {
-        if !value.is_finite() {
-            let message = format!("--set {name}={value}: expected a finite number");
-            return Err(Failure::usage(message));
-        }
-        if set[..i].iter().any(|(other, _)| other == name) {
-            let message = format!("--set {name}={value}: `{name}` is given twice; expected once");
-            return Err(Failure::usage(message));
-        }
-    }
-    Ok(())
 }
 
 /// The system of the accelerations of `--force`, from `--q` (default: 1) and `--v` (default: 0).

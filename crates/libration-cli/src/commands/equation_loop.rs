@@ -40,8 +40,8 @@ fn of_file(
             "{flag} cannot be combined with --system FILE and --lqr or --gain: the loop runs from the `start` of the file, in f64, on an even clock or with --jitter"
         )));
     }
+    let (looped, mut request) = args.loop_around(path, options)?;
     let system = equation_file::read(path, &options.set)?;
-    let (looped, mut request) = args.loop_around(path, &options.set)?;
     let point = looped.operating_point().map(|point| point.state_of(&system));
     let Some(mut at) = point else {
         return Err(Failure::usage("the plant of the file has no operating point"));

@@ -173,8 +173,13 @@ fn options_of_other_systems_are_refused_by_name() {
     refused(&["--lqr", "1/1"], "--lqr is given without a plant");
     refused(&["--system", "pendulum", "--gain", "1"], "--gain is given without a plant");
     refused(&["--system", &cart, "--set", "mass=1"], "unknown parameter `mass`");
+    let twice = ["--system", &cart, "--lqr", "1,1,1,1/1", "--set", "pole=1", "--set", "pole=2"];
+    refused(&twice, "--set pole=2: the parameter is given twice");
     refused(&["--system", &cart, "--set", "pole=nan"], "--set pole=NaN: expected a finite number");
-    refused(&["--force", "-k*q0", "--set", "k=1", "--set", "k=2"], "`k` is given twice");
+    refused(
+        &["--force", "-k*q0", "--set", "k=1", "--set", "k=2"],
+        "--set k=2: the parameter is given twice",
+    );
     refused(
         &["--system", &cart, "--tolerance", "phase=0.1"],
         "a phase requires one degree of freedom",

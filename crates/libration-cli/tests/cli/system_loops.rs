@@ -103,6 +103,8 @@ fn loops_that_cannot_be_are_refused_by_name() {
     };
     let lqr = ["--system", &cart, "--lqr", "1,10,0,1/0.1"];
     refused(&[&lqr[..], &["--q", "1"]].concat(), "--q cannot be combined");
+    let twice = [&lqr[..], &["--set", "pole=1", "--set", "pole=2"]].concat();
+    refused(&twice, "--set pole=2: the parameter is given twice");
     refused(&[&lqr[..], &["--float", "f32"]].concat(), "--float cannot be combined");
     refused(&[&lqr[..], &["--skew", "uniform:0.1"]].concat(), "--skew");
     refused(&[&lqr[..], &["--integrator", "exact", "--dt", "0.01"]].concat(), "--plant FILE");
