@@ -45,7 +45,7 @@ macro_rules! environment_floats {
                 which: Selection<'_>,
             ) -> Result<Box<dyn AnyEnvironments<Self>>, EnvironmentError> {
                 settings.check::<$float>()?;
-                // Ideal environments of the two tasks that most begin with are two to three times as fast by compiled kernels. All
+                // Ideal environments of the two tasks that most begin with are 1.7 to 3 times as fast by compiled kernels. All
                 // others are by programs, which with noise reach half of that speed.
                 match (settings.system.any(), settings.task) {
                     (AnySystem::Oscillator(model), Task::Regulate(task)) if settings.noise.is_none() => {
