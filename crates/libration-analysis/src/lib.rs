@@ -40,7 +40,7 @@ pub use energy_band::EnergyBand;
 pub use equilibrium::{Equilibrium, jacobian, rate_derivative};
 pub use error_forecast::ErrorForecast;
 pub use largest_step::{Criterion, LargestStep};
-pub use linear_stepper::{LinearStepper, StepOn};
+pub use linear_stepper::{LinearStepper, StepOn, positions_and_velocities};
 pub use linearisation::Linearisation;
 pub use orbit_error::OrbitError;
 pub use orbit_start::OrbitStart;

@@ -94,7 +94,7 @@ impl LinearStepper {
 ///
 /// The rate of a position is exactly one state. These arrows make a graph with at most one arrow from each state, in which a state with
 /// one neighbour has no choice.
-fn positions_and_velocities(a: &Matrix) -> Option<Vec<(usize, usize)>> {
+pub fn positions_and_velocities(a: &Matrix) -> Option<Vec<(usize, usize)>> {
     let n = a.rows();
     let target = |i: usize| {
         let mut entries = (0..n).filter(|&j| a[(i, j)] != 0.0);

@@ -1,0 +1,256 @@
+//! Findings of an audit: what a user of the step should know or mend.
+
+use serde::Serialize;
+
+use crate::report::ProbeReport;
+use crate::{Bits, Memory};
+
+/// Rounding from which a step does not compute in `f64`: a part of that of `f32`, and far above that of `f64`.
+const COARSE: f64 = 1e-10;
+/// Rates of a conservative system relative to its frequencies that are no roundings.
+const LEAK: f64 = 1e-9;
+/// Largest distance of the linear prediction from a short run.
+const LINEAR: f64 = 0.01;
+/// Largest relative error of a row at which the step counts as differentiable.
+const DIFFERENTIABLE: f64 = 0.01;
+
+/// A finding.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// Its kind, the same word for the same thing.
+    pub kind: &'static str,
+    /// Whether it is a fault of the simulator; else a fact without which its numbers mislead.
+    pub is_fault: bool,
+    /// The finding in a sentence, with its evidence.
+    pub text: String,
+}
+
+impl Finding {
+    fn fault(kind: &'static str, text: String) -> Self {
+        Finding { kind, is_fault: true, text }
+    }
+
+    fn warning(kind: &'static str, text: String) -> Self {
+        Finding { kind, is_fault: false, text }
+    }
+}
+
+/// Findings about the bits of a step.
+pub(crate) fn of_bits(bits: &Bits, found: &mut Vec<Finding>) {
+    if let Some(random) = &bits.randomness {
+        let size = random.deviations.iter().copied().fold(0.0, f64::max);
+        found.push(Finding::fault(
+            "not-reproducible",
+            format!(
+                "the same call gives different results (standard deviation {size:.2e}): random numbers, a clock, or a state that the step hides"
+            ),
+        ));
+        match (random.environments_differ, random.generator_is_shared) {
+            (_, Some(true)) => found.push(Finding::fault(
+                "shared-generator",
+                "the results of the first environment depend on the number of environments: they share a generator of random numbers".into(),
+            )),
+            (Some(false), _) => found.push(Finding::fault(
+                "same-noise",
+                "all environments of a batch draw the same random numbers".into(),
+            )),
+            _ => {}
+        }
+        return;
+    }
+    for check in &bits.checks {
+        let Some(difference) = &check.difference else { continue };
+        let [environment, component] = difference.index[..] else { continue };
+        let ulps = difference.ulps.map_or_else(String::new, |ulps| format!(", {ulps} ulps apart"));
+        found.push(Finding::fault(
+            "bits-differ",
+            format!(
+                "{} gives other bits: first in environment {environment}, component {component} ({:e} and {:e}{ulps}); {} numbers differ",
+                check.name, difference.first, difference.second, difference.differing
+            ),
+        ));
+    }
+    if bits.single_precision || bits.rounding > COARSE {
+        let all =
+            if bits.single_precision { "all results are numbers of f32" } else { "f64 has 1e-16" };
+        found.push(Finding::fault(
+            "single-precision",
+            format!(
+                "the step computes in single precision: its rounding is {:.1e} of its results, {all}",
+                bits.rounding
+            ),
+        ));
+    }
+}
+
+/// Findings about what a step remembers.
+pub(crate) fn of_memory(memory: &Memory, dt: f64, found: &mut Vec<Finding>) {
+    if memory.calls.is_none() {
+        found.push(Finding::fault(
+            "hidden-state",
+            format!(
+                "results depend on calls more than {} calls ago: the step has a state that it does not return",
+                memory.tried
+            ),
+        ));
+        return;
+    }
+    for input in memory.inputs.iter().filter(|input| input.last.unwrap_or(0) > 0) {
+        let first = input.first.unwrap_or(0);
+        found.push(Finding::fault(
+            "late-command",
+            format!(
+                "a command of `{}` acts {:.3} steps late ({:.4} s) on average: the first result that responds is {first} calls later",
+                input.of,
+                input.mean,
+                input.mean * dt
+            ),
+        ));
+    }
+    if memory.state.last.unwrap_or(0) > 0 {
+        found.push(Finding::fault(
+            "late-state",
+            format!(
+                "the returned states are those of {:.3} calls ago on average, not of the given state",
+                memory.state.mean
+            ),
+        ));
+    }
+    if memory.staleness() != 0.0 {
+        found.push(Finding::fault(
+            "stale-observation",
+            format!(
+                "observations are {:.3} steps ({:.4} s) older than the states",
+                memory.staleness(),
+                memory.staleness() * dt
+            ),
+        ));
+    }
+}
+
+/// Findings about the linearised step, its flow and its energy.
+pub(crate) fn of_report(report: &ProbeReport, found: &mut Vec<Finding>) {
+    if report.ignores_dt {
+        found.push(Finding::fault(
+            "ignores-dt",
+            "a step of half the length gives the same bits: the simulator ignores dt".into(),
+        ));
+    }
+    if report.jacobian_error > DIFFERENTIABLE {
+        found.push(Finding::warning(
+            "not-differentiable",
+            format!(
+                "the step has no derivative at this state (relative error {:.1e}): a contact, a limit or dry friction changes there",
+                report.jacobian_error
+            ),
+        ));
+    }
+    let equilibrium = &report.equilibrium;
+    if !equilibrium.holds && equilibrium.stated != Some(false) {
+        found.push(Finding::warning(
+            "no-equilibrium",
+            format!(
+                "the state is no equilibrium: `{}` changes by {:.3e} per step; the modes are those of deviations from a motion",
+                equilibrium.state, equilibrium.change
+            ),
+        ));
+    }
+    if let Some(confirmation) = report.confirmation.as_ref().filter(|c| !(c.error <= LINEAR))
+        && equilibrium.holds
+        && report.jacobian_error <= DIFFERENTIABLE
+    {
+        found.push(Finding::warning(
+            "nonlinear",
+            format!(
+                "after {} steps from a deviation of {:.0e} the simulator is {:.1} % off the linear prediction",
+                confirmation.steps,
+                confirmation.displacement,
+                100.0 * confirmation.error
+            ),
+        ));
+    }
+    if let Some(difference) = report.reference.as_ref().filter(|r| !(r.difference <= r.allowed)) {
+        found.push(Finding::warning(
+            "derivatives-differ",
+            format!(
+                "the matrices of {} differ from the differences of the step by {:.1e} of the largest entry of a row, {:.1e} explained",
+                difference.source, difference.difference, difference.allowed
+            ),
+        ));
+    }
+    damping(report, found);
+    leaks(report, found);
+    if let Some(limit) = &report.largest_dt {
+        if limit.grows_always {
+            found.push(Finding::warning(
+                "grows-always",
+                format!(
+                    "the mode of {} grows with every step length though the system does not carry it out",
+                    limit.mode
+                ),
+            ));
+        } else if limit.dt.is_some_and(|dt| dt < report.dt) {
+            found.push(Finding::fault(
+                "unstable-step",
+                format!(
+                    "the step of {} s is unstable though the system is stable; the longest stable step is {:.5e} s, limited by the mode of {}",
+                    report.dt,
+                    limit.dt.unwrap_or(0.0),
+                    limit.mode
+                ),
+            ));
+        }
+    }
+}
+
+/// Velocities that drive themselves in an oscillation that grows.
+fn damping(report: &ProbeReport, found: &mut Vec<Finding>) {
+    let grows = report.modes.iter().any(|mode| {
+        mode.flow.is_some_and(|flow| flow.growth_rate > 10.0 * mode.error && flow.frequency > 0.0)
+    });
+    for driven in report.driven_velocities.iter().filter(|_| grows) {
+        found.push(Finding::fault(
+            "negative-damping",
+            format!(
+                "`{}` accelerates itself by {:+.4e} 1/s: its damping has the wrong sign",
+                driven.state, driven.rate
+            ),
+        ));
+    }
+}
+
+/// Energy that a conservative system gains or loses.
+fn leaks(report: &ProbeReport, found: &mut Vec<Finding>) {
+    if !report.is_conservative {
+        return;
+    }
+    use crate::DriftReason::System;
+    let drift = report.defects.as_ref().and_then(|defects| defects.energy.as_ref());
+    if let Some(drift) = drift.filter(|drift| drift.reason == System) {
+        found.push(Finding::fault(
+            "energy-leak",
+            format!(
+                "the energy changes by {:+.3e} per second, whatever the step: the system is not conservative",
+                drift.rate
+            ),
+        ));
+        return;
+    }
+    let leak = report.modes.iter().find_map(|mode| {
+        let flow = mode.flow?;
+        let size = core::f64::consts::TAU * flow.frequency;
+        (flow.frequency > 0.0 && flow.growth_rate.abs() > (LEAK * size).max(3.0 * mode.error))
+            .then_some((mode, flow))
+    });
+    if let Some((mode, flow)) = leak {
+        let names: Vec<&str> = mode.states.iter().map(|(name, _)| name.as_str()).collect();
+        found.push(Finding::fault(
+            "energy-leak",
+            format!(
+                "the energy of the mode of {} changes by {:+.3e} per second in the limit of small steps: the system is not conservative",
+                names.join(", "),
+                2.0 * flow.growth_rate
+            ),
+        ));
+    }
+}

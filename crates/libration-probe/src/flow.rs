@@ -1,0 +1,123 @@
+//! The system in continuous time that a step approximates: the limit of small steps.
+
+use libration::linear::{Matrix, logarithm};
+
+use crate::linearised_step::LinearisedStep;
+use crate::prober::Prober;
+use crate::{BlackBoxError, Subject};
+
+/// Halvings of the step that are tried until it is short beside all motions.
+const MOST_HALVINGS: usize = 24;
+/// Steps from which the limit is extrapolated, each half of the one before.
+const LEVELS: usize = 5;
+/// Distance of the matrix of a short step from the identity, in units of the scales.
+const SHORT: f64 = 0.5;
+
+/// The rates of small deviations, `ẋ = A x + B u`.
+#[derive(Clone, Debug)]
+pub(crate) struct Flow {
+    /// States × states, in 1/s.
+    pub(crate) a: Matrix,
+    /// States × inputs.
+    pub(crate) b: Matrix,
+    /// Estimated absolute errors of `a`.
+    pub(crate) a_errors: Matrix,
+    /// Matrices of the steps of falling length, from that of the subject.
+    pub(crate) steps: Vec<LinearisedStep>,
+}
+
+impl Flow {
+    /// The limit of `log(A(h))/h` for small steps `h`, by Richardson's extrapolation; none where the matrices have no logarithm or
+    /// the length of the step has no effect.
+    pub(crate) fn of(
+        prober: &mut Prober<'_>,
+        step: &LinearisedStep,
+    ) -> Result<Option<Self>, BlackBoxError> {
+        let mut steps = vec![step.clone()];
+        let mut levels: Vec<(Matrix, Matrix)> = Vec::new();
+        let subject = prober.subject;
+        for halvings in 0..MOST_HALVINGS {
+            let step = match steps.get(halvings) {
+                Some(step) => step,
+                None => {
+                    let dt = subject.dt * 2.0_f64.powi(-(halvings as i32));
+                    steps.push(LinearisedStep::at(prober, dt)?);
+                    &steps[halvings]
+                }
+            };
+            if !step.is_finite() {
+                return Ok(None);
+            }
+            match rates(step, subject) {
+                Some(level) => levels.push(level),
+                // A longer step may be short where this one is not, if its matrix is close to the identity by chance.
+                None => levels.clear(),
+            }
+            if levels.len() == LEVELS {
+                let (whole, errors) = extrapolate(&levels);
+                let (n, m) = (step.a.rows(), step.b.columns());
+                return Ok(Some(Flow {
+                    a: whole.block((0, 0), (n, n)),
+                    b: whole.block((0, n), (n, m)),
+                    a_errors: errors.block((0, 0), (n, n)),
+                    steps,
+                }));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// The rates whose exact flow a short step is, and their errors.
+fn rates(step: &LinearisedStep, subject: &Subject) -> Option<(Matrix, Matrix)> {
+    let scale = [&subject.state_scale[..], &subject.action_scale].concat();
+    let whole = step.augmented();
+    let size = whole.rows();
+    let off = Matrix::from_fn(size, size, |i, j| {
+        (whole[(i, j)] - f64::from(u8::from(i == j))) * scale[j] / scale[i]
+    });
+    let n = step.a.rows();
+    if off.block((0, 0), (n, n)).row_sum_norm() > SHORT {
+        return None;
+    }
+    let rates = logarithm(&whole)?.scaled(step.dt.recip());
+    let mut errors = Matrix::zeros(size, size);
+    errors.set_block((0, 0), &step.a_errors.scaled(step.dt.recip()));
+    errors.set_block((0, n), &step.b_errors.scaled(step.dt.recip()));
+    Some((rates, errors))
+}
+
+/// The limit of levels at `h, h/2, …`, each entry that of the smallest estimated error.
+fn extrapolate(levels: &[(Matrix, Matrix)]) -> (Matrix, Matrix) {
+    let (rows, columns) = (levels[0].0.rows(), levels[0].0.columns());
+    let (mut limit, mut errors) = (Matrix::zeros(rows, columns), Matrix::zeros(rows, columns));
+    for i in 0..rows {
+        for j in 0..columns {
+            let entries: Vec<(f64, f64)> =
+                levels.iter().map(|(rates, errors)| (rates[(i, j)], errors[(i, j)])).collect();
+            (limit[(i, j)], errors[(i, j)]) = limit_of_halved(&entries);
+        }
+    }
+    (limit, errors)
+}
+
+/// The limit of values at `h, h/2, …` with these errors, whose distance from the limit has all powers of `h`, and its estimated error.
+pub(crate) fn limit_of_halved(values: &[(f64, f64)]) -> (f64, f64) {
+    let mut before: Vec<f64> = Vec::new();
+    let mut best = (values.last().map_or(f64::NAN, |last| last.0), f64::INFINITY);
+    for &(value, rounding) in values {
+        let mut row = vec![value];
+        for (order, old) in before.iter().enumerate() {
+            let last = row[order];
+            let next = last + (last - old) / (2.0_f64.powi(order as i32 + 1) - 1.0);
+            // Extrapolation multiplies rounding by at most 8.3, the product of (2ʲ + 1)/(2ʲ − 1).
+            let error = (next - last).abs().min((next - old).abs()) + 8.3 * rounding;
+            if error <= best.1 {
+                best = (next, error);
+            }
+            row.push(next);
+        }
+        before = row;
+    }
+    best
+}

@@ -1,0 +1,45 @@
+//! Audits of the step of any simulator, which is known by its results alone.
+//!
+//! [`probe()`] calls a [`BlackBox`] and measures: the matrices of its step and of the flow that it approximates, modes with their numerical
+//! damping, the longest stable step, hidden latency, order, integrator, defects and bits. A [`Subject`] names states and actions.
+
+mod bits;
+mod black_box;
+mod confirmation;
+mod convergence;
+mod defects;
+mod differences;
+mod energy_drift;
+mod finding;
+mod first_difference;
+mod flow;
+mod hidden_latency;
+mod largest_step;
+mod linearised_step;
+mod memory;
+mod modes;
+mod page;
+mod prober;
+mod rates;
+mod recognition;
+mod report;
+mod subject;
+mod summary;
+
+pub use bits::{BitCheck, Bits, Randomness};
+pub use black_box::{BlackBox, BlackBoxError};
+pub use confirmation::Confirmation;
+pub use convergence::Convergence;
+pub use defects::Defects;
+pub use differences::{Jacobian, jacobian};
+pub use energy_drift::{DriftReason, EnergyDrift};
+pub use finding::Finding;
+pub use first_difference::{FirstDifference, ulps};
+pub use hidden_latency::HiddenLatency;
+pub use largest_step::LargestStep;
+pub use memory::{Lateness, Memory};
+pub use modes::{ProbedMode, Rates};
+pub use page::page;
+pub use recognition::{Candidate, Recognition};
+pub use report::{Matrices, ProbeReport, ReferenceCheck, Rest, probe};
+pub use subject::{Reference, Subject, SubjectError};

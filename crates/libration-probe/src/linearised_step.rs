@@ -1,0 +1,105 @@
+//! The matrices of a step.
+
+use libration::linear::{LinearPlant, Matrix};
+
+use crate::differences::{Jacobian, jacobian};
+use crate::prober::Prober;
+use crate::{BlackBoxError, Subject};
+
+/// The matrices of a step of small deviations, `x' = A x + B u`, with estimated absolute errors.
+#[derive(Clone, Debug)]
+pub(crate) struct LinearisedStep {
+    /// The length of the step, in s.
+    pub(crate) dt: f64,
+    /// States × states.
+    pub(crate) a: Matrix,
+    /// States × inputs.
+    pub(crate) b: Matrix,
+    /// Estimated absolute errors of `a`.
+    pub(crate) a_errors: Matrix,
+    /// Estimated absolute errors of `b`.
+    pub(crate) b_errors: Matrix,
+}
+
+impl LinearisedStep {
+    /// That of a step of `dt` seconds at the state and the action of the subject.
+    pub(crate) fn at(prober: &mut Prober<'_>, dt: f64) -> Result<Self, BlackBoxError> {
+        let subject = prober.subject;
+        let n = subject.state.len();
+        let z = [&subject.state[..], &subject.action].concat();
+        let scale = [&subject.state_scale[..], &subject.action_scale].concat();
+        let of = |points: &Matrix| {
+            let rows = points.rows();
+            let states = points.block((0, 0), (rows, n));
+            let actions = points.block((0, n), (rows, z.len() - n));
+            prober.step(&states, &actions, dt)
+        };
+        let Jacobian { values, errors } = jacobian(of, &z, &scale)?;
+        let part = |matrix: &Matrix, start, count| matrix.block((0, start), (n, count));
+        let inputs = z.len() - n;
+        Ok(LinearisedStep {
+            dt,
+            a: part(&values, 0, n),
+            b: part(&values, n, inputs),
+            a_errors: part(&errors, 0, n),
+            b_errors: part(&errors, n, inputs),
+        })
+    }
+
+    /// Whether all entries are known.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.a.is_finite() && self.b.is_finite()
+    }
+
+    /// The largest estimated error of an entry, in units of the scales and relative to the largest entry of its row.
+    pub(crate) fn relative_error(&self, subject: &Subject) -> f64 {
+        let scaled = |matrix: &Matrix, i: usize, j: usize, scale: &[f64]| {
+            (matrix[(i, j)] * scale[j] / subject.state_scale[i]).abs()
+        };
+        let largest = |i: usize, of_a: &Matrix, of_b: &Matrix| {
+            let states = (0..of_a.columns()).map(|j| scaled(of_a, i, j, &subject.state_scale));
+            let inputs = (0..of_b.columns()).map(|j| scaled(of_b, i, j, &subject.action_scale));
+            states.chain(inputs).fold(0.0, f64::max)
+        };
+        (0..self.a.rows())
+            .map(|i| {
+                let size = largest(i, &self.a, &self.b).max(f64::MIN_POSITIVE);
+                largest(i, &self.a_errors, &self.b_errors) / size
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// The matrices on states and held actions, `[[A, B], [0, 1]]`.
+    pub(crate) fn augmented(&self) -> Matrix {
+        let (n, m) = (self.a.rows(), self.b.columns());
+        let mut whole = Matrix::identity(n + m);
+        whole.set_block((0, 0), &self.a);
+        whole.set_block((0, n), &self.b);
+        whole
+    }
+
+    /// The step as a sampled plant with the names of the subject. Without actions it has one without effect.
+    pub(crate) fn plant(&self, subject: &Subject) -> Option<LinearPlant> {
+        plant_of(&self.a, &self.b, Some(self.dt), subject)
+    }
+}
+
+/// A plant with the names of the subject.
+pub(crate) fn plant_of(
+    a: &Matrix,
+    b: &Matrix,
+    sampling_period: Option<f64>,
+    subject: &Subject,
+) -> Option<LinearPlant> {
+    let n = a.rows();
+    let b = if b.columns() == 0 { Matrix::zeros(n, 1) } else { b.clone() };
+    let d = Matrix::zeros(n, b.columns());
+    let mut plant = LinearPlant::new(a.clone(), b, Matrix::identity(n), d).ok()?;
+    plant.sampling_period = sampling_period;
+    plant.states.clone_from(&subject.states);
+    plant.outputs.clone_from(&subject.states);
+    if !subject.inputs.is_empty() {
+        plant.inputs.clone_from(&subject.inputs);
+    }
+    Some(plant)
+}

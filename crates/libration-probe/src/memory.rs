@@ -1,0 +1,137 @@
+//! What a step remembers of earlier calls: late commands, late states and late observations.
+
+use serde::Serialize;
+
+use crate::BlackBoxError;
+use crate::prober::Prober;
+
+/// Calls after which a black box should have forgotten what was before.
+const MOST_CALLS: usize = 64;
+
+/// The influence of a call on the results of later ones.
+///
+/// All calls have the same state and action but one, in which a single action or all states differ. The results that differ are those
+/// that the one call reaches.
+#[derive(Clone, Debug, Serialize)]
+pub struct Memory {
+    /// Calls after which a result no longer depends on earlier ones; none: more than were tried.
+    pub calls: Option<usize>,
+    /// The most calls that were tried.
+    pub tried: usize,
+    /// For each action, when results respond to it.
+    pub inputs: Vec<Lateness>,
+    /// When the returned states respond to the given state.
+    pub state: Lateness,
+    /// When observations respond to it; none without observations.
+    pub observation: Option<Lateness>,
+}
+
+/// When results respond to a change that lasts for one call.
+#[derive(Clone, Debug, Serialize)]
+pub struct Lateness {
+    /// The name of the action, `state` or `observation`.
+    pub of: String,
+    /// The first result that responds, from 0 for that of the same call; none if no result does.
+    pub first: Option<usize>,
+    /// The last one.
+    pub last: Option<usize>,
+    /// Calls between the change and the responses on average, weighted with their sizes.
+    pub mean: f64,
+}
+
+/// Sizes of the responses of one sequence of calls, from that of the changed call.
+struct Response {
+    states: Vec<f64>,
+    observations: Option<Vec<f64>>,
+}
+
+impl Memory {
+    /// Measures the memory of a black box that gives the same results twice.
+    pub(crate) fn measure(prober: &mut Prober<'_>) -> Result<Self, BlackBoxError> {
+        let subject = prober.subject;
+        let (x, u) = (&subject.state, &subject.action);
+        let mut inputs = Vec::new();
+        for j in 0..u.len() {
+            let mut changed = u.clone();
+            changed[j] += subject.action_scale[j] / 64.0;
+            let response = respond(prober, x, &changed)?;
+            inputs.push(Lateness::of(&subject.inputs[j].name, &response.states));
+        }
+        let mut moved = x.clone();
+        let shift = |i: usize| (1.0 + i as f64 / 7.0) / 64.0;
+        moved.iter_mut().enumerate().for_each(|(i, x)| *x += shift(i) * subject.state_scale[i]);
+        let response = respond(prober, &moved, u)?;
+        let state = Lateness::of("state", &response.states);
+        let observation =
+            response.observations.as_ref().map(|sizes| Lateness::of("observation", sizes));
+        let all = || inputs.iter().chain([&state]).chain(observation.iter());
+        let calls = all().filter_map(|lateness| lateness.last).max().unwrap_or(0);
+        // The last call that was tried still responds: the end of the memory is beyond it.
+        let calls = (calls < MOST_CALLS).then_some(calls);
+        Ok(Memory { calls, tried: MOST_CALLS, inputs, state, observation })
+    }
+
+    /// The latency of an action beyond that of a step that uses it at once, in steps.
+    pub fn latency(&self, input: usize) -> f64 {
+        self.inputs.get(input).map_or(0.0, |lateness| lateness.mean)
+    }
+
+    /// Steps by which observations are later than the states.
+    pub fn staleness(&self) -> f64 {
+        self.observation.as_ref().map_or(0.0, |observation| observation.mean - self.state.mean)
+    }
+}
+
+impl Lateness {
+    fn of(name: &str, sizes: &[f64]) -> Self {
+        let first = sizes.iter().position(|size| *size > 0.0);
+        let last = sizes.iter().rposition(|size| *size > 0.0);
+        let total: f64 = sizes.iter().sum();
+        let moment: f64 = sizes.iter().enumerate().map(|(k, size)| k as f64 * size).sum();
+        let mean = if total > 0.0 { moment / total } else { 0.0 };
+        Lateness { of: name.to_owned(), first, last, mean }
+    }
+}
+
+/// Calls with the subject's state and action until they are forgotten, one with others, and the responses to it.
+fn respond(prober: &mut Prober<'_>, x: &[f64], u: &[f64]) -> Result<Response, BlackBoxError> {
+    let (base_x, base_u, dt) = (&prober.subject.state, &prober.subject.action, prober.subject.dt);
+    let mut base = (Vec::new(), None);
+    for _ in 0..=MOST_CALLS {
+        base = observed(prober, base_x, base_u, dt)?;
+    }
+    let scale = &prober.subject.state_scale;
+    let mut response = Response { states: Vec::new(), observations: None };
+    for k in 0..=MOST_CALLS {
+        let (x, u) = if k == 0 { (x, u) } else { (&base_x[..], &base_u[..]) };
+        let (next, observation) = observed(prober, x, u, dt)?;
+        response.states.push(distance(&next, &base.0, Some(scale)));
+        if let (Some(seen), Some(base)) = (&observation, &base.1) {
+            response.observations.get_or_insert_default().push(distance(seen, base, None));
+        }
+    }
+    Ok(response)
+}
+
+type Observed = (Vec<f64>, Option<Vec<f64>>);
+
+fn observed(
+    prober: &mut Prober<'_>,
+    x: &[f64],
+    u: &[f64],
+    dt: f64,
+) -> Result<Observed, BlackBoxError> {
+    let next = prober.call_one(x, u, dt)?;
+    let observation = prober.observe(&next)?;
+    Ok((next, observation))
+}
+
+/// The distance of two results; any difference of bits counts.
+fn distance(a: &[f64], b: &[f64], scale: Option<&[f64]>) -> f64 {
+    let size = |i: usize| scale.map_or(1.0, |scale| scale[i]);
+    let apart = |i: usize| match a[i].to_bits() == b[i].to_bits() {
+        true => 0.0,
+        false => ((a[i] - b[i]) / size(i)).abs().max(f64::MIN_POSITIVE),
+    };
+    (0..a.len().min(b.len())).map(apart).fold(0.0, f64::max)
+}

@@ -1,0 +1,249 @@
+//! An audit as an HTML page.
+
+use libration_report::figure::{Axis, Figure, Mark, Panel};
+use libration_report::notation::number;
+use libration_report::page::Page;
+use libration_report::record::{Cell, Table};
+use libration_report::report;
+
+use crate::ProbeReport;
+
+/// Points of the unit circle.
+const CIRCLE: usize = 361;
+
+/// The audit as an HTML page.
+pub fn page(audit: &ProbeReport) -> String {
+    let mut page = Page { title: format!("Audit of a step: {}", audit.title), ..Page::default() };
+    page.answer.clone_from(&audit.answer);
+    findings(&mut page, audit);
+    modes(&mut page, audit);
+    latency(&mut page, audit);
+    integrator(&mut page, audit);
+    defects(&mut page, audit);
+    bits(&mut page, audit);
+    linearisation(&mut page, audit);
+    if !audit.repeat_command.is_empty() {
+        page.heading("How is the audit repeated?");
+        page.code(audit.repeat_command.clone());
+    }
+    let sub = format!(
+        "{} states · inputs {} · dt = {} s · {} steps · `libration probe`",
+        audit.states.len(),
+        if audit.inputs.is_empty() { "none".into() } else { audit.inputs.join(", ") },
+        number(audit.dt, 4),
+        audit.calls,
+    );
+    report::render_page(&page, &sub)
+}
+
+fn findings(page: &mut Page, audit: &ProbeReport) {
+    page.heading("What should be changed?");
+    if audit.findings.is_empty() {
+        page.paragraph("Nothing: the audit has no finding.");
+    } else {
+        let mut table = Table::new("findings", &["finding", "kind", "evidence"]);
+        for finding in &audit.findings {
+            let kind = if finding.is_fault { "fault" } else { "warning" };
+            table.push([finding.kind.into(), kind.into(), finding.text.clone().into()]);
+        }
+        page.table(&table, 4);
+    }
+    for note in &audit.notes {
+        page.note(format!("{note}."));
+    }
+}
+
+fn modes(page: &mut Page, audit: &ProbeReport) {
+    if audit.modes.is_empty() {
+        return;
+    }
+    page.heading("How do the modes of the step differ from those of the system?");
+    page.paragraph(
+        "The system is the limit of small steps. Numerical damping is the damping ratio that the step adds; where it is negative, the \
+         step takes damping away. A mode with |z| above 1 grows.",
+    );
+    let columns = [
+        "mode in",
+        "|z|",
+        "growth rate, step (1/s)",
+        "system (1/s)",
+        "frequency, step (Hz)",
+        "system (Hz)",
+        "damping ratio, step",
+        "system",
+        "numerical damping",
+    ];
+    let mut table = Table::new("modes", &columns);
+    let known = |x: Option<f64>| x.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, 5));
+    for mode in &audit.modes {
+        let flow = mode.flow;
+        table.push([
+            mode.names().into(),
+            Cell::rounded(mode.radius, 7),
+            Cell::rounded(mode.step.growth_rate, 5),
+            known(flow.map(|flow| flow.growth_rate)),
+            Cell::rounded(mode.step.frequency, 5),
+            known(flow.map(|flow| flow.frequency)),
+            known(mode.step.damping_ratio),
+            known(flow.and_then(|flow| flow.damping_ratio)),
+            known(mode.numerical_damping),
+        ]);
+    }
+    page.table(&table, 7);
+    page.figure(plane(audit));
+}
+
+/// The modes in the complex plane, of the step and of the flow.
+fn plane(audit: &ProbeReport) -> Figure {
+    let both = |z: [f64; 2]| [z, [z[0], -z[1]]];
+    let step: Vec<[f64; 2]> = audit.modes.iter().flat_map(|mode| both(mode.factor)).collect();
+    let of_flow = |mode: &crate::ProbedMode| {
+        let flow = mode.flow?;
+        let angle = core::f64::consts::TAU * flow.frequency * audit.dt;
+        let radius = (flow.growth_rate * audit.dt).exp();
+        Some(both([radius * angle.cos(), radius * angle.sin()]))
+    };
+    let flow: Vec<[f64; 2]> = audit.modes.iter().filter_map(of_flow).flatten().collect();
+    let part = |points: &[[f64; 2]], k: usize| points.iter().map(|z| z[k]).collect::<Vec<f64>>();
+    let circle = |k: usize| -> Vec<f64> {
+        let turn = |i: usize| core::f64::consts::TAU * i as f64 / (CIRCLE - 1) as f64;
+        (0..CIRCLE).map(|i| if k == 0 { turn(i).cos() } else { turn(i).sin() }).collect()
+    };
+    let reach = step.iter().flatten().fold(1.15_f64, |most, x| most.max(1.1 * x.abs()));
+    let axis = |label: &str| Axis::linear(label).range(-reach, reach);
+    let mut panel = Panel::new(axis("Re z"), axis("Im z"))
+        .mark(Mark::line(circle(0), circle(1)).label("unit circle"))
+        .mark(Mark::points(part(&step, 0), part(&step, 1)).label("step"));
+    if !flow.is_empty() {
+        panel = panel.mark(Mark::prediction(part(&flow, 0), part(&flow, 1)).label("system"));
+    }
+    Figure::new("modes-plane", "Factors of the modes per step")
+        .caption("Points: factors of the step. Circles: those of the system in the same time. Outside the unit circle a mode grows.")
+        .aspect(1.0)
+        .panel(panel)
+}
+
+fn latency(page: &mut Page, audit: &ProbeReport) {
+    if audit.hidden_latency.is_empty() {
+        return;
+    }
+    page.heading("Which latency is hidden in the step?");
+    page.paragraph(
+        "A command may be used late, and the integrator itself delays its effect. Its delay is that beyond the exact motion under the same \
+         held command, by the phase of the state that responds most.",
+    );
+    let columns = [
+        "input",
+        "late by (steps)",
+        "late by (s)",
+        "delay of the integrator (s)",
+        "of",
+        "total (s)",
+    ];
+    let mut table = Table::new("latency", &columns);
+    for latency in &audit.hidden_latency {
+        table.push([
+            latency.input.clone().into(),
+            Cell::rounded(latency.late_steps, 4),
+            Cell::rounded(latency.late, 4),
+            latency.integrator_delay.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, 4)),
+            latency.state.clone().unwrap_or_else(|| "—".into()).into(),
+            Cell::rounded(latency.total, 4),
+        ]);
+    }
+    page.table(&table, 4);
+}
+
+fn integrator(page: &mut Page, audit: &ProbeReport) {
+    let (Some(order), Some(recognition)) = (&audit.order, &audit.recognition) else { return };
+    page.heading("Which integrator is it?");
+    let estimates: Vec<String> = order.estimates.iter().map(|x| format!("{x:.3}")).collect();
+    page.paragraph(format!(
+        "Estimates of the order from halved steps: {}. Each candidate steps the same system, whose rates are the limit of short steps of \
+         the simulator; errors of the rates explain distances up to {:.1e}.",
+        if estimates.is_empty() { "none, the step is exact".into() } else { estimates.join(", ") },
+        recognition.allowed
+    ));
+    let mut table = Table::new("integrators", &["integrator", "distance from the step", "agrees"]);
+    for candidate in &recognition.candidates {
+        let agrees = if recognition.methods.contains(&candidate.method) { "yes" } else { "no" };
+        table.push([candidate.title.into(), Cell::rounded(candidate.distance, 3), agrees.into()]);
+    }
+    page.table(&table, 3);
+}
+
+fn defects(page: &mut Page, audit: &ProbeReport) {
+    let Some(defects) = &audit.defects else { return };
+    page.heading("What does the step not conserve?");
+    let mut table = Table::new("defects", &["quantity", "step", "system or half the step"]);
+    let known = |x: Option<f64>| x.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, 4));
+    table.push([
+        "rate of phase-space volume (1/s)".into(),
+        Cell::rounded(defects.volume_rate, 4),
+        known(defects.flow_volume_rate),
+    ]);
+    table.push(["defect of symplecticity".into(), known(defects.symplecticity), Cell::absent("—")]);
+    table.push([
+        "defect of reversibility".into(),
+        known(defects.reversibility),
+        known(defects.reversibility_halved),
+    ]);
+    if let Some(energy) = &defects.energy {
+        let name = format!("relative rate of the energy (1/s), {}", energy.reason.text());
+        table.push([name.into(), Cell::rounded(energy.rate, 4), known(energy.rate_halved)]);
+    }
+    page.table(&table, 4);
+}
+
+fn bits(page: &mut Page, audit: &ProbeReport) {
+    page.heading("Are the results the same bits again?");
+    let mut table = Table::new("bits", &["comparison", "result"]);
+    for check in &audit.bits.checks {
+        let result = match &check.difference {
+            None => "the same bits".to_owned(),
+            Some(d) => format!(
+                "{} numbers differ, first environment {}, component {}",
+                d.differing,
+                d.index.first().copied().unwrap_or(0),
+                d.index.get(1).copied().unwrap_or(0)
+            ),
+        };
+        table.push([check.name.clone().into(), result.into()]);
+    }
+    page.table(&table, 4);
+    page.paragraph(format!(
+        "Rounding of a step relative to its results: {:.1e}.",
+        audit.bits.rounding
+    ));
+}
+
+fn linearisation(page: &mut Page, audit: &ProbeReport) {
+    page.heading("Where is the step linearised?");
+    let mut table = Table::new("state", &["state", "value"]);
+    for (name, value) in audit.states.iter().zip(&audit.state) {
+        table.push([name.clone().into(), Cell::rounded(*value, 6)]);
+    }
+    for (name, value) in audit.inputs.iter().zip(&audit.action) {
+        table.push([format!("command {name}").into(), Cell::rounded(*value, 6)]);
+    }
+    page.table(&table, 6);
+    let rest = &audit.equilibrium;
+    let holds = if rest.holds { "It is an equilibrium" } else { "It is no equilibrium" };
+    let mut text = format!(
+        "{holds}: the largest change in a step is {:.1e} ({}). The estimated relative error of the matrices is {:.1e}.",
+        rest.change, rest.state, audit.jacobian_error
+    );
+    if let Some(confirmation) = &audit.confirmation {
+        text += &format!(
+            " A run of {} steps from a deviation of {:.0e} follows them to {:.1e}.",
+            confirmation.steps, confirmation.displacement, confirmation.error
+        );
+    }
+    if let Some(reference) = &audit.reference {
+        text += &format!(
+            " The matrices of {} agree to {:.1e} of the largest entry of a row.",
+            reference.source, reference.difference
+        );
+    }
+    page.paragraph(text);
+}

@@ -1,0 +1,134 @@
+//! Calls of a black box, counted and checked.
+
+use libration::linear::Matrix;
+
+use crate::{BlackBox, BlackBoxError, Subject};
+
+/// A black box at work: each result has the right shape and is free of earlier calls.
+pub(crate) struct Prober<'a> {
+    black_box: &'a mut dyn BlackBox,
+    pub(crate) subject: &'a Subject,
+    /// Calls with the same values after which a result no longer depends on what was before.
+    pub(crate) memory: usize,
+    /// Rows that were stepped.
+    pub(crate) calls: u64,
+}
+
+impl<'a> Prober<'a> {
+    pub(crate) fn new(black_box: &'a mut dyn BlackBox, subject: &'a Subject) -> Self {
+        Prober { black_box, subject, memory: 0, calls: 0 }
+    }
+
+    pub(crate) fn is_batched(&self) -> bool {
+        self.black_box.is_batched()
+    }
+
+    pub(crate) fn restart(&mut self) -> Result<bool, BlackBoxError> {
+        self.black_box.restart()
+    }
+
+    /// One call with all rows, whatever the black box remembers. A result may be infinite or NaN.
+    pub(crate) fn call(
+        &mut self,
+        states: &Matrix,
+        actions: &Matrix,
+        dt: f64,
+    ) -> Result<Matrix, BlackBoxError> {
+        self.calls += states.rows() as u64;
+        let next = self.black_box.step(states, actions, dt)?;
+        let expected = (states.rows(), self.subject.state.len());
+        check_shape("next states", states.rows(), (next.rows(), next.columns()), expected)?;
+        Ok(next)
+    }
+
+    /// [`Prober::call`] with one state and one action.
+    pub(crate) fn call_one(
+        &mut self,
+        state: &[f64],
+        action: &[f64],
+        dt: f64,
+    ) -> Result<Vec<f64>, BlackBoxError> {
+        let next = self.call(&row(state), &row(action), dt)?;
+        Ok(next.entries().to_vec())
+    }
+
+    /// The states a step later, each as if its state and action had never changed before.
+    pub(crate) fn step(
+        &mut self,
+        states: &Matrix,
+        actions: &Matrix,
+        dt: f64,
+    ) -> Result<Matrix, BlackBoxError> {
+        if self.memory == 0 || self.is_batched() {
+            for _ in 0..self.memory {
+                self.call(states, actions, dt)?;
+            }
+            return self.call(states, actions, dt);
+        }
+        let mut next = Matrix::zeros(states.rows(), states.columns());
+        for i in 0..states.rows() {
+            let (state, action) = (row(states.row(i)), row(actions.row(i)));
+            let alone = |prober: &mut Self| prober.call(&state, &action, dt);
+            for _ in 0..self.memory {
+                alone(self)?;
+            }
+            next.row_mut(i).copy_from_slice(alone(self)?.row(0));
+        }
+        Ok(next)
+    }
+
+    /// The finite state a step after `state`.
+    pub(crate) fn step_one(
+        &mut self,
+        state: &[f64],
+        action: &[f64],
+        dt: f64,
+    ) -> Result<Vec<f64>, BlackBoxError> {
+        let next = self.step(&row(state), &row(action), dt)?.entries().to_vec();
+        match next.iter().position(|x| !x.is_finite()) {
+            None => Ok(next),
+            Some(i) => {
+                let from: Vec<String> = state.iter().map(|x| format!("{x:.6}")).collect();
+                Err(BlackBoxError::NotFinite {
+                    dt,
+                    from: from.join(", "),
+                    value: next[i],
+                    state: self.subject.states[i].name.clone(),
+                })
+            }
+        }
+    }
+
+    pub(crate) fn observe(&mut self, state: &[f64]) -> Result<Option<Vec<f64>>, BlackBoxError> {
+        let observed = self.black_box.observe(&row(state))?;
+        Ok(observed.map(|y| y.entries().to_vec()))
+    }
+
+    pub(crate) fn energy(&mut self, state: &[f64]) -> Result<Option<f64>, BlackBoxError> {
+        let energies = self.black_box.energies(&row(state))?;
+        let Some(energies) = energies else { return Ok(None) };
+        check_shape("energies", 1, (energies.len(), 1), (1, 1))?;
+        Ok(energies.first().copied())
+    }
+}
+
+/// A matrix of one row.
+pub(crate) fn row(values: &[f64]) -> Matrix {
+    Matrix::from_fn(1, values.len(), |_, j| values[j])
+}
+
+fn check_shape(
+    what: &'static str,
+    rows: usize,
+    found: (usize, usize),
+    expected: (usize, usize),
+) -> Result<(), BlackBoxError> {
+    let shape = |(rows, columns)| format!("{rows} × {columns}");
+    match found == expected {
+        true => Ok(()),
+        false => {
+            let (found, expected) = (shape(found), shape(expected));
+            Err(BlackBoxError::Shape { what, rows, found, expected })
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Which integrator a step is, by its results.
+
+use libration::analysis::StabilityFunction;
+use libration::{Integrator, Method};
+use serde::Serialize;
+
+use crate::BlackBoxError;
+use crate::convergence::displaced;
+use crate::prober::Prober;
+use crate::rates::NumericalSystem;
+
+/// Part of the scales by which the state is displaced.
+const DISPLACEMENT: f64 = 0.25;
+/// Errors of rates that a candidate may be off, since each step uses several.
+const ERRORS: f64 = 20.0;
+/// Roundings in units of the scales.
+const ROUNDING: f64 = 1e-13;
+/// An allowed distance must be so far below the distance of explicit Euler, or the steps are too short to tell integrators apart.
+const CLEAR: f64 = 1e-3;
+
+/// The integrators that have the results of a step.
+#[derive(Clone, Debug, Serialize)]
+pub struct Recognition {
+    /// Names of the integrators whose step agrees; several agree if they do the same on this system.
+    pub methods: Vec<&'static str>,
+    /// All candidates, the nearest first.
+    pub candidates: Vec<Candidate>,
+    /// The largest distance that errors of the rates explain, in units of the scales.
+    pub allowed: f64,
+}
+
+/// An integrator, on the rates of the system that were measured.
+#[derive(Clone, Debug, Serialize)]
+pub struct Candidate {
+    /// Its name on the command line.
+    pub method: &'static str,
+    /// Its name in running text.
+    pub title: &'static str,
+    /// The largest distance of its step from that of the simulator, in units of the scales.
+    pub distance: f64,
+}
+
+impl Recognition {
+    /// Compares the step with that of each integrator of Libration, on rates from short steps of the simulator itself.
+    pub(crate) fn attempt(
+        prober: &mut Prober<'_>,
+        pairs: Option<&[(usize, usize)]>,
+    ) -> Result<Self, BlackBoxError> {
+        let subject = prober.subject;
+        let (start, dt) = (displaced(prober, DISPLACEMENT), subject.dt);
+        let next = prober.step_one(&start, &subject.action, dt)?;
+        let is_mechanical = pairs.is_some_and(|pairs| pairs.len() * 2 == start.len());
+        let pairs = pairs.filter(|_| is_mechanical).map(<[_]>::to_vec);
+        let system = NumericalSystem::new(prober, pairs);
+        let applies = |method: &Method| is_mechanical || StabilityFunction::new(*method).is_some();
+        let mut candidates: Vec<Candidate> = Vec::new();
+        for method in Method::ALL.into_iter().filter(applies) {
+            let state = method.step(&system, system.state(&start), dt);
+            let found = system.values(&state, start.len());
+            let apart = |i: usize| ((found[i] - next[i]) / subject.state_scale[i]).abs();
+            let distance = (0..start.len()).map(apart).fold(0.0, f64::max);
+            candidates.push(Candidate { method: method.name(), title: method.title(), distance });
+        }
+        let allowed = ERRORS * system.outcome()? * dt + ROUNDING;
+        candidates.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let farthest = candidates.last().map_or(0.0, |last| last.distance);
+        let methods = candidates
+            .iter()
+            .filter(|found| found.distance <= allowed && allowed < CLEAR * farthest)
+            .map(|found| found.method)
+            .collect();
+        Ok(Recognition { methods, candidates, allowed })
+    }
+}

@@ -1,0 +1,327 @@
+//! The audit of a step, and its results.
+
+use libration::analysis::positions_and_velocities;
+use libration::linear::Matrix;
+use serde::{Serialize, Serializer};
+
+use crate::finding::{Finding, of_bits, of_memory, of_report};
+use crate::flow::Flow;
+use crate::hidden_latency::{HiddenLatency, hidden_latencies};
+use crate::linearised_step::LinearisedStep;
+use crate::modes::{ProbedMode, modes};
+use crate::prober::Prober;
+use crate::{
+    Bits, BlackBox, BlackBoxError, Confirmation, Convergence, Defects, LargestStep, Memory,
+    Recognition, Subject,
+};
+
+/// Largest change per step in units of the scales at which a state counts as an equilibrium.
+const AT_REST: f64 = 1e-8;
+/// Roundings by which derivatives of a simulator may differ from differences of its step.
+const ROUNDING: f64 = 1e-9;
+
+/// The results of an audit; the fields are the keys of `probe --json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct ProbeReport {
+    /// The answer in a few sentences.
+    pub answer: String,
+    /// Faults of the step, and facts without which its numbers mislead. A clean step has none.
+    pub findings: Vec<Finding>,
+    /// The simulator.
+    pub title: String,
+    /// The length of a step, in s.
+    pub dt: f64,
+    /// Names of the states with units.
+    pub states: Vec<String>,
+    /// Names of the inputs.
+    pub inputs: Vec<String>,
+    /// The state at which the step is linearised.
+    pub state: Vec<f64>,
+    /// The action there.
+    pub action: Vec<f64>,
+    /// What the simulator says of itself, such as its integrator and its contacts.
+    pub notes: Vec<String>,
+    /// Whether its author says that the system conserves energy.
+    pub is_conservative: bool,
+    /// Whether the state is an equilibrium.
+    pub equilibrium: Rest,
+    /// Whether half a step gives the same bits as a step.
+    pub ignores_dt: bool,
+    /// The matrices of the step; none if it is not reproducible.
+    pub step: Option<Matrices>,
+    /// The largest estimated error of an entry, relative to the largest entry of its row in units of the scales.
+    pub jacobian_error: f64,
+    /// The rates in the limit of small steps; none if the step has one length only.
+    pub flow: Option<Matrices>,
+    /// A short run beside the linear prediction.
+    pub confirmation: Option<Confirmation>,
+    /// Derivatives of the simulator beside differences of its step.
+    pub reference: Option<ReferenceCheck>,
+    /// The modes, the one that grows fastest first.
+    pub modes: Vec<ProbedMode>,
+    /// The largest factor of a mode per step.
+    pub spectral_radius: f64,
+    /// The longest stable step.
+    pub largest_dt: Option<LargestStep>,
+    /// Velocities whose rates grow with them.
+    pub driven_velocities: Vec<DrivenVelocity>,
+    /// The latency of each input.
+    pub hidden_latency: Vec<HiddenLatency>,
+    /// What results depend on besides the given state and action.
+    pub memory: Option<Memory>,
+    /// The order of convergence.
+    pub order: Option<Convergence>,
+    /// The integrator, by its results.
+    pub recognition: Option<Recognition>,
+    /// Defects of volume, symplecticity, reversibility and energy.
+    pub defects: Option<Defects>,
+    /// Whether the same call gives the same bits.
+    pub bits: Bits,
+    /// States that were stepped.
+    pub calls: u64,
+    /// The command that repeats the audit.
+    pub repeat_command: String,
+}
+
+/// Whether a state is an equilibrium.
+#[derive(Clone, Debug, Serialize)]
+pub struct Rest {
+    /// Whether its change in a step is a rounding.
+    pub holds: bool,
+    /// What the author of the simulator says.
+    pub stated: Option<bool>,
+    /// The largest change of a state in a step, in its unit.
+    pub change: f64,
+    /// The state that changes most.
+    pub state: String,
+}
+
+/// Matrices `A` and `B`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Matrices {
+    /// States × states.
+    #[serde(serialize_with = "rows")]
+    pub a: Matrix,
+    /// States × inputs.
+    #[serde(serialize_with = "rows")]
+    pub b: Matrix,
+    /// Estimated absolute errors of `a`.
+    #[serde(serialize_with = "rows")]
+    pub a_errors: Matrix,
+}
+
+/// A comparison with derivatives of the simulator.
+#[derive(Clone, Debug, Serialize)]
+pub struct ReferenceCheck {
+    /// The function that computed them.
+    pub source: String,
+    /// The largest difference of an entry, relative to the largest entry of its row.
+    pub difference: f64,
+    /// The difference that errors of the derivatives explain.
+    pub allowed: f64,
+}
+
+/// A velocity whose rate grows with it.
+#[derive(Clone, Debug, Serialize)]
+pub struct DrivenVelocity {
+    /// Its name.
+    pub state: String,
+    /// The derivative of its rate by itself, in 1/s.
+    pub rate: f64,
+}
+
+fn rows<S: Serializer>(matrix: &Matrix, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq((0..matrix.rows()).map(|i| matrix.row(i)))
+}
+
+/// Audits the step of a simulator.
+///
+/// # Errors
+/// The simulator fails or returns numbers that are not finite.
+pub fn probe(
+    black_box: &mut dyn BlackBox,
+    subject: &Subject,
+) -> Result<ProbeReport, BlackBoxError> {
+    let mut prober = Prober::new(black_box, subject);
+    let prober = &mut prober;
+    let mut findings = Vec::new();
+    // Fails early where the simulator does.
+    prober.step_one(&subject.state, &subject.action, subject.dt)?;
+    let memory = Memory::measure(prober)?;
+    prober.memory = memory.calls.unwrap_or(memory.tried);
+    let bits = Bits::check(prober)?;
+    of_bits(&bits, &mut findings);
+    let mut report = ProbeReport::empty(subject, bits);
+    if report.bits.randomness.is_none() {
+        of_memory(&memory, subject.dt, &mut findings);
+        if memory.calls.is_some() {
+            report.audit(prober, &memory)?;
+            of_report(&report, &mut findings);
+        }
+        report.memory = Some(memory);
+    }
+    report.findings = findings;
+    report.calls = prober.calls;
+    report.answer = report.summary();
+    Ok(report)
+}
+
+impl ProbeReport {
+    fn empty(subject: &Subject, bits: Bits) -> Self {
+        let mut notes = subject.notes.clone();
+        if let Some(integrator) = &subject.integrator {
+            notes.insert(0, format!("the simulator calls its integrator {integrator}"));
+        }
+        ProbeReport {
+            answer: String::new(),
+            findings: Vec::new(),
+            title: subject.title.clone(),
+            dt: subject.dt,
+            states: (0..subject.states.len()).map(|i| subject.state_name(i)).collect(),
+            inputs: subject.inputs.iter().map(|input| input.name.clone()).collect(),
+            state: subject.state.clone(),
+            action: subject.action.clone(),
+            notes,
+            is_conservative: subject.is_conservative,
+            equilibrium: Rest {
+                holds: false,
+                stated: None,
+                change: f64::NAN,
+                state: String::new(),
+            },
+            ignores_dt: false,
+            step: None,
+            jacobian_error: f64::INFINITY,
+            flow: None,
+            confirmation: None,
+            reference: None,
+            modes: Vec::new(),
+            spectral_radius: f64::NAN,
+            largest_dt: None,
+            driven_velocities: Vec::new(),
+            hidden_latency: Vec::new(),
+            memory: None,
+            order: None,
+            recognition: None,
+            defects: None,
+            bits,
+            calls: 0,
+            repeat_command: subject.invocation.clone(),
+        }
+    }
+
+    /// All measurements of a step that is reproducible.
+    fn audit(&mut self, prober: &mut Prober<'_>, memory: &Memory) -> Result<(), BlackBoxError> {
+        let subject = prober.subject;
+        self.equilibrium = Rest::measure(prober)?;
+        let has_fixed_dt = subject.has_fixed_dt || {
+            self.ignores_dt = ignores_dt(prober)?;
+            self.ignores_dt
+        };
+        let step = LinearisedStep::at(prober, subject.dt)?;
+        self.jacobian_error = step.relative_error(subject);
+        if !step.is_finite() {
+            return Ok(());
+        }
+        self.reference = ReferenceCheck::of(subject, &step);
+        let flow = if has_fixed_dt { None } else { Flow::of(prober, &step)? };
+        let detected = flow.as_ref().and_then(|flow| positions_and_velocities(&cleaned(flow)));
+        let pairs = subject.pairs.clone().or(detected);
+        let pairs = pairs.as_deref();
+        self.modes = modes(&step, flow.as_ref(), subject);
+        self.spectral_radius = self.modes.iter().map(|mode| mode.radius).fold(0.0, f64::max);
+        self.confirmation = Some(Confirmation::run(prober, &step)?);
+        if let Some(flow) = &flow {
+            self.largest_dt = Some(LargestStep::search(prober, flow)?);
+            self.driven_velocities = driven_velocities(flow, pairs, subject);
+        }
+        self.hidden_latency = hidden_latencies(&step, flow.as_ref(), memory, pairs, subject);
+        if !has_fixed_dt {
+            self.order = Some(Convergence::measure(prober)?);
+            self.recognition = Some(Recognition::attempt(prober, pairs)?);
+        }
+        self.defects = Some(Defects::measure(prober, &step, flow.as_ref(), pairs)?);
+        self.flow = flow.map(|flow| Matrices { a: flow.a, b: flow.b, a_errors: flow.a_errors });
+        self.step = Some(Matrices { a: step.a, b: step.b, a_errors: step.a_errors });
+        Ok(())
+    }
+
+    /// Whether the step has no fault.
+    pub fn holds(&self) -> bool {
+        !self.findings.iter().any(|finding| finding.is_fault)
+    }
+}
+
+impl Rest {
+    fn measure(prober: &mut Prober<'_>) -> Result<Self, BlackBoxError> {
+        let subject = prober.subject;
+        let next = prober.step_one(&subject.state, &subject.action, subject.dt)?;
+        let change = |i: usize| (next[i] - subject.state[i]).abs();
+        let scaled = |i: usize| change(i) / subject.state_scale[i];
+        let most = (0..next.len()).max_by(|&i, &j| scaled(i).total_cmp(&scaled(j))).unwrap_or(0);
+        Ok(Rest {
+            holds: scaled(most) <= AT_REST,
+            stated: subject.equilibrium,
+            change: change(most),
+            state: subject.states[most].name.clone(),
+        })
+    }
+}
+
+impl ReferenceCheck {
+    fn of(subject: &Subject, step: &LinearisedStep) -> Option<Self> {
+        let reference = subject.reference.as_ref()?;
+        let (mut difference, mut allowed) = (0.0_f64, ROUNDING);
+        for (own, theirs, errors) in
+            [(&step.a, &reference.a, &step.a_errors), (&step.b, &reference.b, &step.b_errors)]
+        {
+            for i in 0..own.rows() {
+                let largest =
+                    |matrix: &Matrix| matrix.row(i).iter().map(|x| x.abs()).fold(0.0, f64::max);
+                let size = largest(own).max(largest(theirs)).max(f64::MIN_POSITIVE);
+                let apart = own.row(i).iter().zip(theirs.row(i)).map(|(a, b)| (a - b).abs());
+                difference = difference.max(apart.fold(0.0, f64::max) / size);
+                allowed = allowed.max(ROUNDING + largest(errors) / size);
+            }
+        }
+        Some(ReferenceCheck { source: reference.source.clone(), difference, allowed })
+    }
+}
+
+fn ignores_dt(prober: &mut Prober<'_>) -> Result<bool, BlackBoxError> {
+    let subject = prober.subject;
+    let start = crate::convergence::displaced(prober, 0.1);
+    let full = prober.step_one(&start, &subject.action, subject.dt)?;
+    let half = prober.step_one(&start, &subject.action, subject.dt / 2.0)?;
+    Ok(full == half && full != start)
+}
+
+/// The rates with entries of 0 and 1 where they are so within their errors.
+fn cleaned(flow: &Flow) -> Matrix {
+    Matrix::from_fn(flow.a.rows(), flow.a.columns(), |i, j| {
+        let value = flow.a[(i, j)];
+        let error = 10.0 * flow.a_errors[(i, j)] + 1e-9;
+        let near = |target: f64| (value - target).abs() <= error;
+        if near(0.0) {
+            0.0
+        } else if near(1.0) {
+            1.0
+        } else {
+            value
+        }
+    })
+}
+
+fn driven_velocities(
+    flow: &Flow,
+    pairs: Option<&[(usize, usize)]>,
+    subject: &Subject,
+) -> Vec<DrivenVelocity> {
+    let velocities = pairs.unwrap_or_default().iter().map(|(_, v)| *v);
+    let of = |v: usize| {
+        let (rate, error) = (flow.a[(v, v)], flow.a_errors[(v, v)]);
+        (rate > 10.0 * error + 1e-9)
+            .then(|| DrivenVelocity { state: subject.states[v].name.clone(), rate })
+    };
+    velocities.filter_map(of).collect()
+}

@@ -1,0 +1,156 @@
+//! The simulator under audit, in names and numbers.
+
+use libration::linear::{MOST_STATES, Matrix, Signal};
+use thiserror::Error;
+
+/// What is known of a simulator before its first step.
+#[derive(Clone, Debug)]
+pub struct Subject {
+    /// Its name, such as that of a file.
+    pub title: String,
+    /// Names and units of the states.
+    pub states: Vec<Signal>,
+    /// Names and units of the actions; there may be none.
+    pub inputs: Vec<Signal>,
+    /// The state at which the step is linearised.
+    pub state: Vec<f64>,
+    /// The action there.
+    pub action: Vec<f64>,
+    /// Typical deviations of the states.
+    pub state_scale: Vec<f64>,
+    /// Typical deviations of the actions.
+    pub action_scale: Vec<f64>,
+    /// The length of a step, in s.
+    pub dt: f64,
+    /// Whether the simulator has this step only.
+    pub has_fixed_dt: bool,
+    /// Whether the author of the simulator says that the state is an equilibrium, or that it is none.
+    pub equilibrium: Option<bool>,
+    /// Whether the author of the simulator says that the system conserves its energy.
+    pub is_conservative: bool,
+    /// The states that are a position and its velocity, if the simulator knows them.
+    pub pairs: Option<Vec<(usize, usize)>>,
+    /// The inertia of the velocities of the pairs, if the simulator knows it.
+    pub mass: Option<Matrix>,
+    /// The integrator in the words of the simulator.
+    pub integrator: Option<String>,
+    /// Facts that a reader must know, such as contacts.
+    pub notes: Vec<String>,
+    /// Matrices of the step by the simulator's own derivatives, and their source.
+    pub reference: Option<Reference>,
+    /// The command that repeats the audit.
+    pub invocation: String,
+}
+
+/// Matrices of a step by a simulator's own derivatives.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// The function that computed them.
+    pub source: String,
+    /// States × states.
+    pub a: Matrix,
+    /// States × inputs.
+    pub b: Matrix,
+}
+
+/// A value of a subject that is not allowed.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("`{field}` is {value}; expected {expected}")]
+pub struct SubjectError {
+    /// The field.
+    pub field: &'static str,
+    /// Its value.
+    pub value: String,
+    /// What is allowed.
+    pub expected: String,
+}
+
+impl Subject {
+    /// A subject with numbered names, unit scales and no further knowledge.
+    pub fn new(title: &str, state: Vec<f64>, action: Vec<f64>, dt: f64) -> Self {
+        let scale = |values: &[f64]| values.iter().map(|x| x.abs().max(1.0)).collect();
+        Subject {
+            title: title.to_owned(),
+            states: Signal::numbered("x", state.len()),
+            inputs: Signal::numbered("u", action.len()),
+            state_scale: scale(&state),
+            action_scale: scale(&action),
+            state,
+            action,
+            dt,
+            has_fixed_dt: false,
+            equilibrium: None,
+            is_conservative: false,
+            pairs: None,
+            mass: None,
+            integrator: None,
+            notes: Vec::new(),
+            reference: None,
+            invocation: String::new(),
+        }
+    }
+
+    /// Checks all values.
+    ///
+    /// # Errors
+    /// The first value that is not allowed.
+    pub fn check(&self) -> Result<(), SubjectError> {
+        let (n, m) = (self.state.len(), self.action.len());
+        let error =
+            |field, value: String, expected: String| Err(SubjectError { field, value, expected });
+        if !(1..=MOST_STATES).contains(&n) {
+            return error("state", format!("{n} numbers"), format!("1 to {MOST_STATES} numbers"));
+        }
+        if m > MOST_STATES {
+            return error("action", format!("{m} numbers"), format!("at most {MOST_STATES}"));
+        }
+        if !(self.dt.is_finite() && self.dt > 0.0) {
+            return error("dt", format!("{} s", self.dt), "a finite number above 0".into());
+        }
+        let finite = "finite numbers".to_owned();
+        for (field, values) in [("state", &self.state), ("action", &self.action)] {
+            if let Some(value) = values.iter().find(|x| !x.is_finite()) {
+                return error(field, format!("{value}"), finite);
+            }
+        }
+        for (field, values, count) in
+            [("state_scale", &self.state_scale, n), ("action_scale", &self.action_scale, m)]
+        {
+            if values.len() != count {
+                return error(field, format!("{} numbers", values.len()), format!("{count}"));
+            }
+            if let Some(value) = values.iter().find(|x| !(x.is_finite() && **x > 0.0)) {
+                return error(field, format!("{value}"), "finite numbers above 0".into());
+            }
+        }
+        for (field, names, count) in [("states", &self.states, n), ("inputs", &self.inputs, m)] {
+            if names.len() != count {
+                let expected = format!("{count}, one for each");
+                return error(field, format!("{} names", names.len()), expected);
+            }
+            for (i, name) in names.iter().enumerate() {
+                if names[..i].iter().any(|other| other.name == name.name) {
+                    let expected = "different names".to_owned();
+                    return error(field, format!("`{}` twice", name.name), expected);
+                }
+            }
+        }
+        if let Some(&(i, j)) = self.pairs.iter().flatten().find(|(i, j)| *i >= n || *j >= n) {
+            return error("pairs", format!("({i}, {j})"), format!("numbers below {n}"));
+        }
+        if let (Some(mass), Some(pairs)) = (&self.mass, &self.pairs) {
+            let size = pairs.len();
+            if (mass.rows(), mass.columns()) != (size, size) {
+                let found = format!("{} × {}", mass.rows(), mass.columns());
+                return error("mass", found, format!("{size} × {size}"));
+            }
+        }
+        Ok(())
+    }
+
+    /// The name of state `i` with its unit.
+    pub(crate) fn state_name(&self, i: usize) -> String {
+        let Signal { name, unit } = &self.states[i];
+        if unit.is_empty() { name.clone() } else { format!("{name} ({unit})") }
+    }
+}

@@ -1,0 +1,113 @@
+//! The answer of an audit, in sentences.
+
+use crate::ProbeReport;
+use crate::modes::ProbedMode;
+
+impl ProbeReport {
+    /// The answer in a few sentences: faults first.
+    pub(crate) fn summary(&self) -> String {
+        let faults: Vec<&str> = self
+            .findings
+            .iter()
+            .filter(|finding| finding.is_fault)
+            .map(|finding| finding.text.as_str())
+            .collect();
+        let mut sentences = Vec::new();
+        match faults[..] {
+            [] => {}
+            [first] => sentences.push(format!("One fault: {first}.")),
+            [first, ..] => sentences.push(format!("{} faults, the first: {first}.", faults.len())),
+        }
+        sentences.extend(self.stability());
+        sentences.extend(self.integrator());
+        sentences.extend(self.damping());
+        if faults.is_empty() && self.step.is_some() {
+            sentences.push("No fault was found.".into());
+        }
+        sentences.join(" ")
+    }
+
+    fn stability(&self) -> Option<String> {
+        self.step.as_ref()?;
+        let dt = self.dt;
+        let leading = self.modes.first()?;
+        let grows = leading.radius > 1.0 + 1e-9 && leading.step.growth_rate > 10.0 * leading.error;
+        let flow_grows = leading.flow.is_some_and(|flow| flow.growth_rate > 10.0 * leading.error);
+        let limit = self.largest_dt.as_ref();
+        let mut text = match (grows, flow_grows) {
+            (true, true) => format!(
+                "With dt = {dt} s a mode grows by {:.4} 1/s, as in the system itself ({})",
+                leading.step.growth_rate,
+                leading.names()
+            ),
+            (true, false) => format!(
+                "With dt = {dt} s the step is unstable: a mode grows by {:.4} 1/s ({})",
+                leading.step.growth_rate,
+                leading.names()
+            ),
+            (false, _) => format!("With dt = {dt} s the step is stable at this state"),
+        };
+        match limit {
+            Some(limit) if limit.grows_always => {
+                text += "; no step is short enough to prevent growth of its own";
+            }
+            Some(limit) if let Some(longest) = limit.dt => {
+                text += &format!(
+                    "; the longest stable step is {longest:.5e} s ({:.2} times dt), limited by the mode of {}",
+                    longest / dt,
+                    limit.mode
+                );
+            }
+            Some(limit) => {
+                text +=
+                    &format!("; no limit was found up to a step of {:.3e} s", limit.tried_up_to);
+            }
+            None => {}
+        }
+        Some(text + ".")
+    }
+
+    fn integrator(&self) -> Option<String> {
+        let recognition = self.recognition.as_ref()?;
+        let titles: Vec<&str> = recognition
+            .candidates
+            .iter()
+            .filter(|candidate| recognition.methods.contains(&candidate.method))
+            .map(|candidate| candidate.title)
+            .collect();
+        let order = self.order.as_ref().and_then(|order| order.order);
+        match (&titles[..], order) {
+            ([], Some(order)) => Some(format!(
+                "Its order is {order}; it is none of the integrators that were compared."
+            )),
+            ([], None) => None,
+            (titles, order) => {
+                let order = order.map_or_else(String::new, |order| format!(", of order {order}"));
+                Some(format!("By its results the step is that of {}{order}.", titles.join(" or ")))
+            }
+        }
+    }
+
+    fn damping(&self) -> Option<String> {
+        let most =
+            self.modes.iter().filter(|mode| mode.numerical_damping.is_some()).max_by(|a, b| {
+                let size = |mode: &ProbedMode| mode.numerical_damping.unwrap_or(0.0).abs();
+                size(a).total_cmp(&size(b))
+            })?;
+        let added = most.numerical_damping.filter(|added| added.abs() > 1e-6)?;
+        let (verb, to) = if added > 0.0 { ("adds", "to") } else { ("takes", "from") };
+        Some(format!(
+            "It {verb} a damping ratio of {:.3e} {to} the mode of {}.",
+            added.abs(),
+            most.names()
+        ))
+    }
+}
+
+impl ProbedMode {
+    /// The states that move most, in words.
+    pub fn names(&self) -> String {
+        let names: Vec<&str> = self.states.iter().map(|(name, _)| name.as_str()).collect();
+        names.join(", ")
+    }
+}

@@ -1,0 +1,154 @@
+//! Faults that are planted on purpose are found and named.
+
+use std::cell::{Cell, RefCell};
+use std::collections::VecDeque;
+
+use crate::simulators::{
+    Simulator, damped_pendulum, kinds, pendulum, pendulum_energy, pendulum_subject,
+};
+
+#[test]
+fn a_clean_step_has_no_finding() {
+    let mut subject = pendulum_subject();
+    subject.is_conservative = true;
+    let report = Simulator::new(pendulum).with_energy(pendulum_energy).audit(&subject);
+    assert_eq!(report.findings, [], "{}", report.answer);
+    let mut batched = Simulator::new(pendulum);
+    batched.is_batched = true;
+    assert_eq!(kinds(&batched.audit(&pendulum_subject())), [""; 0]);
+    let damped = Simulator::new(|x, u, dt| damped_pendulum(0.3, x, u, dt));
+    assert_eq!(kinds(&damped.audit(&pendulum_subject())), [""; 0]);
+}
+
+#[test]
+fn a_command_that_is_one_step_late_is_found_and_does_not_spoil_the_matrices() {
+    let clean = Simulator::new(pendulum).audit(&pendulum_subject());
+    let held = Cell::new(0.0);
+    let late = Simulator::new(move |x, u, dt| pendulum(x, &[held.replace(u[0])], dt));
+    let report = late.audit(&pendulum_subject());
+    assert_eq!(kinds(&report), ["late-command"]);
+    assert_eq!(report.hidden_latency[0].late_steps, 1.0);
+    assert_eq!(report.step.unwrap().b, clean.step.unwrap().b);
+}
+
+#[test]
+fn a_command_between_two_and_three_steps_late_has_its_fraction() {
+    let queue = RefCell::new(VecDeque::from([0.0; 4]));
+    let late = Simulator::new(move |x, u, dt| {
+        let mut queue = queue.borrow_mut();
+        queue.push_front(u[0]);
+        queue.truncate(4);
+        pendulum(x, &[0.6 * queue[2] + 0.4 * queue[3]], dt)
+    });
+    let report = late.audit(&pendulum_subject());
+    assert_eq!(kinds(&report), ["late-command"]);
+    // Rounding of forces of 1/64 beside positions of order one.
+    assert!((report.hidden_latency[0].late_steps - 2.4).abs() < 1e-6, "{report:?}");
+}
+
+#[test]
+fn a_stale_observation_is_found() {
+    let mut simulator = Simulator::new(pendulum);
+    let held = RefCell::new(vec![0.0, 0.0]);
+    simulator.observe = Some(Box::new(move |x| held.replace(x.to_vec())));
+    let report = simulator.audit(&pendulum_subject());
+    assert_eq!(kinds(&report), ["stale-observation"]);
+    assert_eq!(report.memory.unwrap().staleness(), 1.0);
+    let mut fresh = Simulator::new(pendulum);
+    fresh.observe = Some(Box::new(|x| vec![x[0].cos(), x[0].sin(), x[1]]));
+    assert_eq!(kinds(&fresh.audit(&pendulum_subject())), [""; 0]);
+}
+
+#[test]
+fn states_of_the_call_before_are_found() {
+    let held = RefCell::new(vec![0.0, 0.0]);
+    let late = Simulator::new(move |x, u, dt| pendulum(&held.replace(x.to_vec()), u, dt));
+    assert_eq!(kinds(&late.audit(&pendulum_subject())), ["late-state"]);
+}
+
+#[test]
+fn damping_with_the_wrong_sign_is_found_but_an_unstable_equilibrium_is_no_fault() {
+    let driven = Simulator::new(|x, u, dt| damped_pendulum(-0.1, x, u, dt));
+    let report = driven.audit(&pendulum_subject());
+    assert_eq!(kinds(&report), ["negative-damping"]);
+    let rate = report.driven_velocities[0].rate;
+    assert!((rate - 0.1).abs() < 1e-8, "{rate}");
+    let mut upright = pendulum_subject();
+    upright.state[0] = core::f64::consts::PI;
+    assert_eq!(kinds(&Simulator::new(pendulum).audit(&upright)), [""; 0]);
+}
+
+#[test]
+fn an_energy_that_leaks_a_millionth_per_second_is_found() {
+    // The energy falls with γ, on average over an oscillation.
+    let leaking = || Simulator::new(|x, u, dt| damped_pendulum(1e-6, x, u, dt));
+    let mut subject = pendulum_subject();
+    subject.is_conservative = true;
+    for report in
+        [leaking().audit(&subject), leaking().with_energy(pendulum_energy).audit(&subject)]
+    {
+        assert_eq!(kinds(&report), ["energy-leak"], "{:?}", report.defects);
+    }
+}
+
+#[test]
+fn a_batch_that_differs_in_the_last_bit_is_found_and_located() {
+    let mut simulator = Simulator::new(pendulum);
+    simulator.is_batched = true;
+    simulator.spoil = Some(4096);
+    let report = simulator.audit(&pendulum_subject());
+    assert_eq!(kinds(&report), ["bits-differ"]);
+    let text = &report.findings[0].text;
+    assert!(
+        text.contains("first in environment 4095, component 1") && text.contains("1 ulps"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_step_in_single_precision_is_found_also_if_it_returns_double_precision() {
+    let single = |x: f64| f64::from(x as f32);
+    let inside = Simulator::new(move |x, u, dt| {
+        let v = x[1] + dt * (-9.0 * single(single(x[0]).sin()) + u[0]);
+        vec![x[0] + dt * v, v]
+    });
+    let whole = Simulator::new(move |x, u, dt| {
+        let x: Vec<f64> = x.iter().map(|x| single(*x)).collect();
+        pendulum(&x, u, dt).into_iter().map(single).collect()
+    });
+    for simulator in [inside, whole] {
+        let report = simulator.audit(&pendulum_subject());
+        assert!(kinds(&report).contains(&"single-precision"), "{:?}", report.findings);
+    }
+}
+
+#[test]
+fn random_numbers_are_found_and_end_the_audit() {
+    let draws = Cell::new(1_u64);
+    let noisy = Simulator::new(move |x, u, dt| {
+        draws.set(draws.get().wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1));
+        let noise = (draws.get() >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+        pendulum(x, &[u[0] + noise], dt)
+    });
+    let report = noisy.audit(&pendulum_subject());
+    assert_eq!(kinds(&report), ["not-reproducible"]);
+    assert!(report.step.is_none() && report.answer.starts_with("One fault"), "{}", report.answer);
+}
+
+#[test]
+fn a_simulator_that_ignores_dt_is_found() {
+    let fixed = Simulator::new(|x, u, _| pendulum(x, u, 0.01));
+    let report = fixed.audit(&pendulum_subject());
+    assert_eq!(kinds(&report), ["ignores-dt"]);
+    assert!(report.flow.is_none() && !report.modes.is_empty());
+}
+
+#[test]
+fn a_state_that_is_no_equilibrium_is_a_warning_unless_it_is_said_to_be_none() {
+    let mut subject = pendulum_subject();
+    subject.state[0] = 0.5;
+    let report = Simulator::new(pendulum).audit(&subject);
+    assert_eq!((kinds(&report), report.holds()), (vec!["no-equilibrium"], true));
+    subject.equilibrium = Some(false);
+    assert_eq!(kinds(&Simulator::new(pendulum).audit(&subject)), [""; 0]);
+}

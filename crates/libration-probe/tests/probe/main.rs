@@ -1,0 +1,5 @@
+//! Audits of steps whose properties are known.
+
+mod faults;
+mod simulators;
+mod theory;

@@ -1,0 +1,146 @@
+//! Audits of integrators whose theory is known.
+
+use libration_probe::{ProbeReport, Subject};
+
+use crate::simulators::{Simulator, damped_pendulum, pendulum, pendulum_energy, pendulum_subject};
+
+fn close(found: f64, wanted: f64, tolerance: f64) {
+    assert!((found - wanted).abs() <= tolerance, "{found:e} {wanted:e}");
+}
+
+fn methods(report: &ProbeReport) -> Vec<&'static str> {
+    report.recognition.as_ref().unwrap().methods.clone()
+}
+
+/// A system of first order, `ẋ = f(x)`, stepped by RK4.
+fn rk4(f: impl Fn(&[f64]) -> Vec<f64>, x: &[f64], dt: f64) -> Vec<f64> {
+    let along =
+        |k: &[f64], h: f64| -> Vec<f64> { x.iter().zip(k).map(|(x, k)| x + h * k).collect() };
+    let k1 = f(x);
+    let k2 = f(&along(&k1, dt / 2.0));
+    let k3 = f(&along(&k2, dt / 2.0));
+    let k4 = f(&along(&k3, dt));
+    (0..x.len()).map(|i| x[i] + dt / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i])).collect()
+}
+
+#[test]
+fn symplectic_euler_is_recognised_with_its_frequency_limit_and_latency() {
+    let report = Simulator::new(pendulum).with_energy(pendulum_energy).audit(&pendulum_subject());
+    assert_eq!(methods(&report), ["symplectic-euler"]);
+    assert_eq!(report.order.as_ref().unwrap().order, Some(1));
+    // ω = 3: stable to ωh = 2, and 2 sin(φ/2) = ωh for the turn φ of a step.
+    let limit = report.largest_dt.as_ref().unwrap();
+    close(limit.dt.unwrap(), 2.0 / 3.0, 1e-6);
+    close(limit.turns, 0.5, 1e-6);
+    let mode = &report.modes[0];
+    close(mode.step.frequency, 2.0 * (0.015_f64).asin() / 0.01 / core::f64::consts::TAU, 1e-11);
+    close(mode.flow.unwrap().frequency, 3.0 / core::f64::consts::TAU, 1e-11);
+    close(mode.step.growth_rate, 0.0, 1e-10);
+    // A kick at the start and a drift with its result: half a step early.
+    close(report.hidden_latency[0].integrator_delay.unwrap(), -0.005, 1e-6);
+    let defects = report.defects.unwrap();
+    close(defects.symplecticity.unwrap(), 0.0, 1e-12);
+    assert!(defects.reversibility.unwrap() > 1e-3, "it is not its own inverse");
+}
+
+#[test]
+fn explicit_euler_grows_with_every_step_and_is_half_a_step_late() {
+    let step = |x: &[f64], u: &[f64], dt: f64| {
+        vec![x[0] + dt * x[1], x[1] + dt * (-9.0 * x[0].sin() + u[0])]
+    };
+    let report = Simulator::new(step).audit(&pendulum_subject());
+    assert_eq!(methods(&report), ["explicit-euler"]);
+    assert!(report.largest_dt.as_ref().unwrap().grows_always);
+    // |z|² = 1 + ω²h².
+    close(report.modes[0].radius, (1.0_f64 + 9e-4).sqrt(), 1e-12);
+    // ω²h² beside the square of a turn of 1/20: 1 %, and with it the damping that the method takes away.
+    close(report.hidden_latency[0].integrator_delay.unwrap(), 0.005, 2e-4);
+    // −ω²h/2 of the natural frequency.
+    close(report.modes[0].numerical_damping.unwrap(), -0.015, 1e-5);
+}
+
+#[test]
+fn rk4_is_recognised_on_an_oscillator_and_on_a_system_of_first_order() {
+    let oscillator = |x: &[f64]| vec![x[1], -4.0 * x[0] - 0.1 * x[1]];
+    let subject = Subject::new("oscillator", vec![0.0, 0.0], vec![], 0.1);
+    let report = Simulator::new(|x, _, dt| rk4(oscillator, x, dt)).audit(&subject);
+    assert_eq!(methods(&report), ["rk4"]);
+    assert_eq!(report.order.as_ref().unwrap().order, Some(4));
+    // The stability region of RK4 at an angle with cos = −ζ = −0.025: between that on the imaginary axis, 2√2, and 2.79.
+    let limit = 2.0 * report.largest_dt.as_ref().unwrap().dt.unwrap();
+    assert!((2.0 * 2.0_f64.sqrt()..2.95).contains(&limit), "{limit}");
+    let lorenz = |x: &[f64]| {
+        vec![10.0 * (x[1] - x[0]), x[0] * (28.0 - x[2]) - x[1], x[0] * x[1] - 8.0 / 3.0 * x[2]]
+    };
+    let subject = Subject::new("Lorenz", vec![0.0; 3], vec![], 0.01);
+    let report = Simulator::new(|x, _, dt| rk4(lorenz, x, dt)).audit(&subject);
+    assert_eq!(methods(&report), ["rk4"]);
+    // λ² + 11 λ − 270 = 0 and −8/3.
+    let growth = (-11.0 + (121.0_f64 + 1080.0).sqrt()) / 2.0;
+    close(report.modes[0].flow.unwrap().growth_rate, growth, 1e-8);
+}
+
+#[test]
+fn the_largest_step_of_a_damped_oscillator_is_that_of_theory() {
+    // Symplectic Euler with an explicit damper: ωh < 2√(1 + ζ²) − 2ζ.
+    for zeta in [0.05, 0.5, 1.5_f64] {
+        let gamma = 2.0 * zeta * 3.0;
+        let report =
+            Simulator::new(|x, u, dt| damped_pendulum(gamma, x, u, dt)).audit(&pendulum_subject());
+        let wanted = 2.0 * ((1.0 + zeta * zeta).sqrt() - zeta) / 3.0;
+        // The threshold outside the circle, 10⁻⁵.
+        close(report.largest_dt.unwrap().dt.unwrap() / wanted, 1.0, 2e-5);
+    }
+}
+
+#[test]
+fn damping_that_is_implicit_shows_as_numerical_damping() {
+    let (stiffness, damping) = (400.0, 4.0);
+    let step = |x: &[f64], _: &[f64], dt: f64| {
+        let v = (x[1] - dt * stiffness * x[0]) / (1.0 + dt * damping);
+        vec![x[0] + dt * v, v]
+    };
+    let subject = Subject::new("servo", vec![0.0, 0.0], vec![], 0.02);
+    let report = Simulator::new(step).audit(&subject);
+    // z² − (2 − (h²k + hd)/(1 + hd)) z + 1/(1 + hd): |z|² = 1/(1 + hd).
+    close(report.modes[0].radius, (1.0_f64 / 1.08).sqrt(), 1e-12);
+    // ωh < 2√(1 + ζ²) + 2ζ with ζ = 0.1.
+    let limit = report.largest_dt.unwrap().dt.unwrap() * 20.0;
+    close(limit, 2.0 * 1.01_f64.sqrt() + 0.2, 1e-4);
+}
+
+#[test]
+fn modes_of_a_chain_are_named_and_followed_to_those_of_the_flow() {
+    // Two masses, the second of which is ten times as light: a slow mode and a fast one.
+    let rates = |x: &[f64]| {
+        let spring = 100.0 * (x[1] - x[0]);
+        [spring - 5.0 * x[0], -10.0 * spring]
+    };
+    let step = |x: &[f64], u: &[f64], dt: f64| {
+        let [a, b] = rates(x);
+        let v = [x[2] + dt * (a + u[0]), x[3] + dt * b];
+        vec![x[0] + dt * v[0], x[1] + dt * v[1], v[0], v[1]]
+    };
+    let report = Simulator::new(step).audit(&Subject::new("chain", vec![0.0; 4], vec![0.0], 0.04));
+    // Eigenvalues of [[105, −100], [−1000, 1000]].
+    let root = ((1105.0_f64 * 1105.0 - 4.0 * 5000.0).sqrt(), 1105.0);
+    for (sign, name) in [(1.0, "x4"), (-1.0, "x4")] {
+        let omega = ((root.1 + sign * root.0) / 2.0_f64).sqrt();
+        let mode = report
+            .modes
+            .iter()
+            .min_by(|a, b| {
+                let off = |mode: &libration_probe::ProbedMode| {
+                    (mode.flow.unwrap().frequency * core::f64::consts::TAU - omega).abs()
+                };
+                off(a).total_cmp(&off(b))
+            })
+            .unwrap();
+        close(mode.flow.unwrap().frequency * core::f64::consts::TAU, omega, 1e-7);
+        let turn = 2.0 * (omega * 0.02).asin() / 0.04;
+        close(mode.step.frequency * core::f64::consts::TAU, turn, 1e-7);
+        assert_eq!(mode.states[0].0, name);
+    }
+    let fastest = ((root.1 + root.0) / 2.0_f64).sqrt();
+    close(report.largest_dt.unwrap().dt.unwrap() * fastest, 2.0, 1e-5);
+}
