@@ -15,6 +15,14 @@ impl Signal {
         Signal { name: name.to_owned(), unit: unit.to_owned() }
     }
 
+    /// The signal of a name with its unit in parentheses, such as `angle (rad)`.
+    pub fn parse(text: &str) -> Self {
+        match text.trim().strip_suffix(')').and_then(|rest| rest.rsplit_once('(')) {
+            Some((name, unit)) => Signal::new(name.trim(), unit.trim()),
+            None => Signal::new(text.trim(), ""),
+        }
+    }
+
     /// `count` signals named `letter` and a number from 1.
     pub fn numbered(letter: &str, count: usize) -> Vec<Signal> {
         (1..=count).map(|i| Signal::new(&format!("{letter}{i}"), "")).collect()

@@ -5,9 +5,11 @@
 
 mod bits;
 mod black_box;
+mod child_process;
 mod confirmation;
 mod convergence;
 mod defects;
+mod description;
 mod differences;
 mod energy_drift;
 mod finding;
@@ -16,6 +18,7 @@ mod flow;
 mod hidden_latency;
 mod largest_step;
 mod linearised_step;
+mod matrix_step;
 mod memory;
 mod modes;
 mod page;
@@ -28,15 +31,18 @@ mod summary;
 
 pub use bits::{BitCheck, Bits, Randomness};
 pub use black_box::{BlackBox, BlackBoxError};
+pub use child_process::ChildProcess;
 pub use confirmation::Confirmation;
 pub use convergence::Convergence;
 pub use defects::Defects;
+pub use description::{Description, DescriptionError};
 pub use differences::{Jacobian, jacobian};
 pub use energy_drift::{DriftReason, EnergyDrift};
 pub use finding::Finding;
 pub use first_difference::{FirstDifference, ulps};
 pub use hidden_latency::HiddenLatency;
 pub use largest_step::LargestStep;
+pub use matrix_step::MatrixStep;
 pub use memory::{Lateness, Memory};
 pub use modes::{ProbedMode, Rates};
 pub use page::page;

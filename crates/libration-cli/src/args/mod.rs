@@ -9,6 +9,7 @@ mod linear_analysis;
 mod linear_simulation;
 mod measure_jitter;
 mod number;
+mod probe;
 mod quoted;
 mod rollout;
 pub(crate) mod simd;
@@ -36,6 +37,7 @@ pub(crate) use linear_analysis::LinearAnalysisArgs;
 pub(crate) use linear_simulation::LinearSimulationArgs;
 pub(crate) use measure_jitter::MeasureJitterArgs;
 pub(crate) use number::Coordinates;
+pub(crate) use probe::ProbeArgs;
 pub(crate) use quoted::quoted;
 pub(crate) use rollout::{RolloutArgs, VerifyArgs};
 pub(crate) use simulate::SimulateArgs;
@@ -70,6 +72,8 @@ Examples:
                                              matrix, eigenvalues and stability of one step
   libration advise --system oscillator --feedback 10,2 --period 0.01 --latency 0.02
                                              limits of a control loop
+  libration probe --command ./my_step --state 0,1 --dt 0.01
+                                             an audit of the step of your simulator
   libration rollout --out data --transitions 1e8
                                              a data set of rollouts, as Parquet
   libration bench                            speed of simulations on this machine
@@ -87,6 +91,8 @@ pub(crate) enum Command {
     Analyze(AnalyzeArgs),
     /// Compute limits: integrator, time step, float type, latency, jitter, skew and losses
     Advise(AdviseArgs),
+    /// Audit the step of any simulator: MuJoCo models, programs, matrices
+    Probe(ProbeArgs),
     /// Simulate one or many trajectories and write them as rows
     Simulate(SimulateArgs),
     /// Write a data set of rollouts, or resume an interrupted one

@@ -16,6 +16,7 @@ mod lab;
 mod linear_closed_loop;
 mod list;
 mod measure_jitter;
+mod probe;
 mod rollout;
 mod simulate;
 mod time_stamps;
@@ -35,6 +36,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Rollout(args) => rollout::run(&args, arguments.quiet),
         Command::Verify(args) => rollout::verify(&args, arguments.quiet),
         Command::Bench(args) => bench::run(&args, arguments.quiet),
+        Command::Probe(args) => probe::run(&args, arguments.quiet),
         Command::MeasureJitter(args) => measure_jitter::run(&args, arguments.quiet),
         Command::List(args) => list::run(&args),
         Command::Completions(args) => completions::run(&args),

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use super::design::{Cascaded, Design, by_outputs};
 use super::part_table::find;
 use super::pid_table::{Gains, PidChannel, side_by_side, zero};
-use super::plant_table::{Rows, matrix, signal};
+use super::plant_table::{Rows, matrix};
 use super::state_space_table::StateSpaceTable;
 use crate::{Count, Fault, Number};
 
@@ -146,7 +146,7 @@ impl CascadeTable {
             CascadeControllerTable::Pid(_) => None,
         };
         let signals: Vec<Signal> = match (&self.references, &self.outer) {
-            (Some(names), _) => names.iter().map(|name| signal(name)).collect(),
+            (Some(names), _) => names.iter().map(|name| Signal::parse(name)).collect(),
             (None, CascadeControllerTable::Pid(tables)) => {
                 let mut names: Vec<&String> = Vec::new();
                 for name in tables.iter().filter_map(|table| table.reference.as_ref()) {

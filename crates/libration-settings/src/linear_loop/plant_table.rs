@@ -183,7 +183,7 @@ impl PlantTable {
             None => Matrix::identity(n),
         };
         let coordinates = match &self.states {
-            Some(names) => names.iter().map(|name| signal(name)).collect(),
+            Some(names) => names.iter().map(|name| Signal::parse(name)).collect(),
             None => Signal::numbered("q", n),
         };
         let plant = LinearPlant::mechanical([&mass, &damping, &stiffness], &force, &coordinates);
@@ -224,7 +224,7 @@ impl PlantTable {
 
     fn named(&self, plant: LinearPlant) -> Result<LinearPlant, Fault> {
         let signals = |names: &Option<Vec<String>>, known: &[Signal]| match names {
-            Some(names) => names.iter().map(|name| signal(name)).collect(),
+            Some(names) => names.iter().map(|name| Signal::parse(name)).collect(),
             None => known.to_vec(),
         };
         let states = match &self.mass {
@@ -240,14 +240,6 @@ impl PlantTable {
         };
         let outputs = signals(&self.outputs, known);
         plant.named(states, inputs, outputs).map_err(fault)
-    }
-}
-
-/// A name with its unit in parentheses.
-pub(super) fn signal(text: &str) -> Signal {
-    match text.trim().strip_suffix(')').and_then(|rest| rest.rsplit_once('(')) {
-        Some((name, unit)) => Signal::new(name.trim(), unit.trim()),
-        None => Signal::new(text.trim(), ""),
     }
 }
 

@@ -1,0 +1,239 @@
+//! A simulator that is another program: numbers on its standard input and output.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, sync_channel};
+use std::thread;
+use std::time::Duration;
+
+use libration::linear::Matrix;
+
+use crate::{BlackBox, BlackBoxError};
+
+/// Bytes of a reply: 100 numbers need 2.5 kB, a description of a large model with its matrices some hundred.
+const MOST_BYTES: u64 = 4 << 20;
+/// Lines that wait to be read.
+const MOST_LINES: usize = 4;
+
+/// A program that gets a line `x₁ … xₙ u₁ … uₘ dt` for each step, and answers each with a line `x₁ … xₙ`, without waiting for more.
+///
+/// Numbers are decimal and separated by spaces or commas, with as many digits as a float needs to be the same again.
+#[derive(Debug)]
+pub struct ChildProcess {
+    words: Vec<String>,
+    patience: Duration,
+    running: Running,
+    has_energy: bool,
+    /// Lines that were answered.
+    answered: u64,
+    reads_description: bool,
+}
+
+#[derive(Debug)]
+struct Running {
+    child: Child,
+    input: Option<ChildStdin>,
+    lines: Receiver<Result<String, String>>,
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // A program that reads to the end of its input ends now; any other is killed.
+        drop(self.input.take());
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Running {
+    fn start(words: &[String]) -> Result<Self, BlackBoxError> {
+        let failed = |why: &dyn core::fmt::Display| {
+            BlackBoxError::Failed(format!("cannot start `{}`: {why}", words.join(" ")))
+        };
+        let (program, arguments) = words.split_first().ok_or_else(|| failed(&"no program"))?;
+        let mut child = Command::new(program)
+            .args(arguments)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .map_err(|error| failed(&error))?;
+        let (input, output) = (child.stdin.take(), child.stdout.take());
+        let output = output.ok_or_else(|| failed(&"it has no standard output"))?;
+        let (send, lines) = sync_channel(MOST_LINES);
+        thread::Builder::new()
+            .spawn(move || {
+                let mut output = BufReader::new(output);
+                loop {
+                    let line = read_line(&mut output);
+                    let is_last = line.is_err();
+                    // Nobody listens after the end of an audit.
+                    if send.send(line).is_err() || is_last {
+                        return;
+                    }
+                }
+            })
+            .map_err(|error| failed(&error))?;
+        Ok(Running { child, input, lines })
+    }
+}
+
+/// The next line; an error in words at its end.
+fn read_line(output: &mut BufReader<ChildStdout>) -> Result<String, String> {
+    let mut bytes = Vec::new();
+    let read = output.by_ref().take(MOST_BYTES).read_until(b'\n', &mut bytes);
+    match read {
+        Err(error) => Err(format!("cannot read its output: {error}")),
+        Ok(0) => Err(String::new()),
+        Ok(_) if bytes.last() != Some(&b'\n') && bytes.len() as u64 >= MOST_BYTES => {
+            Err(format!("a line of its output is longer than {MOST_BYTES} bytes"))
+        }
+        Ok(_) => String::from_utf8(bytes).map_err(|_| "its output is not UTF-8 text".into()),
+    }
+}
+
+impl ChildProcess {
+    /// Starts a program, which must answer each line within `patience`.
+    ///
+    /// # Errors
+    /// The program does not start.
+    pub fn start(words: &[String], patience: Duration) -> Result<Self, BlackBoxError> {
+        Ok(ChildProcess {
+            words: words.to_vec(),
+            patience,
+            running: Running::start(words)?,
+            has_energy: false,
+            answered: 0,
+            reads_description: false,
+        })
+    }
+
+    /// The first line of a program that describes itself before its first step. It may answer a line `energy x₁ … xₙ`.
+    ///
+    /// # Errors
+    /// There is no line in time.
+    pub fn description(&mut self) -> Result<String, BlackBoxError> {
+        self.reads_description = true;
+        self.next_line()
+    }
+
+    /// Whether the program answers lines `energy x₁ … xₙ`.
+    pub fn set_energy(&mut self, has_energy: bool) {
+        self.has_energy = has_energy;
+    }
+
+    fn next_line(&mut self) -> Result<String, BlackBoxError> {
+        let failed = |why: String| {
+            let program = self.words.first().map_or("", String::as_str);
+            Err(BlackBoxError::Failed(format!("`{program}` {why}")))
+        };
+        match self.running.lines.recv_timeout(self.patience) {
+            Ok(Ok(line)) => Ok(line),
+            Ok(Err(why)) if why.is_empty() => {
+                let status = self.running.child.try_wait().ok().flatten();
+                let status = match status {
+                    Some(status) => format!("ended ({status})"),
+                    None => "closed its output".to_owned(),
+                };
+                failed(format!(
+                    "{status} after {} lines; expected an answer to each line until its input ends",
+                    self.answered
+                ))
+            }
+            Ok(Err(why)) => failed(format!("failed: {why}")),
+            Err(RecvTimeoutError::Timeout) => failed(format!(
+                "gave no answer within {} s; expected a line for each line, flushed at once",
+                self.patience.as_secs_f64()
+            )),
+            Err(RecvTimeoutError::Disconnected) => failed("has ended".to_owned()),
+        }
+    }
+
+    fn ask(&mut self, line: &str, count: usize) -> Result<Vec<f64>, BlackBoxError> {
+        let program = self.words.first().cloned().unwrap_or_default();
+        let failed = |why: String| BlackBoxError::Failed(format!("`{program}` {why}"));
+        match self.running.lines.try_recv() {
+            Ok(Ok(line)) => {
+                return Err(failed(format!(
+                    "wrote `{}` before it was asked; expected one line for each line",
+                    shortened(&line)
+                )));
+            }
+            Ok(Err(_)) | Err(TryRecvError::Empty | TryRecvError::Disconnected) => {}
+        }
+        if let Some(input) = &mut self.running.input {
+            let written = input.write_all(line.as_bytes()).and_then(|()| input.flush());
+            // Its end is reported with its exit code below.
+            if written.is_err() && self.running.child.try_wait().ok().flatten().is_none() {
+                return Err(failed("does not read its input".into()));
+            }
+        }
+        let reply = self.next_line()?;
+        self.answered += 1;
+        let words = reply.split(|c: char| c.is_whitespace() || c == ',').filter(|w| !w.is_empty());
+        let numbers: Result<Vec<f64>, _> = words.map(|word| word.parse::<f64>()).collect();
+        match numbers {
+            Ok(numbers) if numbers.len() == count => Ok(numbers),
+            Ok(numbers) => Err(failed(format!(
+                "answered with {} numbers: `{}`; expected {count}",
+                numbers.len(),
+                shortened(&reply)
+            ))),
+            Err(_) => Err(failed(format!(
+                "answered `{}`; expected {count} numbers, separated by spaces",
+                shortened(&reply)
+            ))),
+        }
+    }
+}
+
+/// The first words of a line.
+fn shortened(line: &str) -> String {
+    let line = line.trim();
+    match line.char_indices().nth(60) {
+        Some((end, _)) => format!("{}…", &line[..end]),
+        None => line.to_owned(),
+    }
+}
+
+fn joined<'a>(numbers: impl Iterator<Item = &'a f64>) -> String {
+    let words: Vec<String> = numbers.map(|x| format!("{x:?}")).collect();
+    words.join(" ")
+}
+
+impl BlackBox for ChildProcess {
+    fn step(
+        &mut self,
+        states: &Matrix,
+        actions: &Matrix,
+        dt: f64,
+    ) -> Result<Matrix, BlackBoxError> {
+        let mut next = Matrix::zeros(states.rows(), states.columns());
+        for i in 0..states.rows() {
+            let numbers = states.row(i).iter().chain(actions.row(i)).chain([&dt]);
+            let line = joined(numbers) + "\n";
+            let reply = self.ask(&line, states.columns())?;
+            next.row_mut(i).copy_from_slice(&reply);
+        }
+        Ok(next)
+    }
+
+    fn energies(&mut self, states: &Matrix) -> Result<Option<Vec<f64>>, BlackBoxError> {
+        if !self.has_energy {
+            return Ok(None);
+        }
+        let of = |i: usize| {
+            let line = format!("energy {}\n", joined(states.row(i).iter()));
+            Ok(self.ask(&line, 1)?[0])
+        };
+        (0..states.rows()).map(of).collect::<Result<_, _>>().map(Some)
+    }
+
+    fn restart(&mut self) -> Result<bool, BlackBoxError> {
+        self.running = Running::start(&self.words)?;
+        self.answered = 0;
+        if self.reads_description {
+            self.next_line()?;
+        }
+        Ok(true)
+    }
+}
