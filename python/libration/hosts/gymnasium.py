@@ -1,0 +1,240 @@
+"""Gymnasium environments as steps of their internal state."""
+
+from __future__ import annotations
+
+import copy
+import numbers
+from typing import Any, Sequence
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+
+from .._keywords import check_keywords
+from .._settings import nearest, positive
+from .host import Host
+
+Array = NDArray[np.float64]
+
+# States, actions, pairs of a position and its rate, and angles that the environment wraps.
+_KNOWN: dict[str, tuple[tuple[str, ...], str, tuple[tuple[int, int], ...], tuple[int, ...]]] = {
+    "Pendulum": (("angle (rad)", "angle' (rad/s)"), "torque (N m)", ((0, 1),), ()),
+    "CartPole": (("cart (m)", "cart' (m/s)", "pole (rad)", "pole' (rad/s)"), "force (N)", ((0, 1), (2, 3)), ()),
+    "Acrobot": (
+        ("shoulder (rad)", "elbow (rad)", "shoulder' (rad/s)", "elbow' (rad/s)"),
+        "torque (N m)",
+        ((0, 2), (1, 3)),
+        (0, 1),
+    ),
+}
+_TIMESTEPS = ("dt", "tau", "timestep", "time_step")
+
+
+@check_keywords
+def gymnasium_host(
+    env: Any,
+    action: Any = None,
+    *,
+    state: Any = None,
+    dt: float | None = None,
+    state_attribute: str = "state",
+    dt_attribute: str | None = None,
+    action_attribute: str | None = None,
+    states: Sequence[str] | None = None,
+    inputs: Sequence[str] | None = None,
+) -> Host:
+    """Return a Gymnasium environment as a step of its internal state.
+
+    The state is that of the environment without wrappers, in the precision that it has inside, not its observation. Each call sets all
+    plain attributes of the environment to what they were. The environment itself is never changed: the host has a copy.
+
+    Parameters
+    ----------
+    env:
+        An environment, or the id of one: ``"Pendulum-v1"``.
+    action:
+        The action at the point (default: zero, or the middle one of discrete actions). A discrete action is fixed: it has no
+        derivative, and the host has no actions.
+    state:
+        The point (default: zero for Pendulum, CartPole and Acrobot; for others the current state, or that of ``reset(seed=0)``).
+    dt:
+        Timestep in s at which the step is described (default: that of the environment).
+    state_attribute, dt_attribute:
+        Names of the attributes with the state and the timestep (default of the latter: ``dt``, ``tau``, ``timestep`` or
+        ``time_step``).
+    action_attribute:
+        Name of an attribute that is the action, while the discrete action stays fixed: ``"force_mag"`` of CartPole.
+    states, inputs:
+        Names of states and actions, with units in parentheses.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For an environment without these attributes, or a state or action of another size; the message names the attribute.
+    """
+    inner = _environment(env)
+    kind = next((name for name in _KNOWN if type(inner).__name__.startswith(name)), None)
+    named, input_name, positions, angles = _KNOWN[kind] if kind else ((), "action (command)", (), ())
+    title = inner.spec.id if getattr(inner, "spec", None) is not None else type(inner).__name__
+    clock = _clock(inner, dt_attribute, title)
+    start = _start(inner, state, state_attribute, np.zeros(len(named)) if kind else None, title)
+    notes: list[str] = []
+    fixed, vector = _action(inner, action, action_attribute, notes)
+    simulation = _Environment(inner, state_attribute, clock, action_attribute, fixed, angles)
+    timestep = positive("dt", getattr(inner, clock) if dt is None else dt)
+    size, count = len(start), len(vector)
+    labels = tuple(states) if states is not None else named or tuple(f"x{k + 1}" for k in range(size))
+    of_inputs = tuple(inputs) if inputs is not None else (input_name,) if count == 1 else tuple(f"u{k + 1}" for k in range(count))
+    for what, names, expected in (("states", labels, size), ("inputs", of_inputs[:count], count)):
+        if len(names) != expected:
+            raise ValueError(f"{what} has {len(names)} names; expected {expected}")
+    try:
+        after = simulation.step(start[np.newaxis], vector[np.newaxis], timestep)[0]
+    except Exception as error:
+        raise ValueError(f"{title} fails in a step at the point: {type(error).__name__}: {error}") from error
+    if simulation.is_single:
+        notes.append("the environment keeps its state in float32: differences have about three digits")
+    if angles:
+        notes.append(f"the environment wraps {', '.join(labels[k] for k in angles)}; the host removes the jumps by 2π")
+    at_rest = bool(np.max(np.abs(after - start), initial=0.0) <= 1e-12 * max(1.0, float(np.max(np.abs(start), initial=0.0))))
+    if not at_rest:
+        notes.append("the point is no equilibrium: a step changes it")
+    return Host(
+        step=simulation.step,
+        state=start,
+        action=vector,
+        dt=timestep,
+        states=labels,
+        inputs=of_inputs[:count],
+        title=title,
+        integrator=str(getattr(inner, "kinematics_integrator", "unknown")),
+        positions=positions,
+        equilibrium=at_rest,
+        notes=tuple(notes),
+    )
+
+
+class _Environment:
+    """The steps of an environment, from attributes that are set as a whole."""
+
+    def __init__(
+        self, inner: Any, state: str, clock: str, action: str | None, fixed: Any, angles: tuple[int, ...]
+    ) -> None:
+        self.inner, self.names, self.fixed, self.angles = inner, (state, clock, action), fixed, list(angles)
+        plain = (numbers.Number, str, bytes, np.ndarray, np.generic, tuple, list, dict, type(None))
+        self.attributes = {name: value for name, value in vars(inner).items() if isinstance(value, plain)}
+        generator = getattr(inner, "np_random", None)
+        self.bits = copy.deepcopy(generator.bit_generator.state) if hasattr(generator, "bit_generator") else None
+        self.is_single = False
+
+    def step(self, states: Array, actions: Array, dt: float) -> Array:
+        states, actions = np.asarray(states, dtype=np.float64), np.asarray(actions, dtype=np.float64)
+        if states.ndim != 2 or len(actions) != len(states):
+            raise ValueError(f"states and actions have shapes {states.shape} and {actions.shape}; expected a row for each state")
+        inner, (state_name, clock, action_name) = self.inner, self.names
+        after = np.full(states.shape, np.nan)
+        for row, (state, action) in enumerate(zip(states, actions)):
+            if not (np.isfinite(state).all() and np.isfinite(action).all()):
+                continue
+            vars(inner).update(copy.deepcopy(self.attributes))
+            if self.bits is not None:
+                inner.np_random.bit_generator.state = copy.deepcopy(self.bits)
+            setattr(inner, clock, float(dt))
+            setattr(inner, state_name, state.copy())
+            if action_name is not None:
+                setattr(inner, action_name, float(action[0]))
+            inner.step(action.copy() if self.fixed is None else self.fixed)
+            found = np.asarray(getattr(inner, state_name))
+            self.is_single |= found.dtype == np.float32
+            after[row] = found
+            turns = np.round((after[row, self.angles] - state[self.angles]) / (2 * np.pi))
+            after[row, self.angles] -= 2 * np.pi * turns
+        return after
+
+
+def _environment(env: Any) -> Any:
+    """Return a copy of an environment without wrappers."""
+    if isinstance(env, str):
+        try:
+            return gymnasium.make(env, disable_env_checker=True).unwrapped
+        except gymnasium.error.Error as error:
+            raise ValueError(f"env is {env!r}: {' '.join(str(error).split())}") from None
+    if not hasattr(env, "unwrapped") or not hasattr(env, "step"):
+        raise TypeError(f"env must be an environment of Gymnasium or its id, not {type(env).__name__}")
+    try:
+        return copy.deepcopy(env.unwrapped)
+    except Exception as error:
+        raise ValueError(f"env {env} has no copy ({type(error).__name__}: {error}); help: give its id") from None
+
+
+def _clock(inner: Any, name: str | None, title: str) -> str:
+    """Return the name of the attribute with the timestep, a number that can be set."""
+    for one in _TIMESTEPS if name is None else (name,):
+        value = getattr(inner, one, None)
+        if isinstance(value, numbers.Real) and not isinstance(value, bool):
+            if isinstance(getattr(type(inner), one, None), property):
+                raise ValueError(f"{one} of {title} is a property, which cannot be set; expected an attribute{_mujoco(inner)}")
+            return one
+    if name is not None:
+        raise ValueError(f"{title} has no number {name!r}: {nearest(name, [k for k in vars(inner) if not k.startswith('_')])}")
+    wanted = ", ".join(_TIMESTEPS)
+    raise ValueError(f"{title} has no timestep: it has no number {wanted}; help: name the attribute with dt_attribute{_mujoco(inner)}")
+
+
+def _mujoco(inner: Any) -> str:
+    return ", or use mujoco_host(env.unwrapped.model, env.unwrapped.data)" if hasattr(inner, "model") and hasattr(inner, "data") else ""
+
+
+def _start(inner: Any, state: Any, name: str, default: Array | None, title: str) -> Array:
+    """Return the point; the environment has a state afterwards."""
+    if not hasattr(inner, name):
+        known = [k for k in vars(inner) if not k.startswith("_")]
+        raise ValueError(f"{title} has no attribute {name!r}: {nearest(name, known)}; help: name it with state_attribute{_mujoco(inner)}")
+    current = getattr(inner, name)
+    if current is None:
+        inner.reset(seed=0)
+        current = getattr(inner, name)
+    try:
+        found = np.array(current, dtype=np.float64)
+        point = np.array((found if default is None else default) if state is None else state, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} of {title} is a {type(current).__name__}; expected a vector of numbers") from None
+    if found.ndim != 1:
+        raise ValueError(f"{name} of {title} has shape {found.shape}; expected a vector")
+    if point.shape != found.shape:
+        raise ValueError(f"state has shape {point.shape}; expected {found.shape}")
+    if not np.isfinite(point).all():
+        raise ValueError(f"state[{int(np.argmin(np.isfinite(point)))}] is not finite; expected finite numbers")
+    return point
+
+
+def _action(inner: Any, action: Any, attribute: str | None, notes: list[str]) -> tuple[Any, Array]:
+    """Return the action that is fixed, if one is, and the vector of those that are not."""
+    space = inner.action_space
+    if isinstance(space, gymnasium.spaces.Discrete):
+        first, size = int(space.start), int(space.n)
+        fixed = first + size // 2 if action is None or attribute is not None else action
+        if isinstance(fixed, bool) or not isinstance(fixed, numbers.Integral) or not space.contains(np.int64(fixed)):
+            raise ValueError(f"action is {action!r}; expected an integer from {first} to {first + size - 1}")
+        fixed = int(fixed)
+        if attribute is None:
+            notes.append(f"the discrete action {fixed} is fixed: it has no derivative")
+            return fixed, np.zeros(0)
+        if not isinstance(value := getattr(inner, attribute, None), numbers.Real):
+            known = [k for k in vars(inner) if not k.startswith("_")]
+            raise ValueError(f"action_attribute is {attribute!r}, which is no number of the environment: {nearest(attribute, known)}")
+        notes.append(f"the action is the attribute {attribute}, with the discrete action {fixed}")
+        return fixed, np.array([float(value) if action is None else float(action)])
+    if attribute is not None:
+        raise ValueError(f"action_attribute is {attribute!r}, but actions are not discrete")
+    if not isinstance(space, gymnasium.spaces.Box):
+        raise ValueError(f"actions are a {type(space).__name__}; expected a Box or Discrete space")
+    vector = np.zeros(space.shape) if action is None else np.array(action, dtype=np.float64)
+    if vector.ndim == 0:
+        vector = vector[np.newaxis]
+    if vector.shape != space.shape or vector.ndim != 1:
+        raise ValueError(f"action has shape {vector.shape}; expected {space.shape}, a vector")
+    limits = [k for k, (low, x, high) in enumerate(zip(space.low, vector, space.high)) if not low < x < high]
+    if limits:
+        notes.append(f"actions at a limit have no derivative: {', '.join(str(k) for k in limits)}")
+    return None, vector

@@ -1,0 +1,59 @@
+"""The description of a simulator at a point, which an audit of its step needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Step = Callable[[Array, Array, float], Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Host:
+    """A simulator at a point, as a function of states, actions and the timestep.
+
+    States are minimal coordinates: as many numbers as the simulator has degrees of freedom. Where the space of positions is curved
+    (rotations in three dimensions), they are rotation vectors from the point, so that the point has zeros there. All other states
+    are those of the simulator.
+    """
+
+    step: Step
+    """``step(states, actions, dt)``: states × n, actions × m and a timestep in s; the states after it, states × n. Rows are independent
+    of each other and of earlier calls, except with memory. A row that is not finite returns NaN."""
+    state: Array
+    """The point, n numbers."""
+    action: Array
+    """The action at the point, m numbers."""
+    dt: float
+    """The timestep in s that the simulator is set to."""
+    states: tuple[str, ...]
+    """Names of the states, with units in parentheses: ``"shoulder (rad)"``, ``"shoulder' (rad/s)"``."""
+    inputs: tuple[str, ...]
+    """Names of the actions, with units in parentheses."""
+    title: str
+    integrator: str
+    """The integrator that the simulator says it uses."""
+    energy: Callable[[Array], Array] | None = None
+    """``energy(states)``: the mechanical energy in J of each row, without actuators and constraints."""
+    mass: Array | None = None
+    """The joint-space inertia at the point, velocities × velocities."""
+    positions: tuple[tuple[int, int], ...] = ()
+    """Pairs of the numbers of a position and of its rate."""
+    equilibrium: bool | None = None
+    """Whether the point is an equilibrium by the forces of the simulator; None if they are not known."""
+    notes: tuple[str, ...] = ()
+    """Facts that limit the validity of an audit at this point."""
+    reference_A: Array | None = None
+    """The derivative of the step by the states that the simulator itself computes, in these coordinates."""
+    reference_B: Array | None = None
+    """The derivative of the step by the actions that the simulator itself computes."""
+    joints: tuple[str, ...] = ()
+    """Names of the joints."""
+    memory: bool = False
+    """Whether each row continues a simulation: what is no state lives on from call to call."""
+    reset: Callable[[], None] = field(default=lambda: None)
+    """Forget what earlier calls left; it has an effect with memory only."""
