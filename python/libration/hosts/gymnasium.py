@@ -187,13 +187,12 @@ def _mujoco(inner: Any) -> str:
 
 def _start(inner: Any, state: Any, name: str, default: Array | None, title: str) -> Array:
     """Return the point; the environment has a state afterwards."""
-    if not hasattr(inner, name):
-        known = [k for k in vars(inner) if not k.startswith("_")]
-        raise ValueError(f"{title} has no attribute {name!r}: {nearest(name, known)}; help: name it with state_attribute{_mujoco(inner)}")
-    current = getattr(inner, name)
-    if current is None:
+    if getattr(inner, name, None) is None:
         inner.reset(seed=0)
-        current = getattr(inner, name)
+    current = getattr(inner, name, None)
+    if current is None:
+        known = [k for k in vars(inner) if not k.startswith("_")]
+        raise ValueError(f"{title} has no state {name!r}: {nearest(name, known)}; help: name it with state_attribute{_mujoco(inner)}")
     try:
         found = np.array(current, dtype=np.float64)
         point = np.array((found if default is None else default) if state is None else state, dtype=np.float64)
