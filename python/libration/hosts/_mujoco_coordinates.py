@@ -72,6 +72,7 @@ class Coordinates:
             cross = np.array([[0.0, -phi[2], phi[1]], [phi[2], 0.0, -phi[0]], [-phi[1], phi[0], 0.0]])
             # The factor is 1/angle² − (1 + cos angle)/(2 angle sin angle), which cancels for small angles.
             half = 0.5 * angle
-            factor = (1 - half / np.tan(half)) / angle**2 if angle > 1e-2 else 1 / 12 + angle**2 / 720 + angle**4 / 30240
+            series = 1 / 12 + angle**2 / 720 + angle**4 / 30240
+            factor = (1 - half / np.tan(half)) / angle**2 if angle > 1e-2 else series
             derivative[v : v + 3, v : v + 3] = np.eye(3) + 0.5 * cross + factor * cross @ cross
         return derivative

@@ -62,7 +62,7 @@ def _actuators(model: Any, data: Any) -> list[str]:
         if model.actuator_ctrllimited[k] and not model.actuator_ctrlrange[k][0] < data.ctrl[k] < model.actuator_ctrlrange[k][1]
     ]
     notes = [f"commands at a limit of ctrlrange have no derivative: {', '.join(clamped[:6])}"] if clamped else []
-    limited, saturated = [], []
+    limited, saturated, kinked = [], [], []
     for k in range(number_of_actuators(model)):
         if model.actuator_actlimited[k] and (first := int(model.actuator_actadr[k])) >= 0:
             low, high = model.actuator_actrange[k]
@@ -73,6 +73,13 @@ def _actuators(model: Any, data: Any) -> list[str]:
             out = int(model.actuator_outadr[k]) if hasattr(model, "actuator_outadr") else k
             if not low < data.actuator_force[out] < high:
                 saturated.append(name_of(model, "actuator", k))
+        if int(model.actuator_dyntype[k]) == mujoco.mjtDyn.mjDYN_MUSCLE and not model.actuator_dynprm[k][2]:
+            kinked.append(name_of(model, "actuator", k))
+    if kinked:
+        notes.append(
+            "muscles activate faster than they deactivate, and tausmooth is zero, so they have no derivative at rest: "
+            + ", ".join(kinked[:6])
+        )
     if limited:
         notes.append(f"activations at a limit of actrange have no derivative: {', '.join(limited[:6])}")
     if saturated:
@@ -96,8 +103,8 @@ def _options(model: Any) -> list[str]:
     notes = []
     flags, option = mujoco.mjtDisableBit, model.opt
     if int(option.integrator) == mujoco.mjtIntegrator.mjINT_EULER and np.any(model.dof_damping):
-        explicit = bool(option.disableflags & flags.mjDSBL_EULERDAMP)
-        notes.append(f"Euler integrates joint damping {'explicitly, since eulerdamp is disabled' if explicit else 'implicitly (eulerdamp)'}")
+        how = "explicitly, since eulerdamp is disabled" if option.disableflags & flags.mjDSBL_EULERDAMP else "implicitly (eulerdamp)"
+        notes.append(f"Euler integrates joint damping {how}")
     skipped = [
         name
         for name in ("constraint", "equality", "frictionloss", "limit", "contact", "spring", "damper", "gravity", "actuation")

@@ -123,7 +123,7 @@ class _Environment:
         self.inner, self.names, self.fixed, self.angles = inner, (state, clock, action), fixed, list(angles)
         plain = (numbers.Number, str, bytes, np.ndarray, np.generic, tuple, list, dict, type(None))
         self.attributes = {name: value for name, value in vars(inner).items() if isinstance(value, plain)}
-        generator = getattr(inner, "np_random", None)
+        generator: Any = getattr(inner, "np_random", None)
         self.bits = copy.deepcopy(generator.bit_generator.state) if hasattr(generator, "bit_generator") else None
         self.is_single = False
 
@@ -137,7 +137,7 @@ class _Environment:
             if not (np.isfinite(state).all() and np.isfinite(action).all()):
                 continue
             vars(inner).update(copy.deepcopy(self.attributes))
-            if self.bits is not None:
+            if self.bits is not None and inner.np_random is not None:
                 inner.np_random.bit_generator.state = copy.deepcopy(self.bits)
             setattr(inner, clock, float(dt))
             setattr(inner, state_name, state.copy())

@@ -19,6 +19,8 @@ from .host import Host
 
 Array = NDArray[np.float64]
 
+# As the XML has them.
+_INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast", "discrete")
 # The best step of central differences is the cube root of the rounding.
 _EPS = 6e-6
 
@@ -87,7 +89,7 @@ def mujoco_host(
         states=state_names(own),
         inputs=input_names(own),
         title=title,
-        integrator=mujoco.mjtIntegrator(own.opt.integrator).name.removeprefix("mjINT_"),
+        integrator=_INTEGRATORS[int(own.opt.integrator)],
         energy=simulation.energy,
         mass=inertia_of(own, forward),
         positions=tuple((k, own.nv + k) for k in range(own.nv)),
