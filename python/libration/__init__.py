@@ -14,6 +14,7 @@ from . import _native
 from ._native import __version__
 from . import datasets, policies
 from .analysis import Advice, Analysis, advise, analyze
+from .bits import FirstDifference, first_difference
 from .ensemble import Ensemble
 from .environments import Environments
 from .equations import EquationSystem
@@ -32,6 +33,8 @@ from .linear import (
 from .linear_loops import LinearLoops, LinearRollout
 from .operating_point import OperatingPoint
 from .perturbations import LQR, PD, PID, Gaussian, Observer, Steps, Uniform
+from .probe_report import ProbeReport
+from .probing import probe
 from .replay import ReplayBuffer
 from .rollout import Rollout
 from .simulation import Trajectory, simulate
@@ -48,6 +51,7 @@ __all__ = [
     "Environments",
     "EquationSystem",
     "Finding",
+    "FirstDifference",
     "Gaussian",
     "INTEGRATORS",
     "LQG",
@@ -61,6 +65,7 @@ __all__ = [
     "OperatingPoint",
     "PD",
     "PID",
+    "ProbeReport",
     "ReplayBuffer",
     "Results",
     "Rollout",
@@ -76,7 +81,9 @@ __all__ = [
     "advise",
     "analyze",
     "datasets",
+    "first_difference",
     "policies",
+    "probe",
     "run_lab",
     "simulate",
 ]

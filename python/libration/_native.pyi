@@ -28,6 +28,8 @@ __all__ = [
     "_integrators",
     "_linear_plant",
     "_parameters",
+    "_first_difference",
+    "_probe",
     "_program",
     "_run_lab",
     "_seconds_of_rollouts",
@@ -80,6 +82,16 @@ def _analyze(
 ) -> str: ...
 def _analyze_linear(config: str, dt: float | None, integrator: str | None) -> str: ...
 def _linear_plant(text: str) -> tuple[list[list[list[float]]], list[list[tuple[str, str]]]]: ...
+def _probe(
+    description: str,
+    step: Callable[[Any, Any, float], Any],
+    observe: Callable[[Any], Any] | None,
+    energy: Callable[[Any], Any] | None,
+    batched: bool,
+) -> tuple[str, bool, str]: ...
+def _first_difference(
+    first: Any, second: Any, shape: list[int]
+) -> tuple[list[int], float, float, int | None, int] | None: ...
 def _advise(
     config: str, page: bool, redesign: bool, progress: Callable[[str, int, int, str, int, int], Any] | None
 ) -> tuple[str, bool, str | None]: ...

@@ -117,10 +117,30 @@ fn plane(audit: &ProbeReport) -> Figure {
     if !flow.is_empty() {
         panel = panel.mark(Mark::prediction(part(&flow, 0), part(&flow, 1)).label("system"));
     }
-    Figure::new("modes-plane", "Factors of the modes per step")
-        .caption("Points: factors of the step. Circles: those of the system in the same time. Outside the unit circle a mode grows.")
+    let rates = |of: &dyn Fn(&crate::ProbedMode) -> Option<crate::Rates>| -> [Vec<f64>; 2] {
+        let found = audit.modes.iter().filter_map(of).filter(|rates| rates.growth_rate.is_finite());
+        found
+            .map(|rates| (rates.growth_rate, rates.frequency))
+            .unzip::<_, _, Vec<f64>, Vec<f64>>()
+            .into()
+    };
+    let [growth, frequency] = rates(&|mode| Some(mode.step));
+    let mut slow =
+        Panel::new(Axis::linear("growth rate").unit("1/s"), Axis::linear("frequency").unit("Hz"))
+            .mark(Mark::vertical(0.0).label("neither grows nor decays"))
+            .mark(Mark::points(growth, frequency).label("step"));
+    let [growth, frequency] = rates(&|mode| mode.flow);
+    if !growth.is_empty() {
+        slow = slow.mark(Mark::prediction(growth, frequency).label("system"));
+    }
+    Figure::new("modes-plane", "Modes of the step and of the system")
+        .caption(
+            "Points: the step. Circles: the system. Left: factors per step; outside the unit circle a mode grows. Right: the same as rates.",
+        )
+        .columns(2)
         .aspect(1.0)
         .panel(panel)
+        .panel(slow)
 }
 
 fn latency(page: &mut Page, audit: &ProbeReport) {

@@ -1,7 +1,7 @@
 //! The audit of a step, and its results.
 
 use libration::analysis::positions_and_velocities;
-use libration::linear::Matrix;
+use libration::linear::{Matrix, logarithm};
 use serde::{Serialize, Serializer};
 
 use crate::finding::{Finding, of_bits, of_memory, of_report};
@@ -53,6 +53,9 @@ pub struct ProbeReport {
     pub jacobian_error: f64,
     /// The rates in the limit of small steps; none if the step has one length only.
     pub flow: Option<Matrices>,
+    /// The system in continuous time whose exact flow the step is, with all its numerical damping: the logarithm of the step. None if a
+    /// mode changes its sign from step to step, or ends in one.
+    pub modified_flow: Option<Matrices>,
     /// A short run beside the linear prediction.
     pub confirmation: Option<Confirmation>,
     /// Derivatives of the simulator beside differences of its step.
@@ -193,6 +196,7 @@ impl ProbeReport {
             step: None,
             jacobian_error: f64::INFINITY,
             flow: None,
+            modified_flow: None,
             confirmation: None,
             reference: None,
             modes: Vec::new(),
@@ -241,6 +245,7 @@ impl ProbeReport {
             self.recognition = Some(Recognition::attempt(prober, pairs)?);
         }
         self.defects = Some(Defects::measure(prober, &step, flow.as_ref(), pairs)?);
+        self.modified_flow = modified_flow(&step);
         self.flow = flow.map(|flow| Matrices { a: flow.a, b: flow.b, a_errors: flow.a_errors });
         self.step = Some(Matrices { a: step.a, b: step.b, a_errors: step.a_errors });
         Ok(())
@@ -286,6 +291,17 @@ impl ReferenceCheck {
         }
         Some(ReferenceCheck { source: reference.source.clone(), difference, allowed })
     }
+}
+
+/// The rates whose exact flow under a held command is the step.
+fn modified_flow(step: &LinearisedStep) -> Option<Matrices> {
+    let rates = logarithm(&step.augmented())?.scaled(step.dt.recip());
+    let (n, m) = (step.a.rows(), step.b.columns());
+    Some(Matrices {
+        a: rates.block((0, 0), (n, n)),
+        b: rates.block((0, n), (n, m)),
+        a_errors: step.a_errors.scaled(step.dt.recip()),
+    })
 }
 
 fn ignores_dt(prober: &mut Prober<'_>) -> Result<bool, BlackBoxError> {

@@ -17,6 +17,7 @@ mod linear_analysis;
 mod linear_loops;
 mod linear_plant;
 mod policy;
+mod probe;
 mod program;
 mod replay;
 mod request;
@@ -52,6 +53,8 @@ mod _native {
     use crate::linear_loops::LinearLoops;
     #[pymodule_export]
     use crate::linear_plant::_linear_plant;
+    #[pymodule_export]
+    use crate::probe::{_first_difference, _probe};
     #[pymodule_export]
     use crate::program::_program;
     #[pymodule_export]

@@ -33,7 +33,7 @@ def mujoco_host(
     keyframe: str | int | None = None,
     state: str | None = None,
     dt: float | None = None,
-    memory: bool = False,
+    memory: bool | None = False,
 ) -> Host:
     """Return a MuJoCo model at a point as a step in minimal coordinates.
 
@@ -55,7 +55,7 @@ def mujoco_host(
         Timestep in s at which the step is described (default: that of the model).
     memory:
         Whether each row continues a simulation: queues of delayed actuators and the warm start live on from call to call. A call with
-        another number of rows or timestep begins anew, as ``host.reset()`` does.
+        another number of rows or timestep begins anew, as ``host.reset()`` does. None: with delayed actuators.
 
     Raises
     ------
@@ -63,6 +63,8 @@ def mujoco_host(
         For a file that does not compile, an unknown keyframe, a state that is not finite, or no equilibrium; the message names it.
     """
     own, title = model_of(model)
+    if memory is None:
+        memory = bool(np.any(np.asarray(getattr(own, "actuator_delay", ())) > 0))
     # An automatic reset would hide a divergence.
     own.opt.disableflags |= int(getattr(mujoco.mjtDisableBit, "mjDSBL_AUTORESET", 0))
     timestep = positive("dt", own.opt.timestep if dt is None else dt)

@@ -1,0 +1,113 @@
+//! The audit of a step that is a Python function.
+
+use libration::linear::Matrix;
+use libration_probe::{BlackBox, BlackBoxError, Description, FirstDifference, page, probe};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use crate::error::value_error;
+
+/// A simulator of Python functions on arrays of rows.
+struct PythonStep<'py> {
+    py: Python<'py>,
+    step: Bound<'py, PyAny>,
+    observe: Option<Bound<'py, PyAny>>,
+    energy: Option<Bound<'py, PyAny>>,
+    is_batched: bool,
+    /// The exception of a function, to be raised again.
+    raised: Option<PyErr>,
+}
+
+impl<'py> PythonStep<'py> {
+    fn array(&self, matrix: &Matrix) -> PyResult<Bound<'py, PyAny>> {
+        let flat = PyArray1::from_slice(self.py, matrix.entries());
+        Ok(flat.reshape([matrix.rows(), matrix.columns()])?.into_any())
+    }
+
+    fn called<T>(&mut self, result: PyResult<T>) -> Result<T, BlackBoxError> {
+        result.map_err(|error| {
+            let text = error.to_string();
+            self.raised.get_or_insert(error);
+            BlackBoxError::Failed(text)
+        })
+    }
+}
+
+fn matrix(found: &Bound<'_, PyAny>) -> PyResult<Matrix> {
+    let found: PyReadonlyArray2<'_, f64> = found.extract()?;
+    let [rows, columns] = [found.shape()[0], found.shape()[1]];
+    let entries = found.as_slice()?;
+    Ok(Matrix::from_fn(rows, columns, |i, j| entries[i * columns + j]))
+}
+
+impl BlackBox for PythonStep<'_> {
+    fn step(
+        &mut self,
+        states: &Matrix,
+        actions: &Matrix,
+        dt: f64,
+    ) -> Result<Matrix, BlackBoxError> {
+        let call = || matrix(&self.step.call1((self.array(states)?, self.array(actions)?, dt))?);
+        let result = call();
+        self.called(result)
+    }
+
+    fn is_batched(&self) -> bool {
+        self.is_batched
+    }
+
+    fn observe(&mut self, states: &Matrix) -> Result<Option<Matrix>, BlackBoxError> {
+        let Some(observe) = &self.observe else { return Ok(None) };
+        let call = || matrix(&observe.call1((self.array(states)?,))?);
+        let result = call();
+        self.called(result).map(Some)
+    }
+
+    fn energies(&mut self, states: &Matrix) -> Result<Option<Vec<f64>>, BlackBoxError> {
+        let Some(energy) = &self.energy else { return Ok(None) };
+        let call = || {
+            let found = energy.call1((self.array(states)?,))?;
+            let found: PyReadonlyArray1<'_, f64> = found.extract()?;
+            Ok(found.as_slice()?.to_vec())
+        };
+        let result = call();
+        self.called(result).map(Some)
+    }
+}
+
+/// Audits a step. Gives JSON, whether the step has no fault, and a page.
+#[pyfunction]
+pub(crate) fn _probe(
+    py: Python<'_>,
+    description: &str,
+    step: Bound<'_, PyAny>,
+    observe: Option<Bound<'_, PyAny>>,
+    energy: Option<Bound<'_, PyAny>>,
+    batched: bool,
+) -> PyResult<(String, bool, String)> {
+    let wrong = |error: &dyn core::fmt::Display| value_error(error.to_string());
+    let subject = Description::parse(description).and_then(Description::subject);
+    let subject = subject.map_err(|error| wrong(&error))?;
+    let mut black_box = PythonStep { py, step, observe, energy, is_batched: batched, raised: None };
+    match probe(&mut black_box, &subject) {
+        Ok(report) => {
+            let json = serde_json::to_string(&report).map_err(|error| wrong(&error))?;
+            Ok((json, report.holds(), page(&report)))
+        }
+        Err(error) => Err(black_box.raised.unwrap_or_else(|| wrong(&error))),
+    }
+}
+
+/// The first difference: index, both numbers, units in the last place, and how many numbers differ.
+type Difference = (Vec<usize>, f64, f64, Option<u64>, usize);
+
+/// The first difference of two contiguous recordings with this shape.
+#[pyfunction]
+pub(crate) fn _first_difference(
+    first: PyReadonlyArray1<'_, f64>,
+    second: PyReadonlyArray1<'_, f64>,
+    shape: Vec<usize>,
+) -> PyResult<Option<Difference>> {
+    let found = FirstDifference::find(first.as_slice()?, second.as_slice()?, &shape);
+    Ok(found.map(|d| (d.index, d.first, d.second, d.ulps, d.differing)))
+}

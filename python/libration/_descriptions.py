@@ -1,0 +1,33 @@
+"""Descriptions of simulators for the engine."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .hosts.host import Host
+
+
+def description_of(host: Host) -> dict[str, Any]:
+    """Return a host as the keys that the engine reads."""
+    described: dict[str, Any] = {
+        "title": host.title,
+        "state": host.state.tolist(),
+        "action": host.action.tolist(),
+        "dt": host.dt,
+        "states": list(host.states),
+        "inputs": list(host.inputs),
+        "integrator": host.integrator,
+        "notes": list(host.notes),
+        "energy": host.energy is not None,
+    }
+    if host.positions:
+        described["pairs"] = [list(pair) for pair in host.positions]
+        if host.mass is not None and len(host.mass) == len(host.positions):
+            described["mass"] = host.mass.tolist()
+    if host.reference_A is not None and host.reference_B is not None:
+        described["reference"] = {
+            "source": "mjd_transitionFD",
+            "a": host.reference_A.tolist(),
+            "b": host.reference_B.tolist(),
+        }
+    return described

@@ -1,0 +1,162 @@
+"""The results of an audit."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .analysis import Advice, advise
+from .linear import LinearPlant
+
+__all__ = ["ProbeReport"]
+
+Array = NDArray[np.float64]
+
+
+class ProbeReport:
+    """The results of an audit of a step; :attr:`results` has all numbers under the keys of ``libration probe --json``."""
+
+    def __init__(self, results: dict[str, Any], holds: bool, page: str) -> None:
+        self.results = results
+        self.holds = holds
+        """Whether the step has no fault."""
+        self._page = page
+
+    def __repr__(self) -> str:
+        return f"<ProbeReport: {self.answer}>"
+
+    @property
+    def answer(self) -> str:
+        """The answer in a few sentences."""
+        return str(self.results["answer"])
+
+    @property
+    def findings(self) -> list[dict[str, Any]]:
+        """Faults of the step, and facts without which its numbers mislead: ``kind``, ``is_fault``, ``text``. A clean step has none."""
+        return list(self.results["findings"])
+
+    @property
+    def notes(self) -> list[str]:
+        """What the simulator says of itself."""
+        return list(self.results["notes"])
+
+    @property
+    def modes(self) -> list[dict[str, Any]]:
+        """The modes of the step beside those of the system, the one that grows fastest first."""
+        return list(self.results["modes"])
+
+    @property
+    def numerical_damping(self) -> list[float | None]:
+        """The damping ratio that the step adds to each mode."""
+        return [mode["numerical_damping"] for mode in self.modes]
+
+    @property
+    def spectral_radius(self) -> float:
+        """The largest factor of a mode per step."""
+        return float(self.results["spectral_radius"])
+
+    @property
+    def largest_dt(self) -> float | None:
+        """The longest stable step in s; None if no limit was found, or if there is no stable step."""
+        found = self.results["largest_dt"]
+        return None if found is None else found["dt"]
+
+    @property
+    def hidden_latency(self) -> list[dict[str, Any]]:
+        """The latency of each input in s: of late commands, of the integrator, and in total."""
+        return list(self.results["hidden_latency"])
+
+    @property
+    def order(self) -> int | None:
+        """The order of convergence; None if the estimates do not settle."""
+        found = self.results["order"]
+        return None if found is None else found["order"]
+
+    @property
+    def integrators(self) -> list[str]:
+        """Names of the integrators whose results the step has."""
+        found = self.results["recognition"]
+        return [] if found is None else list(found["methods"])
+
+    @property
+    def defects(self) -> dict[str, Any] | None:
+        """Defects of volume, symplecticity, reversibility and energy."""
+        found: dict[str, Any] | None = self.results["defects"]
+        return found
+
+    @property
+    def bits(self) -> dict[str, Any]:
+        """Whether the same call gives the same bits."""
+        return dict(self.results["bits"])
+
+    @property
+    def A(self) -> Array | None:
+        """States × states of the step."""
+        return self._matrix("step", "a")
+
+    @property
+    def B(self) -> Array | None:
+        """States × inputs of the step."""
+        return self._matrix("step", "b")
+
+    def _matrix(self, of: str, name: str) -> Array | None:
+        found = self.results[of]
+        if found is None:
+            return None
+        n = len(self.results["states"])
+        return np.array(found[name], dtype=np.float64).reshape(n, -1)
+
+    @property
+    def plant(self) -> LinearPlant:
+        """The plant in continuous time whose exact steps are those of the simulator, with all numerical damping.
+
+        Raises
+        ------
+        ValueError
+            If there is none: a mode changes its sign from step to step, or the step was not linearised. :attr:`sampled_plant` may exist.
+        """
+        if self.results["modified_flow"] is None:
+            raise ValueError("the step is no exact step of a plant in continuous time; use sampled_plant, with latencies of whole steps")
+        return self._plant("modified_flow", None)
+
+    @property
+    def sampled_plant(self) -> LinearPlant:
+        """The plant of a step."""
+        if self.results["step"] is None:
+            raise ValueError("the step was not linearised; see findings")
+        return self._plant("step", float(self.results["dt"]))
+
+    def _plant(self, of: str, dt: float | None) -> LinearPlant:
+        a, b = self._matrix(of, "a"), self._matrix(of, "b")
+        assert a is not None and b is not None
+        if b.shape[1] == 0:
+            raise ValueError("the step has no actions; a plant requires an input")
+        return LinearPlant(a, b, dt=dt, states=self.results["states"], inputs=self.results["inputs"])
+
+    def advise(self, controller: Any, *, period: float | None = None, **keywords: Any) -> Advice:
+        """Return the limits of a loop around the step, by :func:`libration.advise` with all its keywords.
+
+        Deviations from the state and the action are controlled. Latencies that were found in the step are added to ``latency``.
+
+        Parameters
+        ----------
+        period:
+            Sample period of the controller in s (default: a step).
+        """
+        period = float(self.results["dt"]) if period is None else period
+        hidden = [float(entry["late"]) for entry in self.hidden_latency]
+        if any(hidden):
+            given = np.broadcast_to(np.asarray(keywords.get("latency") or 0.0, dtype=np.float64), len(hidden))
+            keywords["latency"] = [float(late) for late in given + hidden]
+        return advise(self.plant, controller, period=period, **keywords)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the HTML page, or with the suffix ``.json`` all numbers."""
+        import json
+
+        text = json.dumps(self.results, indent=2) if str(path).endswith(".json") else self._page
+        Path(path).write_text(text, encoding="utf-8")
