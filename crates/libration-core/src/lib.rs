@@ -9,6 +9,8 @@ pub mod array;
 pub mod catalog;
 pub mod control;
 pub mod elementary;
+pub mod elimination;
+mod implicit_method;
 pub mod integrator;
 mod method;
 pub mod number;
@@ -19,6 +21,7 @@ mod state;
 pub mod system;
 
 pub use catalog::{AnySystem, CatalogError};
+pub use implicit_method::{AnyMethod, ImplicitMethod};
 pub use integrator::Integrator;
 pub use method::Method;
 pub use scalar::{Elementary, Float, Scalar};

@@ -8,6 +8,7 @@ mod composition;
 mod dispatch;
 mod euler;
 mod exact;
+mod implicit;
 mod leapfrog;
 mod runge_kutta;
 mod splitting;
@@ -20,6 +21,10 @@ use crate::{Scalar, State, System};
 pub use composition::{Composition, SUZUKI4, Suzuki4, YOSHIDA4, Yoshida4};
 pub use euler::{ExplicitEuler, SymplecticEuler, SymplecticEulerDriftFirst};
 pub use exact::Exact;
+pub use implicit::{
+    BackwardEuler, DampingImplicit, DampingStiffnessImplicit, ImplicitIntegrator, ImplicitMidpoint,
+    NEWTON_STEPS, StablePd, Trapezoid,
+};
 pub use leapfrog::Leapfrog;
 pub use runge_kutta::Rk4;
 pub use splitting::Splitting;

@@ -1,0 +1,201 @@
+//! The implicit integrators as a value, and all integrators as one value.
+
+use crate::integrator::{
+    BackwardEuler, DampingImplicit, DampingStiffnessImplicit, ImplicitIntegrator, ImplicitMidpoint,
+    Integrator, StablePd, Trapezoid,
+};
+use crate::system::ImplicitSystem;
+use crate::{Method, Scalar, State};
+
+/// Every built-in implicit integrator.
+///
+/// They are no variants of [`Method`], whose kernels are compiled for each of them: implicit steps run as programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum ImplicitMethod {
+    /// [`DampingImplicit`].
+    DampingImplicit,
+    /// [`DampingStiffnessImplicit`].
+    DampingStiffnessImplicit,
+    /// [`StablePd`].
+    StablePd,
+    /// [`BackwardEuler`].
+    BackwardEuler,
+    /// [`ImplicitMidpoint`].
+    ImplicitMidpoint,
+    /// [`Trapezoid`].
+    Trapezoid,
+}
+
+impl ImplicitMethod {
+    /// All of them, by rising order.
+    pub const ALL: [ImplicitMethod; 6] = [
+        ImplicitMethod::DampingImplicit,
+        ImplicitMethod::DampingStiffnessImplicit,
+        ImplicitMethod::StablePd,
+        ImplicitMethod::BackwardEuler,
+        ImplicitMethod::ImplicitMidpoint,
+        ImplicitMethod::Trapezoid,
+    ];
+
+    /// Name on the command line and in configurations.
+    pub const fn name(self) -> &'static str {
+        match self {
+            ImplicitMethod::DampingImplicit => "damping-implicit",
+            ImplicitMethod::DampingStiffnessImplicit => "damping-stiffness-implicit",
+            ImplicitMethod::StablePd => "stable-pd",
+            ImplicitMethod::BackwardEuler => "backward-euler",
+            ImplicitMethod::ImplicitMidpoint => "implicit-midpoint",
+            ImplicitMethod::Trapezoid => "trapezoid",
+        }
+    }
+
+    /// Name in running text.
+    pub const fn title(self) -> &'static str {
+        match self {
+            ImplicitMethod::DampingImplicit => "Euler with implicit damping",
+            ImplicitMethod::DampingStiffnessImplicit => "linearly implicit Euler",
+            ImplicitMethod::StablePd => "stable PD",
+            ImplicitMethod::BackwardEuler => "backward Euler",
+            ImplicitMethod::ImplicitMidpoint => "implicit midpoint",
+            ImplicitMethod::Trapezoid => "trapezoid",
+        }
+    }
+
+    /// A description in one line.
+    pub const fn summary(self) -> &'static str {
+        match self {
+            ImplicitMethod::DampingImplicit => {
+                "order 1; symplectic Euler with implicit damping, as MuJoCo's Euler and implicitfast"
+            }
+            ImplicitMethod::DampingStiffnessImplicit => {
+                "order 1; linearly implicit Euler: damping and stiffness implicit, one linear solve"
+            }
+            ImplicitMethod::StablePd => {
+                "order 1; stable PD of Tan, Liu and Turk: forces of the next position, damping implicit"
+            }
+            ImplicitMethod::BackwardEuler => {
+                "order 1; stable for every step on decaying modes; takes energy away; 5 Newton steps"
+            }
+            ImplicitMethod::ImplicitMidpoint => {
+                "order 2; symplectic, time-reversible, without a limit of the step; 5 Newton steps"
+            }
+            ImplicitMethod::Trapezoid => {
+                "order 2; implicit-midpoint on linear systems, conjugate to it on others; 5 Newton steps"
+            }
+        }
+    }
+
+    /// Classical order of consistency.
+    pub const fn order(self) -> u32 {
+        match self {
+            ImplicitMethod::ImplicitMidpoint | ImplicitMethod::Trapezoid => 2,
+            _ => 1,
+        }
+    }
+
+    /// The method of that name, if there is one.
+    pub fn from_name(name: &str) -> Option<ImplicitMethod> {
+        ImplicitMethod::ALL.into_iter().find(|m| m.name() == name)
+    }
+}
+
+impl ImplicitIntegrator for ImplicitMethod {
+    fn step<S: Scalar, const D: usize>(
+        self,
+        system: &impl ImplicitSystem<S, D>,
+        state: State<S, D>,
+        dt: S,
+    ) -> State<S, D> {
+        match self {
+            ImplicitMethod::DampingImplicit => DampingImplicit.step(system, state, dt),
+            ImplicitMethod::DampingStiffnessImplicit => {
+                DampingStiffnessImplicit.step(system, state, dt)
+            }
+            ImplicitMethod::StablePd => StablePd.step(system, state, dt),
+            ImplicitMethod::BackwardEuler => BackwardEuler.step(system, state, dt),
+            ImplicitMethod::ImplicitMidpoint => ImplicitMidpoint.step(system, state, dt),
+            ImplicitMethod::Trapezoid => Trapezoid.step(system, state, dt),
+        }
+    }
+}
+
+/// Every built-in integrator, explicit or implicit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum AnyMethod {
+    /// An explicit one.
+    Explicit(Method),
+    /// An implicit one.
+    Implicit(ImplicitMethod),
+}
+
+impl AnyMethod {
+    /// All of them, the explicit ones first.
+    pub fn all() -> impl Iterator<Item = AnyMethod> {
+        let explicit = Method::ALL.into_iter().map(AnyMethod::Explicit);
+        explicit.chain(ImplicitMethod::ALL.into_iter().map(AnyMethod::Implicit))
+    }
+
+    /// Name on the command line and in configurations.
+    pub const fn name(self) -> &'static str {
+        match self {
+            AnyMethod::Explicit(method) => method.name(),
+            AnyMethod::Implicit(method) => method.name(),
+        }
+    }
+
+    /// Name in running text.
+    pub const fn title(self) -> &'static str {
+        match self {
+            AnyMethod::Explicit(method) => method.title(),
+            AnyMethod::Implicit(method) => method.title(),
+        }
+    }
+
+    /// A description in one line.
+    pub const fn summary(self) -> &'static str {
+        match self {
+            AnyMethod::Explicit(method) => method.summary(),
+            AnyMethod::Implicit(method) => method.summary(),
+        }
+    }
+
+    /// Classical order of consistency.
+    pub const fn order(self) -> u32 {
+        match self {
+            AnyMethod::Explicit(method) => method.order(),
+            AnyMethod::Implicit(method) => method.order(),
+        }
+    }
+
+    /// The method of that name, if there is one.
+    pub fn from_name(name: &str) -> Option<AnyMethod> {
+        AnyMethod::all().find(|method| method.name() == name)
+    }
+}
+
+impl From<Method> for AnyMethod {
+    fn from(method: Method) -> Self {
+        AnyMethod::Explicit(method)
+    }
+}
+
+impl From<ImplicitMethod> for AnyMethod {
+    fn from(method: ImplicitMethod) -> Self {
+        AnyMethod::Implicit(method)
+    }
+}
+
+/// An explicit method solves no equations.
+impl ImplicitIntegrator for AnyMethod {
+    fn step<S: Scalar, const D: usize>(
+        self,
+        system: &impl ImplicitSystem<S, D>,
+        state: State<S, D>,
+        dt: S,
+    ) -> State<S, D> {
+        match self {
+            AnyMethod::Explicit(method) => Integrator::step(method, system, state, dt),
+            AnyMethod::Implicit(method) => method.step(system, state, dt),
+        }
+    }
+}
