@@ -3,6 +3,7 @@
 //! This crate does no input or output, reads no clock and prints nothing.
 
 mod definitions;
+mod derivative_programs;
 mod dynamics;
 mod equation_error;
 mod equations;

@@ -1,8 +1,10 @@
 //! Steps of integrators as programs.
 
+use libration_core::integrator::ImplicitIntegrator;
 use libration_core::{Integrator, State};
 
 use super::Dynamics;
+use super::derivative_programs::DerivativePrograms;
 use super::program::{Operation, Program, ValueId};
 use super::program_builder::ProgramBuilder;
 use super::step_trace::{StepTrace, TracedSystem, VectorId, VectorOperation};
@@ -17,6 +19,24 @@ impl StepProgram {
     /// A step of `integrator` on a system, whose inputs are constant during the step: from positions, velocities, inputs and the
     /// time step to positions and velocities.
     pub fn new(integrator: impl Integrator, dynamics: &Dynamics) -> Self {
+        let trace = StepTrace::default();
+        let ends = {
+            let start = State {
+                q: [trace.record(VectorOperation::Positions)],
+                v: [trace.record(VectorOperation::Velocities)],
+            };
+            let dt = trace.record(VectorOperation::TimeStep);
+            let end = integrator.step(&TracedSystem(&trace), start, dt);
+            vec![trace.id(end.q[0]), trace.id(end.v[0])]
+        };
+        StepProgram { program: program(&trace.into_operations(), &ends, false, dynamics) }
+    }
+
+    /// The same of an integrator that solves equations, by [elimination](libration_core::elimination) with derivatives by dual numbers:
+    /// it has the bits of the integrator on the system [differentiated](libration_core::system::Differentiated).
+    ///
+    /// The program grows with the cube of the degrees of freedom, and each Newton step is written out.
+    pub fn implicit(integrator: impl ImplicitIntegrator, dynamics: &Dynamics) -> Self {
         let trace = StepTrace::default();
         let ends = {
             let start = State {
@@ -72,6 +92,7 @@ fn program(
     let known = builder.inputs(if carries { degrees } else { 0 });
     let commands = builder.inputs(dynamics.inputs());
     let dt = builder.input();
+    let derivatives = DerivativePrograms::new(dynamics);
     let mut vectors: Vec<Vec<ValueId>> = Vec::with_capacity(operations.len());
     for operation in operations {
         let of_two = |builder: &mut ProgramBuilder,
@@ -100,6 +121,19 @@ fn program(
                 let inputs = [&vectors[q], &vectors[v], &commands];
                 let inputs: Vec<ValueId> = inputs.into_iter().flatten().copied().collect();
                 builder.inline(dynamics.accelerations(), &inputs)
+            }
+            VectorOperation::AccelerationDerivative(operands) => {
+                let [q, v, along_q, along_v] = operands.map(|operand| &vectors[operand]);
+                let inputs = [q, v, &commands, along_q, along_v];
+                let inputs: Vec<ValueId> = inputs.into_iter().flatten().copied().collect();
+                builder.inline(derivatives.along_a_direction(), &inputs)
+            }
+            VectorOperation::Solution(implicit, operands) => {
+                let [q, v, h, right] = operands.map(|operand| &vectors[operand]);
+                // The time step is the same in each entry.
+                let inputs = [q, v, &commands, &h[..1], right];
+                let inputs: Vec<ValueId> = inputs.into_iter().flatten().copied().collect();
+                builder.inline(derivatives.solution(implicit), &inputs)
             }
         };
         vectors.push(vector);

@@ -3,6 +3,7 @@
 use core::cell::RefCell;
 use core::ops::{Add, Mul, Neg, Sub};
 
+use libration_core::system::ImplicitSystem;
 use libration_core::{Scalar, State, System};
 
 /// The operations of a step on whole vectors: positions, velocities and accelerations of a system of any size.
@@ -33,6 +34,17 @@ pub(crate) enum VectorOperation {
     Ratio(VectorId, i32, i32),
     /// The accelerations at these positions and velocities.
     AccelerationsAt(VectorId, VectorId),
+    /// The derivative of the accelerations at the first two along the last two.
+    AccelerationDerivative([VectorId; 4]),
+    /// The solution of linear equations with the derivatives at these positions and velocities, for this time step and right side.
+    Solution(Implicit, [VectorId; 4]),
+}
+
+/// The forces that linear equations treat implicitly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Implicit {
+    Damping,
+    DampingAndStiffness,
 }
 
 impl StepTrace {
@@ -138,5 +150,51 @@ impl<'t> System<TracedVector<'t>, 1> for TracedSystem<'t> {
         let TracedSystem(trace) = self;
         let (q, v) = (trace.id(state.q[0]), trace.id(state.v[0]));
         [trace.record(VectorOperation::AccelerationsAt(q, v))]
+    }
+}
+
+impl<'t> TracedSystem<'t> {
+    /// An operation on positions and velocities and two more vectors.
+    fn record(
+        &self,
+        at: &State<TracedVector<'t>, 1>,
+        others: [TracedVector<'t>; 2],
+        operation: impl FnOnce([VectorId; 4]) -> VectorOperation,
+    ) -> [TracedVector<'t>; 1] {
+        let TracedSystem(trace) = self;
+        let operands = [at.q[0], at.v[0], others[0], others[1]].map(|vector| trace.id(vector));
+        [trace.record(operation(operands))]
+    }
+}
+
+impl<'t> ImplicitSystem<TracedVector<'t>, 1> for TracedSystem<'t> {
+    fn acceleration_derivative(
+        &self,
+        at: &State<TracedVector<'t>, 1>,
+        direction: &State<TracedVector<'t>, 1>,
+    ) -> [TracedVector<'t>; 1] {
+        let along = [direction.q[0], direction.v[0]];
+        self.record(at, along, VectorOperation::AccelerationDerivative)
+    }
+
+    fn solve_damping(
+        &self,
+        at: &State<TracedVector<'t>, 1>,
+        h: TracedVector<'t>,
+        [right]: [TracedVector<'t>; 1],
+    ) -> [TracedVector<'t>; 1] {
+        let solution = |operands| VectorOperation::Solution(Implicit::Damping, operands);
+        self.record(at, [h, right], solution)
+    }
+
+    fn solve_damping_and_stiffness(
+        &self,
+        at: &State<TracedVector<'t>, 1>,
+        h: TracedVector<'t>,
+        [right]: [TracedVector<'t>; 1],
+    ) -> [TracedVector<'t>; 1] {
+        let solution =
+            |operands| VectorOperation::Solution(Implicit::DampingAndStiffness, operands);
+        self.record(at, [h, right], solution)
     }
 }

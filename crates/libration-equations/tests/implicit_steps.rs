@@ -1,0 +1,73 @@
+//! Programs of implicit steps.
+
+use libration_core::integrator::ImplicitIntegrator;
+use libration_core::number::Dual;
+use libration_core::system::{Differentiated, HenonHeiles, Kepler, Pendulum};
+use libration_core::{Float, ImplicitMethod, Model, State};
+use libration_equations::{Definitions, Dynamics, Equations, StepProgram};
+
+/// Asserts that ten steps have the same bits.
+fn check<S: Float, M: Model<D>, const D: usize>(model: M, start: State<f64, D>) {
+    for method in ImplicitMethod::ALL {
+        let step = StepProgram::implicit(method, &Dynamics::of(&model, None));
+        let mut run = step.program().on::<S>();
+        let dt = S::from_f64(0.0123);
+        let mut state = start.map(S::from_f64);
+        let mut own: Vec<S> = state.coordinates().collect();
+        let system = Differentiated(model.on::<Dual<S>>());
+        for _ in 0..10 {
+            state = method.step(&system, state, dt);
+            let inputs: Vec<S> = own.iter().copied().chain([dt]).collect();
+            own = run.run(&inputs).collect();
+            let wanted: Vec<S> = state.coordinates().collect();
+            assert_eq!(format!("{own:?}"), format!("{wanted:?}"), "{method:?}");
+        }
+    }
+}
+
+#[test]
+fn programs_of_implicit_steps_have_the_bits_of_the_steps() {
+    let start = State { q: [1.3, 0.2], v: [-0.1, 0.9] };
+    check::<f64, _, 1>(Pendulum { omega2: 9.81 }, State { q: [1.3], v: [-0.4] });
+    check::<f32, _, 1>(Pendulum { omega2: 9.81 }, State { q: [1.3], v: [-0.4] });
+    check::<f64, _, 2>(Kepler { mu: 1.1 }, start);
+    check::<f64, _, 2>(HenonHeiles { lambda: 0.9 }, start);
+}
+
+/// A chain of `n` pendulums with springs and dampers between neighbours.
+fn chain(n: usize) -> Equations {
+    let names: Vec<String> = (0..n).map(|i| format!("x{i}")).collect();
+    let force = |i: usize| {
+        let mut text = format!("-9.81*sin(x{i}) - 0.1*x{i}'");
+        for j in [i.wrapping_sub(1), i + 1].into_iter().filter(|j| *j < n) {
+            text += &format!(" + 50*(x{j} - x{i}) + 2*(x{j}' - x{i}')");
+        }
+        (names[i].clone(), text)
+    };
+    let definitions = Definitions {
+        coordinates: names.clone(),
+        accelerations: (0..n).map(force).collect(),
+        ..Definitions::default()
+    };
+    Equations::new(&definitions).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn a_chain_of_eight_stands_still_in_equilibrium_and_loses_energy_elsewhere() {
+    let n = 8;
+    let equations = chain(n);
+    for method in ImplicitMethod::ALL {
+        let step = StepProgram::implicit(method, equations.dynamics());
+        let mut run = step.program().on::<f64>();
+        let rest: Vec<f64> = run.run(&[vec![0.0; 2 * n], vec![0.05]].concat()).collect();
+        assert!(rest.iter().all(|x| *x == 0.0), "{method:?} {rest:?}");
+        // The fastest mode has about 14 rad/s and a damping of 0.28.
+        let mut state: Vec<f64> = (0..2 * n).map(|i| 0.3 * (i as f64).sin()).collect();
+        let size = |state: &[f64]| state.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        for _ in 0..2000 {
+            let inputs: Vec<f64> = state.iter().copied().chain([0.05]).collect();
+            state = run.run(&inputs).collect();
+        }
+        assert!(size(&state) < 0.1, "{method:?} {state:?}");
+    }
+}
