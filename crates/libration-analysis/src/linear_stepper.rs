@@ -1,12 +1,9 @@
 //! Steps of integrators on linear plants of any size.
 
-use libration_core::{Float, Integrator, Method, State, System};
+use libration_core::{AnyMethod, Float};
 use libration_linear::{MOST_STATES, Matrix};
 
-use super::StabilityFunction;
-
-/// Half of the most states: the degrees of freedom of the phase space in which plants are stepped.
-const HALF: usize = MOST_STATES / 2;
+use super::{StabilityFunction, StepOn};
 
 /// `ẋ = Ax` as a system that integrators step.
 ///
@@ -15,12 +12,12 @@ const HALF: usize = MOST_STATES / 2;
 #[derive(Clone, Debug)]
 pub struct LinearStepper {
     /// `A` with rows and columns in the order of the phase space.
-    rates: Matrix,
+    pub(crate) rates: Matrix,
     /// The state at each place of the phase space.
-    order: Vec<usize>,
+    pub(crate) order: Vec<usize>,
     /// Number of states that are positions of the phase space.
-    positions: usize,
-    is_mechanical: bool,
+    pub(crate) positions: usize,
+    pub(crate) is_mechanical: bool,
 }
 
 impl LinearStepper {
@@ -58,8 +55,8 @@ impl LinearStepper {
     }
 
     /// Whether an integrator applies.
-    pub fn applies(&self, method: Method) -> bool {
-        self.is_mechanical || StabilityFunction::new(method).is_some()
+    pub fn applies(&self, method: impl Into<AnyMethod>) -> bool {
+        self.is_mechanical || StabilityFunction::of(method).is_some()
     }
 
     /// The matrices of stiffness and damping of a mechanical plant, both over its masses.
@@ -80,13 +77,13 @@ impl LinearStepper {
     }
 
     /// Steps of `dt` seconds in floats of type `S`; none if the integrator does not apply.
-    pub fn with_step<S: Float>(&self, method: Method, dt: f64) -> Option<StepOn<'_, S>> {
-        self.applies(method).then(|| StepOn {
-            stepper: self,
-            rates: self.rates.entries().iter().map(|&x| S::from_f64(x)).collect(),
-            method,
-            dt: S::from_f64(dt),
-        })
+    pub fn with_step<S: Float>(
+        &self,
+        method: impl Into<AnyMethod>,
+        dt: f64,
+    ) -> Option<StepOn<'_, S>> {
+        let method = method.into();
+        self.applies(method).then(|| StepOn::new(self, method, dt))
     }
 }
 
@@ -114,81 +111,11 @@ pub fn positions_and_velocities(a: &Matrix) -> Option<Vec<(usize, usize)>> {
     Some(pairs)
 }
 
-/// Steps of one integrator and one length on a linear plant, in floats of type `S`.
-#[derive(Clone, Debug)]
-pub struct StepOn<'a, S> {
-    stepper: &'a LinearStepper,
-    rates: Vec<S>,
-    method: Method,
-    dt: S,
-}
-
-impl<S: Float> StepOn<'_, S> {
-    /// One step from the states `x`, each rounded to `S`.
-    pub fn step(&self, x: &[f64]) -> Vec<f64> {
-        let LinearStepper { order, positions, .. } = self.stepper;
-        let mut state = State::<S, HALF>::origin();
-        for (place, &i) in order.iter().enumerate() {
-            *at(&mut state, place, *positions) = S::from_f64(x[i]);
-        }
-        let mut state = self.method.step(self, state, self.dt);
-        let mut next = vec![0.0; x.len()];
-        for (place, &i) in order.iter().enumerate() {
-            next[i] = at(&mut state, place, *positions).to_f64();
-        }
-        next
-    }
-
-    /// The matrix of a step, states × states: the step from each unit vector.
-    pub fn update_matrix(&self) -> Matrix {
-        let n = self.stepper.order.len();
-        let unit = |j: usize| (0..n).map(|i| f64::from(u8::from(i == j))).collect::<Vec<f64>>();
-        let columns: Vec<Vec<f64>> = (0..n).map(|j| self.step(&unit(j))).collect();
-        Matrix::from_fn(n, n, |i, j| columns[j][i])
-    }
-
-    /// The rates of the places `places` of the phase space.
-    fn rates_of(&self, state: &State<S, HALF>, places: core::ops::Range<usize>) -> [S; HALF] {
-        let n = self.stepper.order.len();
-        let positions = self.stepper.positions;
-        let mut rates = [S::zero(); HALF];
-        for (rate, row) in rates.iter_mut().zip(places) {
-            let row = &self.rates[row * n..(row + 1) * n];
-            let (of_q, of_v) = row.split_at(positions);
-            let terms = of_q.iter().zip(&state.q).chain(of_v.iter().zip(&state.v));
-            *rate = terms.fold(S::zero(), |sum, (&a, &x)| sum + a * x);
-        }
-        rates
-    }
-}
-
-/// The coordinate of a place of the phase space.
-fn at<S>(state: &mut State<S, HALF>, place: usize, positions: usize) -> &mut S {
-    if place < positions { &mut state.q[place] } else { &mut state.v[place - positions] }
-}
-
-impl<S: Float> System<S, HALF> for StepOn<'_, S> {
-    const BASELINE_ONLY: bool = true;
-
-    fn acceleration(&self, state: &State<S, HALF>) -> [S; HALF] {
-        self.rates_of(state, self.stepper.positions..self.stepper.order.len())
-    }
-
-    fn rate(&self, state: State<S, HALF>) -> State<S, HALF> {
-        let q = match self.stepper.is_mechanical {
-            true => state.v,
-            false => self.rates_of(&state, 0..self.stepper.positions),
-        };
-        State { q, v: self.acceleration(&state) }
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use libration_core::system::DampedOscillator;
+    use libration_core::Method;
 
     use super::*;
-    use crate::UpdateMatrix;
 
     fn matrix(rows: &[&[f64]]) -> Matrix {
         Matrix::from_rows(rows).unwrap()
@@ -213,21 +140,6 @@ mod tests {
             let stepper = LinearStepper::new(first_order).unwrap();
             assert!(!stepper.is_mechanical());
             assert!(stepper.applies(Method::Rk4) && !stepper.applies(Method::VelocityVerlet));
-        }
-    }
-
-    #[test]
-    fn the_step_on_a_plant_has_the_bits_of_the_step_on_the_same_system_of_the_catalogue() {
-        let (omega2, gamma, dt) = (7.0, 0.3, 0.11);
-        let stepper = LinearStepper::new(&matrix(&[&[0.0, 1.0], &[-omega2, -gamma]])).unwrap();
-        let system = DampedOscillator { omega2, gamma };
-        for method in Method::ALL {
-            let wanted = UpdateMatrix::from_map(|e| method.step(&system, e, dt));
-            let found = stepper.with_step::<f64>(method, dt).unwrap().update_matrix();
-            for (i, row) in wanted.rows().iter().enumerate() {
-                // −ω²q − γv in another order of signs.
-                assert_eq!(found.row(i), row, "{}", method.name());
-            }
         }
     }
 

@@ -2,19 +2,22 @@
 
 use core::fmt;
 
-use libration_core::{Integrator, Scalar, State, System};
+use libration_core::integrator::ImplicitIntegrator;
+use libration_core::number::RationalFunction;
+use libration_core::system::ImplicitSystem;
+use libration_core::{AnyMethod, Elementary, Integrator, Scalar, State, System};
 use libration_linear::{Matrix, eigenvalues};
 use num_complex::Complex64;
 
-use super::{StepWindow, UnknownStep};
+use super::{StepWindow, UnknownImplicitStep, UnknownStep};
 
 /// The stability function `R(hλ)` of a step that uses nothing but rates: one step of `h` seconds on `ẏ = λy` multiplies `y` by it.
 ///
-/// It is the result of the step itself, run on polynomials (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, 2nd ed.,
+/// It is the result of the step itself, run on polynomials, or on quotients of polynomials if the step solves equations (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, 2nd ed.,
 /// §IV.2).
 #[derive(Clone, Copy, Debug)]
 pub struct StabilityFunction {
-    polynomial: UnknownStep,
+    quotient: RationalFunction<32>,
 }
 
 /// `ẏ = y`, with `y` as a position. It has no acceleration: a step that asks for one has no stability function.
@@ -30,6 +33,50 @@ impl System<UnknownStep, 1> for TestEquation {
     }
 }
 
+/// The same on quotients.
+struct ImplicitTestEquation;
+
+type Quotients = State<UnknownImplicitStep, 1>;
+
+impl System<UnknownImplicitStep, 1> for ImplicitTestEquation {
+    fn acceleration(&self, _: &Quotients) -> [UnknownImplicitStep; 1] {
+        [UnknownImplicitStep::UNDEFINED]
+    }
+
+    fn rate(&self, state: Quotients) -> Quotients {
+        State { q: state.q, v: [UnknownImplicitStep::zero()] }
+    }
+}
+
+impl ImplicitSystem<UnknownImplicitStep, 1> for ImplicitTestEquation {
+    fn acceleration_derivative(&self, _: &Quotients, _: &Quotients) -> [UnknownImplicitStep; 1] {
+        [UnknownImplicitStep::UNDEFINED]
+    }
+
+    fn solve_damping(
+        &self,
+        _: &Quotients,
+        _: UnknownImplicitStep,
+        _: [UnknownImplicitStep; 1],
+    ) -> [UnknownImplicitStep; 1] {
+        [UnknownImplicitStep::UNDEFINED]
+    }
+
+    fn solve_damping_and_stiffness(
+        &self,
+        _: &Quotients,
+        _: UnknownImplicitStep,
+        _: [UnknownImplicitStep; 1],
+    ) -> [UnknownImplicitStep; 1] {
+        [UnknownImplicitStep::UNDEFINED]
+    }
+
+    fn solve_rate(&self, _: &Quotients, h: UnknownImplicitStep, right: Quotients) -> Quotients {
+        let one = UnknownImplicitStep::one();
+        State { q: [right.q[0].quotient(one - h)], v: right.v }
+    }
+}
+
 /// Part of the sizes of its terms below which a coefficient is rounding.
 const ROUNDING: f64 = 1e-14;
 
@@ -39,22 +86,41 @@ impl StabilityFunction {
         let start = State { q: [UnknownStep::one()], v: [UnknownStep::zero()] };
         let State { q: [polynomial], v: [unused] } =
             integrator.step(&TestEquation, start, UnknownStep::unknown());
-        (polynomial.is_valid() && unused.is_valid()).then_some(StabilityFunction { polynomial })
+        (polynomial.is_valid() && unused.is_valid())
+            .then(|| StabilityFunction { quotient: RationalFunction::from(polynomial) })
     }
 
-    fn coefficients(&self) -> Vec<f64> {
-        let degree = self.polynomial.degree().unwrap_or(0);
-        (0..=degree).map(|k| self.polynomial.coefficient(k).to_f64()).collect()
+    /// That of an integrator that solves equations; none if its step distinguishes positions from velocities.
+    pub fn implicit(integrator: impl ImplicitIntegrator) -> Option<Self> {
+        let start = State { q: [UnknownImplicitStep::one()], v: [UnknownImplicitStep::zero()] };
+        let end = integrator.step(&ImplicitTestEquation, start, UnknownImplicitStep::unknown());
+        let quotient = end.q[0].in_lowest_terms();
+        let quotient = RationalFunction::new(
+            quotient.numerator().with_room(),
+            quotient.denominator().with_room(),
+        );
+        (quotient.is_valid() && end.v[0].is_valid()).then_some(StabilityFunction { quotient })
+    }
+
+    /// That of a built-in integrator; none if its step distinguishes positions from velocities.
+    pub fn of(method: impl Into<AnyMethod>) -> Option<Self> {
+        match method.into() {
+            AnyMethod::Explicit(method) => StabilityFunction::new(method),
+            AnyMethod::Implicit(method) => StabilityFunction::implicit(method),
+        }
     }
 
     /// `R(z)`, by Horner's rule.
     pub fn at(&self, z: Complex64) -> Complex64 {
-        self.coefficients().into_iter().rev().fold(Complex64::ZERO, |sum, c| sum * z + c)
+        let value = |p: &UnknownStep| {
+            coefficients(p).into_iter().rev().fold(Complex64::ZERO, |sum, c| sum * z + c)
+        };
+        value(self.quotient.numerator()) / value(self.quotient.denominator())
     }
 
     /// The time steps `h` in s with `|R(hλ)| ≤ 1`, for an eigenvalue `λ` in 1/s.
     ///
-    /// They lie between the roots of the polynomial `|R(hλ)|² − 1` in `h`.
+    /// They lie between the roots of the polynomial `|N(hλ)|² − |D(hλ)|²` in `h`, where `R = N/D`.
     pub fn stable_steps(&self, value: Complex64) -> Vec<StepWindow> {
         let size = value.norm();
         if size == 0.0 {
@@ -71,22 +137,30 @@ impl StabilityFunction {
         windows.into_iter().map(|window| window.scaled(size.recip())).collect()
     }
 
-    /// The coefficients of `|R(hu)|² − 1` for a number `u` of size 1; those that are rounding are zero.
+    /// The coefficients of `|N(hu)|² − |D(hu)|²` for a number `u` of size 1; those that are rounding are zero.
     fn excess(&self, unit: Complex64) -> Vec<f64> {
-        let coefficients = self.coefficients();
-        let degree = coefficients.len() - 1;
-        let (mut sums, mut sizes) = (vec![0.0; 2 * degree + 1], vec![0.0; 2 * degree + 1]);
-        for (j, a) in coefficients.iter().enumerate() {
-            for (k, b) in coefficients.iter().enumerate() {
-                let turned = unit.powi(j as i32) * unit.conj().powi(k as i32);
-                sums[j + k] += a * b * turned.re;
-                sizes[j + k] += (a * b).abs();
+        let [numerator, denominator] =
+            [self.quotient.numerator(), self.quotient.denominator()].map(coefficients);
+        let length = 2 * numerator.len().max(denominator.len()) - 1;
+        let (mut sums, mut sizes) = (vec![0.0; length], vec![0.0; length]);
+        for (polynomial, sign) in [(numerator, 1.0), (denominator, -1.0)] {
+            for (j, a) in polynomial.iter().enumerate() {
+                for (k, b) in polynomial.iter().enumerate() {
+                    let turned = unit.powi(j as i32) * unit.conj().powi(k as i32);
+                    sums[j + k] += sign * a * b * turned.re;
+                    sizes[j + k] += (a * b).abs();
+                }
             }
         }
-        sums[0] -= 1.0;
         let known = |(sum, size): (f64, f64)| if sum.abs() > ROUNDING * size { sum } else { 0.0 };
         sums.into_iter().zip(sizes).map(known).collect()
     }
+}
+
+/// The coefficients of a polynomial, that of `z⁰` first.
+fn coefficients(polynomial: &UnknownStep) -> Vec<f64> {
+    let degree = polynomial.degree().unwrap_or(0);
+    (0..=degree).map(|k| polynomial.coefficient(k).to_f64()).collect()
 }
 
 /// The real roots above zero of a polynomial with these coefficients, rising; of the first and the last none is zero.
@@ -103,16 +177,16 @@ fn positive_roots(polynomial: &[f64]) -> Vec<f64> {
     roots
 }
 
-/// As a polynomial in `z`.
+/// As a polynomial in `z`, or a quotient of two.
 impl fmt::Display for StabilityFunction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.polynomial.fmt(f)
+        self.quotient.fmt(f)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use libration_core::Method;
+    use libration_core::{ImplicitMethod, Method};
 
     use super::*;
 
@@ -151,5 +225,36 @@ mod tests {
             panic!()
         };
         assert!(window.from > 0.5 && window.to < 2.9, "{window:?}");
+    }
+
+    #[test]
+    fn implicit_runge_kutta_methods_have_the_quotients_of_the_textbook_and_no_limit_on_decaying_modes()
+     {
+        for method in ImplicitMethod::ALL {
+            let text = StabilityFunction::of(method).map(|function| function.to_string());
+            let wanted = match method {
+                ImplicitMethod::DampingStiffnessImplicit | ImplicitMethod::BackwardEuler => {
+                    Some("1/(1 − z)")
+                }
+                ImplicitMethod::ImplicitMidpoint | ImplicitMethod::Trapezoid => {
+                    Some("(1 + z/2)/(1 − z/2)")
+                }
+                ImplicitMethod::DampingImplicit | ImplicitMethod::StablePd => None,
+            };
+            assert_eq!(text.as_deref(), wanted, "{}", method.name());
+            let Some(function) = StabilityFunction::of(method) else { continue };
+            for value in [[-3.0, 0.0], [-1.0, 20.0], [0.0, 5.0], [0.0, 0.0]] {
+                let stable = function.stable_steps(Complex64::new(value[0], value[1]));
+                assert_eq!(stable, [StepWindow::ALL], "{method:?} {value:?}");
+            }
+            // 1/(1 − 0.5 i), and (1 + 0.25 i)/(1 − 0.25 i) of size 1.
+            let found = function.at(Complex64::new(0.0, 0.5)).norm();
+            let wanted = if method.order() == 1 { 0.8_f64.sqrt() } else { 1.0 };
+            assert!((found - wanted).abs() < 1e-15, "{method:?} {found}");
+        }
+        // |1 − hλ| ≥ 1 from h = 2 Re λ/|λ|² on.
+        let euler = StabilityFunction::of(ImplicitMethod::BackwardEuler).unwrap();
+        let [window] = euler.stable_steps(Complex64::new(1.0, 3.0))[..] else { panic!() };
+        assert!((window.from - 0.2).abs() < 1e-15 && window.to.is_infinite(), "{window:?}");
     }
 }

@@ -1,10 +1,10 @@
 //! The time steps at which a step is stable, exactly.
 
-use libration_core::Elementary;
-use libration_core::number::Wide;
+use libration_core::number::{Poly, Wide};
+use libration_core::{Elementary, Scalar};
 
-use super::SymbolicStep;
 use super::roots::{Dyadic, IntegerPoly, Root, WholePoly, positive_roots};
+use super::{SymbolicStep, UnknownStep};
 
 /// A largest open interval of time steps at which every orbit stays bounded.
 #[derive(Clone, Copy, Debug)]
@@ -24,48 +24,42 @@ impl SymbolicStep {
     /// double root at which the two eigenvalues touch at ±1 splits a window only if the matrix is
     /// defective there, so that orbits grow linearly: it does not where the matrix is ±1 itself.
     pub fn stability_windows(&self) -> Vec<StabilityWindow> {
-        let Some(conditions) = self.conditions() else { return Vec::new() };
-        let cells = Cells::of(&conditions.polynomials());
-        let mut windows: Vec<StabilityWindow> = Vec::new();
-        let mut before = false;
-        for i in 0..=cells.roots.len() {
-            let stable = conditions.bounded_at(&cells.sample(i));
-            let left = i.checked_sub(1).map(|i| &cells.roots[i]);
-            let value = |root: &Root| match conditions.squares {
-                true => root.value().sqrt(),
-                false => root.value(),
-            };
-            let to = cells.roots.get(i).map(value);
-            let joined = before && left.is_some_and(|root| !conditions.defective_at(root));
-            match windows.last_mut() {
-                Some(window) if stable && joined => window.to = to,
-                _ if stable => {
-                    windows.push(StabilityWindow { from: left.map_or(Wide::ZERO, value), to })
-                }
-                _ => {}
-            }
-            before = stable;
-        }
-        windows
-    }
-
-    fn conditions(&self) -> Option<Conditions> {
         let entry = |i, j| self.matrix.entry(i, j);
-        // All of them times `s`, with as many digits as it takes: the determinant may outgrow exact fractions.
-        let ([a, b, c, d], s) = WholePoly::over_one_denominator([
-            &entry(0, 0),
-            &entry(0, 1),
-            &entry(1, 0),
-            &entry(1, 1),
-        ])?;
-        let (one, trace) = (&s * &s, &s * &(&a + &d));
-        let determinant = &(&a * &d) - &(&b * &c);
-        let even = &one + &determinant;
-        let [area, plus, minus] = [&one - &determinant, &even - &trace, &even + &trace];
-        let polynomials = [area, plus, minus, b, c].map(WholePoly::primitive);
-        let ([area, plus, minus, b, c], squares) = IntegerPoly::in_squares(polynomials.each_ref());
-        Some(Conditions { area, plus, minus, off_diagonal: [b, c], squares })
+        let entries = [entry(0, 0), entry(0, 1), entry(1, 0), entry(1, 1)];
+        windows(entries.each_ref(), &UnknownStep::one())
     }
+}
+
+/// The windows of a matrix whose entries have these numerators, row by row, over one denominator.
+///
+/// At a pole, where the denominator is zero, one of the conditions is violated or all entries have a common factor.
+pub(super) fn windows<const N: usize>(
+    numerators: [&Poly<N>; 4],
+    denominator: &Poly<N>,
+) -> Vec<StabilityWindow> {
+    let Some(conditions) = Conditions::of(numerators, denominator) else { return Vec::new() };
+    let cells = Cells::of(&conditions.polynomials());
+    let mut windows: Vec<StabilityWindow> = Vec::new();
+    let mut before = false;
+    for i in 0..=cells.roots.len() {
+        let stable = conditions.bounded_at(&cells.sample(i));
+        let left = i.checked_sub(1).map(|i| &cells.roots[i]);
+        let value = |root: &Root| match conditions.squares {
+            true => root.value().sqrt(),
+            false => root.value(),
+        };
+        let to = cells.roots.get(i).map(value);
+        let joined = before && left.is_some_and(|root| !conditions.defective_at(root));
+        match windows.last_mut() {
+            Some(window) if stable && joined => window.to = to,
+            _ if stable => {
+                windows.push(StabilityWindow { from: left.map_or(Wide::ZERO, value), to })
+            }
+            _ => {}
+        }
+        before = stable;
+    }
+    windows
 }
 
 /// Jury's polynomials of a step, and the entries that tell a defective double eigenvalue.
@@ -82,6 +76,19 @@ struct Conditions {
 }
 
 impl Conditions {
+    /// Those of the matrix with these numerators over one denominator, whose square is a factor of all of them.
+    fn of<const N: usize>([a, b, c, d]: [&Poly<N>; 4], denominator: &Poly<N>) -> Option<Self> {
+        // All of them times a number, with as many digits as it takes: the determinant may outgrow exact fractions.
+        let ([a, b, c, d, s], _) = WholePoly::over_one_denominator([a, b, c, d, denominator])?;
+        let (one, trace) = (&s * &s, &s * &(&a + &d));
+        let determinant = &(&a * &d) - &(&b * &c);
+        let even = &one + &determinant;
+        let [area, plus, minus] = [&one - &determinant, &even - &trace, &even + &trace];
+        let polynomials = [area, plus, minus, b, c].map(WholePoly::primitive);
+        let ([area, plus, minus, b, c], squares) = IntegerPoly::in_squares(polynomials.each_ref());
+        Some(Conditions { area, plus, minus, off_diagonal: [b, c], squares })
+    }
+
     fn polynomials(&self) -> [&IntegerPoly; 3] {
         [&self.area, &self.plus, &self.minus]
     }

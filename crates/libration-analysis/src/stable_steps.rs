@@ -1,12 +1,14 @@
 //! The time steps at which an integrator is stable on a linear plant.
 
 use libration_core::system::DampedOscillator;
-use libration_core::{Method, Model};
+use libration_core::{AnyMethod, Model};
 use libration_linear::eigenvalues;
 use num_complex::Complex64;
 
+use super::step_search::{DAMPED, searched_windows};
 use super::{
-    LinearStepper, StabilityFunction, StabilityWindow, StepWindow, SymbolicStep, UnknownStep,
+    LinearStepper, RationalStep, StabilityFunction, StabilityWindow, StepWindow, SymbolicStep,
+    UnknownStep,
 };
 
 /// Part of the largest eigenvalue that is a rounding of another one.
@@ -20,12 +22,6 @@ const PARTED: f64 = 1e-7;
 
 /// Part of the size of parted zeros below which their sum is zero.
 const NO_SUM: f64 = 1e-3;
-
-/// Growth per step that counts as none: with modes at rest, since rounding parts a double eigenvalue 1 by its root, and without.
-const NEUTRAL: [f64; 2] = [1e-7, 1e-11];
-
-/// Relative width below which a window of a search is a point at which eigenvalues touch the unit circle.
-const POINT: f64 = 1e-6;
 
 /// Eigenvalues without their rounding: those beside the largest are zero, and so are growth rates of oscillations.
 ///
@@ -52,11 +48,16 @@ impl LinearStepper {
     /// With a stability function they are exact, also if other modes of the plant grow. Of a mechanical plant without damping or with
     /// modal damping they are those of its oscillators, from exact polynomials. With other damping the spectral radius of the update
     /// matrix is searched up to about twice the limit of the fastest mode without damping, at distances of about a hundredth of it:
-    /// narrower windows and those beyond may be missed. None if the integrator does not apply, or if a mode grows, or oscillates for ever
+    /// narrower windows and those beyond may be missed. Where damping is implicit it is searched from 0.1 to 1000 times the time of the fastest
+    /// mode, at distances of a few per cent, and not known if it is stable there. None if the integrator does not apply, or if a mode grows, or oscillates for ever
     /// under forces of velocities that are no modal damping, and there is no stability function.
-    pub fn stable_steps(&self, method: Method, values: &[Complex64]) -> Option<Vec<StepWindow>> {
-        let values = without_rounding(values);
-        if let Some(function) = StabilityFunction::new(method) {
+    pub fn stable_steps(
+        &self,
+        method: impl Into<AnyMethod>,
+        values: &[Complex64],
+    ) -> Option<Vec<StepWindow>> {
+        let (method, values) = (method.into(), without_rounding(values));
+        if let Some(function) = StabilityFunction::of(method) {
             let kept = values.iter().filter(|value| value.re <= 0.0);
             return Some(intersection(kept.map(|&value| function.stable_steps(value))));
         }
@@ -64,7 +65,7 @@ impl LinearStepper {
             return None;
         }
         // In powers of ωh.
-        let undamped = windows_of(&SymbolicStep::new(method)?);
+        let undamped = windows_of(method, &DampedOscillator { omega2: 1.0, gamma: 0.0 })?;
         if !self.is_damped() {
             let of = |value: &Complex64| match value.norm() {
                 0.0 => vec![StepWindow::ALL],
@@ -73,10 +74,7 @@ impl LinearStepper {
             return Some(intersection(values.iter().map(of)));
         }
         let exact = self.oscillators(&values).and_then(|all| {
-            let step = |one: &DampedOscillator<f64>| {
-                SymbolicStep::of(method, &Model::on::<UnknownStep>(one))
-            };
-            all.iter().map(|one| Some(windows_of(&step(one)?))).collect::<Option<Vec<_>>>()
+            all.iter().map(|one| windows_of(method, one)).collect::<Option<Vec<_>>>()
         });
         if let Some(exact) = exact {
             return Some(intersection(exact.into_iter()));
@@ -86,7 +84,12 @@ impl LinearStepper {
             return None;
         }
         let last = undamped.last().map_or(0.0, |window| window.to);
-        Some(self.searched_windows(method, &values, 2.0 * last + 1.0))
+        match method {
+            AnyMethod::Explicit(_) => {
+                searched_windows(self, method, &values, [0.0, 2.0 * last + 1.0])
+            }
+            AnyMethod::Implicit(_) => searched_windows(self, method, &values, DAMPED),
+        }
     }
 
     /// The damped oscillators that a mechanical plant consists of; none if they are not known.
@@ -113,55 +116,23 @@ impl LinearStepper {
         };
         (oscillates && is_damping && apart.largest() <= rounding).then(|| upper.map(one).collect())
     }
-
-    /// Where the spectral radius is at most 1, up to a step in which the fastest mode has `|hλ| = most`.
-    fn searched_windows(&self, method: Method, values: &[Complex64], most: f64) -> Vec<StepWindow> {
-        let fastest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
-        if fastest == 0.0 || !most.is_finite() {
-            return vec![StepWindow::ALL];
-        }
-        let [at_rest, moving] = NEUTRAL;
-        let neutral = if values.contains(&Complex64::ZERO) { at_rest } else { moving };
-        let is_stable = |z: f64| {
-            let step = self.with_step::<f64>(method, z / fastest);
-            let values = step.and_then(|step| eigenvalues(&step.update_matrix()));
-            values.is_some_and(|values| values.iter().all(|x| x.norm() <= 1.0 + neutral))
-        };
-        // Eigenvalues cost the cube of the size.
-        let points = (400_000 / values.len().pow(2)).clamp(50, 400);
-        let place = |k: usize| most * k as f64 / points as f64;
-        let states: Vec<bool> = (1..=points).map(|k| is_stable(place(k))).collect();
-        let mut cuts = Vec::new();
-        for k in 1..points {
-            if states[k - 1] != states[k] {
-                cuts.push(bisected(place(k), place(k + 1), |z| is_stable(z) == states[k - 1]));
-            }
-        }
-        if !states[0] {
-            cuts.insert(0, bisected(0.0, place(1), is_stable));
-        }
-        let windows = StepWindow::of_cells(&cuts, |z| z <= most && is_stable(z));
-        let wide = windows.into_iter().filter(|window| window.to - window.from > POINT * window.to);
-        wide.map(|window| window.scaled(fastest.recip())).collect()
-    }
 }
 
-/// The stability windows of a step on polynomials, in its unit.
-fn windows_of(step: &SymbolicStep) -> Vec<StepWindow> {
+/// The stability windows of a method on an oscillator, from exact polynomials; none if these outgrow their arithmetic.
+fn windows_of(method: AnyMethod, one: &DampedOscillator<f64>) -> Option<Vec<StepWindow>> {
+    let windows = match method {
+        AnyMethod::Explicit(method) => {
+            SymbolicStep::of(method, &Model::on::<UnknownStep>(one))?.stability_windows()
+        }
+        AnyMethod::Implicit(method) => {
+            RationalStep::damped(method, one.omega2, one.gamma)?.stability_windows()
+        }
+    };
     let ends = |window: &StabilityWindow| StepWindow {
         from: window.from.to_f64(),
         to: window.to.map_or(f64::INFINITY, |to| to.to_f64()),
     };
-    step.stability_windows().iter().map(ends).collect()
-}
-
-/// The end of `holds` between a point where it holds and one where it does not.
-fn bisected(mut inside: f64, mut outside: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..40 {
-        let middle = 0.5 * (inside + outside);
-        if holds(middle) { inside = middle } else { outside = middle }
-    }
-    inside
+    Some(windows.iter().map(ends).collect())
 }
 
 fn intersection(all: impl Iterator<Item = Vec<StepWindow>>) -> Vec<StepWindow> {
@@ -170,11 +141,12 @@ fn intersection(all: impl Iterator<Item = Vec<StepWindow>>) -> Vec<StepWindow> {
 
 #[cfg(test)]
 mod tests {
+    use libration_core::{ImplicitMethod, Method};
     use libration_linear::Matrix;
 
     use super::*;
 
-    fn windows(a: &Matrix, method: Method) -> Option<Vec<StepWindow>> {
+    fn windows(a: &Matrix, method: impl Into<AnyMethod>) -> Option<Vec<StepWindow>> {
         LinearStepper::new(a).unwrap().stable_steps(method, &eigenvalues(a).unwrap())
     }
 
@@ -196,27 +168,6 @@ mod tests {
     }
 
     #[test]
-    fn searched_windows_of_a_damped_oscillator_are_those_of_its_exact_polynomials() {
-        for (omega2, gamma) in [(9.0, 0.6), (9.0, 6.0), (9.0, 30.0)] {
-            let a = oscillator(omega2, gamma);
-            let stepper = LinearStepper::new(&a).unwrap();
-            for method in [Method::SymplecticEuler, Method::VelocityVerlet, Method::TextbookVerlet]
-            {
-                let exact = windows(&a, method).unwrap();
-                let values = eigenvalues(&a).unwrap();
-                let found = stepper.searched_windows(method, &values, 5.0);
-                // A narrow window of overdamped Verlet steps is beyond the search.
-                assert!(exact.len() >= found.len(), "{method:?} {found:?} {exact:?}");
-                for (found, exact) in found.iter().zip(&exact) {
-                    // A growth of 10⁻¹¹ counts as none; eigenvalues leave the circle at a rate of about one per ωh.
-                    assert!((found.from - exact.from).abs() < 1e-10, "{method:?} {found:?}");
-                    assert!((found.to - exact.to).abs() < 1e-10, "{method:?} {found:?} {exact:?}");
-                }
-            }
-        }
-    }
-
-    #[test]
     fn modal_damping_has_the_windows_of_its_oscillators() {
         // Damping of 0.1 times the stiffness, whose squared frequencies are 1 and 3.
         let modal = Matrix::from_rows(&[
@@ -230,6 +181,21 @@ mod tests {
         let both = windows(&modal, Method::SymplecticEuler).unwrap();
         assert_eq!(both.len(), 1);
         assert!((both[0].to / one[0].to - 1.0).abs() < 1e-13, "{both:?} {one:?}");
+    }
+
+    #[test]
+    fn stable_steps_of_implicit_methods_are_those_of_the_damped_oscillator_by_hand() {
+        for (omega, zeta) in [(3.0_f64, 0.1), (3.0, 1.0_f64), (3.0, 5.0)] {
+            let a = oscillator(omega * omega, 2.0 * zeta * omega);
+            let [window] = windows(&a, ImplicitMethod::DampingImplicit).unwrap()[..] else {
+                panic!()
+            };
+            let limit = 2.0 * (zeta + (1.0 + zeta * zeta).sqrt()) / omega;
+            assert!((window.to / limit - 1.0).abs() < 1e-13, "{window:?} {limit}");
+            for method in [ImplicitMethod::BackwardEuler, ImplicitMethod::ImplicitMidpoint] {
+                assert_eq!(windows(&a, method), Some(vec![StepWindow::ALL]));
+            }
+        }
     }
 
     #[test]

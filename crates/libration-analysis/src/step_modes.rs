@@ -187,7 +187,7 @@ fn similarity(a: &[Complex64], b: &[Complex64], places: &[usize]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use libration_core::Method;
+    use libration_core::{AnyMethod, ImplicitMethod, Method};
 
     use super::*;
 
@@ -207,7 +207,7 @@ mod tests {
         upper.map(|value| (value, eigenvector(a, value).unwrap())).collect()
     }
 
-    fn step_modes(a: &Matrix, method: Method, dt: f64) -> Vec<StepMode> {
+    fn step_modes(a: &Matrix, method: impl Into<AnyMethod>, dt: f64) -> Vec<StepMode> {
         let stepper = LinearStepper::new(a).unwrap();
         let matrix = stepper.with_step::<f64>(method, dt).unwrap().update_matrix();
         StepMode::of_matrix(&stepper, &matrix, &modes(a), dt).unwrap()
@@ -216,14 +216,15 @@ mod tests {
     #[test]
     fn errors_of_each_mode_fall_with_the_order_of_the_method() {
         let a = chain();
-        for method in Method::ALL {
+        for method in AnyMethod::all() {
             let errors = |dt: f64| -> Vec<f64> {
                 let of = |mode: &StepMode| mode.growth_error().hypot(mode.phase_error() / dt);
                 step_modes(&a, method, dt).iter().map(of).collect()
             };
             // Splittings fall to order 1 or 2 where forces depend on velocities.
             let order = match method {
-                Method::Rk4 => 4.0,
+                AnyMethod::Explicit(Method::Rk4) => 4.0,
+                AnyMethod::Implicit(method) => f64::from(method.order()),
                 _ => 1.0,
             };
             for (coarse, fine) in errors(0.02).iter().zip(errors(0.01)) {
@@ -236,8 +237,12 @@ mod tests {
     #[test]
     fn the_matrix_of_a_runge_kutta_step_has_the_multipliers_of_its_stability_function() {
         let a = chain();
-        for (method, dt) in [(Method::Rk4, 0.7), (Method::ExplicitEuler, 0.3), (Method::Rk4, 1.1)] {
-            let function = StabilityFunction::new(method).unwrap();
+        let implicit = [ImplicitMethod::BackwardEuler, ImplicitMethod::Trapezoid];
+        let implicit = implicit.map(|method| (AnyMethod::from(method), 0.7));
+        let explicit = [(Method::Rk4, 0.7), (Method::ExplicitEuler, 0.3), (Method::Rk4, 1.1)];
+        let explicit = explicit.map(|(method, dt)| (AnyMethod::from(method), dt));
+        for (method, dt) in explicit.into_iter().chain(implicit) {
+            let function = StabilityFunction::of(method).unwrap();
             let wanted = StepMode::of_function(&function, &modes(&a), dt);
             for (found, wanted) in step_modes(&a, method, dt).iter().zip(&wanted) {
                 let off = (found.multiplier - wanted.multiplier).norm();
@@ -267,7 +272,7 @@ mod tests {
     fn a_simulation_measures_the_multiplier_of_each_mode() {
         let a = chain();
         let stepper = LinearStepper::new(&a).unwrap();
-        for method in Method::ALL {
+        for method in AnyMethod::all() {
             let dt = 0.2;
             let all = step_modes(&a, method, dt);
             let radius = all.iter().map(|mode| mode.multiplier.norm()).fold(0.0, f64::max);
@@ -275,7 +280,8 @@ mod tests {
             let single = stepper.with_step::<f32>(method, dt).unwrap();
             for mode in all {
                 let (found, steps) = mode.simulated(&step, radius, 1000).unwrap();
-                assert!(steps >= 10, "{steps}");
+                // Backward Euler parts the modes so fast that the slower one is lost after six steps.
+                assert!(steps >= 5, "{steps}");
                 assert!((found - mode.multiplier).norm() < 1e-13, "{method:?} {found} {mode:?}");
                 let (found, _) = mode.simulated(&single, radius, 1000).unwrap();
                 let off = (found - mode.multiplier).norm();

@@ -12,9 +12,9 @@
 pub use libration_analysis as analysis;
 pub use libration_batch::{Ensemble, checkpoint, ensemble, replay, rl};
 pub use libration_core::{
-    AnySystem, CatalogError, Elementary, Float, Hamiltonian, Integrator, Method, Model, Scalar,
-    State, System, catalog, control, elementary, integrator, number, random, simulation, system,
-    with_method, with_system,
+    AnyMethod, AnySystem, CatalogError, Elementary, Float, Hamiltonian, ImplicitMethod, Integrator,
+    Method, Model, Scalar, State, System, catalog, control, elementary, elimination, integrator,
+    number, random, simulation, system, with_method, with_system,
 };
 pub use libration_equations as equations;
 pub use libration_linear as linear;

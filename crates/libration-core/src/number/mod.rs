@@ -1,4 +1,4 @@
-//! Number types: floats, dual numbers, polynomials, exact fractions and wide floats.
+//! Number types: floats, dual numbers, polynomials, their quotients, exact fractions and wide floats.
 
 mod bits;
 mod compensated;
@@ -10,6 +10,7 @@ mod mantissa;
 mod pair;
 mod poly;
 mod ratio;
+mod rational_function;
 mod twofloat;
 mod wide;
 
@@ -18,5 +19,6 @@ pub use dual::Dual;
 pub use mantissa::Mantissa;
 pub use poly::Poly;
 pub use ratio::Ratio;
+pub use rational_function::RationalFunction;
 pub use twofloat::TwoFloat;
 pub use wide::Wide;

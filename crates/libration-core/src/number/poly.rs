@@ -6,6 +6,7 @@ use core::ops::{Add, Mul, Neg, Sub};
 use super::{Ratio, Wide};
 use crate::Scalar;
 
+mod division;
 mod functions;
 
 /// A polynomial in `z` of degree below `N`, with exact coefficients.
@@ -102,7 +103,7 @@ impl<const N: usize> Poly<N> {
     }
 
     /// The coefficients from that of the degree downwards.
-    fn terms(&self) -> impl Iterator<Item = &Ratio> {
+    pub(super) fn terms(&self) -> impl Iterator<Item = &Ratio> {
         let length = self.degree().map_or(0, |degree| degree + 1);
         self.coefficients[..length].iter().rev()
     }

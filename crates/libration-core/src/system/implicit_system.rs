@@ -20,16 +20,26 @@ pub trait ImplicitSystem<S: Scalar, const D: usize>: System<S, D> {
     fn solve_damping_and_stiffness(&self, at: &State<S, D>, h: S, right: [S; D]) -> [S; D];
 
     /// The `y` with `y − h·Jy = right`, where `J` is the derivative of the [rate](System::rate) at `at`.
-    ///
-    /// Positions follow from velocities, so that there are `D` equations and not `2D`.
     #[inline]
     fn solve_rate(&self, at: &State<S, D>, h: S, right: State<S, D>) -> State<S, D> {
-        let positions = State { q: right.q, v: [S::zero(); D] };
-        let change = self.acceleration_derivative(at, &positions);
-        let v = each(|i| right.v[i] + h * change[i]);
-        let v = self.solve_damping_and_stiffness(at, h, v);
-        State { q: each(|i| right.q[i] + h * v[i]), v }
+        solve_motion(self, at, h, right)
     }
+}
+
+/// [`ImplicitSystem::solve_rate`] of a system whose velocities are the rates of its positions: positions follow from velocities, so that
+/// there are `D` equations and not `2D`.
+#[inline]
+pub fn solve_motion<S: Scalar, const D: usize>(
+    system: &(impl ImplicitSystem<S, D> + ?Sized),
+    at: &State<S, D>,
+    h: S,
+    right: State<S, D>,
+) -> State<S, D> {
+    let positions = State { q: right.q, v: [S::zero(); D] };
+    let change = system.acceleration_derivative(at, &positions);
+    let v = each(|i| right.v[i] + h * change[i]);
+    let v = system.solve_damping_and_stiffness(at, h, v);
+    State { q: each(|i| right.q[i] + h * v[i]), v }
 }
 
 /// A system on dual numbers, as a system on their parts whose implicit steps are solved by [elimination](crate::elimination).

@@ -22,7 +22,7 @@ pub use driven_oscillator::DrivenOscillator;
 pub use duffing::Duffing;
 pub use dyn_system::DynSystem;
 pub use henon_heiles::HenonHeiles;
-pub use implicit_system::{Differentiated, ImplicitSystem};
+pub use implicit_system::{Differentiated, ImplicitSystem, solve_motion};
 pub use kepler::Kepler;
 pub use mixed_precision::MixedPrecision;
 pub use oscillator::Oscillator;

@@ -1,0 +1,176 @@
+//! One step of an implicit method on a linear system as a matrix of exact quotients of polynomials.
+
+use libration_core::integrator::ImplicitIntegrator;
+use libration_core::number::{Dual, RationalFunction};
+use libration_core::system::{DampedOscillator, Differentiated};
+use libration_core::{Scalar, State, System};
+
+use super::{StabilityWindow, UpdateMatrix, stability_window};
+
+/// Quotients of polynomials in the unknown `z = ωΔt`. Sixteen coefficients hold the products of a step that solves the equations of one
+/// degree of freedom twice.
+pub type UnknownImplicitStep = RationalFunction<16>;
+
+/// The update matrix of an implicit method on a linear system, exact in the time step.
+///
+/// As a [`SymbolicStep`](super::SymbolicStep), in quotients of polynomials: [`RationalStep::new`] takes the oscillator with `ω = 1`.
+#[derive(Clone, Copy, Debug)]
+pub struct RationalStep {
+    /// The update matrix.
+    pub matrix: UpdateMatrix<UnknownImplicitStep, 1>,
+}
+
+impl RationalStep {
+    /// One step of `integrator` on the oscillator with `ω = 1`; none if the quotients outgrow their exact arithmetic.
+    pub fn new(integrator: impl ImplicitIntegrator) -> Option<Self> {
+        RationalStep::damped(integrator, 1.0, 0.0)
+    }
+
+    /// One step on `q̈ = −ω²q − γv`, in powers of `Δt`; none if the quotients outgrow their exact arithmetic.
+    pub fn damped(integrator: impl ImplicitIntegrator, omega2: f64, gamma: f64) -> Option<Self> {
+        let number = Dual::<UnknownImplicitStep>::from_f64;
+        let system = DampedOscillator { omega2: number(omega2), gamma: number(gamma) };
+        RationalStep::of(integrator, &system)
+    }
+
+    /// One step of `integrator` on a linear system, in powers of `Δt`; none if the system is not linear, or the quotients outgrow their
+    /// exact arithmetic.
+    pub fn of(
+        integrator: impl ImplicitIntegrator,
+        system: &impl System<Dual<UnknownImplicitStep>, 1>,
+    ) -> Option<Self> {
+        let dt = UnknownImplicitStep::unknown();
+        let system = Differentiated(Borrowed(system));
+        let matrix = UpdateMatrix::from_map(|e| integrator.step(&system, e, dt));
+        let matrix = matrix.map(UnknownImplicitStep::in_lowest_terms);
+        let valid = matrix.rows().iter().flatten().all(UnknownImplicitStep::is_valid);
+        valid.then_some(RationalStep { matrix })
+    }
+
+    /// `λ₁ + λ₂`, in lowest terms.
+    pub fn trace(&self) -> UnknownImplicitStep {
+        self.matrix.trace().in_lowest_terms()
+    }
+
+    /// `λ₁ · λ₂`, in lowest terms.
+    pub fn determinant(&self) -> UnknownImplicitStep {
+        self.matrix.determinant().in_lowest_terms()
+    }
+
+    /// Whether the determinant is one for every time step.
+    pub fn is_symplectic(&self) -> bool {
+        self.determinant() == UnknownImplicitStep::one()
+    }
+
+    /// All windows of stability among the positive time steps, rising; none if no step is stable. They are isolated exactly, as those of
+    /// a [`SymbolicStep`](super::SymbolicStep::stability_windows).
+    pub fn stability_windows(&self) -> Vec<StabilityWindow> {
+        let mut denominator = UnknownImplicitStep::one();
+        let entries = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| self.matrix.entry(i, j));
+        // The least multiple of all denominators that products of some of them give.
+        for entry in &entries {
+            let needed = (denominator * *entry).in_lowest_terms();
+            denominator = denominator * UnknownImplicitStep::from(*needed.denominator());
+        }
+        let numerators = entries.map(|entry| *(entry * denominator).in_lowest_terms().numerator());
+        stability_window::windows(numerators.each_ref(), denominator.numerator())
+    }
+}
+
+/// A system behind a reference.
+struct Borrowed<'a, T>(&'a T);
+
+impl<S: Scalar, const D: usize, T: System<S, D>> System<S, D> for Borrowed<'_, T> {
+    fn acceleration(&self, state: &State<S, D>) -> [S; D] {
+        self.0.acceleration(state)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use libration_core::{AnyMethod, ImplicitMethod};
+
+    use super::*;
+    use crate::SymbolicStep;
+
+    fn shown(method: ImplicitMethod) -> [String; 4] {
+        let step = RationalStep::new(method).unwrap();
+        [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| step.matrix.entry(i, j).to_string())
+    }
+
+    #[test]
+    fn update_matrices_and_determinants_of_the_oscillator_are_those_of_the_textbooks() {
+        let cayley =
+            ["(1 − z²/4)/(1 + z²/4)", "z/(1 + z²/4)", "−z/(1 + z²/4)", "(1 − z²/4)/(1 + z²/4)"];
+        let backward = ["1/(1 + z²)", "z/(1 + z²)", "−z/(1 + z²)", "1/(1 + z²)"];
+        for method in ImplicitMethod::ALL {
+            let (matrix, determinant) = match method {
+                // Without damping it is symplectic Euler.
+                ImplicitMethod::DampingImplicit => (["1 − z²", "z", "−z", "1"], "1"),
+                ImplicitMethod::StablePd => (["1 − z²", "z − z³", "−z", "1 − z²"], "1 − z²"),
+                ImplicitMethod::DampingStiffnessImplicit | ImplicitMethod::BackwardEuler => {
+                    (backward, "1/(1 + z²)")
+                }
+                ImplicitMethod::ImplicitMidpoint | ImplicitMethod::Trapezoid => (cayley, "1"),
+            };
+            assert_eq!(shown(method), matrix, "{method:?}");
+            let step = RationalStep::new(method).unwrap();
+            assert_eq!(step.determinant().to_string(), determinant, "{method:?}");
+            assert_eq!(step.is_symplectic(), determinant == "1");
+        }
+    }
+
+    /// The end of the only window, which begins at 0.
+    fn limit(method: ImplicitMethod, omega2: f64, gamma: f64) -> f64 {
+        let windows = RationalStep::damped(method, omega2, gamma).unwrap().stability_windows();
+        let [window] = windows[..] else { panic!("{method:?} {windows:?}") };
+        assert_eq!(window.from.to_f64(), 0.0);
+        window.to.map_or(f64::INFINITY, |to| to.to_f64())
+    }
+
+    #[test]
+    fn limits_of_the_damped_oscillator_are_those_derived_by_hand() {
+        for omega in [1.0, 3.7] {
+            for zeta in [0.0, 0.1, 1.0, 20.0_f64] {
+                let (omega2, gamma) = (omega * omega, 2.0 * zeta * omega);
+                for method in ImplicitMethod::ALL {
+                    let z = match method {
+                        ImplicitMethod::DampingImplicit => {
+                            2.0 * (zeta + (1.0 + zeta * zeta).sqrt())
+                        }
+                        ImplicitMethod::StablePd => 2.0 / 3.0 * (zeta + (3.0 + zeta * zeta).sqrt()),
+                        _ => f64::INFINITY,
+                    };
+                    let found = limit(method, omega2, gamma);
+                    // The parameters are rounded.
+                    let is_near = found == z || (found * omega / z - 1.0).abs() < 1e-14;
+                    assert!(is_near, "{method:?} {zeta}: {found} {z}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_growing_mode_of_small_steps_is_damped_by_backward_euler_in_large_ones() {
+        // |1 − hλ|² = 1 − 0.2h + h² with λ = 0.1 ± i√0.99.
+        let step = RationalStep::damped(ImplicitMethod::BackwardEuler, 1.0, -0.2).unwrap();
+        let windows = step.stability_windows();
+        let [window] = windows[..] else { panic!("{windows:?}") };
+        assert!((window.from.to_f64() - 0.2).abs() < 1e-15 && window.to.is_none(), "{window:?}");
+    }
+
+    #[test]
+    fn explicit_methods_have_the_same_windows_as_by_polynomials() {
+        for method in libration_core::Method::ALL {
+            let Some(rational) = RationalStep::new(AnyMethod::from(method)) else { continue };
+            let ends = |windows: Vec<StabilityWindow>| -> Vec<[Option<f64>; 2]> {
+                windows
+                    .iter()
+                    .map(|w| [Some(w.from.to_f64()), w.to.map(|to| to.to_f64())])
+                    .collect()
+            };
+            let polynomials = SymbolicStep::new(method).unwrap();
+            assert_eq!(ends(rational.stability_windows()), ends(polynomials.stability_windows()));
+        }
+    }
+}
