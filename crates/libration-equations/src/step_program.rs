@@ -1,7 +1,7 @@
 //! Steps of integrators as programs.
 
 use libration_core::integrator::ImplicitIntegrator;
-use libration_core::{Integrator, State};
+use libration_core::{AnyMethod, Integrator, State};
 
 use super::Dynamics;
 use super::derivative_programs::DerivativePrograms;
@@ -13,9 +13,14 @@ use super::step_trace::{StepTrace, TracedSystem, VectorId, VectorOperation};
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepProgram {
     program: Program,
+    evaluations: usize,
 }
 
 impl StepProgram {
+    /// Most degrees of freedom for which an [implicit](StepProgram::implicit) step is a program of moderate size: less than a million
+    /// operations.
+    pub const MOST_IMPLICIT_DEGREES: usize = 32;
+
     /// A step of `integrator` on a system, whose inputs are constant during the step: from positions, velocities, inputs and the
     /// time step to positions and velocities.
     pub fn new(integrator: impl Integrator, dynamics: &Dynamics) -> Self {
@@ -29,7 +34,7 @@ impl StepProgram {
             let end = integrator.step(&TracedSystem(&trace), start, dt);
             vec![trace.id(end.q[0]), trace.id(end.v[0])]
         };
-        StepProgram { program: program(&trace.into_operations(), &ends, false, dynamics) }
+        StepProgram::of_trace(&trace.into_operations(), &ends, false, dynamics)
     }
 
     /// The same of an integrator that solves equations, by [elimination](libration_core::elimination) with derivatives by dual numbers:
@@ -47,7 +52,7 @@ impl StepProgram {
             let end = integrator.step(&TracedSystem(&trace), start, dt);
             vec![trace.id(end.q[0]), trace.id(end.v[0])]
         };
-        StepProgram { program: program(&trace.into_operations(), &ends, false, dynamics) }
+        StepProgram::of_trace(&trace.into_operations(), &ends, false, dynamics)
     }
 
     /// A step that takes the accelerations at its start and hands on those at its end, which saves an evaluation: from positions,
@@ -69,8 +74,37 @@ impl StepProgram {
             let (end, known) = integrator.carried(&TracedSystem(&trace), start, known, dt);
             vec![trace.id(end.q[0]), trace.id(end.v[0]), trace.id(known[0])]
         };
-        let program = program(&trace.into_operations(), &ends, true, dynamics);
-        Some(StepProgram { program })
+        Some(StepProgram::of_trace(&trace.into_operations(), &ends, true, dynamics))
+    }
+
+    /// A step of a built-in integrator.
+    pub fn of(method: impl Into<AnyMethod>, dynamics: &Dynamics) -> Self {
+        match method.into() {
+            AnyMethod::Explicit(method) => StepProgram::new(method, dynamics),
+            AnyMethod::Implicit(method) => StepProgram::implicit(method, dynamics),
+        }
+    }
+
+    fn of_trace(
+        operations: &[VectorOperation],
+        ends: &[VectorId],
+        carries: bool,
+        dynamics: &Dynamics,
+    ) -> Self {
+        let evaluations = operations.iter().map(|operation| match operation {
+            VectorOperation::AccelerationsAt(..) | VectorOperation::AccelerationDerivative(_) => 1,
+            VectorOperation::Solution(..) => dynamics.degrees(),
+            _ => 0,
+        });
+        StepProgram {
+            evaluations: evaluations.sum(),
+            program: program(operations, ends, carries, dynamics),
+        }
+    }
+
+    /// Evaluations of the accelerations in a step, those along a direction of a derivative included.
+    pub fn evaluations(&self) -> usize {
+        self.evaluations
     }
 
     /// The program.

@@ -4,7 +4,7 @@ use core::fmt::Debug;
 
 use bytemuck::Pod;
 use libration_core::system::Oscillator;
-use libration_core::{AnySystem, Method, Model, State, with_method, with_system};
+use libration_core::{AnySystem, ImplicitMethod, Method, Model, State, with_method, with_system};
 use libration_equations::{Dynamics, Program};
 
 use super::{
@@ -33,6 +33,18 @@ pub trait AnyEnsemble<T>: Debug + Send {
 
     /// Takes `steps` steps of `dt` seconds with every trajectory.
     fn advance(&mut self, method: Method, dt: T, steps: u64);
+
+    /// The same of an implicit method, whose program is made when it is used first.
+    ///
+    /// # Errors
+    /// [`EnsembleError::Implicit`] if the ensemble has compiled kernels: that of [`program_ensemble`](BatchFloat::program_ensemble) has
+    /// none.
+    fn advance_implicit(
+        &mut self,
+        method: ImplicitMethod,
+        dt: T,
+        steps: u64,
+    ) -> Result<(), EnsembleError>;
 
     /// Goes on elsewhere, which changes no result.
     fn execute(&mut self, execution: Execution);
@@ -115,7 +127,10 @@ macro_rules! batch_float {
                         model, dimension, len, execution, start,
                     )?));
                 }
-                Self::program_ensemble(&dynamics(system, dimension), len, execution, start)
+                let Some(dynamics) = dynamics_of(system, dimension) else {
+                    return Err(EnsembleError::System(system.entry().wrong_dimension(dimension)));
+                };
+                Self::program_ensemble(&dynamics, len, execution, start)
             }
 
             fn program_ensemble(
@@ -138,11 +153,9 @@ macro_rules! batch_float {
 batch_float!(f32);
 batch_float!(f64);
 
-/// The program of a system in a dimension that it has.
-fn dynamics(system: AnySystem, dimension: usize) -> Dynamics {
-    with_system!(system, dimension, |model, D| Dynamics::of::<D>(&model, None), {
-        unreachable!("the dimension has been checked")
-    })
+/// The programs of a system of the catalogue; none if it does not exist in that dimension.
+pub fn dynamics_of(system: AnySystem, dimension: usize) -> Option<Dynamics> {
+    with_system!(system, dimension, |model, D| Some(Dynamics::of::<D>(&model, None)), None)
 }
 
 impl<T: BatchFloat> Isotropic<T> {
@@ -179,7 +192,17 @@ impl<T: BatchFloat> AnyEnsemble<T> for ProgramEnsemble<T> {
     }
 
     fn advance(&mut self, method: Method, dt: T, steps: u64) {
-        self.advance(method, dt, steps);
+        self.advance(method.into(), dt, steps);
+    }
+
+    fn advance_implicit(
+        &mut self,
+        method: ImplicitMethod,
+        dt: T,
+        steps: u64,
+    ) -> Result<(), EnsembleError> {
+        self.advance(method.into(), dt, steps);
+        Ok(())
     }
 
     fn execute(&mut self, execution: Execution) {
@@ -223,6 +246,15 @@ impl<T: BatchFloat> AnyEnsemble<T> for Isotropic<T> {
             with_method!(method, |m| coordinates.advance(m, All(*system), All(dt), steps));
         // One value for all is never too few or too many.
         debug_assert_eq!(outcome, Ok(()));
+    }
+
+    fn advance_implicit(
+        &mut self,
+        method: ImplicitMethod,
+        _: T,
+        _: u64,
+    ) -> Result<(), EnsembleError> {
+        Err(EnsembleError::Implicit { method: method.name() })
     }
 
     fn execute(&mut self, execution: Execution) {

@@ -34,7 +34,7 @@ use core::marker::PhantomData;
 use bytemuck::Pod;
 
 #[cfg(not(test))]
-pub use any::{AnyEnsemble, BatchFloat};
+pub use any::{AnyEnsemble, BatchFloat, dynamics_of};
 pub use assign::{All, Assign, PerTrajectory};
 pub use buffer::{Buffer, Pages};
 pub use error::EnsembleError;

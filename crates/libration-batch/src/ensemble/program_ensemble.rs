@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use libration_core::{Method, with_method};
+use libration_core::{AnyMethod, with_method};
 use libration_equations::{Dynamics, Program, StepProgram};
 
 use super::planes::Planes;
@@ -20,7 +20,7 @@ pub(super) struct ProgramEnsemble<T> {
     step: u64,
     execution: Execution,
     /// The steps that were used last, with and without [a carried acceleration](Step::first).
-    steps: [Option<(Method, Arc<Step>)>; 2],
+    steps: [Option<(AnyMethod, Arc<Step>)>; 2],
 }
 
 /// A step for the machine, with its way from accelerations to accelerations where there is one.
@@ -86,7 +86,7 @@ impl<T: BatchFloat> ProgramEnsemble<T> {
     }
 
     /// Takes `steps` steps of `dt` seconds with every trajectory.
-    pub(super) fn advance(&mut self, method: Method, dt: T, steps: u64) {
+    pub(super) fn advance(&mut self, method: AnyMethod, dt: T, steps: u64) {
         if steps > 0 && !self.is_empty() {
             let step = self.step_of(method, steps > 1);
             self.run(&step, dt, steps);
@@ -124,7 +124,7 @@ impl<T: BatchFloat> ProgramEnsemble<T> {
     }
 
     /// The step of a method. It is kept, since to make it takes as long as some thousand steps.
-    fn step_of(&mut self, method: Method, carries: bool) -> Arc<Step> {
+    fn step_of(&mut self, method: AnyMethod, carries: bool) -> Arc<Step> {
         let known = &mut self.steps[usize::from(carries)];
         match known {
             Some((own, step)) if *own == method => step.clone(),
@@ -187,9 +187,14 @@ impl<T: BatchFloat> ProgramEnsemble<T> {
 
 impl Step {
     /// To evaluate the accelerations at the start costs what a step saves: a single step is better off without.
-    fn new(method: Method, dynamics: &Dynamics, carries: bool) -> Self {
+    fn new(method: AnyMethod, dynamics: &Dynamics, carries: bool) -> Self {
         let degrees = dynamics.degrees();
-        let carrying = with_method!(method, |method| StepProgram::carrying(method, dynamics));
+        let carrying = match method {
+            AnyMethod::Explicit(method) => {
+                with_method!(method, |method| StepProgram::carrying(method, dynamics))
+            }
+            AnyMethod::Implicit(_) => None,
+        };
         match carrying.filter(|_| carries) {
             Some(carrying) => {
                 let rows = 3 * degrees;
@@ -207,7 +212,7 @@ impl Step {
             None => {
                 let rows = 2 * degrees;
                 let targets: Vec<usize> = (0..rows).collect();
-                let program = StepProgram::new(method, dynamics);
+                let program = StepProgram::of(method, dynamics);
                 let row_of = |i: usize| (i < rows).then_some(i);
                 let step = BlockProgram::new(program.program(), row_of, &targets, rows);
                 Step { step, first: None }
