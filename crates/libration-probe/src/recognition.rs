@@ -1,7 +1,8 @@
 //! Which integrator a step is, by its results.
 
+use libration::AnyMethod;
 use libration::analysis::StabilityFunction;
-use libration::{Integrator, Method};
+use libration::integrator::ImplicitIntegrator;
 use serde::Serialize;
 
 use crate::BlackBoxError;
@@ -52,16 +53,30 @@ impl Recognition {
         let is_mechanical = pairs.is_some_and(|pairs| pairs.len() * 2 == start.len());
         let pairs = pairs.filter(|_| is_mechanical).map(<[_]>::to_vec);
         let system = NumericalSystem::new(prober, pairs);
-        let applies = |method: &Method| is_mechanical || StabilityFunction::new(*method).is_some();
+        let applies =
+            |method: &AnyMethod| is_mechanical || StabilityFunction::of(*method).is_some();
         let mut candidates: Vec<Candidate> = Vec::new();
-        for method in Method::ALL.into_iter().filter(applies) {
-            let state = method.step(&system, system.state(&start), dt);
+        let mut error = 0.0_f64;
+        for method in AnyMethod::all().filter(applies) {
+            // Implicit methods take many more steps, and do the same as explicit ones where nothing is damped.
+            let is_found = |found: &Candidate| found.distance <= ERRORS * error * dt + ROUNDING;
+            if matches!(method, AnyMethod::Implicit(_)) && candidates.iter().any(is_found) {
+                break;
+            }
+            let state = method.step(&system, system.point(&start), dt);
+            error = error.max(system.take_error()?);
             let found = system.values(&state, start.len());
             let apart = |i: usize| ((found[i] - next[i]) / subject.state_scale[i]).abs();
             let distance = (0..start.len()).map(apart).fold(0.0, f64::max);
-            candidates.push(Candidate { method: method.name(), title: method.title(), distance });
+            if distance.is_finite() {
+                candidates.push(Candidate {
+                    method: method.name(),
+                    title: method.title(),
+                    distance,
+                });
+            }
         }
-        let allowed = ERRORS * system.outcome()? * dt + ROUNDING;
+        let allowed = ERRORS * error * dt + ROUNDING;
         candidates.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let farthest = candidates.last().map_or(0.0, |last| last.distance);
         let methods = candidates

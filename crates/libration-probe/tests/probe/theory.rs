@@ -144,3 +144,27 @@ fn modes_of_a_chain_are_named_and_followed_to_those_of_the_flow() {
     let fastest = ((root.1 + root.0) / 2.0_f64).sqrt();
     close(report.largest_dt.unwrap().dt.unwrap() * fastest, 2.0, 1e-5);
 }
+
+#[test]
+fn implicit_methods_are_recognised() {
+    let (gamma, dt) = (6.0, 0.05);
+    // MuJoCo's Euler: the force at the old state, and the damping at the new velocity.
+    let damping = move |x: &[f64], u: &[f64], dt: f64| {
+        let v = (x[1] + dt * (-9.0 * x[0].sin() + u[0])) / (1.0 + dt * gamma);
+        vec![x[0] + dt * v, v]
+    };
+    let mut subject = pendulum_subject();
+    subject.dt = dt;
+    assert_eq!(methods(&Simulator::new(damping).audit(&subject)), ["damping-implicit"]);
+    // Backward Euler by its fixed point.
+    let backward = move |x: &[f64], u: &[f64], dt: f64| {
+        let mut v = x[1];
+        for _ in 0..100 {
+            let q = x[0] + dt * v;
+            v -= (v - x[1] - dt * (-9.0 * q.sin() - gamma * v + u[0]))
+                / (1.0 + dt * gamma + 9.0 * dt * dt * q.cos());
+        }
+        vec![x[0] + dt * v, v]
+    };
+    assert_eq!(methods(&Simulator::new(backward).audit(&subject)), ["backward-euler"]);
+}
