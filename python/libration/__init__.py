@@ -18,6 +18,7 @@ from .bits import FirstDifference, first_difference
 from .ensemble import Ensemble
 from .environments import Environments
 from .equations import EquationSystem
+from .gains import GainReport, gains
 from .laboratory import STUDIES, Finding, Results, run_lab
 from .linear import (
     LQG,
@@ -52,6 +53,7 @@ __all__ = [
     "EquationSystem",
     "Finding",
     "FirstDifference",
+    "GainReport",
     "Gaussian",
     "INTEGRATORS",
     "LQG",
@@ -82,6 +84,7 @@ __all__ = [
     "analyze",
     "datasets",
     "first_difference",
+    "gains",
     "policies",
     "probe",
     "run_lab",

@@ -29,6 +29,7 @@ __all__ = [
     "_linear_plant",
     "_parameters",
     "_first_difference",
+    "_gains",
     "_probe",
     "_program",
     "_run_lab",
@@ -89,6 +90,7 @@ def _probe(
     energy: Callable[[Any], Any] | None,
     batched: bool,
 ) -> tuple[str, bool, str]: ...
+def _gains(description: str, dt: float, substeps: int, integrator: str) -> tuple[str, str]: ...
 def _first_difference(
     first: Any, second: Any, shape: list[int]
 ) -> tuple[list[int], float, float, int | None, int] | None: ...

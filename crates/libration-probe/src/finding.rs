@@ -178,6 +178,24 @@ pub(crate) fn of_report(report: &ProbeReport, found: &mut Vec<Finding>) {
             ),
         ));
     }
+    for audit in &report.delays {
+        let Some(first) = audit.first_change else { continue };
+        let shares: Vec<String> = audit
+            .delays
+            .iter()
+            .map(|(delay, count)| {
+                format!("{delay} steps in {:.1} %", 100.0 * *count as f64 / audit.steps as f64)
+            })
+            .collect();
+        found.push(Finding::fault(
+            "irregular-delay",
+            format!(
+                "the delay of `{}` changes from step to step, first at step {first}: {}",
+                audit.input,
+                shares.join(", ")
+            ),
+        ));
+    }
     damping(report, found);
     leaks(report, found);
     if let Some(limit) = &report.largest_dt {

@@ -9,12 +9,14 @@ mod child_process;
 mod confirmation;
 mod convergence;
 mod defects;
+mod delay_audit;
 mod description;
 mod differences;
 mod energy_drift;
 mod finding;
 mod first_difference;
 mod flow;
+mod gains;
 mod hidden_latency;
 mod largest_step;
 mod linearised_step;
@@ -35,11 +37,16 @@ pub use child_process::ChildProcess;
 pub use confirmation::Confirmation;
 pub use convergence::Convergence;
 pub use defects::Defects;
+pub use delay_audit::DelayAudit;
 pub use description::{Description, DescriptionError};
 pub use differences::{Jacobian, jacobian};
 pub use energy_drift::{DriftReason, EnergyDrift};
 pub use finding::Finding;
 pub use first_difference::{FirstDifference, ulps};
+pub use gains::{
+    GainReport, IntegratorRow, JointRow, ServoError, ServoIntegrator, ServoMode, Servos,
+    ServosDescription, gains, gains_page,
+};
 pub use hidden_latency::HiddenLatency;
 pub use largest_step::LargestStep;
 pub use matrix_step::MatrixStep;

@@ -172,6 +172,26 @@ fn latency(page: &mut Page, audit: &ProbeReport) {
         ]);
     }
     page.table(&table, 4);
+    if audit.delays.is_empty() {
+        return;
+    }
+    page.paragraph(
+        "A ramp as the command shows which one each step uses, while the state is held:",
+    );
+    let columns = ["input", "delay (steps)", "steps", "first other delay at step"];
+    let mut table = Table::new("delays", &columns);
+    for audit in &audit.delays {
+        for (delay, count) in &audit.delays {
+            let first = audit.first_change.map(|step| Cell::from(step.to_string()));
+            table.push([
+                audit.input.clone().into(),
+                Cell::rounded(*delay, 6),
+                count.to_string().into(),
+                first.unwrap_or_else(|| Cell::absent("none")),
+            ]);
+        }
+    }
+    page.table(&table, 6);
 }
 
 fn integrator(page: &mut Page, audit: &ProbeReport) {

@@ -11,8 +11,8 @@ use crate::linearised_step::LinearisedStep;
 use crate::modes::{ProbedMode, modes};
 use crate::prober::Prober;
 use crate::{
-    Bits, BlackBox, BlackBoxError, Confirmation, Convergence, Defects, LargestStep, Memory,
-    Recognition, Subject,
+    Bits, BlackBox, BlackBoxError, Confirmation, Convergence, Defects, DelayAudit, LargestStep,
+    Memory, Recognition, Subject,
 };
 
 /// Largest change per step in units of the scales at which a state counts as an equilibrium.
@@ -72,6 +72,8 @@ pub struct ProbeReport {
     pub hidden_latency: Vec<HiddenLatency>,
     /// What results depend on besides the given state and action.
     pub memory: Option<Memory>,
+    /// Which command each step uses, of inputs whose commands wait in a queue.
+    pub delays: Vec<DelayAudit>,
     /// The order of convergence.
     pub order: Option<Convergence>,
     /// The integrator, by its results.
@@ -205,6 +207,7 @@ impl ProbeReport {
             driven_velocities: Vec::new(),
             hidden_latency: Vec::new(),
             memory: None,
+            delays: Vec::new(),
             order: None,
             recognition: None,
             defects: None,
@@ -226,6 +229,11 @@ impl ProbeReport {
         self.jacobian_error = step.relative_error(subject);
         if !step.is_finite() {
             return Ok(());
+        }
+        for (j, input) in memory.inputs.iter().enumerate() {
+            if input.last.unwrap_or(0) > 0 {
+                self.delays.extend(DelayAudit::run(prober, &step, j)?);
+            }
         }
         self.reference = ReferenceCheck::of(subject, &step);
         let flow = if has_fixed_dt { None } else { Flow::of(prober, &step)? };

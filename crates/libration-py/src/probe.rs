@@ -1,11 +1,14 @@
 //! The audit of a step that is a Python function.
 
 use libration::linear::Matrix;
-use libration_probe::{BlackBox, BlackBoxError, Description, FirstDifference, page, probe};
+use libration_probe::{
+    BlackBox, BlackBoxError, Description, FirstDifference, ServoIntegrator, ServosDescription,
+    gains, gains_page, page, probe,
+};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::error::value_error;
+use crate::error::{unknown, value_error};
 
 /// A simulator of Python functions on arrays of rows.
 struct PythonStep<'py> {
@@ -110,4 +113,26 @@ pub(crate) fn _first_difference(
 ) -> PyResult<Option<Difference>> {
     let found = FirstDifference::find(first.as_slice()?, second.as_slice()?, &shape);
     Ok(found.map(|d| (d.index, d.first, d.second, d.ulps, d.differing)))
+}
+
+/// Whether the gains of servos hold. Gives JSON and a page.
+#[pyfunction]
+pub(crate) fn _gains(
+    description: &str,
+    dt: f64,
+    substeps: u32,
+    integrator: &str,
+) -> PyResult<(String, String)> {
+    let wrong = |error: &dyn core::fmt::Display| value_error(error.to_string());
+    let described: ServosDescription =
+        serde_json::from_str(description).map_err(|error| wrong(&error))?;
+    let servos = described.servos().map_err(|error| wrong(&error))?;
+    let found = ServoIntegrator::from_name(integrator);
+    let found = found.ok_or_else(|| {
+        let names: Vec<&str> = ServoIntegrator::names().collect();
+        unknown("integrator", integrator, names)
+    })?;
+    let report = gains(&servos, dt, substeps, found, described.notes);
+    let json = serde_json::to_string(&report).map_err(|error| wrong(&error))?;
+    Ok((json, gains_page(&report)))
 }

@@ -2,7 +2,7 @@
 
 from .host import Host
 
-__all__ = ["Host", "delay_audit", "gymnasium_host", "mujoco_host"]
+__all__ = ["Host", "delay_audit", "gymnasium_host", "mujoco_host", "mujoco_servos"]
 
 
 def __getattr__(name: str) -> object:
@@ -11,6 +11,10 @@ def __getattr__(name: str) -> object:
         from .mujoco import mujoco_host
 
         return mujoco_host
+    if name == "mujoco_servos":
+        from .mujoco_servos import mujoco_servos
+
+        return mujoco_servos
     if name == "gymnasium_host":
         from .gymnasium import gymnasium_host
 

@@ -25,17 +25,20 @@ def _arguments() -> argparse.Namespace:
     of_mujoco.add_argument("--keyframe", help="name or number of a keyframe")
     of_mujoco.add_argument("--dt", type=float, help="timestep in s")
     of_mujoco.add_argument("--settle", action="store_true", help="start from a settled equilibrium")
+    of_mujoco.add_argument("--gains", action="store_true", help="print inertia and gains, and end")
     return parser.parse_args()
+
+
+def _keyframe(arguments: argparse.Namespace) -> Any:
+    keyframe = arguments.keyframe
+    return int(keyframe) if keyframe is not None and keyframe.isdigit() else keyframe
 
 
 def _host(arguments: argparse.Namespace) -> Host:
     from .mujoco import mujoco_host
 
-    keyframe: Any = arguments.keyframe
-    if keyframe is not None and keyframe.isdigit():
-        keyframe = int(keyframe)
     state = "settled" if arguments.settle else None
-    return mujoco_host(arguments.file, keyframe=keyframe, state=state, dt=arguments.dt, memory=None)
+    return mujoco_host(arguments.file, keyframe=_keyframe(arguments), state=state, dt=arguments.dt, memory=None)
 
 
 def _answer(host: Host, line: str) -> str:
@@ -52,6 +55,11 @@ def _answer(host: Host, line: str) -> str:
 def main() -> int:
     arguments = _arguments()
     try:
+        if arguments.gains:
+            from .mujoco_servos import mujoco_servos
+
+            print(json.dumps(mujoco_servos(arguments.file, keyframe=_keyframe(arguments))), flush=True)
+            return 0
         host = _host(arguments)
     except ModuleNotFoundError as error:
         print(f"error: {error}; help: pip install 'libration[mujoco]' for this interpreter, {sys.executable}", flush=True)

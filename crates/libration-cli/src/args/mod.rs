@@ -4,6 +4,7 @@ mod advise;
 mod analyze;
 mod bench;
 mod equation_advice;
+mod gains;
 mod linear;
 mod linear_analysis;
 mod linear_simulation;
@@ -32,6 +33,7 @@ use crate::error::Failure;
 pub(crate) use advise::AdviseArgs;
 pub(crate) use analyze::AnalyzeArgs;
 pub(crate) use bench::BenchArgs;
+pub(crate) use gains::GainsArgs;
 pub(crate) use linear::LinearArgs;
 pub(crate) use linear_analysis::LinearAnalysisArgs;
 pub(crate) use linear_simulation::LinearSimulationArgs;
@@ -74,6 +76,8 @@ Examples:
                                              limits of a control loop
   libration probe --command ./my_step --state 0,1 --dt 0.01
                                              an audit of the step of your simulator
+  libration gains --mujoco robot.xml --dt 0.005
+                                             the largest gains of its servos
   libration rollout --out data --transitions 1e8
                                              a data set of rollouts, as Parquet
   libration bench                            speed of simulations on this machine
@@ -93,6 +97,8 @@ pub(crate) enum Command {
     Advise(AdviseArgs),
     /// Audit the step of any simulator: MuJoCo models, programs, matrices
     Probe(ProbeArgs),
+    /// Check whether gains of servos hold at a time step, and with which integrator
+    Gains(GainsArgs),
     /// Simulate one or many trajectories and write them as rows
     Simulate(SimulateArgs),
     /// Write a data set of rollouts, or resume an interrupted one

@@ -21,7 +21,7 @@ pub(crate) struct ProbeArgs {
     #[arg(long, value_name = "FILE", group = "simulator")]
     pub(crate) matrices: Option<PathBuf>,
     /// State at which the step is linearised [default: that of the model; 0 for --matrices]
-    #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, allow_hyphen_values = true, required_if_eq("simulator", "command"), conflicts_with = "mujoco")]
+    #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, allow_hyphen_values = true, conflicts_with = "mujoco")]
     pub(crate) state: Option<Coordinates>,
     /// Constant action there [default: none; 0 for --matrices]
     #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, allow_hyphen_values = true, conflicts_with = "mujoco")]
@@ -97,7 +97,7 @@ fn words(text: &str) -> Result<Words, String> {
     }
 }
 
-fn timeout(text: &str) -> Result<Duration, String> {
+pub(super) fn timeout(text: &str) -> Result<Duration, String> {
     let rule = "expected a number of seconds above 0, at most 3600";
     match text.trim().parse::<f64>() {
         Ok(x) if x > 0.0 && x <= 3600.0 => Ok(Duration::from_secs_f64(x)),

@@ -1,18 +1,16 @@
 //! `libration advise`.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
-use std::path::Path;
 
 use libration_advise as advise;
 use libration_advise::{Advice, AdviseError, LoopAdvice, Request, rounded};
 use libration_work::Work;
 use serde::Serialize;
 
+use super::page_file::PageFile;
 use super::{config_file, equation_file, time_stamps};
 use crate::args::{AdviseArgs, quoted};
 use crate::error::Failure;
-use crate::output_file::OutputFile;
 use crate::progress::Reporter;
 use crate::{interrupt, terminal};
 
@@ -38,16 +36,8 @@ pub(super) fn deliver<A: Serialize>(
     page: impl Fn(&A) -> String,
     holds: impl Fn(&A) -> bool,
 ) -> Result<(), Failure> {
-    let unwritable = |path: &Path, error: &std::io::Error| {
-        format!("cannot write `{}` (--page): {error}", path.display())
-    };
     let stop = interrupt::listen();
-    // Before any work.
-    let file = args.page.as_deref().map(|path| match OutputFile::create(path) {
-        Ok(file) => Ok((path, file)),
-        Err(error) => Err(Failure::usage(unwritable(path, &error))),
-    });
-    let file = file.transpose()?;
+    let file = PageFile::create(args.page.as_deref())?;
     let reporter = Reporter::new(quiet);
     let advice = compute(&Work::new(&reporter, stop));
     reporter.clear();
@@ -57,10 +47,7 @@ pub(super) fn deliver<A: Serialize>(
         false => describe(&advice),
     };
     terminal::print(&text)?;
-    if let Some((path, mut file)) = file {
-        let written = file.write_all(page(&advice).as_bytes()).and_then(|()| file.keep());
-        written.map_err(|error| Failure::run(unwritable(path, &error)))?;
-    }
+    file.write(|| page(&advice))?;
     if holds(&advice) { Ok(()) } else { Err(Failure::Disagreement) }
 }
 

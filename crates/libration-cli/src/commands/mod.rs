@@ -12,10 +12,13 @@ mod config_file;
 mod disagreements;
 mod equation_file;
 mod equation_loop;
+mod gains;
 mod lab;
 mod linear_closed_loop;
 mod list;
 mod measure_jitter;
+mod mujoco;
+mod page_file;
 mod probe;
 mod rollout;
 mod simulate;
@@ -36,6 +39,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Rollout(args) => rollout::run(&args, arguments.quiet),
         Command::Verify(args) => rollout::verify(&args, arguments.quiet),
         Command::Bench(args) => bench::run(&args, arguments.quiet),
+        Command::Gains(args) => gains::run(&args),
         Command::Probe(args) => probe::run(&args, arguments.quiet),
         Command::MeasureJitter(args) => measure_jitter::run(&args, arguments.quiet),
         Command::List(args) => list::run(&args),

@@ -1,7 +1,6 @@
 //! `libration probe`.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::Path;
 
 use libration::linear::Signal;
@@ -12,22 +11,15 @@ use libration_probe::{
 use libration_settings::linear_loop::read_plant;
 
 use super::advise::command_line;
-use crate::args::ProbeArgs;
+use super::mujoco;
+use super::page_file::PageFile;
+use crate::args::{Coordinates, ProbeArgs};
 use crate::error::Failure;
-use crate::output_file::OutputFile;
 use crate::terminal;
 
 /// Audits the step of a simulator and prints the report.
 pub(crate) fn run(args: &ProbeArgs, quiet: bool) -> Result<(), Failure> {
-    let unwritable = |path: &Path, error: &std::io::Error| {
-        format!("cannot write `{}` (--page): {error}", path.display())
-    };
-    // Before any work.
-    let file = args.page.as_deref().map(|path| match OutputFile::create(path) {
-        Ok(file) => Ok((path, file)),
-        Err(error) => Err(Failure::usage(unwritable(path, &error))),
-    });
-    let file = file.transpose()?;
+    let file = PageFile::create(args.page.as_deref())?;
     let (mut black_box, mut subject) = simulator(args)?;
     subject.invocation = command_line();
     if args.moving {
@@ -44,10 +36,7 @@ pub(crate) fn run(args: &ProbeArgs, quiet: bool) -> Result<(), Failure> {
         false => describe(&report),
     };
     terminal::print(&text)?;
-    if let Some((path, mut file)) = file {
-        let written = file.write_all(page(&report).as_bytes()).and_then(|()| file.keep());
-        written.map_err(|error| Failure::run(unwritable(path, &error)))?;
-    }
+    file.write(|| page(&report))?;
     if report.holds() { Ok(()) } else { Err(Failure::Disagreement) }
 }
 
@@ -70,7 +59,7 @@ fn simulator(args: &ProbeArgs) -> Result<(Box<dyn BlackBox>, Subject), Failure> 
                 .map_err(|error| Failure::usage(format!("{error} (--command)")))?;
             Ok((Box::new(child), subject))
         }
-        (_, Some(path), _) => mujoco(args, path),
+        (_, Some(path), _) => mujoco_model(args, path),
         (_, _, Some(path)) => matrices(args, path),
         _ => Err(Failure::usage("expected --command, --mujoco or --matrices")),
     }
@@ -78,9 +67,8 @@ fn simulator(args: &ProbeArgs) -> Result<(Box<dyn BlackBox>, Subject), Failure> 
 
 /// The subject of `--command`.
 fn described(args: &ProbeArgs, title: &str) -> Result<Subject, Failure> {
-    let numbers = |option: &Option<crate::args::Coordinates>| {
-        option.as_ref().map(|numbers| numbers.values().to_vec())
-    };
+    let numbers =
+        |option: &Option<Coordinates>| option.as_ref().map(|numbers| numbers.values().to_vec());
     let Some(state) = numbers(&args.state) else {
         return Err(Failure::usage(
             "--command is given without --state; expected a number for each state",
@@ -109,35 +97,17 @@ fn described(args: &ProbeArgs, title: &str) -> Result<Subject, Failure> {
 }
 
 /// A MuJoCo model, stepped by a Python program.
-fn mujoco(args: &ProbeArgs, path: &Path) -> Result<(Box<dyn BlackBox>, Subject), Failure> {
-    if !path.is_file() {
-        return Err(Failure::usage(format!(
-            "cannot use `{}` (--mujoco): there is no such file; expected a model as XML or MJB",
-            path.display()
-        )));
-    }
-    let mut words: Vec<String> =
-        [&args.python, "-m", "libration.hosts", "mujoco"].map(str::to_owned).into();
-    words.push(path.display().to_string());
+fn mujoco_model(args: &ProbeArgs, path: &Path) -> Result<(Box<dyn BlackBox>, Subject), Failure> {
+    let mut options = Vec::new();
     let mut option = |name: &str, value: Option<String>| {
-        if let Some(value) = value {
-            words.extend([format!("--{name}"), value]);
-        }
+        options.extend(value.into_iter().flat_map(|value| [format!("--{name}"), value]));
     };
     option("keyframe", args.keyframe.clone());
     option("dt", args.dt.map(|dt| format!("{dt:?}")));
     if args.settle {
-        words.push("--settle".into());
+        options.push("--settle".into());
     }
-    let mut child = ChildProcess::start(&words, args.timeout).map_err(|error| {
-        Failure::usage(format!(
-            "{error} (--python); expected an interpreter with libration and mujoco"
-        ))
-    })?;
-    let text = child.description().map_err(Failure::run)?;
-    if let Some(message) = text.strip_prefix("error: ") {
-        return Err(Failure::usage(message.trim_end()));
-    }
+    let (mut child, text) = mujoco::start(&args.python, path, &options, args.timeout)?;
     let description = Description::parse(&text).map_err(Failure::run)?;
     child.set_energy(description.energy);
     Ok((Box::new(child), description.subject().map_err(Failure::run)?))
@@ -155,7 +125,7 @@ fn matrices(args: &ProbeArgs, path: &Path) -> Result<(Box<dyn BlackBox>, Subject
             "it is a plant in continuous time; expected the matrices of a step, with `dt` in s; help: `libration analyze --plant` has the modes of a plant".into(),
         ));
     };
-    let values = |option: &Option<crate::args::Coordinates>, count| {
+    let values = |option: &Option<Coordinates>, count| {
         option.as_ref().map_or_else(|| vec![0.0; count], |numbers| numbers.values().to_vec())
     };
     let (n, m) = (plant.a.rows(), plant.b.columns());

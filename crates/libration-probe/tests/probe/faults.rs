@@ -152,3 +152,21 @@ fn a_state_that_is_no_equilibrium_is_a_warning_unless_it_is_said_to_be_none() {
     subject.equilibrium = Some(false);
     assert_eq!(kinds(&Simulator::new(pendulum).audit(&subject)), [""; 0]);
 }
+
+#[test]
+fn a_delay_that_changes_after_many_steps_is_found_with_its_shares() {
+    let queue = RefCell::new(VecDeque::from([0.0; 4]));
+    let calls = Cell::new(0);
+    let late = Simulator::new(move |x, u, dt| {
+        let mut queue = queue.borrow_mut();
+        queue.push_front(u[0]);
+        queue.truncate(4);
+        calls.set(calls.get() + 1);
+        let delay = if calls.get() < 60_000 { 2 } else { 3 };
+        pendulum(x, &[queue[delay]], dt)
+    });
+    let report = late.audit(&pendulum_subject());
+    assert!(kinds(&report).contains(&"irregular-delay"), "{:?}", report.findings);
+    let [(2.0, two), (3.0, three)] = report.delays[0].delays[..] else { panic!("{report:?}") };
+    assert!(two > 20_000 && three > 10_000, "{two} {three}");
+}

@@ -1,5 +1,6 @@
 //! Audits of steps whose properties are known.
 
 mod faults;
+mod gains;
 mod simulators;
 mod theory;

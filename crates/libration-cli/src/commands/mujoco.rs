@@ -1,0 +1,37 @@
+//! MuJoCo models, which a Python program reads and steps.
+
+use std::path::Path;
+use std::time::Duration;
+
+use libration_probe::ChildProcess;
+
+use crate::error::Failure;
+
+/// Starts the program for a model, and returns it with the first line of its output.
+pub(super) fn start(
+    python: &str,
+    path: &Path,
+    options: &[String],
+    patience: Duration,
+) -> Result<(ChildProcess, String), Failure> {
+    if !path.is_file() {
+        return Err(Failure::usage(format!(
+            "cannot use `{}` (--mujoco): there is no such file; expected a model as XML or MJB",
+            path.display()
+        )));
+    }
+    let mut words: Vec<String> =
+        [python, "-m", "libration.hosts", "mujoco"].map(str::to_owned).into();
+    words.push(path.display().to_string());
+    words.extend_from_slice(options);
+    let mut child = ChildProcess::start(&words, patience).map_err(|error| {
+        Failure::usage(format!("{error}; expected --python with the packages libration and mujoco"))
+    })?;
+    let line = child.description().map_err(|error| {
+        Failure::run(format!("{error}; help: install the packages libration and mujoco for it"))
+    })?;
+    match line.strip_prefix("error: ") {
+        Some(message) => Err(Failure::usage(format!("{} (--mujoco)", message.trim_end()))),
+        None => Ok((child, line)),
+    }
+}

@@ -1,0 +1,75 @@
+//! Which command each step uses, over many steps.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::BlackBoxError;
+use crate::linearised_step::LinearisedStep;
+use crate::prober::Prober;
+
+/// Steps of the audit.
+const STEPS: usize = 100_000;
+/// Steps after which the ramp begins anew, longer than any delay that a memory can have.
+const RAMP: usize = 128;
+/// Parts of a step to which delays are rounded.
+const PARTS: f64 = 1000.0;
+
+/// The delays of a command that waits in a queue of the simulator.
+#[derive(Clone, Debug, Serialize)]
+pub struct DelayAudit {
+    /// The name of the input.
+    pub input: String,
+    /// Steps that were audited.
+    pub steps: usize,
+    /// Delays in steps, to a thousandth, and the number of steps that used them.
+    pub delays: Vec<(f64, usize)>,
+    /// The first step whose delay differs from that of the first ones; none if all are the same.
+    pub first_change: Option<usize>,
+}
+
+impl DelayAudit {
+    /// The delay of most steps.
+    pub fn typical(&self) -> f64 {
+        self.delays.iter().max_by_key(|(_, count)| *count).map_or(0.0, |(delay, _)| *delay)
+    }
+
+    /// Commands one input by a ramp. The state is the same at each step, so that the result shows the command that was used.
+    pub(crate) fn run(
+        prober: &mut Prober<'_>,
+        step: &LinearisedStep,
+        input: usize,
+    ) -> Result<Option<Self>, BlackBoxError> {
+        let subject = prober.subject;
+        let (x, u, dt) = (&subject.state, &subject.action, subject.dt);
+        let response = |i: usize| (step.b[(i, input)] / subject.state_scale[i]).abs();
+        let shown = (0..x.len()).max_by(|&i, &j| response(i).total_cmp(&response(j)));
+        let Some(shown) = shown.filter(|i| response(*i) > 0.0) else { return Ok(None) };
+        let base = prober.step_one(x, u, dt)?[shown];
+        let slope = step.b[(shown, input)];
+        let span = subject.action_scale[input] / 16.0;
+        let mut counts: BTreeMap<i64, usize> = BTreeMap::new();
+        let (mut start, mut first_change) = (None, None);
+        for k in 0..RAMP + STEPS {
+            let mut action = u.clone();
+            action[input] += span * ((k % RAMP) as f64 / RAMP as f64);
+            let used =
+                (prober.call_one(x, &action, dt)?[shown] - base) / slope / span * RAMP as f64;
+            // Behind the end of a ramp a mixture of samples says nothing, and neither do calls before the first ramp.
+            let phase = (k % RAMP) as f64;
+            if k < RAMP || phase < RAMP as f64 / 2.0 {
+                continue;
+            }
+            let delay = ((phase - used) * PARTS).round() as i64;
+            *counts.entry(delay).or_default() += 1;
+            if *start.get_or_insert(delay) != delay {
+                first_change.get_or_insert(k);
+            }
+        }
+        let steps = counts.values().sum();
+        let delays =
+            counts.into_iter().map(|(delay, count)| (delay as f64 / PARTS, count)).collect();
+        let input = subject.inputs[input].name.clone();
+        Ok(Some(DelayAudit { input, steps, delays, first_change }))
+    }
+}

@@ -1,0 +1,12 @@
+//! Gains of servos: whether they hold at a time step, by which margin, and with which integrator.
+
+mod largest_factor;
+mod page;
+mod report;
+mod servo_integrator;
+mod servos;
+
+pub use page::gains_page;
+pub use report::{GainReport, IntegratorRow, JointRow, ServoMode, gains};
+pub use servo_integrator::ServoIntegrator;
+pub use servos::{ServoError, Servos, ServosDescription};

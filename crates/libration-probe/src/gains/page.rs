@@ -1,0 +1,88 @@
+//! A report on gains as an HTML page.
+
+use libration_report::notation::number;
+use libration_report::page::Page;
+use libration_report::record::{Cell, Table};
+use libration_report::report;
+
+use super::GainReport;
+
+/// The report as an HTML page.
+pub fn gains_page(report: &GainReport) -> String {
+    let mut page = Page { title: "Gains of servos".into(), ..Page::default() };
+    page.answer.clone_from(&report.answer);
+    for note in &report.notes {
+        page.note(format!("{note}."));
+    }
+    let limit = |x: f64, digits| match x {
+        f64::INFINITY => Cell::absent("no limit"),
+        0.0 => Cell::absent("none holds"),
+        x => Cell::rounded(x, digits),
+    };
+    let known = |x: Option<f64>| x.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, 4));
+    page.heading("How much does each joint allow?");
+    page.paragraph(
+        "ω, its limit and the damping ratio are those of the joint alone, with its inertia M and h the length of a substep. The largest gain \
+         of position is that with all couplings and with all other gains as they are.",
+    );
+    let columns =
+        ["joint", "inertia", "kp", "kv", "ωh", "largest ωh", "damping ratio", "largest kp"];
+    let mut table = Table::new("joints", &columns);
+    for joint in &report.joints {
+        table.push([
+            joint.name.clone().into(),
+            Cell::rounded(joint.inertia, 4),
+            Cell::rounded(joint.kp, 4),
+            Cell::rounded(joint.kv, 4),
+            Cell::rounded(joint.turn, 4),
+            limit(joint.largest_turn, 4),
+            known(joint.damping_ratio),
+            limit(joint.largest_kp, 5),
+        ]);
+    }
+    page.table(&table, 5);
+    page.heading("What do all joints do together?");
+    let columns =
+        ["mode in", "frequency (Hz)", "ωh", "damping ratio", "|z|", "damping that the step adds"];
+    let mut table = Table::new("modes", &columns);
+    for mode in &report.modes {
+        let names: Vec<&str> = mode.joints.iter().map(|(name, _)| name.as_str()).collect();
+        table.push([
+            names.join(", ").into(),
+            Cell::rounded(mode.frequency, 4),
+            Cell::rounded(mode.turn, 4),
+            known(mode.damping_ratio),
+            Cell::rounded(mode.radius, 5),
+            known(mode.numerical_damping),
+        ]);
+    }
+    page.table(&table, 5);
+    page.heading("Which integrator holds the gains?");
+    let columns =
+        ["integrator", "in words", "holds", "largest factor of kp", "fewest substeps", "|z|"];
+    let mut table = Table::new("integrators", &columns);
+    for row in &report.integrators {
+        table.push([
+            row.name.into(),
+            row.title.clone().into(),
+            if row.holds { "yes" } else { "no" }.into(),
+            limit(row.largest_factor, 5),
+            row.fewest_substeps
+                .map_or_else(|| Cell::absent("above 1000"), |n| Cell::rounded(f64::from(n), 4)),
+            Cell::rounded(row.spectral_radius, 5),
+        ]);
+    }
+    page.table(&table, 5);
+    if !report.repeat_command.is_empty() {
+        page.heading("How is the report repeated?");
+        page.code(report.repeat_command.clone());
+    }
+    let sub = format!(
+        "{} joints · {} · {} substeps of {} s · `libration gains`",
+        report.joints.len(),
+        report.integrator,
+        report.substeps,
+        number(report.dt / f64::from(report.substeps), 4),
+    );
+    report::render_page(&page, &sub)
+}

@@ -1,0 +1,287 @@
+//! The report on gains.
+
+use libration::linear::{Complex64, eigenvalues};
+use serde::{Serialize, Serializer};
+
+use super::largest_factor::{LargestFactor, growth, is_stable};
+use super::{ServoIntegrator, Servos};
+
+/// Most substeps that are tried.
+const MOST_SUBSTEPS: u32 = 1000;
+/// What no linear analysis has.
+const LIMITATION: &str = "The analysis is linear: contact, friction and limits of forces are not in it. A gain that holds in free motion may be unstable in contact.";
+
+/// The results; the fields are the keys of `gains --json`. Infinite limits are `null` there.
+#[derive(Clone, Debug, Serialize)]
+pub struct GainReport {
+    /// The answer in a few sentences.
+    pub answer: String,
+    /// Whether the gains hold.
+    pub holds: bool,
+    /// The length of a step of the simulator, in s.
+    pub dt: f64,
+    /// Steps of the integrator in it.
+    pub substeps: u32,
+    /// The integrator.
+    pub integrator: &'static str,
+    /// The same in running text.
+    pub integrator_title: String,
+    /// The largest factor of a mode per substep.
+    pub spectral_radius: f64,
+    /// The largest factor of all gains of position, with the same gains of velocity.
+    #[serde(serialize_with = "limit")]
+    pub largest_factor: f64,
+    /// The fewest substeps with which the gains hold; none up to 1000.
+    pub fewest_substeps: Option<u32>,
+    /// The joints.
+    pub joints: Vec<JointRow>,
+    /// The modes of all joints together, the fastest first.
+    pub modes: Vec<ServoMode>,
+    /// All integrators.
+    pub integrators: Vec<IntegratorRow>,
+    /// Facts that limit the validity.
+    pub notes: Vec<String>,
+    /// The command that repeats the report.
+    pub repeat_command: String,
+}
+
+/// A joint.
+#[derive(Clone, Debug, Serialize)]
+pub struct JointRow {
+    /// Its name.
+    pub name: String,
+    /// Its inertia with all other joints at rest.
+    pub inertia: f64,
+    /// Its gain of position.
+    pub kp: f64,
+    /// Its gain of velocity.
+    pub kv: f64,
+    /// `ωh` of the joint alone.
+    pub turn: f64,
+    /// The damping ratio of the joint alone.
+    pub damping_ratio: Option<f64>,
+    /// The largest `ωh` of the joint alone with the same damping.
+    #[serde(serialize_with = "limit")]
+    pub largest_turn: f64,
+    /// Its largest gain of position, with all others as they are and with all couplings.
+    #[serde(serialize_with = "limit")]
+    pub largest_kp: f64,
+}
+
+/// A mode of all joints.
+#[derive(Clone, Debug, Serialize)]
+pub struct ServoMode {
+    /// The joints that move most, with their sizes relative to the largest.
+    pub joints: Vec<(String, f64)>,
+    /// Frequency `|s|/2π` in Hz.
+    pub frequency: f64,
+    /// `|s|h`.
+    pub turn: f64,
+    /// The damping ratio in continuous time.
+    pub damping_ratio: Option<f64>,
+    /// The factor `|z|` of a substep, of the mode of the step that is nearest.
+    pub radius: f64,
+    /// The damping ratio that the step adds.
+    pub numerical_damping: Option<f64>,
+}
+
+/// What an integrator does with the gains.
+#[derive(Clone, Debug, Serialize)]
+pub struct IntegratorRow {
+    /// Its name.
+    pub name: &'static str,
+    /// The same in running text.
+    pub title: String,
+    /// Whether the gains hold.
+    pub holds: bool,
+    /// The largest factor of all gains of position.
+    #[serde(serialize_with = "limit")]
+    pub largest_factor: f64,
+    /// The fewest substeps.
+    pub fewest_substeps: Option<u32>,
+    /// The largest factor of a mode per substep.
+    pub spectral_radius: f64,
+}
+
+fn limit<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    match value.is_finite() {
+        true => serializer.serialize_some(value),
+        false => serializer.serialize_none(),
+    }
+}
+
+/// Whether the gains of servos hold at steps of `dt` seconds in `substeps` parts.
+pub fn gains(
+    servos: &Servos,
+    dt: f64,
+    substeps: u32,
+    integrator: ServoIntegrator,
+    notes: Vec<String>,
+) -> GainReport {
+    let h = dt / f64::from(substeps);
+    let row = |integrator: ServoIntegrator| {
+        let holds = is_stable(servos.step(integrator, h));
+        let factor = LargestFactor::search(|factor| servos.with_factor(factor).step(integrator, h));
+        IntegratorRow {
+            name: integrator.name(),
+            title: integrator.title(),
+            holds,
+            largest_factor: factor.value(),
+            fewest_substeps: fewest_substeps(servos, dt, integrator),
+            spectral_radius: growth(servos.step(integrator, h)).exp(),
+        }
+    };
+    let own = row(integrator);
+    let mut report = GainReport {
+        answer: String::new(),
+        holds: own.holds,
+        dt,
+        substeps,
+        integrator: own.name,
+        integrator_title: own.title,
+        spectral_radius: own.spectral_radius,
+        largest_factor: own.largest_factor,
+        fewest_substeps: own.fewest_substeps,
+        joints: (0..servos.joints.len()).map(|i| joint_row(servos, i, integrator, h)).collect(),
+        modes: modes(servos, integrator, h),
+        integrators: ServoIntegrator::all().map(row).collect(),
+        notes: [notes, vec![LIMITATION.trim_end_matches('.').to_owned()]].concat(),
+        repeat_command: String::new(),
+    };
+    report.answer = report.summary();
+    report
+}
+
+fn fewest_substeps(servos: &Servos, dt: f64, integrator: ServoIntegrator) -> Option<u32> {
+    let holds = |substeps: u32| is_stable(servos.step(integrator, dt / f64::from(substeps)));
+    // Doubling finds a number that holds, bisection the fewest.
+    let mut high = 1;
+    while !holds(high) {
+        if high == MOST_SUBSTEPS {
+            return None;
+        }
+        high = (2 * high).min(MOST_SUBSTEPS);
+    }
+    let mut low = high / 2;
+    while high - low > 1 {
+        let middle = u32::midpoint(low, high);
+        if holds(middle) { high = middle } else { low = middle }
+    }
+    Some(high)
+}
+
+fn joint_row(servos: &Servos, i: usize, integrator: ServoIntegrator, h: f64) -> JointRow {
+    let alone = servos.alone(i);
+    let (inertia, kp, kv) = (alone.mass[(0, 0)], alone.kp[(0, 0)], alone.kv[(0, 0)]);
+    let stiffness = kp + alone.stiffness[(0, 0)];
+    let omega = (stiffness / inertia).max(0.0).sqrt();
+    let damping = kv + alone.damping[(0, 0)];
+    let damping_ratio = (omega > 0.0).then(|| damping / inertia / (2.0 * omega));
+    // Longer steps change ωh at the same damping ratio.
+    let longest = LargestFactor::search(|factor| alone.step(integrator, h * factor));
+    let factor =
+        LargestFactor::search(|factor| servos.with_joint_factor(i, factor).step(integrator, h));
+    let largest_kp = if kp == 0.0 { f64::INFINITY } else { kp * factor.value() };
+    JointRow {
+        name: servos.joints[i].name.clone(),
+        inertia,
+        kp,
+        kv,
+        turn: omega * h,
+        damping_ratio,
+        largest_turn: omega * h * longest.value(),
+        largest_kp,
+    }
+}
+
+fn modes(servos: &Servos, integrator: ServoIntegrator, h: f64) -> Vec<ServoMode> {
+    let Some(plant) = servos.plant() else { return Vec::new() };
+    let factors: Vec<Complex64> =
+        servos.step(integrator, h).and_then(|step| eigenvalues(&step)).unwrap_or_default();
+    let n = servos.joints.len();
+    let mut found: Vec<ServoMode> = plant
+        .mode_details()
+        .into_iter()
+        .map(|mode| {
+            let exact = (mode.value * h).exp();
+            let nearest =
+                factors.iter().min_by(|a, b| (*a - exact).norm().total_cmp(&(*b - exact).norm()));
+            let radius = nearest.map_or(f64::NAN, |z| z.norm());
+            let damping_ratio = mode.damping_ratio();
+            let of_step = nearest.map(|z| z.ln()).map(|s| -s.re / s.norm());
+            let numerical_damping = of_step
+                .zip(damping_ratio)
+                .map(|(step, exact)| step - exact)
+                .filter(|added| added.is_finite());
+            let size = |i: usize| mode.shape[i].norm();
+            let largest = (0..n).map(size).fold(f64::MIN_POSITIVE, f64::max);
+            let mut joints: Vec<(String, f64)> = (0..n)
+                .map(|i| (servos.joints[i].name.clone(), size(i) / largest))
+                .filter(|(_, size)| *size >= 0.1)
+                .collect();
+            joints.sort_by(|a, b| b.1.total_cmp(&a.1));
+            joints.truncate(4);
+            ServoMode {
+                joints,
+                frequency: mode.natural_frequency() / core::f64::consts::TAU,
+                turn: mode.natural_frequency() * h,
+                damping_ratio,
+                radius,
+                numerical_damping,
+            }
+        })
+        .collect();
+    found.sort_by(|a, b| b.turn.total_cmp(&a.turn));
+    found
+}
+
+impl GainReport {
+    fn summary(&self) -> String {
+        let h = self.dt / f64::from(self.substeps);
+        let of = if self.substeps == 1 {
+            format!("steps of {h} s")
+        } else {
+            format!("{} substeps of {h:.3e} s", self.substeps)
+        };
+        let mut text = if self.holds {
+            format!("The gains hold with {} and {of}", self.integrator)
+        } else {
+            format!(
+                "The gains do not hold with {} and {of}: a mode grows by a factor {:.4} per step",
+                self.integrator, self.spectral_radius
+            )
+        };
+        text += &match self.largest_factor {
+            f64::INFINITY => "; no gain of position was found that does not.".to_owned(),
+            0.0 => "; no gain of position does.".to_owned(),
+            factor => {
+                format!("; the largest gains of position are {factor:.4} times the given ones.")
+            }
+        };
+        let worst = self
+            .joints
+            .iter()
+            .filter(|joint| joint.kp > 0.0)
+            .min_by(|a, b| (a.largest_kp / a.kp).total_cmp(&(b.largest_kp / b.kp)));
+        if let Some(joint) = worst.filter(|joint| joint.largest_kp.is_finite()) {
+            text += &format!(
+                " The joint with the least margin is {}: its gain is at most {:.5}, with all others as they are.",
+                joint.name, joint.largest_kp
+            );
+        }
+        if !self.holds {
+            match self.fewest_substeps {
+                Some(substeps) => text += &format!(" {substeps} substeps hold them."),
+                None => {
+                    text += &format!(" No number of substeps up to {MOST_SUBSTEPS} holds them.")
+                }
+            }
+            let others: Vec<&str> =
+                self.integrators.iter().filter(|row| row.holds).map(|row| row.name).collect();
+            if !others.is_empty() {
+                text += &format!(" They hold with {}.", others.join(", "));
+            }
+        }
+        format!("{text} {LIMITATION}")
+    }
+}

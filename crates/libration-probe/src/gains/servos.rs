@@ -1,0 +1,209 @@
+//! Servos on joints as matrices.
+
+use libration::analysis::LinearStepper;
+use libration::linear::{LinearPlant, MOST_STATES, Matrix, Signal, cholesky, solve_matrix};
+use serde::Deserialize;
+use thiserror::Error;
+
+use super::ServoIntegrator;
+
+/// Joints with servos: `M q̈ = −(K_p + K) q − (K_v + D) q̇` for small deviations.
+#[derive(Clone, Debug)]
+pub struct Servos {
+    /// Names and units of the joints.
+    pub joints: Vec<Signal>,
+    /// Inertia, joints × joints.
+    pub mass: Matrix,
+    /// Gains of position `K_p`.
+    pub kp: Matrix,
+    /// Gains of velocity `K_v`.
+    pub kv: Matrix,
+    /// Stiffness `K` of springs and gravity.
+    pub stiffness: Matrix,
+    /// Damping `D` of joints.
+    pub damping: Matrix,
+}
+
+/// Servos as JSON: matrices, or vectors of their diagonals.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ServosDescription {
+    joints: Option<Vec<String>>,
+    mass: Entries,
+    kp: Entries,
+    kv: Option<Entries>,
+    stiffness: Option<Entries>,
+    damping: Option<Entries>,
+    /// Facts for the reader of the report.
+    #[serde(default)]
+    pub notes: Vec<String>,
+    /// Length of a step in s, if the simulator has one.
+    pub dt: Option<f64>,
+    /// The integrator of the simulator, if it has one.
+    pub integrator: Option<String>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
+enum Entries {
+    Diagonal(Vec<f64>),
+    Matrix(Vec<Vec<f64>>),
+}
+
+/// Servos that cannot be used.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ServoError {
+    /// A value is not allowed.
+    #[error("`{field}` is {value}; expected {expected}")]
+    Value {
+        /// The field.
+        field: &'static str,
+        /// Its value.
+        value: String,
+        /// What is allowed.
+        expected: String,
+    },
+    /// The inertia is no inertia.
+    #[error("`mass` is not symmetric and positive definite; expected the inertia of the joints")]
+    Mass,
+}
+
+impl ServosDescription {
+    /// The servos.
+    ///
+    /// # Errors
+    /// A value is not allowed.
+    pub fn servos(&self) -> Result<Servos, ServoError> {
+        let n = match &self.mass {
+            Entries::Diagonal(values) => values.len(),
+            Entries::Matrix(rows) => rows.len(),
+        };
+        if !(1..=MOST_STATES / 2).contains(&n) {
+            return Err(ServoError::Value {
+                field: "mass",
+                value: format!("that of {n} joints"),
+                expected: format!("1 to {} joints", MOST_STATES / 2),
+            });
+        }
+        let optional = |field, entries: &Option<Entries>| match entries {
+            Some(entries) => matrix(field, entries, n),
+            None => Ok(Matrix::zeros(n, n)),
+        };
+        let joints = match &self.joints {
+            None => Signal::numbered("joint ", n),
+            Some(names) if names.len() == n => {
+                names.iter().map(|name| Signal::parse(name)).collect()
+            }
+            Some(names) => {
+                return Err(ServoError::Value {
+                    field: "joints",
+                    value: format!("{} names", names.len()),
+                    expected: format!("{n}, one for each row of mass"),
+                });
+            }
+        };
+        let servos = Servos {
+            joints,
+            mass: matrix("mass", &self.mass, n)?,
+            kp: matrix("kp", &self.kp, n)?,
+            kv: optional("kv", &self.kv)?,
+            stiffness: optional("stiffness", &self.stiffness)?,
+            damping: optional("damping", &self.damping)?,
+        };
+        let mass = &servos.mass;
+        let is_symmetric = (0..n)
+            .all(|i| (0..i).all(|j| (mass[(i, j)] - mass[(j, i)]).abs() <= 1e-9 * mass.largest()));
+        let factor = cholesky(mass);
+        match is_symmetric && (0..n).all(|i| factor[(i, i)] > 0.0) {
+            true => Ok(servos),
+            false => Err(ServoError::Mass),
+        }
+    }
+}
+
+fn matrix(field: &'static str, entries: &Entries, n: usize) -> Result<Matrix, ServoError> {
+    let wrong = |value: String| {
+        let expected = format!("{n} numbers, or {n} × {n}, all finite");
+        Err(ServoError::Value { field, value, expected })
+    };
+    let rows: Vec<Vec<f64>> = match entries {
+        Entries::Diagonal(values) if values.len() == n => {
+            (0..n).map(|i| (0..n).map(|j| if i == j { values[i] } else { 0.0 }).collect()).collect()
+        }
+        Entries::Diagonal(values) => return wrong(format!("{} numbers", values.len())),
+        Entries::Matrix(rows) => rows.clone(),
+    };
+    if rows.len() != n || rows.iter().any(|row| row.len() != n) {
+        let columns = rows.first().map_or(0, Vec::len);
+        return wrong(format!("{} × {columns}", rows.len()));
+    }
+    match rows.iter().flatten().find(|x| !x.is_finite()) {
+        Some(value) => wrong(format!("{value}")),
+        None => Ok(Matrix::from_fn(n, n, |i, j| rows[i][j])),
+    }
+}
+
+impl Servos {
+    /// The same with all gains of position times `factor`.
+    pub(super) fn with_factor(&self, factor: f64) -> Self {
+        Servos { kp: self.kp.scaled(factor), ..self.clone() }
+    }
+
+    /// The same with the gains of position of one joint, its row of `K_p`, times `factor`.
+    pub(super) fn with_joint_factor(&self, joint: usize, factor: f64) -> Self {
+        let mut servos = self.clone();
+        servos.kp.row_mut(joint).iter_mut().for_each(|kp| *kp *= factor);
+        servos
+    }
+
+    /// Joint `i` alone, with all others at rest.
+    pub(super) fn alone(&self, i: usize) -> Self {
+        let entry = |matrix: &Matrix| matrix.block((i, i), (1, 1));
+        Servos {
+            joints: vec![self.joints[i].clone()],
+            mass: entry(&self.mass),
+            kp: entry(&self.kp),
+            kv: entry(&self.kv),
+            stiffness: entry(&self.stiffness),
+            damping: entry(&self.damping),
+        }
+    }
+
+    /// The motion in continuous time; its states are the joints and then their velocities.
+    pub(super) fn plant(&self) -> Option<LinearPlant> {
+        let n = self.joints.len();
+        let (stiffness, damping) = (self.kp.plus(&self.stiffness), self.kv.plus(&self.damping));
+        let force = Matrix::identity(n);
+        LinearPlant::mechanical([&self.mass, &damping, &stiffness], &force, &self.joints).ok()
+    }
+
+    /// The matrix of a step of `dt` seconds; none if it is not finite.
+    pub(super) fn step(&self, integrator: ServoIntegrator, dt: f64) -> Option<Matrix> {
+        match integrator {
+            ServoIntegrator::JointDampingImplicit => self.joint_damping_step(dt),
+            ServoIntegrator::Method(method) => {
+                let plant = self.plant()?;
+                let stepper = LinearStepper::new(&plant.a)?;
+                Some(stepper.with_step::<f64>(method, dt)?.update_matrix())
+            }
+        }
+        .filter(Matrix::is_finite)
+    }
+
+    /// `(M + hD) v' = M v − h((K_p + K) q + K_v v)`, `q' = q + h v'`.
+    fn joint_damping_step(&self, h: f64) -> Option<Matrix> {
+        let n = self.joints.len();
+        let mut right = Matrix::zeros(n, 2 * n);
+        right.set_block((0, 0), &self.kp.plus(&self.stiffness).scaled(-h));
+        right.set_block((0, n), &self.mass.plus(&self.kv.scaled(-h)));
+        let velocities = solve_matrix(&self.mass.plus(&self.damping.scaled(h)), &right)?;
+        let mut step = Matrix::zeros(2 * n, 2 * n);
+        step.set_block((n, 0), &velocities);
+        let mut positions = velocities.scaled(h);
+        for i in 0..n {
+            positions[(i, i)] += 1.0;
+        }
+        step.set_block((0, 0), &positions);
+        Some(step)
+    }
+}

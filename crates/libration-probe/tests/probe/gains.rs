@@ -1,0 +1,79 @@
+//! Limits of gains beside closed forms.
+
+use libration_probe::{GainReport, ServoIntegrator, ServosDescription, gains};
+
+fn report(text: &str, dt: f64, substeps: u32, integrator: &str) -> GainReport {
+    let description: ServosDescription = serde_json::from_str(text).unwrap();
+    let integrator = ServoIntegrator::from_name(integrator).unwrap();
+    gains(&description.servos().unwrap(), dt, substeps, integrator, vec![])
+}
+
+fn close(found: f64, wanted: f64, tolerance: f64) {
+    assert!((found / wanted - 1.0).abs() <= tolerance, "{found:e} {wanted:e}");
+}
+
+#[test]
+fn the_largest_kp_of_a_joint_is_that_of_its_characteristic_polynomial() {
+    // One joint of inertia 2 with kv = 3, steps of 10 ms.
+    let (m, kv, h) = (2.0, 3.0, 0.01);
+    let text = r#"{"mass": [2], "kp": [100], "kv": [3]}"#;
+    // Explicit damper: z = −1 at h²kp/m + 2hkv/m = 4. Implicit damper: at h²kp/m = 4 + 2hkv/m.
+    let explicit = (4.0 - 2.0 * h * kv / m) * m / (h * h);
+    let implicit = (4.0 + 2.0 * h * kv / m) * m / (h * h);
+    for (integrator, wanted) in [
+        ("symplectic-euler", explicit),
+        ("euler", explicit),
+        ("implicitfast", implicit),
+        ("implicit", implicit),
+    ] {
+        let found = report(text, h, 1, integrator);
+        // The growth that counts as none, 10⁻⁷.
+        close(found.joints[0].largest_kp, wanted, 1e-6);
+        close(found.largest_factor * 100.0, wanted, 1e-6);
+    }
+    // The damping of a joint is implicit in MuJoCo's Euler, that of a servo is not.
+    let of_joint = report(r#"{"mass": [2], "kp": [100], "damping": [3]}"#, h, 1, "Euler");
+    close(of_joint.joints[0].largest_kp, implicit, 1e-6);
+    for unlimited in ["backward-euler", "implicit-midpoint", "damping-stiffness-implicit"] {
+        assert_eq!(report(text, h, 1, unlimited).largest_factor, f64::INFINITY, "{unlimited}");
+    }
+    assert_eq!(report(r#"{"mass": [2], "kp": [100]}"#, h, 1, "explicit-euler").largest_factor, 0.0);
+}
+
+#[test]
+fn the_heaviest_coupling_limits_equal_servos() {
+    // kp < 4 λ_min(M)/h² − 2 kv/h of explicit dampers, as a rigid body has it.
+    let (kv, h) = (0.4, 0.005);
+    let text = r#"{"mass": [[2, 0.9], [0.9, 0.5]], "kp": [50, 50], "kv": [0.4, 0.4]}"#;
+    let least = (2.5 - (1.5_f64 * 1.5 + 4.0 * 0.81).sqrt()) / 2.0;
+    let wanted = 4.0 * least / (h * h) - 2.0 * kv / h;
+    close(report(text, h, 1, "symplectic-euler").largest_factor * 50.0, wanted, 1e-6);
+}
+
+#[test]
+fn the_fewest_substeps_are_those_of_the_limit() {
+    // ωh = 2 without damping: kp = 10⁶, m = 1 needs h < 2 ms, so 3 substeps of 5 ms.
+    let found = report(r#"{"mass": [1], "kp": [1e6]}"#, 0.005, 1, "symplectic-euler");
+    assert_eq!((found.holds, found.fewest_substeps), (false, Some(3)));
+    assert!(report(r#"{"mass": [1], "kp": [1e6]}"#, 0.005, 3, "symplectic-euler").holds);
+    assert!(
+        found.answer.contains("They hold with backward-euler")
+            || found.answer.contains("backward-euler")
+    );
+    close(found.joints[0].turn, 5.0, 1e-12);
+    close(found.joints[0].largest_turn, 2.0, 1e-6);
+}
+
+#[test]
+fn servos_that_are_wrong_are_refused_with_the_name_of_the_field() {
+    for (text, part) in [
+        (r#"{"mass": [[1, 2], [2, 1]], "kp": [1, 1]}"#, "positive definite"),
+        (r#"{"mass": [1, 1], "kp": [1]}"#, "`kp` is 1 numbers"),
+        (r#"{"mass": [], "kp": []}"#, "1 to 50 joints"),
+        (r#"{"mass": [1], "kp": [1], "joints": ["a", "b"]}"#, "`joints` is 2 names"),
+    ] {
+        let description: ServosDescription = serde_json::from_str(text).unwrap();
+        let error = description.servos().unwrap_err().to_string();
+        assert!(error.contains(part), "{error}");
+    }
+}

@@ -1,0 +1,172 @@
+"""Gains of servos: whether they hold at a time step, by which margin, and with which integrator."""
+
+from __future__ import annotations
+
+import json
+from os import PathLike
+from pathlib import Path
+from typing import Any, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _native
+from ._keywords import check_keywords
+from ._settings import count, positive
+
+__all__ = ["GainReport", "Gains", "gains"]
+
+
+class GainReport:
+    """The results; :attr:`results` has all numbers under the keys of ``libration gains --json``."""
+
+    def __init__(self, results: dict[str, Any], page: str) -> None:
+        self.results = results
+        self._page = page
+
+    def __repr__(self) -> str:
+        return f"<GainReport: {self.answer}>"
+
+    @property
+    def answer(self) -> str:
+        """The answer in a few sentences."""
+        return str(self.results["answer"])
+
+    @property
+    def holds(self) -> bool:
+        """Whether the gains hold."""
+        return bool(self.results["holds"])
+
+    @property
+    def largest_factor(self) -> float:
+        """The largest factor of all gains of position, with the same gains of velocity; infinite if there is no limit."""
+        return _limit(self.results["largest_factor"])
+
+    @property
+    def largest_kp(self) -> dict[str, float]:
+        """The largest gain of position of each joint, with all others as they are; infinite if there is no limit."""
+        return {joint["name"]: _limit(joint["largest_kp"]) for joint in self.results["joints"]}
+
+    @property
+    def fewest_substeps(self) -> int | None:
+        """The fewest substeps with which the gains hold; None if 1000 do not."""
+        found: int | None = self.results["fewest_substeps"]
+        return found
+
+    @property
+    def joints(self) -> list[dict[str, Any]]:
+        """Each joint, alone and within all others."""
+        return list(self.results["joints"])
+
+    @property
+    def modes(self) -> list[dict[str, Any]]:
+        """The modes of all joints together, the fastest first."""
+        return list(self.results["modes"])
+
+    @property
+    def integrators(self) -> list[dict[str, Any]]:
+        """All integrators with these gains."""
+        return list(self.results["integrators"])
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the HTML page, or with the suffix ``.json`` all numbers."""
+        text = json.dumps(self.results, indent=2) if str(path).endswith(".json") else self._page
+        Path(path).write_text(text, encoding="utf-8")
+
+
+class Gains:
+    """Limits of gains: ``libration.gains(M, kp, kv, dt=…)`` of matrices, ``libration.gains.mujoco(model)`` of a MuJoCo model."""
+
+    @check_keywords
+    def __call__(
+        self,
+        mass: ArrayLike,
+        kp: ArrayLike,
+        kv: ArrayLike | None = None,
+        *,
+        dt: float,
+        integrator: str = "symplectic-euler",
+        substeps: int = 1,
+        stiffness: ArrayLike | None = None,
+        damping: ArrayLike | None = None,
+        joints: Sequence[str] | None = None,
+    ) -> GainReport:
+        """Return whether servos ``M q̈ = −(kp + stiffness) q − (kv + damping) q̇`` hold at a time step.
+
+        Parameters
+        ----------
+        mass:
+            Inertia, joints × joints, or its diagonal.
+        kp, kv:
+            Gains of position and velocity, for each joint or joints × joints (default of ``kv``: zero).
+        dt:
+            Time step of the simulator in s.
+        integrator:
+            Its name here or in a simulator: ``"symplectic-euler"``, ``"euler"`` (MuJoCo's, with implicit damping of joints),
+            ``"implicitfast"``, ``"implicit"``, ``"rk4"``, ``"backward-euler"``, …
+        substeps:
+            Steps of the integrator in each time step.
+        stiffness, damping:
+            Those of joints besides their servos.
+        joints:
+            Names with units in parentheses.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For an invalid value; the message has the name of the parameter and what is allowed.
+        """
+        described: dict[str, Any] = {"mass": _entries("mass", mass), "kp": _entries("kp", kp)}
+        for name, value in (("kv", kv), ("stiffness", stiffness), ("damping", damping)):
+            if value is not None:
+                described[name] = _entries(name, value)
+        if joints is not None:
+            described["joints"] = list(joints)
+        return _report(described, positive("dt", dt), substeps, integrator)
+
+    @check_keywords
+    def mujoco(
+        self,
+        model: Any,
+        data: Any = None,
+        *,
+        keyframe: str | int | None = None,
+        state: str | None = None,
+        dt: float | None = None,
+        integrator: str | None = None,
+        substeps: int = 1,
+    ) -> GainReport:
+        """Return whether the servos of a MuJoCo model hold: an ``MjModel``, or the path of an XML or MJB file.
+
+        The servos are all actuators, by the derivatives of their forces; gravity and springs of joints and tendons are the stiffness.
+        ``dt`` and ``integrator`` are those of the model by default; the other parameters are those of :func:`libration.hosts.mujoco_host`.
+        """
+        from .hosts import mujoco_servos
+
+        described = mujoco_servos(model, data, keyframe=keyframe, state=state)
+        own_dt, own = described.pop("dt"), described.pop("integrator")
+        return _report(described, positive("dt", own_dt if dt is None else dt), substeps, integrator or own)
+
+
+gains = Gains()
+
+
+def _report(described: dict[str, Any], dt: float, substeps: int, integrator: str) -> GainReport:
+    if not isinstance(integrator, str):
+        raise TypeError(f"integrator must be a string, not {type(integrator).__name__}")
+    answer, page = _native._gains(json.dumps(described), dt, count("substeps", substeps, 1, 1000), integrator)
+    return GainReport(json.loads(answer), page)
+
+
+def _entries(name: str, value: ArrayLike) -> Any:
+    try:
+        found = np.atleast_1d(np.asarray(value, dtype=np.float64))
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} is {value!r}; expected numbers") from None
+    if found.ndim > 2 or not np.isfinite(found).all():
+        raise ValueError(f"{name} has shape {found.shape}; expected finite numbers, for each joint or joints × joints")
+    return found.tolist()
+
+
+def _limit(value: float | None) -> float:
+    return float("inf") if value is None else float(value)
