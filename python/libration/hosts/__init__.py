@@ -1,26 +1,33 @@
 """Adapters of other simulators: each is a step in minimal coordinates, without memory of earlier calls."""
 
+from importlib import import_module
+
 from .host import Host
 
-__all__ = ["Host", "delay_audit", "gymnasium_host", "mujoco_host", "mujoco_servos"]
+# Each adapter is imported when it is used, since it needs a package of its own.
+_ADAPTERS = {
+    "delay_audit": "mujoco_delays",
+    "fmu_host": "fmu",
+    "fmu_plant": "fmu",
+    "gymnasium_host": "gymnasium",
+    "jax_host": "jax",
+    "mujoco_host": "mujoco",
+    "mujoco_servos": "mujoco_servos",
+}
+
+__all__ = [
+    "Host",
+    "delay_audit",
+    "fmu_host",
+    "fmu_plant",
+    "gymnasium_host",
+    "jax_host",
+    "mujoco_host",
+    "mujoco_servos",
+]
 
 
 def __getattr__(name: str) -> object:
-    """Import an adapter when it is used, since each needs a package of its own."""
-    if name == "mujoco_host":
-        from .mujoco import mujoco_host
-
-        return mujoco_host
-    if name == "mujoco_servos":
-        from .mujoco_servos import mujoco_servos
-
-        return mujoco_servos
-    if name == "gymnasium_host":
-        from .gymnasium import gymnasium_host
-
-        return gymnasium_host
-    if name == "delay_audit":
-        from .mujoco_delays import delay_audit
-
-        return delay_audit
+    if name in _ADAPTERS:
+        return getattr(import_module(f".{_ADAPTERS[name]}", __name__), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

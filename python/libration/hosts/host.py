@@ -51,6 +51,8 @@ class Host:
     """The derivative of the step by the states that the simulator itself computes, in these coordinates."""
     reference_B: Array | None = None
     """The derivative of the step by the actions that the simulator itself computes."""
+    reference_source: str = ""
+    """The function that computes these derivatives: ``"mjd_transitionFD"``, ``"jax.jacfwd"``; empty without them."""
     joints: tuple[str, ...] = ()
     """Names of the joints."""
     memory: bool = False

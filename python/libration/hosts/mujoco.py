@@ -99,6 +99,7 @@ def mujoco_host(
         notes=tuple(notes),
         reference_A=reference_a,
         reference_B=reference_b,
+        reference_source="" if reference_a is None else "mjd_transitionFD",
         joints=joint_names(own),
         memory=memory,
         reset=simulation.reset,
