@@ -88,16 +88,11 @@ class CoSimulation(Instance):
             self.renew(self.way == "reset")
             self.initialise()
 
-    def point(self) -> list[float]:
-        """Return the states after the initialisation."""
+    def step(self, x: list[float] | None, u: list[float], dt: float) -> dict[str, list[float]]:
+        """Return the states before and after a macro step; without ``x`` they begin at their start values."""
         self.restore()
-        self.fmu.exitInitializationMode()
-        return self.get(self.load["readers"])
-
-    def step(self, x: list[float], u: list[float], dt: float) -> dict[str, list[float]]:
-        """Return the states before and after a macro step."""
-        self.restore()
-        self.set(self.load["setters"], x)
+        if x is not None:
+            self.set(self.load["setters"], x)
         self.fmu.exitInitializationMode()
         before = self.get(self.load["readers"])
         self.set(self.load["inputs"], u)
@@ -120,6 +115,7 @@ class ModelExchange(Instance):
         self.initialise()
         self.fmu.exitInitializationMode()
         self.update()
+        self.start = self.vector(self.fmu.getContinuousStates, self.size)
         self.had_event = False
 
     def update(self) -> None:
@@ -134,13 +130,17 @@ class ModelExchange(Instance):
                 return
         raise RuntimeError(f"discrete states do not settle in {MOST_EVENT_ITERATIONS} iterations of an event")
 
-    def point(self) -> dict[str, Any]:
-        return {"state": self.vector(self.fmu.getContinuousStates, self.size), "next_event": self.next_event}
+    def event(self) -> float | None:
+        """Return the time of the next event at the point."""
+        return self.next_event
 
     def vector(self, read: Any, size: int) -> list[float]:
         values = (ctypes.c_double * size)()
         read(values, size)
         return list(values)
+
+    def point(self) -> list[float]:
+        return self.start
 
     def place(self, x: list[float], u: list[float]) -> None:
         if self.had_event:
@@ -164,7 +164,9 @@ class ModelExchange(Instance):
         unknowns = self.load["derivatives"] + self.load["outputs"]
         return [list(self.fmu.getDirectionalDerivative(unknowns, [known], [1.0])) for known in self.load["readers"] + self.load["inputs"]]
 
-    def step(self, x: list[float], u: list[float], dt: float) -> dict[str, list[float]]:
+    def step(self, x: list[float] | None, u: list[float], dt: float) -> dict[str, list[float]]:
+        """Return the states before and after a step; without ``x`` they begin at their start values."""
+        x = self.start if x is None else x
         self.place(x, u)
         z = self.vector(self.fmu.getEventIndicators, self.indicators) if self.indicators else []
         after = [value + dt * rate for value, rate in zip(x, self.derivatives())]

@@ -76,12 +76,12 @@ def fmu_host(
     load = load_of(described, values, chosen, readers, setters, [])
     action = np.array(load["action"], dtype=np.float64)
     notes: list[str] = []
-    simulation, after = independent(described, load, action, timestep, timeout, labels(readers), notes)
-    start = simulation.point
+    simulation, (start, after) = independent(described, load, action, timestep, timeout, labels(readers), notes)
     if exchange:
         notes.append("a model exchange FMU has no step of its own: the step is that of forward Euler")
-        if simulation.next_event is not None and simulation.next_event <= load["time"] + timestep:
-            notes.append(f"the FMU has a time event at {simulation.next_event:g} s, which the step leaves out")
+        event = simulation.next_event()
+        if event is not None and event <= load["time"] + timestep:
+            notes.append(f"the FMU has a time event at {event:g} s, which the step leaves out")
     else:
         notes.append(
             f"the macro step of {timestep:g} s is a latency: values that are exchanged at its ends are up to {timestep:g} s old in between"
@@ -156,7 +156,7 @@ def fmu_plant(
     readers = described.continuous_states()
     load = load_of(described, _values(start_values), chosen, readers, readers, measured)
     simulation = Simulation(described, {**load, "way": "reset"}, timeout)
-    n, point = len(readers), np.concatenate([simulation.point, load["action"]])
+    n, point = len(readers), np.concatenate([simulation.start(), load["action"]])
     if derivatives == "differences" or not described.has_directional:
         full, error = extrapolated_jacobian(lambda z: simulation.rates(z[:n], z[n:]), point, np.maximum(np.abs(point), 1.0))
         if not (error <= 1e-2 * np.maximum(1.0, np.max(np.abs(full), axis=1, keepdims=True))).all():
