@@ -62,9 +62,12 @@ class Instance:
         if by_reset:
             self.fmu.reset()
             return
-        # The library stays loaded: some cannot be loaded twice.
-        (self.fmu.fmi2FreeInstance if self.is_fmi2 else self.fmu.fmi3FreeInstance)(self.fmu.component)
+        self.free()
         self.fmu.instantiate()
+
+    def free(self) -> None:
+        """Free the instance. The library stays loaded: some cannot be loaded twice."""
+        (self.fmu.fmi2FreeInstance if self.is_fmi2 else self.fmu.fmi3FreeInstance)(self.fmu.component)
 
 
 class CoSimulation(Instance):
@@ -206,6 +209,8 @@ def main() -> None:
             answer = {"error": f"{' '.join(str(error).split())}", "status": getattr(error, "status", None)}
         answers.write(json.dumps(answer) + "\n")
         answers.flush()
+    if instance is not None:
+        instance.free()
 
 
 if __name__ == "__main__":

@@ -115,8 +115,10 @@ class Description:
         return readers, setters
 
     def _settable(self) -> str:
-        known = [v.name for v in self.model.modelVariables if is_float(v) and v.initial == "exact" and settable_in_initialization_mode(v)]
-        return f"variables that can be set are {', '.join(known[:20])}" if known else "no variable can be set"
+        known = [v for v in self.model.modelVariables if is_float(v) and v.initial == "exact" and v.causality != "input"]
+        # Parameters come last.
+        names = [v.name for v in sorted(known, key=lambda v: v.causality in ("parameter", "calculatedParameter"))]
+        return f"variables that can be set are {', '.join(names[:20])}" if names else "no variable can be set"
 
 
 def describe(path: str | os.PathLike[str], kind: str | None) -> Description:

@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import IO, Any
 
 _DISCARD = 2
+# Times in s that the process has at least to load the FMU, and to free it.
+_LOAD, _FREE = 60.0, 2.0
 # The child has the search path of its parent; a program that is run by its path would search in its own folder first.
 _PROGRAM = "import sys, runpy; sys.path[:] = sys.argv[2:]; runpy.run_path(sys.argv[1], run_name='__main__')"
 
@@ -64,16 +66,18 @@ class FmuProcess:
 
     def _answer(self, request: dict[str, Any], operation: str) -> Any:
         assert self.process.stdin is not None
+        limit = max(self.timeout, _LOAD) if operation == "load" else self.timeout
         try:
             self.process.stdin.write(json.dumps(request) + "\n")
             self.process.stdin.flush()
-            line = self.answers.get(timeout=self.timeout)
+            line = self.answers.get(timeout=limit)
         except OSError:
             line = None
         except queue.Empty:
+            self.process.kill()
             self.close()
             raise TimeoutError(
-                f"{self.name} gave no answer in {self.timeout:g} s ({operation}), and its process was ended; help: give a longer timeout"
+                f"{self.name} gave no answer in {limit:g} s ({operation}), and its process was ended; help: give a longer timeout"
             ) from None
         if line is None:
             raise RuntimeError(self._crash(operation))
@@ -112,13 +116,19 @@ def _read(stream: IO[str], answers: queue.Queue[str | None]) -> None:
 
 
 def _end(process: subprocess.Popen[str], reader: threading.Thread, log: IO[bytes]) -> None:
-    process.kill()
-    process.wait()
+    try:
+        if process.stdin is not None:
+            # The child frees the FMU at the end of its requests.
+            process.stdin.close()
+    except OSError:
+        # A request that was not written.
+        pass
+    try:
+        process.wait(_FREE)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
     reader.join(1.0)
-    for stream in (process.stdin, process.stdout, log):
-        try:
-            if stream is not None:
-                stream.close()
-        except OSError:
-            # A request that was not written.
-            pass
+    for stream in (process.stdout, log):
+        if stream is not None:
+            stream.close()

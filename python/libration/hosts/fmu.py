@@ -55,7 +55,7 @@ def fmu_host(
     kind:
         ``"CoSimulation"`` or ``"ModelExchange"`` (default: the first one that the FMU has).
     timeout:
-        Longest time in s of a step, after which the process of the FMU is ended.
+        Longest time in s of a step, after which the process of the FMU is ended. Loading has at least 60 s.
 
     Raises
     ------

@@ -58,7 +58,8 @@ def _fmi2(saves, directional, lists, exchange, step):
     units = "".join(f'<Unit name="{unit}"/>' for unit in ("m", "m/s", "m/s2"))
     rows = []
     for k, (name, causality, variability, initial, start, more) in enumerate(_VARIABLES):
-        head = _attributes([("name", name), ("valueReference", k), ("causality", causality), ("variability", variability), ("initial", initial)])
+        pairs = [("name", name), ("valueReference", k), ("causality", causality), ("variability", variability), ("initial", initial)]
+        head = _attributes(pairs)
         more = more.format(x0=2, x1=4) if lists else "" if "derivative" in more else more
         rows.append(f"<ScalarVariable {head}><Real {_attributes([('start', start)])} {more}/></ScalarVariable>")
     common = f'modelIdentifier="vanderpol" canGetAndSetFMUstate="{_flag(saves)}" providesDirectionalDerivative="{_flag(directional)}"'
@@ -83,7 +84,8 @@ def _fmi3(saves, directional, lists, exchange, step):
         pairs = [("name", name), ("valueReference", k), ("causality", causality), ("variability", variability), ("initial", initial)]
         more = more.format(x0=1, x1=3) if lists else "" if "derivative" in more else more
         rows.append(f"<Float64 {_attributes([*pairs, ('start', start)])} {more}/>")
-    rows.append('<Float64 name="z" valueReference="11" causality="local" variability="continuous" initial="calculated"/>' if exchange else "")
+    indicated = '<Float64 name="z" valueReference="11" causality="local" variability="continuous" initial="calculated"/>'
+    rows.append(indicated if exchange else "")
     common = f'modelIdentifier="vanderpol" canGetAndSetFMUState="{_flag(saves)}" providesDirectionalDerivatives="{_flag(directional)}"'
     derivatives = '<ContinuousStateDerivative valueReference="2"/><ContinuousStateDerivative valueReference="4"/>' if lists else ""
     unknown = "".join(f'<InitialUnknown valueReference="{k}"/>' for k in ((2, 4, 7) if lists else (7,)))
