@@ -24,9 +24,11 @@ def description_of(host: Host) -> dict[str, Any]:
         described["pairs"] = [list(pair) for pair in host.positions]
         if host.mass is not None and len(host.mass) == len(host.positions):
             described["mass"] = host.mass.tolist()
+        if len(host.joint_damping) == len(host.positions):
+            described["joint_damping"] = [float(damping) for damping in host.joint_damping]
     if host.reference_A is not None and host.reference_B is not None:
         described["reference"] = {
-            "source": "mjd_transitionFD",
+            "source": host.reference_source,
             "a": host.reference_A.tolist(),
             "b": host.reference_B.tolist(),
         }

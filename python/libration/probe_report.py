@@ -78,9 +78,11 @@ class ProbeReport:
 
     @property
     def integrators(self) -> list[str]:
-        """Names of the integrators whose results the step has."""
+        """Names of the integrators whose results the step has, or if there are none, whose matrix."""
         found = self.results["recognition"]
-        return [] if found is None else list(found["methods"])
+        if found is None:
+            return []
+        return list(found["by_results"]["methods"] or (found["by_matrix"] or {}).get("methods", []))
 
     @property
     def defects(self) -> dict[str, Any] | None:

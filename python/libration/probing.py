@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import shlex
+from os import PathLike
 from typing import Any, Callable, Sequence
 
 import numpy as np
@@ -138,7 +140,14 @@ class Probe:
         from .hosts import mujoco_host
 
         host = mujoco_host(model, data, keyframe=keyframe, state=state, dt=dt, memory=None)
-        return self.host(host, conservative=conservative)
+        invocation = ""
+        if isinstance(model, (str, PathLike)) and data is None and state in (None, "settled"):
+            words = ["libration", "probe", "--mujoco", str(model)]
+            words += [] if keyframe is None else ["--keyframe", str(keyframe)]
+            words += [] if dt is None else ["--dt", repr(host.dt)]
+            words += ["--settle"] * (state == "settled") + ["--conservative"] * bool(conservative)
+            invocation = shlex.join(words)
+        return self.host(host, conservative=conservative, invocation=invocation)
 
     @check_keywords
     def gymnasium(self, env: Any, action: Any = None, **keywords: Any) -> ProbeReport:
@@ -148,10 +157,27 @@ class Probe:
         return self.host(gymnasium_host(env, action, **keywords))
 
     @check_keywords
-    def host(self, host: Host, *, conservative: bool = False) -> ProbeReport:
-        """Audit a :class:`libration.hosts.Host`."""
+    def jax(self, step: Callable[..., Any], state: ArrayLike, action: ArrayLike = (), dt: float | None = None, **keywords: Any) -> ProbeReport:
+        """Audit a function of JAX, whose Jacobian by JAX is compared, see :func:`libration.hosts.jax_host`. Requires ``jax``."""
+        from .hosts import jax_host
+
+        return self.host(jax_host(step, state, action, dt, **keywords))
+
+    @check_keywords
+    def fmu(self, path: str | PathLike[str], **keywords: Any) -> ProbeReport:
+        """Audit an FMU of FMI 2 or 3 in a process of its own, see :func:`libration.hosts.fmu_host`. Requires ``fmpy``.
+
+        The step of a co-simulation is its macro step: who exchanges values at its ends adds its length to the latency of a loop.
+        """
+        from .hosts import fmu_host
+
+        return self.host(fmu_host(path, **keywords))
+
+    @check_keywords
+    def host(self, host: Host, *, conservative: bool = False, invocation: str = "") -> ProbeReport:
+        """Audit a :class:`libration.hosts.Host`; ``invocation`` is the command that repeats the audit, for its page."""
         described = description_of(host)
-        described["conservative"] = bool(conservative)
+        described.update(conservative=bool(conservative), invocation=str(invocation))
         # The rows of a host with memory continue one simulation each.
         return _audit(host, described, None, not host.memory)
 

@@ -28,6 +28,7 @@ pub struct Description {
     /// Pairs of a position and its velocity.
     pairs: Option<Vec<(usize, usize)>>,
     mass: Option<Vec<Vec<f64>>>,
+    joint_damping: Option<Vec<f64>>,
     integrator: Option<String>,
     #[serde(default)]
     notes: Vec<String>,
@@ -98,6 +99,7 @@ impl Description {
         subject.equilibrium = self.equilibrium;
         subject.is_conservative = self.conservative;
         subject.pairs = self.pairs;
+        subject.joint_damping = self.joint_damping;
         subject.integrator = self.integrator;
         subject.notes = self.notes;
         subject.invocation = self.invocation;

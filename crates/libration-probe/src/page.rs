@@ -6,7 +6,7 @@ use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
 
-use crate::ProbeReport;
+use crate::{Match, ProbeReport};
 
 /// Points of the unit circle.
 const CIRCLE: usize = 361;
@@ -197,17 +197,35 @@ fn latency(page: &mut Page, audit: &ProbeReport) {
 fn integrator(page: &mut Page, audit: &ProbeReport) {
     let (Some(order), Some(recognition)) = (&audit.order, &audit.recognition) else { return };
     page.heading("Which integrator is it?");
-    let estimates: Vec<String> = order.estimates.iter().map(|x| format!("{x:.3}")).collect();
+    let estimates = match order.estimates.is_empty() {
+        true => "none, the step is exact".into(),
+        false => order.estimates.iter().map(|x| format!("{x:.3}")).collect::<Vec<_>>().join(", "),
+    };
+    page.paragraph(format!("Estimates of the order from halved steps: {estimates}."));
     page.paragraph(format!(
-        "Estimates of the order from halved steps: {}. Each candidate steps the same system, whose rates are the limit of short steps of \
-         the simulator; errors of the rates explain distances up to {:.1e}.",
-        if estimates.is_empty() { "none, the step is exact".into() } else { estimates.join(", ") },
-        recognition.allowed
+        "Each candidate steps the same system from a displaced state, whose rates are the limit of short steps of the simulator; errors of \
+         the rates explain distances up to {:.1e}.",
+        recognition.by_results.allowed
     ));
-    let mut table = Table::new("integrators", &["integrator", "distance from the step", "agrees"]);
-    for candidate in &recognition.candidates {
-        let agrees = if recognition.methods.contains(&candidate.method) { "yes" } else { "no" };
-        table.push([candidate.title.into(), Cell::rounded(candidate.distance, 3), agrees.into()]);
+    candidates(page, "integrators", &recognition.by_results);
+    if let Some(by_matrix) = &recognition.by_matrix {
+        page.paragraph(format!(
+            "The same for small deviations, by the matrix of the step; errors explain distances up to {:.1e}.",
+            by_matrix.allowed
+        ));
+        candidates(page, "integrators-linear", by_matrix);
+    }
+}
+
+fn candidates(page: &mut Page, name: &str, found: &Match) {
+    let mut table = Table::new(name, &["integrator", "distance from the step", "agrees"]);
+    for candidate in &found.candidates {
+        let agrees = if found.methods.contains(&candidate.method) { "yes" } else { "no" };
+        table.push([
+            candidate.title.clone().into(),
+            Cell::rounded(candidate.distance, 3),
+            agrees.into(),
+        ]);
     }
     page.table(&table, 3);
 }

@@ -16,13 +16,22 @@ const DISPLACEMENT: f64 = 0.25;
 const ERRORS: f64 = 20.0;
 /// Roundings in units of the scales.
 const ROUNDING: f64 = 1e-13;
-/// An allowed distance must be so far below the distance of explicit Euler, or the steps are too short to tell integrators apart.
+/// An allowed distance must be so far below that of the farthest candidate, or the steps are too short to tell integrators apart.
 const CLEAR: f64 = 1e-3;
 
 /// The integrators that have the results of a step.
 #[derive(Clone, Debug, Serialize)]
 pub struct Recognition {
-    /// Names of the integrators whose step agrees; several agree if they do the same on this system.
+    /// By a step from a displaced state.
+    pub by_results: Match,
+    /// By the matrix of the step; none without positions and velocities, or off an equilibrium.
+    pub by_matrix: Option<Match>,
+}
+
+/// A comparison of a step with that of each integrator.
+#[derive(Clone, Debug, Serialize)]
+pub struct Match {
+    /// Names of the integrators that agree; several agree if they do the same on this system.
     pub methods: Vec<&'static str>,
     /// All candidates, the nearest first.
     pub candidates: Vec<Candidate>,
@@ -36,14 +45,14 @@ pub struct Candidate {
     /// Its name on the command line.
     pub method: &'static str,
     /// Its name in running text.
-    pub title: &'static str,
+    pub title: String,
     /// The largest distance of its step from that of the simulator, in units of the scales.
     pub distance: f64,
 }
 
-impl Recognition {
-    /// Compares the step with that of each integrator of Libration, on rates from short steps of the simulator itself.
-    pub(crate) fn attempt(
+impl Match {
+    /// Compares the step from a displaced state with that of each integrator, on rates from short steps of the simulator itself.
+    pub(crate) fn by_results(
         prober: &mut Prober<'_>,
         pairs: Option<&[(usize, usize)]>,
     ) -> Result<Self, BlackBoxError> {
@@ -71,12 +80,16 @@ impl Recognition {
             if distance.is_finite() {
                 candidates.push(Candidate {
                     method: method.name(),
-                    title: method.title(),
+                    title: method.title().to_owned(),
                     distance,
                 });
             }
         }
         let allowed = ERRORS * error * dt + ROUNDING;
+        Ok(Match::new(candidates, allowed))
+    }
+
+    pub(crate) fn new(mut candidates: Vec<Candidate>, allowed: f64) -> Self {
         candidates.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let farthest = candidates.last().map_or(0.0, |last| last.distance);
         let methods = candidates
@@ -84,6 +97,22 @@ impl Recognition {
             .filter(|found| found.distance <= allowed && allowed < CLEAR * farthest)
             .map(|found| found.method)
             .collect();
-        Ok(Recognition { methods, candidates, allowed })
+        Match { methods, candidates, allowed }
+    }
+
+    /// Titles of the integrators that agree.
+    pub(crate) fn titles(&self) -> Vec<&str> {
+        let agrees = |candidate: &&Candidate| self.methods.contains(&candidate.method);
+        self.candidates.iter().filter(agrees).map(|candidate| candidate.title.as_str()).collect()
+    }
+}
+
+impl Recognition {
+    /// Names of the integrators that agree, by results if there are any, else by the matrix.
+    pub fn methods(&self) -> &[&'static str] {
+        match (&self.by_results.methods[..], &self.by_matrix) {
+            ([], Some(by_matrix)) => &by_matrix.methods,
+            (methods, _) => methods,
+        }
     }
 }

@@ -7,12 +7,13 @@ use serde::{Serialize, Serializer};
 use crate::finding::{Finding, of_bits, of_memory, of_report};
 use crate::flow::Flow;
 use crate::hidden_latency::{HiddenLatency, hidden_latencies};
+use crate::linear_candidates::match_matrices;
 use crate::linearised_step::LinearisedStep;
 use crate::modes::{ProbedMode, modes};
 use crate::prober::Prober;
 use crate::{
     Bits, BlackBox, BlackBoxError, Confirmation, Convergence, Defects, DelayAudit, LargestStep,
-    Memory, Recognition, Subject,
+    Match, Memory, Recognition, Subject,
 };
 
 /// Largest change per step in units of the scales at which a state counts as an equilibrium.
@@ -250,7 +251,12 @@ impl ProbeReport {
         self.hidden_latency = hidden_latencies(&step, flow.as_ref(), memory, pairs, subject);
         if !has_fixed_dt {
             self.order = Some(Convergence::measure(prober)?);
-            self.recognition = Some(Recognition::attempt(prober, pairs)?);
+            let by_results = Match::by_results(prober, pairs)?;
+            let by_matrix = flow
+                .as_ref()
+                .filter(|_| self.equilibrium.holds)
+                .and_then(|flow| match_matrices(&step, flow, &cleaned(flow), pairs, subject));
+            self.recognition = Some(Recognition { by_results, by_matrix });
         }
         self.defects = Some(Defects::measure(prober, &step, flow.as_ref(), pairs)?);
         self.modified_flow = modified_flow(&step);
@@ -285,16 +291,17 @@ impl ReferenceCheck {
     fn of(subject: &Subject, step: &LinearisedStep) -> Option<Self> {
         let reference = subject.reference.as_ref()?;
         let (mut difference, mut allowed) = (0.0_f64, ROUNDING);
-        for (own, theirs, errors) in
-            [(&step.a, &reference.a, &step.a_errors), (&step.b, &reference.b, &step.b_errors)]
-        {
-            for i in 0..own.rows() {
-                let largest =
-                    |matrix: &Matrix| matrix.row(i).iter().map(|x| x.abs()).fold(0.0, f64::max);
-                let size = largest(own).max(largest(theirs)).max(f64::MIN_POSITIVE);
+        let largest =
+            |matrix: &Matrix, i: usize| matrix.row(i).iter().map(|x| x.abs()).fold(0.0, f64::max);
+        for i in 0..step.a.rows() {
+            let parts =
+                [(&step.a, &reference.a, &step.a_errors), (&step.b, &reference.b, &step.b_errors)];
+            let size = parts.iter().map(|(own, theirs, _)| largest(own, i).max(largest(theirs, i)));
+            let size = size.fold(f64::MIN_POSITIVE, f64::max);
+            for (own, theirs, errors) in parts {
                 let apart = own.row(i).iter().zip(theirs.row(i)).map(|(a, b)| (a - b).abs());
                 difference = difference.max(apart.fold(0.0, f64::max) / size);
-                allowed = allowed.max(ROUNDING + largest(errors) / size);
+                allowed = allowed.max(ROUNDING + largest(errors, i) / size);
             }
         }
         Some(ReferenceCheck { source: reference.source.clone(), difference, allowed })

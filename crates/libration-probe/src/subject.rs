@@ -32,6 +32,8 @@ pub struct Subject {
     pub pairs: Option<Vec<(usize, usize)>>,
     /// The inertia of the velocities of the pairs, if the simulator knows it.
     pub mass: Option<Matrix>,
+    /// Damping of each velocity of the pairs that an integrator may treat implicitly, such as that of joints.
+    pub joint_damping: Option<Vec<f64>>,
     /// The integrator in the words of the simulator.
     pub integrator: Option<String>,
     /// Facts that a reader must know, such as contacts.
@@ -83,6 +85,7 @@ impl Subject {
             is_conservative: false,
             pairs: None,
             mass: None,
+            joint_damping: None,
             integrator: None,
             notes: Vec::new(),
             reference: None,
@@ -144,6 +147,12 @@ impl Subject {
                 let found = format!("{} × {}", mass.rows(), mass.columns());
                 return error("mass", found, format!("{size} × {size}"));
             }
+        }
+        if let (Some(damping), Some(pairs)) = (&self.joint_damping, &self.pairs)
+            && damping.len() != pairs.len()
+        {
+            let expected = format!("{}, one for each pair", pairs.len());
+            return error("joint_damping", format!("{} numbers", damping.len()), expected);
         }
         Ok(())
     }

@@ -69,12 +69,12 @@ impl ProbeReport {
 
     fn integrator(&self) -> Option<String> {
         let recognition = self.recognition.as_ref()?;
-        let titles: Vec<&str> = recognition
-            .candidates
-            .iter()
-            .filter(|candidate| recognition.methods.contains(&candidate.method))
-            .map(|candidate| candidate.title)
-            .collect();
+        let by_results = recognition.by_results.titles();
+        let by_matrix = recognition.by_matrix.as_ref().map(|by| by.titles()).unwrap_or_default();
+        let (titles, by) = match by_results.is_empty() {
+            true => (by_matrix, "its matrix"),
+            false => (by_results, "its results"),
+        };
         let order = self.order.as_ref().and_then(|order| order.order);
         match (&titles[..], order) {
             ([], Some(order)) => Some(format!(
@@ -83,7 +83,7 @@ impl ProbeReport {
             ([], None) => None,
             (titles, order) => {
                 let order = order.map_or_else(String::new, |order| format!(", of order {order}"));
-                Some(format!("By its results the step is that of {}{order}.", titles.join(" or ")))
+                Some(format!("By {by} the step is that of {}{order}.", titles.join(" or ")))
             }
         }
     }

@@ -1,6 +1,7 @@
 """Adapters of other simulators: each is a step in minimal coordinates, without memory of earlier calls."""
 
 from importlib import import_module
+from typing import Any
 
 from .host import Host
 
@@ -27,7 +28,7 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> object:
+def __getattr__(name: str) -> Any:
     if name in _ADAPTERS:
         return getattr(import_module(f".{_ADAPTERS[name]}", __name__), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -53,6 +53,8 @@ class Host:
     """The derivative of the step by the actions that the simulator itself computes."""
     reference_source: str = ""
     """The function that computes these derivatives: ``"mjd_transitionFD"``, ``"jax.jacfwd"``; empty without them."""
+    joint_damping: tuple[float, ...] = ()
+    """The damping of each velocity that the integrator may treat implicitly, besides that of actuators."""
     joints: tuple[str, ...] = ()
     """Names of the joints."""
     memory: bool = False

@@ -100,6 +100,7 @@ def mujoco_host(
         reference_A=reference_a,
         reference_B=reference_b,
         reference_source="" if reference_a is None else "mjd_transitionFD",
+        joint_damping=tuple(float(damping) for damping in np.asarray(own.dof_damping).reshape(-1)),
         joints=joint_names(own),
         memory=memory,
         reset=simulation.reset,

@@ -41,7 +41,7 @@ pub(crate) struct GainsArgs {
     /// [default: that of the model, or symplectic-euler]
     #[arg(long, value_name = "NAME", value_parser = integrator)]
     pub(crate) integrator: Option<ServoIntegrator>,
-    /// Keyframe of the MuJoCo model, by name or number [default: the first, or the default pose]
+    /// Keyframe of the MuJoCo model, by name or number [default: the default pose]
     #[arg(long, value_name = "NAME", requires = "mujoco")]
     pub(crate) keyframe: Option<String>,
     /// Longest time for an answer of the program, in s

@@ -41,7 +41,7 @@ pub(crate) struct ProbeArgs {
     /// Typical deviations of the actions of --command [default: the larger of 1 and the absolute action]
     #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, requires = "command")]
     pub(crate) action_scale: Option<Coordinates>,
-    /// Keyframe of the MuJoCo model, by name or number [default: the first, or the default pose]
+    /// Keyframe of the MuJoCo model, by name or number [default: the default pose]
     #[arg(long, value_name = "NAME", requires = "mujoco")]
     pub(crate) keyframe: Option<String>,
     /// Start from the equilibrium into which the MuJoCo model settles

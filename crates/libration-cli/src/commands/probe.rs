@@ -251,14 +251,22 @@ fn integrator(report: &ProbeReport, text: &mut String) {
     let (Some(order), Some(recognition)) = (&report.order, &report.recognition) else { return };
     let estimates: Vec<String> = order.estimates.iter().map(|x| format!("{x:.3}")).collect();
     let _ = writeln!(text, "\norder by halved steps: {}", estimates.join(", "));
-    let _ = writeln!(text, "{:<32} {:>12}", "integrator", "distance");
-    for candidate in &recognition.candidates {
-        let agrees = if recognition.methods.contains(&candidate.method) { "agrees" } else { "" };
-        let _ = writeln!(
-            text,
-            "{:<32} {:>12} {agrees}",
-            candidate.method,
-            format!("{:.2e}", candidate.distance)
-        );
+    let all = [
+        ("by results", Some(&recognition.by_results)),
+        ("by matrix", recognition.by_matrix.as_ref()),
+    ];
+    for (by, found) in all {
+        let Some(found) = found else { continue };
+        let _ = writeln!(text, "{:<32} {:>12}", format!("integrator, {by}"), "distance");
+        // The rest is on the page.
+        for candidate in found.candidates.iter().take(4) {
+            let agrees = if found.methods.contains(&candidate.method) { "agrees" } else { "" };
+            let _ = writeln!(
+                text,
+                "  {:<30} {:>12} {agrees}",
+                candidate.method,
+                format!("{:.2e}", candidate.distance)
+            );
+        }
     }
 }

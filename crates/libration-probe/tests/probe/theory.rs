@@ -9,7 +9,7 @@ fn close(found: f64, wanted: f64, tolerance: f64) {
 }
 
 fn methods(report: &ProbeReport) -> Vec<&'static str> {
-    report.recognition.as_ref().unwrap().methods.clone()
+    report.recognition.as_ref().unwrap().by_results.methods.clone()
 }
 
 /// A system of first order, `ẋ = f(x)`, stepped by RK4.
