@@ -46,7 +46,7 @@ pub use error_forecast::ErrorForecast;
 pub use largest_step::{Criterion, LargestStep};
 pub use linear_step::StepOn;
 pub use linear_stepper::{LinearStepper, positions_and_velocities};
-pub use linearisation::Linearisation;
+pub use linearisation::{Linearisation, StepFunction};
 pub use orbit_error::OrbitError;
 pub use orbit_start::OrbitStart;
 pub use order_certificate::OrderCertificate;

@@ -27,7 +27,7 @@ pub struct Linearisation<const D: usize> {
 type Rate<'a, const D: usize> = dyn Fn(State<Dual<Wide>, D>) -> State<Dual<Wide>, D> + 'a;
 
 /// One step from a state, of the given size.
-type Step<'a, const D: usize> =
+pub type StepFunction<'a, const D: usize> =
     dyn Fn(State<Dual<Wide>, D>, Dual<Wide>) -> State<Dual<Wide>, D> + 'a;
 
 impl<const D: usize> Linearisation<D> {
@@ -45,6 +45,17 @@ impl<const D: usize> Linearisation<D> {
         let chosen = DynSystem(&acceleration);
         let step = |state, h| integrator.step(&chosen, state, h);
         Linearisation::of(&rate, &step, at.map(wide), wide(dt))
+    }
+
+    /// A step of `dt` seconds that is given as a function of the state and its length, with the rates of `model`.
+    pub fn of_step(
+        model: impl Model<D>,
+        at: &State<f64, D>,
+        dt: f64,
+        step: &StepFunction<'_, D>,
+    ) -> Self {
+        let system = model.on::<Dual<Wide>>();
+        Linearisation::of(&|state| system.rate(state), step, at.map(wide), wide(dt))
     }
 
     /// Exact steps of `dt` seconds, by the exponential of the generator.
@@ -70,7 +81,7 @@ impl<const D: usize> Linearisation<D> {
     }
 
     /// The maps are dynamic, so that the matrices are compiled once for each dimension.
-    fn of(rate: &Rate<'_, D>, step: &Step<'_, D>, at: State<Wide, D>, dt: Wide) -> Self {
+    fn of(rate: &Rate<'_, D>, step: &StepFunction<'_, D>, at: State<Wide, D>, dt: Wide) -> Self {
         let by = |h: Wide| move |state| step(state, Dual::constant(h));
         let end = by(dt)(at.map(Dual::constant)).map(|x| x.re);
         Linearisation {

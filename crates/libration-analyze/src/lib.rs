@@ -7,6 +7,7 @@ pub mod equation_trajectory;
 pub mod export;
 pub mod linear_analysis;
 pub mod linear_trajectory;
+mod program_simulation;
 mod recording;
 mod step;
 pub mod trajectory;

@@ -51,7 +51,7 @@ pub(crate) fn _simulate_equations<'py>(
 ) -> PyResult<Simulated<'py>> {
     let request = EquationRequest {
         system: equations(&system)?,
-        method: method(integrator)?,
+        method: method(integrator)?.into(),
         float: rows.float()?,
         dt,
         steps: rows.steps()?,

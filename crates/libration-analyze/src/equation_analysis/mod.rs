@@ -6,8 +6,9 @@ mod summary;
 
 use std::sync::atomic::AtomicBool;
 
+use libration::equations::StepProgram;
 use libration::simulation::SimulationError;
-use libration::{Float, Method};
+use libration::{AnyMethod, Float};
 use libration_settings::equations::EquationSystem;
 use libration_settings::linear_loop::{OperatingPoint, linearised_equations};
 use serde::Serialize;
@@ -44,10 +45,10 @@ pub struct EquationAnalysis {
 /// that of `steps` steps, or of fewer where they take long.
 ///
 /// # Errors
-/// [`AnalyzeError::Simulation`] for an invalid time step, and [`AnalyzeError::Interrupted`].
+/// [`AnalyzeError::Simulation`] for an invalid time step, [`AnalyzeError::ImplicitDegrees`], and [`AnalyzeError::Interrupted`].
 pub fn analyze(
     system: &EquationSystem,
-    method: Method,
+    method: impl Into<AnyMethod>,
     dt: f64,
     steps: u64,
     stop: &AtomicBool,
@@ -55,9 +56,13 @@ pub fn analyze(
     if !(dt.is_finite() && dt > 0.0) {
         return Err(SimulationError::TimeStep { dt, float: f64::NAME }.into());
     }
+    let (method, degrees) = (method.into(), system.equations.degrees().len());
+    if matches!(method, AnyMethod::Implicit(_)) && degrees > StepProgram::MOST_IMPLICIT_DEGREES {
+        return Err(AnalyzeError::ImplicitDegrees { integrator: method.name(), degrees });
+    }
     let (operating_point, linear, no_modes) = match linearised_equations(system) {
         Ok((plant, point)) => {
-            let integrator = Some(Stepping::Method(method));
+            let integrator = Some(Stepping::from(method));
             let open_loop = LinearRequest::open_loop(plant, dt, integrator);
             let analysis = open_loop.and_then(|request| {
                 linear_analysis::analyze(&request, stop).or_else(|error| match error {

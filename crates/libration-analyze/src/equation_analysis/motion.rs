@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use libration::equations::StepProgram;
-use libration::{Float, Method};
+use libration::{AnyMethod, Float};
 use libration_settings::equations::EquationSystem;
 use serde::Serialize;
 
@@ -91,13 +91,13 @@ impl EquationMotion {
     /// [`AnalyzeError::Interrupted`].
     pub fn new(
         system: &EquationSystem,
-        method: Method,
+        method: AnyMethod,
         dt: f64,
         steps: u64,
         equilibrium: Option<&[f64]>,
         stop: &AtomicBool,
     ) -> Result<Self, AnalyzeError> {
-        let step = StepProgram::new(method, system.equations.dynamics());
+        let step = StepProgram::of(method, system.equations.dynamics());
         let operations = step.program().operations();
         // Three runs, with steps of which two and four take the time of one.
         let most = (MOST_OPERATIONS / (operations.max(1) as u64 * 7)).max(1);

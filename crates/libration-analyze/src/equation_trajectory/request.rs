@@ -1,7 +1,8 @@
 //! Requests for trajectories of systems by equations.
 
-use libration::Method;
+use libration::AnyMethod;
 use libration::catalog::Allowed;
+use libration::equations::StepProgram;
 use libration_settings::equations::EquationSystem;
 use libration_settings::limits;
 
@@ -16,7 +17,7 @@ pub struct EquationRequest {
     /// The system, with its start.
     pub system: EquationSystem,
     /// The integrator.
-    pub method: Method,
+    pub method: AnyMethod,
     /// The float type of all numbers but the time.
     pub float: FloatType,
     /// The time step in seconds.
@@ -57,6 +58,16 @@ impl EquationRequest {
         }
         if !limits::TRAJECTORY_STEPS.contains(&self.steps) {
             return value("steps", self.steps.to_string(), limits::trajectory_steps_allowed());
+        }
+        let degrees = self.system.equations.degrees().len();
+        let most = StepProgram::MOST_IMPLICIT_DEGREES;
+        if matches!(self.method, AnyMethod::Implicit(_)) && degrees > most {
+            let given = format!("{} for {degrees} degrees of freedom", self.method.name());
+            return value(
+                "integrator",
+                given,
+                format!("an explicit integrator for more than {most}"),
+            );
         }
         if self.every == 0 {
             return value("every", "0".to_owned(), "at least 1".to_owned());

@@ -38,7 +38,7 @@ pub(super) fn run<S: Number>(
 ) -> Result<Outcome, TrajectoryError> {
     let EquationRequest { system, steps, every, .. } = request;
     let equations = &system.equations;
-    let program = StepProgram::new(request.method, equations.dynamics());
+    let program = StepProgram::of(request.method, equations.dynamics());
     let mut step_of = program.program().on::<S>();
     let mut energy_of = equations.dynamics().energy().map(|energy| energy.on::<S>());
     let d = equations.degrees().len();

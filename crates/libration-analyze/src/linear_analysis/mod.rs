@@ -8,7 +8,7 @@ mod step;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use libration::Method;
+use libration::AnyMethod;
 use libration::analysis::{LinearStepper, without_rounding};
 use libration::linear::{
     Complex64, DiscreteController, LinearLoop, LinearPlant, LoopTiming, Matrix, ModeDetails, Signal,
@@ -123,9 +123,9 @@ pub fn analyze(
         }
         steps.push(subject.analyze(stepping, request.dt, request.integrator.is_some()));
     }
-    let applies = |method: &Method| stepper.as_ref().is_some_and(|own| own.applies(*method));
+    let applies = |method: &AnyMethod| stepper.as_ref().is_some_and(|own| own.applies(*method));
     let not_applicable = match request.integrator {
-        None => Method::ALL.into_iter().filter(|method| !applies(method)).collect(),
+        None => AnyMethod::all().filter(|method| !applies(method)).collect(),
         Some(_) => Vec::new(),
     };
     let closed_loop = match &request.timing {
@@ -145,7 +145,7 @@ pub fn analyze(
         stiffness: slowest.map(|slowest| fastest / slowest),
         dt: request.dt,
         steps,
-        not_applicable: not_applicable.into_iter().map(Method::name).collect(),
+        not_applicable: not_applicable.into_iter().map(AnyMethod::name).collect(),
         closed_loop,
         note: request.note.clone(),
     })
@@ -196,10 +196,10 @@ impl LinearRequest {
             true => LinearStepper::of_first_order(&plant.a),
         };
         let stepper = stepper.ok_or(LinearAnalysisError::Eigenvalues)?;
-        match self.integrator {
-            Some(Stepping::Method(method)) if !stepper.applies(method) => {
-                let allowed = Method::ALL.into_iter().filter(|method| stepper.applies(*method));
-                let allowed = allowed.map(Method::name).chain([Stepping::EXACT]).collect();
+        match self.integrator.and_then(Stepping::any_method) {
+            Some(method) if !stepper.applies(method) => {
+                let allowed = AnyMethod::all().filter(|method| stepper.applies(*method));
+                let allowed = allowed.map(AnyMethod::name).chain([Stepping::EXACT]).collect();
                 Err(LinearAnalysisError::Integrator { name: method.name(), allowed })
             }
             _ => Ok(Some(stepper)),
@@ -213,8 +213,8 @@ impl LinearRequest {
             Some(one) => vec![one],
             None if self.timing.is_some() && self.dt.is_none() => Vec::new(),
             None => {
-                let methods = Method::ALL.into_iter().filter(|method| stepper.applies(*method));
-                [Stepping::Exact].into_iter().chain(methods.map(Stepping::Method)).collect()
+                let methods = AnyMethod::all().filter(|method| stepper.applies(*method));
+                [Stepping::Exact].into_iter().chain(methods.map(Stepping::from)).collect()
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Steps of an integrator on a linear plant as results.
 
-use libration::Method;
+use libration::AnyMethod;
 use libration::analysis::{LinearStepper, StabilityFunction, StepMode, StepWindow};
 use libration::linear::{Complex64, Discretisation, LinearPlant, Matrix, eigenvalues};
 use serde::Serialize;
@@ -13,7 +13,7 @@ use crate::Stepping;
 pub struct StepAnalysis {
     /// The name of the integrator, or `exact`.
     pub integrator: &'static str,
-    /// The stability function as a polynomial in `z = hλ`; none of exact steps, and of integrators that distinguish positions from
+    /// The stability function as a polynomial in `z = hλ` or a quotient of two; none of exact steps, and of integrators that distinguish positions from
     /// velocities.
     pub stability_function: Option<String>,
     /// The intervals `[from, to]` of time steps in s in which no mode grows that does not grow in exact steps; `to` is none without
@@ -83,7 +83,7 @@ impl Subject<'_> {
         dt: Option<f64>,
         detail: bool,
     ) -> StepAnalysis {
-        let method = stepping.method();
+        let method = stepping.any_method();
         let windows = match method {
             Some(method) => self.stable_steps(method),
             None => Some(vec![StepWindow::ALL]),
@@ -92,7 +92,7 @@ impl Subject<'_> {
         let mut analysis = StepAnalysis {
             integrator: stepping.name(),
             stability_function: method
-                .and_then(StabilityFunction::new)
+                .and_then(StabilityFunction::of)
                 .map(|function| function.to_string()),
             largest_stable_dt: first
                 .filter(|window| window.from == 0.0 && window.to.is_finite())
@@ -117,7 +117,7 @@ impl Subject<'_> {
         analysis
     }
 
-    fn stable_steps(&self, method: Method) -> Option<Vec<StepWindow>> {
+    fn stable_steps(&self, method: AnyMethod) -> Option<Vec<StepWindow>> {
         let upper = self.shapes.iter().map(|(value, _)| *value);
         let lower = self.shapes.iter().filter(|(value, _)| value.im > 0.0);
         let values: Vec<Complex64> = upper.chain(lower.map(|(value, _)| value.conj())).collect();
@@ -142,7 +142,7 @@ impl Subject<'_> {
         &self,
         analysis: &mut StepAnalysis,
         stepper: &LinearStepper,
-        method: Method,
+        method: AnyMethod,
         dt: f64,
         detail: bool,
     ) {
@@ -152,7 +152,7 @@ impl Subject<'_> {
         let matrix = double.update_matrix();
         analysis.spectral_radius = radius_of(&matrix);
         analysis.spectral_radius_f32 = radius_of(&single.update_matrix());
-        let modes = match StabilityFunction::new(method) {
+        let modes = match StabilityFunction::of(method) {
             Some(function) => Some(StepMode::of_function(&function, self.shapes, dt)),
             None => StepMode::of_matrix(stepper, &matrix, self.shapes, dt),
         };

@@ -40,3 +40,12 @@ pub(super) fn check_exact(request: &Request) -> Result<(), AnalyzeError> {
         None => Ok(()),
     }
 }
+
+/// Fails if the request asks implicit steps for a criterion, or for a loop.
+pub(super) fn check_implicit(request: &Request) -> Result<(), AnalyzeError> {
+    let Stepping::Implicit(method) = request.stepping else { return Ok(()) };
+    match request.criteria.first().or(request.timing.first()) {
+        Some(flag) => Err(AnalyzeError::Implicit { flag, integrator: method.name() }),
+        None => Ok(()),
+    }
+}

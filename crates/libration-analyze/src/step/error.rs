@@ -2,6 +2,7 @@
 
 use libration::CatalogError;
 use libration::control::Latency;
+use libration::equations::StepProgram;
 use libration::simulation::SimulationError;
 use libration_settings::limits;
 use thiserror::Error;
@@ -38,6 +39,27 @@ pub enum AnalyzeError {
     NoLargest {
         /// The criterion.
         flag: &'static str,
+    },
+    /// A criterion or a loop with implicit steps.
+    #[error(
+        "--{flag}: it is not derived for the implicit integrator `{integrator}` (--integrator); expected an explicit one"
+    )]
+    Implicit {
+        /// The flag of the criterion or of the loop.
+        flag: &'static str,
+        /// The integrator.
+        integrator: &'static str,
+    },
+    /// Implicit steps of a system with too many degrees of freedom.
+    #[error(
+        "the implicit integrator `{integrator}` (--integrator) has steps for at most {} degrees of freedom, and the system has {degrees}",
+        StepProgram::MOST_IMPLICIT_DEGREES
+    )]
+    ImplicitDegrees {
+        /// The integrator.
+        integrator: &'static str,
+        /// Its degrees of freedom.
+        degrees: usize,
     },
     /// Exact steps of a nonlinear system.
     #[error("`exact` steps (--integrator) require a linear system, not `{system}`")]

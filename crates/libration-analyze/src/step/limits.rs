@@ -1,11 +1,12 @@
 //! Limits of the time step, and the order of splitting methods.
 
 use libration::analysis::{
-    Criterion, LargestStep, Letter, OrbitStart, OrderCertificate, SymbolicStep, Tableau,
-    UnknownStep,
+    Criterion, LargestStep, Letter, OrbitStart, OrderCertificate, RationalStep, SymbolicStep,
+    Tableau, UnknownStep,
 };
 use libration::number::Wide;
-use libration::{AnySystem, Elementary, Method, Model, Scalar, State};
+use libration::system::DampedOscillator;
+use libration::{AnyMethod, AnySystem, Elementary, Method, Model, Scalar, State};
 use serde::Serialize;
 
 use super::Request;
@@ -70,26 +71,29 @@ impl OrderOfWord {
 
 /// The stability windows of a linear system, in s.
 pub(crate) fn stability_windows(
-    method: Method,
+    method: AnyMethod,
     system: AnySystem,
 ) -> Option<Vec<[Option<f64>; 2]>> {
     // In powers of z for an oscillator of any stiffness, and of Δt where there is damping.
-    let (step, unit) = match system {
+    let (damped, unit) = match system {
         AnySystem::Oscillator(model) if model.omega2 > 0.0 => {
-            (SymbolicStep::new(method)?, period(model.omega2))
+            (DampedOscillator { omega2: 1.0, gamma: 0.0 }, period(model.omega2))
         }
         AnySystem::Oscillator(model) => {
-            let system = Model::<1>::on::<UnknownStep>(&model);
-            (SymbolicStep::of(method, &system)?, Wide::one())
+            (DampedOscillator { omega2: model.omega2, gamma: 0.0 }, Wide::one())
         }
-        AnySystem::DampedOscillator(model) => {
-            let system = Model::<1>::on::<UnknownStep>(&model);
-            (SymbolicStep::of(method, &system)?, Wide::one())
-        }
+        AnySystem::DampedOscillator(model) => (model, Wide::one()),
         _ => return None,
     };
     let in_seconds = |z: Wide| (z * unit).to_f64();
-    let windows = step.stability_windows();
+    let windows = match method {
+        AnyMethod::Explicit(method) => {
+            SymbolicStep::of(method, &Model::on::<UnknownStep>(&damped))?.stability_windows()
+        }
+        AnyMethod::Implicit(method) => {
+            RationalStep::damped(method, damped.omega2, damped.gamma)?.stability_windows()
+        }
+    };
     let ends = windows.iter().map(|w| [Some(in_seconds(w.from)), w.to.map(in_seconds)]);
     // A window between two neighbouring floats holds no time step.
     Some(ends.filter(|[from, to]| from != to).collect())

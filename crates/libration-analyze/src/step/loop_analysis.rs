@@ -154,11 +154,12 @@ impl ClosedLoop {
     }
 }
 
-/// The plant of `request` in steps of its integrator.
+/// The plant of `request` in steps of its integrator, which is not implicit.
 fn plant(model: impl Model<1> + 'static, request: &Request) -> Plant<'static> {
     let at = State { q: [request.q[0]], v: [request.v[0]] };
     match request.stepping {
         Stepping::Method(method) => Plant::new(method, model, at, request.dt),
-        Stepping::Exact => Plant::exact(model, at, request.dt),
+        // Implicit steps have been refused.
+        Stepping::Implicit(_) | Stepping::Exact => Plant::exact(model, at, request.dt),
     }
 }

@@ -6,6 +6,7 @@ mod cost;
 mod criteria;
 mod error;
 mod growth;
+mod implicit_step;
 mod limits;
 mod loop_analysis;
 mod modes;
@@ -15,12 +16,12 @@ mod timing;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 pub use analysis::{Analysis, Drift, ModifiedHamiltonian, RequestSummary};
-use checks::{check_exact, check_sizes, check_turn};
+use checks::{check_exact, check_implicit, check_sizes, check_turn};
 pub use cost::LoopCost;
 pub use criteria::Criteria;
 pub use error::AnalyzeError;
 pub use growth::LoopGrowth;
-use libration::analysis::{Linearisation, Spectrum, SymbolicStep, forecast_drift};
+use libration::analysis::{Linearisation, RationalStep, Spectrum, SymbolicStep, forecast_drift};
 use libration::number::Wide;
 use libration::simulation::{EnergyDrift, Simulator};
 use libration::{AnySystem, Elementary, Integrator, Model, Scalar, State, System, with_system};
@@ -53,6 +54,7 @@ pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, A
     if request.stepping == Stepping::Exact {
         check_exact(request)?;
     }
+    check_implicit(request)?;
     let dimension = request.q.len();
     check_turn(request)?;
     check_sizes(request)?;
@@ -74,7 +76,14 @@ pub fn analyze_until(request: &Request, stop: &AtomicBool) -> Result<Analysis, A
                 (_, Stepping::Method(method)) if const { D <= 2 } => {
                     Step::take(method, model, start, request, stop)?
                 }
-                (_, Stepping::Method(_)) => {
+                (AnySystem::Oscillator(one), Stepping::Implicit(method)) if D > 1 => {
+                    let first = State { q: [start.q[0]], v: [start.v[0]] };
+                    Step::solve(method, one, first, request, stop)?.in_dimensions()
+                }
+                (_, Stepping::Implicit(method)) if const { D <= 2 } => {
+                    Step::solve(method, model, start, request, stop)?
+                }
+                (_, Stepping::Method(_) | Stepping::Implicit(_)) => {
                     return Err(request.system.entry().wrong_dimension(dimension).into());
                 }
                 (_, Stepping::Exact) => {
@@ -156,9 +165,11 @@ fn answer<const D: usize>(
     let reversibility = exact
         .and_then(|(step, omega)| reversibility_defect::<D>(step, omega, linear.dt))
         .unwrap_or_else(|| linear.reversibility_defect());
-    let in_z = |symbolic: &SymbolicStep| -> Vec<Vec<String>> {
-        let rows = symbolic.matrix.rows();
-        rows.iter().map(|row| row.iter().map(ToString::to_string).collect()).collect()
+    let update_matrix_in_z = match request.stepping {
+        Stepping::Implicit(method) => omega(request.system)
+            .and_then(|_| RationalStep::new(method))
+            .map(|step| texts(&step.matrix.rows())),
+        _ => polynomials.as_ref().map(|step| texts(&step.matrix.rows())),
     };
     let linear_system = request.system.is_linear();
     let drift = match linear_system {
@@ -168,7 +179,7 @@ fn answer<const D: usize>(
     Ok(Analysis {
         request: RequestSummary::new(request),
         update_matrix: to_f64(&linear.step.rows()),
-        update_matrix_in_z: polynomials.as_ref().map(in_z),
+        update_matrix_in_z,
         determinant: modes.determinant.to_f64(),
         determinant_minus_one: modes.determinant_minus_one.to_f64(),
         trace: linear.step.trace().to_f64(),
@@ -176,7 +187,10 @@ fn answer<const D: usize>(
         spectral_radius: modes.radius.to_f64(),
         spectral_radius_minus_one: modes.radius_minus_one.to_f64(),
         bounded: modes.bounded.filter(|_| linear_system),
-        stability_windows: method.and_then(|m| stability_windows(m, request.system)),
+        stability_windows: request
+            .stepping
+            .any_method()
+            .and_then(|method| stability_windows(method, request.system)),
         largest_dt: method.and_then(|_| limits::largest_dt(polynomials.as_ref(), start, request)),
         modified_hamiltonian: linear_system
             .then(|| ModifiedHamiltonian::of(&linear.step, modes.determinant_minus_one.is_zero()))
@@ -236,6 +250,10 @@ fn reversibility_defect<const D: usize>(
         [entry(0, 0, one), entry(0, 1, omega.recip()), entry(1, 0, omega), entry(1, 1, one)];
     let squares = entries.into_iter().fold(Wide::ZERO, |sum, x| sum + x * x);
     Some((squares * Wide::from_f64(D as f64)).sqrt())
+}
+
+fn texts<T: ToString>(rows: &[Vec<T>]) -> Vec<Vec<String>> {
+    rows.iter().map(|row| row.iter().map(ToString::to_string).collect()).collect()
 }
 
 fn to_f64(rows: &[Vec<Wide>]) -> Vec<Vec<f64>> {

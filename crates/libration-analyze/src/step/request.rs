@@ -1,7 +1,7 @@
 //! Requests for an analysis.
 
 use libration::catalog::Actuation;
-use libration::{AnySystem, Method};
+use libration::{AnyMethod, AnySystem, ImplicitMethod, Method};
 
 use super::{Criteria, Timing};
 
@@ -31,8 +31,10 @@ pub struct Request {
 /// The kind of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stepping {
-    /// Steps of an integrator.
+    /// Steps of an explicit integrator.
     Method(Method),
+    /// Steps of an implicit integrator.
+    Implicit(ImplicitMethod),
     /// Exact steps of a linear system: the exponential of its matrix.
     Exact,
 }
@@ -45,6 +47,7 @@ impl Stepping {
     pub fn name(self) -> &'static str {
         match self {
             Stepping::Method(method) => method.name(),
+            Stepping::Implicit(method) => method.name(),
             Stepping::Exact => Stepping::EXACT,
         }
     }
@@ -53,15 +56,33 @@ impl Stepping {
     pub fn from_name(name: &str) -> Option<Stepping> {
         match name {
             Stepping::EXACT => Some(Stepping::Exact),
-            name => Method::from_name(name).map(Stepping::Method),
+            name => AnyMethod::from_name(name).map(Stepping::from),
+        }
+    }
+
+    /// The explicit integrator; none for implicit and exact steps.
+    pub fn method(self) -> Option<Method> {
+        match self {
+            Stepping::Method(method) => Some(method),
+            Stepping::Implicit(_) | Stepping::Exact => None,
         }
     }
 
     /// The integrator; none for exact steps.
-    pub fn method(self) -> Option<Method> {
+    pub fn any_method(self) -> Option<AnyMethod> {
         match self {
-            Stepping::Method(method) => Some(method),
+            Stepping::Method(method) => Some(method.into()),
+            Stepping::Implicit(method) => Some(method.into()),
             Stepping::Exact => None,
+        }
+    }
+}
+
+impl From<AnyMethod> for Stepping {
+    fn from(method: AnyMethod) -> Self {
+        match method {
+            AnyMethod::Explicit(method) => Stepping::Method(method),
+            AnyMethod::Implicit(method) => Stepping::Implicit(method),
         }
     }
 }

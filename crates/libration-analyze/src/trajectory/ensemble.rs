@@ -1,8 +1,8 @@
 //! Rows of an ensemble.
 
 use half::{bf16, f16};
-use libration::Method;
-use libration::ensemble::{AnyEnsemble, BatchFloat, InsufficientMemory};
+use libration::AnyMethod;
+use libration::ensemble::{AnyEnsemble, BatchFloat, InsufficientMemory, dynamics_of};
 use libration::equations::Dynamics;
 
 use super::{EnsembleOptions, Monitor, Outcome, Request, TrajectoryError, loops};
@@ -29,7 +29,7 @@ pub(crate) trait EnsembleFloat: Number {
     /// Simulates the ensemble of a checked request.
     fn run_ensemble(
         request: &Request,
-        method: Method,
+        method: AnyMethod,
         ensemble: &EnsembleOptions,
         rows: &mut dyn Rows<Self>,
         monitor: &dyn Monitor,
@@ -57,7 +57,7 @@ macro_rules! vectors {
 
             fn run_ensemble(
                 request: &Request,
-                method: Method,
+                method: AnyMethod,
                 ensemble: &EnsembleOptions,
                 rows: &mut dyn Rows<Self>,
                 monitor: &dyn Monitor,
@@ -101,7 +101,7 @@ macro_rules! scalar_only {
 
             fn run_ensemble(
                 request: &Request,
-                _: Method,
+                _: AnyMethod,
                 ensemble: &EnsembleOptions,
                 _: &mut dyn Rows<Self>,
                 _: &dyn Monitor,
@@ -146,7 +146,7 @@ fn no_vectors<S: Number>() -> TrajectoryError {
 
 fn run<S: BatchFloat + Number>(
     request: &Request,
-    method: Method,
+    method: AnyMethod,
     ensemble: &EnsembleOptions,
     rows: &mut dyn Rows<S>,
     monitor: &dyn Monitor,
@@ -158,7 +158,15 @@ fn run<S: BatchFloat + Number>(
         Some(i) => request.v.get(i),
     };
     let start = |n, i| S::from_f64(ensemble.scale(n) * coordinate(i).copied().unwrap_or(0.0));
-    let mut all = S::ensemble(system, dimension, count, ensemble.execution()?, &start)?;
+    let execution = ensemble.execution()?;
+    let mut all = match method {
+        AnyMethod::Explicit(_) => S::ensemble(system, dimension, count, execution, &start)?,
+        AnyMethod::Implicit(_) => {
+            let wrong = || system.entry().wrong_dimension(dimension);
+            let dynamics = dynamics_of(system, dimension).ok_or_else(wrong)?;
+            S::program_ensemble(&dynamics, count, execution, &start)?
+        }
+    };
     let kept: Vec<usize> = (0..2 * dimension).collect();
     let run = EnsembleRun { method, dt, steps, every, kept: &kept };
     let lost = run.record(&mut *all, rows, monitor)?;
@@ -167,7 +175,7 @@ fn run<S: BatchFloat + Number>(
 
 /// The steps of an ensemble, and what is kept of them.
 pub(crate) struct EnsembleRun<'a> {
-    pub(crate) method: Method,
+    pub(crate) method: AnyMethod,
     /// The time step in seconds.
     pub(crate) dt: f64,
     pub(crate) steps: u64,
@@ -216,7 +224,11 @@ impl EnsembleRun<'_> {
                 return Err(TrajectoryError::Interrupted);
             }
             let to_next_row = (every - step % every).min(steps - step);
-            all.advance(method, S::from_f64(dt), to_next_row.min(at_once));
+            let (dt, steps) = (S::from_f64(dt), to_next_row.min(at_once));
+            match method {
+                AnyMethod::Explicit(method) => all.advance(method, dt, steps),
+                AnyMethod::Implicit(method) => all.advance_implicit(method, dt, steps)?,
+            }
             monitor.on_step(all.step());
         }
     }

@@ -59,7 +59,8 @@ fn on_model<S: Float + Pod + Number, const D: usize, M: Model<D>>(
     let chosen = DynSystem(&acceleration);
     match request.stepping {
         Stepping::Method(method) => simulated(chosen, method, &energy, request, rows, monitor),
-        Stepping::Exact => simulated(
+        // Implicit steps have been refused.
+        Stepping::Implicit(_) | Stepping::Exact => simulated(
             chosen,
             exact(model, request.dt, request.longest())?,
             &energy,

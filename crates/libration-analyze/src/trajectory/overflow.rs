@@ -2,11 +2,11 @@
 
 use libration::analysis::{Linearisation, eigenvalues};
 use libration::system::{DampedOscillator, Oscillator};
-use libration::{AnySystem, Float, Method, Model, State, with_system};
+use libration::{AnyMethod, AnySystem, Float, Model, State, with_system};
 
 use super::{FloatType, Request};
 use crate::step::stability_windows;
-use crate::{Criteria, StableLatencies, Stepping, analyze};
+use crate::{Criteria, StableLatencies, analyze};
 
 /// Distance from a limit, in unit roundoffs, within which rounding decides.
 const MARGIN: f64 = 16.0;
@@ -24,9 +24,8 @@ pub(super) fn cause<S: Float>(request: &Request) -> Option<String> {
 fn step_cause<S: Float>(request: &Request) -> Option<String> {
     let rounded = |x: f64| S::from_f64(x).to_f64();
     let dt = rounded(request.dt);
-    let method = match request.stepping {
-        Stepping::Method(method) => method,
-        Stepping::Exact => return Some(range_cause(request.float, "the exact step")),
+    let Some(method) = request.stepping.any_method() else {
+        return Some(range_cause(request.float, "the exact step"));
     };
     // The parameters are those of the float type. A drive adds a bounded force.
     let linear = match request.system {
@@ -57,7 +56,7 @@ fn step_cause<S: Float>(request: &Request) -> Option<String> {
 /// The cause of an overflow of a loop or an uneven clock: it is unstable, or unstable in the mean square.
 fn loop_cause(request: &Request) -> Option<String> {
     let Request { system, actuation, stepping, dt, timing, .. } = *request;
-    if let (None, Some(method)) = (timing.feedback, stepping.method()) {
+    if let (None, Some(method)) = (timing.feedback, stepping.any_method()) {
         let why = instability_cause(method, system, [dt, 1.0])
             .or_else(|| uneven_clock_cause(method, request));
         if why.is_some() {
@@ -106,7 +105,7 @@ fn stable_latency_help(critical: &StableLatencies) -> String {
 }
 
 /// The cause of instability under a clock whose mean or slowest steps are longer than `dt`.
-fn uneven_clock_cause(method: Method, request: &Request) -> Option<String> {
+fn uneven_clock_cause(method: AnyMethod, request: &Request) -> Option<String> {
     let Request { system, dt, timing, record, .. } = request;
     if let Some(record) = record {
         let mean = record.iter().sum::<f64>() / record.len() as f64;
@@ -121,7 +120,7 @@ fn uneven_clock_cause(method: Method, request: &Request) -> Option<String> {
 
 /// The cause of an overflow of a linear system: an unstable step, or the range of the float type.
 fn linear_cause(
-    method: Method,
+    method: AnyMethod,
     system: AnySystem,
     dt: f64,
     roundoff: f64,
@@ -158,7 +157,11 @@ fn range_cause(float: FloatType, step: &str) -> String {
 }
 
 /// The cause of instability of an oscillator in steps of `dt` seconds times a factor; none if the step is stable, or unknown.
-fn instability_cause(method: Method, system: AnySystem, [dt, stretch]: [f64; 2]) -> Option<String> {
+fn instability_cause(
+    method: AnyMethod,
+    system: AnySystem,
+    [dt, stretch]: [f64; 2],
+) -> Option<String> {
     let dt = dt * stretch;
     let windows = stability_windows(method, system)?;
     let name = method.name();

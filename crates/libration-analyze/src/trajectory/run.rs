@@ -1,5 +1,7 @@
 //! Dispatch from a request to the loop over steps.
 
+use libration::ensemble::dynamics_of;
+use libration::equations::StepProgram;
 use libration::simulation::{Sample, SimulationError, Simulator};
 use libration::system::DynSystem;
 use libration::{
@@ -12,6 +14,7 @@ use super::exact_step::exact;
 use super::{Divergence, Monitor, Outcome, Request, TrajectoryError, overflow};
 use crate::Stepping;
 use crate::export::{Number, Rows};
+use crate::program_simulation::ProgramSimulation;
 
 /// Steps between two checks of the monitor.
 const CHUNK: u64 = 1 << 16;
@@ -28,7 +31,10 @@ pub(super) fn run<S: EnsembleFloat>(
     match (request.ensemble, request.stepping) {
         (None, _) => {}
         (Some(ensemble), Stepping::Method(method)) => {
-            return S::run_ensemble(request, method, &ensemble, rows, monitor);
+            return S::run_ensemble(request, method.into(), &ensemble, rows, monitor);
+        }
+        (Some(ensemble), Stepping::Implicit(method)) => {
+            return S::run_ensemble(request, method.into(), &ensemble, rows, monitor);
         }
         (Some(_), Stepping::Exact) => return S::run_loops(request, rows, monitor),
     }
@@ -77,15 +83,24 @@ fn on_model<S: EnsembleFloat, const D: usize, M: Model<D>>(
     // The model is converted per step because it can be shared between threads.
     let acceleration = |state: &State<S, D>| model.on::<S>().acceleration(state);
     let chosen = DynSystem(&acceleration);
+    let program = match request.stepping {
+        Stepping::Implicit(method) => {
+            let wrong = || request.system.entry().wrong_dimension(D);
+            let dynamics = dynamics_of(request.system, D).ok_or_else(wrong)?;
+            Some(StepProgram::implicit(method, &dynamics))
+        }
+        _ => None,
+    };
     // Separate loops per method only where the speed justifies the compilation.
-    let mut simulation: Box<dyn Simulation<S, D> + '_> = match request.stepping {
-        Stepping::Method(method) if const { S::IS_NATIVE && D <= NARROW } => {
+    let mut simulation: Box<dyn Simulation<S, D> + '_> = match (request.stepping, &program) {
+        (_, Some(program)) => Box::new(ProgramSimulation::new(program, start, dt)?),
+        (Stepping::Method(method), _) if const { S::IS_NATIVE && D <= NARROW } => {
             with_method!(method, |integrator| {
                 Box::new(Simulator::new(system, integrator, start, dt)?)
             })
         }
-        Stepping::Method(method) => Box::new(Simulator::new(chosen, method, start, dt)?),
-        Stepping::Exact => Box::new(Simulator::new(
+        (Stepping::Method(method), _) => Box::new(Simulator::new(chosen, method, start, dt)?),
+        (Stepping::Implicit(_) | Stepping::Exact, _) => Box::new(Simulator::new(
             system,
             exact(model, request.dt, request.longest())?,
             start,
@@ -118,6 +133,16 @@ where
 
     fn sample(&self) -> Sample<S, D> {
         Simulator::sample(self)
+    }
+}
+
+impl<S: Float, const D: usize> Simulation<S, D> for ProgramSimulation<'_, S, D> {
+    fn run(&mut self, steps: u64) -> Result<(), SimulationError> {
+        ProgramSimulation::run(self, steps, &mut |_| {})
+    }
+
+    fn sample(&self) -> Sample<S, D> {
+        ProgramSimulation::sample(self)
     }
 }
 

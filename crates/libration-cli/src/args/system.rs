@@ -8,7 +8,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Args, Command};
 use libration::catalog::{ENTRIES, Entry};
 use libration::integrator::Exact;
-use libration::{CatalogError, Method, catalog};
+use libration::{AnyMethod, CatalogError, catalog};
 use libration_analyze::Stepping;
 use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::{Number, suggestions};
@@ -203,9 +203,9 @@ fn system_names() -> PossibleValuesParser {
 }
 
 pub(super) fn integrators() -> impl TypedValueParser<Value = Stepping> {
-    let value = |method: Method| PossibleValue::new(method.name()).help(method.summary());
+    let value = |method: AnyMethod| PossibleValue::new(method.name()).help(method.summary());
     let exact = PossibleValue::new(Stepping::EXACT).help(Exact::SUMMARY);
-    PossibleValuesParser::new(Method::ALL.map(value).into_iter().chain([exact]))
+    PossibleValuesParser::new(AnyMethod::all().map(value).chain([exact]))
         .try_map(|name| Stepping::from_name(&name).ok_or("unknown integrator"))
 }
 

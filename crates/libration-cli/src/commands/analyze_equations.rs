@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use libration_analyze::AnalyzeError;
 use libration_analyze::equation_analysis::{EquationAnalysis, EquationMotion, analyze};
-use libration_analyze::{AnalyzeError, Stepping};
 use libration_settings::equations::EquationSystem;
 
 use super::analyze_linear;
@@ -21,7 +21,7 @@ pub(super) fn run(args: &AnalyzeArgs, system: &EquationSystem) -> Result<String,
             "{flag} requires a system of the catalogue; a loop around equations is that of their plant: --plant FILE with --lqr or --gain"
         )));
     }
-    let Stepping::Method(method) = stepping else {
+    let Some(method) = stepping.any_method() else {
         return Err(Failure::usage(
             "--integrator exact: exact steps require a linear system of the catalogue or --plant",
         ));

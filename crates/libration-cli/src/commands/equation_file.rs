@@ -3,8 +3,8 @@
 use std::fmt::Display;
 use std::path::Path;
 
+use libration_analyze::Timing;
 use libration_analyze::equation_trajectory::EquationRequest;
-use libration_analyze::{Stepping, Timing};
 use libration_settings::equations::EquationSystem;
 
 use crate::args::{Coordinates, SimulateArgs, SystemArgs};
@@ -80,7 +80,7 @@ pub(super) fn simulation(
     let Some(step) = &args.step else {
         return Err(Failure::usage("--integrator and --dt are required with --system"));
     };
-    let Stepping::Method(method) = step.integrator else {
+    let Some(method) = step.integrator.any_method() else {
         return Err(Failure::usage(
             "--integrator exact: exact steps require a linear system of the catalogue or --plant",
         ));

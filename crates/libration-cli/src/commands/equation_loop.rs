@@ -1,8 +1,8 @@
 //! Loops around systems by equations.
 
-use libration::Method;
 use libration::equations::StepProgram;
 use libration::linear_loops::ProgramMotion;
+use libration::{AnyMethod, Method};
 use libration_analyze::linear_trajectory::LinearRequest;
 use libration_analyze::trajectory::FloatType;
 use libration_analyze::{Stepping, Timing};
@@ -47,9 +47,10 @@ fn of_file(
         return Err(Failure::usage("the plant of the file has no operating point"));
     };
     let (method, longest_step) = match &args.step {
-        None => (Method::Rk4, request.linear.period() / STEPS),
+        None => (AnyMethod::from(Method::Rk4), request.linear.period() / STEPS),
         Some(step) => match step.integrator {
-            Stepping::Method(method) => (method, step.dt),
+            Stepping::Method(method) => (AnyMethod::from(method), step.dt),
+            Stepping::Implicit(method) => (method.into(), step.dt),
             Stepping::Exact => {
                 return Err(Failure::usage(
                     "--integrator exact: exact steps are those of the linearised plant: --plant FILE",
@@ -66,7 +67,14 @@ fn of_file(
     let places: Vec<usize> = system.states.iter().map(|state| state.place).collect();
     let start = system.start();
     request.start = places.iter().map(|&place| start[place] - at[place]).collect();
-    let step = StepProgram::new(method, &dynamics);
+    let (degrees, most) = (dynamics.degrees(), StepProgram::MOST_IMPLICIT_DEGREES);
+    if matches!(method, AnyMethod::Implicit(_)) && degrees > most {
+        return Err(Failure::usage(format!(
+            "--integrator {}: the system has {degrees} degrees of freedom; expected an explicit integrator for more than {most}",
+            method.name()
+        )));
+    }
+    let step = StepProgram::of(method, &dynamics);
     request.motion = Some(ProgramMotion { step, operating_point: at, places, longest_step });
     Ok(request)
 }

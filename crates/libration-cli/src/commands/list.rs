@@ -1,6 +1,6 @@
 //! `libration list`.
 
-use libration::Method;
+use libration::AnyMethod;
 use libration::catalog::{ENTRIES, Entry};
 use libration::integrator::Exact;
 use libration_analyze::equation_analysis::{EquationSummary, SummaryTask};
@@ -54,13 +54,13 @@ fn examples(name: &str, json: bool) -> Result<String, Failure> {
 
 fn as_json() -> Value {
     let study = |study: &&dyn Study| json!({ "name": study.name(), "question": study.question() });
-    let integrator = |method: Method| json!({ "name": method.name(), "order": method.order(), "summary": method.summary() });
+    let integrator = |method: AnyMethod| json!({ "name": method.name(), "order": method.order(), "summary": method.summary() });
     // An exact step has no order.
     let exact = json!({ "name": Exact::NAME, "order": null, "summary": Exact::SUMMARY });
     json!({
         "studies": STUDIES.studies.iter().map(study).collect::<Vec<_>>(),
         "systems": ENTRIES.map(system_json),
-        "integrators": Method::ALL.into_iter().map(integrator).chain([exact]).collect::<Vec<_>>(),
+        "integrators": AnyMethod::all().map(integrator).chain([exact]).collect::<Vec<_>>(),
     })
 }
 
@@ -86,7 +86,7 @@ fn system_json(entry: &Entry) -> Value {
 
 fn as_text() -> String {
     let studies: Vec<_> = STUDIES.studies.iter().map(|s| (s.name(), s.question())).collect();
-    let integrators = Method::ALL.into_iter().map(|m| (m.name(), m.summary()));
+    let integrators = AnyMethod::all().map(|m| (m.name(), m.summary()));
     let integrators: Vec<_> = integrators.chain([(Exact::NAME, Exact::SUMMARY)]).collect();
     let systems: String = ENTRIES.iter().map(|entry| system_text(entry)).collect();
     let (studies, integrators) = (lines(&studies), lines(&integrators));

@@ -1,0 +1,66 @@
+//! Implicit steps of a system of the catalogue, by their program.
+
+use std::cell::RefCell;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use libration::analysis::Linearisation;
+use libration::ensemble::dynamics_of;
+use libration::equations::StepProgram;
+use libration::number::{Dual, Wide};
+use libration::simulation::{EnergyDrift, Observer, Sample, SimulationError};
+use libration::{ImplicitMethod, Model, State};
+
+use super::{AnalyzeError, Drift, PIECE, Request, Step, check_jacobian};
+use crate::program_simulation::ProgramSimulation;
+
+impl<const D: usize> Step<D> {
+    /// A step that solves equations. The program is the same for all number types, so that nothing is compiled for each method.
+    pub(super) fn solve(
+        method: ImplicitMethod,
+        model: impl Model<D>,
+        start: State<f64, D>,
+        request: &Request,
+        stop: &AtomicBool,
+    ) -> Result<Self, AnalyzeError> {
+        let wrong = || request.system.entry().wrong_dimension(D);
+        let dynamics = dynamics_of(request.system, D).ok_or_else(wrong)?;
+        let program = StepProgram::implicit(method, &dynamics);
+        let mut simulation = ProgramSimulation::new(&program, start, request.dt)?;
+        let run = RefCell::new(program.program().on::<Dual<Wide>>());
+        let step = |state: State<Dual<Wide>, D>, h: Dual<Wide>| {
+            let inputs: Vec<Dual<Wide>> = state.coordinates().chain([h]).collect();
+            let mut run = run.borrow_mut();
+            let end: Vec<Dual<Wide>> = run.run(&inputs).collect();
+            State { q: std::array::from_fn(|i| end[i]), v: std::array::from_fn(|i| end[D + i]) }
+        };
+        let linear = Linearisation::of_step(model, &start, request.dt, &step);
+        check_jacobian(&linear, request)?;
+        let drift = match request.system.is_linear() {
+            true => None,
+            false => simulated_drift(&mut simulation, model, request.steps, stop)?,
+        };
+        Ok(Step { linear, evaluations: program.evaluations() as u64, drift })
+    }
+}
+
+/// The energy drift of a nonlinear system, simulated.
+fn simulated_drift<const D: usize>(
+    simulation: &mut ProgramSimulation<'_, f64, D>,
+    model: impl Model<D>,
+    steps: u64,
+    stop: &AtomicBool,
+) -> Result<Option<Drift>, AnalyzeError> {
+    let mut drift = EnergyDrift::new(model.on::<f64>(), &simulation.sample().state);
+    let stopped: RefCell<Option<SimulationError>> = RefCell::new(None);
+    let mut left = steps;
+    while left > 0 && stopped.borrow().is_none() {
+        if stop.load(Ordering::Relaxed) {
+            return Err(AnalyzeError::Interrupted);
+        }
+        let piece = left.min(PIECE);
+        let observe = &mut |sample: &Sample<f64, D>| drift.observe(sample);
+        *stopped.borrow_mut() = simulation.run(piece, observe).err();
+        left -= piece;
+    }
+    Ok((drift.initial() != 0.0).then(|| Drift::simulated(&drift, stopped.into_inner())))
+}
