@@ -6,7 +6,9 @@ q'' = -K q - C v, with dampers that are not in proportion to the springs; the ot
 
 Steps     of h seconds as matrices: expm(A h); Taylor polynomials of A h of degree 1 and 4; products of
           kick(h) = [[1, 0], [-h K, 1 - h C]] and drift(h) = [[1, h], [0, 1]]. Textbook Verlet: q' = q + h v + h^2/2 a,
-          v' = v + h/2 (a(q, v) + a(q', v)).
+          v' = v + h/2 (a(q, v) + a(q', v)). Implicit steps as SciPy's solutions of their equations: (1 - h A) y' = y;
+          (1 - h/2 A) y' = (1 + h/2 A) y; (1 + h C)(v' - v) = -h (K q + C v), with K (q + h v) in place of K q for stable PD,
+          and q' = q + h v'.
 Modes     follow from h = 0 in 400 steps, each multiplier to the nearest one, so that none is taken for another.
 Stable    up to the first h at which the spectral radius leaves 1, by scanning h and Brent's method.
 Loop      u = -K x, with a latency of f periods, 0 < f < 1: the held command is a state. Noise of intensity 1 enters where the
@@ -50,6 +52,27 @@ def splittings(A):
         "yoshida4": compose([w, 1 - 2 * w, w]),
         "suzuki4": compose([p, p, 1 - 4 * p, p, p]),
     }
+
+def implicit(A):
+    one = np.eye(len(A))
+    backward = lambda h: np.linalg.solve(one - h * A, one)
+    cayley = lambda h: np.linalg.solve(one - h / 2 * A, one + h / 2 * A)
+    return {
+        "damping-stiffness-implicit": backward, "backward-euler": backward,
+        "implicit-midpoint": cayley, "trapezoid": cayley,
+    }
+
+def implicit_dampers(A):
+    n = len(A) // 2
+    one, zero = np.eye(n), np.zeros((n, n))
+    K, C = -A[n:, :n], -A[n:, n:]
+    def step(predicted):
+        def of(h):
+            force = np.hstack([-K, -C - predicted * h * K])
+            v = np.hstack([zero, one]) + h * np.linalg.solve(one + h * C, force)
+            return np.vstack([np.hstack([one, zero]) + h * v, v])
+        return of
+    return {"damping-implicit": step(0.0), "stable-pd": step(1.0)}
 
 def radius(M):
     return np.abs(np.linalg.eigvals(M)).max()
@@ -108,8 +131,9 @@ def case(number, rng):
     fastest = np.abs(values).max()
     dt = float(rng.uniform(0.2, 0.8)) / fastest
     steps = {"exact": lambda h: expm(A * h), "explicit-euler": taylor(A, 1), "rk4": taylor(A, 4)}
+    steps |= implicit(A)
     if number % 2 == 0:
-        steps |= splittings(A)
+        steps |= splittings(A) | implicit_dampers(A)
     of_steps = {}
     for name, step in steps.items():
         followed_values = followed(step, values, dt)
