@@ -1,15 +1,15 @@
 //! One step of an implicit method on a linear system as a matrix of exact quotients of polynomials.
 
 use libration_core::integrator::ImplicitIntegrator;
-use libration_core::number::{Dual, RationalFunction};
+use libration_core::number::{Dual, Poly, RationalFunction};
 use libration_core::system::{DampedOscillator, Differentiated};
 use libration_core::{Scalar, State, System};
 
 use super::{StabilityWindow, UpdateMatrix, stability_window};
 
-/// Quotients of polynomials in the unknown `z = ωΔt`. Sixteen coefficients hold the products of a step that solves the equations of one
+/// Quotients of polynomials in the unknown `z = ωΔt`. Eight coefficients hold the products of a step that solves the equations of one
 /// degree of freedom twice.
-pub type UnknownImplicitStep = RationalFunction<16>;
+pub type UnknownImplicitStep = RationalFunction<8>;
 
 /// The update matrix of an implicit method on a linear system, exact in the time step.
 ///
@@ -44,7 +44,8 @@ impl RationalStep {
         let matrix = UpdateMatrix::from_map(|e| integrator.step(&system, e, dt));
         let matrix = matrix.map(UnknownImplicitStep::in_lowest_terms);
         let valid = matrix.rows().iter().flatten().all(UnknownImplicitStep::is_valid);
-        valid.then_some(RationalStep { matrix })
+        let step = RationalStep { matrix };
+        (valid && step.over_one_denominator().is_some()).then_some(step)
     }
 
     /// `λ₁ + λ₂`, in lowest terms.
@@ -65,15 +66,31 @@ impl RationalStep {
     /// All windows of stability among the positive time steps, rising; none if no step is stable. They are isolated exactly, as those of
     /// a [`SymbolicStep`](super::SymbolicStep::stability_windows).
     pub fn stability_windows(&self) -> Vec<StabilityWindow> {
-        let mut denominator = UnknownImplicitStep::one();
-        let entries = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| self.matrix.entry(i, j));
-        // The least multiple of all denominators that products of some of them give.
-        for entry in &entries {
-            let needed = (denominator * *entry).in_lowest_terms();
-            denominator = denominator * UnknownImplicitStep::from(*needed.denominator());
+        match self.over_one_denominator() {
+            Some((numerators, denominator)) => {
+                stability_window::windows(numerators.each_ref(), &denominator)
+            }
+            None => Vec::new(),
         }
-        let numerators = entries.map(|entry| *(entry * denominator).in_lowest_terms().numerator());
-        stability_window::windows(numerators.each_ref(), denominator.numerator())
+    }
+
+    /// The numerators of the entries, row by row, over one denominator; none if they do not fit.
+    fn over_one_denominator(&self) -> Option<([Poly<8>; 4], Poly<8>)> {
+        let entries = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| self.matrix.entry(i, j));
+        let mut common = Poly::one();
+        for entry in &entries {
+            let own = entry.denominator();
+            if common.divided_exactly_by(own).is_none() {
+                let is_multiple = own.divided_exactly_by(&common).is_some();
+                common = if is_multiple { *own } else { common * *own };
+            }
+        }
+        let mut numerators = [Poly::ZERO; 4];
+        for (numerator, entry) in numerators.iter_mut().zip(&entries) {
+            let factor = common.divided_exactly_by(entry.denominator())?;
+            *numerator = (*entry.numerator() * factor).checked()?;
+        }
+        Some((numerators, common))
     }
 }
 
@@ -130,7 +147,7 @@ mod tests {
 
     #[test]
     fn limits_of_the_damped_oscillator_are_those_derived_by_hand() {
-        for omega in [1.0, 3.7] {
+        for omega in [1.0, 3.7, 3.141e-4, 1e5 / 7.0] {
             for zeta in [0.0, 0.1, 1.0, 20.0_f64] {
                 let (omega2, gamma) = (omega * omega, 2.0 * zeta * omega);
                 for method in ImplicitMethod::ALL {
@@ -143,7 +160,7 @@ mod tests {
                     };
                     let found = limit(method, omega2, gamma);
                     // The parameters are rounded.
-                    let is_near = found == z || (found * omega / z - 1.0).abs() < 1e-14;
+                    let is_near = found == z || (found * omega / z - 1.0).abs() < 2e-14;
                     assert!(is_near, "{method:?} {zeta}: {found} {z}");
                 }
             }

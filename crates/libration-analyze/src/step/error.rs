@@ -42,7 +42,7 @@ pub enum AnalyzeError {
     },
     /// A criterion or a loop with implicit steps.
     #[error(
-        "--{flag}: it is not derived for the implicit integrator `{integrator}` (--integrator); expected an explicit one"
+        "--integrator {integrator}: implicit integrators have no --{flag}; expected an explicit integrator, such as `rk4`, with it"
     )]
     Implicit {
         /// The flag of the criterion or of the loop.

@@ -174,7 +174,11 @@ impl Request {
     fn check_stepping(&self) -> Result<(), TrajectoryError> {
         if let (Stepping::Implicit(method), Some(flag)) = (self.stepping, self.loop_option()) {
             let value = format!("{} with --{flag}", method.name());
-            return Err(value_error("integrator", value, "an explicit integrator in a loop"));
+            return Err(value_error(
+                "integrator",
+                value,
+                "an explicit integrator, such as `rk4`, in a loop",
+            ));
         }
         if self.stepping != Stepping::Exact {
             return Ok(());

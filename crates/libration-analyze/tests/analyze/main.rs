@@ -5,6 +5,7 @@
 mod analyze;
 mod dimensions;
 mod export;
+mod implicit;
 mod linear_analysis;
 mod loop_growth;
 mod overflow;

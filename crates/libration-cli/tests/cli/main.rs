@@ -11,6 +11,7 @@ mod deadline_misses;
 mod equations;
 mod exit_codes;
 mod forces;
+mod implicit;
 #[cfg(unix)]
 mod interrupt;
 #[cfg(unix)]

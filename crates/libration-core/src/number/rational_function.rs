@@ -12,6 +12,8 @@ use crate::{Elementary, Scalar};
 /// that one of the two has, where it is a multiple of the other, so that steps that solve the same equations several times keep their
 /// degrees; [`RationalFunction::in_lowest_terms`] removes all common factors.
 ///
+/// Operations are not inlined: numbers are kilobytes long, and the stack is short.
+///
 /// A degree of `N` or more, a coefficient that does not fit a [`Ratio`] and a division by zero make the quotient undefined, and everything
 /// computed from it.
 #[derive(Clone, Copy)]
@@ -27,6 +29,7 @@ impl<const N: usize> RationalFunction<N> {
         RationalFunction { numerator: Poly::UNDEFINED, denominator: Poly::ZERO };
 
     /// `numerator/denominator`.
+    #[inline(never)]
     pub fn new(numerator: Poly<N>, denominator: Poly<N>) -> Self {
         if !numerator.is_valid() || !denominator.is_valid() || denominator == Poly::ZERO {
             return RationalFunction::UNDEFINED;
@@ -127,6 +130,7 @@ impl<const N: usize> PartialEq for RationalFunction<N> {
 
 impl<const N: usize> Add for RationalFunction<N> {
     type Output = Self;
+    #[inline(never)]
     fn add(self, other: Self) -> Self {
         if !self.are_valid(&other) {
             return RationalFunction::UNDEFINED;
@@ -138,6 +142,7 @@ impl<const N: usize> Add for RationalFunction<N> {
 
 impl<const N: usize> Sub for RationalFunction<N> {
     type Output = Self;
+    #[inline(never)]
     fn sub(self, other: Self) -> Self {
         self + -other
     }
@@ -145,6 +150,7 @@ impl<const N: usize> Sub for RationalFunction<N> {
 
 impl<const N: usize> Mul for RationalFunction<N> {
     type Output = Self;
+    #[inline(never)]
     fn mul(self, other: Self) -> Self {
         if !self.are_valid(&other) {
             return RationalFunction::UNDEFINED;
@@ -187,6 +193,7 @@ macro_rules! of_polynomials {
 
 /// Division, and what [polynomials](Poly) have: no transcendental function of a quotient is one.
 impl<const N: usize> Elementary for RationalFunction<N> {
+    #[inline(never)]
     fn recip(self) -> Self {
         RationalFunction::new(self.denominator, self.numerator)
     }

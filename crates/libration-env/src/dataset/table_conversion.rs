@@ -4,7 +4,7 @@ use libration::catalog::Actuation;
 use libration::control::Jitter;
 use libration::rl::task::{Regulate, Sine, SwingUp, Track};
 use libration::rl::{Autoreset, Delays, ProgramEnvironment};
-use libration::{Method, catalog};
+use libration::{ImplicitMethod, Method, catalog};
 use libration_analyze::trajectory::FloatType;
 use libration_settings::limits::{TIME_STEP, within};
 use libration_settings::{Count, Fault, Number, suggestions};
@@ -57,7 +57,13 @@ impl TryFrom<File> for Dataset {
         })?;
         let name = &file.integrator;
         let method = Method::from_name(name).ok_or_else(|| {
-            let fault = Fault::new("integrator", format!("unknown integrator `{name}`"));
+            let message = match ImplicitMethod::from_name(name) {
+                Some(_) => {
+                    format!("`integrator` is `{name}`, which is implicit, but it must be explicit")
+                }
+                None => format!("unknown integrator `{name}`"),
+            };
+            let fault = Fault::new("integrator", message);
             fault.help(suggestions::suggest("integrators", name, Method::ALL.map(Method::name)))
         })?;
         let dt = within(TIME_STEP, "dt", file.dt.0).map_err(|why| Fault::new("dt", why))?;

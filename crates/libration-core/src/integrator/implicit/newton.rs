@@ -16,6 +16,7 @@ pub const NEWTON_STEPS: u32 = 5;
 /// The `k` with `k = h·f(start + k)`, where `f` is the rate, by so many Newton steps from 0: the first is the linearly implicit step.
 ///
 /// The unknown is the increment and not the state, so that residuals keep their digits.
+#[inline(never)]
 pub(super) fn increment<S: Scalar, const D: usize>(
     system: &impl ImplicitSystem<S, D>,
     start: State<S, D>,
