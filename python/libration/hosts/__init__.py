@@ -13,7 +13,7 @@ _ADAPTERS = {
     "gymnasium_host": "gymnasium",
     "jax_host": "jax",
     "mujoco_host": "mujoco",
-    "mujoco_servos": "mujoco_servos",
+    "mujoco_servos": "_mujoco_servos",
 }
 
 __all__ = [

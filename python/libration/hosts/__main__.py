@@ -56,7 +56,7 @@ def main() -> int:
     arguments = _arguments()
     try:
         if arguments.gains:
-            from .mujoco_servos import mujoco_servos
+            from ._mujoco_servos import mujoco_servos
 
             print(json.dumps(mujoco_servos(arguments.file, keyframe=_keyframe(arguments))), flush=True)
             return 0
