@@ -10,9 +10,9 @@ use crate::prober::Prober;
 /// Most steps of the run.
 const STEPS: usize = 50;
 /// Displacement in units of the scales: nonlinear terms are about as large relative to it.
-const DISPLACEMENT: f64 = 1e-4;
+const DISPLACEMENT: f64 = 1e-5;
 /// Growth at which the run ends, so that the deviation remains small.
-const MOST_GROWTH: f64 = 30.0;
+const MOST_GROWTH: f64 = 1000.0;
 
 /// How well the matrices predict a run of the simulator from a small deviation.
 #[derive(Clone, Debug, Serialize)]

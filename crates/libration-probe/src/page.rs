@@ -69,8 +69,6 @@ fn modes(page: &mut Page, audit: &ProbeReport) {
         "system (1/s)",
         "frequency, step (Hz)",
         "system (Hz)",
-        "damping ratio, step",
-        "system",
         "numerical damping",
     ];
     let mut table = Table::new("modes", &columns);
@@ -84,8 +82,6 @@ fn modes(page: &mut Page, audit: &ProbeReport) {
             known(flow.map(|flow| flow.growth_rate)),
             Cell::rounded(mode.step.frequency, 5),
             known(flow.map(|flow| flow.frequency)),
-            known(mode.step.damping_ratio),
-            known(flow.and_then(|flow| flow.damping_ratio)),
             known(mode.numerical_damping),
         ]);
     }
@@ -219,7 +215,8 @@ fn integrator(page: &mut Page, audit: &ProbeReport) {
 
 fn candidates(page: &mut Page, name: &str, found: &Match) {
     let mut table = Table::new(name, &["integrator", "distance from the step", "agrees"]);
-    for candidate in &found.candidates {
+    // The others are farther, and in the results.
+    for candidate in found.candidates.iter().take(8) {
         let agrees = if found.methods.contains(&candidate.method) { "yes" } else { "no" };
         table.push([
             candidate.title.clone().into(),

@@ -17,7 +17,7 @@ pub(crate) struct GainsArgs {
     #[arg(long, value_name = "FILE", group = "servos")]
     pub(crate) mujoco: Option<PathBuf>,
     /// Inertia of each joint, in kg or kg·m²
-    #[arg(long, value_name = "NUMBERS", group = "servos", value_parser = number::coordinates, requires_all = ["kp", "dt"])]
+    #[arg(long, value_name = "NUMBERS", group = "servos", value_parser = number::coordinates, allow_hyphen_values = true, requires_all = ["kp", "dt"])]
     pub(crate) inertia: Option<Coordinates>,
     /// File with matrices as JSON: mass, kp and optional kv, stiffness, damping, joints
     #[arg(long, value_name = "FILE", group = "servos", requires = "dt")]

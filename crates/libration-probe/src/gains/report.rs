@@ -145,7 +145,7 @@ pub fn gains(
         joints: (0..servos.joints.len()).map(|i| joint_row(servos, i, integrator, h)).collect(),
         modes: modes(servos, integrator, h),
         integrators: ServoIntegrator::all().map(row).collect(),
-        notes: [notes, vec![LIMITATION.trim_end_matches('.').to_owned()]].concat(),
+        notes,
         repeat_command: String::new(),
     };
     report.answer = report.summary();
