@@ -12,7 +12,7 @@ import os
 
 from . import _native
 from ._native import __version__
-from . import datasets, policies
+from . import datasets, plants, policies
 from .analysis import Advice, Analysis, advise, analyze
 from .bits import FirstDifference, first_difference
 from .ensemble import Ensemble
@@ -85,6 +85,7 @@ __all__ = [
     "datasets",
     "first_difference",
     "gains",
+    "plants",
     "policies",
     "probe",
     "run_lab",

@@ -30,6 +30,7 @@ __all__ = [
     "_parameters",
     "_first_difference",
     "_gains",
+    "_jacobian",
     "_probe",
     "_program",
     "_run_lab",
@@ -90,6 +91,7 @@ def _probe(
     energy: Callable[[Any], Any] | None,
     batched: bool,
 ) -> tuple[str, bool, str]: ...
+def _jacobian(function: Callable[[Any], Any], z: Any, scale: Any) -> tuple[Any, Any]: ...
 def _gains(description: str, dt: float, substeps: int, integrator: str) -> tuple[str, str]: ...
 def _first_difference(
     first: Any, second: Any, shape: list[int]

@@ -54,7 +54,7 @@ mod _native {
     #[pymodule_export]
     use crate::linear_plant::_linear_plant;
     #[pymodule_export]
-    use crate::probe::{_first_difference, _gains, _probe};
+    use crate::probe::{_first_difference, _gains, _jacobian, _probe};
     #[pymodule_export]
     use crate::program::_program;
     #[pymodule_export]

@@ -3,7 +3,7 @@
 use libration::linear::Matrix;
 use libration_probe::{
     BlackBox, BlackBoxError, Description, FirstDifference, ServoIntegrator, ServosDescription,
-    gains, gains_page, page, probe,
+    gains, gains_page, jacobian, page, probe,
 };
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -23,8 +23,7 @@ struct PythonStep<'py> {
 
 impl<'py> PythonStep<'py> {
     fn array(&self, matrix: &Matrix) -> PyResult<Bound<'py, PyAny>> {
-        let flat = PyArray1::from_slice(self.py, matrix.entries());
-        Ok(flat.reshape([matrix.rows(), matrix.columns()])?.into_any())
+        array(self.py, matrix)
     }
 
     fn called<T>(&mut self, result: PyResult<T>) -> Result<T, BlackBoxError> {
@@ -34,6 +33,11 @@ impl<'py> PythonStep<'py> {
             BlackBoxError::Failed(text)
         })
     }
+}
+
+fn array<'py>(py: Python<'py>, matrix: &Matrix) -> PyResult<Bound<'py, PyAny>> {
+    let flat = PyArray1::from_slice(py, matrix.entries());
+    Ok(flat.reshape([matrix.rows(), matrix.columns()])?.into_any())
 }
 
 fn matrix(found: &Bound<'_, PyAny>) -> PyResult<Matrix> {
@@ -135,4 +139,17 @@ pub(crate) fn _gains(
     let report = gains(&servos, dt, substeps, found, described.notes);
     let json = serde_json::to_string(&report).map_err(|error| wrong(&error))?;
     Ok((json, gains_page(&report)))
+}
+
+/// The Jacobian of a function of rows of points, values × variables, and estimated errors of its entries.
+#[pyfunction]
+pub(crate) fn _jacobian<'py>(
+    py: Python<'py>,
+    function: &Bound<'py, PyAny>,
+    z: PyReadonlyArray1<'py, f64>,
+    scale: PyReadonlyArray1<'py, f64>,
+) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    let rows = |points: &Matrix| matrix(&function.call1((array(py, points)?,))?);
+    let found = jacobian(rows, z.as_slice()?, scale.as_slice()?)?;
+    Ok((array(py, &found.values)?, array(py, &found.errors)?))
 }
