@@ -155,7 +155,8 @@ pub(crate) fn of_report(report: &ProbeReport, found: &mut Vec<Finding>) {
             ),
         ));
     }
-    if let Some(confirmation) = report.confirmation.as_ref().filter(|c| !(c.error <= LINEAR))
+    if let Some(confirmation) =
+        report.confirmation.as_ref().filter(|c| c.error > LINEAR || c.error.is_nan())
         && equilibrium.holds
         && report.jacobian_error <= DIFFERENTIABLE
     {
@@ -169,7 +170,7 @@ pub(crate) fn of_report(report: &ProbeReport, found: &mut Vec<Finding>) {
             ),
         ));
     }
-    if let Some(difference) = report.reference.as_ref().filter(|r| !(r.difference <= r.allowed)) {
+    if let Some(difference) = report.reference.as_ref().filter(|r| r.difference > r.allowed) {
         found.push(Finding::warning(
             "derivatives-differ",
             format!(

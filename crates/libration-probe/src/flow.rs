@@ -66,6 +66,22 @@ impl Flow {
         }
         Ok(None)
     }
+
+    /// The rates with entries of 0 and 1 where they are so within their errors.
+    pub(crate) fn cleaned(&self) -> Matrix {
+        Matrix::from_fn(self.a.rows(), self.a.columns(), |i, j| {
+            let value = self.a[(i, j)];
+            let error = 10.0 * self.a_errors[(i, j)] + 1e-9;
+            let near = |target: f64| (value - target).abs() <= error;
+            if near(0.0) {
+                0.0
+            } else if near(1.0) {
+                1.0
+            } else {
+                value
+            }
+        })
+    }
 }
 
 /// The rates whose exact flow a short step is, and their errors.

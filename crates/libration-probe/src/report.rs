@@ -1,26 +1,23 @@
 //! The audit of a step, and its results.
 
 use libration::analysis::positions_and_velocities;
-use libration::linear::{Matrix, logarithm};
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
+use crate::driven_velocity::{DrivenVelocity, driven_velocities};
 use crate::finding::{Finding, of_bits, of_memory, of_report};
 use crate::flow::Flow;
 use crate::hidden_latency::{HiddenLatency, hidden_latencies};
 use crate::linear_candidates::match_matrices;
 use crate::linearised_step::LinearisedStep;
+use crate::matrices::{Matrices, modified_flow};
 use crate::modes::{ProbedMode, modes};
 use crate::prober::Prober;
+use crate::reference_check::ReferenceCheck;
+use crate::rest::Rest;
 use crate::{
     Bits, BlackBox, BlackBoxError, Confirmation, Convergence, Defects, DelayAudit, LargestStep,
     Match, Memory, Recognition, Subject,
 };
-
-/// Largest change per step in units of the scales at which a state counts as an equilibrium.
-const AT_REST: f64 = 1e-8;
-/// Part of the largest entry of a row by which derivatives of a simulator may differ: they are differences of one small step, whose
-/// error in stiff contacts is 10⁻⁵ (measured on MuJoCo's `mjd_transitionFD`).
-const THEIR_ERROR: f64 = 1e-4;
 
 /// The results of an audit; the fields are the keys of `probe --json`.
 #[derive(Clone, Debug, Serialize)]
@@ -88,57 +85,6 @@ pub struct ProbeReport {
     pub calls: u64,
     /// The command that repeats the audit.
     pub repeat_command: String,
-}
-
-/// Whether a state is an equilibrium.
-#[derive(Clone, Debug, Serialize)]
-pub struct Rest {
-    /// Whether its change in a step is a rounding.
-    pub holds: bool,
-    /// What the author of the simulator says.
-    pub stated: Option<bool>,
-    /// The largest change of a state in a step, in its unit.
-    pub change: f64,
-    /// The state that changes most.
-    pub state: String,
-}
-
-/// Matrices `A` and `B`.
-#[derive(Clone, Debug, Serialize)]
-pub struct Matrices {
-    /// States × states.
-    #[serde(serialize_with = "rows")]
-    pub a: Matrix,
-    /// States × inputs.
-    #[serde(serialize_with = "rows")]
-    pub b: Matrix,
-    /// Estimated absolute errors of `a`.
-    #[serde(serialize_with = "rows")]
-    pub a_errors: Matrix,
-}
-
-/// A comparison with derivatives of the simulator.
-#[derive(Clone, Debug, Serialize)]
-pub struct ReferenceCheck {
-    /// The function that computed them.
-    pub source: String,
-    /// The largest difference of an entry, relative to the largest entry of its row.
-    pub difference: f64,
-    /// The difference that errors of the derivatives explain.
-    pub allowed: f64,
-}
-
-/// A velocity whose rate grows with it.
-#[derive(Clone, Debug, Serialize)]
-pub struct DrivenVelocity {
-    /// Its name.
-    pub state: String,
-    /// The derivative of its rate by itself, in 1/s.
-    pub rate: f64,
-}
-
-fn rows<S: Serializer>(matrix: &Matrix, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq((0..matrix.rows()).map(|i| matrix.row(i)))
 }
 
 /// Audits the step of a simulator.
@@ -239,7 +185,7 @@ impl ProbeReport {
         }
         self.reference = ReferenceCheck::of(subject, &step);
         let flow = if has_fixed_dt { None } else { Flow::of(prober, &step)? };
-        let detected = flow.as_ref().and_then(|flow| positions_and_velocities(&cleaned(flow)));
+        let detected = flow.as_ref().and_then(|flow| positions_and_velocities(&flow.cleaned()));
         let pairs = subject.pairs.clone().or(detected);
         let pairs = pairs.as_deref();
         self.modes = modes(&step, flow.as_ref(), subject);
@@ -256,7 +202,7 @@ impl ProbeReport {
             let by_matrix = flow
                 .as_ref()
                 .filter(|_| self.equilibrium.holds)
-                .and_then(|flow| match_matrices(&step, flow, &cleaned(flow), pairs, subject));
+                .and_then(|flow| match_matrices(&step, flow, &flow.cleaned(), pairs, subject));
             self.recognition = Some(Recognition { by_results, by_matrix });
         }
         self.defects = Some(Defects::measure(prober, &step, flow.as_ref(), pairs)?);
@@ -272,88 +218,10 @@ impl ProbeReport {
     }
 }
 
-impl Rest {
-    fn measure(prober: &mut Prober<'_>) -> Result<Self, BlackBoxError> {
-        let subject = prober.subject;
-        let next = prober.step_one(&subject.state, &subject.action, subject.dt)?;
-        let change = |i: usize| (next[i] - subject.state[i]).abs();
-        let scaled = |i: usize| change(i) / subject.state_scale[i];
-        let most = (0..next.len()).max_by(|&i, &j| scaled(i).total_cmp(&scaled(j))).unwrap_or(0);
-        Ok(Rest {
-            holds: scaled(most) <= AT_REST,
-            stated: subject.equilibrium,
-            change: change(most),
-            state: subject.states[most].name.clone(),
-        })
-    }
-}
-
-impl ReferenceCheck {
-    fn of(subject: &Subject, step: &LinearisedStep) -> Option<Self> {
-        let reference = subject.reference.as_ref()?;
-        let (mut difference, mut allowed) = (0.0_f64, THEIR_ERROR);
-        let largest =
-            |matrix: &Matrix, i: usize| matrix.row(i).iter().map(|x| x.abs()).fold(0.0, f64::max);
-        for i in 0..step.a.rows() {
-            let parts =
-                [(&step.a, &reference.a, &step.a_errors), (&step.b, &reference.b, &step.b_errors)];
-            let size = parts.iter().map(|(own, theirs, _)| largest(own, i).max(largest(theirs, i)));
-            let size = size.fold(f64::MIN_POSITIVE, f64::max);
-            for (own, theirs, errors) in parts {
-                let apart = own.row(i).iter().zip(theirs.row(i)).map(|(a, b)| (a - b).abs());
-                difference = difference.max(apart.fold(0.0, f64::max) / size);
-                allowed = allowed.max(THEIR_ERROR + largest(errors, i) / size);
-            }
-        }
-        Some(ReferenceCheck { source: reference.source.clone(), difference, allowed })
-    }
-}
-
-/// The rates whose exact flow under a held command is the step.
-fn modified_flow(step: &LinearisedStep) -> Option<Matrices> {
-    let rates = logarithm(&step.augmented())?.scaled(step.dt.recip());
-    let (n, m) = (step.a.rows(), step.b.columns());
-    Some(Matrices {
-        a: rates.block((0, 0), (n, n)),
-        b: rates.block((0, n), (n, m)),
-        a_errors: step.a_errors.scaled(step.dt.recip()),
-    })
-}
-
 fn ignores_dt(prober: &mut Prober<'_>) -> Result<bool, BlackBoxError> {
     let subject = prober.subject;
     let start = crate::convergence::displaced(prober, 0.1);
     let full = prober.step_one(&start, &subject.action, subject.dt)?;
     let half = prober.step_one(&start, &subject.action, subject.dt / 2.0)?;
     Ok(full == half && full != start)
-}
-
-/// The rates with entries of 0 and 1 where they are so within their errors.
-fn cleaned(flow: &Flow) -> Matrix {
-    Matrix::from_fn(flow.a.rows(), flow.a.columns(), |i, j| {
-        let value = flow.a[(i, j)];
-        let error = 10.0 * flow.a_errors[(i, j)] + 1e-9;
-        let near = |target: f64| (value - target).abs() <= error;
-        if near(0.0) {
-            0.0
-        } else if near(1.0) {
-            1.0
-        } else {
-            value
-        }
-    })
-}
-
-fn driven_velocities(
-    flow: &Flow,
-    pairs: Option<&[(usize, usize)]>,
-    subject: &Subject,
-) -> Vec<DrivenVelocity> {
-    let velocities = pairs.unwrap_or_default().iter().map(|(_, v)| *v);
-    let of = |v: usize| {
-        let (rate, error) = (flow.a[(v, v)], flow.a_errors[(v, v)]);
-        (rate > 10.0 * error + 1e-9)
-            .then(|| DrivenVelocity { state: subject.states[v].name.clone(), rate })
-    };
-    velocities.filter_map(of).collect()
 }

@@ -23,13 +23,13 @@ pub(crate) struct GainsArgs {
     #[arg(long, value_name = "FILE", group = "servos", requires = "dt")]
     pub(crate) matrices: Option<PathBuf>,
     /// Gain of position of each joint, in N/m or N·m/rad
-    #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, allow_hyphen_values = true, requires = "inertia")]
+    #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, allow_hyphen_values = true, conflicts_with_all = ["mujoco", "matrices"])]
     pub(crate) kp: Option<Coordinates>,
     /// Gain of velocity of each joint, in N·s/m or N·m·s/rad [default: 0]
-    #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, allow_hyphen_values = true, requires = "inertia")]
+    #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, allow_hyphen_values = true, conflicts_with_all = ["mujoco", "matrices"])]
     pub(crate) kv: Option<Coordinates>,
     /// Damping of each joint besides that of its servo [default: 0]
-    #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, allow_hyphen_values = true, requires = "inertia")]
+    #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, allow_hyphen_values = true, conflicts_with_all = ["mujoco", "matrices"])]
     pub(crate) damping: Option<Coordinates>,
     /// Time step of the simulator in s [default: that of the model]
     #[arg(long, value_name = "SECONDS", value_parser = number::time_step, allow_hyphen_values = true)]
@@ -42,13 +42,13 @@ pub(crate) struct GainsArgs {
     #[arg(long, value_name = "NAME", value_parser = integrator)]
     pub(crate) integrator: Option<ServoIntegrator>,
     /// Keyframe of the MuJoCo model, by name or number [default: the default pose]
-    #[arg(long, value_name = "NAME", requires = "mujoco")]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["inertia", "matrices"])]
     pub(crate) keyframe: Option<String>,
     /// Longest time for an answer of the program, in s
     #[arg(long, value_name = "SECONDS", value_parser = timeout, default_value = "10", allow_hyphen_values = true)]
     pub(crate) timeout: Duration,
     /// Python interpreter for --mujoco
-    #[arg(long, value_name = "PROGRAM", default_value = "python3", requires = "mujoco")]
+    #[arg(long, value_name = "PROGRAM", default_value = "python3", conflicts_with_all = ["inertia", "matrices"])]
     pub(crate) python: String,
     /// Write an HTML page to FILE
     #[arg(long, value_name = "FILE")]

@@ -30,25 +30,25 @@ pub(crate) struct ProbeArgs {
     #[arg(long, value_name = "SECONDS", value_parser = number::time_step, allow_hyphen_values = true, conflicts_with = "matrices")]
     pub(crate) dt: Option<f64>,
     /// Names of the states of --command, with units, e.g. "angle (rad),speed (rad/s)" [default: x1, x2, …]
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "command")]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with_all = ["mujoco", "matrices"])]
     pub(crate) state_names: Vec<String>,
     /// Names of the actions of --command [default: u1, u2, …]
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "command")]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with_all = ["mujoco", "matrices"])]
     pub(crate) action_names: Vec<String>,
     /// Typical deviations of the states of --command [default: the larger of 1 and the absolute state]
-    #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, requires = "command")]
+    #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, conflicts_with_all = ["mujoco", "matrices"])]
     pub(crate) state_scale: Option<Coordinates>,
     /// Typical deviations of the actions of --command [default: the larger of 1 and the absolute action]
-    #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, requires = "command")]
+    #[arg(long, value_name = "NUMBERS", value_parser = number::coordinates, conflicts_with_all = ["mujoco", "matrices"])]
     pub(crate) action_scale: Option<Coordinates>,
     /// Keyframe of the MuJoCo model, by name or number [default: the default pose]
-    #[arg(long, value_name = "NAME", requires = "mujoco")]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["command", "matrices"])]
     pub(crate) keyframe: Option<String>,
     /// Start from the equilibrium into which the MuJoCo model settles
-    #[arg(long, requires = "mujoco")]
+    #[arg(long, conflicts_with_all = ["command", "matrices"])]
     pub(crate) settle: bool,
     /// The simulator has this time step only
-    #[arg(long, requires = "command")]
+    #[arg(long, conflicts_with_all = ["mujoco", "matrices"])]
     pub(crate) fixed_dt: bool,
     /// The system conserves energy: a drift that does not depend on the time step is a fault
     #[arg(long, conflicts_with = "matrices")]
@@ -60,7 +60,7 @@ pub(crate) struct ProbeArgs {
     #[arg(long, value_name = "SECONDS", value_parser = timeout, default_value = "10", allow_hyphen_values = true)]
     pub(crate) timeout: Duration,
     /// Python interpreter for --mujoco
-    #[arg(long, value_name = "PROGRAM", default_value = "python3", requires = "mujoco")]
+    #[arg(long, value_name = "PROGRAM", default_value = "python3", conflicts_with_all = ["command", "matrices"])]
     pub(crate) python: String,
     /// Write an HTML page to FILE
     #[arg(long, value_name = "FILE")]

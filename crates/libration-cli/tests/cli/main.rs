@@ -29,6 +29,7 @@ mod long_files;
 #[cfg(target_os = "linux")]
 mod memory;
 mod plant_files;
+mod probe;
 mod readers;
 #[cfg(unix)]
 mod replaced_file;
