@@ -1,5 +1,7 @@
 //! Audits of steps whose properties are known.
 
+#![allow(clippy::unwrap_used)]
+
 mod faults;
 mod gains;
 mod simulators;

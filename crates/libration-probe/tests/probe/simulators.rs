@@ -3,12 +3,16 @@
 use libration::linear::Matrix;
 use libration_probe::{BlackBox, BlackBoxError, ProbeReport, Subject, probe};
 
+type StepFunction<'a> = Box<dyn FnMut(&[f64], &[f64], f64) -> Vec<f64> + 'a>;
+type Observer<'a> = Box<dyn FnMut(&[f64]) -> Vec<f64> + 'a>;
+type Energy<'a> = Box<dyn Fn(&[f64]) -> f64 + 'a>;
+
 /// A simulator of functions.
 #[derive(Default)]
 pub(crate) struct Simulator<'a> {
-    pub(crate) step: Option<Box<dyn FnMut(&[f64], &[f64], f64) -> Vec<f64> + 'a>>,
-    pub(crate) observe: Option<Box<dyn FnMut(&[f64]) -> Vec<f64> + 'a>>,
-    pub(crate) energy: Option<Box<dyn Fn(&[f64]) -> f64 + 'a>>,
+    pub(crate) step: Option<StepFunction<'a>>,
+    pub(crate) observe: Option<Observer<'a>>,
+    pub(crate) energy: Option<Energy<'a>>,
     pub(crate) is_batched: bool,
     /// Changes the results of a batch of this size.
     pub(crate) spoil: Option<usize>,
