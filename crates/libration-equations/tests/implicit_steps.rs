@@ -71,3 +71,56 @@ fn a_chain_of_eight_stands_still_in_equilibrium_and_loses_energy_elsewhere() {
         assert!(size(&state) < 0.1, "{method:?} {state:?}");
     }
 }
+
+#[test]
+fn steps_of_a_nonlinear_system_are_those_of_scipy() {
+    // `tools/implicit_steps_reference.py`.
+    let wanted = [
+        (
+            ImplicitMethod::DampingImplicit,
+            [-0.5905875120844695, 1.6016429731174584, -2.184007747655059, -2.6268485268180246],
+        ),
+        (
+            ImplicitMethod::DampingStiffnessImplicit,
+            [-0.4619946812773623, 1.348165660644839, -1.9393442657553035, -2.446967731455445],
+        ),
+        (
+            ImplicitMethod::StablePd,
+            [-0.4553816891524419, 1.329666750244787, -1.9591268836733853, -2.4844110543947977],
+        ),
+        (
+            ImplicitMethod::BackwardEuler,
+            [-0.4609723662321025, 1.3401925296578816, -1.934527327681823, -2.4019514243079594],
+        ),
+        (
+            ImplicitMethod::ImplicitMidpoint,
+            [-0.45071678033499346, 1.6883388770783505, -2.20233200887399, -2.6872293606634434],
+        ),
+        (
+            ImplicitMethod::Trapezoid,
+            [-0.4511575579361625, 1.6863538275282697, -2.1995952381337, -2.6700514488616087],
+        ),
+    ];
+    let pairs = |all: [(&str, &str); 2]| all.map(|(a, b)| (a.to_owned(), b.to_owned())).to_vec();
+    let definitions = Definitions {
+        coordinates: vec!["x".to_owned(), "y".to_owned()],
+        accelerations: pairs([
+            ("x", "-2*sin(x) - 0.3*x'*cos(y')"),
+            ("y", "3*(x - y) - 0.2*y'^3 + 0.1*x'"),
+        ]),
+        ..Definitions::default()
+    };
+    let equations = Equations::new(&definitions).unwrap_or_else(|error| panic!("{error}"));
+    for (method, wanted) in wanted {
+        let step = StepProgram::implicit(method, equations.dynamics());
+        let mut run = step.program().on::<f64>();
+        let mut state = vec![1.9, -0.4, 0.6, 1.1];
+        for _ in 0..20 {
+            state = run.run(&[&state[..], &[0.1]].concat()).collect();
+        }
+        // SciPy ends its iteration at residuals of some 10⁻¹⁵, twenty times.
+        for (found, wanted) in state.iter().zip(wanted) {
+            assert!((found - wanted).abs() < 1e-13, "{method:?} {found} {wanted}");
+        }
+    }
+}

@@ -178,7 +178,7 @@ fn options_without_sense_are_refused_with_what_is_expected() {
     );
     refused(
         analyze(HEATER, "--dt 0.1 --integrator leapfrog"),
-        "expected explicit-euler, rk4, exact",
+        "expected explicit-euler, rk4, damping-stiffness-implicit",
     );
     let sampled = "a = [[0.5]]\nb = [[1]]\nsampling-period = 0.1\n";
     refused(analyze(sampled, "--dt 0.1"), "the plant is sampled every 0.1 s");

@@ -52,7 +52,7 @@ fn the_other_flags_are_read() {
         probe("oscillator", "--set k=4 --set m=2 --steps 1e6 --float bf16").unwrap();
     assert_eq!(setting.system.parameters(), [("omega2", 2.0)]);
     let step = probe.args.step.unwrap();
-    assert_eq!((step.integrator, step.dt), (Stepping::Method(Method::Rk4), 0.01));
+    assert_eq!((step.integrator, step.dt), (Stepping::Method(libration::Method::Rk4), 0.01));
     assert_eq!((probe.args.steps, probe.args.float), (1_000_000, FloatType::Bf16));
 }
 
