@@ -1,6 +1,7 @@
 //! Tests of the shared options: accepted values and error messages.
 
 use clap::Parser;
+use libration::Method;
 use libration_analyze::trajectory::FloatType;
 
 use super::*;
