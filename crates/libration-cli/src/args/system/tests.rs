@@ -1,7 +1,6 @@
 //! Tests of the shared options: accepted values and error messages.
 
 use clap::Parser;
-use libration::Method;
 use libration_analyze::trajectory::FloatType;
 
 use super::*;
