@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from .hosts.host import Host
 
 
@@ -32,4 +34,10 @@ def description_of(host: Host) -> dict[str, Any]:
             "a": host.reference_A.tolist(),
             "b": host.reference_B.tolist(),
         }
+    if host.recordings:
+        described["recordings"] = [
+            {"name": name, "shape": list(first.shape), "first": first.ravel().tolist(), "second": second.ravel().tolist()}
+            for name, first, second in host.recordings
+            if np.isfinite(first).all() and np.isfinite(second).all()
+        ]
     return described

@@ -4,7 +4,7 @@ use libration::linear::Matrix;
 use serde::Serialize;
 
 use crate::prober::{Prober, row};
-use crate::{BlackBoxError, FirstDifference};
+use crate::{BlackBoxError, FirstDifference, Recording};
 
 /// Sizes of batches.
 const BATCHES: [usize; 3] = [1, 7, 4096];
@@ -63,6 +63,11 @@ impl Bits {
         if prober.restart()? {
             let again = prober.step(&points.0, &points.1, prober.subject.dt)?;
             checks.push(BitCheck::new("after a restart", &first, &again));
+        }
+        for recording in &prober.subject.recordings {
+            let Recording { name, shape, first, second } = recording;
+            let difference = FirstDifference::find(first, second, shape);
+            checks.push(BitCheck { name: name.clone(), difference });
         }
         let is_random = checks[0].difference.is_some();
         let randomness = if is_random { Some(Randomness::measure(prober)?) } else { None };

@@ -4,7 +4,7 @@ use libration::linear::{Matrix, Signal};
 use serde::Deserialize;
 use thiserror::Error;
 
-use crate::{Reference, Subject, SubjectError};
+use crate::{Recording, Reference, Subject, SubjectError};
 
 /// The description of a simulator.
 #[derive(Clone, Debug, Deserialize)]
@@ -33,6 +33,8 @@ pub struct Description {
     #[serde(default)]
     notes: Vec<String>,
     reference: Option<ReferenceDescription>,
+    #[serde(default)]
+    recordings: Vec<Recording>,
     /// Whether the simulator computes energies.
     #[serde(default)]
     pub energy: bool,
@@ -102,6 +104,7 @@ impl Description {
         subject.joint_damping = self.joint_damping;
         subject.integrator = self.integrator;
         subject.notes = self.notes;
+        subject.recordings = self.recordings;
         subject.invocation = self.invocation;
         subject.check()?;
         Ok(subject)

@@ -60,13 +60,16 @@ pub(crate) fn of_bits(bits: &Bits, found: &mut Vec<Finding>) {
     }
     for check in &bits.checks {
         let Some(difference) = &check.difference else { continue };
-        let [environment, component] = difference.index[..] else { continue };
         let ulps = difference.ulps.map_or_else(String::new, |ulps| format!(", {ulps} ulps apart"));
         found.push(Finding::fault(
             "bits-differ",
             format!(
-                "{} gives other bits: first in environment {environment}, component {component} ({:e} and {:e}{ulps}); {} numbers differ",
-                check.name, difference.first, difference.second, difference.differing
+                "{} gives other bits: first in {} ({:e} and {:e}{ulps}); {} numbers differ",
+                check.name,
+                difference.place(),
+                difference.first,
+                difference.second,
+                difference.differing
             ),
         ));
     }

@@ -37,6 +37,19 @@ impl FirstDifference {
     }
 }
 
+impl FirstDifference {
+    /// The place in words, for axes of steps, environments and components.
+    pub fn place(&self) -> String {
+        match self.index[..] {
+            [step, environment, component] => {
+                format!("step {step}, environment {environment}, component {component}")
+            }
+            [environment, component] => format!("environment {environment}, component {component}"),
+            _ => format!("place {:?}", self.index),
+        }
+    }
+}
+
 /// Floats from one number to the other.
 pub fn ulps(a: f64, b: f64) -> Option<u64> {
     // Bits in the order of the numbers.

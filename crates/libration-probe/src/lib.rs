@@ -65,4 +65,4 @@ pub use recognition::{Candidate, Match, Recognition};
 pub use reference_check::ReferenceCheck;
 pub use report::{ProbeReport, probe};
 pub use rest::Rest;
-pub use subject::{Reference, Subject, SubjectError};
+pub use subject::{Recording, Reference, Subject, SubjectError};

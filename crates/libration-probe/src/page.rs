@@ -203,12 +203,7 @@ fn bits(page: &mut Page, audit: &ProbeReport) {
     for check in &audit.bits.checks {
         let result = match &check.difference {
             None => "the same bits".to_owned(),
-            Some(d) => format!(
-                "{} numbers differ, first environment {}, component {}",
-                d.differing,
-                d.index.first().copied().unwrap_or(0),
-                d.index.get(1).copied().unwrap_or(0)
-            ),
+            Some(d) => format!("{} numbers differ, first {}", d.differing, d.place()),
         };
         table.push([check.name.clone().into(), result.into()]);
     }

@@ -131,7 +131,7 @@ impl ProbeReport {
             title: subject.title.clone(),
             dt: subject.dt,
             states: (0..subject.states.len()).map(|i| subject.state_name(i)).collect(),
-            inputs: subject.inputs.iter().map(|input| input.name.clone()).collect(),
+            inputs: subject.inputs.iter().map(crate::subject::with_unit).collect(),
             state: subject.state.clone(),
             action: subject.action.clone(),
             notes,

@@ -1,6 +1,7 @@
 //! The simulator under audit, in names and numbers.
 
 use libration::linear::{MOST_STATES, Matrix, Signal};
+use serde::Deserialize;
 use thiserror::Error;
 
 /// What is known of a simulator before its first step.
@@ -40,8 +41,24 @@ pub struct Subject {
     pub notes: Vec<String>,
     /// Matrices of the step by the simulator's own derivatives, and their source.
     pub reference: Option<Reference>,
+    /// Recordings of the simulator that should have the same bits.
+    pub recordings: Vec<Recording>,
     /// The command that repeats the audit.
     pub invocation: String,
+}
+
+/// Two recordings that should have the same bits.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Recording {
+    /// How the second differs from the first, in words.
+    pub name: String,
+    /// The lengths of the axes: steps, perhaps environments, and components.
+    pub shape: Vec<usize>,
+    /// The numbers of the first.
+    pub first: Vec<f64>,
+    /// The numbers of the second.
+    pub second: Vec<f64>,
 }
 
 /// Matrices of a step by a simulator's own derivatives.
@@ -89,6 +106,7 @@ impl Subject {
             integrator: None,
             notes: Vec::new(),
             reference: None,
+            recordings: Vec::new(),
             invocation: String::new(),
         }
     }
@@ -148,6 +166,15 @@ impl Subject {
                 return error("mass", found, format!("{size} × {size}"));
             }
         }
+        for recording in &self.recordings {
+            let count: usize = recording.shape.iter().product();
+            for numbers in [&recording.first, &recording.second] {
+                if numbers.len() != count {
+                    let expected = format!("{count}, the product of `shape`");
+                    return error("recordings", format!("{} numbers", numbers.len()), expected);
+                }
+            }
+        }
         if let (Some(damping), Some(pairs)) = (&self.joint_damping, &self.pairs)
             && damping.len() != pairs.len()
         {
@@ -159,7 +186,11 @@ impl Subject {
 
     /// The name of state `i` with its unit.
     pub(crate) fn state_name(&self, i: usize) -> String {
-        let Signal { name, unit } = &self.states[i];
-        if unit.is_empty() { name.clone() } else { format!("{name} ({unit})") }
+        with_unit(&self.states[i])
     }
+}
+
+/// The name of a signal with its unit.
+pub(crate) fn with_unit(Signal { name, unit }: &Signal) -> String {
+    if unit.is_empty() { name.clone() } else { format!("{name} ({unit})") }
 }

@@ -57,6 +57,8 @@ class Host:
     """The damping of each velocity that the integrator may treat implicitly, besides that of actuators."""
     joints: tuple[str, ...] = ()
     """Names of the joints."""
+    recordings: tuple[tuple[str, Array, Array], ...] = ()
+    """Names and pairs of recordings that should have the same bits, steps × components or steps × environments × components."""
     memory: bool = False
     """Whether each row continues a simulation: what is no state lives on from call to call."""
     reset: Callable[[], None] = field(default=lambda: None)

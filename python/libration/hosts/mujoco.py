@@ -15,6 +15,7 @@ from ._mujoco_equilibrium import imbalance, inertia_of, is_equilibrium
 from ._mujoco_names import input_names, joint_names, state_names
 from ._mujoco_notes import notes_of
 from ._mujoco_point import INTEGRATION, copy_of, model_of, point_of, space_queues, state_of
+from ._mujoco_recordings import recordings_of
 from .host import Host
 
 Array = NDArray[np.float64]
@@ -102,6 +103,7 @@ def mujoco_host(
         reference_source="" if reference_a is None else "mjd_transitionFD",
         joint_damping=tuple(float(damping) for damping in np.asarray(own.dof_damping).reshape(-1)),
         joints=joint_names(own),
+        recordings=recordings_of(own, point),
         memory=memory,
         reset=simulation.reset,
     )

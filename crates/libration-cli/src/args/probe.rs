@@ -65,6 +65,9 @@ pub(crate) struct ProbeArgs {
     /// Write an HTML page to FILE
     #[arg(long, value_name = "FILE")]
     pub(crate) page: Option<PathBuf>,
+    /// Write the step as a plant in continuous time to FILE.toml, for `advise --plant` and `analyze --plant`
+    #[arg(long, value_name = "FILE")]
+    pub(crate) save_plant: Option<PathBuf>,
     /// Print the result as JSON, with all digits
     #[arg(long)]
     pub(crate) json: bool,

@@ -7,7 +7,7 @@ use libration_advise::{Advice, AdviseError, LoopAdvice, Request, rounded};
 use libration_work::Work;
 use serde::Serialize;
 
-use super::page_file::PageFile;
+use super::result_file::ResultFile;
 use super::{config_file, equation_file, time_stamps};
 use crate::args::{AdviseArgs, quoted};
 use crate::error::Failure;
@@ -37,7 +37,7 @@ pub(super) fn deliver<A: Serialize>(
     holds: impl Fn(&A) -> bool,
 ) -> Result<(), Failure> {
     let stop = interrupt::listen();
-    let file = PageFile::create(args.page.as_deref())?;
+    let file = ResultFile::create("--page", args.page.as_deref())?;
     let reporter = Reporter::new(quiet);
     let advice = compute(&Work::new(&reporter, stop));
     reporter.clear();

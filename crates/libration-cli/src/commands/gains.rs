@@ -8,14 +8,14 @@ use serde_json::json;
 
 use super::advise::command_line;
 use super::mujoco;
-use super::page_file::PageFile;
+use super::result_file::ResultFile;
 use crate::args::{Coordinates, GainsArgs};
 use crate::error::Failure;
 use crate::terminal;
 
 /// Whether gains hold: prints the report.
 pub(crate) fn run(args: &GainsArgs) -> Result<(), Failure> {
-    let page = PageFile::create(args.page.as_deref())?;
+    let page = ResultFile::create("--page", args.page.as_deref())?;
     let description = described(args)?;
     let servos =
         description.servos().map_err(|error| Failure::usage(named(args, &error.to_string())))?;

@@ -130,3 +130,16 @@ fn gains_hold_up_to_the_limit_of_theory_and_else_the_answer_says_what_holds_them
         .code(2)
         .stderr(predicate::str::contains("--inertia"));
 }
+
+#[test]
+fn the_plant_of_a_step_goes_to_advise() {
+    let folder = tempfile::tempdir().unwrap();
+    let step = pendulum(&folder, 0.2);
+    let plant = folder.path().join("plant.toml");
+    let plant = plant.to_str().unwrap();
+    probe(&step, &["--state-names", "angle (rad),speed (rad/s)", "--save-plant", plant]).success();
+    let words = ["--lqr", "10,1/0.1", "--period", "0.01", "--latency", "0.024"];
+    libration(&[&["advise", "--plant", plant][..], &words].concat())
+        .success()
+        .stdout(predicate::str::contains("The loop is stable with the stated imperfections"));
+}
