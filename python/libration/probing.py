@@ -8,18 +8,17 @@ from os import PathLike
 from typing import Any, Callable, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from . import _native
 from ._descriptions import description_of
 from ._keywords import check_keywords
 from ._settings import positive
+from ._step_functions import callable_of, contiguous, energies_of, names, numbers_of, observations_of, pair_numbers, rows_of_step, vector
 from .hosts.host import Host
 from .probe_report import ProbeReport
 
 __all__ = ["Probe", "probe"]
-
-Array = NDArray[np.float64]
 
 
 class Probe:
@@ -66,9 +65,9 @@ class Probe:
         states, inputs:
             Names with units in parentheses: ``"angle (rad)"``.
         state_scale, action_scale:
-            Typical deviations (default: the larger of 1 and the absolute value).
+            Typical deviations, numbers or vectors (default: the larger of 1 and the absolute value).
         mass:
-            Inertia of the velocities of ``pairs``, for the defect of symplecticity.
+            Inertia of the velocities of ``pairs``, or its diagonal, for the defect of symplecticity.
         pairs:
             Pairs of the numbers of a position and of its velocity (default: found in the rates).
         fixed_dt:
@@ -87,28 +86,39 @@ class Probe:
         """
         if dt is None:
             raise TypeError("dt is missing; expected the length of a step in s")
-        point, command = _vector("state", state), _vector("action", action)
+        for name, function in (("step", step), ("observe", observe), ("energy", energy)):
+            if function is not None or name == "step":
+                callable_of(name, function)
+        if equilibrium not in (None, True, False):
+            raise TypeError(f"equilibrium is {equilibrium!r}; expected True, False or None")
+        if mass is not None and pairs is None:
+            raise ValueError("mass requires pairs: the inertia is that of their velocities")
+        point, command = vector("state", state), vector("action", action)
+        n, m = len(point), len(command)
         host = Host(
-            step=_rows_of(step, len(point), batched),
+            step=rows_of_step(step, n, batched),
             state=point,
             action=command,
             dt=positive("dt", dt),
-            states=tuple(states) if states is not None else tuple(f"x{i + 1}" for i in range(len(point))),
-            inputs=tuple(inputs) if inputs is not None else tuple(f"u{i + 1}" for i in range(len(command))),
-            title=title or getattr(step, "__name__", type(step).__name__),
+            states=tuple(f"x{i + 1}" for i in range(n)) if states is None else tuple(names("states", states)),
+            inputs=tuple(f"u{i + 1}" for i in range(m)) if inputs is None else tuple(names("inputs", inputs)),
+            title=str(title or getattr(step, "__name__", type(step).__name__)),
             integrator="",
-            energy=None if energy is None else _energies_of(energy, batched),
-            mass=None if mass is None else np.asarray(mass, dtype=np.float64),
-            positions=tuple((int(i), int(j)) for i, j in pairs or ()),
-            notes=tuple(notes),
+            energy=None if energy is None else energies_of(energy, batched),
+            positions=() if pairs is None else pair_numbers(pairs, n),
+            notes=tuple(names("notes", notes)),
         )
         described = description_of(host)
-        described.update(fixed_dt=bool(fixed_dt), equilibrium=equilibrium, conservative=bool(conservative))
+        described.update(
+            fixed_dt=bool(fixed_dt), equilibrium=None if equilibrium is None else bool(equilibrium), conservative=bool(conservative)
+        )
         del described["integrator"]
-        for name, scale in (("state_scale", state_scale), ("action_scale", action_scale)):
+        if mass is not None:
+            described["mass"] = _inertia(mass, len(host.positions))
+        for name, scale, count in (("state_scale", state_scale, n), ("action_scale", action_scale, m)):
             if scale is not None:
-                described[name] = _vector(name, scale).tolist()
-        watch = None if observe is None else _observations_of(observe, batched)
+                described[name] = vector(name, np.broadcast_to(scale, count) if np.ndim(scale) == 0 else scale).tolist()
+        watch = None if observe is None else observations_of(observe, batched)
         return _audit(host, described, watch, batched)
 
     @check_keywords
@@ -186,61 +196,17 @@ probe = Probe()
 
 
 def _audit(host: Host, described: dict[str, Any], observe: Callable[..., Any] | None, batched: bool) -> ProbeReport:
-    energy = None if host.energy is None else _contiguous(host.energy, 1)
+    energy = None if host.energy is None else contiguous(host.energy, 1)
     text = json.dumps(described)
-    answer, holds, page = _native._probe(text, _contiguous(host.step, 2), observe, energy, bool(batched))
+    answer, holds, page = _native._probe(text, contiguous(host.step, 2), observe, energy, bool(batched))
     return ProbeReport(json.loads(answer), holds, page)
 
 
-def _contiguous(function: Callable[..., Any], ndim: int) -> Callable[..., Array]:
-    def called(*arguments: Any) -> Array:
-        found = np.ascontiguousarray(function(*arguments), dtype=np.float64)
-        if found.ndim != ndim:
-            raise ValueError(f"the result has shape {found.shape}; expected {ndim} dimensions")
-        return found
-
-    return called
-
-
-def _vector(name: str, value: ArrayLike) -> Array:
-    try:
-        found = np.atleast_1d(np.asarray(value, dtype=np.float64))
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} is {value!r}; expected numbers") from None
-    if found.ndim != 1:
-        raise ValueError(f"{name} has shape {found.shape}; expected one dimension")
-    return found
-
-
-def _rows_of(step: Callable[..., Any], n: int, batched: bool) -> Callable[[Array, Array, float], Array]:
-    """Return the step on rows, with a message for results of another shape."""
-
-    def result(value: Any, shape: tuple[int, ...]) -> Array:
-        try:
-            found = np.asarray(value, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise TypeError(f"step returned {type(value).__name__}; expected numbers of shape {shape}") from None
-        if found.shape != shape:
-            raise ValueError(f"step returned an array of shape {found.shape}; expected {shape}")
-        return found
-
-    def of_batch(states: Array, actions: Array, dt: float) -> Array:
-        return result(step(states, actions, dt), states.shape)
-
-    def of_each(states: Array, actions: Array, dt: float) -> Array:
-        # Copies, so that a step may change its arguments.
-        return np.stack([result(step(x.copy(), u.copy(), dt), (n,)) for x, u in zip(states, actions)])
-
-    return of_batch if batched else of_each
-
-
-def _energies_of(energy: Callable[..., Any], batched: bool) -> Callable[[Array], Array]:
-    if batched:
-        return lambda states: np.asarray(energy(states), dtype=np.float64).reshape(len(states))
-    return lambda states: np.array([float(energy(x.copy())) for x in states])
-
-
-def _observations_of(observe: Callable[..., Any], batched: bool) -> Callable[[Array], Array]:
-    if batched:
-        return _contiguous(observe, 2)
-    return lambda states: np.stack([np.array(observe(x.copy()), dtype=np.float64).reshape(-1) for x in states])
+def _inertia(mass: ArrayLike, count: int) -> list[list[float]]:
+    """Return a matrix, or one with the given diagonal."""
+    found = numbers_of("mass", mass)
+    found = np.diag(np.atleast_1d(found)) if found.ndim < 2 else found
+    if found.shape != (count, count) or not np.isfinite(found).all():
+        raise ValueError(f"mass has shape {found.shape}; expected {count} × {count} finite numbers, one for each pair, or the diagonal")
+    rows: list[list[float]] = found.tolist()
+    return rows
