@@ -34,6 +34,8 @@ def description_of(host: Host) -> dict[str, Any]:
             "a": host.reference_A.tolist(),
             "b": host.reference_B.tolist(),
         }
+    if host.delays:
+        described["stated_delays"] = list(host.delays)
     if host.recordings:
         described["recordings"] = [
             {"name": name, "shape": list(first.shape), "first": first.ravel().tolist(), "second": second.ravel().tolist()}

@@ -47,8 +47,8 @@ def first_difference(a: ArrayLike | PathLike[str], b: ArrayLike | PathLike[str])
         raise ValueError(
             f"a is {first.dtype} of shape {first.shape} and b {second.dtype} of shape {second.shape}; expected the same shape and type"
         )
-    wide = [np.ascontiguousarray(array, dtype=np.float64).reshape(-1) for array in (first, second)]
-    found = _native._first_difference(*wide, list(first.shape) or [1])
+    wide_first, wide_second = (np.ascontiguousarray(array, dtype=np.float64).reshape(-1) for array in (first, second))
+    found = _native._first_difference(wide_first, wide_second, list(first.shape) or [1])
     if found is None:
         return None
     index, x, y, ulps, differing = found

@@ -34,6 +34,8 @@ pub struct Description {
     notes: Vec<String>,
     reference: Option<ReferenceDescription>,
     #[serde(default)]
+    stated_delays: Vec<f64>,
+    #[serde(default)]
     recordings: Vec<Recording>,
     /// Whether the simulator computes energies.
     #[serde(default)]
@@ -104,6 +106,7 @@ impl Description {
         subject.joint_damping = self.joint_damping;
         subject.integrator = self.integrator;
         subject.notes = self.notes;
+        subject.stated_delays = self.stated_delays;
         subject.recordings = self.recordings;
         subject.invocation = self.invocation;
         subject.check()?;

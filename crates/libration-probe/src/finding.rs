@@ -3,12 +3,14 @@
 use serde::Serialize;
 
 use crate::report::ProbeReport;
-use crate::{Bits, Memory};
+use crate::{Bits, Memory, Subject};
 
 /// Rounding from which a step does not compute in `f64`: a part of that of `f32`, and far above that of `f64`.
 const COARSE: f64 = 1e-10;
 /// Rates of a conservative system relative to its frequencies that are no roundings.
 const LEAK: f64 = 1e-9;
+/// Part of a step by which a delay may differ from the stated one.
+const DELAY: f64 = 1e-3;
 /// Largest distance of the linear prediction from a short run.
 const LINEAR: f64 = 0.01;
 /// Largest relative error of a row at which the step counts as differentiable.
@@ -87,7 +89,8 @@ pub(crate) fn of_bits(bits: &Bits, found: &mut Vec<Finding>) {
 }
 
 /// Findings about what a step remembers.
-pub(crate) fn of_memory(memory: &Memory, dt: f64, found: &mut Vec<Finding>) {
+pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Finding>) {
+    let dt = subject.dt;
     if memory.calls.is_none() {
         found.push(Finding::fault(
             "hidden-state",
@@ -98,12 +101,21 @@ pub(crate) fn of_memory(memory: &Memory, dt: f64, found: &mut Vec<Finding>) {
         ));
         return;
     }
-    for input in memory.inputs.iter().filter(|input| input.last.unwrap_or(0) > 0) {
+    for (j, input) in memory.inputs.iter().enumerate() {
+        let stated = subject.stated_delays.get(j).copied().unwrap_or(0.0) / dt;
+        // A delay that the simulator states is none that it hides.
+        if (input.mean - stated).abs() < DELAY {
+            continue;
+        }
         let first = input.first.unwrap_or(0);
+        let beside = match stated {
+            0.0 => String::new(),
+            stated => format!(", {stated:.3} are stated"),
+        };
         found.push(Finding::fault(
             "late-command",
             format!(
-                "a command of `{}` acts {:.3} steps late ({:.4} s) on average: the first result that responds is {first} calls later",
+                "a command of `{}` acts {:.3} steps late ({:.4} s) on average{beside}: the first result that responds is {first} calls later",
                 input.of,
                 input.mean,
                 input.mean * dt

@@ -59,8 +59,9 @@ impl<'a> Prober<'a> {
         actions: &Matrix,
         dt: f64,
     ) -> Result<Matrix, BlackBoxError> {
-        if self.memory == 0 || self.is_batched() {
-            for _ in 0..self.memory {
+        let memory = self.memory_at(dt);
+        if memory == 0 || self.is_batched() {
+            for _ in 0..memory {
                 self.call(states, actions, dt)?;
             }
             return self.call(states, actions, dt);
@@ -69,12 +70,18 @@ impl<'a> Prober<'a> {
         for i in 0..states.rows() {
             let (state, action) = (row(states.row(i)), row(actions.row(i)));
             let alone = |prober: &mut Self| prober.call(&state, &action, dt);
-            for _ in 0..self.memory {
+            for _ in 0..memory {
                 alone(self)?;
             }
             next.row_mut(i).copy_from_slice(alone(self)?.row(0));
         }
         Ok(next)
+    }
+
+    /// Calls of `dt` seconds after which earlier ones are forgotten: a memory may last calls or seconds.
+    fn memory_at(&self, dt: f64) -> usize {
+        let longer = (self.subject.dt / dt).max(1.0);
+        (self.memory as f64 * longer).ceil() as usize
     }
 
     /// The finite state a step after `state`.

@@ -106,7 +106,7 @@ pub fn probe(
     of_bits(&bits, &mut findings);
     let mut report = ProbeReport::empty(subject, bits);
     if report.bits.randomness.is_none() {
-        of_memory(&memory, subject.dt, &mut findings);
+        of_memory(&memory, subject, &mut findings);
         if memory.calls.is_some() {
             report.audit(prober, &memory)?;
             of_report(&report, &mut findings);

@@ -41,6 +41,8 @@ pub struct Subject {
     pub notes: Vec<String>,
     /// Matrices of the step by the simulator's own derivatives, and their source.
     pub reference: Option<Reference>,
+    /// Delays of the actions in s that the simulator states; empty if it states none.
+    pub stated_delays: Vec<f64>,
     /// Recordings of the simulator that should have the same bits.
     pub recordings: Vec<Recording>,
     /// The command that repeats the audit.
@@ -106,6 +108,7 @@ impl Subject {
             integrator: None,
             notes: Vec::new(),
             reference: None,
+            stated_delays: Vec::new(),
             recordings: Vec::new(),
             invocation: String::new(),
         }
@@ -165,6 +168,10 @@ impl Subject {
                 let found = format!("{} × {}", mass.rows(), mass.columns());
                 return error("mass", found, format!("{size} × {size}"));
             }
+        }
+        if !self.stated_delays.is_empty() && self.stated_delays.len() != m {
+            let found = format!("{} numbers", self.stated_delays.len());
+            return error("stated_delays", found, format!("{m}, one for each action"));
         }
         for recording in &self.recordings {
             let count: usize = recording.shape.iter().product();

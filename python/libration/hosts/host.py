@@ -55,6 +55,8 @@ class Host:
     """The function that computes these derivatives: ``"mjd_transitionFD"``, ``"jax.jacfwd"``; empty without them."""
     joint_damping: tuple[float, ...] = ()
     """The damping of each velocity that the integrator may treat implicitly, besides that of actuators."""
+    delays: tuple[float, ...] = ()
+    """The delay of each action in s that the simulator states; empty if it states none."""
     joints: tuple[str, ...] = ()
     """Names of the joints."""
     recordings: tuple[tuple[str, Array, Array], ...] = ()

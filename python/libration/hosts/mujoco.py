@@ -102,11 +102,18 @@ def mujoco_host(
         reference_B=reference_b,
         reference_source="" if reference_a is None else "mjd_transitionFD",
         joint_damping=tuple(float(damping) for damping in np.asarray(own.dof_damping).reshape(-1)),
+        delays=_delays_of(own),
         joints=joint_names(own),
         recordings=recordings_of(own, point),
         memory=memory,
         reset=simulation.reset,
     )
+
+
+def _delays_of(model: Any) -> tuple[float, ...]:
+    """Return the stated delay of each command in s; none where an actuator has several commands."""
+    delays = tuple(float(delay) for delay in np.asarray(getattr(model, "actuator_delay", ())).reshape(-1))
+    return delays if len(delays) == model.nu else ()
 
 
 class _Simulation:

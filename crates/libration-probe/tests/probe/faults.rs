@@ -170,3 +170,46 @@ fn a_delay_that_changes_after_many_steps_is_found_with_its_shares() {
     let [(2.0, two), (3.0, three)] = report.delays[0].delays[..] else { panic!("{report:?}") };
     assert!(two > 20_000 && three > 10_000, "{two} {three}");
 }
+
+/// A pendulum whose commands act 30 ms late, whatever the step, in a queue of times and commands.
+fn late_by_seconds(
+    now: &Cell<f64>,
+    queue: &RefCell<VecDeque<(f64, f64)>>,
+    x: &[f64],
+    u: f64,
+    dt: f64,
+) -> Vec<f64> {
+    let mut queue = queue.borrow_mut();
+    queue.push_front((now.get(), u));
+    queue.truncate(1000);
+    // Half a step, so that rounded times do not matter.
+    let used = queue.iter().find(|(time, _)| *time <= now.get() - 0.03 + dt / 2.0);
+    let used = used.map_or(0.0, |(_, u)| *u);
+    now.set(now.get() + dt);
+    pendulum(x, &[used], dt)
+}
+
+#[test]
+fn a_delay_in_seconds_that_the_simulator_states_is_no_finding_and_is_flushed_at_any_step() {
+    let (now, queue) = (Cell::new(0.0), RefCell::new(VecDeque::new()));
+    let late = || Simulator::new(|x, u, dt| late_by_seconds(&now, &queue, x, u[0], dt));
+    let mut subject = pendulum_subject();
+    let report = late().audit(&subject);
+    assert_eq!(kinds(&report), ["late-command"]);
+    let latency = &report.hidden_latency[0];
+    assert!((latency.late - 0.03).abs() < 1e-9, "{latency:?}");
+    // The gain in the limit of small steps, and with it the half step by which the integrator is early.
+    assert!((report.flow.as_ref().unwrap().b[(1, 0)] - 1.0).abs() < 1e-9, "{:?}", report.flow);
+    assert!((latency.integrator_delay.unwrap() + 0.005).abs() < 1e-5, "{latency:?}");
+    subject.stated_delays = vec![0.03];
+    assert_eq!(kinds(&late().audit(&subject)), [""; 0]);
+    subject.stated_delays = vec![0.02];
+    let report = late().audit(&subject);
+    assert!(
+        report.findings[0]
+            .text
+            .contains("acts 3.000 steps late (0.0300 s) on average, 2.000 are stated"),
+        "{:?}",
+        report.findings
+    );
+}
