@@ -39,7 +39,7 @@ from .probing import probe
 from .replay import ReplayBuffer
 from .rollout import Rollout
 from .simulation import Trajectory, simulate
-from .systems import INTEGRATORS, SYSTEMS, CustomSystem, System
+from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, SYSTEMS, CustomSystem, System
 
 __all__ = [
     "Advice",
@@ -55,6 +55,7 @@ __all__ = [
     "FirstDifference",
     "GainReport",
     "Gaussian",
+    "IMPLICIT_INTEGRATORS",
     "INTEGRATORS",
     "LQG",
     "LQR",

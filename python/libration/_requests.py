@@ -10,14 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 from ._settings import count, nearest, number
 from .perturbations import gains, law, numbers
 from .perturbations import latency as _latency
-from .systems import INTEGRATORS, System
+from .systems import IMPLICIT_INTEGRATORS, INTEGRATORS, System
 
 
 def step_request(system: System, integrator: Any, dt: Any, q: Any, v: Any) -> dict[str, Any]:
     """Return a system, its start and its step in the format of the engine."""
     text("integrator", integrator)
-    if integrator not in INTEGRATORS:
-        raise ValueError(f"unknown integrator {integrator!r}: {nearest(integrator, INTEGRATORS)}")
+    known = [*INTEGRATORS, *IMPLICIT_INTEGRATORS]
+    if integrator not in known:
+        raise ValueError(f"unknown integrator {integrator!r}: {nearest(integrator, known)}")
     return {
         "system": system._request(),
         "q": coordinates("q", q),

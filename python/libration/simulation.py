@@ -118,7 +118,7 @@ def simulate(
         ``a(q, v)``. The last two accept ``integrator``, ``dt``, ``steps``, ``q``, ``v``, ``float`` and ``every`` only. The columns of a
         system by equations have the names of its states.
     integrator:
-        Name from :data:`~libration.INTEGRATORS`.
+        Name from :data:`~libration.INTEGRATORS` or :data:`~libration.IMPLICIT_INTEGRATORS`.
     dt:
         Time step in s.
     steps:

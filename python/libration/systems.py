@@ -13,10 +13,13 @@ from . import _native
 from ._settings import nearest, number
 from .equations import EquationSystem
 
-__all__ = ["CustomSystem", "INTEGRATORS", "SYSTEMS", "System"]
+__all__ = ["CustomSystem", "IMPLICIT_INTEGRATORS", "INTEGRATORS", "SYSTEMS", "System"]
 
 INTEGRATORS: Mapping[str, str] = MappingProxyType(dict(_native._integrators()))
 """Description of each integrator, by name. ``"exact"`` is for linear systems only, not for ensembles or environments."""
+
+IMPLICIT_INTEGRATORS: Mapping[str, str] = MappingProxyType(dict(_native._implicit_integrators()))
+"""Description of each implicit integrator, by name: for :func:`simulate` and :func:`analyze`."""
 
 SYSTEMS: Mapping[str, str] = MappingProxyType({entry[0]: entry[1] for entry in _native._systems()})
 """Description of each system, by name."""

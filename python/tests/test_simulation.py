@@ -65,6 +65,16 @@ def test_simulate_and_an_ensemble_take_the_same_steps(integrator):
     assert swings.energy[0] == path.energy[-1]
 
 
+@pytest.mark.parametrize("integrator", libration.IMPLICIT_INTEGRATORS)
+def test_implicit_integrators_step_the_catalogue_and_equations_alike(integrator):
+    equations = System(acceleration={"q": "-9*sin(q)"}, energy="q'^2/2 - 9*cos(q)", start={"q": 1.0})
+    path = simulate(System("pendulum", omega2=9.0), integrator=integrator, dt=0.05, steps=100, q=1.0)
+    own = simulate(equations, integrator=integrator, dt=0.05, steps=100)
+    np.testing.assert_array_equal(own["q"], path["q0"])
+    with pytest.raises(ValueError, match="implicit ones are those of simulate and analyze only"):
+        Ensemble("pendulum", integrator=integrator, dt=0.05)
+
+
 def test_a_function_of_positions_and_velocities_is_a_system():
     built_in = simulate(SPRING, integrator="rk4", dt=0.05, steps=90, every=40)
     own = CustomSystem(spring, energy=lambda q, v: ((v * v + 10.0 * q * q) / 2.0)[:, 0])

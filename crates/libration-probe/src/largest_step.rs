@@ -123,7 +123,7 @@ struct Trial {
 
 impl Trial {
     fn at(prober: &mut Prober<'_>, rates: &[Complex64], dt: f64) -> Result<Self, BlackBoxError> {
-        let step = LinearisedStep::at(prober, dt)?;
+        let step = LinearisedStep::of_states(prober, dt)?;
         let mut factors = match step.a.is_finite() {
             true => eigenvalues(&step.a).unwrap_or_default(),
             false => Vec::new(),

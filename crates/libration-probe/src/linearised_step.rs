@@ -24,14 +24,33 @@ pub(crate) struct LinearisedStep {
 impl LinearisedStep {
     /// That of a step of `dt` seconds at the state and the action of the subject.
     pub(crate) fn at(prober: &mut Prober<'_>, dt: f64) -> Result<Self, BlackBoxError> {
+        let Subject { action, action_scale, .. } = prober.subject;
+        LinearisedStep::by(prober, action, action_scale, dt)
+    }
+
+    /// The same without actions, for fewer calls.
+    pub(crate) fn of_states(prober: &mut Prober<'_>, dt: f64) -> Result<Self, BlackBoxError> {
+        LinearisedStep::by(prober, &[], &[], dt)
+    }
+
+    /// The derivatives by the states and by these actions, which are all or none.
+    fn by(
+        prober: &mut Prober<'_>,
+        actions: &[f64],
+        action_scale: &[f64],
+        dt: f64,
+    ) -> Result<Self, BlackBoxError> {
         let subject = prober.subject;
         let n = subject.state.len();
-        let z = [&subject.state[..], &subject.action].concat();
-        let scale = [&subject.state_scale[..], &subject.action_scale].concat();
+        let z = [&subject.state[..], actions].concat();
+        let scale = [&subject.state_scale[..], action_scale].concat();
         let of = |points: &Matrix| {
             let rows = points.rows();
             let states = points.block((0, 0), (rows, n));
-            let actions = points.block((0, n), (rows, z.len() - n));
+            let actions = match actions.is_empty() {
+                true => Matrix::from_fn(rows, subject.action.len(), |_, j| subject.action[j]),
+                false => points.block((0, n), (rows, z.len() - n)),
+            };
             prober.step(&states, &actions, dt)
         };
         let Jacobian { values, errors } = jacobian(of, &z, &scale)?;
@@ -98,7 +117,7 @@ pub(crate) fn plant_of(
     plant.sampling_period = sampling_period;
     plant.states.clone_from(&subject.states);
     plant.outputs.clone_from(&subject.states);
-    if !subject.inputs.is_empty() {
+    if subject.inputs.len() == plant.inputs.len() {
         plant.inputs.clone_from(&subject.inputs);
     }
     Some(plant)

@@ -1,7 +1,7 @@
 //! Systems, integrators and studies for Python.
 
-use libration::Method;
 use libration::catalog::ENTRIES;
+use libration::{ImplicitMethod, Method};
 use libration_analyze::Stepping;
 use libration_lab::STUDIES;
 use pyo3::prelude::*;
@@ -26,12 +26,18 @@ pub(crate) fn _systems() -> Vec<Entry> {
     each.collect()
 }
 
-/// Returns all integrators with descriptions; the last one is exact steps of linear systems.
+/// Returns all explicit integrators with descriptions; the last one is exact steps of linear systems.
 #[pyfunction]
 pub(crate) fn _integrators() -> Vec<(&'static str, &'static str)> {
     let methods = Method::ALL.map(|method| (method.name(), method.summary()));
     let exact = (Stepping::EXACT, libration::integrator::Exact::SUMMARY);
     methods.into_iter().chain([exact]).collect()
+}
+
+/// Returns all implicit integrators with descriptions.
+#[pyfunction]
+pub(crate) fn _implicit_integrators() -> Vec<(&'static str, &'static str)> {
+    ImplicitMethod::ALL.map(|method| (method.name(), method.summary())).to_vec()
 }
 
 /// Returns all studies with their questions.

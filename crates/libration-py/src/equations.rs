@@ -2,7 +2,6 @@
 
 use std::sync::atomic::AtomicBool;
 
-use libration::Method;
 use libration_analyze::equation_analysis::{self, EquationSummary};
 use libration_analyze::equation_trajectory::{self, EquationRequest};
 use libration_settings::SettingsError;
@@ -14,7 +13,7 @@ use serde_json::json;
 use crate::background::run_in_background;
 use crate::error::{Raised, value_error};
 use crate::linear_plant::{Names, Rows as MatrixRows, names, rows as rows_of};
-use crate::request::method;
+use crate::request::any_method;
 use crate::simulate::{Rows, Simulated, converted};
 
 /// The text of a file of equations, its name in messages, and other values of parameters.
@@ -51,7 +50,7 @@ pub(crate) fn _simulate_equations<'py>(
 ) -> PyResult<Simulated<'py>> {
     let request = EquationRequest {
         system: equations(&system)?,
-        method: method(integrator)?.into(),
+        method: any_method(integrator)?,
         float: rows.float()?,
         dt,
         steps: rows.steps()?,
@@ -72,7 +71,7 @@ pub(crate) fn _analyze_equations(
     dt: f64,
     steps: u64,
 ) -> PyResult<String> {
-    let (system, method): (EquationSystem, Method) = (equations(&system)?, method(integrator)?);
+    let (system, method) = (equations(&system)?, any_method(integrator)?);
     let analyze = |stop: &AtomicBool| equation_analysis::analyze(&system, method, dt, steps, stop);
     let done = run_in_background(py, analyze, |_| Ok(()))?;
     Ok(json!(done.map_err(Raised::raised)?).to_string())

@@ -36,7 +36,7 @@ mod _native {
     #[pymodule_export]
     use crate::bench::{_seconds_of_rollouts, _seconds_of_steps};
     #[pymodule_export]
-    use crate::catalogue::{_integrators, _parameters, _studies, _systems};
+    use crate::catalogue::{_implicit_integrators, _integrators, _parameters, _studies, _systems};
     #[pymodule_export]
     use crate::checked_mutex::_forked;
     #[pymodule_export]

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use libration::catalog::Actuation;
 use libration::control::{Feedback, Jitter, LqrWeights};
-use libration::{AnySystem, Method, catalog};
+use libration::{AnyMethod, AnySystem, Method, catalog};
 use libration_analyze::{LatencyOption, Stepping, Timing};
 use libration_settings::initial_value_problem::InitialValueProblem;
 use libration_settings::limits::{MOST_GAIN, MOST_RMS};
@@ -50,18 +50,31 @@ pub(crate) fn system((name, parameters): &SystemRequest) -> PyResult<(AnySystem,
 
 /// The integrator of that name, or exact steps.
 pub(crate) fn stepping(name: &str) -> PyResult<Stepping> {
-    let known = Method::ALL.map(Method::name).into_iter().chain([Stepping::EXACT]);
+    let known: Vec<&str> = AnyMethod::all().map(AnyMethod::name).chain([Stepping::EXACT]).collect();
     Stepping::from_name(name).ok_or_else(|| unknown("integrator", name, known))
 }
 
-/// The integrator of that name.
-pub(crate) fn method(name: &str) -> PyResult<Method> {
+/// The integrator of that name, explicit or implicit.
+pub(crate) fn any_method(name: &str) -> PyResult<AnyMethod> {
     if name == Stepping::EXACT {
         let what = "are those of simulate and analyze only, of linear systems of the catalogue";
         return Err(value_error(format!("integrator is `{name}`, but exact steps {what}")));
     }
-    Method::from_name(name)
-        .ok_or_else(|| unknown("integrator", name, Method::ALL.map(Method::name)))
+    let known: Vec<&str> = AnyMethod::all().map(AnyMethod::name).collect();
+    AnyMethod::from_name(name).ok_or_else(|| unknown("integrator", name, known))
+}
+
+/// The explicit integrator of that name.
+pub(crate) fn method(name: &str) -> PyResult<Method> {
+    match any_method(name)? {
+        AnyMethod::Explicit(method) => Ok(method),
+        AnyMethod::Implicit(_) => {
+            let known = Method::ALL.map(Method::name).join(", ");
+            Err(value_error(format!(
+                "integrator is `{name}`, but implicit ones are those of simulate and analyze only; expected one of {known}"
+            )))
+        }
+    }
 }
 
 /// Warns of what must be known of `method` on `system`, if anything.
