@@ -13,8 +13,12 @@ from numpy.typing import ArrayLike
 from . import _native
 from ._keywords import check_keywords
 from ._settings import count, positive
+from ._step_functions import names, numbers_of
 
 __all__ = ["GainReport", "Gains", "gains"]
+
+# Those of MuJoCo whose steps the engine has.
+_INTEGRATORS = ("euler", "symplectic-euler", "implicitfast", "implicit", "rk4")
 
 
 class GainReport:
@@ -121,7 +125,7 @@ class Gains:
             if value is not None:
                 described[name] = _entries(name, value)
         if joints is not None:
-            described["joints"] = list(joints)
+            described["joints"] = _names(joints)
         return _report(described, positive("dt", dt), substeps, integrator)
 
     @check_keywords
@@ -139,12 +143,15 @@ class Gains:
         """Return whether the servos of a MuJoCo model hold: an ``MjModel``, or the path of an XML or MJB file.
 
         The servos are all actuators, by the derivatives of their forces; gravity and springs of joints and tendons are the stiffness.
-        ``dt`` and ``integrator`` are those of the model by default; the other parameters are those of :func:`libration.hosts.mujoco_host`.
+        ``dt`` and ``integrator`` are those of the model by default. Contacts and other constraints have no part in the result. The other parameters are those of :func:`libration.hosts.mujoco_host`.
         """
         from .hosts import mujoco_servos
 
         described = mujoco_servos(model, data, keyframe=keyframe, state=state)
         own_dt, own = described.pop("dt"), described.pop("integrator")
+        if integrator is None and own not in _INTEGRATORS:
+            allowed = ", ".join(_INTEGRATORS)
+            raise ValueError(f"the integrator of the model is {own!r}; expected {allowed}; help: give integrator, or use probe.mujoco")
         return _report(described, positive("dt", own_dt if dt is None else dt), substeps, integrator or own)
 
 
@@ -159,13 +166,20 @@ def _report(described: dict[str, Any], dt: float, substeps: int, integrator: str
 
 
 def _entries(name: str, value: ArrayLike) -> Any:
-    try:
-        found = np.atleast_1d(np.asarray(value, dtype=np.float64))
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} is {value!r}; expected numbers") from None
-    if found.ndim > 2 or not np.isfinite(found).all():
-        raise ValueError(f"{name} has shape {found.shape}; expected finite numbers, for each joint or joints × joints")
+    found = np.atleast_1d(numbers_of(name, value))
+    if found.ndim > 2:
+        raise ValueError(f"{name} has shape {found.shape}; expected a number for each joint, or joints × joints")
+    if not np.isfinite(found).all():
+        at = tuple(int(k) for k in np.argwhere(~np.isfinite(found))[0])
+        raise ValueError(f"{name}{list(at)} is {found[at]}; expected finite numbers")
     return found.tolist()
+
+
+def _names(joints: Sequence[str]) -> list[str]:
+    found = names("joints", joints)
+    if repeated := [name for k, name in enumerate(found) if name in found[:k]]:
+        raise ValueError(f"joints has {repeated[0]!r} twice; expected different names")
+    return found
 
 
 def _limit(value: float | None) -> float:

@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 
 # Forces of servos and springs are linear in positions and velocities, so that the step matters little.
 _STEP = 1e-5
+# What notes say of contacts and other constraints.
+_VALID_WHILE = "; the result is valid only while "
 
 
 @check_keywords
@@ -33,15 +35,26 @@ def mujoco_servos(
     Gains are the derivatives of the forces of all actuators by positions and velocities, at constant commands and activations. The
     stiffness is that of gravity and of springs of joints and tendons. The damping is that of joints, which the integrator ``Euler``
     treats implicitly unless ``eulerdamp`` is disabled; that of tendons counts as a gain of velocity, which it treats explicitly. The
-    point is chosen as in :func:`mujoco_host`.
+    point is chosen as in :func:`mujoco_host`. Contacts and other constraints have no part in it, and gravity is no stiffness of a body on
+    a free joint that only they hold: it falls without them.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :func:`mujoco_host`, and for a model without actuators.
     """
     own, _ = model_of(model)
+    if not own.nu:
+        raise ValueError("model has no actuators; expected servos: actuators whose forces depend on positions")
     point, notes = point_of(own, data, keyframe, state, float(own.opt.timestep))
     forward = copy_of(own, point)
     mujoco.mj_forward(own, forward)
     notes += notes_of(own, forward, False)
-    kp, stiffness = _derivatives(own, point, positions=True)
-    kv, passive = _derivatives(own, point, positions=False)
+    acceleration = _free_fall(own, forward)
+    kp, stiffness = _derivatives(own, point, acceleration, positions=True)
+    kv, passive = _derivatives(own, point, acceleration, positions=False)
+    if not kp.any():
+        notes.append("no force of an actuator depends on a position: there are no gains of position")
     damping = np.diag(np.array(own.dof_damping, dtype=np.float64))
     integrator = mujoco.mjtIntegrator(own.opt.integrator).name.removeprefix("mjINT_").lower()
     if integrator == "euler" and own.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_EULERDAMP):
@@ -55,12 +68,34 @@ def mujoco_servos(
         "damping": damping.tolist(),
         "dt": float(own.opt.timestep),
         "integrator": integrator,
-        "notes": [note for note in notes if "equilibrium" not in note],
+        "notes": [_of_free_motion(note) for note in notes if "equilibrium" not in note],
     }
 
 
-def _derivatives(model: Any, point: Any, positions: bool) -> tuple[Array, Array]:
-    """Return minus the derivatives of the forces of actuators, and of all others, by positions or velocities."""
+def _free_fall(model: Any, data: Any) -> Array:
+    """Return the acceleration by gravity of free joints that nothing but constraints holds, and zero for all other velocities."""
+    found = np.zeros(model.nv)
+    gravity = np.array(model.opt.gravity)
+    for joint in np.flatnonzero(np.asarray(model.jnt_type) == int(mujoco.mjtJoint.mjJNT_FREE)):
+        first = int(model.jnt_dofadr[joint])
+        falls = data.qacc_smooth[first : first + 3]
+        # Servos of other joints accelerate the base, too.
+        if not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY) and np.linalg.norm(falls - gravity) < np.linalg.norm(falls):
+            found[first : first + 3] = gravity
+    return found
+
+
+def _of_free_motion(note: str) -> str:
+    """Return a note on what acts at the point, for an analysis of motion without it."""
+    what, found, _ = note.partition(_VALID_WHILE)
+    return f"{what}; gains are those of motion without them" if found else note
+
+
+def _derivatives(model: Any, point: Any, acceleration: Array, positions: bool) -> tuple[Array, Array]:
+    """Return minus the derivatives of the forces of actuators, and of all others, by positions or velocities.
+
+    The force that accelerates the changing inertia is one of the others.
+    """
 
     def forces(number: int, step: float) -> tuple[Array, Array]:
         data = copy_of(model, point)
@@ -73,7 +108,9 @@ def _derivatives(model: Any, point: Any, positions: bool) -> tuple[Array, Array]
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_fwdVelocity(model, data)
         mujoco.mj_fwdActuation(model, data)
-        return np.array(data.qfrc_actuator), np.array(data.qfrc_passive - data.qfrc_bias)
+        inertial = np.zeros(model.nv)
+        mujoco.mj_mulM(model, data, inertial, acceleration)
+        return np.array(data.qfrc_actuator), np.array(data.qfrc_passive - data.qfrc_bias - inertial)
 
     of_actuators, of_others = np.zeros((model.nv, model.nv)), np.zeros((model.nv, model.nv))
     for number in range(model.nv):
