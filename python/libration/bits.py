@@ -23,7 +23,7 @@ class FirstDifference:
     a: float
     b: float
     ulps: int | None
-    """Floats between the two numbers, in units in the last place; None if one is NaN."""
+    """Floats between the two numbers, in units in the last place, 0 of ``0.0`` and ``-0.0``; None if one is NaN, and of integers."""
     differing: int
     """Numbers that differ in all."""
 
@@ -47,6 +47,8 @@ def first_difference(a: ArrayLike | PathLike[str], b: ArrayLike | PathLike[str])
         raise ValueError(
             f"a is {first.dtype} of shape {first.shape} and b {second.dtype} of shape {second.shape}; expected the same shape and type"
         )
+    if first.dtype.kind in "iub":
+        return _of_integers(first, second)
     wide_first, wide_second = (np.ascontiguousarray(array, dtype=np.float64).reshape(-1) for array in (first, second))
     found = _native._first_difference(wide_first, wide_second, list(first.shape) or [1])
     if found is None:
@@ -67,6 +69,16 @@ def _recording(name: str, value: Any) -> np.ndarray[Any, np.dtype[Any]]:
     if array.dtype not in (np.float64, np.float32) and not np.issubdtype(array.dtype, np.integer) and array.dtype != np.bool_:
         raise TypeError(f"{name} has type {array.dtype}; expected float64, float32, integers or truth values")
     return array
+
+
+def _of_integers(first: np.ndarray[Any, np.dtype[Any]], second: np.ndarray[Any, np.dtype[Any]]) -> FirstDifference | None:
+    """Compare integers, which may be no floats."""
+    differ = np.atleast_1d(first != second)
+    if not differ.any():
+        return None
+    index = tuple(int(k) for k in np.unravel_index(int(np.argmax(differ)), differ.shape))
+    a, b = (np.atleast_1d(array)[index].item() for array in (first, second))
+    return FirstDifference(index, a, b, None, int(differ.sum()))
 
 
 def _ulps32(x: float, y: float) -> int:

@@ -159,29 +159,35 @@ class Probe:
             invocation = shlex.join(words)
         return self.host(host, conservative=conservative, invocation=invocation)
 
-    @check_keywords
-    def gymnasium(self, env: Any, action: Any = None, **keywords: Any) -> ProbeReport:
+    def gymnasium(self, env: Any, action: Any = None, *, conservative: bool = False, **keywords: Any) -> ProbeReport:
         """Audit an environment of Gymnasium with a state and a timestep as attributes, see :func:`libration.hosts.gymnasium_host`."""
         from .hosts import gymnasium_host
 
-        return self.host(gymnasium_host(env, action, **keywords))
+        return self.host(gymnasium_host(env, action, **keywords), conservative=conservative)
 
-    @check_keywords
-    def jax(self, step: Callable[..., Any], state: ArrayLike, action: ArrayLike = (), dt: float | None = None, **keywords: Any) -> ProbeReport:
+    def jax(
+        self,
+        step: Callable[..., Any],
+        state: ArrayLike,
+        action: ArrayLike = (),
+        dt: float | None = None,
+        *,
+        conservative: bool = False,
+        **keywords: Any,
+    ) -> ProbeReport:
         """Audit a function of JAX, whose Jacobian by JAX is compared, see :func:`libration.hosts.jax_host`. Requires ``jax``."""
         from .hosts import jax_host
 
-        return self.host(jax_host(step, state, action, dt, **keywords))
+        return self.host(jax_host(step, state, action, dt, **keywords), conservative=conservative)
 
-    @check_keywords
-    def fmu(self, path: str | PathLike[str], **keywords: Any) -> ProbeReport:
+    def fmu(self, path: str | PathLike[str], *, conservative: bool = False, **keywords: Any) -> ProbeReport:
         """Audit an FMU of FMI 2 or 3 in a process of its own, see :func:`libration.hosts.fmu_host`. Requires ``fmpy``.
 
         The step of a co-simulation is its macro step: who exchanges values at its ends adds its length to the latency of a loop.
         """
         from .hosts import fmu_host
 
-        return self.host(fmu_host(path, **keywords))
+        return self.host(fmu_host(path, **keywords), conservative=conservative)
 
     @check_keywords
     def host(self, host: Host, *, conservative: bool = False, invocation: str = "") -> ProbeReport:
