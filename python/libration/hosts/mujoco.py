@@ -136,8 +136,8 @@ class _Simulation:
         actions = _rows("actions", actions, nu)
         if len(actions) != len(states):
             raise ValueError(f"actions has {len(actions)} rows; expected {len(states)}, as many as states")
-        if (dt := positive("dt", dt)) != self.spacing:
-            self._space(dt)
+        if dt != self.spacing:
+            self._space(positive("dt", dt))
         if len(self.rows) != len(states):
             self.rows = [self.begin] * len(states)
         after = np.empty_like(states)
