@@ -221,7 +221,8 @@ def check(integrator, label, arguments):
         )
 
     advice = advise(**sizes_stated)
-    print(f"\n{label}, {integrator}: {sizes_stated}\ngain {np.round(gain[0], 3).tolist()}, period {period:g} s, findings: {report.findings or 'none'}")
+    print(f"\n{label}, {integrator}: {sizes_stated}")
+    print(f"gain {np.round(gain[0], 3).tolist()}, period {period:g} s, findings: {report.findings or 'none'}")
     print(advice["answer"])
     limits = {b["kind"]: b["stable_up_to"] for b in advice["budgets"] if b["kind"] in sizes_stated and b.get("channel") is None}
     limits["latency"] = limits["latency"] and limits["latency"] / period
@@ -277,7 +278,8 @@ def check(integrator, label, arguments):
     print("plain ensemble, stated sizes: logarithm of the second moment over the horizon relative to the start")
     for horizon in (1, 2, 5, 10):
         wanted = exact_moment(loop, sizes_stated["jitter"], sizes_stated["loss"], horizon, start)
-        growth, error = plain_growth(loop, sizes_stated["jitter"], sizes_stated["loss"], 20 * arguments.runs, horizon, arguments.seed, start)
+        random = sizes_stated["jitter"], sizes_stated["loss"]
+        growth, error = plain_growth(loop, *random, 20 * arguments.runs, horizon, arguments.seed, start)
         good = abs(growth - wanted) <= 4 * error + 1e-3
         agree &= good
         print(f"  {horizon:3d} periods: by matrices {wanted:+.4f}, simulated {growth:+.4f} ± {error:.4f}" + ("" if good else "  DISAGREES"))

@@ -143,7 +143,8 @@ class Gains:
         """Return whether the servos of a MuJoCo model hold: an ``MjModel``, or the path of an XML or MJB file.
 
         The servos are all actuators, by the derivatives of their forces; gravity and springs of joints and tendons are the stiffness.
-        ``dt`` and ``integrator`` are those of the model by default. Contacts and other constraints have no part in the result. The other parameters are those of :func:`libration.hosts.mujoco_host`.
+        ``dt`` and ``integrator`` are those of the model by default. Contacts and other constraints have no part in the result. The other
+        parameters are those of :func:`libration.hosts.mujoco_host`.
         """
         from .hosts import mujoco_servos
 

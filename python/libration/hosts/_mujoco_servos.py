@@ -76,11 +76,13 @@ def _free_fall(model: Any, data: Any) -> Array:
     """Return the acceleration by gravity of free joints that nothing but constraints holds, and zero for all other velocities."""
     found = np.zeros(model.nv)
     gravity = np.array(model.opt.gravity)
+    if model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY):
+        return found
     for joint in np.flatnonzero(np.asarray(model.jnt_type) == int(mujoco.mjtJoint.mjJNT_FREE)):
         first = int(model.jnt_dofadr[joint])
         falls = data.qacc_smooth[first : first + 3]
         # Servos of other joints accelerate the base, too.
-        if not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY) and np.linalg.norm(falls - gravity) < np.linalg.norm(falls):
+        if np.linalg.norm(falls - gravity) < np.linalg.norm(falls):
             found[first : first + 3] = gravity
     return found
 
