@@ -91,6 +91,7 @@ def _probe(
     step: Callable[[Any, Any, float], Any],
     observe: Callable[[Any], Any] | None,
     energy: Callable[[Any], Any] | None,
+    restart: Callable[[], Any] | None,
     batched: bool,
 ) -> tuple[str, bool, str]: ...
 def _jacobian(function: Callable[[Any], Any], z: Any, scale: Any) -> tuple[Any, Any]: ...

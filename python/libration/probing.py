@@ -35,6 +35,7 @@ class Probe:
         batched: bool = False,
         observe: Callable[..., Any] | None = None,
         energy: Callable[..., Any] | None = None,
+        restart: Callable[[], Any] | None = None,
         states: Sequence[str] | None = None,
         inputs: Sequence[str] | None = None,
         state_scale: ArrayLike | None = None,
@@ -62,6 +63,9 @@ class Probe:
             ``observe(x)`` returns the observation of a state, to find stale ones. With ``batched`` of rows.
         energy:
             ``energy(x)`` returns the energy of a state, to find its drift. With ``batched`` of rows.
+        restart:
+            ``restart()`` starts the simulator anew, generators of random numbers with their seeds, to see whether the same bits follow and
+            whether environments share a generator.
         states, inputs:
             Names with units in parentheses: ``"angle (rad)"``.
         state_scale, action_scale:
@@ -86,7 +90,7 @@ class Probe:
         """
         if dt is None:
             raise TypeError("dt is missing; expected the length of a step in s")
-        for name, function in (("step", step), ("observe", observe), ("energy", energy)):
+        for name, function in (("step", step), ("observe", observe), ("energy", energy), ("restart", restart)):
             if function is not None or name == "step":
                 callable_of(name, function)
         if equilibrium not in (None, True, False):
@@ -119,7 +123,7 @@ class Probe:
             if scale is not None:
                 described[name] = vector(name, np.broadcast_to(scale, count) if np.ndim(scale) == 0 else scale).tolist()
         watch = None if observe is None else observations_of(observe, batched)
-        return _audit(host, described, watch, batched)
+        return _audit(host, described, watch, restart, batched)
 
     @check_keywords
     def mujoco(
@@ -195,16 +199,22 @@ class Probe:
         described = description_of(host)
         described.update(conservative=bool(conservative), invocation=str(invocation))
         # The rows of a host with memory continue one simulation each.
-        return _audit(host, described, None, not host.memory)
+        return _audit(host, described, None, None, not host.memory)
 
 
 probe = Probe()
 
 
-def _audit(host: Host, described: dict[str, Any], observe: Callable[..., Any] | None, batched: bool) -> ProbeReport:
+def _audit(
+    host: Host,
+    described: dict[str, Any],
+    observe: Callable[..., Any] | None,
+    restart: Callable[[], Any] | None,
+    batched: bool,
+) -> ProbeReport:
     energy = None if host.energy is None else contiguous(host.energy, 1)
     text = json.dumps(described)
-    answer, holds, page = _native._probe(text, contiguous(host.step, 2), observe, energy, bool(batched))
+    answer, holds, page = _native._probe(text, contiguous(host.step, 2), observe, energy, restart, bool(batched))
     return ProbeReport(json.loads(answer), holds, page)
 
 

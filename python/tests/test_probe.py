@@ -174,6 +174,26 @@ def test_noise_of_each_environment_is_random_and_not_the_same():
 
 
 @pytest.mark.parametrize("returns_single", [False, True])
+def test_a_generator_that_environments_share_is_found_by_a_restart_and_one_for_each_is_not():
+    class Noisy:
+        def __init__(self, shared):
+            self.shared = shared
+            self.restart()
+
+        def restart(self):
+            self.rng = np.random.default_rng(0)
+            self.own = [np.random.default_rng(number) for number in range(4096)]
+
+        def __call__(self, states, actions, dt):
+            n = len(states)
+            noise = self.rng.normal(size=(n, 1)) if self.shared else np.array([[rng.normal()] for rng in self.own[:n]])
+            return pendulums(states, actions + noise, dt)
+
+    for shared, expected in ((True, ["not-reproducible", "shared-generator"]), (False, ["not-reproducible"])):
+        noisy = Noisy(shared)
+        assert kinds(audit(noisy, batched=True, restart=noisy.restart)) == expected
+
+
 def test_single_precision_inside_is_found(returns_single):
     def single(x, u, dt):
         v = np.float32(x[1]) + np.float32(dt) * (-np.float32(OMEGA2) * np.sin(np.float32(x[0])) + np.float32(u[0]))

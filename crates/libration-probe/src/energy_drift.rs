@@ -6,8 +6,10 @@ use crate::BlackBoxError;
 use crate::convergence::displaced;
 use crate::prober::Prober;
 
-/// Steps of a trajectory.
-const STEPS: usize = 20_000;
+/// Steps of a trajectory of a system that conserves its energy, where a slow drift matters.
+const CONSERVATIVE_STEPS: usize = 20_000;
+/// Those of other systems.
+const STEPS: usize = 2_000;
 /// Part of the scales by which the state is displaced.
 const DISPLACEMENT: f64 = 0.1;
 /// Drifts per step below this, relative to the energy of the displacement, are roundings.
@@ -69,19 +71,20 @@ impl EnergyDrift {
         else {
             return Ok(None);
         };
+        let steps = if subject.is_conservative { CONSERVATIVE_STEPS } else { STEPS };
         let size = (energy - rest).abs().max(f64::MIN_POSITIVE);
-        let Some(full) = rate(prober, &start, subject.dt, STEPS, size)? else {
+        let Some(full) = rate(prober, &start, subject.dt, steps, size)? else {
             return Ok(Some(EnergyDrift {
                 rate: f64::INFINITY,
                 rate_halved: None,
-                steps: STEPS,
+                steps,
                 resolution: 0.0,
                 reason: DriftReason::Divergence,
             }));
         };
         let halved = match subject.has_fixed_dt {
             true => None,
-            false => rate(prober, &start, subject.dt / 2.0, 2 * STEPS, size)?,
+            false => rate(prober, &start, subject.dt / 2.0, 2 * steps, size)?,
         };
         let rounding = ROUNDING / subject.dt * (energy.abs() / size).max(1.0);
         let resolution = full.wobble.max(rounding);
@@ -98,7 +101,7 @@ impl EnergyDrift {
             }
         };
         let rate_halved = halved.as_ref().map(|half| half.rate);
-        Ok(Some(EnergyDrift { rate: full.rate, rate_halved, steps: STEPS, resolution, reason }))
+        Ok(Some(EnergyDrift { rate: full.rate, rate_halved, steps, resolution, reason }))
     }
 }
 
@@ -120,10 +123,10 @@ fn rate(
     let mut x = start.to_vec();
     let mut energies = Vec::with_capacity(steps);
     for _ in 0..steps {
-        match prober.step_one(&x, action, dt) {
-            Ok(next) => x = next,
-            Err(BlackBoxError::NotFinite { .. }) => return Ok(None),
-            Err(error) => return Err(error),
+        // The action is the same at each step, so that late commands need no calls of their own.
+        x = prober.call_one(&x, action, dt)?;
+        if x.iter().any(|x| !x.is_finite()) {
+            return Ok(None);
         }
         let Some(energy) = prober.energy(&x)? else { return Ok(None) };
         energies.push(energy / size);

@@ -103,8 +103,12 @@ impl LargestStep {
             self.turns = z.arg().abs() / core::f64::consts::TAU;
             self.mode = name_mode(&leaving.step, z, prober.subject);
         }
-        let half = Trial::at(prober, rates, low / 2.0)?;
-        self.grows_always = half.excess > GROWS;
+        // At the step of the subject, too: slow transients of stiff contacts look like growth close to the limit.
+        let start = prober.subject.dt.min(low / 2.0);
+        let grows = |prober: &mut Prober<'_>, dt: f64| {
+            Ok::<_, BlackBoxError>(Trial::at(prober, rates, dt)?.excess > GROWS)
+        };
+        self.grows_always = grows(prober, low / 2.0)? && grows(prober, start)?;
         self.dt = (!self.grows_always).then_some(low);
         self.tried_up_to = self.tried_up_to.max(high);
         Ok(self)

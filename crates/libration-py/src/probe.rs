@@ -16,6 +16,7 @@ struct PythonStep<'py> {
     step: Bound<'py, PyAny>,
     observe: Option<Bound<'py, PyAny>>,
     energy: Option<Bound<'py, PyAny>>,
+    restart: Option<Bound<'py, PyAny>>,
     is_batched: bool,
     /// The exception of a function, to be raised again.
     raised: Option<PyErr>,
@@ -80,6 +81,12 @@ impl BlackBox for PythonStep<'_> {
         let result = call();
         self.called(result).map(Some)
     }
+
+    fn restart(&mut self) -> Result<bool, BlackBoxError> {
+        let Some(restart) = &self.restart else { return Ok(false) };
+        let result = restart.call0().map(|_| true);
+        self.called(result)
+    }
 }
 
 /// Audits a step. Gives JSON, whether the step has no fault, and a page.
@@ -90,12 +97,14 @@ pub(crate) fn _probe(
     step: Bound<'_, PyAny>,
     observe: Option<Bound<'_, PyAny>>,
     energy: Option<Bound<'_, PyAny>>,
+    restart: Option<Bound<'_, PyAny>>,
     batched: bool,
 ) -> PyResult<(String, bool, String)> {
     let wrong = |error: &dyn core::fmt::Display| value_error(error.to_string());
     let subject = Description::parse(description).and_then(Description::subject);
     let subject = subject.map_err(|error| wrong(&error))?;
-    let mut black_box = PythonStep { py, step, observe, energy, is_batched: batched, raised: None };
+    let mut black_box =
+        PythonStep { py, step, observe, energy, restart, is_batched: batched, raised: None };
     match probe(&mut black_box, &subject) {
         Ok(report) => {
             let json = serde_json::to_string(&report).map_err(|error| wrong(&error))?;

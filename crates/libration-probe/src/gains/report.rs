@@ -8,6 +8,8 @@ use super::{ServoIntegrator, Servos};
 
 /// Most substeps that are tried.
 const MOST_SUBSTEPS: u32 = 1000;
+/// Part of the fastest rate below which growth is rounding.
+const ROUNDING: f64 = 1e-7;
 /// What no linear analysis has.
 const LIMITATION: &str = "The analysis is linear: contact, friction and limits of forces are not in it. A gain that holds in free motion may be unstable in contact.";
 
@@ -18,6 +20,8 @@ pub struct GainReport {
     pub answer: String,
     /// Whether the gains hold.
     pub holds: bool,
+    /// The growth rate in 1/s of a motion that grows in continuous time, whatever the step; none if no motion does.
+    pub growth_in_continuous_time: Option<f64>,
     /// The length of a step of the simulator, in s.
     pub dt: f64,
     /// Steps of the integrator in it.
@@ -135,6 +139,7 @@ pub fn gains(
     let mut report = GainReport {
         answer: String::new(),
         holds: own.holds,
+        growth_in_continuous_time: continuous_growth(servos),
         dt,
         substeps,
         integrator: own.name,
@@ -150,6 +155,14 @@ pub fn gains(
     };
     report.answer = report.summary();
     report
+}
+
+/// The growth rate of a motion that grows beyond rounding, which parts a repeated eigenvalue by its root.
+fn continuous_growth(servos: &Servos) -> Option<f64> {
+    let values = eigenvalues(&servos.plant().ok()?.a)?;
+    let size = values.iter().map(|s| s.norm()).fold(0.0, f64::max);
+    let growth = values.iter().map(|s| s.re).fold(f64::NEG_INFINITY, f64::max);
+    (growth > ROUNDING * size).then_some(growth)
 }
 
 fn fewest_substeps(servos: &Servos, dt: f64, integrator: ServoIntegrator) -> Option<u32> {
@@ -181,7 +194,7 @@ fn joint_row(servos: &Servos, i: usize, integrator: ServoIntegrator, h: f64) -> 
     let longest = LargestFactor::search(|factor| alone.step(integrator, h * factor));
     let factor =
         LargestFactor::search(|factor| servos.with_joint_factor(i, factor).step(integrator, h));
-    let largest_kp = if kp == 0.0 { f64::INFINITY } else { kp * factor.value() };
+    let largest_kp = if kp == 0.0 { f64::INFINITY } else { 0.0 + kp * factor.value() };
     JointRow {
         name: servos.joints[i].name.clone(),
         inertia,
@@ -195,7 +208,7 @@ fn joint_row(servos: &Servos, i: usize, integrator: ServoIntegrator, h: f64) -> 
 }
 
 fn modes(servos: &Servos, integrator: ServoIntegrator, h: f64) -> Vec<ServoMode> {
-    let Some(plant) = servos.plant() else { return Vec::new() };
+    let Ok(plant) = servos.plant() else { return Vec::new() };
     let factors: Vec<Complex64> =
         servos.step(integrator, h).and_then(|step| eigenvalues(&step)).unwrap_or_default();
     let n = servos.joints.len();
@@ -243,6 +256,11 @@ impl GainReport {
         } else {
             format!("{} substeps of {h:.3e} s", self.substeps)
         };
+        if let Some(growth) = self.growth_in_continuous_time {
+            return format!(
+                "The motion is unstable in continuous time, whatever the step: it grows by {growth:.4} 1/s with these gains and stiffnesses. {LIMITATION}"
+            );
+        }
         let mut text = if self.holds {
             format!("The gains hold with {} and {of}", self.integrator)
         } else {

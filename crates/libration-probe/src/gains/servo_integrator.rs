@@ -57,7 +57,7 @@ impl ServoIntegrator {
         use ImplicitMethod::DampingImplicit;
         match self {
             ServoIntegrator::JointDampingImplicit => {
-                "MuJoCo's Euler: implicit damping of joints, explicit damping of servos".into()
+                "implicit damping of joints and all else explicit, MuJoCo's Euler".into()
             }
             ServoIntegrator::Method(AnyMethod::Implicit(DampingImplicit)) => {
                 format!("{}, MuJoCo's implicitfast", DampingImplicit.title())

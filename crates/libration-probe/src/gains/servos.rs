@@ -1,7 +1,9 @@
 //! Servos on joints as matrices.
 
 use libration::analysis::LinearStepper;
-use libration::linear::{LinearPlant, MOST_STATES, Matrix, Signal, cholesky, solve_matrix};
+use libration::linear::{
+    LinearPlant, MOST_STATES, Matrix, PlantError, Signal, cholesky, solve_matrix,
+};
 use serde::Deserialize;
 use thiserror::Error;
 
@@ -66,6 +68,9 @@ pub enum ServoError {
     /// The inertia is no inertia.
     #[error("`mass` is not symmetric and positive definite; expected the inertia of the joints")]
     Mass,
+    /// Names of joints repeat, or one is that of a rate.
+    #[error("`joints`: {0}")]
+    Names(PlantError),
 }
 
 impl ServosDescription {
@@ -114,10 +119,11 @@ impl ServosDescription {
         let is_symmetric = (0..n)
             .all(|i| (0..i).all(|j| (mass[(i, j)] - mass[(j, i)]).abs() <= 1e-9 * mass.largest()));
         let factor = cholesky(mass);
-        match is_symmetric && (0..n).all(|i| factor[(i, i)] > 0.0) {
-            true => Ok(servos),
-            false => Err(ServoError::Mass),
+        if !(is_symmetric && (0..n).all(|i| factor[(i, i)] > 0.0)) {
+            return Err(ServoError::Mass);
         }
+        servos.plant().map_err(ServoError::Names)?;
+        Ok(servos)
     }
 }
 
@@ -170,11 +176,11 @@ impl Servos {
     }
 
     /// The motion in continuous time; its states are the joints and then their velocities.
-    pub(super) fn plant(&self) -> Option<LinearPlant> {
+    pub(super) fn plant(&self) -> Result<LinearPlant, PlantError> {
         let n = self.joints.len();
         let (stiffness, damping) = (self.kp.plus(&self.stiffness), self.kv.plus(&self.damping));
         let force = Matrix::identity(n);
-        LinearPlant::mechanical([&self.mass, &damping, &stiffness], &force, &self.joints).ok()
+        LinearPlant::mechanical([&self.mass, &damping, &stiffness], &force, &self.joints)
     }
 
     /// The matrix of a step of `dt` seconds; none if it is not finite.
@@ -182,7 +188,7 @@ impl Servos {
         match integrator {
             ServoIntegrator::JointDampingImplicit => self.joint_damping_step(dt),
             ServoIntegrator::Method(method) => {
-                let plant = self.plant()?;
+                let plant = self.plant().ok()?;
                 let stepper = LinearStepper::new(&plant.a)?;
                 Some(stepper.with_step::<f64>(method, dt)?.update_matrix())
             }

@@ -71,9 +71,25 @@ fn servos_that_are_wrong_are_refused_with_the_name_of_the_field() {
         (r#"{"mass": [1, 1], "kp": [1]}"#, "`kp` is 1 numbers"),
         (r#"{"mass": [], "kp": []}"#, "1 to 50 joints"),
         (r#"{"mass": [1], "kp": [1], "joints": ["a", "b"]}"#, "`joints` is 2 names"),
+        (r#"{"mass": [1, 1], "kp": [1, 1], "joints": ["a", "a"]}"#, "have the name `a`"),
+        (r#"{"mass": [1, 1], "kp": [1, 1], "joints": ["a", "a'"]}"#, "have the name `a'`"),
     ] {
         let description: ServosDescription = serde_json::from_str(text).unwrap();
         let error = description.servos().unwrap_err().to_string();
         assert!(error.contains(part), "{error}");
     }
+}
+
+#[test]
+fn a_motion_that_grows_in_continuous_time_is_no_fault_of_the_step() {
+    // s² = −k/m = 4.
+    let found = report(r#"{"mass": [1], "kp": [-4]}"#, 0.001, 1, "rk4");
+    close(found.growth_in_continuous_time.unwrap(), 2.0, 1e-12);
+    assert!(
+        found.answer.starts_with("The motion is unstable in continuous time"),
+        "{}",
+        found.answer
+    );
+    let free = report(r#"{"mass": [1, 2], "kp": [0, 5]}"#, 0.001, 1, "symplectic-euler");
+    assert_eq!((free.growth_in_continuous_time, free.holds), (None, true));
 }
