@@ -4,9 +4,11 @@ mod largest_factor;
 mod page;
 mod report;
 mod servo_integrator;
+mod servo_mode;
 mod servos;
 
 pub use page::gains_page;
-pub use report::{GainReport, IntegratorRow, JointRow, ServoMode, gains};
+pub use report::{GainReport, IntegratorRow, JointRow, gains};
 pub use servo_integrator::ServoIntegrator;
+pub use servo_mode::ServoMode;
 pub use servos::{ServoError, Servos, ServosDescription};
