@@ -20,6 +20,7 @@ def description_of(host: Host) -> dict[str, Any]:
         "inputs": list(host.inputs),
         "integrator": host.integrator,
         "notes": list(host.notes),
+        "validity": list(host.validity),
         "energy": host.energy is not None,
     }
     if host.positions:

@@ -173,7 +173,6 @@ def test_noise_of_each_environment_is_random_and_not_the_same():
     assert kinds(report) == ["not-reproducible"]
 
 
-@pytest.mark.parametrize("returns_single", [False, True])
 def test_a_generator_that_environments_share_is_found_by_a_restart_and_one_for_each_is_not():
     class Noisy:
         def __init__(self, shared):
@@ -194,6 +193,7 @@ def test_a_generator_that_environments_share_is_found_by_a_restart_and_one_for_e
         assert kinds(audit(noisy, batched=True, restart=noisy.restart)) == expected
 
 
+@pytest.mark.parametrize("returns_single", [False, True])
 def test_single_precision_inside_is_found(returns_single):
     def single(x, u, dt):
         v = np.float32(x[1]) + np.float32(dt) * (-np.float32(OMEGA2) * np.sin(np.float32(x[0])) + np.float32(u[0]))

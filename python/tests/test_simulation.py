@@ -72,7 +72,7 @@ def test_implicit_integrators_step_the_catalogue_and_equations_alike(integrator)
     own = simulate(equations, integrator=integrator, dt=0.05, steps=100)
     np.testing.assert_array_equal(own["q"], path["q0"])
     with pytest.raises(ValueError, match="implicit ones are those of simulate and analyze only"):
-        Ensemble("pendulum", integrator=integrator, dt=0.05)
+        Ensemble("pendulum", integrator=integrator, dt=0.05, q=[1.0], v=[0.0])
 
 
 def test_a_function_of_positions_and_velocities_is_a_system():

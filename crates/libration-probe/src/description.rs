@@ -32,6 +32,8 @@ pub struct Description {
     integrator: Option<String>,
     #[serde(default)]
     notes: Vec<String>,
+    #[serde(default)]
+    validity: Vec<String>,
     reference: Option<ReferenceDescription>,
     #[serde(default)]
     stated_delays: Vec<f64>,
@@ -107,6 +109,7 @@ impl Description {
         subject.integrator = self.integrator;
         subject.notes = self.notes;
         subject.stated_delays = self.stated_delays;
+        subject.validity = self.validity;
         subject.recordings = self.recordings;
         subject.invocation = self.invocation;
         subject.check()?;

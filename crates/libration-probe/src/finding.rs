@@ -144,7 +144,10 @@ pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Find
 }
 
 /// Findings about the linearised step, its flow and its energy.
-pub(crate) fn of_report(report: &ProbeReport, found: &mut Vec<Finding>) {
+pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec<Finding>) {
+    found.extend(
+        subject.validity.iter().map(|text| Finding::warning("limited-validity", text.clone())),
+    );
     if report.ignores_dt {
         found.push(Finding::fault(
             "ignores-dt",

@@ -109,7 +109,7 @@ pub fn probe(
         of_memory(&memory, subject, &mut findings);
         if memory.calls.is_some() {
             report.audit(prober, &memory)?;
-            of_report(&report, &mut findings);
+            of_report(&report, subject, &mut findings);
         }
         report.memory = Some(memory);
     }

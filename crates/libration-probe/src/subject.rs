@@ -39,6 +39,8 @@ pub struct Subject {
     pub integrator: Option<String>,
     /// Facts that a reader must know, such as contacts.
     pub notes: Vec<String>,
+    /// What ends the validity of the result, such as contacts that change.
+    pub validity: Vec<String>,
     /// Matrices of the step by the simulator's own derivatives, and their source.
     pub reference: Option<Reference>,
     /// Delays of the actions in s that the simulator states; empty if it states none.
@@ -107,6 +109,7 @@ impl Subject {
             joint_damping: None,
             integrator: None,
             notes: Vec::new(),
+            validity: Vec::new(),
             reference: None,
             stated_delays: Vec::new(),
             recordings: Vec::new(),

@@ -21,6 +21,8 @@ impl ProbeReport {
         sentences.extend(self.stability());
         sentences.extend(self.integrator());
         sentences.extend(self.damping());
+        let validity = self.findings.iter().filter(|finding| finding.kind == "limited-validity");
+        sentences.extend(validity.map(|finding| format!("{}.", capitalised(&finding.text))));
         if faults.is_empty() && self.step.is_some() {
             sentences.push("No fault was found.".into());
         }
@@ -110,4 +112,9 @@ impl ProbedMode {
         let names: Vec<&str> = self.states.iter().map(|(name, _)| name.as_str()).collect();
         names.join(", ")
     }
+}
+
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

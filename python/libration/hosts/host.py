@@ -47,6 +47,8 @@ class Host:
     """Whether the point is an equilibrium by the forces of the simulator; None if they are not known."""
     notes: tuple[str, ...] = ()
     """Facts that limit the validity of an audit at this point."""
+    validity: tuple[str, ...] = ()
+    """What ends the validity of an audit at this point, such as contacts that change."""
     reference_A: Array | None = None
     """The derivative of the step by the states that the simulator itself computes, in these coordinates."""
     reference_B: Array | None = None

@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 
 # As the XML has them.
 _INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast", "discrete")
+# Words of notes about contacts and constraints.
+_VALID = "valid only while"
 # The best step of central differences is the cube root of the rounding.
 _EPS = 6e-6
 
@@ -97,7 +99,8 @@ def mujoco_host(
         mass=inertia_of(own, forward),
         positions=tuple((k, own.nv + k) for k in range(own.nv)),
         equilibrium=rest,
-        notes=tuple(notes),
+        notes=tuple(note for note in notes if _VALID not in note),
+        validity=tuple(note for note in notes if _VALID in note),
         reference_A=reference_a,
         reference_B=reference_b,
         reference_source="" if reference_a is None else "mjd_transitionFD",
