@@ -71,6 +71,11 @@ class ProbeReport:
         return list(self.results["hidden_latency"])
 
     @property
+    def delays(self) -> list[dict[str, Any]]:
+        """Of commands that wait in a queue: the delays in steps and how many of the audited steps used them."""
+        return list(self.results["delays"])
+
+    @property
     def order(self) -> int | None:
         """The order of convergence; None if the estimates do not settle."""
         found = self.results["order"]

@@ -8,6 +8,8 @@ use crate::{BlackBoxError, FirstDifference, Recording};
 
 /// Sizes of batches.
 const BATCHES: [usize; 3] = [1, 7, 4096];
+/// Roundings that single precision leaves in a step, relative to its results: a few of 6·10⁻⁸, or a part of one.
+const SINGLE: core::ops::Range<f64> = 3e-10..1e-6;
 /// Points of a line whose differences show rounding.
 const CLOSE: usize = 24;
 /// Calls with the same values, from which randomness shows.
@@ -22,7 +24,7 @@ pub struct Bits {
     pub randomness: Option<Randomness>,
     /// The rounding of results relative to their size; that of `f64` is 2·10⁻¹⁶.
     pub rounding: f64,
-    /// Whether all results are numbers of single precision.
+    /// Whether the step computes in single precision.
     pub single_precision: bool,
 }
 
@@ -74,7 +76,13 @@ impl Bits {
         let entries = first.entries();
         let is_single = |x: f64| f64::from(x as f32).to_bits() == x.to_bits();
         let single_precision = entries.iter().all(|&x| is_single(x));
-        let rounding = if is_random { f64::NAN } else { rounding(prober)? };
+        let rounding = if is_random { f64::NAN } else { noise_along_a_line(prober, -20)? };
+        // Rounding does not fall with the distance as the bend of a smooth function does. Much closer points are the same number in single
+        // precision, where a rough function is as rough.
+        let is_coarse = SINGLE.contains(&rounding)
+            && noise_along_a_line(prober, -22)? > rounding / 10.0
+            && noise_along_a_line(prober, -40)? < SINGLE.start / 10.0;
+        let single_precision = single_precision || is_coarse;
         Ok(Bits { checks, randomness, rounding, single_precision })
     }
 }
@@ -82,13 +90,14 @@ impl Bits {
 /// The rounding of a step relative to its results: the fourth differences along a line of points, over the root of the sum of their
 /// squared coefficients.
 ///
-/// The points are so far apart that single precision parts them, and so close that a smooth function has no fourth difference.
-fn rounding(prober: &mut Prober<'_>) -> Result<f64, BlackBoxError> {
+/// At `2⁻²⁰` of the scales the points are so far apart that single precision parts them, and so close that a smooth function has no fourth
+/// difference.
+fn noise_along_a_line(prober: &mut Prober<'_>, exponent: i32) -> Result<f64, BlackBoxError> {
     let subject = prober.subject;
     let (x, scale) = (&subject.state, &subject.state_scale);
     let n = x.len();
     let states = Matrix::from_fn(CLOSE, n, |k, i| {
-        let step = (k as f64 + 0.3) * 2.0_f64.powi(-20);
+        let step = (k as f64 + 0.3) * 2.0_f64.powi(exponent);
         x[i] + scale[i] * (step + 0.013 * (1.0 + i as f64 / 7.0))
     });
     let actions = Matrix::from_fn(CLOSE, subject.action.len(), |_, j| subject.action[j]);

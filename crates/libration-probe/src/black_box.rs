@@ -62,7 +62,7 @@ pub enum BlackBoxError {
     },
     /// A state is infinite or NaN.
     #[error(
-        "the step of {dt} s from the state [{from}] has {value} in `{state}`; expected finite numbers; help: smaller typical deviations (state_scale) keep the audit where the step is defined"
+        "the step of {dt:e} s from the state [{from}] has {value} in `{state}`; expected finite numbers; help: smaller typical deviations (state_scale) keep the audit where the step is defined"
     )]
     NotFinite {
         /// The length of the step.

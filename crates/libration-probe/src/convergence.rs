@@ -7,21 +7,21 @@ use crate::prober::Prober;
 
 /// Steps of the subject over which errors add up.
 const STEPS: usize = 4;
-/// Halvings of the step.
-const HALVINGS: usize = 6;
+/// Halvings of the step, at least and at most: more while the order has not settled.
+const HALVINGS: [usize; 2] = [6, 10];
 /// Roundings, relative to the scales, at which a difference says nothing. Errors of a thousand steps add up.
 const ROUNDING: f64 = 1e-13;
-/// Largest distance of an estimate from an integer, or between two estimates.
-const SETTLED: f64 = 0.15;
+/// Largest distance of the last two estimates from an integer, and that of a single one.
+const SETTLED: [f64; 2] = [0.15, 0.05];
 
 /// The order by which results of the same duration converge.
 #[derive(Clone, Debug, Serialize)]
 pub struct Convergence {
-    /// The nearest integer, if the last estimates agree with one; else none.
+    /// The lowest order of a state, if its last estimates agree with an integer; none if they do not, or if the run diverges.
     pub order: Option<u32>,
-    /// Estimates from pairs of halvings, from the longest steps to the shortest.
+    /// Estimates of this state from pairs of halvings, from the longest steps to the shortest.
     pub estimates: Vec<f64>,
-    /// Distances of the results of successive halvings, in units of the scales.
+    /// Distances of its results of successive halvings, in units of the scale.
     pub differences: Vec<f64>,
     /// Whether halving changes no result beyond rounding: the step is exact.
     pub is_exact: bool,
@@ -29,23 +29,30 @@ pub struct Convergence {
 
 impl Convergence {
     pub(crate) fn measure(prober: &mut Prober<'_>) -> Result<Self, BlackBoxError> {
-        let subject = prober.subject;
-        let start = displaced(prober, 0.1);
         let mut ends: Vec<Vec<f64>> = Vec::new();
-        for halvings in 0..=HALVINGS {
-            let dt = subject.dt * 2.0_f64.powi(-(halvings as i32));
-            let mut x = start.clone();
-            for _ in 0..STEPS << halvings {
-                x = prober.step_one(&x, &subject.action, dt)?;
+        for halvings in 0..=HALVINGS[1] {
+            ends.push(end(prober, halvings)?);
+            if halvings >= HALVINGS[0] {
+                let found = Convergence::of_ends(&ends, &prober.subject.state_scale);
+                if found.order.is_some() || found.is_exact {
+                    return Ok(found);
+                }
             }
-            ends.push(x);
         }
-        let distance = |pair: &[Vec<f64>]| {
-            let parts = pair[0].iter().zip(&pair[1]).zip(&subject.state_scale);
-            parts.map(|((a, b), scale)| ((a - b) / scale).abs()).fold(0.0, f64::max)
+        Ok(Convergence::of_ends(&ends, &prober.subject.state_scale))
+    }
+
+    /// The order of the state that converges with the lowest one.
+    fn of_ends(ends: &[Vec<f64>], scale: &[f64]) -> Self {
+        let of_state = |i: usize| {
+            let distance = |pair: &[Vec<f64>]| ((pair[0][i] - pair[1][i]) / scale[i]).abs();
+            Convergence::of(ends.windows(2).map(distance).collect())
         };
-        let differences: Vec<f64> = ends.windows(2).map(distance).collect();
-        Ok(Convergence::of(differences))
+        let all: Vec<Convergence> = (0..scale.len()).map(of_state).collect();
+        // A state without an order leaves the order of the step unknown.
+        let known = |found: &&Convergence| !found.is_exact;
+        let lowest = all.iter().filter(known).min_by_key(|found| found.order.unwrap_or(0));
+        lowest.or(all.first()).cloned().unwrap_or_else(|| Convergence::of(Vec::new()))
     }
 
     fn of(differences: Vec<f64>) -> Self {
@@ -53,14 +60,33 @@ impl Convergence {
         let estimates: Vec<f64> =
             differences[..significant].windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
         // The shortest steps are nearest to the limit, until rounding is.
-        let settled = |pair: &[f64]| {
-            let order = pair[1].round();
-            let near = |x: f64| (x - order).abs() < SETTLED;
-            (order >= 1.0 && near(pair[0]) && near(pair[1])).then_some(order as u32)
+        let near = |x: f64, order: f64, most: f64| (x - order).abs() < most && order >= 1.0;
+        let order = match estimates[..] {
+            [.., before, last] => {
+                let order = last.round();
+                let is_settled = near(before, order, SETTLED[0]) && near(last, order, SETTLED[0]);
+                is_settled.then_some(order as u32)
+            }
+            [only] => near(only, only.round(), SETTLED[1]).then_some(only.round() as u32),
+            [] => None,
         };
-        let order = estimates.windows(2).rev().find_map(settled);
         Convergence { order, estimates, is_exact: significant == 0, differences }
     }
+}
+
+/// The end of a run from a displaced state with halved steps; NaN if it diverges.
+fn end(prober: &mut Prober<'_>, halvings: usize) -> Result<Vec<f64>, BlackBoxError> {
+    let subject = prober.subject;
+    let dt = subject.dt * 2.0_f64.powi(-(halvings as i32));
+    let mut x = displaced(prober, 0.1);
+    for _ in 0..STEPS << halvings {
+        match prober.step_one(&x, &subject.action, dt) {
+            Ok(next) => x = next,
+            Err(BlackBoxError::NotFinite { .. }) => return Ok(vec![f64::NAN; x.len()]),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(x)
 }
 
 /// The state of the subject, displaced by a part of its scales in an irregular direction.
@@ -86,6 +112,9 @@ mod tests {
         };
         assert_eq!((of(1, 0.0), of(2, 1e-14), of(4, 2e-14)), (Some(1), Some(2), Some(4)));
         assert_eq!(Convergence::of(vec![1e-3, 4e-4, 3e-4, 1e-5, 9e-6, 1e-6]).order, None);
+        // An order that longer steps seem to have is none.
+        assert_eq!(Convergence::of(vec![1e-1, 2.5e-2, 6.2e-3, 2e-3, 8e-4]).order, None);
+        assert_eq!(Convergence::of(vec![1e-9, 6.2e-11, 1e-14]).order, Some(4));
         assert!(Convergence::of(vec![0.0; 6]).is_exact);
     }
 }

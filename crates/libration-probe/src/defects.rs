@@ -48,7 +48,7 @@ impl Defects {
                 halved = Some(irreversibility(prober, pairs, subject.dt / 2.0)?);
             }
         }
-        let energy = EnergyDrift::measure(prober)?;
+        let energy = EnergyDrift::measure(prober, longest_period(flow))?;
         Ok(Defects {
             volume_rate,
             flow_volume_rate: flow.map(|flow| flow.a.trace()),
@@ -58,6 +58,14 @@ impl Defects {
             energy,
         })
     }
+}
+
+/// The longest period of an oscillation of the system, in s; 0 without one.
+fn longest_period(flow: Option<&Flow>) -> f64 {
+    let values = flow.and_then(|flow| eigenvalues(&flow.a)).unwrap_or_default();
+    let largest = values.iter().map(|s| s.norm()).fold(0.0, f64::max);
+    let slowest = values.iter().map(|s| s.im.abs()).filter(|omega| *omega > 1e-6 * largest);
+    slowest.fold(f64::INFINITY, f64::min).recip() * core::f64::consts::TAU
 }
 
 fn irreversibility(

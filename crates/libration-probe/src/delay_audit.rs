@@ -8,8 +8,8 @@ use crate::BlackBoxError;
 use crate::linearised_step::LinearisedStep;
 use crate::prober::Prober;
 
-/// Steps of the audit.
-const STEPS: usize = 100_000;
+/// Steps of the audit of a command that is late, and of one that is not.
+const STEPS: [usize; 2] = [100_000, 2_000];
 /// Steps after which the ramp begins anew, longer than any delay that a memory can have.
 const RAMP: usize = 128;
 /// Parts of a step to which delays are rounded.
@@ -39,6 +39,7 @@ impl DelayAudit {
         prober: &mut Prober<'_>,
         step: &LinearisedStep,
         input: usize,
+        is_late: bool,
     ) -> Result<Option<Self>, BlackBoxError> {
         let subject = prober.subject;
         let (x, u, dt) = (&subject.state, &subject.action, subject.dt);
@@ -50,7 +51,8 @@ impl DelayAudit {
         let span = subject.action_scale[input] / 16.0;
         let mut counts: BTreeMap<i64, usize> = BTreeMap::new();
         let (mut start, mut first_change) = (None, None);
-        for k in 0..RAMP + STEPS {
+        let steps = if is_late { STEPS[0] } else { STEPS[1] };
+        for k in 0..RAMP + steps {
             let mut action = u.clone();
             action[input] += span * ((k % RAMP) as f64 / RAMP as f64);
             let used =

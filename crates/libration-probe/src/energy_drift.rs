@@ -6,6 +6,9 @@ use crate::BlackBoxError;
 use crate::convergence::displaced;
 use crate::prober::Prober;
 
+/// Periods of the slowest mode that a trajectory should have, and the most steps for them.
+const PERIODS: f64 = 20.0;
+const MOST_STEPS: usize = 100_000;
 /// Steps of a trajectory of a system that conserves its energy, where a slow drift matters.
 const CONSERVATIVE_STEPS: usize = 20_000;
 /// Those of other systems.
@@ -46,6 +49,8 @@ pub enum DriftReason {
     Divergence,
     /// The simulator has one step only.
     Unknown,
+    /// The trajectory has few periods of the slowest mode, and its oscillation looks like a drift.
+    Short,
 }
 
 impl DriftReason {
@@ -57,6 +62,7 @@ impl DriftReason {
             DriftReason::System => "the system itself: the rate does not depend on the step",
             DriftReason::Rounding => "rounding: the rate grows when the step is halved",
             DriftReason::Divergence => "the trajectory diverges",
+            DriftReason::Short => "unknown: the trajectory has few periods of the slowest mode",
             DriftReason::Unknown => "unknown: the simulator has one step only",
         }
     }
@@ -64,14 +70,20 @@ impl DriftReason {
 
 impl EnergyDrift {
     /// The drift over a trajectory from a displaced state; none if the energy is unknown.
-    pub(crate) fn measure(prober: &mut Prober<'_>) -> Result<Option<Self>, BlackBoxError> {
+    pub(crate) fn measure(
+        prober: &mut Prober<'_>,
+        longest_period: f64,
+    ) -> Result<Option<Self>, BlackBoxError> {
         let subject = prober.subject;
         let start = displaced(prober, DISPLACEMENT);
         let (Some(rest), Some(energy)) = (prober.energy(&subject.state)?, prober.energy(&start)?)
         else {
             return Ok(None);
         };
-        let steps = if subject.is_conservative { CONSERVATIVE_STEPS } else { STEPS };
+        let least = if subject.is_conservative { CONSERVATIVE_STEPS } else { STEPS };
+        let wanted = PERIODS * longest_period / subject.dt;
+        let steps = least.max((wanted as usize).min(MOST_STEPS)) / 2 * 2;
+        let is_short = wanted > 2.0 * steps as f64;
         let size = (energy - rest).abs().max(f64::MIN_POSITIVE);
         let Some(full) = rate(prober, &start, subject.dt, steps, size)? else {
             return Ok(Some(EnergyDrift {
@@ -90,6 +102,7 @@ impl EnergyDrift {
         let resolution = full.wobble.max(rounding);
         let reason = match &halved {
             _ if full.rate.abs() <= resolution => DriftReason::None,
+            _ if is_short => DriftReason::Short,
             None => DriftReason::Unknown,
             Some(half) => {
                 let ratio = full.rate.abs() / half.rate.abs().max(f64::MIN_POSITIVE);

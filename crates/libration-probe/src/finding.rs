@@ -5,16 +5,14 @@ use serde::Serialize;
 use crate::report::ProbeReport;
 use crate::{Bits, Memory, Subject};
 
-/// Rounding from which a step does not compute in `f64`: a part of that of `f32`, and far above that of `f64`.
-const COARSE: f64 = 1e-10;
+/// Rounding from which a step is rough, far above that of `f64`.
+const COARSE: f64 = 1e-9;
 /// Rates of a conservative system relative to its frequencies that are no roundings.
 const LEAK: f64 = 1e-9;
 /// Part of a step by which a delay may differ from the stated one.
 const DELAY: f64 = 1e-3;
 /// Largest distance of the linear prediction from a short run.
 const LINEAR: f64 = 0.01;
-/// Largest relative error of a row at which the step counts as differentiable.
-const DIFFERENTIABLE: f64 = 0.01;
 
 /// A finding.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -75,13 +73,19 @@ pub(crate) fn of_bits(bits: &Bits, found: &mut Vec<Finding>) {
             ),
         ));
     }
-    if bits.single_precision || bits.rounding > COARSE {
-        let all =
-            if bits.single_precision { "all results are numbers of f32" } else { "f64 has 1e-16" };
+    if bits.single_precision {
         found.push(Finding::fault(
             "single-precision",
             format!(
-                "the step computes in single precision: its rounding is {:.1e} of its results, {all}",
+                "the step computes in single precision: its rounding is {:.1e} of its results, that of f64 is 1e-16",
+                bits.rounding
+            ),
+        ));
+    } else if bits.rounding > COARSE {
+        found.push(Finding::warning(
+            "rough",
+            format!(
+                "the step is rough: along a line of points 10⁻⁶ apart its results jump by {:.1e} of their size",
                 bits.rounding
             ),
         ));
@@ -154,7 +158,7 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
             "a step of half the length gives the same bits: the simulator ignores dt".into(),
         ));
     }
-    if report.jacobian_error > DIFFERENTIABLE {
+    if !report.is_differentiable() {
         found.push(Finding::warning(
             "not-differentiable",
             format!(
@@ -176,7 +180,7 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
     if let Some(confirmation) =
         report.confirmation.as_ref().filter(|c| c.error > LINEAR || c.error.is_nan())
         && equilibrium.holds
-        && report.jacobian_error <= DIFFERENTIABLE
+        && report.is_differentiable()
     {
         found.push(Finding::warning(
             "nonlinear",
@@ -240,19 +244,14 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
     }
 }
 
-/// Velocities that drive themselves in an oscillation that grows.
+/// Velocities that drive themselves. A step cannot tell whether its author wants that, unless the system conserves energy.
 fn damping(report: &ProbeReport, found: &mut Vec<Finding>) {
-    let grows = report.modes.iter().any(|mode| {
-        mode.flow.is_some_and(|flow| flow.growth_rate > 10.0 * mode.error && flow.frequency > 0.0)
-    });
-    for driven in report.driven_velocities.iter().filter(|_| grows) {
-        found.push(Finding::fault(
-            "negative-damping",
-            format!(
-                "`{}` accelerates itself by {:+.4e} 1/s: its damping has the wrong sign",
-                driven.state, driven.rate
-            ),
-        ));
+    for driven in &report.driven_velocities {
+        let text = format!(
+            "`{}` accelerates itself by {:+.4e} 1/s: its damping has the wrong sign, unless the system is meant to be driven",
+            driven.state, driven.rate
+        );
+        found.push(Finding { kind: "negative-damping", is_fault: report.is_conservative, text });
     }
 }
 

@@ -6,13 +6,16 @@ use serde::Serialize;
 use crate::BlackBoxError;
 use crate::flow::Flow;
 use crate::linearised_step::LinearisedStep;
-use crate::modes::name_mode;
+use crate::modes::{eigenvalue_errors, name_mode};
 use crate::prober::Prober;
 
-/// Distance from the unit circle that counts as outside. The two factors of a free mass, both 1, are off by the root of a rounding.
-const OUTSIDE: f64 = 1e-5;
-/// Growth below the limit that is no rounding.
-const GROWS: f64 = 1e-8;
+/// Least distance from the unit circle that counts as outside.
+const OUTSIDE: f64 = 1e-12;
+/// Errors of a factor that count as outside, too. The two factors of a free mass, both 1, are off by the root of a rounding.
+const ERRORS: f64 = 10.0;
+/// Part of the growth beyond a limit that remains at half the step where a mode grows with every step: that by methods of orders 1 to 4
+/// falls by 4 to 32. Where a factor leaves the circle at a limit, nothing remains.
+const REMAINS: f64 = 0.02;
 /// Ratio of successive trial steps.
 const RATIO: f64 = 1.25;
 /// Longest and shortest trial relative to the step of the subject.
@@ -105,10 +108,10 @@ impl LargestStep {
         }
         // At the step of the subject, too: slow transients of stiff contacts look like growth close to the limit.
         let start = prober.subject.dt.min(low / 2.0);
-        let grows = |prober: &mut Prober<'_>, dt: f64| {
-            Ok::<_, BlackBoxError>(Trial::at(prober, rates, dt)?.excess > GROWS)
-        };
-        self.grows_always = grows(prober, low / 2.0)? && grows(prober, start)?;
+        let [half, own] = [low / 2.0, start].map(|dt| Trial::at(prober, rates, dt));
+        let (half, own) = (half?, own?);
+        let remains = half.excess > REMAINS * leaving.excess && half.excess > half.error;
+        self.grows_always = remains && own.excess > own.error;
         self.dt = (!self.grows_always).then_some(low);
         self.tried_up_to = self.tried_up_to.max(high);
         Ok(self)
@@ -120,6 +123,8 @@ struct Trial {
     step: LinearisedStep,
     /// The largest growth of a mode per step beyond that of the flow.
     excess: f64,
+    /// The estimated error of its factor.
+    error: f64,
     /// The factor of the mode that leaves the circle though the flow does not carry it out.
     leaving: Option<Complex64>,
     is_unknown: bool,
@@ -138,10 +143,12 @@ impl Trial {
         let growing = rates.iter().filter(|s| (s.re * dt).exp() > 1.0 + OUTSIDE).count();
         let leaving = factors.get(growing).copied();
         let excess = leaving.map_or(0.0, |z| z.norm() - 1.0);
-        Ok(Trial { step, excess, leaving, is_unknown })
+        let errors = eigenvalue_errors(&step.a, &step.a_errors, &factors);
+        let error = errors.get(growing).copied().unwrap_or(0.0);
+        Ok(Trial { step, excess, error, leaving, is_unknown })
     }
 
     fn is_unstable(&self) -> bool {
-        self.is_unknown || self.excess > OUTSIDE
+        self.is_unknown || self.excess > OUTSIDE.max(ERRORS * self.error)
     }
 }

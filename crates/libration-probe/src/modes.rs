@@ -41,6 +41,12 @@ pub struct Rates {
 }
 
 impl Rates {
+    /// The same with a growth rate of zero where it is no more than an error.
+    pub fn without_error(self, error: f64) -> Self {
+        let growth_rate = if self.growth_rate.abs() <= error { 0.0 } else { self.growth_rate };
+        Rates { growth_rate, ..self }
+    }
+
     fn of(s: Complex64) -> Self {
         let size = s.norm();
         Rates {
@@ -79,6 +85,11 @@ pub(crate) fn modes(
             .filter(|_| s.norm() > 100.0 * own_errors[k] / step.dt);
         let error = own_errors[k] / (z.norm() * step.dt);
         let error = flow_errors.as_ref().map_or(error, |errors| error.max(errors[k]));
+        let is_error = |added: f64| added.abs() * s.norm() <= error;
+        let numerical_damping =
+            numerical_damping.map(|added| if is_error(added) { 0.0 } else { added });
+        let (own, flow_rates) =
+            (own.without_error(error), flow_rates.map(|flow| flow.without_error(error)));
         found.push(ProbedMode {
             states: detail.mode.states,
             factor: [z.re, z.im],

@@ -238,7 +238,7 @@ fn linearisation(page: &mut Page, audit: &ProbeReport) {
     }
     if let Some(reference) = &audit.reference {
         text += &format!(
-            " The matrices of {} agree to {:.1e} of the largest entry of a row.",
+            " The matrices of {} differ from it by at most {:.1e} of the largest entry of a row.",
             reference.source, reference.difference
         );
     }

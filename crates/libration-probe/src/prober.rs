@@ -95,7 +95,7 @@ impl<'a> Prober<'a> {
         match next.iter().position(|x| !x.is_finite()) {
             None => Ok(next),
             Some(i) => {
-                let from: Vec<String> = state.iter().map(|x| format!("{x:.6}")).collect();
+                let from: Vec<String> = state.iter().map(|x| format!("{x:.6e}")).collect();
                 Err(BlackBoxError::NotFinite {
                     dt,
                     from: from.join(", "),

@@ -1,8 +1,8 @@
 //! Which integrator a step is, by its results.
 
-use libration::AnyMethod;
 use libration::analysis::StabilityFunction;
 use libration::integrator::ImplicitIntegrator;
+use libration::{AnyMethod, Method};
 use serde::Serialize;
 
 use crate::BlackBoxError;
@@ -10,6 +10,8 @@ use crate::convergence::displaced;
 use crate::prober::Prober;
 use crate::rates::NumericalSystem;
 
+/// States up to which all implicit methods are compared, also after one agrees.
+const MOST_STATES_OF_ALL: usize = 12;
 /// Part of the scales by which the state is displaced.
 const DISPLACEMENT: f64 = 0.25;
 /// Errors of rates that a candidate may be off, since each step uses several.
@@ -69,7 +71,10 @@ impl Match {
         for method in AnyMethod::all().filter(applies) {
             // Implicit methods take many more steps, and do the same as explicit ones where nothing is damped.
             let is_found = |found: &Candidate| found.distance <= ERRORS * error * dt + ROUNDING;
-            if matches!(method, AnyMethod::Implicit(_)) && candidates.iter().any(is_found) {
+            let is_large = start.len() > MOST_STATES_OF_ALL && candidates.iter().any(is_found);
+            let is_explicit = |found: &Candidate| Method::from_name(found.method).is_some();
+            let by_explicit = candidates.iter().any(|found| is_found(found) && is_explicit(found));
+            if matches!(method, AnyMethod::Implicit(_)) && (by_explicit || is_large) {
                 break;
             }
             let state = method.step(&system, system.point(&start), dt);

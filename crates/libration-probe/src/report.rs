@@ -19,6 +19,9 @@ use crate::{
     Match, Memory, Recognition, Subject,
 };
 
+/// Largest relative error of a row at which the step counts as differentiable.
+const DIFFERENTIABLE: f64 = 0.01;
+
 /// The results of an audit; the fields are the keys of `probe --json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct ProbeReport {
@@ -179,9 +182,10 @@ impl ProbeReport {
             return Ok(());
         }
         for (j, input) in memory.inputs.iter().enumerate() {
-            if input.last.unwrap_or(0) > 0 {
-                self.delays.extend(DelayAudit::run(prober, &step, j)?);
-            }
+            let is_late = input.last.unwrap_or(0) > 0;
+            let audit = DelayAudit::run(prober, &step, j, is_late)?;
+            // A command that is always in time needs no table.
+            self.delays.extend(audit.filter(|audit| is_late || audit.first_change.is_some()));
         }
         self.reference = ReferenceCheck::of(subject, &step);
         let flow = if has_fixed_dt { None } else { Flow::of(prober, &step)? };
@@ -210,6 +214,11 @@ impl ProbeReport {
         self.flow = flow.map(|flow| Matrices { a: flow.a, b: flow.b, a_errors: flow.a_errors });
         self.step = Some(Matrices { a: step.a, b: step.b, a_errors: step.a_errors });
         Ok(())
+    }
+
+    /// Whether the step has a derivative at the state.
+    pub fn is_differentiable(&self) -> bool {
+        self.jacobian_error <= DIFFERENTIABLE
     }
 
     /// Whether the step has no fault.

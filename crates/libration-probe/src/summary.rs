@@ -18,12 +18,20 @@ impl ProbeReport {
             [first] => sentences.push(format!("One fault: {first}.")),
             [first, ..] => sentences.push(format!("{} faults, the first: {first}.", faults.len())),
         }
-        sentences.extend(self.stability());
-        sentences.extend(self.integrator());
-        sentences.extend(self.damping());
+        if self.is_differentiable() {
+            sentences.extend(self.stability());
+            sentences.extend(self.integrator());
+            sentences.extend(self.damping());
+        } else if self.step.is_some() {
+            sentences.push(
+                "The step has no derivative at this state: a contact, a limit or dry friction changes there. Its modes, its longest stable \
+                 step and its latency say nothing about its motion."
+                    .into(),
+            );
+        }
         let validity = self.findings.iter().filter(|finding| finding.kind == "limited-validity");
         sentences.extend(validity.map(|finding| format!("{}.", capitalised(&finding.text))));
-        if faults.is_empty() && self.step.is_some() {
+        if faults.is_empty() && self.step.is_some() && self.is_differentiable() {
             sentences.push("No fault was found.".into());
         }
         sentences.join(" ")

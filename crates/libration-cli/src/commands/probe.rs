@@ -37,6 +37,11 @@ pub(crate) fn run(args: &ProbeArgs, quiet: bool) -> Result<(), Failure> {
     };
     terminal::print(&text)?;
     file.write(|| page(&report))?;
+    if plant_file.is_wanted() && report.inputs.is_empty() {
+        return Err(Failure::run(
+            "--save-plant: the step has no actions; a plant requires an input",
+        ));
+    }
     if plant_file.is_wanted() {
         let plant = report.modified_flow.as_ref().ok_or_else(|| {
             Failure::run("--save-plant: the step is no exact step of a plant in continuous time: a mode changes its sign from step to step, or the step was not linearised")

@@ -57,7 +57,7 @@ pub(super) fn describe(report: &ProbeReport) -> String {
     if let Some(reference) = &report.reference {
         let _ = writeln!(
             text,
-            "the matrices of {} agree to {:.1e}",
+            "the matrices of {} differ from it by at most {:.1e} of a row",
             reference.source, reference.difference
         );
     }

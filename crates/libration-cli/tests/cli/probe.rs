@@ -43,10 +43,9 @@ fn the_step_of_another_program_is_audited_and_its_page_answers_first() {
 fn a_fault_of_the_step_is_named_and_the_exit_code_is_1() {
     let folder = tempfile::tempdir().unwrap();
     let step = pendulum(&folder, -0.2);
-    let output = probe(&step, &["--json"]).code(1).get_output().stdout.clone();
+    let output = probe(&step, &["--json", "--conservative"]).code(1).get_output().stdout.clone();
     let report: Value = serde_json::from_slice(&output).unwrap();
     assert_eq!(report["findings"][0]["kind"], "negative-damping");
-    assert_eq!(report["findings"].as_array().unwrap().len(), 1);
     // The rate of its velocity by itself.
     let rate = report["driven_velocities"][0]["rate"].as_f64().unwrap();
     assert!((rate - 0.2).abs() < 1e-8, "{rate}");

@@ -1,11 +1,11 @@
 //! Gains of servos: whether they hold at a time step, by which margin, and with which integrator.
 
-mod largest_factor;
 mod page;
 mod report;
 mod servo_integrator;
 mod servo_mode;
 mod servos;
+mod stable_factors;
 
 pub use page::gains_page;
 pub use report::{GainReport, IntegratorRow, JointRow, gains};

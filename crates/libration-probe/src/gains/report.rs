@@ -3,8 +3,8 @@
 use libration::linear::eigenvalues;
 use serde::{Serialize, Serializer};
 
-use super::largest_factor::{LargestFactor, growth, is_stable};
 use super::servo_mode::{ServoMode, modes};
+use super::stable_factors::{StableFactors, growth, is_stable};
 use super::{ServoIntegrator, Servos};
 
 /// Most substeps that are tried.
@@ -36,6 +36,8 @@ pub struct GainReport {
     /// The largest factor of all gains of position, with the same gains of velocity.
     #[serde(serialize_with = "limit")]
     pub largest_factor: f64,
+    /// The least factor, if the given gains are too small; else 0.
+    pub least_factor: f64,
     /// The fewest substeps with which the gains hold; none up to 1000.
     pub fewest_substeps: Option<u32>,
     /// The joints.
@@ -85,6 +87,8 @@ pub struct IntegratorRow {
     /// The largest factor of all gains of position.
     #[serde(serialize_with = "limit")]
     pub largest_factor: f64,
+    /// The least factor, if the given gains are too small; else 0.
+    pub least_factor: f64,
     /// The fewest substeps.
     pub fewest_substeps: Option<u32>,
     /// The largest factor of a mode per substep.
@@ -109,12 +113,13 @@ pub fn gains(
     let h = dt / f64::from(substeps);
     let row = |integrator: ServoIntegrator| {
         let holds = is_stable(servos.step(integrator, h));
-        let factor = LargestFactor::search(|factor| servos.with_factor(factor).step(integrator, h));
+        let factor = StableFactors::search(|factor| servos.with_factor(factor).step(integrator, h));
         IntegratorRow {
             name: integrator.name(),
             title: integrator.title(),
             holds,
-            largest_factor: factor.value(),
+            largest_factor: factor.most,
+            least_factor: factor.least,
             fewest_substeps: fewest_substeps(servos, dt, integrator),
             spectral_radius: growth(servos.step(integrator, h)).exp(),
         }
@@ -130,6 +135,7 @@ pub fn gains(
         integrator_title: own.title,
         spectral_radius: own.spectral_radius,
         largest_factor: own.largest_factor,
+        least_factor: own.least_factor,
         fewest_substeps: own.fewest_substeps,
         joints: (0..servos.joints.len()).map(|i| joint_row(servos, i, integrator, h)).collect(),
         modes: modes(servos, integrator, h),
@@ -175,10 +181,10 @@ fn joint_row(servos: &Servos, i: usize, integrator: ServoIntegrator, h: f64) -> 
     let damping = kv + alone.damping[(0, 0)];
     let damping_ratio = (omega > 0.0).then(|| damping / inertia / (2.0 * omega));
     // Longer steps change ωh at the same damping ratio.
-    let longest = LargestFactor::search(|factor| alone.step(integrator, h * factor));
+    let longest = StableFactors::search(|factor| alone.step(integrator, h * factor));
     let factor =
-        LargestFactor::search(|factor| servos.with_joint_factor(i, factor).step(integrator, h));
-    let largest_kp = if kp == 0.0 { f64::INFINITY } else { 0.0 + kp * factor.value() };
+        StableFactors::search(|factor| servos.with_joint_factor(i, factor).step(integrator, h));
+    let largest_kp = if kp == 0.0 { f64::INFINITY } else { 0.0 + kp * factor.most };
     JointRow {
         name: servos.joints[i].name.clone(),
         inertia,
@@ -186,7 +192,7 @@ fn joint_row(servos: &Servos, i: usize, integrator: ServoIntegrator, h: f64) -> 
         kv,
         turn: omega * h,
         damping_ratio,
-        largest_turn: omega * h * longest.value(),
+        largest_turn: omega * h * longest.most,
         largest_kp,
     }
 }
@@ -200,8 +206,19 @@ impl GainReport {
             format!("{} substeps of {h:.3e} s", self.substeps)
         };
         if let Some(growth) = self.growth_in_continuous_time {
+            let window = match (self.least_factor, self.largest_factor) {
+                (0.0, _) => String::new(),
+                (least, f64::INFINITY) => format!(
+                    " With {} and this step gains of position hold from {least:.4} times the given ones on.",
+                    self.integrator
+                ),
+                (least, most) => format!(
+                    " With {} and this step gains of position hold from {least:.4} to {most:.4} times the given ones.",
+                    self.integrator
+                ),
+            };
             return format!(
-                "The motion is unstable in continuous time, whatever the step: it grows by {growth:.4} 1/s with these gains and stiffnesses. {LIMITATION}"
+                "The motion is unstable in continuous time, whatever the step: it grows by {growth:.4} 1/s with these gains and stiffnesses.{window} {LIMITATION}"
             );
         }
         let mut text = if self.holds {

@@ -56,9 +56,7 @@ impl ServoIntegrator {
     pub fn title(self) -> String {
         use ImplicitMethod::DampingImplicit;
         match self {
-            ServoIntegrator::JointDampingImplicit => {
-                "implicit damping of joints and all else explicit, MuJoCo's Euler".into()
-            }
+            ServoIntegrator::JointDampingImplicit => "MuJoCo's Euler".into(),
             ServoIntegrator::Method(AnyMethod::Implicit(DampingImplicit)) => {
                 format!("{}, MuJoCo's implicitfast", DampingImplicit.title())
             }

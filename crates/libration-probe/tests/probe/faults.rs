@@ -70,7 +70,7 @@ fn states_of_the_call_before_are_found() {
 fn damping_with_the_wrong_sign_is_found_but_an_unstable_equilibrium_is_no_fault() {
     let driven = Simulator::new(|x, u, dt| damped_pendulum(-0.1, x, u, dt));
     let report = driven.audit(&pendulum_subject());
-    assert_eq!(kinds(&report), ["negative-damping"]);
+    assert_eq!((kinds(&report), report.holds()), (vec!["negative-damping"], true));
     let rate = report.driven_velocities[0].rate;
     assert!((rate - 0.1).abs() < 1e-8, "{rate}");
     let mut upright = pendulum_subject();
@@ -212,4 +212,51 @@ fn a_delay_in_seconds_that_the_simulator_states_is_no_finding_and_is_flushed_at_
         "{:?}",
         report.findings
     );
+}
+
+#[test]
+fn damping_with_the_wrong_sign_is_found_also_where_nothing_oscillates() {
+    let driven = Simulator::new(|x, _, dt| {
+        let v = x[1] + dt * (-x[0] + 5.0 * x[1]);
+        vec![x[0] + dt * v, v]
+    });
+    assert!(kinds(&driven.audit(&pendulum_subject())).contains(&"negative-damping"));
+}
+
+#[test]
+fn a_rough_step_is_no_step_in_single_precision() {
+    // A smooth function of short waves is neither.
+    let waves = Simulator::new(|x, u, dt| pendulum(x, &[u[0] + (1e4 * x[0]).sin() / 1e4], dt));
+    assert!(!kinds(&waves.audit(&pendulum_subject())).contains(&"single-precision"));
+    // Noise by the bits of the state, and the tolerance of an iterative solver.
+    let hashed =
+        |x: f64| (x.to_bits().wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as f64 / 16_777_216.0;
+    for size in [1e-3, 1e-7] {
+        let rough = Simulator::new(|x, u, dt| {
+            let next = pendulum(x, u, dt);
+            vec![next[0], next[1] + size * (hashed(x[0]) - 0.5)]
+        });
+        let found = kinds(&rough.audit(&pendulum_subject()));
+        assert!(found.contains(&"rough") && !found.contains(&"single-precision"), "{found:?}");
+    }
+}
+
+#[test]
+fn a_command_that_is_late_now_and_then_is_found() {
+    let (calls, held) = (Cell::new(0), Cell::new(0.0));
+    let late = Simulator::new(|x, u, dt| {
+        calls.set(calls.get() + 1);
+        let before = held.replace(u[0]);
+        pendulum(x, &[if calls.get() % 997 == 0 { before } else { u[0] }], dt)
+    });
+    assert!(kinds(&late.audit(&pendulum_subject())).contains(&"irregular-delay"));
+}
+
+#[test]
+fn a_step_that_diverges_is_audited_and_called_unstable() {
+    // Rates of −1 and −10⁶ by explicit Euler.
+    let stiff = Simulator::new(|x, _, dt| vec![x[0] - dt * x[0], x[1] - dt * 1e6 * x[1]]);
+    let report = stiff.audit(&libration_probe::Subject::new("stiff", vec![0.0, 0.0], vec![], 0.01));
+    assert!(kinds(&report).contains(&"unstable-step"), "{:?}", report.findings);
+    assert!((report.largest_dt.unwrap().dt.unwrap() - 2e-6).abs() < 1e-11);
 }

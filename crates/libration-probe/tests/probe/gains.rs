@@ -93,3 +93,17 @@ fn a_motion_that_grows_in_continuous_time_is_no_fault_of_the_step() {
     let free = report(r#"{"mass": [1, 2], "kp": [0, 5]}"#, 0.001, 1, "symplectic-euler");
     assert_eq!((free.growth_in_continuous_time, free.holds), (None, true));
 }
+
+#[test]
+fn gains_that_are_too_small_beside_a_negative_stiffness_hold_within_a_window() {
+    // kp > 5 of the stiffness, and h²(kp − 5)/m + 2hkv/m < 4.
+    let found = report(
+        r#"{"mass": [1], "kp": [3], "kv": [0.5], "stiffness": [-5]}"#,
+        0.01,
+        1,
+        "symplectic-euler",
+    );
+    close(found.least_factor * 3.0, 5.0, 1e-6);
+    close(found.largest_factor * 3.0, 5.0 + (4.0 - 2.0 * 0.01 * 0.5) / 1e-4, 1e-6);
+    assert!(found.answer.contains("gains of position hold from 1.6667 to"), "{}", found.answer);
+}
