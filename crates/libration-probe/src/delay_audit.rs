@@ -46,23 +46,28 @@ impl DelayAudit {
         let response = |i: usize| (step.b[(i, input)] / subject.state_scale[i]).abs();
         let shown = (0..x.len()).max_by(|&i, &j| response(i).total_cmp(&response(j)));
         let Some(shown) = shown.filter(|i| response(*i) > 0.0) else { return Ok(None) };
-        let base = prober.step_one(x, u, dt)?[shown];
-        let slope = step.b[(shown, input)];
         let span = subject.action_scale[input] / 16.0;
+        let ramp = |phase: usize| {
+            let mut action = u.clone();
+            action[input] += span * (phase as f64 / RAMP as f64);
+            action
+        };
+        // The response to each command of the ramp, which need not be linear.
+        let responses: Vec<f64> = (0..RAMP)
+            .map(|phase| Ok(prober.step_one(x, &ramp(phase), dt)?[shown]))
+            .collect::<Result<_, BlackBoxError>>()?;
         let mut counts: BTreeMap<i64, usize> = BTreeMap::new();
         let (mut start, mut first_change) = (None, None);
         let steps = if is_late { STEPS[0] } else { STEPS[1] };
         for k in 0..RAMP + steps {
-            let mut action = u.clone();
-            action[input] += span * ((k % RAMP) as f64 / RAMP as f64);
-            let used =
-                (prober.call_one(x, &action, dt)?[shown] - base) / slope / span * RAMP as f64;
-            // Behind the end of a ramp a mixture of samples says nothing, and neither do calls before the first ramp.
-            let phase = (k % RAMP) as f64;
-            if k < RAMP || phase < RAMP as f64 / 2.0 {
+            let phase = k % RAMP;
+            let response = prober.call_one(x, &ramp(phase), dt)?[shown];
+            // In the first half of a ramp commands of the ramp before may act.
+            if k < RAMP || phase < RAMP / 2 {
                 continue;
             }
-            let delay = ((phase - used) * PARTS).round() as i64;
+            let Some(used) = place(&responses, response) else { return Ok(None) };
+            let delay = ((phase as f64 - used) * PARTS).round() as i64;
             *counts.entry(delay).or_default() += 1;
             if *start.get_or_insert(delay) != delay {
                 first_change.get_or_insert(k);
@@ -74,4 +79,16 @@ impl DelayAudit {
         let input = subject.inputs[input].name.clone();
         Ok(Some(DelayAudit { input, steps, delays, first_change }))
     }
+}
+
+/// Where a response lies between those of the ramp, in samples; none if these neither rise nor fall throughout.
+fn place(responses: &[f64], response: f64) -> Option<f64> {
+    let rises = responses[1] > responses[0];
+    let before = |a: f64, b: f64| if rises { a < b } else { a > b };
+    if !responses.windows(2).all(|pair| before(pair[0], pair[1])) {
+        return None;
+    }
+    let next = responses.partition_point(|r| before(*r, response)).clamp(1, responses.len() - 1);
+    let [low, high] = [responses[next - 1], responses[next]];
+    Some((next - 1) as f64 + (response - low) / (high - low))
 }
