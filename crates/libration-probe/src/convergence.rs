@@ -79,8 +79,10 @@ fn end(prober: &mut Prober<'_>, halvings: usize) -> Result<Vec<f64>, BlackBoxErr
     let subject = prober.subject;
     let dt = subject.dt * 2.0_f64.powi(-(halvings as i32));
     let mut x = displaced(prober, 0.1);
+    // Earlier calls are forgotten.
+    prober.step_one(&x, &subject.action, dt)?;
     for _ in 0..STEPS << halvings {
-        match prober.step_one(&x, &subject.action, dt) {
+        match prober.advance(&x, &subject.action, dt) {
             Ok(next) => x = next,
             Err(BlackBoxError::NotFinite { .. }) => return Ok(vec![f64::NAN; x.len()]),
             Err(error) => return Err(error),

@@ -136,10 +136,10 @@ fn rate(
     let mut x = start.to_vec();
     let mut energies = Vec::with_capacity(steps);
     for _ in 0..steps {
-        // The action is the same at each step, so that late commands need no calls of their own.
-        x = prober.call_one(&x, action, dt)?;
-        if x.iter().any(|x| !x.is_finite()) {
-            return Ok(None);
+        match prober.advance(&x, action, dt) {
+            Ok(next) => x = next,
+            Err(BlackBoxError::NotFinite { .. }) => return Ok(None),
+            Err(error) => return Err(error),
         }
         let Some(energy) = prober.energy(&x)? else { return Ok(None) };
         energies.push(energy / size);

@@ -144,7 +144,9 @@ impl Trial {
         let leaving = factors.get(growing).copied();
         let excess = leaving.map_or(0.0, |z| z.norm() - 1.0);
         let errors = eigenvalue_errors(&step.a, &step.a_errors, &factors);
-        let error = errors.get(growing).copied().unwrap_or(0.0);
+        // At least that of an entry: errors of a solver of constraints are not independent.
+        let error =
+            errors.get(growing).copied().unwrap_or(0.0).max(step.a_errors.largest() / ERRORS);
         Ok(Trial { step, excess, error, leaving, is_unknown })
     }
 

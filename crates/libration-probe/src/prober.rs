@@ -10,13 +10,15 @@ pub(crate) struct Prober<'a> {
     pub(crate) subject: &'a Subject,
     /// Calls with the same values after which a result no longer depends on what was before.
     pub(crate) memory: usize,
+    /// Whether results depend on earlier states.
+    pub(crate) has_state_memory: bool,
     /// Rows that were stepped.
     pub(crate) calls: u64,
 }
 
 impl<'a> Prober<'a> {
     pub(crate) fn new(black_box: &'a mut dyn BlackBox, subject: &'a Subject) -> Self {
-        Prober { black_box, subject, memory: 0, calls: 0 }
+        Prober { black_box, subject, memory: 0, has_state_memory: false, calls: 0 }
     }
 
     pub(crate) fn is_batched(&self) -> bool {
@@ -84,6 +86,20 @@ impl<'a> Prober<'a> {
         (self.memory as f64 * longer).ceil() as usize
     }
 
+    /// The finite state a step after `state` of a run under a constant action, which needs no repeated calls.
+    pub(crate) fn advance(
+        &mut self,
+        state: &[f64],
+        action: &[f64],
+        dt: f64,
+    ) -> Result<Vec<f64>, BlackBoxError> {
+        if self.has_state_memory {
+            return self.step_one(state, action, dt);
+        }
+        let next = self.call_one(state, action, dt)?;
+        self.finite(state, dt, next)
+    }
+
     /// The finite state a step after `state`.
     pub(crate) fn step_one(
         &mut self,
@@ -92,6 +108,10 @@ impl<'a> Prober<'a> {
         dt: f64,
     ) -> Result<Vec<f64>, BlackBoxError> {
         let next = self.step(&row(state), &row(action), dt)?.entries().to_vec();
+        self.finite(state, dt, next)
+    }
+
+    fn finite(&self, state: &[f64], dt: f64, next: Vec<f64>) -> Result<Vec<f64>, BlackBoxError> {
         match next.iter().position(|x| !x.is_finite()) {
             None => Ok(next),
             Some(i) => {
