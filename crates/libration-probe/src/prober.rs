@@ -10,6 +10,8 @@ pub(crate) struct Prober<'a> {
     pub(crate) subject: &'a Subject,
     /// Calls with the same values after which a result no longer depends on what was before.
     pub(crate) memory: usize,
+    /// The actions of the last call, and the number of calls in a row that had them.
+    held: (Matrix, usize),
     /// Whether results depend on earlier states.
     pub(crate) has_state_memory: bool,
     /// Rows that were stepped.
@@ -18,7 +20,14 @@ pub(crate) struct Prober<'a> {
 
 impl<'a> Prober<'a> {
     pub(crate) fn new(black_box: &'a mut dyn BlackBox, subject: &'a Subject) -> Self {
-        Prober { black_box, subject, memory: 0, has_state_memory: false, calls: 0 }
+        Prober {
+            black_box,
+            subject,
+            memory: 0,
+            held: (Matrix::zeros(0, 0), 0),
+            has_state_memory: false,
+            calls: 0,
+        }
     }
 
     pub(crate) fn is_batched(&self) -> bool {
@@ -37,6 +46,11 @@ impl<'a> Prober<'a> {
         dt: f64,
     ) -> Result<Matrix, BlackBoxError> {
         self.calls += states.rows() as u64;
+        if self.held.0 == *actions {
+            self.held.1 += 1;
+        } else {
+            self.held = (actions.clone(), 1);
+        }
         let next = self.black_box.step(states, actions, dt)?;
         let expected = (states.rows(), self.subject.state.len());
         check_shape("next states", states.rows(), (next.rows(), next.columns()), expected)?;
@@ -63,7 +77,7 @@ impl<'a> Prober<'a> {
     ) -> Result<Matrix, BlackBoxError> {
         let memory = self.memory_at(dt);
         if memory == 0 || self.is_batched() {
-            for _ in 0..memory {
+            for _ in self.known_calls(actions)..memory {
                 self.call(states, actions, dt)?;
             }
             return self.call(states, actions, dt);
@@ -72,12 +86,17 @@ impl<'a> Prober<'a> {
         for i in 0..states.rows() {
             let (state, action) = (row(states.row(i)), row(actions.row(i)));
             let alone = |prober: &mut Self| prober.call(&state, &action, dt);
-            for _ in 0..memory {
+            for _ in self.known_calls(&action)..memory {
                 alone(self)?;
             }
             next.row_mut(i).copy_from_slice(alone(self)?.row(0));
         }
         Ok(next)
+    }
+
+    /// Calls in a row that had these actions, and need no repetition: none if earlier states count.
+    fn known_calls(&self, actions: &Matrix) -> usize {
+        if self.held.0 == *actions && !self.has_state_memory { self.held.1 } else { 0 }
     }
 
     /// Calls of `dt` seconds after which earlier ones are forgotten: a memory may last calls or seconds.

@@ -105,8 +105,8 @@ pub fn probe(
     prober.step_one(&subject.state, &subject.action, subject.dt)?;
     let memory = Memory::measure(prober)?;
     // A delay that grows later, by a step or two, is flushed as well.
-    let spare = |calls: usize| if calls == 0 { 0 } else { calls + 2 };
-    prober.memory = spare(memory.calls.unwrap_or(memory.tried));
+    let calls = memory.calls.unwrap_or(memory.tried);
+    prober.memory = if calls == 0 { 0 } else { calls + 2 };
     prober.has_state_memory = memory.state.last.unwrap_or(0) > 0;
     let bits = Bits::check(prober)?;
     of_bits(&bits, &mut findings);
