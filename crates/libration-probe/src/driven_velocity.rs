@@ -10,7 +10,7 @@ use crate::flow::Flow;
 pub struct DrivenVelocity {
     /// Its name.
     pub state: String,
-    /// The derivative of its rate by itself, in 1/s.
+    /// `∂v̇/∂v` of this velocity `v`, in 1/s.
     pub rate: f64,
 }
 

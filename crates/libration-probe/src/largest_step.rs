@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::BlackBoxError;
 use crate::flow::Flow;
-use crate::linearised_step::LinearisedStep;
+use crate::linearised_step::{LinearisedStep, largest_scaled};
 use crate::modes::{eigenvalue_errors, name_mode};
 use crate::prober::Prober;
 
@@ -54,8 +54,7 @@ impl LargestStep {
             reason: None,
         };
         let at = |prober: &mut Prober<'_>, dt: f64| Trial::at(prober, &rates, dt);
-        let mut trial = at(prober, start)?;
-        let is_unstable = trial.is_unstable();
+        let is_unstable = at(prober, start)?.is_unstable();
         let mut dt = start;
         // Up from a stable step, down from an unstable one.
         loop {
@@ -76,8 +75,7 @@ impl LargestStep {
                 return found.bisect(prober, &rates, low, high);
             }
             dt = next;
-            trial = other;
-            found.tried_up_to = found.tried_up_to.max(trial.step.dt);
+            found.tried_up_to = found.tried_up_to.max(dt);
         }
     }
 
@@ -145,8 +143,11 @@ impl Trial {
         let excess = leaving.map_or(0.0, |z| z.norm() - 1.0);
         let errors = eigenvalue_errors(&step.a, &step.a_errors, &factors);
         // At least that of an entry: errors of a solver of constraints are not independent.
-        let error =
-            errors.get(growing).copied().unwrap_or(0.0).max(step.a_errors.largest() / ERRORS);
+        let error = errors
+            .get(growing)
+            .copied()
+            .unwrap_or(0.0)
+            .max(largest_scaled(&step.a_errors, prober.subject) / ERRORS);
         Ok(Trial { step, excess, error, leaving, is_unknown })
     }
 

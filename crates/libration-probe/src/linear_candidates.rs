@@ -5,7 +5,7 @@ use libration::analysis::LinearStepper;
 use libration::linear::{Matrix, solve_matrix};
 
 use crate::flow::Flow;
-use crate::linearised_step::LinearisedStep;
+use crate::linearised_step::{LinearisedStep, largest_scaled};
 use crate::recognition::{Candidate, Match};
 use crate::{ServoIntegrator, Subject};
 
@@ -25,13 +25,7 @@ pub(crate) fn match_matrices(
     subject: &Subject,
 ) -> Option<Match> {
     let stepper = LinearStepper::new(cleaned)?;
-    let scaled = |matrix: &Matrix, i: usize, j: usize| {
-        (matrix[(i, j)] * subject.state_scale[j] / subject.state_scale[i]).abs()
-    };
-    let largest = |matrix: &Matrix| {
-        let places = (0..matrix.rows()).flat_map(|i| (0..matrix.columns()).map(move |j| (i, j)));
-        places.map(|(i, j)| scaled(matrix, i, j)).fold(0.0, f64::max)
-    };
+    let largest = |matrix: &Matrix| largest_scaled(matrix, subject);
     let mut candidates = Vec::new();
     let mut add = |method, title: String, update: Option<Matrix>| {
         let Some(update) = update.filter(Matrix::is_finite) else { return };

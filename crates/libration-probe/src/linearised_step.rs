@@ -103,6 +103,13 @@ impl LinearisedStep {
     }
 }
 
+/// The largest entry of a matrix states × states, in units of the scales.
+pub(crate) fn largest_scaled(matrix: &Matrix, subject: &Subject) -> f64 {
+    let scale = &subject.state_scale;
+    let places = (0..matrix.rows()).flat_map(|i| (0..matrix.columns()).map(move |j| (i, j)));
+    places.map(|(i, j)| (matrix[(i, j)] * scale[j] / scale[i]).abs()).fold(0.0, f64::max)
+}
+
 /// A plant with the names of the subject.
 pub(crate) fn plant_of(
     a: &Matrix,

@@ -111,13 +111,3 @@ impl Match {
         self.candidates.iter().filter(agrees).map(|candidate| candidate.title.as_str()).collect()
     }
 }
-
-impl Recognition {
-    /// Names of the integrators that agree, by results if there are any, else by the matrix.
-    pub fn methods(&self) -> &[&'static str] {
-        match (&self.by_results.methods[..], &self.by_matrix) {
-            ([], Some(by_matrix)) => &by_matrix.methods,
-            (methods, _) => methods,
-        }
-    }
-}

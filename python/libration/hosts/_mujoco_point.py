@@ -104,7 +104,7 @@ def state_of(model: Any, data: Any) -> Array:
 
 
 def copy_of(model: Any, data: Any) -> Any:
-    """Return data of one's own with the same state, and without messages of instability."""
+    """Return new data with the same state, and without messages of instability."""
     own = mujoco.MjData(model)
     mujoco.mj_setState(model, own, state_of(model, data), INTEGRATION)
     # MuJoCo prints and logs only the first warning of a kind.

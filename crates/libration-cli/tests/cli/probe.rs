@@ -46,7 +46,7 @@ fn a_fault_of_the_step_is_named_and_the_exit_code_is_1() {
     let output = probe(&step, &["--json", "--conservative"]).code(1).get_output().stdout.clone();
     let report: Value = serde_json::from_slice(&output).unwrap();
     assert_eq!(report["findings"][0]["kind"], "negative-damping");
-    // The rate of its velocity by itself.
+    // ∂v̇/∂v.
     let rate = report["driven_velocities"][0]["rate"].as_f64().unwrap();
     assert!((rate - 0.2).abs() < 1e-8, "{rate}");
 }

@@ -124,7 +124,9 @@ pub fn gains(
             spectral_radius: growth(servos.step(integrator, h)).exp(),
         }
     };
-    let own = row(integrator);
+    let integrators: Vec<IntegratorRow> = ServoIntegrator::all().map(row).collect();
+    let known = integrators.iter().find(|row| row.name == integrator.name());
+    let own = known.cloned().unwrap_or_else(|| row(integrator));
     let mut report = GainReport {
         answer: String::new(),
         holds: own.holds,
@@ -139,7 +141,7 @@ pub fn gains(
         fewest_substeps: own.fewest_substeps,
         joints: (0..servos.joints.len()).map(|i| joint_row(servos, i, integrator, h)).collect(),
         modes: modes(servos, integrator, h),
-        integrators: ServoIntegrator::all().map(row).collect(),
+        integrators,
         notes,
         repeat_command: String::new(),
     };
