@@ -4,14 +4,10 @@ use libration::linear::Matrix;
 use serde::Serialize;
 
 use crate::prober::{Prober, row};
-use crate::{BlackBoxError, FirstDifference, Recording};
+use crate::{BlackBoxError, FirstDifference, Recording, Rounding};
 
 /// Sizes of batches.
 const BATCHES: [usize; 3] = [1, 7, 4096];
-/// Roundings that single precision leaves in a step, relative to its results: a few of 6·10⁻⁸, or a part of one.
-const SINGLE: core::ops::Range<f64> = 3e-10..1e-6;
-/// Points of a line whose differences show rounding.
-const CLOSE: usize = 24;
 /// Calls with the same values, from which randomness shows.
 const REPETITIONS: usize = 8;
 
@@ -22,10 +18,8 @@ pub struct Bits {
     pub checks: Vec<BitCheck>,
     /// Whether results vary at random, and how.
     pub randomness: Option<Randomness>,
-    /// The rounding of results relative to their size; that of `f64` is 2·10⁻¹⁶.
-    pub rounding: f64,
-    /// Whether the step computes in single precision.
-    pub single_precision: bool,
+    /// Roundings of the step; none if results vary at random.
+    pub rounding: Option<Rounding>,
 }
 
 /// A comparison of the bits of two results that should be the same.
@@ -73,41 +67,9 @@ impl Bits {
         }
         let is_random = checks[0].difference.is_some();
         let randomness = if is_random { Some(Randomness::measure(prober)?) } else { None };
-        let entries = first.entries();
-        let is_single = |x: f64| f64::from(x as f32).to_bits() == x.to_bits();
-        let single_precision = entries.iter().all(|&x| is_single(x));
-        let rounding = if is_random { f64::NAN } else { noise_along_a_line(prober, -20)? };
-        // Rounding does not fall with the distance as the bend of a smooth function does. Much closer points are the same number in single
-        // precision, where a rough function is as rough.
-        let is_coarse = SINGLE.contains(&rounding)
-            && noise_along_a_line(prober, -22)? > rounding / 10.0
-            && noise_along_a_line(prober, -40)? < SINGLE.start / 10.0;
-        let single_precision = single_precision || is_coarse;
-        Ok(Bits { checks, randomness, rounding, single_precision })
+        let rounding = if is_random { None } else { Some(Rounding::measure(prober, &first)?) };
+        Ok(Bits { checks, randomness, rounding })
     }
-}
-
-/// The rounding of a step relative to its results: the fourth differences along a line of points, over the root of the sum of their
-/// squared coefficients.
-///
-/// At `2⁻²⁰` of the scales the points are so far apart that single precision parts them, and so close that a smooth function has no fourth
-/// difference.
-fn noise_along_a_line(prober: &mut Prober<'_>, exponent: i32) -> Result<f64, BlackBoxError> {
-    let subject = prober.subject;
-    let (x, scale) = (&subject.state, &subject.state_scale);
-    let n = x.len();
-    let states = Matrix::from_fn(CLOSE, n, |k, i| {
-        let step = (k as f64 + 0.3) * 2.0_f64.powi(exponent);
-        x[i] + scale[i] * (step + 0.013 * (1.0 + i as f64 / 7.0))
-    });
-    let actions = Matrix::from_fn(CLOSE, subject.action.len(), |_, j| subject.action[j]);
-    let next = prober.step(&states, &actions, subject.dt)?;
-    let fourth = |k: usize, i: usize| {
-        [1.0, -4.0, 6.0, -4.0, 1.0].iter().zip(k..).map(|(c, k)| c * next[(k, i)]).sum::<f64>()
-    };
-    let size = |i: usize| next[(0, i)].abs().max(0.01 * scale[i]);
-    let largest = |i: usize| (0..CLOSE - 4).map(|k| fourth(k, i).abs()).fold(0.0, f64::max);
-    Ok((0..n).map(|i| largest(i) / 70.0_f64.sqrt() / size(i)).fold(0.0, f64::max))
 }
 
 impl BitCheck {

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::report::ProbeReport;
-use crate::{Bits, Memory, Subject};
+use crate::{Bits, Memory, Observed, Subject};
 
 /// Rounding from which a step is rough, far above that of `f64`.
 const COARSE: f64 = 1e-9;
@@ -39,12 +39,18 @@ impl Finding {
 pub(crate) fn of_bits(bits: &Bits, found: &mut Vec<Finding>) {
     if let Some(random) = &bits.randomness {
         let size = random.deviations.iter().copied().fold(0.0, f64::max);
-        found.push(Finding::fault(
-            "not-reproducible",
-            format!(
-                "the same call gives different results (standard deviation {size:.2e}): random numbers, a clock, or a state that the step hides"
+        found.push(match size > 0.0 {
+            true => Finding::fault(
+                "not-reproducible",
+                format!(
+                    "the same call gives different results (standard deviation {size:.2e}): random numbers, a clock, or a state that the step hides"
+                ),
             ),
-        ));
+            false => Finding::fault(
+                "hidden-state",
+                "the same call gives different results after other calls, and the same ones when it is repeated: the step has a state that it does not return".into(),
+            ),
+        });
         match (random.environments_differ, random.generator_is_shared) {
             (_, Some(true)) => found.push(Finding::fault(
                 "shared-generator",
@@ -73,20 +79,27 @@ pub(crate) fn of_bits(bits: &Bits, found: &mut Vec<Finding>) {
             ),
         ));
     }
-    if bits.single_precision {
-        found.push(Finding::fault(
+    let Some(rounding) = &bits.rounding else { return };
+    match &rounding.single_precision[..] {
+        [] => {}
+        [whole] if whole == "the step" => found.push(Finding::fault(
             "single-precision",
             format!(
                 "the step computes in single precision: its rounding is {:.1e} of its results, that of f64 is 1e-16",
-                bits.rounding
+                rounding.results
             ),
-        ));
-    } else if bits.rounding > COARSE {
+        )),
+        parts => found.push(Finding::fault(
+            "single-precision",
+            format!("the step rounds {} to single precision", parts.join(", ")),
+        )),
+    }
+    if rounding.single_precision.is_empty() && rounding.results > COARSE {
         found.push(Finding::warning(
             "rough",
             format!(
                 "the step is rough: along a line of points 10⁻⁶ apart its results jump by {:.1e} of their size",
-                bits.rounding
+                rounding.results
             ),
         ));
     }
@@ -95,6 +108,20 @@ pub(crate) fn of_bits(bits: &Bits, found: &mut Vec<Finding>) {
 /// Findings about what a step remembers.
 pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Finding>) {
     let dt = subject.dt;
+    if let Some(settling) = &memory.settling {
+        let (of, held) = match settling.is_of_commands {
+            true => ("commands", "; the audit holds them"),
+            false => ("states", ""),
+        };
+        found.push(Finding::fault(
+            "hidden-state",
+            format!(
+                "results depend on the {of} of many calls ago, as those of a filter do: their influence falls by {:.4} per call (time constant {:.4} s), and the step does not return that state{held}",
+                settling.factor, settling.time_constant
+            ),
+        ));
+        return;
+    }
     if memory.calls.is_none() {
         found.push(Finding::fault(
             "hidden-state",
@@ -135,7 +162,20 @@ pub(crate) fn of_memory(memory: &Memory, subject: &Subject, found: &mut Vec<Find
             ),
         ));
     }
-    if memory.staleness() != 0.0 {
+    match memory.observed {
+        Some(Observed::Nothing) => found.push(Finding::fault(
+            "constant-observation",
+            "observations do not respond to the states".into(),
+        )),
+        Some(Observed::Given) => found.push(Finding::fault(
+            "stale-observation",
+            format!(
+                "observations are those of the given states and not of the returned ones, one step ({dt:.4} s) older: the simulator stores them before its update"
+            ),
+        )),
+        _ => {}
+    }
+    if memory.observed == Some(Observed::Asked) && memory.staleness() != 0.0 {
         found.push(Finding::fault(
             "stale-observation",
             format!(

@@ -1,6 +1,6 @@
 //! Latency of commands that nobody stated: by calls that come late, and by the phase of the step.
 
-use libration::linear::{Complex64, Matrix, exponential, solve};
+use libration::linear::{Complex64, Discretisation, Matrix, solve};
 use serde::Serialize;
 
 use crate::flow::Flow;
@@ -36,7 +36,7 @@ pub(crate) fn hidden_latencies(
     pairs: Option<&[(usize, usize)]>,
     subject: &Subject,
 ) -> Vec<HiddenLatency> {
-    let exact = flow.map(|flow| exact_step(flow, step.dt));
+    let exact = flow.map(|flow| Discretisation::exact(&flow.a, &flow.b, step.dt));
     let of = |j: usize| {
         let by_phase = exact.as_ref().and_then(|exact| delay(step, exact, pairs, subject, j));
         let late_steps = memory.latency(j);
@@ -53,27 +53,17 @@ pub(crate) fn hidden_latencies(
     (0..subject.inputs.len()).map(of).collect()
 }
 
-/// The matrices of an exact step under a held command.
-fn exact_step(flow: &Flow, dt: f64) -> (Matrix, Matrix) {
-    let (n, m) = (flow.a.rows(), flow.b.columns());
-    let mut rates = Matrix::zeros(n + m, n + m);
-    rates.set_block((0, 0), &flow.a);
-    rates.set_block((0, n), &flow.b);
-    let whole = exponential(&rates.scaled(dt));
-    (whole.block((0, 0), (n, n)), whole.block((0, n), (n, m)))
-}
-
 /// The state that responds most to an input, and by how much it is later than in an exact step.
 fn delay(
     step: &LinearisedStep,
-    exact: &(Matrix, Matrix),
+    exact: &Discretisation,
     pairs: Option<&[(usize, usize)]>,
     subject: &Subject,
     input: usize,
 ) -> Option<(usize, f64)> {
     let turn = |steps: f64| core::f64::consts::TAU / steps;
     let respond = |a: &Matrix, b: &Matrix, angle: f64| response(a, b, input, angle);
-    let middle = respond(&exact.0, &exact.1, turn(STEPS_PER_PERIOD[1]));
+    let middle = respond(&exact.phi, &exact.gamma, turn(STEPS_PER_PERIOD[1]));
     let candidates: Vec<usize> = match pairs {
         Some(pairs) => pairs.iter().map(|(q, _)| *q).collect(),
         None => (0..step.a.rows()).collect(),
@@ -85,7 +75,7 @@ fn delay(
         .map(|steps| {
             let angle = turn(*steps);
             let own = respond(&step.a, &step.b, angle)[state];
-            let wanted = respond(&exact.0, &exact.1, angle)[state];
+            let wanted = respond(&exact.phi, &exact.gamma, angle)[state];
             (wanted / own).arg() / angle * step.dt
         })
         .filter(|delay| delay.is_finite())

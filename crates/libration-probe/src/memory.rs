@@ -3,15 +3,17 @@
 use serde::Serialize;
 
 use crate::BlackBoxError;
+use crate::observed::Observed;
 use crate::prober::Prober;
+use crate::settling::Settling;
 
 /// Calls after which a black box should have forgotten what was before.
-const MOST_CALLS: usize = 64;
+pub(crate) const MOST_CALLS: usize = 64;
 
 /// The influence of a call on the results of later ones.
 ///
 /// All calls have the same state and action but one, in which a single action or all states differ. The results that differ are those
-/// that the one call reaches.
+/// that the one call reaches. Each change is made after an even and after an odd number of calls, since a delay may alternate.
 #[derive(Clone, Debug, Serialize)]
 pub struct Memory {
     /// Calls after which a result no longer depends on earlier ones; none: more than were tried.
@@ -24,6 +26,10 @@ pub struct Memory {
     pub state: Lateness,
     /// When observations respond to it; none without observations.
     pub observation: Option<Lateness>,
+    /// Which state observations show; none without observations.
+    pub observed: Option<Observed>,
+    /// How the influence of earlier calls fades, if it is a filter's.
+    pub settling: Option<Settling>,
 }
 
 /// When results respond to a change that lasts for one call.
@@ -39,17 +45,21 @@ pub struct Lateness {
     pub mean: f64,
 }
 
-/// Sizes of the responses of one sequence of calls, from that of the changed call.
+/// Sizes of the responses to one changed call, from its own.
+#[derive(Default)]
 struct Response {
     states: Vec<f64>,
     observations: Option<Vec<f64>>,
 }
 
 impl Memory {
-    /// Measures the memory of a black box that gives the same results twice.
+    /// Measures the memory of a black box.
     pub(crate) fn measure(prober: &mut Prober<'_>) -> Result<Self, BlackBoxError> {
         let subject = prober.subject;
         let (x, u) = (&subject.state, &subject.action);
+        for _ in 0..MOST_CALLS {
+            prober.call_one(x, u, subject.dt)?;
+        }
         let mut inputs = Vec::new();
         for j in 0..u.len() {
             let mut changed = u.clone();
@@ -57,10 +67,7 @@ impl Memory {
             let response = respond(prober, x, &changed)?;
             inputs.push(Lateness::of(&subject.inputs[j].name, &response.states));
         }
-        let mut moved = x.clone();
-        let shift = |i: usize| (1.0 + i as f64 / 7.0) / 64.0;
-        moved.iter_mut().enumerate().for_each(|(i, x)| *x += shift(i) * subject.state_scale[i]);
-        let response = respond(prober, &moved, u)?;
+        let response = respond(prober, &moved(prober), u)?;
         let state = Lateness::of("state", &response.states);
         let observation =
             response.observations.as_ref().map(|sizes| Lateness::of("observation", sizes));
@@ -68,7 +75,18 @@ impl Memory {
         let calls = all().filter_map(|lateness| lateness.last).max().unwrap_or(0);
         // The last call that was tried still responds: the end of the memory is beyond it.
         let calls = (calls < MOST_CALLS).then_some(calls);
-        Ok(Memory { calls, tried: MOST_CALLS, inputs, state, observation })
+        let settling = if calls.is_none() { Settling::measure(prober)? } else { None };
+        let mut memory = Memory {
+            calls,
+            tried: MOST_CALLS,
+            inputs,
+            state,
+            observation,
+            observed: None,
+            settling,
+        };
+        memory.observed = Observed::of(prober, &memory)?;
+        Ok(memory)
     }
 
     /// The latency of an action beyond that of a step that uses it at once, in steps.
@@ -78,7 +96,9 @@ impl Memory {
 
     /// Steps by which observations are later than the states.
     pub fn staleness(&self) -> f64 {
-        self.observation.as_ref().map_or(0.0, |observation| observation.mean - self.state.mean)
+        let late = self.observation.as_ref().filter(|found| found.first.is_some());
+        let late = late.map_or(0.0, |observation| observation.mean - self.state.mean);
+        late + if self.observed == Some(Observed::Given) { 1.0 } else { 0.0 }
     }
 }
 
@@ -93,18 +113,38 @@ impl Lateness {
     }
 }
 
-/// Calls with the subject's state and action until they are forgotten, one with others, and the responses to it.
+/// All states of the subject, moved by different parts of their scales.
+pub(crate) fn moved(prober: &Prober<'_>) -> Vec<f64> {
+    let subject = prober.subject;
+    let shift = |i: usize| (1.0 + i as f64 / 7.0) / 64.0 * subject.state_scale[i];
+    subject.state.iter().enumerate().map(|(i, x)| x + shift(i)).collect()
+}
+
+/// Responses to one call with another state or action, after an even and after an odd number of calls; the larger of both.
 fn respond(prober: &mut Prober<'_>, x: &[f64], u: &[f64]) -> Result<Response, BlackBoxError> {
-    let (base_x, base_u, dt) = (&prober.subject.state, &prober.subject.action, prober.subject.dt);
-    let mut base = (Vec::new(), None);
-    for _ in 0..=MOST_CALLS {
-        base = observed(prober, base_x, base_u, dt)?;
+    let mut first = respond_now(prober, x, u)?;
+    // One call that counts: the next change comes at the other parity.
+    let second = respond_now(prober, x, u)?;
+    let merge = |a: &mut Vec<f64>, b: &[f64]| {
+        a.iter_mut().zip(b).for_each(|(a, b)| *a = a.max(*b));
+    };
+    merge(&mut first.states, &second.states);
+    if let (Some(a), Some(b)) = (&mut first.observations, &second.observations) {
+        merge(a, b);
     }
+    Ok(first)
+}
+
+/// A call with the subject's state and action, one with others, and the responses of those that follow.
+fn respond_now(prober: &mut Prober<'_>, x: &[f64], u: &[f64]) -> Result<Response, BlackBoxError> {
+    let (base_x, base_u) = (&prober.subject.state, &prober.subject.action);
+    let base = observed(prober, base_x, base_u)?;
     let scale = &prober.subject.state_scale;
-    let mut response = Response { states: Vec::new(), observations: None };
-    for k in 0..=MOST_CALLS {
+    let mut response = Response::default();
+    // With the call before these are an odd number.
+    for k in 0..=MOST_CALLS + 1 {
         let (x, u) = if k == 0 { (x, u) } else { (&base_x[..], &base_u[..]) };
-        let (next, observation) = observed(prober, x, u, dt)?;
+        let (next, observation) = observed(prober, x, u)?;
         response.states.push(distance(&next, &base.0, Some(scale)));
         if let (Some(seen), Some(base)) = (&observation, &base.1) {
             response.observations.get_or_insert_default().push(distance(seen, base, None));
@@ -113,21 +153,16 @@ fn respond(prober: &mut Prober<'_>, x: &[f64], u: &[f64]) -> Result<Response, Bl
     Ok(response)
 }
 
-type Observed = (Vec<f64>, Option<Vec<f64>>);
+type Seen = (Vec<f64>, Option<Vec<f64>>);
 
-fn observed(
-    prober: &mut Prober<'_>,
-    x: &[f64],
-    u: &[f64],
-    dt: f64,
-) -> Result<Observed, BlackBoxError> {
-    let next = prober.call_one(x, u, dt)?;
+fn observed(prober: &mut Prober<'_>, x: &[f64], u: &[f64]) -> Result<Seen, BlackBoxError> {
+    let next = prober.call_one(x, u, prober.subject.dt)?;
     let observation = prober.observe(&next)?;
     Ok((next, observation))
 }
 
 /// The distance of two results; any difference of bits counts.
-fn distance(a: &[f64], b: &[f64], scale: Option<&[f64]>) -> f64 {
+pub(crate) fn distance(a: &[f64], b: &[f64], scale: Option<&[f64]>) -> f64 {
     let size = |i: usize| scale.map_or(1.0, |scale| scale[i]);
     let apart = |i: usize| match a[i].to_bits() == b[i].to_bits() {
         true => 0.0,

@@ -208,10 +208,12 @@ fn bits(page: &mut Page, audit: &ProbeReport) {
         table.push([check.name.clone().into(), result.into()]);
     }
     page.table(&table, 4);
-    page.paragraph(format!(
-        "Rounding of a step relative to its results: {:.1e}.",
-        audit.bits.rounding
-    ));
+    if let Some(rounding) = &audit.bits.rounding {
+        page.paragraph(format!(
+            "Rounding of a step relative to its results: {:.1e}.",
+            rounding.results
+        ));
+    }
 }
 
 fn linearisation(page: &mut Page, audit: &ProbeReport) {

@@ -6,6 +6,7 @@ use serde::Serialize;
 use crate::driven_velocity::{DrivenVelocity, driven_velocities};
 use crate::finding::{Finding, of_bits, of_memory, of_report};
 use crate::flow::Flow;
+use crate::held_action::HeldAction;
 use crate::hidden_latency::{HiddenLatency, hidden_latencies};
 use crate::linear_candidates::match_matrices;
 use crate::linearised_step::LinearisedStep;
@@ -16,7 +17,7 @@ use crate::reference_check::ReferenceCheck;
 use crate::rest::Rest;
 use crate::{
     Bits, BlackBox, BlackBoxError, Confirmation, Convergence, Defects, DelayAudit, LargestStep,
-    Match, Memory, Recognition, Subject,
+    Match, Memory, Recognition, Settling, Subject,
 };
 
 /// Largest relative error of a row at which the step counts as differentiable.
@@ -99,26 +100,44 @@ pub fn probe(
     subject: &Subject,
 ) -> Result<ProbeReport, BlackBoxError> {
     let mut prober = Prober::new(black_box, subject);
-    let prober = &mut prober;
-    let mut findings = Vec::new();
     // Fails early where the simulator does.
     prober.step_one(&subject.state, &subject.action, subject.dt)?;
-    let memory = Memory::measure(prober)?;
+    let memory = Memory::measure(&mut prober)?;
+    let calls = prober.calls;
+    let filters_commands = |settling: &Settling| settling.is_of_commands && settling.is_settled;
+    if memory.settling.as_ref().is_some_and(filters_commands) {
+        let held = subject.with_held_action();
+        let mut black_box = HeldAction { black_box, action: &subject.action };
+        let mut report = examine(&mut Prober::new(&mut black_box, &held), memory)?;
+        report.calls += calls;
+        return Ok(report);
+    }
+    examine(&mut prober, memory)
+}
+
+/// The audit of a black box whose memory is known.
+fn examine(prober: &mut Prober<'_>, memory: Memory) -> Result<ProbeReport, BlackBoxError> {
+    let subject = prober.subject;
+    let is_held = memory.settling.is_some() && subject.inputs.is_empty();
     // A delay that grows later, by a step or two, is flushed as well.
-    let calls = memory.calls.unwrap_or(memory.tried);
+    let calls = if is_held { 0 } else { memory.calls.unwrap_or(memory.tried) };
     prober.memory = if calls == 0 { 0 } else { calls + 2 };
     prober.has_state_memory = memory.state.last.unwrap_or(0) > 0;
+    let mut findings = Vec::new();
     let bits = Bits::check(prober)?;
-    of_bits(&bits, &mut findings);
-    let mut report = ProbeReport::empty(subject, bits);
-    if report.bits.randomness.is_none() {
-        of_memory(&memory, subject, &mut findings);
-        if memory.calls.is_some() {
-            report.audit(prober, &memory)?;
-            of_report(&report, subject, &mut findings);
-        }
-        report.memory = Some(memory);
+    // What is remembered explains differences of bits.
+    if memory.settling.is_none() || is_held {
+        of_bits(&bits, &mut findings);
     }
+    let mut report = ProbeReport::empty(subject, bits);
+    if report.bits.randomness.is_none() || memory.settling.is_some() {
+        of_memory(&memory, subject, &mut findings);
+    }
+    if report.bits.randomness.is_none() && (is_held || memory.calls.is_some()) {
+        report.audit(prober, &memory)?;
+        of_report(&report, subject, &mut findings);
+    }
+    report.memory = Some(memory);
     report.findings = findings;
     report.calls = prober.calls;
     report.answer = report.summary();
@@ -184,7 +203,7 @@ impl ProbeReport {
         if !step.is_finite() {
             return Ok(());
         }
-        for (j, input) in memory.inputs.iter().enumerate() {
+        for (j, input) in memory.inputs.iter().enumerate().take(subject.inputs.len()) {
             let is_late = input.last.unwrap_or(0) > 0;
             let audit = DelayAudit::run(prober, &step, j, is_late)?;
             // A command that is always in time needs no table.

@@ -60,6 +60,89 @@ fn a_stale_observation_is_found() {
 }
 
 #[test]
+fn an_observation_that_is_stored_before_the_update_or_never_changes_is_found() {
+    let audit = |sees: fn(&[f64]) -> f64, is_before: bool| {
+        let stored = Cell::new(0.0);
+        let mut simulator = Simulator::new(|x, u, dt| {
+            let next = pendulum(x, u, dt);
+            stored.set(sees(if is_before { x } else { &next }));
+            next
+        });
+        simulator.observe = Some(Box::new(|_| vec![stored.get()]));
+        let report = simulator.audit(&pendulum_subject());
+        (kinds(&report), report.memory.unwrap().staleness())
+    };
+    for sees in [|x: &[f64]| x[0], |x: &[f64]| x[1], |x: &[f64]| x[0].cos() * x[1]] {
+        assert_eq!(audit(sees, true), (vec!["stale-observation"], 1.0));
+        assert_eq!(audit(sees, false), (vec![], 0.0));
+    }
+    assert_eq!(audit(|_| 3.0, false), (vec!["constant-observation"], 0.0));
+}
+
+#[test]
+fn a_filter_of_commands_is_a_hidden_state_and_the_states_are_audited() {
+    for tau in [0.05, 0.3, 2.0] {
+        let filtered = Cell::new(0.0);
+        let report = Simulator::new(|x, u, dt| {
+            filtered.set(filtered.get() + (u[0] - filtered.get()) * (1.0 - (-dt / tau).exp()));
+            damped_pendulum(0.3, x, &[filtered.get()], dt)
+        })
+        .audit(&pendulum_subject());
+        assert_eq!(kinds(&report), ["hidden-state"], "{:?}", report.findings);
+        let memory = report.memory.as_ref().unwrap();
+        let found = memory.settling.as_ref().unwrap();
+        // Differences of 10⁻⁴ or less with roundings of 10⁻¹⁶ beside forces of order one.
+        assert!((found.time_constant - tau).abs() < 1e-3 * tau, "{found:?}");
+        // 0.05 s are forgotten in 200 calls; what lasts 2 s is not gone after 4,096 calls, and no audit can be made.
+        assert_eq!(report.modes.is_empty(), tau > 1.0, "{report:?}");
+    }
+}
+
+#[test]
+fn a_hidden_state_of_states_is_no_filter_of_commands() {
+    let filtered = Cell::new(0.0);
+    let report = Simulator::new(|x, u, dt| {
+        filtered.set(filtered.get() + 0.1 * (x[1] - filtered.get()));
+        damped_pendulum(0.3, &[x[0], filtered.get()], u, dt)
+    })
+    .audit(&pendulum_subject());
+    assert_eq!(kinds(&report), ["hidden-state"], "{:?}", report.findings);
+    assert!(!report.memory.unwrap().settling.unwrap().is_of_commands);
+    assert!(report.modes.is_empty());
+}
+
+#[test]
+fn a_delay_that_alternates_is_late_by_its_mean() {
+    let calls = Cell::new(0);
+    let queue = RefCell::new([0.0; 3]);
+    let late = Simulator::new(|x, u, dt| {
+        calls.set(calls.get() + 1);
+        let mut queue = queue.borrow_mut();
+        *queue = [u[0], queue[0], queue[1]];
+        pendulum(x, &[queue[1 + calls.get() % 2]], dt)
+    });
+    let report = late.audit(&pendulum_subject());
+    assert_eq!(kinds(&report), ["late-command", "irregular-delay"], "{:?}", report.findings);
+    assert!((report.hidden_latency[0].late_steps - 1.5).abs() < 1e-12, "{report:?}");
+}
+
+#[test]
+fn an_action_or_a_length_in_single_precision_is_found_and_named() {
+    let single = |x: f64| f64::from(x as f32);
+    let audit = |step: &dyn Fn(&[f64], &[f64], f64) -> Vec<f64>| {
+        let report = Simulator::new(step).audit(&pendulum_subject());
+        report.findings.iter().map(|found| found.text.clone()).collect::<Vec<_>>()
+    };
+    let action = audit(&|x, u, dt| pendulum(x, &[single(u[0])], dt));
+    assert_eq!(action, ["the step rounds `u1` to single precision"]);
+    let length = audit(&|x, u, dt| pendulum(x, u, single(dt)));
+    assert_eq!(length, ["the step rounds dt to single precision"]);
+    // A weak action is no rounded one, nor is a limit.
+    assert_eq!(audit(&|x, u, dt| pendulum(x, &[1e-6 * u[0]], dt)), [""; 0]);
+    assert_eq!(audit(&|x, u, dt| pendulum(x, &[u[0].min(0.013 + 3e-6)], dt)), [""; 0]);
+}
+
+#[test]
 fn states_of_the_call_before_are_found() {
     let held = RefCell::new(vec![0.0, 0.0]);
     let late = Simulator::new(move |x, u, dt| pendulum(&held.replace(x.to_vec()), u, dt));

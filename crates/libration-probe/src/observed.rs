@@ -1,0 +1,64 @@
+//! Which state observations show.
+
+use serde::Serialize;
+
+use crate::convergence::displaced;
+use crate::prober::Prober;
+use crate::{BlackBoxError, Memory};
+
+/// The state that observations show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Observed {
+    /// That which is asked for, or the last one that was returned.
+    Asked,
+    /// That which was given to the last step: the simulator stores the observation before its update.
+    Given,
+    /// None: all observations are the same.
+    Nothing,
+}
+
+impl Observed {
+    /// None without observations.
+    ///
+    /// An observation that does not depend on the state that is asked for is one that the simulator has stored. That of a returned state
+    /// depends on the length of the step or on the action, as the state does; that of a given state does not.
+    pub(crate) fn of(
+        prober: &mut Prober<'_>,
+        memory: &Memory,
+    ) -> Result<Option<Self>, BlackBoxError> {
+        let Some(response) = &memory.observation else { return Ok(None) };
+        if response.first.is_none() {
+            return Ok(Some(Observed::Nothing));
+        }
+        let subject = prober.subject;
+        let (dt, u) = (subject.dt, &subject.action);
+        let (x, other) = (displaced(prober, 0.1), displaced(prober, 0.2));
+        let (next, seen) = after(prober, &x, u, dt)?;
+        let is_stored = prober.observe(&other)? == seen;
+        if !is_stored || subject.has_fixed_dt {
+            return Ok(Some(Observed::Asked));
+        }
+        let mut changed = u.clone();
+        changed.iter_mut().zip(&subject.action_scale).for_each(|(u, scale)| *u += scale / 64.0);
+        let (of_half, seen_of_half) = after(prober, &x, u, dt / 2.0)?;
+        let (_, seen_of_changed) = after(prober, &x, &changed, dt)?;
+        let (_, seen_later) = after(prober, &next, u, dt)?;
+        let is_of_given = seen_of_half == seen && seen_of_changed == seen;
+        // Else an observation of what never changes would be one of a given state.
+        let shows_changes = of_half != next && seen_later != seen;
+        Ok(Some(if is_of_given && shows_changes { Observed::Given } else { Observed::Asked }))
+    }
+}
+
+/// A step, and the observation after it.
+fn after(
+    prober: &mut Prober<'_>,
+    x: &[f64],
+    u: &[f64],
+    dt: f64,
+) -> Result<(Vec<f64>, Option<Vec<f64>>), BlackBoxError> {
+    let next = prober.step_one(x, u, dt)?;
+    let seen = prober.observe(&next)?;
+    Ok((next, seen))
+}

@@ -1,0 +1,126 @@
+//! How the influence of earlier calls fades.
+
+use serde::Serialize;
+
+use crate::BlackBoxError;
+use crate::memory::{MOST_CALLS, distance, moved};
+use crate::prober::Prober;
+
+/// Calls until the influence must be gone.
+const PATIENCE: usize = 4096;
+/// Distances in units of the scales that change no bit of a number of ordinary size.
+const GONE: f64 = 1e-20;
+/// Largest root mean square of the residuals of a decay in the logarithm, far below that of noise, which is about 1.
+const RESIDUAL: f64 = 0.3;
+/// Least decay of distances that are no single exponential, from their first to their last quarter.
+const DECAY: f64 = 1.0 / 3.0;
+
+/// The influence of earlier calls that fades as that of a filter does.
+#[derive(Clone, Debug, Serialize)]
+pub struct Settling {
+    /// Whether it is that of earlier commands alone.
+    pub is_of_commands: bool,
+    /// Its factor per call.
+    pub factor: f64,
+    /// Its time constant in s, if it fades with the time of the steps.
+    pub time_constant: f64,
+    /// Whether results are the same bits in the end.
+    pub is_settled: bool,
+}
+
+impl Settling {
+    /// None if results do not settle: they vary at random, or the influence does not fade.
+    pub(crate) fn measure(prober: &mut Prober<'_>) -> Result<Option<Self>, BlackBoxError> {
+        let subject = prober.subject;
+        let scales = subject.action.iter().zip(&subject.action_scale);
+        let changed: Vec<f64> = scales.map(|(u, scale)| u + scale / 64.0).collect();
+        let Some(factor) = disturb(prober, &moved(prober), &changed)? else { return Ok(None) };
+        let is_of_commands =
+            settle(prober)? && disturb(prober, &moved(prober), &subject.action)?.is_none();
+        Ok(Some(Settling {
+            is_of_commands,
+            factor,
+            time_constant: -subject.dt / factor.ln(),
+            is_settled: settle(prober)?,
+        }))
+    }
+}
+
+fn is_gone(distance: f64) -> bool {
+    distance < GONE
+}
+
+/// Calls with the subject's state and action until the results of four in a row are the same.
+fn settle(prober: &mut Prober<'_>) -> Result<bool, BlackBoxError> {
+    let subject = prober.subject;
+    let mut same = 0;
+    let mut last = vec![f64::INFINITY; subject.state.len()];
+    for _ in 0..PATIENCE {
+        let next = prober.call_one(&subject.state, &subject.action, subject.dt)?;
+        same =
+            if is_gone(distance(&next, &last, Some(&subject.state_scale))) { same + 1 } else { 0 };
+        if same == 3 {
+            return Ok(true);
+        }
+        last = next;
+    }
+    Ok(false)
+}
+
+/// The factor per call by which results settle after calls with another state or action; none if they do not, or do at once.
+fn disturb(prober: &mut Prober<'_>, x: &[f64], u: &[f64]) -> Result<Option<f64>, BlackBoxError> {
+    let subject = prober.subject;
+    for _ in 0..MOST_CALLS {
+        prober.call_one(x, u, subject.dt)?;
+    }
+    let mut results = Vec::new();
+    for _ in 0..MOST_CALLS {
+        results.push(prober.call_one(&subject.state, &subject.action, subject.dt)?);
+    }
+    let apart = |pair: &[Vec<f64>]| distance(&pair[0], &pair[1], Some(&subject.state_scale));
+    Ok(decay(&results.windows(2).map(apart).collect::<Vec<_>>()))
+}
+
+/// The factor by which distances fall; none if they vary as noise does, or end at once.
+fn decay(distances: &[f64]) -> Option<f64> {
+    // A few are other delays.
+    let falling: Vec<f64> = distances
+        .iter()
+        .skip(MOST_CALLS / 8)
+        .take_while(|d| !is_gone(**d))
+        .map(|d| d.ln())
+        .collect();
+    let count = falling.len();
+    if count < MOST_CALLS / 8 {
+        return None;
+    }
+    let middle = (count as f64 - 1.0) / 2.0;
+    let mean = falling.iter().sum::<f64>() / count as f64;
+    let moment = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
+        falling.iter().enumerate().map(|(k, y)| f(k as f64 - middle, y - mean)).sum()
+    };
+    let slope = moment(&|k, y| k * y) / moment(&|k, _| k * k);
+    let residual = (moment(&|k, y| (y - slope * k).powi(2)) / count as f64).sqrt();
+    let largest = |part: &[f64]| part.iter().copied().fold(f64::MIN, f64::max);
+    let quarter = count / 4;
+    let fall = largest(&falling[count - quarter..]) - largest(&falling[..quarter]);
+    let is_steady = residual < RESIDUAL && slope * (count as f64) < -residual;
+    (is_steady || fall < DECAY.ln()).then(|| slope.exp())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_decay_has_its_factor_and_noise_has_none() {
+        let decaying: Vec<f64> = (0..63).map(|k| 0.3 * 0.98_f64.powi(k)).collect();
+        assert!((decay(&decaying).unwrap() - 0.98).abs() < 1e-12);
+        let hash =
+            |k: u64| (k.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 11) as f64 / (1_u64 << 53) as f64;
+        let noise: Vec<f64> = (1..64).map(hash).collect();
+        assert_eq!(decay(&noise), None);
+        assert_eq!(decay(&vec![0.5; 63]), None);
+        assert_eq!(decay(&vec![0.0; 63]), None);
+    }
+}
