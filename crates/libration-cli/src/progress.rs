@@ -113,6 +113,17 @@ pub(crate) fn steps(total: u64) -> ProgressBar {
     bar
 }
 
+/// A spinner with a message and the time, for work of unknown length; none if stderr is no terminal.
+pub(crate) fn spinner() -> Option<ProgressBar> {
+    let style = ProgressStyle::with_template("{spinner} {msg} in {elapsed}");
+    let style = style.unwrap_or_else(|_| ProgressStyle::default_spinner());
+    has_bars().then(|| {
+        let bar = ProgressBar::new_spinner().with_style(style);
+        bar.enable_steady_tick(Duration::from_millis(200));
+        bar
+    })
+}
+
 /// Returns the style: study, bar, time left and current work, cut at the width of the terminal.
 fn style() -> ProgressStyle {
     let template = "{prefix}  {bar:20} {pos}/{len}  {left}  {wide_msg}";

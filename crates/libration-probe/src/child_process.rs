@@ -1,8 +1,8 @@
 //! A simulator that is another program: numbers on its standard input and output.
 
-use std::io::{BufRead, BufReader, Read, Write};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, sync_channel};
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel, sync_channel};
 use std::thread;
 use std::time::Duration;
 
@@ -12,6 +12,10 @@ use crate::{BlackBox, BlackBoxError};
 
 /// Bytes of a reply: 100 numbers need 2.5 kB, a description of a large model with its matrices some hundred.
 const MOST_BYTES: u64 = 4 << 20;
+/// Bytes of its standard error that are shown.
+const MOST_MESSAGES: u64 = 64 << 10;
+/// The time in which messages must have arrived after the end of a program, whose own children may hold the pipe.
+const LAST_MESSAGES: Duration = Duration::from_millis(200);
 /// Lines that wait to be read.
 const MOST_LINES: usize = 4;
 
@@ -34,6 +38,8 @@ struct Running {
     child: Child,
     input: Option<ChildStdin>,
     lines: Receiver<Result<String, String>>,
+    /// Disconnected when all messages are shown.
+    messages: Receiver<()>,
 }
 
 impl Drop for Running {
@@ -42,6 +48,7 @@ impl Drop for Running {
         drop(self.input.take());
         let _ = self.child.kill();
         let _ = self.child.wait();
+        let _ = self.messages.recv_timeout(LAST_MESSAGES);
     }
 }
 
@@ -55,6 +62,7 @@ impl Running {
             .args(arguments)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
             .spawn()
             .map_err(|error| failed(&error))?;
         let (input, output) = (child.stdin.take(), child.stdout.take());
@@ -73,7 +81,24 @@ impl Running {
                 }
             })
             .map_err(|error| failed(&error))?;
-        Ok(Running { child, input, lines })
+        let (done, messages) = channel();
+        let errors = child.stderr.take();
+        thread::Builder::new()
+            .spawn(move || {
+                let _open = done;
+                errors.map(show_messages)
+            })
+            .map_err(|error| failed(&error))?;
+        Ok(Running { child, input, lines, messages })
+    }
+}
+
+/// Shows the first messages of a program, and reads the others, so that it does not wait for a reader.
+fn show_messages(mut errors: ChildStderr) {
+    let shown = io::copy(&mut errors.by_ref().take(MOST_MESSAGES), &mut io::stderr());
+    let rest = io::copy(&mut errors, &mut io::sink());
+    if shown.is_ok() && rest.is_ok_and(|bytes| bytes > 0) {
+        let _ = writeln!(io::stderr(), "\n(more messages of the program are left out)");
     }
 }
 

@@ -59,6 +59,9 @@ pub(crate) struct ProbeArgs {
     /// Longest time for an answer of the program, in s
     #[arg(long, value_name = "SECONDS", value_parser = timeout, default_value = "10", allow_hyphen_values = true)]
     pub(crate) timeout: Duration,
+    /// Longest time for the whole audit, in s
+    #[arg(long, value_name = "SECONDS", value_parser = time_limit, default_value = "600", allow_hyphen_values = true)]
+    pub(crate) time_limit: Duration,
     /// Python interpreter for --mujoco
     #[arg(long, value_name = "PROGRAM", default_value = "python3", conflicts_with_all = ["command", "matrices"])]
     pub(crate) python: String,
@@ -101,9 +104,16 @@ fn words(text: &str) -> Result<Words, String> {
 }
 
 pub(super) fn timeout(text: &str) -> Result<Duration, String> {
-    let rule = "expected a number of seconds above 0, at most 3600";
+    seconds(text, 3600.0)
+}
+
+fn time_limit(text: &str) -> Result<Duration, String> {
+    seconds(text, 1e6)
+}
+
+fn seconds(text: &str, most: f64) -> Result<Duration, String> {
     match text.trim().parse::<f64>() {
-        Ok(x) if x > 0.0 && x <= 3600.0 => Ok(Duration::from_secs_f64(x)),
-        _ => Err(rule.into()),
+        Ok(x) if x > 0.0 && x <= most => Ok(Duration::from_secs_f64(x)),
+        _ => Err(format!("expected a number of seconds above 0, at most {most}")),
     }
 }

@@ -24,6 +24,7 @@ mod result_file;
 mod rollout;
 mod simulate;
 mod time_stamps;
+mod watched;
 
 use crate::args::{Arguments, Command};
 use crate::error::Failure;

@@ -12,6 +12,7 @@ use super::advise::command_line;
 use super::mujoco;
 use super::probe_text::describe;
 use super::result_file::ResultFile;
+use super::watched::Watched;
 use crate::args::{Coordinates, ProbeArgs};
 use crate::error::Failure;
 use crate::terminal;
@@ -20,7 +21,7 @@ use crate::terminal;
 pub(crate) fn run(args: &ProbeArgs, quiet: bool) -> Result<(), Failure> {
     let file = ResultFile::create("--page", args.page.as_deref())?;
     let plant_file = ResultFile::create("--save-plant", args.save_plant.as_deref())?;
-    let (mut black_box, mut subject) = simulator(args)?;
+    let (black_box, mut subject) = simulator(args)?;
     subject.invocation = command_line();
     if args.moving {
         subject.equilibrium = Some(false);
@@ -30,7 +31,9 @@ pub(crate) fn run(args: &ProbeArgs, quiet: bool) -> Result<(), Failure> {
     if !quiet {
         terminal::say(&format!("auditing the step of {}", subject.title));
     }
-    let report = probe(black_box.as_mut(), &subject).map_err(Failure::run)?;
+    let mut watched = Watched::new(black_box, args.time_limit, quiet);
+    let report = probe(&mut watched, &subject).map_err(Failure::run)?;
+    drop(watched);
     let text = match args.json {
         true => serde_json::to_string_pretty(&report).map_err(Failure::run)? + "\n",
         false => describe(&report),

@@ -68,6 +68,23 @@ fn a_program_that_fails_ends_the_run_with_its_name_and_what_it_did() {
 }
 
 #[test]
+fn an_audit_ends_with_its_limit_of_time_and_shows_some_messages_of_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("slow.py");
+    let text = "import sys, time\nfor line in sys.stdin:\n    time.sleep(0.01)\n    print('x' * 9999, file=sys.stderr)\n    print(*line.split()[:2], flush=True)\n";
+    fs::write(&path, text).unwrap();
+    let output = probe(&path, &["--time-limit", "1.5"]).code(1).get_output().stderr.clone();
+    let errors = String::from_utf8(output).unwrap();
+    assert!(errors.contains("the audit was ended after 1.5 s and"), "{errors}");
+    // 64 KiB of messages, a line that says that there were more, and the two of the program itself.
+    assert!((65_536..66_500).contains(&errors.len()), "{}", errors.len());
+    assert!(errors.contains("(more messages of the program are left out)"), "{errors}");
+    probe(&path, &["--time-limit", "0"])
+        .code(2)
+        .stderr(predicate::str::contains("a number of seconds above 0, at most 1000000"));
+}
+
+#[test]
 fn wrong_options_name_the_option_and_what_is_allowed() {
     for (words, part) in [
         (&["--command", "cat", "--dt", "0.1"][..], "without --state"),
