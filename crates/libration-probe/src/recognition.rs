@@ -53,10 +53,12 @@ pub struct Candidate {
 }
 
 impl Match {
-    /// Compares the step from a displaced state with that of each integrator, on rates from short steps of the simulator itself.
+    /// Compares the step from a displaced state with that of each integrator, on rates from short steps of the simulator itself. Implicit
+    /// ones of a higher order than the step has are left out.
     pub(crate) fn by_results(
         prober: &mut Prober<'_>,
         pairs: Option<&[(usize, usize)]>,
+        order: Option<u32>,
     ) -> Result<Self, BlackBoxError> {
         let subject = prober.subject;
         let (start, dt) = (displaced(prober, DISPLACEMENT), subject.dt);
@@ -74,8 +76,13 @@ impl Match {
             let is_large = start.len() > MOST_STATES_OF_ALL && candidates.iter().any(is_found);
             let is_explicit = |found: &Candidate| Method::from_name(found.method).is_some();
             let by_explicit = candidates.iter().any(|found| is_found(found) && is_explicit(found));
-            if matches!(method, AnyMethod::Implicit(_)) && (by_explicit || is_large) {
+            let is_implicit = matches!(method, AnyMethod::Implicit(_));
+            if is_implicit && (by_explicit || is_large) {
                 break;
+            }
+            // On a system a method may have a higher order than its own, but no lower one.
+            if is_implicit && order.is_some_and(|order| method.order() > order) {
+                continue;
             }
             let state = method.step(&system, system.point(&start), dt);
             error = error.max(system.take_error()?);

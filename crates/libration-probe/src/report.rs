@@ -223,8 +223,9 @@ impl ProbeReport {
         }
         self.hidden_latency = hidden_latencies(&step, flow.as_ref(), memory, pairs, subject);
         if !has_fixed_dt {
-            self.order = Some(Convergence::measure(prober)?);
-            let by_results = Match::by_results(prober, pairs)?;
+            let order = Convergence::measure(prober)?;
+            let by_results = Match::by_results(prober, pairs, order.order)?;
+            self.order = Some(order);
             let by_matrix = flow
                 .as_ref()
                 .filter(|_| self.equilibrium.holds)
