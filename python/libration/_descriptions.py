@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Iterable
 
 import numpy as np
 
-from .hosts.host import Host
+from .hosts.host import Host, Recording
 
 
 def description_of(host: Host) -> dict[str, Any]:
@@ -38,9 +38,14 @@ def description_of(host: Host) -> dict[str, Any]:
     if host.delays:
         described["stated_delays"] = list(host.delays)
     if host.recordings:
-        described["recordings"] = [
-            {"name": name, "shape": list(first.shape), "first": first.ravel().tolist(), "second": second.ravel().tolist()}
-            for name, first, second in host.recordings
-            if np.isfinite(first).all() and np.isfinite(second).all()
-        ]
+        described["recordings"] = described_recordings(host.recordings)
     return described
+
+
+def described_recordings(recordings: Iterable[Recording]) -> list[dict[str, Any]]:
+    """Return pairs of recordings as the keys that the engine reads, without those that have numbers that are not finite."""
+    return [
+        {"name": name, "shape": list(first.shape), "first": first.ravel().tolist(), "second": second.ravel().tolist()}
+        for name, first, second in recordings
+        if np.isfinite(first).all() and np.isfinite(second).all()
+    ]

@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._descriptions import description_of
+from ._descriptions import described_recordings, description_of
 from ._keywords import check_keywords
 from ._settings import positive
 from ._step_functions import callable_of, contiguous, energies_of, names, numbers_of, observations_of, pair_numbers, rows_of_step, vector
+from ._thread_recordings import thread_count, thread_recording
 from .hosts.host import Host
 from .probe_report import ProbeReport
 
@@ -36,6 +37,7 @@ class Probe:
         observe: Callable[..., Any] | None = None,
         energy: Callable[..., Any] | None = None,
         restart: Callable[[], Any] | None = None,
+        threads: int | None = None,
         states: Sequence[str] | None = None,
         inputs: Sequence[str] | None = None,
         state_scale: ArrayLike | None = None,
@@ -66,6 +68,9 @@ class Probe:
         restart:
             ``restart()`` starts the simulator anew, generators of random numbers with their seeds, to see whether the same bits follow and
             whether environments share a generator.
+        threads:
+            Number of threads, 2 to 64, that call the step at once, to see whether they get the bits of one thread (default: none). For a
+            step without memory of earlier calls that may be called from several threads.
         states, inputs:
             Names with units in parentheses: ``"angle (rad)"``.
         state_scale, action_scale:
@@ -97,6 +102,7 @@ class Probe:
             raise TypeError(f"equilibrium is {equilibrium!r}; expected True, False or None")
         if mass is not None and pairs is None:
             raise ValueError("mass requires pairs: the inertia is that of their velocities")
+        number_of_threads = thread_count(threads)
         point, command = vector("state", state), vector("action", action)
         n, m = len(point), len(command)
         host = Host(
@@ -123,7 +129,7 @@ class Probe:
             if scale is not None:
                 described[name] = vector(name, np.broadcast_to(scale, count) if np.ndim(scale) == 0 else scale).tolist()
         watch = None if observe is None else observations_of(observe, batched)
-        return _audit(host, described, watch, restart, batched)
+        return _audit(host, described, watch, restart, batched, number_of_threads)
 
     @check_keywords
     def mujoco(
@@ -177,12 +183,16 @@ class Probe:
         dt: float | None = None,
         *,
         conservative: bool = False,
+        threads: int | None = None,
         **keywords: Any,
     ) -> ProbeReport:
-        """Audit a function of JAX, whose Jacobian by JAX is compared, see :func:`libration.hosts.jax_host`. Requires ``jax``."""
+        """Audit a function of JAX, whose Jacobian by JAX is compared, see :func:`libration.hosts.jax_host`. Requires ``jax``.
+
+        ``threads`` as in :func:`libration.probe`.
+        """
         from .hosts import jax_host
 
-        return self.host(jax_host(step, state, action, dt, **keywords), conservative=conservative)
+        return self.host(jax_host(step, state, action, dt, **keywords), conservative=conservative, threads=threads)
 
     def fmu(self, path: str | PathLike[str], *, conservative: bool = False, **keywords: Any) -> ProbeReport:
         """Audit an FMU of FMI 2 or 3 in a process of its own, see :func:`libration.hosts.fmu_host`. Requires ``fmpy``.
@@ -194,12 +204,23 @@ class Probe:
         return self.host(fmu_host(path, **keywords), conservative=conservative)
 
     @check_keywords
-    def host(self, host: Host, *, conservative: bool = False, invocation: str = "") -> ProbeReport:
-        """Audit a :class:`libration.hosts.Host`; ``invocation`` is the command that repeats the audit, for its page."""
+    def host(self, host: Host, *, conservative: bool = False, invocation: str = "", threads: int | None = None) -> ProbeReport:
+        """Audit a :class:`libration.hosts.Host`.
+
+        Parameters
+        ----------
+        invocation:
+            The command that repeats the audit, for its page.
+        threads:
+            As in :func:`libration.probe`; for a host without memory whose step may be called from several threads.
+        """
+        number = thread_count(threads)
+        if number is not None and host.memory:
+            raise ValueError(f"threads is {number}, but rows of the host continue a simulation; expected None, or a host without memory")
         described = description_of(host)
         described.update(conservative=bool(conservative), invocation=str(invocation))
         # The rows of a host with memory continue one simulation each.
-        return _audit(host, described, None, None, not host.memory)
+        return _audit(host, described, None, None, not host.memory, number)
 
 
 probe = Probe()
@@ -211,7 +232,15 @@ def _audit(
     observe: Callable[..., Any] | None,
     restart: Callable[[], Any] | None,
     batched: bool,
+    threads: int | None,
 ) -> ProbeReport:
+    if threads is not None:
+        scales = [
+            np.array(described.get(name, np.maximum(np.abs(values), 1.0)), dtype=np.float64)
+            for name, values in (("state_scale", host.state), ("action_scale", host.action))
+        ]
+        recording = thread_recording(host, scales[0], scales[1], threads, batched)
+        described.setdefault("recordings", []).extend(described_recordings([recording]))
     energy = None if host.energy is None else contiguous(host.energy, 1)
     text = json.dumps(described)
     answer, holds, page = _native._probe(text, contiguous(host.step, 2), observe, energy, restart, bool(batched))

@@ -7,6 +7,7 @@ jax = pytest.importorskip("jax")
 
 import jax.numpy as jnp  # noqa: E402
 
+from libration import probe  # noqa: E402
 from libration.hosts import Host, jax_host  # noqa: E402
 
 EPS = np.finfo(float).eps
@@ -158,3 +159,10 @@ def test_a_function_without_forward_derivative_has_no_reference():
 def test_errors_name_what_is_wrong(call, message):
     with pytest.raises((TypeError, ValueError), match=message):
         call()
+
+
+def test_a_function_of_jax_gives_the_same_bits_in_several_threads():
+    before = jax.config.jax_enable_x64
+    report = probe.jax(pendulum(jnp), [0.0, 0.0], [0.0], 0.01, threads=4)
+    assert report.findings == [] and report.bits["checks"][-1]["name"] == "4 threads at once against one"
+    assert jax.config.jax_enable_x64 == before

@@ -363,6 +363,10 @@ X, U = (0.0, 0.0), (0.0,)
         (lambda: audit(pendulum, mass=[[1.0]]), ValueError, "mass requires pairs"),
         (lambda: audit(pendulum, pairs=[(0, 1)], mass=np.eye(2)), ValueError, r"mass has shape \(2, 2\); expected 1 × 1"),
         (lambda: audit(pendulum, equilibrium="yes"), TypeError, "equilibrium is 'yes'; expected True, False or None"),
+        (lambda: audit(pendulum, threads=1), ValueError, "threads is 1, but it must be 2 to 64"),
+        (lambda: audit(pendulum, threads=65), ValueError, "threads is 65, but it must be 2 to 64"),
+        (lambda: audit(pendulum, threads=2.0), TypeError, "threads must be an integer, not float"),
+        (lambda: audit(pendulum, threads=True), TypeError, "threads must be an integer, not bool"),
         (lambda: audit(pendulum, bathced=True), TypeError, "did you mean 'batched'"),
     ],
 )

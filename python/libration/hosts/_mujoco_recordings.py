@@ -10,9 +10,9 @@ from mujoco import rollout
 from numpy.typing import NDArray
 
 from ._mujoco_point import INTEGRATION, copy_of
+from .host import Recording
 
 Array = NDArray[np.float64]
-Recording = tuple[str, Array, Array]
 
 _STEPS = 20
 _ENVIRONMENTS = 8

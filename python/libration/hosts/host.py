@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Step = Callable[[Array, Array, float], Array]
+Recording = tuple[str, Array, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +62,7 @@ class Host:
     """The delay of each action in s that the simulator states; empty if it states none."""
     joints: tuple[str, ...] = ()
     """Names of the joints."""
-    recordings: tuple[tuple[str, Array, Array], ...] = ()
+    recordings: tuple[Recording, ...] = ()
     """Names and pairs of recordings that should have the same bits, steps × components or steps × environments × components."""
     memory: bool = False
     """Whether each row continues a simulation: what is no state lives on from call to call."""
