@@ -54,6 +54,52 @@ def test_files_are_recordings(tmp_path):
     assert first_difference(tmp_path / "a.npy", str(tmp_path / "b.npy")).index == (0, 0)
 
 
+def test_files_of_several_arrays_are_compared_in_the_order_of_the_first(tmp_path):
+    a = {"states": np.arange(6.0).reshape(2, 3), "actions": np.ones(4, dtype=np.float32), "done": np.zeros(3, dtype=bool)}
+    b = {name: array.copy() for name, array in reversed(a.items())}
+    np.savez(tmp_path / "a.npz", **a)
+    np.savez_compressed(tmp_path / "b.npz", **b)
+    assert first_difference(tmp_path / "a.npz", tmp_path / "b.npz") is None
+    b["done"][1] = True
+    b["actions"][2:] = np.nextafter(np.float32(1), np.float32(2))
+    np.savez(tmp_path / "b.npz", **b)
+    found = first_difference(str(tmp_path / "a.npz"), tmp_path / "b.npz")
+    assert (found.array, found.index, found.ulps, found.differing) == ("actions", (2,), 1, 3)
+    assert first_difference(tmp_path / "b.npz", tmp_path / "a.npz").array == "done"
+    # An array by itself has no name.
+    assert first_difference(a["actions"], b["actions"]).array is None
+
+
+def test_files_that_are_not_comparable_are_errors(tmp_path):
+    def file(name, **arrays):
+        np.savez(tmp_path / name, **arrays)
+        return tmp_path / name
+
+    a = file("a.npz", x=np.ones(2), y=np.ones(2))
+    np.save(tmp_path / "one.npy", np.ones(2))
+    np.save(tmp_path / "object.npy", np.array([None]))
+    (tmp_path / "empty.npy").write_bytes(b"")
+    (tmp_path / "text.npz").write_text("x,y")
+    (tmp_path / "cut.npz").write_bytes(a.read_bytes()[:300])
+    spoiled = bytearray(a.read_bytes())
+    spoiled[150] ^= 255
+    (tmp_path / "spoiled.npz").write_bytes(spoiled)
+    for b, error, message in (
+        (file("b.npz", x=np.ones(2), z=np.ones(2)), ValueError, "different names: only a has y; only b has z; expected the same names"),
+        (file("c.npz", x=np.ones(2)), ValueError, "different names: only a has y; expected"),
+        (file("d.npz", x=np.ones(2), y=np.ones(3)), ValueError, r"a\['y'\] is float64 of shape \(2,\) and b\['y'\] float64 of shape \(3,\)"),
+        (file("e.npz", x=np.ones(2), y=np.array(["t"])), TypeError, r"b\['y'\] has type <U1; expected float64"),
+        (file("f.npz", x=np.ones(2), y=np.array([None])), ValueError, "b cannot be read: Object arrays cannot be loaded"),
+        (tmp_path / "one.npy", ValueError, "a is a file .npz and b a single array; expected two files .npz, or one of the arrays of a"),
+        *(
+            (tmp_path / name, ValueError, "b cannot be read: .*; expected a file .npy or .npz of numbers")
+            for name in ("object.npy", "empty.npy", "text.npz", "cut.npz", "spoiled.npz", "missing.npz")
+        ),
+    ):
+        with pytest.raises(error, match=message):
+            first_difference(a, b)
+
+
 @pytest.mark.parametrize(
     ("a", "b", "error", "message"),
     [
