@@ -11,6 +11,7 @@ fmpy = pytest.importorskip("fmpy")
 
 from fmu import COMPILER, FAULTS, make_fmu  # noqa: E402
 
+from libration import probe  # noqa: E402
 from libration.hosts import Host, fmu_host, fmu_plant  # noqa: E402
 
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C compiler")
@@ -143,6 +144,36 @@ def test_the_reference_of_model_exchange_agrees_with_differences_of_the_step(mak
     assert np.stack(columns, axis=1) == pytest.approx(both, abs=10 * np.finfo(float).eps * 2 / 1e-5)
     host = fmu_host(make(version, directional=False), kind="ModelExchange", dt=0.01)
     assert host.reference_A is None and host.reference_source == "" and fmu_host(make(version)).reference_A is None
+
+
+@VERSIONS
+def test_a_wrong_directional_derivative_is_found(make, version):
+    """It is -1.01 in place of -1, by the position; the rate has no other entry larger than 1."""
+
+    def audit(fault, dt):
+        values = {"x0": 0.0, "fault": FAULTS[fault] if fault else 0}
+        return probe.fmu(make(version), kind="ModelExchange", dt=dt, start_values=values)
+
+    def kinds(report):
+        return [finding["kind"] for finding in report.findings]
+
+    # 0.1 s × 0.01 is a thousandth of the row of the step; 0.001 s × 0.01 are less than the 1e-4 that derivatives may differ.
+    for dt, is_finding in ((0.1, True), (0.001, False)):
+        wrong, right = audit("wrong derivative", dt), audit(None, dt)
+        assert ("derivatives-differ" in kinds(wrong)) == is_finding and "derivatives-differ" not in kinds(right)
+        text = f"fmi{version}GetDirectionalDerivative is -1.01 of the derivative of x1 (m/s) by x0 (m), but differences are -1"
+        assert text in wrong.notes and not any("GetDirectional" in note for note in right.notes)
+    assert wrong.results["reference"]["source"] == f"fmi{version}GetDirectionalDerivative"
+
+
+@VERSIONS
+def test_a_plant_of_wrong_directional_derivatives_is_an_error_by_default(make, version):
+    options = {"start_values": {"x0": 0.0, "fault": FAULTS["wrong derivative"]}}
+    message = r"GetDirectionalDerivative is -1.01 of the derivative of x1 \(m/s\) by x0 \(m\), but differences are -1; expected the same"
+    with pytest.raises(ValueError, match=message):
+        fmu_plant(make(version), **options)
+    assert fmu_plant(make(version), derivatives="directional", **options)[0][1, 0] == -1.01
+    assert fmu_plant(make(version), derivatives="differences", **options)[0][1, 0] == pytest.approx(-1, abs=1e-11)
 
 
 @VERSIONS

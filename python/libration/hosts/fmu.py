@@ -19,6 +19,9 @@ Array = NDArray[np.float64]
 Names = dict[str, tuple[str, ...]]
 
 _DERIVATIVES = ("directional", "differences")
+# Part of the largest entry of a row by which directional derivatives may differ from differences, as in the audit of a step. Those of
+# an FMU may be differences themselves.
+_DIFFERENCE = 1e-4
 
 
 @check_keywords
@@ -37,7 +40,9 @@ def fmu_host(
     A row of a co-simulation FMU begins in the initialisation mode, the only one in which FMI lets states be set. The FMU returns there
     by a saved state, a reset or a new instance. What is no state begins each step at its start value.
 
-    A model exchange FMU has no step: the step is that of forward Euler, and :func:`fmu_plant` has the derivatives.
+    A model exchange FMU has no step: the step is that of forward Euler, and :func:`fmu_plant` has the derivatives. Its directional
+    derivatives are the reference of the matrices of the step. A note has the entry in which they differ most from differences of the
+    derivatives of states, which for a short step is too small an effect on the step to be a finding.
 
     Parameters
     ----------
@@ -100,6 +105,8 @@ def fmu_host(
     b: Array | None = None
     if exchange and described.has_directional:
         columns = simulation.columns(start, action)
+        wrong = _disagreement(simulation, described.directional, columns, start, action, (labels(readers), labels(chosen)))
+        notes += [] if wrong is None else [wrong]
         a, b = np.eye(len(start)) + timestep * columns[:, : len(start)], timestep * columns[:, len(start) :]
     return Host(
         step=simulation.step,
@@ -139,12 +146,14 @@ def fmu_plant(
     outputs:
         Names of the outputs (default: continuous scalars of the model structure).
     derivatives:
-        ``"directional"`` or ``"differences"`` (default: directional derivatives if the FMU provides them).
+        ``"directional"`` or ``"differences"`` (default: directional derivatives if the FMU provides them, after a comparison with
+        differences).
 
     Raises
     ------
     TypeError, ValueError, RuntimeError, TimeoutError
-        As :func:`fmu_host`; ``ValueError`` also where differences find no derivative.
+        As :func:`fmu_host`; ``ValueError`` also where differences find no derivative, or by default where directional derivatives differ
+        from differences by more than 1e-4 of the largest entry of a row and the estimated error.
     """
     if derivatives is not None and derivatives not in _DERIVATIVES:
         raise ValueError(f"derivatives is {derivatives!r}: {nearest(str(derivatives), _DERIVATIVES)}")
@@ -165,8 +174,44 @@ def fmu_plant(
             raise ValueError(f"{described.name} has no derivative at the point: differences of {name} do not agree")
     else:
         full = simulation.columns(point[:n], point[n:])
+        rows, columns = labels(readers) + labels(measured), (labels(readers), labels(chosen))
+        wrong = None
+        if derivatives is None:
+            wrong = _disagreement(simulation, described.directional, full, point[:n], point[n:], columns, rows)
+        if wrong is not None:
+            raise ValueError(f"{wrong}; expected the same; help: derivatives='differences', or 'directional' without this check")
     names = {"states": labels(readers), "inputs": labels(chosen), "outputs": labels(measured)}
     return full[:n, :n], full[:n, n:], full[n:, :n], full[n:, n:], names
+
+
+def _disagreement(
+    simulation: Simulation,
+    source: str,
+    found: Array,
+    state: Array,
+    action: Array,
+    variables: tuple[tuple[str, ...], tuple[str, ...]],
+    rows: tuple[str, ...] | None = None,
+) -> str | None:
+    """Return the entry in which directional derivatives, rows × states and actions, differ most from differences; None if they agree.
+
+    Where the FMU has no rates at displaced points there is no comparison.
+    """
+    n, point = len(state), np.concatenate([state, action])
+    try:
+        full, error = extrapolated_jacobian(lambda z: simulation.rates(z[:n], z[n:]), point, np.maximum(np.abs(point), 1.0))
+    except (RuntimeError, TimeoutError):
+        return None
+    # A column of NaN is one without differences; its error is infinite.
+    full = np.where(np.isnan(full), found, full)
+    size = np.maximum(np.max(np.abs(found), axis=1, keepdims=True), np.max(np.abs(full), axis=1, keepdims=True))
+    apart = np.abs(found - full) / (_DIFFERENCE * size + error + np.finfo(np.float64).tiny)
+    if not (apart > 1).any():
+        return None
+    i, j = np.unravel_index(int(np.argmax(apart)), apart.shape)
+    names = variables[0] if rows is None else rows
+    row = f"the derivative of {names[i]}" if i < n else names[i]
+    return f"{source} is {found[i, j]:.6g} of {row} by {(variables[0] + variables[1])[j]}, but differences are {full[i, j]:.6g}"
 
 
 def _values(start_values: Mapping[str, Any] | None) -> dict[str, Any]:

@@ -22,7 +22,7 @@ _VARIABLES = (
     ("floor", "parameter", "fixed", "exact", "-1000", ""),
     ("x0_start", "parameter", "fixed", "exact", "2", ""),
 )
-FAULTS = {"crash": 1, "exit": 2, "hang": 3, "error": 4, "discard": 5, "leak": 6, "faulty restore": 7}
+FAULTS = {"crash": 1, "exit": 2, "hang": 3, "error": 4, "discard": 5, "leak": 6, "faulty restore": 7, "wrong derivative": 8}
 
 
 def make_fmu(folder, version, *, saves=True, directional=True, lists=True, exchange=True, step='stepSize="0.01"'):

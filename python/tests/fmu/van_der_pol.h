@@ -9,7 +9,7 @@
 
 /* Value references: 0 time, 1 x0, 2 der(x0), 3 x1, 4 der(x1), 5 mu, 6 u, 7 y, 8 fault, 9 floor, 10 x0_start. */
 enum { TIME, X0, DX0, X1, DX1, MU, U, Y, FAULT, FLOOR, X0_START, SIZE };
-enum { CRASH = 1, EXIT, HANG, ERROR, DISCARD, LEAK, FAULTY_RESTORE };
+enum { CRASH = 1, EXIT, HANG, ERROR, DISCARD, LEAK, FAULTY_RESTORE, WRONG_DERIVATIVE };
 enum { INSTANTIATED, INITIALISATION, RUN };
 
 typedef struct {
@@ -68,7 +68,7 @@ static double partial(Model *m, unsigned unknown, unsigned known) {
     double *v = m->v;
     if (unknown == DX0) return known == X1;
     if (unknown == DX1)
-        return known == X0   ? -2 * v[MU] * v[X0] * v[X1] - 1
+        return known == X0   ? -2 * v[MU] * v[X0] * v[X1] - (v[FAULT] == WRONG_DERIVATIVE ? 1.01 : 1)
                : known == X1 ? v[MU] * (1 - v[X0] * v[X0])
                              : known == U;
     return known == X0 ? 1 : known == U && unknown == Y ? 2 : 0;
