@@ -8,6 +8,7 @@ import pytest
 
 mujoco = pytest.importorskip("mujoco")
 
+from libration import probe  # noqa: E402
 from libration.hosts import Host, delay_audit, mujoco_host  # noqa: E402
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "mujoco"
@@ -246,3 +247,45 @@ def test_a_queue_that_is_longer_than_the_delay_is_read_late():
     longer, = delay_audit(mujoco.MjModel.from_xml_string(DELAYED.format(samples=4)), steps=5000)
     assert longer.nominal == 3 and set(longer.steps) == {3, 4} and longer.first is not None
     assert sum(longer.steps.values()) == 5000
+
+
+QUEUES = """<mujoco><option timestep="0.01" gravity="0 0 0"/>
+<worldbody><body><joint name="s" type="slide"/><geom size="0.1"/></body></worldbody>
+<actuator><motor name="late" joint="s" delay="0.05" nsample="6"/><motor name="idle" joint="s" gear="0" delay="0.03" nsample="3"/></actuator>
+<sensor><jointpos name="p" joint="s" delay="0.05" nsample="7"/>
+<jointvel name="v" joint="s" delay="0.025" nsample="4" interp="linear"/></sensor></mujoco>"""
+
+
+def test_delays_are_those_of_actuators_without_effect_of_sensors_and_of_interpolated_queues():
+    records = delay_audit(mujoco.MjModel.from_xml_string(QUEUES), steps=2000)
+    assert [(r.name, r.kind, r.interpolation, r.nominal) for r in records] == [
+        ("late", "actuator", "zoh", 5),
+        ("idle", "actuator", "zoh", 3),
+        ("p", "sensor", "zoh", 5),
+        ("v", "sensor", "linear", 2.5),
+    ]
+    late, idle, position, velocity = records
+    assert set(late.steps) == {5, 6} and late.steps == position.steps and late.first == position.first
+    assert (idle.steps, idle.first, velocity.steps, velocity.first) == ({3: 2000}, None, {2.5: 2000}, None)
+    # From 1000 s the sum of timesteps is rounded otherwise.
+    assert delay_audit(mujoco.MjModel.from_xml_string(QUEUES), steps=2000, time=1000.0)[0].steps == {5: 2000}
+
+
+def test_the_audit_of_a_step_finds_the_same_late_steps():
+    record, *_ = delay_audit(mujoco.MjModel.from_xml_string(QUEUES), steps=100_000)
+    (found,) = [delays for delays in probe.mujoco(mujoco.MjModel.from_xml_string(QUEUES)).delays if "late" in delays["input"]]
+    assert {round(delay) for delay, _ in found["delays"]} == set(record.steps) == {5, 6}
+
+
+@pytest.mark.parametrize(
+    ("keywords", "message"),
+    [
+        ({"steps": 0}, "steps is 0, but it must be 1 to 100000000"),
+        ({"dt": 0}, "dt is 0.0, but it must be finite and greater than 0"),
+        ({"time": float("nan")}, "time is nan, but it must be finite"),
+        ({"tiem": 0.0}, "did you mean 'time'"),
+    ],
+)
+def test_errors_of_the_audit_of_delays_name_what_is_wrong(keywords, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        delay_audit(mujoco.MjModel.from_xml_string(QUEUES), **keywords)

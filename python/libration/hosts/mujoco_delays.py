@@ -11,8 +11,9 @@ import numpy as np
 
 from .._keywords import check_keywords
 from .._settings import count, positive
+from .._settings import number as finite
 from ._mujoco_names import name_of, number_of_actuators
-from ._mujoco_point import model_of
+from ._mujoco_point import model_of, space_queues
 
 _INTERPOLATION = ("zoh", "linear", "cubic")
 
@@ -30,11 +31,12 @@ class DelayRecord:
     """The length of its queue, ``nsample``."""
     interpolation: str
     """``"zoh"``, ``"linear"`` or ``"cubic"``."""
-    nominal: int
-    """The delay in steps by exact arithmetic, if the timestep divides it to 1e-9; the next whole number otherwise. At least 1, and at
-    most the length of the queue."""
-    steps: dict[int, int]
-    """The number of steps for each delay that was read, in whole steps."""
+    nominal: float
+    """The delay in steps by exact arithmetic, if the timestep divides it to 1e-9 or the queue is interpolated; the next whole number
+    otherwise. At least 1, and at most the length of the queue."""
+    steps: dict[float, int]
+    """The number of steps for each delay that was read: in whole steps, and to a thousandth where the queue is interpolated. MuJoCo's cubic
+    interpolation is not exact on a ramp beside the newest sample, where it reads another delay."""
     first: int | None
     """The first step at which the delay is not the nominal one; None if there is none. Steps count from 0 where the queue is full of
     commands of the simulation."""
@@ -48,6 +50,11 @@ def delay_audit(model: Any, *, steps: int = 100_000, dt: float | None = None, ti
     that a queue with more samples than the delay has steps is read one step late where the sum has been rounded up. The audit gives
     ramps to a model of sliders that has the same timestep, delays and queues; the dynamics of the model have no part in it.
 
+    The delays of an audit (``report.delays`` of :func:`libration.probe`) are those of any simulator, and of commands only: a ramp is seen
+    in the states after each step, so that they include all that delays a command, to a thousandth of a step, and need a command that acts on
+    a state. This audit is for MuJoCo models only. It has sensors, actuators without effect on the states, models with more states than an
+    audit may have, any starting time, and the delay that the model should have.
+
     Parameters
     ----------
     model:
@@ -57,7 +64,7 @@ def delay_audit(model: Any, *, steps: int = 100_000, dt: float | None = None, ti
     dt:
         Timestep in s (default: that of the model).
     time:
-        Time in s at which the simulation begins.
+        Time in s at which the simulation begins: the rounding of later times is coarser.
 
     Raises
     ------
@@ -67,6 +74,7 @@ def delay_audit(model: Any, *, steps: int = 100_000, dt: float | None = None, ti
     own, _ = model_of(model)
     number = count("steps", steps, 1, 100_000_000)
     timestep = positive("dt", own.opt.timestep if dt is None else dt)
+    begin = finite("time", time, "finite")
     queues = _queues(own)
     if not queues:
         return ()
@@ -77,15 +85,16 @@ def delay_audit(model: Any, *, steps: int = 100_000, dt: float | None = None, ti
     for k, queue in enumerate(q for q in queues if q[1] == "sensor"):
         copy.sensor_delay[k] = queue[2]
     data = mujoco.MjData(copy)
-    data.time = time
-    for k in range(copy.nu):
-        _space(mujoco.mj_initCtrlHistory, copy, data, k, int(copy.actuator_history[k][0]), timestep)
+    data.time = begin
+    space_queues(copy, data, timestep, np.zeros(copy.nu))
     for k in range(copy.nsensor):
-        _space(mujoco.mj_initSensorHistory, copy, data, k, int(copy.sensor_history[k][0]), timestep, 0.0)
+        samples = int(copy.sensor_history[k][0])
+        before = data.time + timestep * np.arange(-samples, 0.0)
+        mujoco.mj_initSensorHistory(copy, data, k, before, np.zeros((samples, 1)), 0.0)
     longest = max(queue[3] for queue in queues)
-    found: list[Counter[int]] = [Counter() for _ in queues]
+    found: list[Counter[float]] = [Counter() for _ in queues]
     first: list[int | None] = [None] * len(queues)
-    nominal = [_nominal(delay, timestep, samples) for _, _, delay, samples, _ in queues]
+    nominal = [_nominal(delay, timestep, samples, interp > 0) for _, _, delay, samples, interp in queues]
     times = np.full(longest + 2, np.nan)
     for k in range(number + longest + 1):
         times[k % len(times)] = data.time
@@ -95,9 +104,9 @@ def delay_audit(model: Any, *, steps: int = 100_000, dt: float | None = None, ti
             continue
         for i, value in enumerate((*data.actuator_force, *data.sensordata)):
             late = k - value if i < copy.nu else (times[k % len(times)] - value) / timestep
-            whole = int(round(float(late)))
-            found[i][whole] += 1
-            if whole != nominal[i] and first[i] is None:
+            delay = round(float(late), 3 if queues[i][4] else 0)
+            found[i][delay] += 1
+            if delay != round(nominal[i], 3) and first[i] is None:
                 first[i] = k - longest - 1
     return tuple(
         DelayRecord(name, kind, delay, samples, _INTERPOLATION[interp], nominal[i], dict(sorted(found[i].items())), first[i])
@@ -133,12 +142,8 @@ def _xml(queues: list[tuple[str, str, float, int, int]]) -> str:
     )
 
 
-def _space(write: Any, model: Any, data: Any, number: int, samples: int, dt: float, *phase: float) -> None:
-    """Begin a queue at rest before the time of the data."""
-    write(model, data, number, data.time + dt * np.arange(-samples, 0.0), np.zeros((samples, 1)), *phase)
-
-
-def _nominal(delay: float, dt: float, samples: int) -> int:
+def _nominal(delay: float, dt: float, samples: int, is_interpolated: bool) -> float:
     exact = delay / dt
-    whole = round(exact) if abs(exact - round(exact)) <= 1e-9 * max(1.0, exact) else int(np.ceil(exact))
-    return max(1, min(whole, samples))
+    is_whole = abs(exact - round(exact)) <= 1e-9 * max(1.0, exact)
+    found = float(round(exact)) if is_whole else exact if is_interpolated else float(np.ceil(exact))
+    return max(1.0, min(found, float(samples)))
