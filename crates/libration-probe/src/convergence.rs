@@ -1,5 +1,6 @@
 //! The order of a step, by halved steps from a displaced state.
 
+use libration_report::notation::number;
 use serde::Serialize;
 
 use crate::BlackBoxError;
@@ -28,6 +29,11 @@ pub struct Convergence {
 }
 
 impl Convergence {
+    /// The estimates, separated by commas.
+    pub fn in_words(&self) -> String {
+        self.estimates.iter().map(|x| number(*x, 4)).collect::<Vec<_>>().join(", ")
+    }
+
     pub(crate) fn measure(prober: &mut Prober<'_>) -> Result<Self, BlackBoxError> {
         let mut ends: Vec<Vec<f64>> = Vec::new();
         for halvings in 0..=HALVINGS[1] {

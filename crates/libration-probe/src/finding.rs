@@ -1,14 +1,14 @@
 //! Findings of an audit: what a user of the step should know or mend.
 
+use libration_report::notation::number;
 use serde::Serialize;
 
+use crate::energy_finding::{damping, leaks};
 use crate::report::ProbeReport;
 use crate::{Bits, Memory, Observed, Subject};
 
 /// Rounding from which a step is rough, far above that of `f64`.
 const COARSE: f64 = 1e-9;
-/// Rates of a conservative system relative to its frequencies that are no roundings.
-const LEAK: f64 = 1e-9;
 /// Part of a step by which a delay may differ from the stated one.
 const DELAY: f64 = 1e-3;
 /// Largest distance of the linear prediction from a short run.
@@ -23,15 +23,22 @@ pub struct Finding {
     pub is_fault: bool,
     /// The finding in a sentence, with its evidence.
     pub text: String,
+    /// What to change, in a sentence.
+    pub help: String,
 }
 
 impl Finding {
-    fn fault(kind: &'static str, text: String) -> Self {
-        Finding { kind, is_fault: true, text }
+    /// Without help, which requires the whole report.
+    pub(crate) fn new(kind: &'static str, is_fault: bool, text: String) -> Self {
+        Finding { kind, is_fault, text, help: String::new() }
     }
 
-    fn warning(kind: &'static str, text: String) -> Self {
-        Finding { kind, is_fault: false, text }
+    pub(crate) fn fault(kind: &'static str, text: String) -> Self {
+        Finding::new(kind, true, text)
+    }
+
+    pub(crate) fn warning(kind: &'static str, text: String) -> Self {
+        Finding::new(kind, false, text)
     }
 }
 
@@ -202,8 +209,8 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
         found.push(Finding::warning(
             "not-differentiable",
             format!(
-                "the step has no derivative at this state (relative error {:.1e}): a contact, a limit or dry friction changes there",
-                report.jacobian_error
+                "the step has no derivative at this state (relative error {}): a contact, a limit or dry friction changes there",
+                number(report.jacobian_error, 2)
             ),
         ));
     }
@@ -212,8 +219,9 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
         found.push(Finding::warning(
             "no-equilibrium",
             format!(
-                "the state is no equilibrium: `{}` changes by {:.3e} per step; the modes are those of deviations from a motion",
-                equilibrium.state, equilibrium.change
+                "the state is no equilibrium: `{}` changes by {} per step; the modes are those of deviations from a motion",
+                equilibrium.state,
+                number(equilibrium.change, 3)
             ),
         ));
     }
@@ -225,10 +233,10 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
         found.push(Finding::warning(
             "nonlinear",
             format!(
-                "after {} steps from a deviation of {:.0e} the simulator is {:.1} % off the linear prediction",
+                "after {} steps from a deviation of {} the simulator is {} % off the linear prediction",
                 confirmation.steps,
-                confirmation.displacement,
-                100.0 * confirmation.error
+                number(confirmation.displacement, 1),
+                number(100.0 * confirmation.error, 2)
             ),
         ));
     }
@@ -236,8 +244,10 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
         found.push(Finding::warning(
             "derivatives-differ",
             format!(
-                "the matrices of {} differ from the differences of the step by {:.1e} of the largest entry of a row, {:.1e} explained",
-                difference.source, difference.difference, difference.allowed
+                "the matrices of {} differ from the differences of the step by {} of the largest entry of a row; errors explain {}",
+                difference.source,
+                number(difference.difference, 2),
+                number(difference.allowed, 2)
             ),
         ));
     }
@@ -247,7 +257,8 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
             .delays
             .iter()
             .map(|(delay, count)| {
-                format!("{delay} steps in {:.1} %", 100.0 * *count as f64 / audit.steps as f64)
+                let share = 100.0 * *count as f64 / audit.steps as f64;
+                format!("{} steps in {} %", number(*delay, 4), number(share, 3))
             })
             .collect();
         found.push(Finding::fault(
@@ -266,7 +277,7 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
             found.push(Finding::warning(
                 "grows-always",
                 format!(
-                    "the mode of {} grows with every step length though the system does not carry it out",
+                    "the mode of {} grows with every step length though it does not grow in the system",
                     limit.mode
                 ),
             ));
@@ -274,59 +285,12 @@ pub(crate) fn of_report(report: &ProbeReport, subject: &Subject, found: &mut Vec
             found.push(Finding::fault(
                 "unstable-step",
                 format!(
-                    "the step of {} s is unstable though the system is stable; the longest stable step is {:.5e} s, limited by the mode of {}",
-                    report.dt,
-                    limit.dt.unwrap_or(0.0),
+                    "the step of {} s is unstable though the system is stable; the longest stable step is {} s, limited by the mode of {}",
+                    number(report.dt, 6),
+                    number(limit.dt.unwrap_or(0.0), 6),
                     limit.mode
                 ),
             ));
         }
-    }
-}
-
-/// Velocities that drive themselves. A step cannot tell whether its author wants that, unless the system conserves energy.
-fn damping(report: &ProbeReport, found: &mut Vec<Finding>) {
-    for driven in &report.driven_velocities {
-        let text = format!(
-            "`{}` accelerates itself by {:+.4e} 1/s: its damping has the wrong sign, unless the system is meant to be driven",
-            driven.state, driven.rate
-        );
-        found.push(Finding { kind: "negative-damping", is_fault: report.is_conservative, text });
-    }
-}
-
-/// Energy that a conservative system gains or loses.
-fn leaks(report: &ProbeReport, found: &mut Vec<Finding>) {
-    if !report.is_conservative {
-        return;
-    }
-    use crate::DriftReason::System;
-    let drift = report.defects.as_ref().and_then(|defects| defects.energy.as_ref());
-    if let Some(drift) = drift.filter(|drift| drift.reason == System) {
-        found.push(Finding::fault(
-            "energy-leak",
-            format!(
-                "the energy changes by {:+.3e} per second, whatever the step: the system is not conservative",
-                drift.rate
-            ),
-        ));
-        return;
-    }
-    let leak = report.modes.iter().find_map(|mode| {
-        let flow = mode.flow?;
-        let size = core::f64::consts::TAU * flow.frequency;
-        (flow.frequency > 0.0 && flow.growth_rate.abs() > (LEAK * size).max(3.0 * mode.error))
-            .then_some((mode, flow))
-    });
-    if let Some((mode, flow)) = leak {
-        let names: Vec<&str> = mode.states.iter().map(|(name, _)| name.as_str()).collect();
-        found.push(Finding::fault(
-            "energy-leak",
-            format!(
-                "the energy of the mode of {} changes by {:+.3e} per second in the limit of small steps: the system is not conservative",
-                names.join(", "),
-                2.0 * flow.growth_rate
-            ),
-        ));
     }
 }

@@ -54,7 +54,12 @@ impl LargestStep {
             reason: None,
         };
         let at = |prober: &mut Prober<'_>, dt: f64| Trial::at(prober, &rates, dt);
-        let is_unstable = at(prober, start)?.is_unstable();
+        let own = at(prober, start)?;
+        let is_unstable = own.is_unstable();
+        if let Some(z) = own.leaving.filter(|_| is_unstable) {
+            found.turns = z.arg().abs() / core::f64::consts::TAU;
+            found.mode = name_mode(&own.step, z, prober.subject);
+        }
         let mut dt = start;
         // Up from a stable step, down from an unstable one.
         loop {

@@ -1,12 +1,14 @@
 //! An audit as an HTML page.
 
-use libration_report::notation::number;
+use libration_report::notation::{count, number, plural};
 use libration_report::page::Page;
 use libration_report::record::{Cell, Table};
 use libration_report::report;
 
+use crate::ProbeReport;
+use crate::integrator_page::{defects, integrator};
 use crate::mode_plane::mode_plane;
-use crate::{Match, ProbeReport};
+use crate::summary::capitalised;
 
 /// The audit as an HTML page.
 pub fn page(audit: &ProbeReport) -> String {
@@ -24,11 +26,11 @@ pub fn page(audit: &ProbeReport) -> String {
         page.code(audit.repeat_command.clone());
     }
     let sub = format!(
-        "{} states · inputs {} · dt = {} s · {} steps · `libration probe`",
-        audit.states.len(),
-        if audit.inputs.is_empty() { "none".into() } else { audit.inputs.join(", ") },
+        "{} · {} · dt = {} s · {} steps · `libration probe`",
+        plural(audit.states.len(), "state"),
+        plural(audit.inputs.len(), "input"),
         number(audit.dt, 4),
-        audit.calls,
+        count(audit.calls),
     );
     report::render_page(&page, &sub)
 }
@@ -36,17 +38,37 @@ pub fn page(audit: &ProbeReport) -> String {
 fn findings(page: &mut Page, audit: &ProbeReport) {
     page.heading("What should be changed?");
     if audit.findings.is_empty() {
-        page.paragraph("Nothing: the audit has no finding.");
-    } else {
-        let mut table = Table::new("findings", &["finding", "kind", "evidence"]);
-        for finding in &audit.findings {
-            let kind = if finding.is_fault { "fault" } else { "warning" };
-            table.push([finding.kind.into(), kind.into(), finding.text.clone().into()]);
-        }
-        page.table(&table, 4);
+        page.paragraph(format!("Nothing: the audit has no finding.{}", longer_step(audit)));
+        return;
     }
-    for note in &audit.notes {
-        page.note(format!("{note}."));
+    let mut table = Table::new("findings", &["finding", "kind", "evidence", "what to change"]);
+    for finding in &audit.findings {
+        let kind = if finding.is_fault { "fault" } else { "warning" };
+        table.push([
+            format!("`{}`", finding.kind).into(),
+            kind.into(),
+            finding.text.clone().into(),
+            finding.help.clone().into(),
+        ]);
+    }
+    page.table(&table, 4);
+}
+
+/// How much longer the step might be; empty if that is unknown.
+fn longer_step(audit: &ProbeReport) -> String {
+    let Some(limit) = &audit.largest_dt else { return String::new() };
+    match limit.dt.filter(|longest| *longest > audit.dt) {
+        Some(longest) => format!(
+            " The step might be up to {} times as long, {} s, and stay stable at this state; its errors grow with it.",
+            number(longest / audit.dt, 3),
+            number(longest, 4)
+        ),
+        None if limit.dt.is_none() && !limit.grows_always => format!(
+            " The step might be {} times as long, {} s, and stay stable at this state; its errors grow with it.",
+            number(limit.tried_up_to / audit.dt, 3),
+            number(limit.tried_up_to, 4)
+        ),
+        None => String::new(),
     }
 }
 
@@ -55,11 +77,18 @@ fn modes(page: &mut Page, audit: &ProbeReport) {
         return;
     }
     page.heading("How do the modes of the step differ from those of the system?");
-    page.paragraph(
-        "The system is the limit of small steps. Numerical damping is the damping ratio that the step adds; where it is negative, the \
-         step takes damping away. A mode with |z| above 1 grows.",
-    );
-    let columns = [
+    let has_flow = audit.modes.iter().any(|mode| mode.flow.is_some());
+    page.paragraph(match has_flow {
+        true => {
+            "The system is the limit of small steps. Numerical damping is the damping ratio that the step adds; where it is negative, the \
+             step takes damping away. A mode with |z| above 1 grows."
+        }
+        false => {
+            "The simulator has one step only, so that the limit of small steps is unknown. A mode with |z| above 1 grows."
+        }
+    });
+    let of_step = ["mode in", "|z|", "growth rate (1/s)", "frequency (Hz)"];
+    let of_both = [
         "mode in",
         "|z|",
         "growth rate, step (1/s)",
@@ -68,22 +97,33 @@ fn modes(page: &mut Page, audit: &ProbeReport) {
         "system (Hz)",
         "numerical damping",
     ];
-    let mut table = Table::new("modes", &columns);
-    let known = |x: Option<f64>| x.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, 5));
+    let mut table = Table::new("modes", if has_flow { &of_both[..] } else { &of_step });
     for mode in &audit.modes {
         let flow = mode.flow;
-        table.push([
-            mode.names().into(),
-            Cell::rounded(mode.radius, 7),
-            Cell::rounded(mode.step.growth_rate, 5),
-            known(flow.map(|flow| flow.growth_rate)),
-            Cell::rounded(mode.step.frequency, 5),
-            known(flow.map(|flow| flow.frequency)),
-            known(mode.numerical_damping),
-        ]);
+        let name = Cell::from(mode.names());
+        let size = Cell::rounded(mode.radius, 7);
+        let [growth, frequency] =
+            [mode.step.growth_rate, mode.step.frequency].map(|x| Cell::rounded(x, 5));
+        table.push(match has_flow {
+            false => vec![name, size, growth, frequency],
+            true => vec![
+                name,
+                size,
+                growth,
+                known(flow.map(|flow| flow.growth_rate), 5),
+                frequency,
+                known(flow.map(|flow| flow.frequency), 5),
+                known(mode.numerical_damping, 3),
+            ],
+        });
     }
-    page.table(&table, 7);
+    page.table(&table, 5);
     page.figure(mode_plane(audit));
+}
+
+/// A number, or a dash where there is none.
+fn known(x: Option<f64>, digits: usize) -> Cell {
+    x.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, digits))
 }
 
 fn latency(page: &mut Page, audit: &ProbeReport) {
@@ -91,28 +131,36 @@ fn latency(page: &mut Page, audit: &ProbeReport) {
         return;
     }
     page.heading("Which latency is hidden in the step?");
-    page.paragraph(
-        "A command may be used late, and the integrator itself delays its effect. Its delay is that beyond the exact motion under the same \
-         held command, by the phase of the state that responds most.",
-    );
-    let columns = [
-        "input",
-        "late by (steps)",
-        "late by (s)",
-        "delay of the integrator (s)",
-        "of",
-        "total (s)",
-    ];
-    let mut table = Table::new("latency", &columns);
+    let is_late = audit.hidden_latency.iter().any(|latency| latency.late_steps != 0.0);
+    page.paragraph(format!(
+        "{} The integrator itself delays the effect of a command: beyond the exact motion under the same held command, by the phase of the \
+         state that responds most. A negative delay is an early effect.",
+        if is_late { "A command is used late." } else { "Each command is used in the step that receives it." }
+    ));
+    let of_integrator = ["input", "delay of the integrator (s)", "by the phase of"];
+    let of_both = [
+        &of_integrator[..1],
+        &["late by (steps)", "late by (s)"],
+        &of_integrator[1..],
+        &["total (s)"],
+    ]
+    .concat();
+    let mut table = Table::new("latency", if is_late { &of_both[..] } else { &of_integrator });
     for latency in &audit.hidden_latency {
-        table.push([
-            latency.input.clone().into(),
-            Cell::rounded(latency.late_steps, 4),
-            Cell::rounded(latency.late, 4),
-            latency.integrator_delay.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, 4)),
-            latency.state.clone().unwrap_or_else(|| "—".into()).into(),
-            Cell::rounded(latency.total, 4),
-        ]);
+        let input = Cell::from(latency.input.clone());
+        let delay = known(latency.integrator_delay, 3);
+        let state = Cell::from(latency.state.clone().unwrap_or_else(|| "—".into()));
+        table.push(match is_late {
+            false => vec![input, delay, state],
+            true => vec![
+                input,
+                Cell::rounded(latency.late_steps, 4),
+                Cell::rounded(latency.late, 4),
+                delay,
+                state,
+                Cell::rounded(latency.total, 4),
+            ],
+        });
     }
     page.table(&table, 4);
     if audit.delays.is_empty() {
@@ -137,72 +185,13 @@ fn latency(page: &mut Page, audit: &ProbeReport) {
     page.table(&table, 6);
 }
 
-fn integrator(page: &mut Page, audit: &ProbeReport) {
-    let (Some(order), Some(recognition)) = (&audit.order, &audit.recognition) else { return };
-    page.heading("Which integrator is it?");
-    let estimates = match order.estimates.is_empty() {
-        true => "none, the step is exact".into(),
-        false => order.estimates.iter().map(|x| format!("{x:.3}")).collect::<Vec<_>>().join(", "),
-    };
-    page.paragraph(format!("Estimates of the order from halved steps: {estimates}."));
-    page.paragraph(format!(
-        "Each candidate steps the same system from a displaced state, whose rates are the limit of short steps of the simulator; errors of \
-         the rates explain distances up to {:.1e}.",
-        recognition.by_results.allowed
-    ));
-    candidates(page, "integrators", &recognition.by_results);
-    if let Some(by_matrix) = &recognition.by_matrix {
-        page.paragraph(format!(
-            "The same for small deviations, by the matrix of the step; errors explain distances up to {:.1e}.",
-            by_matrix.allowed
-        ));
-        candidates(page, "integrators-linear", by_matrix);
-    }
-}
-
-fn candidates(page: &mut Page, name: &str, found: &Match) {
-    let mut table = Table::new(name, &["integrator", "distance from the step", "agrees"]);
-    // The others are farther, and in the results.
-    for candidate in found.candidates.iter().take(8) {
-        let agrees = if found.methods.contains(&candidate.method) { "yes" } else { "no" };
-        table.push([
-            candidate.title.clone().into(),
-            Cell::rounded(candidate.distance, 3),
-            agrees.into(),
-        ]);
-    }
-    page.table(&table, 3);
-}
-
-fn defects(page: &mut Page, audit: &ProbeReport) {
-    let Some(defects) = &audit.defects else { return };
-    page.heading("What does the step not conserve?");
-    let mut table = Table::new("defects", &["quantity", "step", "system or half the step"]);
-    let known = |x: Option<f64>| x.map_or_else(|| Cell::absent("—"), |x| Cell::rounded(x, 4));
-    table.push([
-        "rate of phase-space volume (1/s)".into(),
-        Cell::rounded(defects.volume_rate, 4),
-        known(defects.flow_volume_rate),
-    ]);
-    table.push(["defect of symplecticity".into(), known(defects.symplecticity), Cell::absent("—")]);
-    table.push([
-        "defect of reversibility".into(),
-        known(defects.reversibility),
-        known(defects.reversibility_halved),
-    ]);
-    if let Some(energy) = &defects.energy {
-        let name = format!("relative rate of the energy (1/s), {}", energy.reason.text());
-        table.push([name.into(), Cell::rounded(energy.rate, 4), known(energy.rate_halved)]);
-    }
-    page.table(&table, 4);
-}
-
 fn bits(page: &mut Page, audit: &ProbeReport) {
     page.heading("Are the results the same bits again?");
     let mut table = Table::new("bits", &["comparison", "result"]);
     for check in &audit.bits.checks {
         let result = match &check.difference {
             None => "the same bits".to_owned(),
+            Some(d) if d.differing == 1 => format!("1 number differs: {}", d.place()),
             Some(d) => format!("{} numbers differ, first {}", d.differing, d.place()),
         };
         table.push([check.name.clone().into(), result.into()]);
@@ -210,8 +199,8 @@ fn bits(page: &mut Page, audit: &ProbeReport) {
     page.table(&table, 4);
     if let Some(rounding) = &audit.bits.rounding {
         page.paragraph(format!(
-            "Rounding of a step relative to its results: {:.1e}.",
-            rounding.results
+            "Rounding of a step relative to its results: {}.",
+            number(rounding.results, 2)
         ));
     }
 }
@@ -226,23 +215,43 @@ fn linearisation(page: &mut Page, audit: &ProbeReport) {
         table.push([format!("command {name}").into(), Cell::rounded(*value, 6)]);
     }
     page.table(&table, 6);
+    for note in &audit.notes {
+        page.note(format!("{}.", capitalised(note)));
+    }
+    page.paragraph(match audit.step.is_some() {
+        true => linearised(audit),
+        false => {
+            "The step was not linearised: its results are not those of the given state and action."
+                .into()
+        }
+    });
+}
+
+fn linearised(audit: &ProbeReport) -> String {
     let rest = &audit.equilibrium;
     let holds = if rest.holds { "It is an equilibrium" } else { "It is no equilibrium" };
+    let change = match rest.change {
+        0.0 => "no state changes in a step".into(),
+        change => format!("the largest change in a step is {} ({})", number(change, 2), rest.state),
+    };
     let mut text = format!(
-        "{holds}: the largest change in a step is {:.1e} ({}). The estimated relative error of the matrices is {:.1e}.",
-        rest.change, rest.state, audit.jacobian_error
+        "{holds}: {change}. The estimated relative error of the matrices is {}.",
+        number(audit.jacobian_error, 2)
     );
     if let Some(confirmation) = &audit.confirmation {
         text += &format!(
-            " A run of {} steps from a deviation of {:.0e} follows them to {:.1e}.",
-            confirmation.steps, confirmation.displacement, confirmation.error
+            " A run of {} from a deviation of {} follows them to a relative error of {}.",
+            plural(confirmation.steps, "step"),
+            number(confirmation.displacement, 1),
+            number(confirmation.error, 2)
         );
     }
     if let Some(reference) = &audit.reference {
         text += &format!(
-            " The matrices of {} differ from it by at most {:.1e} of the largest entry of a row.",
-            reference.source, reference.difference
+            " The matrices of {} differ from it by at most {} of the largest entry of a row.",
+            reference.source,
+            number(reference.difference, 2)
         );
     }
-    page.paragraph(text);
+    text
 }

@@ -7,6 +7,7 @@ use crate::driven_velocity::{DrivenVelocity, driven_velocities};
 use crate::finding::{Finding, of_bits, of_memory, of_report};
 use crate::flow::Flow;
 use crate::held_action::HeldAction;
+use crate::help::help;
 use crate::hidden_latency::{HiddenLatency, hidden_latencies};
 use crate::linear_candidates::match_matrices;
 use crate::linearised_step::LinearisedStep;
@@ -138,6 +139,9 @@ fn examine(prober: &mut Prober<'_>, memory: Memory) -> Result<ProbeReport, Black
         of_report(&report, subject, &mut findings);
     }
     report.memory = Some(memory);
+    for finding in &mut findings {
+        finding.help = help(finding.kind, &report);
+    }
     report.findings = findings;
     report.calls = prober.calls;
     report.answer = report.summary();
@@ -145,7 +149,7 @@ fn examine(prober: &mut Prober<'_>, memory: Memory) -> Result<ProbeReport, Black
 }
 
 impl ProbeReport {
-    fn empty(subject: &Subject, bits: Bits) -> Self {
+    pub(crate) fn empty(subject: &Subject, bits: Bits) -> Self {
         let mut notes = subject.notes.clone();
         if let Some(integrator) = &subject.integrator {
             notes.insert(0, format!("the simulator calls its integrator {integrator}"));

@@ -1,5 +1,7 @@
 //! The answer of an audit, in sentences.
 
+use libration_report::notation::{number, plural};
+
 use crate::ProbeReport;
 use crate::modes::ProbedMode;
 
@@ -32,45 +34,49 @@ impl ProbeReport {
         let validity = self.findings.iter().filter(|finding| finding.kind == "limited-validity");
         sentences.extend(validity.map(|finding| format!("{}.", capitalised(&finding.text))));
         if faults.is_empty() && self.step.is_some() && self.is_differentiable() {
-            sentences.push("No fault was found.".into());
+            sentences.push(match self.findings.len() {
+                0 => "No fault was found.".into(),
+                warnings => format!("No fault was found, but {}.", plural(warnings, "warning")),
+            });
         }
         sentences.join(" ")
     }
 
     fn stability(&self) -> Option<String> {
         self.step.as_ref()?;
-        let dt = self.dt;
+        let dt = number(self.dt, 6);
         let leading = self.modes.first()?;
         let grows = leading.radius > 1.0 + 1e-9 && leading.step.growth_rate > 10.0 * leading.error;
         let flow_grows = leading.flow.is_some_and(|flow| flow.growth_rate > 10.0 * leading.error);
-        let limit = self.largest_dt.as_ref();
+        let growth = || format!("grows at {} 1/s", number(leading.step.growth_rate, 4));
+        let names = leading.names();
         let mut text = match (grows, flow_grows) {
-            (true, true) => format!(
-                "With dt = {dt} s a mode grows by {:.4} 1/s, as in the system itself ({})",
-                leading.step.growth_rate,
-                leading.names()
-            ),
-            (true, false) => format!(
-                "With dt = {dt} s the step is unstable: a mode grows by {:.4} 1/s ({})",
-                leading.step.growth_rate,
-                leading.names()
-            ),
+            (true, true) => {
+                format!("With dt = {dt} s a mode {}, as in the system itself ({names})", growth())
+            }
+            (true, false) => {
+                format!("With dt = {dt} s the step is unstable: a mode {} ({names})", growth())
+            }
             (false, _) => format!("With dt = {dt} s the step is stable at this state"),
         };
+        // The fault comes first, and has the limit.
+        let is_known = self.findings.iter().any(|finding| finding.kind == "unstable-step");
+        let limit = self.largest_dt.as_ref().filter(|_| !is_known);
         match limit {
             Some(limit) if limit.grows_always => {
                 text += "; no step is short enough to prevent growth of its own";
             }
             Some(limit) if let Some(longest) = limit.dt => {
                 text += &format!(
-                    "; the longest stable step is {longest:.5e} s ({:.2} times dt), limited by the mode of {}",
-                    longest / dt,
+                    "; the longest stable step is {} s ({} times dt), limited by the mode of {}",
+                    number(longest, 6),
+                    number(longest / self.dt, 3),
                     limit.mode
                 );
             }
             Some(limit) => {
-                text +=
-                    &format!("; no limit was found up to a step of {:.3e} s", limit.tried_up_to);
+                let longest = number(limit.tried_up_to, 3);
+                text += &format!("; no limit was found up to a step of {longest} s");
             }
             None => {}
         }
@@ -90,7 +96,11 @@ impl ProbeReport {
             ([], Some(order)) => Some(format!(
                 "Its order is {order}; it is none of the integrators that were compared."
             )),
-            ([], None) => None,
+            ([], None) => self
+                .order
+                .as_ref()
+                .filter(|order| order.is_exact)
+                .map(|_| "The step is exact: shorter steps give the same results.".into()),
             (titles, order) => {
                 let order = order.map_or_else(String::new, |order| format!(", of order {order}"));
                 Some(format!("By {by} the step is that of {}{order}.", titles.join(" or ")))
@@ -107,8 +117,8 @@ impl ProbeReport {
         let added = most.numerical_damping.filter(|added| added.abs() > 1e-6)?;
         let (verb, to) = if added > 0.0 { ("adds", "to") } else { ("takes", "from") };
         Some(format!(
-            "It {verb} a damping ratio of {:.3e} {to} the mode of {}.",
-            added.abs(),
+            "It {verb} a damping ratio of {} {to} the mode of {}.",
+            number(added.abs(), 3),
             most.names()
         ))
     }
@@ -122,7 +132,7 @@ impl ProbedMode {
     }
 }
 
-fn capitalised(text: &str) -> String {
+pub(crate) fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use libration_advise::rounded;
 use libration_probe::ProbeReport;
+use libration_report::notation::{number, plural};
 
 /// Returns the report as text.
 pub(super) fn describe(report: &ProbeReport) -> String {
@@ -11,6 +11,7 @@ pub(super) fn describe(report: &ProbeReport) -> String {
     for finding in &report.findings {
         let kind = if finding.is_fault { "fault" } else { "warning" };
         let _ = writeln!(text, "{kind}: {}: {}", finding.kind, finding.text);
+        let _ = writeln!(text, "help: {}", finding.help);
     }
     for note in &report.notes {
         let _ = writeln!(text, "note: {note}");
@@ -18,30 +19,7 @@ pub(super) fn describe(report: &ProbeReport) -> String {
     modes(report, &mut text);
     latency(report, &mut text);
     integrator(report, &mut text);
-    if let Some(defects) = &report.defects {
-        let _ = writeln!(
-            text,
-            "\nphase-space volume: {} 1/s, of the system {}",
-            rounded(defects.volume_rate),
-            known(defects.flow_volume_rate)
-        );
-        let _ = writeln!(
-            text,
-            "defects: of symplecticity {}, of reversibility {} (with half the step {})",
-            known(defects.symplecticity),
-            known(defects.reversibility),
-            known(defects.reversibility_halved)
-        );
-        if let Some(energy) = &defects.energy {
-            let _ = writeln!(
-                text,
-                "energy: {} 1/s over {} steps; {}",
-                rounded(energy.rate),
-                energy.steps,
-                energy.reason.text()
-            );
-        }
-    }
+    defects(report, &mut text);
     let same = report.bits.checks.iter().filter(|check| check.difference.is_none());
     let names: Vec<&str> = same.map(|check| check.name.as_str()).collect();
     if !names.is_empty() {
@@ -50,19 +28,26 @@ pub(super) fn describe(report: &ProbeReport) -> String {
     if let Some(confirmation) = &report.confirmation {
         let _ = writeln!(
             text,
-            "linearised with a relative error of {:.1e}; a run of {} steps follows to {:.1e}",
-            report.jacobian_error, confirmation.steps, confirmation.error
+            "linearised with a relative error of {}; a run of {} follows to {}",
+            number(report.jacobian_error, 2),
+            plural(confirmation.steps, "step"),
+            number(confirmation.error, 2)
         );
     }
     if let Some(reference) = &report.reference {
         let _ = writeln!(
             text,
-            "the matrices of {} differ from it by at most {:.1e} of a row",
-            reference.source, reference.difference
+            "the matrices of {} differ from it by at most {} of a row",
+            reference.source,
+            number(reference.difference, 2)
         );
     }
     let _ = writeln!(text, "repeat with: {}", report.repeat_command);
     text
+}
+
+fn rounded(x: f64) -> String {
+    number(x, 5)
 }
 
 fn known(x: Option<f64>) -> String {
@@ -82,9 +67,9 @@ fn modes(report: &ProbeReport, text: &mut String) {
         let flow = mode.flow;
         let _ = writeln!(
             text,
-            "{:<36} {:>11.8} {:>12} {:>12} {:>12} {:>12} {:>12}",
+            "{:<36} {:>11} {:>12} {:>12} {:>12} {:>12} {:>12}",
             mode.names(),
-            mode.radius,
+            number(mode.radius, 8),
             rounded(mode.step.growth_rate),
             known(flow.map(|flow| flow.growth_rate)),
             rounded(mode.step.frequency),
@@ -95,22 +80,54 @@ fn modes(report: &ProbeReport, text: &mut String) {
 }
 
 fn latency(report: &ProbeReport, text: &mut String) {
-    for latency in &report.hidden_latency {
-        let by = latency.state.as_deref().unwrap_or("-");
+    for (i, latency) in report.hidden_latency.iter().enumerate() {
+        let start = if i == 0 { "\n" } else { "" };
+        let late = match latency.late_steps {
+            0.0 => "not late".to_owned(),
+            late => format!("{} steps late", number(late, 4)),
+        };
+        let _ = write!(text, "{start}latency of {}: {late}", latency.input);
+        if let Some(delay) = latency.integrator_delay {
+            let by = latency.state.as_deref().unwrap_or("-");
+            let delay = number(delay, 3);
+            let _ = write!(text, "; the integrator delays it by {delay} s (phase of {by})");
+        }
+        text.push('\n');
+    }
+}
+
+fn defects(report: &ProbeReport, text: &mut String) {
+    let Some(defects) = &report.defects else { return };
+    let beside = |what: &str, x: Option<f64>| {
+        x.map_or_else(String::new, |x| format!(" ({what} {})", rounded(x)))
+    };
+    let system = beside("of the system", defects.flow_volume_rate);
+    let volume = rounded(defects.volume_rate);
+    let _ = writeln!(text, "\nrate of phase-space volume: {volume} 1/s{system}");
+    if let Some(defect) = defects.symplecticity {
+        let _ = writeln!(text, "defect of symplecticity: {}", rounded(defect));
+    }
+    if let Some(defect) = defects.reversibility {
+        let halved = beside("with half the step", defects.reversibility_halved);
+        let _ = writeln!(text, "defect of reversibility: {}{halved}", rounded(defect));
+    }
+    if let Some(energy) = &defects.energy {
         let _ = writeln!(
             text,
-            "\nlatency of {}: {} steps late; the integrator delays it by {} s (phase of {by})",
-            latency.input,
-            rounded(latency.late_steps),
-            known(latency.integrator_delay)
+            "energy: {} 1/s over {} steps; {}",
+            rounded(energy.rate),
+            energy.steps,
+            energy.reason.text()
         );
     }
 }
 
 fn integrator(report: &ProbeReport, text: &mut String) {
     let (Some(order), Some(recognition)) = (&report.order, &report.recognition) else { return };
-    let estimates: Vec<String> = order.estimates.iter().map(|x| format!("{x:.3}")).collect();
-    let _ = writeln!(text, "\norder by halved steps: {}", estimates.join(", "));
+    let _ = match order.is_exact {
+        true => writeln!(text, "\norder by halved steps: none, the step is exact"),
+        false => writeln!(text, "\norder by halved steps: {}", order.in_words()),
+    };
     let all = [
         ("by results", Some(&recognition.by_results)),
         ("by matrix", recognition.by_matrix.as_ref()),
@@ -123,9 +140,13 @@ fn integrator(report: &ProbeReport, text: &mut String) {
             let agrees = if found.methods.contains(&candidate.method) { "agrees" } else { "" };
             let _ = writeln!(
                 text,
-                "  {:<30} {:>12} {agrees}",
-                candidate.method,
-                format!("{:.2e}", candidate.distance)
+                "{}",
+                format!(
+                    "  {:<30} {:>12} {agrees}",
+                    candidate.method,
+                    number(candidate.distance, 3)
+                )
+                .trim_end()
             );
         }
     }
